@@ -63,6 +63,7 @@ _HOMES = {
     "prove": "navsym.prove.formulas",
     "new_paper": "navsym.prove.drafts",
     "Bank": "navsym.multimodel.bank",
+    **dict.fromkeys(("Conventions", "conventions"), "navsym.conventions.answer"),
     "condition": "navsym.trajectory.conditioning",
     "data": "navsym.core.datasets",
     "filter": "navsym.multimodel.filters",
@@ -95,6 +96,8 @@ if TYPE_CHECKING:
     from navsym.claims import Status as Status
     from navsym.claims import Verdict as Verdict
     from navsym.claims import Verdicts as Verdicts
+    from navsym.conventions.answer import Conventions as Conventions
+    from navsym.conventions.answer import conventions as conventions
     from navsym.core.datasets import data as data
     from navsym.core.errors import NavsymError as NavsymError
     from navsym.core.machine import doctor as doctor

@@ -1,0 +1,111 @@
+"""Find the conventions of an error model: frame, axes, side and sign of its errors, terms kept and dropped."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from navsym.cli.output import emit, table
+
+
+def command(
+    file: Annotated[Path, typer.Argument(help="conventions file (TOML) with [model], [roles] and [quantities]")],
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> int:
+    """Find all conventions under which an error model is right. Status 1 when there are none.
+
+    Example: navsym conventions examples/conventions.toml
+    """
+    import navsym as nav
+
+    answer = nav.conventions(file)
+    emit(answer.document(), as_json=json_, text=lambda: as_text(answer.document()))
+    return 0 if answer.cards else 1
+
+
+# Text for people
+
+#: Field -> its heading in the table of cards; fields that say the same for all cards stand above the table.
+FIELDS = {
+    "frame": "frame",
+    "axes": "axes",
+    "error": "error of velocity and position",
+    "attitude_error": "attitude error in the",
+    "rotation_sign": "sign of its rotation",
+    "angle": "angle",
+    "bias_sign": "error of the biases",
+    "vector_error": "vector errors",
+    "position_error": "position error",
+    "earth": "Earth",
+    "earth_rate": "Earth rate",
+    "transport_rate": "transport rate",
+    "gravity_gradient": "gravity gradient",
+    "gravity_radius": "its radius",
+    "centrifugal": "centrifugal term",
+    "height_variation": "change of radii with height",
+    "radius_variation": "change of radii with latitude",
+}
+
+
+def as_text(data: Mapping[str, Any]) -> str:
+    """The cards in words and what excludes their neighbours, or what must change."""
+    blocks = [cards_text(data["cards"])] if data["cards"] else [conflicts_text(data)]
+    if data["excluded"]:
+        rows = [
+            (FIELDS[item["field"]], str(item["card"][item["field"]]), item["why"], place_text(item["point"]))
+            for item in data["excluded"]
+        ]
+        blocks.append(table(["neighbour with another", "namely", "is excluded", "at"], rows))
+    others = f"{data['examined']} cards examined"
+    proved = "each card is proved, each other one excluded at a point" if data["complete"] else "not all is proved"
+    unused = f"; not looked at: {', '.join(data['unused'])}" if data["unused"] else ""
+    return "\n\n".join([*blocks, f"{others}; {proved}{unused}"]) + "\n"
+
+
+def cards_text(cards: Sequence[Mapping[str, Any]]) -> str:
+    """What all cards share, the formula of the attitude error, and a table of what differs."""
+    shared = [name for name in FIELDS if len({card[name] for card in cards}) == 1 and cards[0][name] is not None]
+    lines = [f"{FIELDS[name]}: {cards[0][name]}" for name in shared]
+    if {"attitude_error", "rotation_sign"} <= set(shared):
+        lines.append(f"that is: {attitude_formula(cards[0])}")
+    dropped = {tuple(map(tuple, card["dropped"])) for card in cards}
+    if len(dropped) == 1 and next(iter(dropped)):
+        lines.append("dropped: " + "; ".join(f"{row} by {column}" for row, column in next(iter(dropped))))
+    free = [name for name in FIELDS if len({card[name] for card in cards}) > 1]
+    count = "one card" if len(cards) == 1 else f"{len(cards)} cards, that differ in"
+    if not free:
+        return "\n".join([count, *lines])
+    rows = [[str(card[name] or "") for name in free] for card in cards]
+    return "\n".join([*lines, "", count, table([FIELDS[name] for name in free], rows)])
+
+
+def attitude_formula(card: Mapping[str, Any]) -> str:
+    """The definition of the attitude error."""
+    small = f"(E {card['rotation_sign']} [p x])"
+    return f"C_est = {small} C" if card["attitude_error"] == "frame" else f"C_est = C {small}"
+
+
+def conflicts_text(data: Mapping[str, Any]) -> str:
+    """The blocks that must change for the nearest card."""
+    if not data["conflicts"]:
+        return "no card, and none is near"
+    head = f"no card; the fewest blocks that must change: {len(data['conflicts'])}"
+    lines = [head, table(["block", "entries of F", "change", "verdict"], [conflict_row(c) for c in data["conflicts"]])]
+    if data["alternatives"]:
+        sets = ("; ".join(" by ".join(block) for block in blocks) for blocks in data["alternatives"])
+        lines.append("or as few others: " + " | ".join(sets))
+    return "\n".join([*lines, "", "then one card is", cards_text([data["nearest"]])])
+
+
+def conflict_row(conflict: Mapping[str, Any]) -> list[str]:
+    """One block that must change."""
+    entries = " ".join(f"[{i},{j}]" for i, j in conflict["entries"])
+    return [" by ".join(conflict["block"]), entries, conflict["change"], conflict["status"]]
+
+
+def place_text(point: Mapping[str, str]) -> str:
+    """A point in one line."""
+    return ", ".join(f"{name} = {value}" for name, value in point.items())

@@ -1,0 +1,281 @@
+"""The conventions of a model: :func:`conventions`, its answer and document."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+from navsym.conventions.card import Card
+from navsym.conventions.proof import Prover
+from navsym.conventions.reading import Problem, read_problem
+from navsym.conventions.search import (
+    SIGNS,
+    Block,
+    Comparison,
+    Mismatch,
+    Outcome,
+    find_candidates,
+    find_nearest,
+    list_blocks,
+    plain_card,
+)
+from navsym.core.answers import Answer
+from navsym.core.errors import DomainError
+from navsym.language.files import name_file
+from navsym.language.names import quote
+from navsym.language.tomlfile import read_toml
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """A block that must change: roles, entries of F that differ (from 1), the mended rows, and how that is known."""
+
+    block: tuple[str, str]
+    entries: tuple[tuple[int, int], ...]
+    change: str
+    status: str
+
+    def document(self) -> dict[str, Any]:
+        """The conflict as JSON data."""
+        entries = [list(entry) for entry in self.entries]
+        return {"block": list(self.block), "entries": entries, "change": self.change, "status": self.status}
+
+
+@dataclass(frozen=True, slots=True)
+class Exclusion:
+    """A card that differs from one of the answer in one field, an entry of F that excludes it, and a point."""
+
+    card: Card
+    field: str
+    block: tuple[str, str] | None
+    entry: tuple[int, int] | None
+    point: Mapping[str, str]
+    why: str
+
+    def document(self) -> dict[str, Any]:
+        """The exclusion as JSON data."""
+        return {
+            "card": self.card.document(),
+            "field": self.field,
+            "block": None if self.block is None else list(self.block),
+            "entry": None if self.entry is None else list(self.entry),
+            "point": dict(self.point),
+            "why": self.why,
+        }
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Conventions(Answer):
+    """All cards under which a model is right, or the fewest blocks that must change.
+
+    cards        : every :class:`Card` whose error dynamics are those of the model
+    complete     : True where each card is proved and each other one excluded at an exact point
+    conflicts    : with no card: the blocks that must change for ``nearest``, one of the cards that ask for the fewest
+    alternatives : other sets of as few blocks
+    excluded     : the neighbours of the cards, with what excludes them; ``examined`` counts all cards
+    unused       : tables of the file that say nothing about the error dynamics
+    """
+
+    name: str
+    cards: tuple[Card, ...]
+    complete: bool
+    conflicts: tuple[Conflict, ...]
+    nearest: Card | None
+    alternatives: tuple[tuple[tuple[str, str], ...], ...]
+    excluded: tuple[Exclusion, ...]
+    examined: int
+    unused: tuple[str, ...]
+
+    def document(self) -> dict[str, Any]:
+        """The answer as plain data: the JSON document of the verb."""
+        return {
+            "cards": [card.document() for card in self.cards],
+            "complete": self.complete,
+            "conflicts": [conflict.document() for conflict in self.conflicts],
+            "nearest": None if self.nearest is None else self.nearest.document(),
+            "alternatives": [[list(block) for block in blocks] for blocks in self.alternatives],
+            "excluded": [exclusion.document() for exclusion in self.excluded],
+            "examined": self.examined,
+            "unused": list(self.unused),
+        }
+
+    def __repr__(self) -> str:
+        if self.cards:
+            first = self.cards[0]
+            words = ", ".join(str(w) for w in (first.frame, first.axes, first.error, first.angle) if w)
+            more = f" and {len(self.cards) - 1} more" if len(self.cards) > 1 else ""
+            return f"Conventions({self.name}: {words}{more})"
+        blocks = "; ".join(" by ".join(conflict.block) for conflict in self.conflicts)
+        return f"Conventions({self.name}: no card; change {blocks})"
+
+
+def conventions(
+    model: Any,
+    *,
+    roles: Mapping[str, Sequence[str]] | None = None,
+    quantities: Mapping[str, Any] | None = None,
+    known: Mapping[str, str] | None = None,
+) -> Conventions:
+    """All cards of conventions under which the error dynamics of a model are right.
+
+    For each card the error equations are derived from the nonlinear mechanisation, to first order along the true flow,
+    and compared with F block by block: by the prover where they agree, at an exact point where they differ.
+
+    model      : path of a conventions file, its document, or a :class:`navsym.Model`
+    roles      : role (position, velocity, attitude, gyro_bias, accelerometer_bias) -> names of its three states
+    quantities : quantity (specific_force, rotation, latitude, velocity, radii, ...) -> names or expressions
+    known      : parts of the card that are certain, such as ``{"frame": "inertial"}``
+
+    With no card the answer names the fewest blocks that must change. Raises a NavsymError for bad input: roles that are
+    no states, unknown quantities, wrong numbers of components, a matrix that is no rotation.
+
+    >>> states = "v1 v2 v3 p1 p2 p3".split()
+    >>> F = [["0"] * 6 for _ in range(6)]
+    >>> F[0][4], F[0][5], F[1][3], F[1][5], F[2][3], F[2][4] = "f3", "-f2", "-f3", "f1", "f2", "-f1"
+    >>> answer = conventions(
+    ...     {"model": {"states": states, "F": F}, "parameters": dict.fromkeys(("f1", "f2", "f3"), "real")},
+    ...     roles={"velocity": states[:3], "attitude": states[3:]},
+    ...     quantities={"specific_force": ["f1", "f2", "f3"]},
+    ...     known={"frame": "inertial", "error": "estimate - truth"},
+    ... )
+    >>> [(card.attitude_error, card.rotation_sign) for card in answer.cards], answer.complete
+    ([('frame', '+')], True)
+    """
+    problem = problem_of(model, roles, quantities, known)
+    prover, comparison = Prover(problem), Comparison(problem)
+    findings = find_candidates(problem, comparison)
+    proved = {card: is_card_proved(card, problem, prover) for card in findings.candidates}
+    cards, complete = findings.candidates, all(proved.values())
+    conflicts: tuple[Conflict, ...] = ()
+    nearest: Card | None = None
+    alternatives: tuple[tuple[Block, ...], ...] = ()
+    if not cards:
+        outcomes = sorted(find_nearest(problem, comparison), key=rank_outcome)
+        if outcomes:
+            nearest = outcomes[0].card
+            conflicts = tuple(state_conflict(outcomes[0], m, prover) for m in outcomes[0].mismatches)
+            sets = dict.fromkeys(tuple(m.block for m in outcome.mismatches) for outcome in outcomes)
+            alternatives = tuple(sets)[1:]
+    examined = len(cards) + sum(outcome.count for outcome in findings.excluded)
+    excluded = tuple(find_neighbours(cards, findings.excluded, comparison))
+    return Conventions(
+        problem.name, cards, complete, conflicts, nearest, alternatives, excluded, examined, problem.unused
+    )
+
+
+def problem_of(model: Any, roles: Any, quantities: Any, known: Any) -> Problem:
+    """The problem that the arguments mean."""
+    from navsym.models.model import Model
+
+    extra = {"roles": roles, "quantities": quantities, "known": known}
+    given = {name: plain_lists(value) for name, value in extra.items() if value is not None}
+    if isinstance(model, str | os.PathLike):
+        return read_problem({**read_toml(model), **given}, name_file(model))
+    if isinstance(model, Model):
+        model = model.document()
+    if not isinstance(model, Mapping):
+        message = f"expected a model, a document or the path of a file; got {quote(model)}; give one of these"
+        raise DomainError(message, where="conventions: model")
+    return read_problem({**model, **given}, "conventions")
+
+
+def plain_lists(value: Any) -> Any:
+    """Tuples as lists, in tables too."""
+    if isinstance(value, Mapping):
+        return {key: plain_lists(item) for key, item in value.items()}
+    return [plain_lists(item) for item in value] if isinstance(value, tuple | list) else value
+
+
+def is_card_proved(card: Card, problem: Problem, prover: Prover) -> bool:
+    """True where the prover grants every block of the card that is not dropped."""
+    signs = card.signs()
+    plain = plain_card(card)
+    return all(
+        prover.is_right(plain, block, signs[block[0]] * signs[block[1]])
+        for block in list_blocks(problem)
+        if block not in card.dropped
+    )
+
+
+def rank_outcome(outcome: Outcome) -> tuple[Any, ...]:
+    """Order of the cards that ask for as few changes: blocks of biases before others, fewest entries, plain errors."""
+    entries = sum(len(m.entries) for m in outcome.mismatches)
+    biased = -sum(m.block == ("velocity", "accelerometer_bias") for m in outcome.mismatches)
+    gyros = -sum(m.block == ("attitude", "gyro_bias") for m in outcome.mismatches)
+    card = outcome.card
+    return (
+        biased,
+        gyros,
+        entries,
+        len(card.dropped),
+        card.vector_error != "difference",
+        card.error != "estimate - truth",
+    )
+
+
+def state_conflict(outcome: Outcome, mismatch: Mismatch, prover: Prover) -> Conflict:
+    """The change of one block, with the checker's word that the entries differ."""
+    card, block = outcome.card, mismatch.block
+    signs = card.signs()
+    row, column = block
+    rows, columns = prover.problem.roles[row], prover.problem.roles[column]
+    expected = prover.block_texts(plain_card(card), block, signs[row] * signs[column])
+    written = prover.written(block)
+    places = [(rows.index(i), columns.index(j)) for i, j in mismatch.entries]
+    granted = all(prover.refutes(plain_card(card), written[i][j], expected[i][j]) for i, j in places)
+    entries = tuple((i + 1, j + 1) for i, j in mismatch.entries)
+    return Conflict(block, entries, describe_change(written, expected, prover, card), "PROVED" if granted else "OPEN")
+
+
+def describe_change(written: list[list[str]], expected: list[list[str]], prover: Prover, card: Card) -> str:
+    """The change in words where it is a sign or a transposition, and the mended rows."""
+    from navsym.claims.verdict import PROVED
+
+    def agrees(sign: str, turned: bool) -> bool:
+        pairs = (
+            (f"{sign}({written[j][i] if turned else written[i][j]})", expected[i][j])
+            for i in range(3)
+            for j in range(3)
+        )
+        return all(prover.compare(plain_card(card), *pair).status == PROVED for pair in pairs)
+
+    words = "write"
+    for sign, turned, text in (
+        ("-", False, "change the sign"),
+        ("", True, "transpose"),
+        ("-", True, "transpose and change the sign"),
+    ):
+        if agrees(sign, turned):
+            words = f"{text}: write"
+            break
+    return f"{words} [{', '.join('[' + ', '.join(row) + ']' for row in expected)}]"
+
+
+def find_neighbours(cards: Sequence[Card], outcomes: Sequence[Outcome], comparison: Comparison) -> list[Exclusion]:
+    """Excluded cards that differ from one of the answer in one field; each once."""
+    neighbours: dict[Card, Exclusion] = {}
+    names = [f.name for f in fields(Card) if f.name != "dropped"]
+    for outcome in outcomes:
+        for card in cards:
+            other = (
+                outcome.card if outcome.count == 1 else replace(outcome.card, **{k: getattr(card, k) for k in SIGNS})
+            )
+            different = [name for name in names if getattr(card, name) != getattr(other, name)]
+            if len(different) == 1 and other not in neighbours:
+                neighbours[other] = exclude(replace(outcome, card=other), different[0], comparison)
+    return list(neighbours.values())
+
+
+def exclude(outcome: Outcome, name: str, comparison: Comparison) -> Exclusion:
+    """Why a card is excluded."""
+    card = outcome.card
+    if outcome.impossible:
+        why = f"{outcome.impossible} contradicts the other quantities"
+        return Exclusion(card, name, None, None, {}, why)
+    mismatch = outcome.mismatches[0]
+    i, j = mismatch.entries[0]
+    point, written, expected = comparison.show(card, mismatch.block, mismatch.entries[0], mismatch.point)
+    why = f"F[{i + 1},{j + 1}] is {written}, and {expected} for this card"
+    return Exclusion(card, name, mismatch.block, (i + 1, j + 1), point, why)

@@ -1,0 +1,163 @@
+"""Convention cards: what an error model may mean, as plain data, and their list."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
+from itertools import product
+from typing import Any
+
+ESTIMATE, TRUTH = "estimate - truth", "truth - estimate"
+KEPT, DROPPED = "kept", "dropped"
+
+#: Words that the fields of a card may have; None where a field says nothing.
+CHOICES: Mapping[str, tuple[str, ...]] = {
+    "frame": ("inertial", "earth", "local-level"),
+    "axes": ("NED", "ENU", "NWU"),
+    "error": (ESTIMATE, TRUTH),
+    "attitude_error": ("frame", "body"),
+    "angle": ("phi", "psi"),
+    "rotation_sign": ("+", "-"),
+    "bias_sign": (ESTIMATE, TRUTH),
+    "earth": ("none", "sphere", "ellipsoid"),
+    "earth_rate": (KEPT, DROPPED),
+    "transport_rate": (KEPT, DROPPED),
+    "gravity_gradient": ("none", "central", "radial", "vertical"),
+    "centrifugal": (KEPT, DROPPED),
+    "height_variation": (KEPT, DROPPED),
+    "radius_variation": (KEPT, "position", DROPPED),
+    "position_error": ("metres", "geodetic"),
+    "vector_error": ("difference", "rotated", "body"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Card:
+    """One set of conventions of an error model.
+
+    frame, axes      : where velocity is resolved; axes of a local level
+    error            : sign of velocity and position errors
+    attitude_error   : ``frame``: C_est = (E +- [p x]) C; ``body``: C_est = C (E +- [p x]); C leads from body to frame
+    angle            : ``phi``: beside the true local level; ``psi``: beside the local level at the estimated position
+    rotation_sign    : the sign of [p x] above
+    bias_sign        : sign of the errors of both sensors' biases; a sensor shows truth plus bias
+    earth            : shape; ``none`` is flat, with constant gravity
+    earth_rate, transport_rate, centrifugal, height_variation : terms that are kept or dropped
+    radius_variation : dRN/dL and dRE/dL: kept, dropped, or kept in the equations of the position only
+    gravity_gradient : ``central``: of -mu r/|r|^3; ``radial``: -2 g r'/(|r| R); ``vertical``: -2 g/R along down
+    gravity_radius   : R of the vertical gradient, in words
+    position_error   : ``metres`` along the axes, or ``geodetic`` (latitude, longitude, height)
+    vector_error     : ``difference``; ``rotated``: the truth is turned by the attitude error first (right invariant);
+                       ``body``: the difference is resolved in the body (left invariant)
+    dropped          : blocks of zeros where the full equations have small terms
+    """
+
+    frame: str
+    axes: str | None = None
+    error: str = ESTIMATE
+    attitude_error: str | None = "frame"
+    angle: str | None = None
+    rotation_sign: str | None = "+"
+    bias_sign: str | None = ESTIMATE
+    earth: str = "none"
+    earth_rate: str | None = None
+    transport_rate: str | None = None
+    gravity_gradient: str = "none"
+    gravity_radius: str | None = None
+    centrifugal: str | None = None
+    height_variation: str | None = None
+    radius_variation: str | None = None
+    position_error: str | None = None
+    vector_error: str = "difference"
+    dropped: tuple[tuple[str, str], ...] = ()
+
+    def document(self) -> dict[str, Any]:
+        """The card as JSON data."""
+        return {**asdict(self), "dropped": [list(block) for block in self.dropped]}
+
+    def signs(self) -> dict[str, int]:
+        """Role -> +1 where the state is estimate minus truth (for an attitude: the sign of its rotation), else -1."""
+        error = 1 if self.error == ESTIMATE else -1
+        bias = 1 if self.bias_sign == ESTIMATE else -1
+        attitude = 1 if self.rotation_sign == "+" else -1
+        return {
+            "velocity": error,
+            "position": error,
+            "attitude": attitude,
+            "gyro_bias": bias,
+            "accelerometer_bias": bias,
+        }
+
+
+def list_structures(roles: frozenset[str], radii: int, frames: tuple[str, ...], height: bool = True) -> Iterator[Card]:
+    """Every card without its signs, for a model of these roles.
+
+    radii  : how many radii of the Earth are given: with one it is a sphere, with more an ellipsoid, with none either
+    frames : the frames to list
+    height : False where radii contain the height
+    """
+    vectors = CHOICES["vector_error"] if {"attitude", "velocity"} <= roles else ("difference",)
+    sides = CHOICES["attitude_error"] if "attitude" in roles else ("frame",)
+    for frame in frames:
+        level = frame == "local-level"
+        cards = list(list_level(frame, roles, radii, height) if level else list_cartesian(frame, roles))
+        for side, vector in product(sides, vectors):
+            for card in cards:
+                yield replace(card, attitude_error=side, vector_error=vector)
+
+
+def list_cartesian(frame: str, roles: frozenset[str]) -> Iterator[Card]:
+    """Cards of the inertial frame and of the frame that turns with the Earth."""
+    metres = "metres" if "position" in roles else None
+    gradients = {"none": "none", "central": "sphere", "radial": "ellipsoid"} if metres else {"none": "none"}
+    rates: tuple[str | None, ...] = (KEPT, DROPPED) if frame == "earth" else (None,)
+    for gradient, rate in product(gradients, rates):
+        centrifugal: tuple[str | None, ...] = (KEPT, DROPPED) if rate == KEPT and metres else (None,)
+        for kept in centrifugal:
+            yield Card(
+                frame,
+                earth=gradients[gradient],
+                earth_rate=rate,
+                gravity_gradient=gradient,
+                centrifugal=kept,
+                position_error=metres,
+            )
+
+
+def list_level(frame: str, roles: frozenset[str], radii: int, height: bool) -> Iterator[Card]:
+    """Cards of a local level: over a flat Earth, a sphere, an ellipsoid."""
+    metres = "metres" if "position" in roles else None
+    shapes = {0: ("sphere", "ellipsoid"), 1: ("sphere",)}.get(radii, ("ellipsoid",))
+    for axes, angle in product(CHOICES["axes"], CHOICES["angle"]):
+        flat = Card(frame, axes, angle=angle, position_error=metres, transport_rate=DROPPED)
+        for rate in (KEPT, DROPPED):
+            yield replace(flat, earth_rate=rate)
+        for shape in shapes:
+            yield from list_curved(replace(flat, earth=shape), radii, height)
+
+
+def list_curved(flat: Card, radii: int, height: bool) -> Iterator[Card]:
+    """The ways to keep and to drop terms over a curved Earth."""
+    rates = product((KEPT, DROPPED), repeat=2)
+    has_position = flat.position_error is not None
+    radius = {"sphere": ("R",), "ellipsoid": ("sqrt(RN*RE)", "RN", "RE")}[flat.earth]
+    radius = ("third radius",) if radii == 3 else radius
+    gradients: list[tuple[str, str | None]] = [("none", None)]
+    if has_position:
+        gradients += [("vertical", name + end) for name in radius for end in ((" + h", "") if height else ("",))]
+    both = (KEPT, DROPPED) if has_position else (KEPT,)
+    slopes: tuple[str | None, ...] = (None,)
+    if flat.earth == "ellipsoid":
+        slopes = CHOICES["radius_variation"] if has_position else (DROPPED,)
+    positions = CHOICES["position_error"] if has_position else (None,)
+    for (earth, transport), (gradient, by), lift, slope, position in product(rates, gradients, both, slopes, positions):
+        yield replace(
+            flat,
+            earth_rate=earth,
+            transport_rate=transport,
+            gravity_gradient=gradient,
+            gravity_radius=by,
+            height_variation=lift,
+            radius_variation=slope,
+            position_error=position,
+        )

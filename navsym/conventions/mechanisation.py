@@ -1,0 +1,333 @@
+"""The nonlinear mechanisation in a frame, and the error dynamics of a card by exact linearisation along its flow.
+
+The truth obeys C' = C [w x] - [W x] C, v' = C f + g - (2 w_ie + w_en) x v, and position follows velocity. The estimate
+obeys the same equations with the sensors' output less the estimated biases. For an estimate that is the truth with an
+error eps e_j, the rate of the error is linear in eps: its coefficient is column j of F.
+
+Sources of the equations: Andreev, Theory of Inertial Navigation; Groves, Principles of GNSS, Inertial, and Multisensor
+Integrated Navigation Systems, chapter 5. The errors of a card are definitions; no error equation is typed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from navsym.conventions.card import DROPPED, KEPT, Card
+from navsym.conventions.nilpotent import (
+    NOTHING,
+    Grid,
+    Nilpotent,
+    Vector,
+    add,
+    add_vectors,
+    apply,
+    constant,
+    cross,
+    identity,
+    multiply,
+    negate,
+    skew,
+    subtract,
+    total,
+    transpose,
+)
+
+#: Columns: north, east, down in the axes.
+AXES: Mapping[str | None, tuple[tuple[int, int, int], ...]] = {
+    "NED": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+    "ENU": ((0, 1, 0), (1, 0, 0), (0, 0, -1)),
+    "NWU": ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
+}
+
+ROLES = ("position", "velocity", "attitude", "gyro_bias", "accelerometer_bias")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class World:
+    """The quantities of a motion as coefficients: balls, or quotients of polynomials.
+
+    C                : rotation from body to frame, rows
+    f, w             : specific force and rate of the body beside inertial space, in the body
+    v, r             : velocity in the frame, position from the Earth's centre in the frame
+    earth_rate       : in the frame (earth), or (north, down) of a local level
+    sin, cos         : of the latitude
+    h, RN, RE, slope : height, radii of the meridian and across, dRN/dL
+    gravity          : in the frame, or along the down axis of a local level
+    pull             : mu/|r|^3
+    gradient_radii   : words of a card -> R of its gradient
+    transport        : the transport rate in the frame where it has names of its own
+    """
+
+    C: Sequence[Sequence[Any]]
+    f: Sequence[Any]
+    w: Sequence[Any]
+    v: Sequence[Any]
+    r: Sequence[Any]
+    earth_rate: Sequence[Any]
+    sin: Any
+    cos: Any
+    h: Any
+    RN: Any
+    RE: Any
+    slope: Any
+    gravity: Sequence[Any]
+    pull: Any
+    radius: Any
+    gradient_radii: Mapping[str, Any]
+    transport: Sequence[Any] | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class State:
+    """Attitude, velocity, biases, position; on the Earth its small change in latitude, longitude and height."""
+
+    attitude: Grid
+    velocity: Vector
+    position: Vector
+    gyro_bias: Vector
+    accelerometer_bias: Vector
+
+    def advance(self, rate: State) -> State:
+        """The state after the infinitesimal time tau."""
+        attitude = [
+            [x.advance(y) for x, y in zip(*rows, strict=True)]
+            for rows in zip(self.attitude, rate.attitude, strict=True)
+        ]
+        moved = [
+            [x.advance(y) for x, y in zip(getattr(self, name), getattr(rate, name), strict=True)]
+            for name in ("velocity", "position", "gyro_bias", "accelerometer_bias")
+        ]
+        return State(attitude, *moved)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mechanisation:
+    """The equations of motion and the definition of errors of one card in one world."""
+
+    card: Card
+    world: World
+
+    @property
+    def is_geodetic(self) -> bool:
+        """True where the position is latitude, longitude and height."""
+        return self.card.frame == "local-level" and self.card.earth != "none"
+
+    @property
+    def turn(self) -> Grid:
+        """Rotation from north, east, down to the axes."""
+        return [constant(row) for row in AXES[self.card.axes]]
+
+    def truth(self) -> State:
+        """The true state; its biases are taken from the sensors' output and are zero."""
+        zero = [NOTHING] * 3
+        position = zero if self.is_geodetic else constant(self.world.r)
+        return State([constant(row) for row in self.world.C], constant(self.world.v), position, zero, zero)
+
+    # The flow
+
+    def rate(self, x: State) -> State:
+        """dx/dt of the mechanisation that is fed with the sensors' output less the biases of x."""
+        w = add_vectors(constant(self.world.w), negate(x.gyro_bias))
+        force = apply(x.attitude, add_vectors(constant(self.world.f), negate(x.accelerometer_bias)))
+        earth, transport = self.earth_rate(x), self.transport_rate(x)
+        attitude = subtract(multiply(x.attitude, skew(w)), multiply(skew(add_vectors(earth, transport)), x.attitude))
+        coriolis = cross(add_vectors(earth, earth, transport), x.velocity)
+        velocity = add_vectors(force, self.gravity(x), negate(coriolis))
+        zero = [NOTHING] * 3
+        return State(attitude, velocity, self.position_rate(x), zero, zero)
+
+    def trigonometry(self, x: State) -> tuple[Nilpotent, Nilpotent]:
+        """Sine and cosine of the latitude."""
+        sine, cosine, change = Nilpotent(self.world.sin), Nilpotent(self.world.cos), x.position[0]
+        return sine + cosine * change, cosine - sine * change
+
+    def radii(self, x: State, keeping: tuple[str, ...] = (KEPT, "position")) -> tuple[Nilpotent, Nilpotent]:
+        """RN + h and RE + h at the state; they change with the latitude where the card says one of ``keeping``."""
+        world, card = self.world, self.card
+        north, east = (Nilpotent(plus_height(radius, world.h)) for radius in (world.RN, world.RE))
+        if card.height_variation == KEPT:
+            north, east = north + x.position[2], east + x.position[2]
+        if card.radius_variation in keeping:
+            # (RE + h) cos L is the distance from the axis, and its derivative is -(RN + h) sin L.
+            across = Nilpotent((world.RE - world.RN) * world.sin / world.cos)
+            north, east = north + Nilpotent(world.slope) * x.position[0], east + across * x.position[0]
+        return north, east
+
+    def earth_rate(self, x: State) -> Vector:
+        """Rate of the Earth in the frame."""
+        if self.card.earth_rate != KEPT:
+            return [NOTHING] * 3
+        if self.card.frame == "earth":
+            return constant(self.world.earth_rate)
+        north, down = constant(self.world.earth_rate)
+        change = x.position[0] if self.is_geodetic else NOTHING
+        return apply(self.turn, [north + down * change, NOTHING, down - north * change])
+
+    def transport_rate(self, x: State) -> Vector:
+        """Rate of a local level beside the Earth, in its axes."""
+        if self.card.transport_rate != KEPT:
+            return [NOTHING] * 3
+        north, east, _ = apply(transpose(self.turn), x.velocity)
+        sine, cosine = self.trigonometry(x)
+        meridian, across = self.radii(x, (KEPT,))
+        rate = apply(self.turn, [east / across, -north / meridian, -east * sine / (across * cosine)])
+        if self.world.transport is not None:
+            names = self.world.transport
+            rate = [Nilpotent(name, *part.parts()[1:]) for name, part in zip(names, rate, strict=True)]
+        return rate
+
+    def gravity(self, x: State) -> Vector:
+        """Gravity at the state, in the frame."""
+        card, world = self.card, self.world
+        if card.frame == "local-level":
+            (down,) = constant(world.gravity)
+            if card.gravity_gradient == "vertical":
+                radius = Nilpotent(world.gradient_radii[str(card.gravity_radius)])
+                down = down - Nilpotent(2) * down * x.position[2] / radius
+            return apply(self.turn, [NOTHING, NOTHING, down])
+        moved = add_vectors(x.position, negate(constant(world.r)))
+        value = add_vectors(constant(world.gravity), self.pull_change(moved))
+        if card.centrifugal == KEPT:
+            earth = constant(world.earth_rate)
+            value = add_vectors(value, negate(cross(earth, cross(earth, moved))))
+        return value
+
+    def pull_change(self, moved: Vector) -> Vector:
+        """First-order change of gravitation with the position."""
+        kind, world = self.card.gravity_gradient, self.world
+        if kind == "none":
+            return [NOTHING] * 3
+        r = constant(world.r)
+        square = total([x * x for x in r])
+        along = total([x * y for x, y in zip(r, moved, strict=True)])
+        if kind == "central":
+            pull, three = Nilpotent(world.pull), Nilpotent(3)
+            return [pull * (three * x * along / square - y) for x, y in zip(r, moved, strict=True)]
+        distance, radius = (Nilpotent(x) for x in (world.radius, world.gradient_radii["radial"]))
+        factor = Nilpotent(-2) * along / (distance * radius)
+        return [factor * g for g in constant(world.gravity)]
+
+    def position_rate(self, x: State) -> Vector:
+        """Rate of the position."""
+        if not self.is_geodetic:
+            return x.velocity
+        north, east, down = apply(transpose(self.turn), x.velocity)
+        _, cosine = self.trigonometry(x)
+        meridian, across = self.radii(x)
+        return [north / meridian, east / (across * cosine), -down]
+
+    # Errors: from a truth and an error to an estimate, and back
+
+    def metres(self, x: State) -> Vector:
+        """Metres along north, east, down per unit of latitude, longitude and height."""
+        meridian, across = self.radii(x)
+        _, cosine = self.trigonometry(x)
+        return [meridian, across * cosine, Nilpotent(-1)]
+
+    def reference(self, x: State, moved: Vector) -> Grid:
+        """Rotation from the true frame to that in which the errors are resolved: another one for psi."""
+        if self.card.angle != "psi" or not self.is_geodetic:
+            return identity()
+        sine, cosine = self.trigonometry(x)
+        latitude, longitude, _ = moved
+        turned = apply(self.turn, [longitude * cosine, -latitude, -longitude * sine])
+        return subtract(identity(), skew(turned))
+
+    def estimate(self, x: State, error: Mapping[str, Vector]) -> State:
+        """The estimate that has this error; every sign is plus."""
+        card = self.card
+        moved = error["position"]
+        if self.is_geodetic and card.position_error == "metres":
+            along = apply(transpose(self.turn), moved)
+            moved = [part / unit for part, unit in zip(along, self.metres(x), strict=True)]
+        frame = self.reference(x, moved if self.is_geodetic else [NOTHING] * 3)
+        attitude = multiply(frame, x.attitude)
+        small = add(identity(), skew(error["attitude"]))
+        velocity = apply(frame, x.velocity)
+        turned = multiply(small, attitude) if card.attitude_error == "frame" else multiply(attitude, small)
+        return State(
+            turned,
+            self.shift(velocity, error["velocity"], attitude, turned),
+            add_vectors(x.position, moved) if self.is_geodetic else self.shift(x.position, moved, attitude, turned),
+            add_vectors(x.gyro_bias, error["gyro_bias"]),
+            add_vectors(x.accelerometer_bias, error["accelerometer_bias"]),
+        )
+
+    def shift(self, vector: Vector, error: Vector, attitude: Grid, turned: Grid) -> Vector:
+        """The estimated vector."""
+        if self.card.vector_error == "body":
+            return add_vectors(vector, apply(attitude, error))
+        if self.card.vector_error == "rotated":
+            vector = apply(multiply(turned, transpose(attitude)), vector)
+        return add_vectors(vector, error)
+
+    def compare(self, estimate: State, x: State) -> dict[str, Vector]:
+        """The error of an estimate; every sign is plus."""
+        card = self.card
+        moved = add_vectors(estimate.position, negate(x.position))
+        frame = self.reference(x, moved)
+        attitude, velocity = multiply(frame, x.attitude), apply(frame, x.velocity)
+        inverse = transpose(attitude)
+        outer = multiply(estimate.attitude, inverse)
+        small = outer if card.attitude_error == "frame" else multiply(inverse, estimate.attitude)
+        half = Nilpotent(1 / (2 * self.one()))
+        angle = [half * (small[(k + 2) % 3][(k + 1) % 3] - small[(k + 1) % 3][(k + 2) % 3]) for k in range(3)]
+        if not self.is_geodetic:
+            moved = self.unshift(estimate.position, x.position, outer, inverse)
+        elif card.position_error == "metres":
+            moved = apply(self.turn, [part * unit for part, unit in zip(moved, self.metres(x), strict=True)])
+        return {
+            "attitude": angle,
+            "velocity": self.unshift(estimate.velocity, velocity, outer, inverse),
+            "position": moved,
+            "gyro_bias": add_vectors(estimate.gyro_bias, negate(x.gyro_bias)),
+            "accelerometer_bias": add_vectors(estimate.accelerometer_bias, negate(x.accelerometer_bias)),
+        }
+
+    def unshift(self, estimate: Vector, vector: Vector, outer: Grid, inverse: Grid) -> Vector:
+        """The error of an estimated vector."""
+        if self.card.vector_error == "rotated":
+            vector = apply(outer, vector)
+        error = add_vectors(estimate, negate(vector))
+        return apply(inverse, error) if self.card.vector_error == "body" else error
+
+    def one(self) -> Any:
+        """One as a coefficient."""
+        return self.world.cos / self.world.cos
+
+    # The linearisation
+
+    def column(self, role: str, component: int) -> dict[str, list[Any]]:
+        """A column of F with every sign plus: role of the row -> three coefficients.
+
+        role, component : the state whose error is eps
+        """
+        error = {name: [NOTHING] * 3 for name in ROLES}
+        error[role] = [Nilpotent(0, 1 if k == component else 0) for k in range(3)]
+        truth = self.truth()
+        estimate = self.estimate(truth, error)
+        after = self.compare(estimate.advance(self.rate(estimate)), truth.advance(self.rate(truth)))
+        return {name: [part.mixed for part in vector] for name, vector in after.items()}
+
+
+def plus_height(radius: Any, height: Any) -> Any:
+    """Radius plus height; 0 stands for a height that the model does not know."""
+    return radius if type(height) is int else radius + height
+
+
+def flat_card(card: Card) -> Card:
+    """The same errors over a flat Earth that does not turn; its zeros are where a term may be dropped."""
+    return replace(
+        card,
+        earth="none",
+        earth_rate=None if card.earth_rate is None else DROPPED,
+        transport_rate=None if card.transport_rate is None else DROPPED,
+        gravity_gradient="none",
+        gravity_radius=None,
+        centrifugal=None,
+        height_variation=None,
+        radius_variation=None,
+        position_error=None if card.position_error is None else "metres",
+    )

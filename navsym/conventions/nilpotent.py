@@ -1,0 +1,159 @@
+"""Numbers with two infinitesimals, eps and tau, whose squares are zero: exact linearisation along a flow.
+
+The coefficients may be balls or quotients of polynomials; an integer 0 stands for a coefficient that is absent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+Vector = list["Nilpotent"]
+Grid = list[list["Nilpotent"]]
+
+
+def times(x: Any, y: Any) -> Any:
+    """The product of coefficients; absent ones cost nothing."""
+    return 0 if (type(x) is int and x == 0) or (type(y) is int and y == 0) else x * y
+
+
+def plus(x: Any, y: Any) -> Any:
+    """The sum of coefficients; absent ones cost nothing."""
+    if type(x) is int and x == 0:
+        return y
+    return x if type(y) is int and y == 0 else x + y
+
+
+class Nilpotent:
+    """``value + error eps + rate tau + mixed eps tau`` with eps**2 = tau**2 = 0.
+
+    >>> x = Nilpotent(3, 1) * Nilpotent(2, 0, 5)
+    >>> x.value, x.error, x.rate, x.mixed
+    (6, 2, 15, 5)
+    """
+
+    __slots__ = ("error", "mixed", "rate", "value")
+
+    def __init__(self, value: Any = 0, error: Any = 0, rate: Any = 0, mixed: Any = 0):
+        self.value, self.error, self.rate, self.mixed = value, error, rate, mixed
+
+    def __add__(self, other: Nilpotent) -> Nilpotent:
+        if other is NOTHING:
+            return self
+        return Nilpotent(
+            plus(self.value, other.value),
+            plus(self.error, other.error),
+            plus(self.rate, other.rate),
+            plus(self.mixed, other.mixed),
+        )
+
+    def __neg__(self) -> Nilpotent:
+        if self is NOTHING:
+            return self
+        return Nilpotent(times(-1, self.value), times(-1, self.error), times(-1, self.rate), times(-1, self.mixed))
+
+    def __sub__(self, other: Nilpotent) -> Nilpotent:
+        return self + -other
+
+    def __mul__(self, other: Nilpotent) -> Nilpotent:
+        if self is NOTHING or other is NOTHING:
+            return NOTHING
+        if self is ONE or other is ONE:
+            return other if self is ONE else self
+        a, e, t, m = self.value, self.error, self.rate, self.mixed
+        A, E, T, M = other.value, other.error, other.rate, other.mixed
+        mixed = plus(plus(times(a, M), times(m, A)), plus(times(e, T), times(t, E)))
+        return Nilpotent(times(a, A), plus(times(a, E), times(e, A)), plus(times(a, T), times(t, A)), mixed)
+
+    def __truediv__(self, other: Nilpotent) -> Nilpotent:
+        return self * other.inverse()
+
+    def inverse(self) -> Nilpotent:
+        """1/x; the value must not be zero."""
+        one = self.value if type(self.value) is int and abs(self.value) == 1 else 1 / self.value
+        square = one * one
+        curved = times(2, times(square * one, times(self.error, self.rate)))
+        linear = (times(-1, times(square, part)) for part in (self.error, self.rate, self.mixed))
+        error, rate, mixed = linear
+        return Nilpotent(one, error, rate, plus(mixed, curved))
+
+    def parts(self) -> tuple[Any, Any, Any, Any]:
+        """The four coefficients."""
+        return self.value, self.error, self.rate, self.mixed
+
+    def advance(self, rate: Nilpotent) -> Nilpotent:
+        """``x + tau * rate``, for a rate without tau."""
+        return self + Nilpotent(0, 0, rate.value, rate.error)
+
+
+NOTHING, ONE = Nilpotent(), Nilpotent(1)
+
+
+def constant(values: Sequence[Any]) -> Vector:
+    """A vector without infinitesimals."""
+    return [Nilpotent(value) for value in values]
+
+
+def total(terms: Sequence[Nilpotent]) -> Nilpotent:
+    """The sum; nothing for no terms."""
+    result = NOTHING
+    for term in terms:
+        if term is not NOTHING:
+            result = term if result is NOTHING else result + term
+    return result
+
+
+def cross(u: Vector, v: Vector) -> Vector:
+    """u x v."""
+    return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+
+
+def skew(u: Vector) -> Grid:
+    """The matrix of ``u x``."""
+    return [[NOTHING, -u[2], u[1]], [u[2], NOTHING, -u[0]], [-u[1], u[0], NOTHING]]
+
+
+def identity() -> Grid:
+    """The unit matrix."""
+    return [[ONE if i == j else NOTHING for j in range(3)] for i in range(3)]
+
+
+def transpose(A: Grid) -> Grid:
+    """A'."""
+    return [list(column) for column in zip(*A, strict=True)]
+
+
+def apply(A: Grid, v: Vector) -> Vector:
+    """A v."""
+    return [total([a * x for a, x in zip(row, v, strict=True)]) for row in A]
+
+
+def multiply(A: Grid, B: Grid) -> Grid:
+    """A B."""
+    columns = transpose(B)
+    return [[total([a * b for a, b in zip(row, column, strict=True)]) for column in columns] for row in A]
+
+
+def combine(operation: Callable[[Nilpotent, Nilpotent], Nilpotent], A: Grid, B: Grid) -> Grid:
+    """Two matrices entry by entry."""
+    return [[operation(a, b) for a, b in zip(*rows, strict=True)] for rows in zip(A, B, strict=True)]
+
+
+def add(A: Grid, B: Grid) -> Grid:
+    """A + B."""
+    return combine(Nilpotent.__add__, A, B)
+
+
+def subtract(A: Grid, B: Grid) -> Grid:
+    """A - B."""
+    return combine(Nilpotent.__sub__, A, B)
+
+
+def add_vectors(*vectors: Vector) -> Vector:
+    """The sum of vectors."""
+    return [total(parts) for parts in zip(*vectors, strict=True)]
+
+
+def negate(v: Vector) -> Vector:
+    """-v."""
+    return [-x for x in v]

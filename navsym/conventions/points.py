@@ -1,0 +1,286 @@
+"""Points of a motion: values of the user's parameters that satisfy the relations of the quantities, in balls.
+
+A rotation satisfies C C' = E, the specific force in the frame is C times that in the body, the rates of the Earth and
+of the local level follow from latitude, velocity and radii. What no relation binds is a random rational.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from flint import arb, fmpq
+
+from navsym.conventions.card import Card
+from navsym.conventions.mechanisation import AXES, World
+from navsym.conventions.reading import Problem
+from navsym.core.balls import OPERATIONS, exact_ball, general_power, integer_power, rational_power
+from navsym.core.errors import DomainError
+from navsym.language.declarations import Parameter
+from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, SYMBOL, Tree, fold_tree, list_names
+
+BITS = 256
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Point:
+    """A world in balls, and the value of every parameter in it."""
+
+    world: World
+    values: Mapping[str, Any]
+
+
+class ImpossibleError(Exception):
+    """The quantities contradict the card at every point."""
+
+
+def evaluate(tree: Tree, values: Mapping[str, Any]) -> Any:
+    """The ball of a tree; not finite where it has no value."""
+
+    def step(part: Tree, inner: list[Any]) -> Any:
+        if part.head == NUMBER:
+            number = part.args[0]
+            return arb(fmpq(number.numerator, number.denominator))
+        if part.head == SYMBOL:
+            return values[part.args[0]]
+        if part.head == SUM:
+            return sum(inner[1:], inner[0])
+        if part.head == PRODUCT:
+            result = inner[0]
+            for factor in inner[1:]:
+                result = result * factor
+            return result
+        if part.head == POWER:
+            return raise_power(part, inner)
+        if part.head == "sqrt":
+            return rational_power(inner[0], 1, 2)
+        return OPERATIONS[part.head](None, inner, {})
+
+    return fold_tree(tree, step)
+
+
+def raise_power(part: Tree, inner: Sequence[Any]) -> Any:
+    """A power of balls."""
+    exponent = part.args[1]
+    if exponent.head == NUMBER:
+        number = exponent.args[0]
+        if number.denominator == 1:
+            return integer_power(inner[0], number.numerator)
+        return rational_power(inner[0], number.numerator, number.denominator)
+    return general_power(inner[0], inner[1])
+
+
+class Sampler:
+    """One random point; the quantities are settled one after the other, each bound to those before it."""
+
+    def __init__(self, problem: Problem, card: Card, seed: int, free: bool = False):
+        self.problem, self.card = problem, card
+        self.random = random.Random(seed)
+        self.values: dict[str, Any] = {}
+        bound = [tree for trees in problem.quantities.values() for tree in trees if tree.head != SYMBOL]
+        for name in list_names(*bound):
+            self.values[name] = self.pick(problem.parameters[name])
+        if free:
+            for name, parameter in problem.parameters.items():
+                self.values.setdefault(name, self.pick(parameter))
+
+    def pick(self, parameter: Parameter | None, low: float = -2.0, high: float = 2.0) -> Any:
+        """A random rational in the declared range."""
+        if parameter is not None and parameter.lower is not None and parameter.upper is not None:
+            low, high = float(exact_ball(parameter.lower).mid()), float(exact_ball(parameter.upper).mid())
+        elif parameter is not None and parameter.kind in ("positive", "nonnegative"):
+            low, high = 0.25, 3.0
+        share = self.random.randint(101, 899)
+        start, end = fmpq(round(low * 10**6), 10**6), fmpq(round(high * 10**6), 10**6)
+        return arb(start + (end - start) * fmpq(share, 1000))
+
+    def settle(self, name: str, wanted: Sequence[Any] | None = None, low: float = -2.0, high: float = 2.0) -> list[Any]:
+        """The components of a quantity: what its expressions say, else ``wanted``, else random ones.
+
+        Raises ImpossibleError where an expression contradicts ``wanted``.
+        """
+        trees = self.problem.quantities.get(name)
+        if trees is None:
+            return list(wanted) if wanted is not None else [self.pick(None, low, high)]
+        result = []
+        for k, tree in enumerate(trees):
+            if tree.head == SYMBOL and tree.args[0] not in self.values:
+                value = wanted[k] if wanted is not None else self.pick(self.problem.parameters[tree.args[0]], low, high)
+                self.values[tree.args[0]] = value
+            result.append(evaluate(tree, self.values))
+            if not result[-1].is_finite():
+                message = f"expected quantities that have values; got a {name} that has none; correct its range"
+                raise DomainError(message, where=f"quantities: {name}")
+            if wanted is not None and not result[-1].overlaps(wanted[k]):
+                raise ImpossibleError(name)
+        return result
+
+    def vector(self, name: str) -> list[Any]:
+        """Three components without a relation."""
+        found = self.settle(name)
+        return found if len(found) == 3 else [self.pick(None) for _ in range(3)]
+
+    def rotation(self) -> list[list[Any]]:
+        """A rotation by Cayley's formula, or what the file says."""
+        trees = self.problem.quantities.get("rotation")
+        if trees is None or all(tree.head == SYMBOL and tree.args[0] not in self.values for tree in trees):
+            flat = self.settle("rotation", [x for row in self.cayley() for x in row])
+        else:
+            flat = self.settle("rotation")
+        C = [flat[3 * k : 3 * k + 3] for k in range(3)]
+        for i in range(3):
+            for j in range(3):
+                if not (sum((x * y for x, y in zip(C[i], C[j], strict=True)), arb(0)) - int(i == j)).contains(0):
+                    message = "expected a rotation, C C' = E; got another matrix; correct it"
+                    raise DomainError(message, where="quantities: rotation")
+        return C
+
+    def cayley(self) -> list[list[Any]]:
+        """A rotation with rational entries."""
+        q = [fmpq(self.random.randint(1, 9) * self.random.choice((-1, 1)), 7) for _ in range(4)]
+        a, b, c, d = q
+        n = a * a + b * b + c * c + d * d
+        rows = [
+            [a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)],
+            [2 * (b * c + a * d), a * a - b * b + c * c - d * d, 2 * (c * d - a * b)],
+            [2 * (b * d - a * c), 2 * (c * d + a * b), a * a - b * b - c * c + d * d],
+        ]
+        return [[arb(x / n) for x in row] for row in rows]
+
+    def forces(self, C: list[list[Any]]) -> list[Any]:
+        """The specific force in the body; that in the frame is C times it."""
+        if "specific_force" in self.problem.quantities and "specific_force_body" not in self.problem.quantities:
+            frame = self.settle("specific_force")
+            return [sum((C[i][k] * frame[i] for i in range(3)), arb(0)) for k in range(3)]
+        body = self.vector("specific_force_body")
+        self.settle("specific_force", [sum((a * x for a, x in zip(row, body, strict=True)), arb(0)) for row in C])
+        return body
+
+    def turned(self, ned: Sequence[Any]) -> list[Any]:
+        """A vector in the axes from north, east, down."""
+        return [sum((a * x for a, x in zip(row, ned, strict=True)), arb(0)) for row in AXES[self.card.axes]]
+
+    def along(self, name: str, ned: Sequence[Any], scalar: Any) -> list[Any]:
+        """A quantity of a local level, given by its size or by components in the axes."""
+        size = len(self.problem.quantities.get(name, ()))
+        return self.settle(name, self.turned(ned)) if size == 3 else [scalar]
+
+    def draw(self) -> Point:
+        """The point."""
+        card, given = self.card, self.problem.quantities
+        level = card.frame == "local-level"
+        C = self.rotation()
+        f, w, v = self.forces(C), self.vector("angular_rate"), self.vector("velocity")
+        (latitude,) = self.settle("latitude", None, -1.2, 1.2)
+        sine, cosine = latitude.sin(), latitude.cos()
+        h: Any = self.settle("height", None, 0.25, 1.0)[0] if "height" in given else 0
+        r = self.vector("position")
+        radius = sum((x * x for x in r), arb(0)).sqrt()
+        RN, RE, third = self.radii()
+        pull, gravity = self.gravitation(r, radius, level)
+        earth = self.rotation_of_earth(sine, cosine, level)
+        for name, parameter in self.problem.parameters.items():
+            if name not in self.values and not self.is_transport(name):
+                self.values[name] = self.pick(parameter)
+        world = World(
+            C,
+            f,
+            w,
+            v,
+            r,
+            earth,
+            sine,
+            cosine,
+            h,
+            RN,
+            RE,
+            self.pick(None),
+            gravity,
+            pull,
+            radius,
+            gradient_names(RN, RE, h, third, (RN * RE).sqrt()),
+        )
+        transport = self.transport(world) if level and "transport_rate" in given else None
+        if transport is None and "transport_rate" in given:
+            self.settle("transport_rate")
+        if transport is not None:
+            world = replace(world, transport=transport)
+        return Point(world, self.values)
+
+    def is_transport(self, name: str) -> bool:
+        """True for a bare name of the transport rate."""
+        return any(t.head == SYMBOL and t.args[0] == name for t in self.problem.quantities.get("transport_rate", ()))
+
+    def radii(self) -> tuple[Any, Any, Any]:
+        """Meridian, prime vertical, and the radius of gravity."""
+        found = self.settle("radii", None, 3.0, 6.0)
+        if len(found) == 1:
+            sphere = self.card.earth != "ellipsoid"
+            return found[0], found[0] if sphere else self.pick(None, 3.0, 6.0), found[0]
+        return found[0], found[1], found[-1]
+
+    def gravitation(self, r: list[Any], radius: Any, level: bool) -> tuple[Any, list[Any]]:
+        """mu/|r|^3, and gravity in the frame or along down."""
+        if "gravitational_parameter" in self.problem.quantities:
+            pull = self.settle("gravitational_parameter", None, 0.5, 3.0)[0] / radius**3
+        else:
+            pull = self.pick(None, 0.5, 3.0)
+        size = len(self.problem.quantities.get("gravity", ()))
+        if level:
+            scalar = self.pick(None, 0.5, 3.0) if size == 3 else self.settle("gravity", None, 0.5, 3.0)[0]
+            if size == 3:
+                trees = self.problem.quantities["gravity"]
+                if any(t.head != SYMBOL or t.args[0] in self.values for t in trees):
+                    found = self.settle("gravity")
+                    scalar = sum((AXES[self.card.axes][k][2] * found[k] for k in range(3)), arb(0))
+                self.settle("gravity", self.turned([arb(0), arb(0), scalar]))
+            return pull, [scalar]
+        if size == 3:
+            wanted = [-pull * x for x in r] if self.card.gravity_gradient == "central" else None
+            return pull, self.settle("gravity", wanted)
+        size_of = self.settle("gravity", None, 0.5, 3.0)[0]
+        if size == 1 and "gravitational_parameter" not in self.problem.quantities:
+            pull = size_of / radius
+        return pull, [-size_of * x / radius for x in r]
+
+    def rotation_of_earth(self, sine: Any, cosine: Any, level: bool) -> list[Any]:
+        """The Earth's rate in the frame, or (north, down) of a local level."""
+        trees = self.problem.quantities.get("earth_rate", ())
+        if len(trees) != 3:
+            (rate,) = self.settle("earth_rate", None, 0.5, 2.0)
+            return [rate * cosine, -rate * sine] if level else [arb(0), arb(0), rate]
+        if not level:
+            return self.settle("earth_rate")
+        if all(tree.head != SYMBOL for tree in trees):
+            found = self.settle("earth_rate")
+            north, east, down = (
+                sum((AXES[self.card.axes][k][j] * found[k] for k in range(3)), arb(0)) for j in range(3)
+            )
+            if not east.contains(0):
+                raise ImpossibleError("earth_rate")
+            return [north, down]
+        rate = self.pick(None, 0.5, 2.0)
+        self.settle("earth_rate", self.turned([rate * cosine, arb(0), -rate * sine]))
+        return [rate * cosine, -rate * sine]
+
+    def transport(self, world: World) -> list[Any]:
+        """The transport rate in the axes, in the names that it has."""
+        v, A = world.v, AXES[self.card.axes]
+        north, east = (sum((A[k][j] * v[k] for k in range(3)), arb(0)) for j in range(2))
+        meridian, across = world.RN + world.h, world.RE + world.h
+        wanted = self.turned([east / across, -north / meridian, -east * world.sin / (across * world.cos)])
+        return self.settle("transport_rate", wanted)
+
+
+def gradient_names(RN: Any, RE: Any, h: Any, third: Any, mean: Any) -> dict[str, Any]:
+    """Words of a card -> the radius of its gradient of gravity; ``mean`` is sqrt(RN RE)."""
+    bare = {"R": RN, "RN": RN, "RE": RE, "sqrt(RN*RE)": mean, "third radius": third}
+    lifted = {f"{name} + h": value if type(h) is int else value + h for name, value in bare.items()}
+    return {**bare, **lifted, "radial": third}
+
+
+def draw_point(problem: Problem, card: Card, seed: int) -> Point:
+    """A point of the card's relations; ImpossibleError where the quantities contradict them."""
+    return Sampler(problem, card, seed).draw()

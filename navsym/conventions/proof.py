@@ -1,0 +1,167 @@
+"""What the prover says of a card: each block equals the card's, or an entry of it does not.
+
+The statements are formulas of the user's own names. Where names are bound by relations they are written by free ones:
+a rotation by three angles, the force in the frame by that in the body, the rate of a local level by the velocity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from itertools import chain
+from typing import Any
+
+from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
+from navsym.conventions.card import DROPPED, Card
+from navsym.conventions.mechanisation import AXES
+from navsym.conventions.points import BITS, Sampler, evaluate
+from navsym.conventions.reading import Problem
+from navsym.conventions.search import BIASES, Block, narrow_card
+from navsym.conventions.symbols import HIDDEN, Formulas
+from navsym.core.balls import precision
+from navsym.language.expression import read_tree
+from navsym.language.printer import print_tree
+from navsym.language.tree import SYMBOL, Tree, build_symbol, list_names, replace
+from navsym.prove.claimfile import claims_from, decide_claim, statement_of
+from navsym.prove.grant import grant_verdict
+
+ANGLES = tuple(f"{HIDDEN}a{k}" for k in (1, 2, 3))
+
+
+def euler_texts() -> list[str]:
+    """The entries of a rotation by three angles; every rotation is one of these."""
+    (s1, c1), (s2, c2), (s3, c3) = ((f"sin({a})", f"cos({a})") for a in ANGLES)
+    return [
+        f"{c1}*{c2}", f"{c1}*{s2}*{s3} - {s1}*{c3}", f"{c1}*{s2}*{c3} + {s1}*{s3}",
+        f"{s1}*{c2}", f"{s1}*{s2}*{s3} + {c1}*{c3}", f"{s1}*{s2}*{c3} - {c1}*{s3}",
+        f"-{s2}", f"{c2}*{s3}", f"{c2}*{c3}",
+    ]  # fmt: skip
+
+
+class Prover:
+    """Statements about the blocks of one problem, each decided once."""
+
+    def __init__(self, problem: Problem):
+        self.problem = problem
+        self.formulas = cache(lambda card: Formulas(problem, card))
+        self.decide = cache(self.decide_texts)
+
+    def block_texts(self, card: Card, block: Block, sign: int) -> list[list[str]]:
+        """The card's block in the user's names."""
+        still = card.earth == "none" and card.earth_rate in (None, DROPPED) and card.vector_error != "rotated"
+        if still:  # without gravity among the terms a flat Earth that does not turn is an inertial frame
+            card = Card(
+                "inertial",
+                attitude_error=card.attitude_error,
+                vector_error=card.vector_error,
+                position_error=card.position_error,
+            )
+        return self.formulas(narrow_card(card, block[1])).block(*block, sign)
+
+    def written(self, block: Block) -> list[list[str]]:
+        """The user's block."""
+        return [[print_tree(tree) for tree in row] for row in self.problem.block(*block)]
+
+    def is_right(self, card: Card, block: Block, sign: int) -> bool:
+        """True where the prover grants that the blocks are equal."""
+        if block[0] in BIASES and block[1] in BIASES:
+            return True
+        pairs = zip(chain(*self.written(block)), chain(*self.block_texts(card, block, sign)), strict=True)
+        different = tuple(pair for pair in pairs if pair[0] != pair[1])
+        return not different or all(self.compare(card, *pair).status == PROVED for pair in different)
+
+    def refutes(self, card: Card, written: str, expected: str) -> bool:
+        """True where the checker has a point of the relations at which the texts differ."""
+        return self.compare(card, written, expected).status == REFUTED
+
+    def compare(self, card: Card, left: str, right: str) -> Verdict:
+        """The verdict on ``left = right`` under the relations of the quantities."""
+        names = {*self.problem.parameters}
+        trees = [read_tree(text, None) for text in (left, right)]
+        bound = self.relations(card)
+        if set(bound) & set(list_names(*trees)) and not self.is_free_identity(trees, names):
+            trees = [substitute(tree, bound) for tree in trees]
+        return self.decide(*map(print_tree, trees))
+
+    def is_free_identity(self, trees: Sequence[Tree], names: set[str]) -> bool:
+        """True where the texts agree even at a point that satisfies no relation."""
+        with precision(BITS):
+            values = dict(Sampler(self.problem, Card("inertial"), 99, free=True).values)
+            source = Sampler(self.problem, Card("inertial"), 98)
+            for name in list_names(*trees):
+                if name not in names:
+                    values[name] = source.pick(None)
+            left, right = (evaluate(tree, values) for tree in trees)
+            return bool((left - right).contains(0))
+
+    def decide_texts(self, left: str, right: str) -> Verdict:
+        """The verdict on one equation."""
+        names = list_names(read_tree(left, None), read_tree(right, None))
+        declared = {name: self.problem.declared.get(name, "real") for name in names}
+        document = {"symbols": declared, "claim": [{"id": "entry", "left": left, "right": right}]}
+        claim = claims_from(document).claims[0]
+        # Equality is what is expected: a proof is looked for before a counterexample.
+        verdict = grant_verdict(statement_of(claim), Verdict(OPEN, "none"))
+        return verdict if verdict.status == PROVED else decide_claim(claim)
+
+    def relations(self, card: Card) -> dict[str, str]:
+        """Bound name -> text of free ones; later ones may contain earlier ones no more."""
+        given = self.problem.quantities
+        result: dict[str, str] = {}
+        texts = {name: [print_tree(tree) for tree in trees] for name, trees in given.items()}
+
+        def bind(quantity: str, values: Sequence[str]) -> None:
+            for tree, value in zip(given.get(quantity, ()), values, strict=False):
+                if tree.head == SYMBOL:
+                    result.setdefault(tree.args[0], value)
+
+        if all(tree.head == SYMBOL for tree in given.get("rotation", ())):
+            bind("rotation", euler_texts())
+        rotation = [
+            result.get(text, text)
+            for text in texts.get("rotation", [f"{HIDDEN}c{i}{j}" for i in range(3) for j in range(3)])
+        ]
+        if "rotation" not in given:
+            result.update(zip(rotation, euler_texts(), strict=True))
+            rotation = euler_texts()
+        if {"specific_force", "specific_force_body"} <= set(given):
+            body = texts["specific_force_body"]
+            bind(
+                "specific_force",
+                [" + ".join(f"({rotation[3 * i + k]})*({body[k]})" for k in range(3)) for i in range(3)],
+            )
+        if card.frame == "local-level":
+            self.bind_level(card, texts, bind)
+        elif card.gravity_gradient == "central" and len(given.get("gravity", ())) == 3 and "position" in texts:
+            bind("gravity", [f"-{HIDDEN}pull*({x})" for x in texts["position"]])
+        return result
+
+    def bind_level(self, card: Card, texts: Mapping[str, list[str]], bind: Any) -> None:
+        """The rates of the Earth and of the local level."""
+        latitude = texts.get("latitude", [f"{HIDDEN}latitude"])[0]
+        velocity = texts.get("velocity", [f"{HIDDEN}v{k}" for k in range(3)])
+        height = f" + ({texts['height'][0]})" if "height" in texts else ""
+        radii = texts.get("radii", [f"{HIDDEN}RN"])
+        across = radii[1] if len(radii) > 1 else f"{HIDDEN}RE" if card.earth == "ellipsoid" else radii[0]
+        A = AXES[card.axes]
+
+        def turned(ned: Sequence[str]) -> list[str]:
+            return [" + ".join(f"({x})*({y})" for x, y in zip(row, ned, strict=True) if x) for row in A]
+
+        north, east = (" + ".join(f"({A[k][j]})*({velocity[k]})" for k in range(3) if A[k][j]) for j in range(2))
+        if len(texts.get("earth_rate", ())) == 3:
+            bind("earth_rate", turned([f"{HIDDEN}rate*cos({latitude})", "0", f"-{HIDDEN}rate*sin({latitude})"]))
+        rate = [
+            f"({east})/(({across}){height})",
+            f"-({north})/(({radii[0]}){height})",
+            f"-({east})*sin({latitude})/((({across}){height})*cos({latitude}))",
+        ]
+        bind("transport_rate", turned(rate))
+        if len(texts.get("gravity", ())) == 3:
+            bind("gravity", turned(["0", "0", f"{HIDDEN}gravity"]))
+
+
+def substitute(tree: Tree, bound: Mapping[str, str]) -> Tree:
+    """The tree with bound names written by free ones."""
+    by = {build_symbol(name): read_tree(text, None) for name, text in bound.items() if name in list_names(tree)}
+    return replace(tree, by)

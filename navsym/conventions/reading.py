@@ -1,0 +1,200 @@
+"""What the user has: a model with the roles of its states, the quantities of its parameters, and what is known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from navsym.conventions.card import CHOICES
+from navsym.conventions.mechanisation import ROLES
+from navsym.core.errors import (
+    DomainError,
+    DuplicateError,
+    EmptyError,
+    ExpressionSyntaxError,
+    ShapeError,
+    UnknownSymbolError,
+)
+from navsym.language.declarations import Parameter, read_parameters
+from navsym.language.expression import read_tree
+from navsym.language.names import Table, check_name, join_place, quote, suggest_nearest
+from navsym.language.schema import (
+    as_list,
+    as_table,
+    as_text,
+    as_title,
+    describe_value,
+    expect_keys,
+    require_distinct,
+    require_key,
+)
+from navsym.language.tree import Tree
+
+#: Quantities -> the numbers of components that they may have.
+QUANTITIES: Mapping[str, tuple[int, ...]] = {
+    "specific_force": (3,),
+    "specific_force_body": (3,),
+    "angular_rate": (3,),
+    "rotation": (9,),
+    "velocity": (3,),
+    "position": (3,),
+    "latitude": (1,),
+    "height": (1,),
+    "earth_rate": (1, 3),
+    "transport_rate": (3,),
+    "gravity": (1, 3),
+    "gravitational_parameter": (1,),
+    "radii": (1, 2, 3),
+}
+
+TABLES = ("model", "parameters", "roles", "quantities", "known")
+#: Tables of a model file that say nothing about the error dynamics.
+BESIDE = ("measurement", "interval", "targets")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Problem:
+    """A model and what is said about it.
+
+    F          : entries as trees, one row per state
+    roles      : role -> places of its three states
+    quantities : quantity -> its components as trees
+    known      : field of a card -> its value
+    unused     : tables of the file that were not looked at
+    """
+
+    name: str
+    states: tuple[str, ...]
+    F: tuple[tuple[Tree, ...], ...]
+    parameters: Mapping[str, Parameter]
+    declared: Table
+    roles: Mapping[str, tuple[int, ...]]
+    quantities: Mapping[str, tuple[Tree, ...]]
+    known: Mapping[str, str]
+    unused: tuple[str, ...] = field(default=())
+
+    def block(self, row: str, column: str) -> list[list[Tree]]:
+        """The block of two roles."""
+        return [[self.F[i][j] for j in self.roles[column]] for i in self.roles[row]]
+
+
+def read_problem(document: Table, where: str = "") -> Problem:
+    """The problem of a document; raises a NavsymError whose ``where`` names the key."""
+    expect_keys(document, (*TABLES, *BESIDE), where)
+    place = join_place(where, "parameters")
+    declared = as_table(document.get("parameters", {}), place)
+    parameters = read_parameters(declared, place)
+    place = join_place(where, "model")
+    model = as_table(require_key(document, "model", where), place)
+    expect_keys(model, ("name", "states", "F"), place)
+    spot = join_place(place, "states")
+    items = as_list(require_key(model, "states", place), spot, "a list of names")
+    states = tuple(check_name(item, where=join_place(spot, k)) for k, item in enumerate(items))
+    require_distinct((*parameters, *states), spot)
+    F = read_grid(require_key(model, "F", place), parameters, join_place(place, "F"), len(states))
+    return Problem(
+        name=as_title(model.get("name", "model"), join_place(place, "name")),
+        states=states,
+        F=F,
+        parameters=parameters,
+        declared=declared,
+        roles=read_roles(require_key(document, "roles", where), states, join_place(where, "roles")),
+        quantities=read_quantities(document.get("quantities", {}), parameters, join_place(where, "quantities")),
+        known=read_known(document.get("known", {}), join_place(where, "known")),
+        unused=tuple(name for name in BESIDE if name in document),
+    )
+
+
+def read_cell(value: Any, names: Mapping[str, Any], where: str) -> Tree:
+    """An entry as it is written."""
+    if isinstance(value, int) and not isinstance(value, bool):
+        value = str(value)
+    if not isinstance(value, str):
+        message = f'expected an expression in quotes; got {describe_value(value)}; write it as "1/2"'
+        raise ExpressionSyntaxError(message, where=where)
+    return read_tree(str(value), names.keys(), where=where)
+
+
+def read_grid(value: Any, names: Mapping[str, Any], where: str, size: int) -> tuple[tuple[Tree, ...], ...]:
+    """A square matrix of entries."""
+    rows = as_list(value, where, "a list of rows")
+    for k, row in enumerate([rows, *rows]):
+        spot = where if k == 0 else join_place(where, k - 1)
+        if len(as_list(row, spot, "a list of expressions")) != size:
+            got = f"{len(row)} {'rows' if k == 0 else 'entries'}"
+            raise ShapeError(f"expected {size}, one per state; got {got}; correct the matrix", where=spot)
+    return tuple(
+        tuple(read_cell(item, names, join_place(join_place(where, i), j)) for j, item in enumerate(row))
+        for i, row in enumerate(rows)
+    )
+
+
+def read_roles(value: Any, states: Sequence[str], where: str) -> dict[str, tuple[int, ...]]:
+    """Role -> places of its three states; no state has two roles."""
+    table = as_table(value, where)
+    expect_keys(table, ROLES, where)
+    roles: dict[str, tuple[int, ...]] = {}
+    taken: dict[str, str] = {}
+    for role, items in table.items():
+        place = join_place(where, role)
+        names = as_list(items, place, "three names of states")
+        if len(names) != 3:
+            raise ShapeError(f"expected three states; got {len(names)}; give one for each axis", where=place)
+        for k, name in enumerate(names):
+            spot = join_place(place, k)
+            as_text(name, spot, "the name of a state")
+            if name not in states:
+                message = f"expected a state; got {quote(name)}; correct it: {suggest_nearest(name, states)}"
+                raise UnknownSymbolError(message, where=spot)
+            if name in taken:
+                message = f"expected one role for each state; got {quote(name)} in {taken[name]} and {role}; drop one"
+                raise DuplicateError(message, where=spot)
+            taken[name] = role
+        roles[role] = tuple(states.index(name) for name in names)
+    if not {"velocity", "attitude", "position"} & set(roles):
+        message = "expected velocity, attitude or position; got none of them; say which states they are"
+        raise EmptyError(message, where=where)
+    return {role: roles[role] for role in ROLES if role in roles}
+
+
+def read_quantities(value: Any, names: Mapping[str, Any], where: str) -> dict[str, tuple[Tree, ...]]:
+    """Quantity -> its components, row by row."""
+    table = as_table(value, where)
+    expect_keys(table, tuple(QUANTITIES), where)
+    quantities = {}
+    for name, items in table.items():
+        place, sizes = join_place(where, name), QUANTITIES[name]
+        cells = list_cells(items, place)
+        if len(cells) not in sizes or (name == "rotation" and not is_grid(items)):
+            wanted = (
+                "three rows of three entries" if name == "rotation" else " or ".join(map(str, sizes)) + " components"
+            )
+            raise ShapeError(f"expected {wanted}; got {len(cells)} entries; correct {name}", where=place)
+        quantities[name] = tuple(read_cell(cell, names, spot) for cell, spot in cells)
+    return quantities
+
+
+def list_cells(items: Any, where: str) -> list[tuple[Any, str]]:
+    """The entries of a scalar, a list or a matrix, with their places."""
+    if not isinstance(items, list):
+        return [(items, where)]
+    return [cell for k, item in enumerate(as_list(items, where)) for cell in list_cells(item, join_place(where, k))]
+
+
+def is_grid(items: Any) -> bool:
+    """True for three rows of three."""
+    return isinstance(items, list) and len(items) == 3 and all(isinstance(r, list) and len(r) == 3 for r in items)
+
+
+def read_known(value: Any, where: str) -> dict[str, str]:
+    """The parts of the card that are certain."""
+    table = as_table(value, where)
+    expect_keys(table, tuple(CHOICES), where)
+    for name, word in table.items():
+        place = join_place(where, name)
+        text = as_text(word, place, "a word")
+        if text not in CHOICES[name]:
+            message = f"expected one of {', '.join(CHOICES[name])}; got {quote(text)}; correct it"
+            raise DomainError(message, where=place)
+    return dict(table)

@@ -1,0 +1,337 @@
+"""All cards under which a model is right, and for every other card an entry and a point that exclude it.
+
+Two blocks are compared in balls at exact points that satisfy the relations of the quantities: a ball that excludes
+zero excludes the card. What no point excludes is a candidate; the prover decides about it (``proof``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import islice, product
+from typing import Any
+
+from navsym.conventions.card import CHOICES, DROPPED, ESTIMATE, TRUTH, Card, list_structures
+from navsym.conventions.mechanisation import ROLES, Mechanisation, flat_card
+from navsym.conventions.points import BITS, ImpossibleError, Point, draw_point, evaluate
+from navsym.conventions.reading import Problem
+from navsym.core.balls import precision
+from navsym.language.tree import list_names
+
+Block = tuple[str, str]
+
+SIGNS = ("error", "rotation_sign", "bias_sign")
+BIASES = ("gyro_bias", "accelerometer_bias")
+POINTS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Mismatch:
+    """An entry of F (places from 0) that differs from the card's at a point (its number)."""
+
+    block: Block
+    entries: tuple[tuple[int, int], ...]
+    point: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outcome:
+    """A card with the blocks that exclude it; ``impossible`` names a quantity that contradicts it.
+
+    count : cards that are excluded alike, whatever their signs
+    """
+
+    card: Card
+    mismatches: tuple[Mismatch, ...]
+    impossible: str = ""
+    count: int = 1
+
+
+@cache
+def key_of_points(card: Card) -> Card:
+    """The card without what has no influence on the points."""
+    shape = card.earth if card.frame == "local-level" else "none"
+    central = "central" if card.gravity_gradient == "central" else "none"
+    return Card(card.frame, card.axes, earth=shape, gravity_gradient=central)
+
+
+def plain_card(card: Card) -> Card:
+    """The card with every sign plus, whose blocks the signs of others scale."""
+    return replace(card, error=ESTIMATE, rotation_sign="+", bias_sign=ESTIMATE, dropped=())
+
+
+@cache
+def narrow_card(card: Card, role: str) -> Card:
+    """The card without the fields that have no influence on the columns of a role (a test compares them)."""
+    plain = plain_card(card)
+    if role == "position":
+        return plain
+    level = card.frame == "local-level"
+    if role in BIASES:
+        plain = replace(plain, angle=None, earth_rate=None, transport_rate=None)
+    if role == "attitude" and card.vector_error != "rotated":
+        plain = replace(plain, angle=None)
+    if level or card.gravity_gradient != "central":  # a central pull settles gravity itself
+        plain = replace(plain, gravity_gradient="none")
+    return replace(plain, centrifugal=None, height_variation=None, radius_variation=None, gravity_radius=None)
+
+
+class Comparison:
+    """The user's blocks beside those of cards at some exact points."""
+
+    def __init__(self, problem: Problem):
+        self.problem = problem
+        self.point = cache(self.draw)
+        self.computed = cache(self.compute_columns)
+        self.entries = cache(self.evaluate_block)
+        self.signs = cache(self.compare)
+        self.is_small = cache(self.has_small_terms)
+        self.is_zero = cache(self.has_zeros)
+
+    def draw(self, key: Card, number: int) -> Point:
+        """A point for cards of this kind."""
+        return draw_point(self.problem, key, number + 1)
+
+    def columns(self, card: Card, role: str, number: int) -> list[dict[str, list[Any]]]:
+        """Three columns of F of a card with every sign plus."""
+        return self.computed(narrow_card(card, role), role, number)
+
+    def compute_columns(self, card: Card, role: str, number: int) -> list[dict[str, list[Any]]]:
+        """The same, without looking whether they are there already."""
+        world = self.point(key_of_points(card), number).world
+        return [Mechanisation(card, world).column(role, k) for k in range(3)]
+
+    def evaluate_block(self, key: Card, block: Block, number: int) -> list[list[Any]]:
+        """The user's block in balls."""
+        values = self.point(key, number).values
+        return [[evaluate(tree, values) for tree in row] for row in self.problem.block(*block)]
+
+    def sign(self, card: Card, block: Block, sign: int) -> Mismatch | None:
+        """The first point that tells the user's block from ``sign`` times the card's, with all entries that differ."""
+        if block[0] in BIASES and block[1] in BIASES:
+            return self.bias_block(block)
+        return self.signs(narrow_card(card, block[1]), key_of_points(card), block, sign)
+
+    def compare(self, card: Card, key: Card, block: Block, sign: int) -> Mismatch | None:
+        """The same for a card of which only the fields are left that matter."""
+        row, column = block
+        for number in range(POINTS):
+            written = self.entries(key, block, number)
+            columns = self.computed(card, column, number)
+            wrong = []
+            for i, j in product(range(3), range(3)):
+                difference = written[i][j] - sign * columns[j][row][i]
+                if difference.is_finite() and not difference.contains(0):
+                    wrong.append((self.problem.roles[row][i], self.problem.roles[column][j]))
+            if wrong:
+                return Mismatch(block, tuple(wrong), number)
+        return None
+
+    def bias_block(self, block: Block) -> Mismatch | None:
+        """What no bias may do: depend on another one or on the motion, or grow where its constants have known signs."""
+        moving = {name for trees in self.problem.quantities.values() for name in list_names(*trees)}
+        values = self.point(Card("inertial"), 0).values
+        wrong = []
+        for i, j in product(*(range(3) for _ in range(2))):
+            tree = self.problem.block(*block)[i][j]
+            value, names = evaluate(tree, values), set(list_names(tree))
+            signed = all(self.problem.parameters[name].kind in ("positive", "range") for name in names)
+            own = block[0] == block[1] and i == j and not names & moving
+            if not value.contains(0) and not (own and not (signed and value > 0)):
+                wrong.append((self.problem.roles[block[0]][i], self.problem.roles[block[1]][j]))
+        return Mismatch(block, tuple(wrong), 0) if wrong else None
+
+    def show(self, card: Card, block: Block, entry: tuple[int, int], number: int) -> tuple[dict[str, str], str, str]:
+        """The point in decimals, the user's entry there and the card's."""
+        row, column = block
+        i, j = self.problem.roles[row].index(entry[0]), self.problem.roles[column].index(entry[1])
+        signs = card.signs()
+        with precision(BITS):
+            key = key_of_points(card)
+            written = self.entries(key, block, number)[i][j]
+            columns = self.columns(card, column, number)
+            expected = signs[row] * signs[column] * columns[j][row][i]
+            names = list_names(self.problem.F[entry[0]][entry[1]])
+            point = {name: in_decimals(self.point(key, number).values[name]) for name in names}
+            return point, in_decimals(written), in_decimals(expected)
+
+    def has_zeros(self, block: Block) -> bool:
+        """True where every entry of the user's block is written as zero."""
+        return all(repr(tree) == "<0>" for row in self.problem.block(*block) for tree in row)
+
+    def is_dropped(self, card: Card, block: Block) -> bool:
+        """True where the user's block is zero and the card's has small terms only."""
+        return self.is_zero(block) and self.is_small(flat_card(plain_card(card)), block)
+
+    def has_small_terms(self, card: Card, block: Block) -> bool:
+        """True where the block vanishes for a card of a flat Earth that does not turn: its terms may be dropped."""
+        row, column = block
+        parts = [x for k in range(3) for x in self.columns(card, column, 0)[k][row]]
+        return all(type(x) is int or x.contains(0) for x in parts)
+
+
+def in_decimals(x: Any) -> str:
+    """A ball by its leading digits."""
+    return str(x) if isinstance(x, int) else str(x.str(10, radius=False))
+
+
+def list_blocks(problem: Problem) -> list[Block]:
+    """Blocks in the order in which they exclude: those that depend on few conventions first."""
+    roles = [role for role in ROLES if role in problem.roles]
+    main = [
+        ("attitude", "gyro_bias"),
+        ("velocity", "accelerometer_bias"),
+        ("velocity", "attitude"),
+        ("attitude", "attitude"),
+    ]
+    blocks = [(row, column) for row in roles for column in roles]
+    return sorted(blocks, key=lambda block: main.index(block) if block in main else len(main) + ("position" in block))
+
+
+def list_signs(problem: Problem) -> Iterator[dict[str, str | None]]:
+    """The signs that a card may have; those of states that the model does not have say nothing."""
+    errors = (ESTIMATE, TRUTH) if {"velocity", "position"} & set(problem.roles) else (ESTIMATE,)
+    attitudes: tuple[str | None, ...] = ("+", "-") if "attitude" in problem.roles else (None,)
+    biases: tuple[str | None, ...] = (ESTIMATE, TRUTH) if set(BIASES) & set(problem.roles) else (None,)
+    for error, attitude, bias in product(errors, attitudes, biases):
+        yield {"error": error, "rotation_sign": attitude, "bias_sign": bias}
+
+
+def examine(problem: Problem, comparison: Comparison, most: int = 0) -> Iterator[Outcome]:
+    """Every card that agrees with what is known, with up to ``most + 1`` of the blocks that exclude it."""
+    frames = (problem.known["frame"],) if "frame" in problem.known else CHOICES["frame"]
+    radii = len(problem.quantities.get("radii", ()))
+    blocks = list_blocks(problem)
+    signs = [words for words in list_signs(problem) if all(problem.known.get(k, w) == w for k, w in words.items())]
+    fixed = {name: word for name, word in problem.known.items() if name not in SIGNS}
+    for structure in list_structures(frozenset(problem.roles), radii, frames, "height" in problem.quantities):
+        if any(getattr(structure, name) != word for name, word in fixed.items()):
+            continue
+        try:
+            comparison.point(key_of_points(structure), 0)
+        except ImpossibleError as error:
+            yield Outcome(structure, (), str(error), len(signs))
+            continue
+        # Signs only scale rows and columns: blocks are compared for the structure, once for each sign.
+        results = cache(lambda block, sign, card=structure: comparison.sign(card, block, sign))
+        hopeless = list(islice(list_hopeless(structure, comparison, blocks, results), most + 1))
+        if len(hopeless) > most:
+            yield Outcome(structure, tuple(hopeless), count=len(signs))
+        else:
+            yield from (
+                judge(change(structure, words), structure, comparison, blocks, results, most) for words in signs
+            )
+
+
+def list_hopeless(structure: Card, comparison: Comparison, blocks: Sequence[Block], results: Any) -> Iterator[Mismatch]:
+    """The blocks that no signs make right."""
+    for block in blocks:
+        mismatch = results(block, 1)
+        if mismatch and results(block, -1) and not comparison.is_dropped(structure, block):
+            yield mismatch
+
+
+def judge(
+    card: Card, structure: Card, comparison: Comparison, blocks: Sequence[Block], results: Any, most: int
+) -> Outcome:
+    """A card with the blocks that exclude it, up to one more than ``most``, or with those that are dropped."""
+    signs, mismatches, dropped = card.signs(), [], []
+    for block in blocks:
+        mismatch = results(block, signs[block[0]] * signs[block[1]])
+        if mismatch is None:
+            continue
+        if comparison.is_dropped(structure, block):
+            dropped.append(block)
+            continue
+        mismatches.append(mismatch)
+        if len(mismatches) > most:
+            break
+    return Outcome(replace(card, dropped=tuple(dropped)), tuple(mismatches))
+
+
+def has_evidence(card: Card, comparison: Comparison, blocks: Sequence[Block]) -> bool:
+    """False where every term of a curved or turning Earth is dropped: the card of a flat Earth says the same."""
+    if card.earth == "none" and card.earth_rate in (None, DROPPED):
+        return True
+    plain = plain_card(card)
+    flat = flat_card(plain)
+    for block in blocks:
+        if block in card.dropped:
+            continue
+        row, column = block
+        here, there = (comparison.columns(c, column, 0) for c in (plain, flat))
+        pairs = ((here[k][row][i], there[k][row][i]) for k in range(3) for i in range(3))
+        if any(not is_same(x, y) for x, y in pairs):
+            return True
+    return False
+
+
+def change(card: Card, words: Mapping[str, Any]) -> Card:
+    """The card with other words in some fields."""
+    return replace(card, **words)
+
+
+def is_same(x: Any, y: Any) -> bool:
+    """True where two balls overlap."""
+    difference = x - y
+    return difference == 0 if type(difference) is int else bool(difference.contains(0))
+
+
+FREE_FIELDS = (
+    "earth_rate",
+    "transport_rate",
+    "gravity_gradient",
+    "gravity_radius",
+    "centrifugal",
+    "height_variation",
+    "radius_variation",
+)
+
+
+def keep_simplest(cards: Sequence[Card]) -> list[Card]:
+    """Of cards with the same conventions those that drop least: fewest blocks, then fewest terms."""
+
+    def convention(card: Card) -> Card:
+        return change(card, {**dict.fromkeys(FREE_FIELDS), "dropped": ()})
+
+    def cost(card: Card) -> tuple[int, int]:
+        return len(card.dropped), sum(getattr(card, name) == DROPPED for name in FREE_FIELDS)
+
+    best: dict[Card, Card] = {}
+    for card in cards:
+        key = convention(card)
+        if key not in best or cost(card) < cost(best[key]):
+            best[key] = card
+    return list(best.values())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Findings:
+    """Candidates that no point excludes, and why each other card is excluded."""
+
+    candidates: tuple[Card, ...]
+    excluded: tuple[Outcome, ...]
+
+
+def find_candidates(problem: Problem, comparison: Comparison) -> Findings:
+    """The candidates among all cards."""
+    with precision(BITS):
+        outcomes = list(examine(problem, comparison))
+        blocks = list_blocks(problem)
+        right = [o.card for o in outcomes if not o.mismatches and not o.impossible]
+        right = [card for card in right if has_evidence(card, comparison, blocks)]
+        wrong = tuple(o for o in outcomes if o.mismatches or o.impossible)
+        return Findings(tuple(keep_simplest(right)), wrong)
+
+
+def find_nearest(problem: Problem, comparison: Comparison) -> list[Outcome]:
+    """The cards with the fewest blocks that must change."""
+    blocks = list_blocks(problem)
+    with precision(BITS):
+        for most in range(1, len(blocks) + 1):
+            outcomes = [o for o in examine(problem, comparison, most) if not o.impossible and len(o.mismatches) <= most]
+            outcomes = [o for o in outcomes if o.mismatches and has_evidence(o.card, comparison, blocks)]
+            if outcomes:
+                return outcomes
+    return []

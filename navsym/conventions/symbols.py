@@ -1,0 +1,341 @@
+"""The error dynamics of a card as formulas in the user's own names.
+
+The mechanisation runs over quotients of polynomials. At the end the relations of a rotation, C C' = E and its own
+cofactors, and sin**2 + cos**2 = 1 bring each entry to a normal form.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+from flint import fmpq_mpoly_ctx
+
+from navsym.conventions.card import Card
+from navsym.conventions.mechanisation import Mechanisation, World
+from navsym.conventions.points import gradient_names
+from navsym.conventions.reading import Problem
+from navsym.core.rational_functions import Quotient, add_fractions, multiply_fractions
+from navsym.language.printer import print_tree
+
+#: Names of quantities that the user has not given begin like this.
+HIDDEN = "unnamed_"
+
+NUMERAL = re.compile(r"-?\d+(/\d+)?")
+
+GENERATORS = (
+    *(f"c{i}{j}" for i in range(3) for j in range(3)),
+    *(f"{name}{k}" for name in ("f", "w", "v", "r", "g", "t", "e") for k in range(3)),
+    *("sin", "cos", "h", "RN", "RE", "third", "mean", "slope", "rate", "gravity", "pull", "radius"),
+)
+
+
+class Ratio:
+    """A quotient of polynomials with the operations that a coefficient needs."""
+
+    __slots__ = ("value",)
+
+    def __init__(self, value: Quotient):
+        self.value = value
+
+    def lift(self, other: Any) -> Ratio:
+        """An integer as a quotient."""
+        if isinstance(other, Ratio):
+            return other
+        context = self.value.bottom.context()
+        return Ratio(Quotient(context.constant(other), context.constant(1)))
+
+    def __add__(self, other: Any) -> Ratio:
+        return Ratio(add_fractions(self.value, self.lift(other).value))
+
+    def __mul__(self, other: Any) -> Ratio:
+        return Ratio(multiply_fractions(self.value, self.lift(other).value))
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __neg__(self) -> Ratio:
+        return self * -1
+
+    def __sub__(self, other: Any) -> Ratio:
+        return self + self.lift(other) * -1
+
+    def __truediv__(self, other: Any) -> Ratio:
+        top, bottom = self.lift(other).value
+        return Ratio(multiply_fractions(self.value, Quotient(bottom, top)))
+
+    def __rtruediv__(self, other: Any) -> Ratio:
+        return self.lift(other) / self
+
+
+class Formulas:
+    """The world of a problem in symbols, with a text for each of them."""
+
+    def __init__(self, problem: Problem, card: Card):
+        self.problem, self.card = problem, card
+        self.context = fmpq_mpoly_ctx.get(GENERATORS, "lex")
+        self.texts: dict[str, str] = {}
+        self.world = self.build()
+        self.columns = cache(self.compute_columns)
+
+    def compute_columns(self, role: str) -> list[dict[str, list[Any]]]:
+        """Three columns of F with every sign plus."""
+        return [Mechanisation(self.card, self.world).column(role, k) for k in range(3)]
+
+    def block(self, row: str, column: str, sign: int = 1) -> list[list[str]]:
+        """A block of F as texts, times a sign."""
+        parts = self.columns(column)
+        return [[self.write(parts[j][row][i], sign) for j in range(3)] for i in range(3)]
+
+    # Symbols and their texts
+
+    def text(self, quantity: str, place: int = 0) -> str | None:
+        """What the user writes for a component of a quantity."""
+        trees = self.problem.quantities.get(quantity)
+        return None if trees is None else print_tree(trees[place])
+
+    def symbol(self, name: str, text: str | None) -> Ratio:
+        """A generator, with its text; a number stands for itself."""
+        self.texts[name] = text if text is not None else HIDDEN + name
+        number = read_number(text)
+        one = self.context.constant(1)
+        place = GENERATORS.index(name)
+        poly = self.context.gen(place) if number is None else self.context.constant(to_flint(number))
+        return Ratio(Quotient(poly, one))
+
+    def vector(self, name: str, quantity: str) -> list[Ratio]:
+        """Three components of a quantity."""
+        return [self.symbol(f"{name}{k}", self.text(quantity, k)) for k in range(3)]
+
+    def build(self) -> World:
+        """The quantities; what follows from others is written by them."""
+        given, card = self.problem.quantities, self.card
+        C = [[self.symbol(f"c{i}{j}", self.text("rotation", 3 * i + j)) for j in range(3)] for i in range(3)]
+        in_frame = "specific_force" in given and (card.attitude_error == "frame" or "specific_force_body" not in given)
+        f = self.vector("f", "specific_force" if in_frame else "specific_force_body")
+        if in_frame:
+            f = [C[0][k] * f[0] + C[1][k] * f[1] + C[2][k] * f[2] for k in range(3)]
+        latitude = self.text("latitude") or HIDDEN + "latitude"
+        sine, cosine = self.symbol("sin", f"sin({latitude})"), self.symbol("cos", f"cos({latitude})")
+        h: Any = self.symbol("h", self.text("height")) if "height" in given else 0
+        r = self.vector("r", "position")
+        squares = " + ".join(f"({self.texts[f'r{k}']})**2" for k in range(3))
+        radius = self.symbol("radius", f"sqrt({squares})")
+        RN, RE, third = self.radii()
+        pull, gravity = self.gravitation(r, radius)
+        mean = self.symbol("mean", f"sqrt(({self.texts['RN']})*({self.texts.get('RE', self.texts['RN'])}))")
+        return World(
+            C,
+            f,
+            self.vector("w", "angular_rate"),
+            self.vector("v", "velocity"),
+            r,
+            self.earth_rate(sine, cosine),
+            sine,
+            cosine,
+            h,
+            RN,
+            RE,
+            self.symbol("slope", None),
+            gravity,
+            pull,
+            radius,
+            gradient_names(RN, RE, h, third, mean),
+            self.vector("t", "transport_rate") if "transport_rate" in given else None,
+        )
+
+    def radii(self) -> tuple[Ratio, Ratio, Ratio]:
+        """Meridian, prime vertical, and the radius of gravity."""
+        count = len(self.problem.quantities.get("radii", ()))
+        RN = self.symbol("RN", self.text("radii", 0))
+        if count < 2:
+            RE = RN if self.card.earth != "ellipsoid" else self.symbol("RE", None)
+            return RN, RE, RN
+        RE = self.symbol("RE", self.text("radii", 1))
+        return RN, RE, self.symbol("third", self.text("radii", 2)) if count == 3 else RE
+
+    def gravitation(self, r: list[Ratio], radius: Ratio) -> tuple[Ratio, list[Ratio]]:
+        """mu/|r|^3, and gravity in the frame or along down."""
+        size = len(self.problem.quantities.get("gravity", ()))
+        if self.card.frame == "local-level":
+            down = self.down() if size == 3 else self.symbol("gravity", self.text("gravity"))
+            return self.symbol("pull", None), [down]
+        if "gravitational_parameter" in self.problem.quantities:
+            pull = self.symbol("pull", self.text("gravitational_parameter")) / (radius * radius * radius)
+        else:
+            pull = self.symbol("pull", None)
+        if size == 3:
+            central = self.card.gravity_gradient == "central"
+            return pull, [pull * x * -1 for x in r] if central else self.vector("g", "gravity")
+        scalar = self.symbol("gravity", self.text("gravity"))
+        if size == 1 and "gravitational_parameter" not in self.problem.quantities:
+            pull = scalar / radius
+        return pull, [scalar * x / radius * -1 for x in r]
+
+    def down(self) -> Ratio:
+        """Gravity along down from its components in the axes."""
+        from navsym.conventions.mechanisation import AXES
+
+        column = [row[2] for row in AXES[self.card.axes]]
+        place = next(k for k, x in enumerate(column) if x)
+        return self.symbol("gravity", self.text("gravity", place)) * column[place]
+
+    def earth_rate(self, sine: Ratio, cosine: Ratio) -> list[Ratio]:
+        """The Earth's rate in the frame, or (north, down)."""
+        from navsym.conventions.mechanisation import AXES
+
+        size = len(self.problem.quantities.get("earth_rate", ()))
+        if size == 3:
+            components = self.vector("e", "earth_rate")
+            if self.card.frame != "local-level":
+                return components
+            A = AXES[self.card.axes]
+            return [next(components[k] * A[k][j] for k in range(3) if A[k][j]) for j in (0, 2)]
+        rate = self.symbol("rate", self.text("earth_rate"))
+        if self.card.frame == "local-level":
+            return [rate * cosine, rate * sine * -1]
+        zero = rate * 0
+        return [zero, zero, rate]
+
+    # From quotients to texts
+
+    def write(self, value: Any, sign: int = 1) -> str:
+        """A coefficient in the user's names."""
+        if type(value) is int:
+            return str(sign * value)
+        top, bottom = value.value
+        terms = reduce_terms({tuple(map(int, e)): c for e, c in top.to_dict().items()})
+        above = self.write_terms({e: c * sign for e, c in terms.items()})
+        if above == "0" or bottom == 1:
+            return above
+        below = self.write_terms({tuple(map(int, e)): as_fraction(c) for e, c in bottom.to_dict().items()})
+        return f"({above})/({below})"
+
+    def write_terms(self, terms: Mapping[tuple[int, ...], Fraction]) -> str:
+        """A polynomial as text."""
+        parts = [self.write_term(powers, factor) for powers, factor in sorted(terms.items(), reverse=True) if factor]
+        return " + ".join(parts).replace("+ -", "- ") or "0"
+
+    def write_term(self, powers: Sequence[int], factor: Fraction) -> str:
+        """One term of it."""
+        names = [(protect(self.texts[GENERATORS[k]]), n) for k, n in enumerate(powers) if n]
+        product = "*".join(name if n == 1 else f"{name}**{n}" for name, n in names)
+        if not product:
+            return str(factor)
+        return {1: product, -1: f"-{product}"}.get(factor) or f"{factor}*{product}"  # type: ignore[call-overload]
+
+
+def protect(text: str) -> str:
+    """A text as a factor: in parentheses unless it is a name or a call."""
+    simple = text.replace("_", "").isalnum() or (text[:4] in ("sin(", "cos(") and text.count("(") == 1)
+    return text if simple else f"({text})"
+
+
+def read_number(text: str | None) -> Fraction | None:
+    """The number of a text that is one."""
+    if text is None:
+        return None
+    return Fraction(text) if NUMERAL.fullmatch(text) else None
+
+
+def to_flint(number: Fraction) -> Any:
+    """A fraction of flint."""
+    from flint import fmpq
+
+    return fmpq(number.numerator, number.denominator)
+
+
+def as_fraction(number: Any) -> Fraction:
+    """A fraction from flint's."""
+    return Fraction(int(number.p), int(number.q))
+
+
+Terms = dict[tuple[int, ...], Fraction]
+
+
+@cache
+def rotation_rules() -> dict[tuple[int, int], dict[tuple[int, ...], Fraction]]:
+    """A Groebner basis of the relations of a rotation: pair of entries -> what its product is.
+
+    The relations C C' = E, C' C = E and cofactors = C span all that a basis of degree two needs; elimination in degree
+    reverse lexicographic order makes it one. Every rule follows from the relations, so the reduction is sound.
+    """
+    pairs = sorted(((i, j) for j in range(9) for i in range(j + 1)), key=lambda pair: (pair[1], pair[0]))
+    columns: list[tuple[int, ...]] = [*pairs, *((k,) for k in range(9)), ()]
+    rows = [list(row) for row in relation_rows(columns)]
+    rules: dict[tuple[int, int], dict[tuple[int, ...], Fraction]] = {}
+    done: list[tuple[int, list[Fraction]]] = []
+    for at in range(len(pairs)):
+        pivot = next((row for row in rows if row[at]), None)
+        if pivot is None:
+            continue
+        rows.remove(pivot)
+        pivot = [x / pivot[at] for x in pivot]
+        rows = [[x - row[at] * y for x, y in zip(row, pivot, strict=True)] for row in rows]
+        done = [(k, [x - row[at] * y for x, y in zip(row, pivot, strict=True)]) for k, row in done]
+        done.append((at, pivot))
+    for at, row in done:
+        rules[pairs[at]] = {columns[k]: -x for k, x in enumerate(row) if x and k != at}
+    return rules
+
+
+def relation_rows(columns: Sequence[tuple[int, ...]]) -> Iterator[list[Fraction]]:
+    """The relations of a rotation over the monomials of degree at most two."""
+
+    def row(terms: Mapping[tuple[int, ...], int]) -> list[Fraction]:
+        return [Fraction(terms.get(column, 0)) for column in columns]
+
+    def pair(a: int, b: int) -> tuple[int, int]:
+        return (a, b) if a <= b else (b, a)
+
+    for i in range(3):
+        for j in range(i, 3):
+            for place in (lambda k, m: 3 * k + m, lambda k, m: 3 * m + k):
+                yield row({**{pair(place(i, m), place(j, m)): 1 for m in range(3)}, (): -int(i == j)})
+    for i in range(3):
+        for j in range(3):
+            a, b, c, d = (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3
+            plus, minus = pair(3 * a + c, 3 * b + d), pair(3 * a + d, 3 * b + c)
+            yield row({plus: 1, minus: -1, (3 * i + j,): -1})
+
+
+SINE, COSINE = GENERATORS.index("sin"), GENERATORS.index("cos")
+
+
+def reduce_terms(terms: Mapping[tuple[int, ...], Any]) -> Terms:
+    """The normal form of a polynomial modulo the relations of a rotation and of sine and cosine."""
+    rules = rotation_rules()
+    waiting: Terms = {e: as_fraction(c) for e, c in terms.items()}
+    result: Terms = {}
+    while waiting:
+        powers, factor = waiting.popitem()
+        places = [k for k in range(9) for _ in range(powers[k])]
+        pairs = ((places[i], places[j]) for i in range(len(places)) for j in range(i + 1, len(places)))
+        rule = next((p for p in pairs if p in rules), None)
+        if rule is not None:
+            rest = lower(powers, rule)
+            new = [(raise_by(rest, monomial), x) for monomial, x in rules[rule].items()]
+        elif powers[SINE] > 1:
+            rest = lower(powers, (SINE, SINE))
+            new = [(rest, Fraction(1)), (raise_by(rest, (COSINE, COSINE)), Fraction(-1))]
+        else:
+            result[powers] = result.get(powers, Fraction(0)) + factor
+            continue
+        for key, x in new:
+            waiting[key] = waiting.get(key, Fraction(0)) + factor * x
+    return {e: c for e, c in result.items() if c}
+
+
+def lower(powers: tuple[int, ...], places: Sequence[int]) -> tuple[int, ...]:
+    """The monomial divided by these generators."""
+    return tuple(n - places.count(k) for k, n in enumerate(powers))
+
+
+def raise_by(powers: tuple[int, ...], places: Sequence[int]) -> tuple[int, ...]:
+    """The monomial times these generators."""
+    return tuple(n + places.count(k) for k, n in enumerate(powers))
+
+
+__all__ = ["HIDDEN", "Formulas", "Ratio", "reduce_terms", "rotation_rules"]

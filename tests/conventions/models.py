@@ -1,0 +1,325 @@
+"""Error models as they are published, typed from their sources, as conventions files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+Grid = list[list[str]]
+
+C: Grid = [[f"c{i}{j}" for j in (1, 2, 3)] for i in (1, 2, 3)]
+E: Grid = [["1" if i == j else "0" for j in range(3)] for i in range(3)]
+O: Grid = [["0"] * 3 for _ in range(3)]
+
+SHORT = {"p": "position", "v": "velocity", "a": "attitude", "g": "gyro_bias", "b": "accelerometer_bias"}
+
+
+def neg(A: Grid) -> Grid:
+    """-A."""
+    return [[x if x == "0" else f"-({x})" for x in row] for row in A]
+
+
+def scale(factor: str, A: Grid) -> Grid:
+    """A factor times a matrix."""
+    return [[x if x == "0" else f"({factor})*({x})" for x in row] for row in A]
+
+
+def skew(u: list[str]) -> Grid:
+    """The matrix of u x."""
+    x, y, z = u
+    return [["0", f"-({z})", y], [z, "0", f"-({x})"], [f"-({y})", x, "0"]]
+
+
+def mul(A: Grid, B: Grid) -> Grid:
+    """A B."""
+    return [[" + ".join(f"({A[i][k]})*({B[k][j]})" for k in range(3)) for j in range(3)] for i in range(3)]
+
+
+def transpose(A: Grid) -> Grid:
+    """A'."""
+    return [list(row) for row in zip(*A, strict=True)]
+
+
+def document(
+    order: str,
+    blocks: Mapping[str, Grid],
+    quantities: Mapping[str, Any],
+    known: Mapping[str, str] | None = None,
+    **declared: Any,
+) -> dict[str, Any]:
+    """A conventions file: ``order`` lists the roles by letters, ``blocks["va"]`` is velocity by attitude."""
+    states = {role: [f"x_{role}{k}" for k in range(3)] for role in order}
+    F = [["0"] * (3 * len(order)) for _ in range(3 * len(order))]
+    for key, block in blocks.items():
+        row, column = order.index(key[0]), order.index(key[1])
+        for i in range(3):
+            for j in range(3):
+                F[3 * row + i][3 * column + j] = block[i][j]
+    names = {n for cells in quantities.values() for n in names_of(cells)}
+    parameters = {name: "real" for name in sorted(names)} | declared
+    return {
+        "model": {"states": [name for role in order for name in states[role]], "F": F},
+        "parameters": parameters,
+        "roles": {SHORT[role]: states[role] for role in order},
+        "quantities": dict(quantities),
+        "known": dict(known or {}),
+    }
+
+
+def names_of(cells: Any) -> list[str]:
+    """Bare names of a quantity."""
+    if isinstance(cells, list):
+        return [name for cell in cells for name in names_of(cell)]
+    return [cells] if cells.isidentifier() else []
+
+
+F_N, F_B, W_B = (["f1", "f2", "f3"], ["a1", "a2", "a3"], ["w1", "w2", "w3"])
+NED = {
+    "specific_force": F_N,
+    "rotation": C,
+    "latitude": "L",
+    "height": "h",
+    "velocity": ["vN", "vE", "vD"],
+    "earth_rate": "W",
+    "gravity": "g",
+    "radii": ["RN", "RE"],
+}
+POSITIVE = {
+    "RN": ["6", "7"],
+    "RE": ["7", "8"],
+    "R": ["6", "7"],
+    "h": ["0", "1"],
+    "L": ["-1", "1"],
+    "g": "positive",
+    "W": "positive",
+}
+
+
+def declared(quantities: Mapping[str, Any]) -> dict[str, Any]:
+    """Declarations of the names that have a range."""
+    names = {n for cells in quantities.values() for n in names_of(cells)}
+    return {name: value for name, value in POSITIVE.items() if name in names}
+
+
+def kf_gins() -> dict[str, Any]:
+    """Wuhan University, KF-GINS: phi angle, north-east-down, position error in metres, constant biases."""
+    m, n = "(RN + h)", "(RE + h)"
+    pp = [[f"-vD/{m}", "0", f"vN/{m}"], [f"vE*tan(L)/{n}", f"-(vD + vN*tan(L))/{n}", f"vE/{n}"], ["0", "0", "0"]]
+    vp = [
+        [f"-2*vE*W*cos(L)/{m} - vE**2/({m}*{n}*cos(L)**2)", "0", f"vN*vD/{m}**2 - vE**2*tan(L)/{n}**2"],
+        [f"2*W*(vN*cos(L) - vD*sin(L))/{m} + vN*vE/({m}*{n}*cos(L)**2)", "0", f"(vE*vD + vN*vE*tan(L))/{n}**2"],
+        [f"2*W*vE*sin(L)/{m}", "0", f"-vE**2/{n}**2 - vN**2/{m}**2 + 2*g/(sqrt(RN*RE) + h)"],
+    ]
+    vv = [
+        [f"vD/{m}", f"-2*(W*sin(L) + vE*tan(L)/{n})", f"vN/{m}"],
+        [f"2*W*sin(L) + vE*tan(L)/{n}", f"(vD + vN*tan(L))/{n}", f"2*W*cos(L) + vE/{n}"],
+        [f"-2*vN/{m}", f"-2*(W*cos(L) + vE/{n})", "0"],
+    ]
+    ap = [
+        [f"-W*sin(L)/{m}", "0", f"vE/{n}**2"],
+        ["0", "0", f"-vN/{m}**2"],
+        [f"-W*cos(L)/{m} - vE/({m}*{n}*cos(L)**2)", "0", f"-vE*tan(L)/{n}**2"],
+    ]
+    av = [["0", f"1/{n}", "0"], [f"-1/{m}", "0", "0"], ["0", f"-tan(L)/{n}", "0"]]
+    aa = neg(skew(local_rate(m, n)))
+    blocks = {
+        "pp": pp,
+        "pv": E,
+        "vp": vp,
+        "vv": vv,
+        "va": skew(F_N),
+        "vb": C,
+        "ap": ap,
+        "av": av,
+        "aa": aa,
+        "ag": neg(C),
+    }
+    return document("pvagb", blocks, NED, **declared(NED))
+
+
+def local_rate(m: str, n: str) -> list[str]:
+    """Rate of the north-east-down level beside inertial space."""
+    return [f"W*cos(L) + vE/{n}", f"-vN/{m}", f"-W*sin(L) - vE*tan(L)/{n}"]
+
+
+def groves_ned() -> dict[str, Any]:
+    """Groves, 2nd edition, (14.63)-(14.71): local navigation frame, geodetic position, geocentric radius of gravity."""
+    m, n = "(RN + h)", "(RE + h)"
+    quantities = {**NED, "radii": ["RN", "RE", "rS"]}
+    aa = neg(skew(local_rate(m, n)))
+    av = [["0", f"-1/{n}", "0"], [f"1/{m}", "0", "0"], ["0", f"tan(L)/{n}", "0"]]
+    ap = [
+        ["W*sin(L)", "0", f"vE/{n}**2"],
+        ["0", "0", f"-vN/{m}**2"],
+        [f"W*cos(L) + vE/({n}*cos(L)**2)", "0", f"-vE*tan(L)/{n}**2"],
+    ]
+    vv = [
+        [f"vD/{m}", f"-2*vE*tan(L)/{n} - 2*W*sin(L)", f"vN/{m}"],
+        [f"vE*tan(L)/{n} + 2*W*sin(L)", f"(vN*tan(L) + vD)/{n}", f"vE/{n} + 2*W*cos(L)"],
+        [f"-2*vN/{m}", f"-2*vE/{n} - 2*W*cos(L)", "0"],
+    ]
+    vp = [
+        [f"-vE**2/({n}*cos(L)**2) - 2*vE*W*cos(L)", "0", f"vE**2*tan(L)/{n}**2 - vN*vD/{m}**2"],
+        [f"vN*vE/({n}*cos(L)**2) + 2*vN*W*cos(L) - 2*vD*W*sin(L)", "0", f"-(vN*vE*tan(L) + vE*vD)/{n}**2"],
+        ["2*vE*W*sin(L)", "0", f"vE**2/{n}**2 + vN**2/{m}**2 - 2*g/rS"],
+    ]
+    pv = [[f"1/{m}", "0", "0"], ["0", f"1/({n}*cos(L))", "0"], ["0", "0", "-1"]]
+    pp = [["0", "0", f"-vN/{m}**2"], [f"vE*sin(L)/({n}*cos(L)**2)", "0", f"-vE/({n}**2*cos(L))"], ["0", "0", "0"]]
+    blocks = {
+        "aa": aa, "av": av, "ap": ap, "ag": C, "va": neg(skew(F_N)), "vv": vv, "vp": vp, "vb": C, "pv": pv, "pp": pp,
+    }  # fmt: skip
+    return document("avpbg", blocks, quantities, rS="positive", **declared(NED))
+
+
+def groves_inertial() -> dict[str, Any]:
+    """Groves, 2nd edition, (14.30)-(14.35): Earth-centred inertial frame."""
+    quantities = {
+        "specific_force": F_N,
+        "rotation": C,
+        "position": ["r1", "r2", "r3"],
+        "gravity": ["g1", "g2", "g3"],
+        "radii": ["rS"],
+    }
+    norm = "sqrt(r1**2 + r2**2 + r3**2)"
+    vp = [[f"-2*g{i}*r{j}/(rS*{norm})" for j in (1, 2, 3)] for i in (1, 2, 3)]
+    blocks = {"ag": C, "va": neg(skew(F_N)), "vp": vp, "vb": C, "pv": E}
+    return document("avpbg", blocks, quantities, {"frame": "inertial"}, rS="positive")
+
+
+def groves_earth() -> dict[str, Any]:
+    """Groves, 2nd edition, (14.46)-(14.50): Earth-centred Earth-fixed frame."""
+    file = groves_inertial()
+    quantities = {**file["quantities"], "earth_rate": "W"}
+    spin = skew(["0", "0", "W"])
+    norm = "sqrt(r1**2 + r2**2 + r3**2)"
+    vp = [[f"-2*g{i}*r{j}/(rS*{norm})" for j in (1, 2, 3)] for i in (1, 2, 3)]
+    blocks = {"aa": neg(spin), "ag": C, "va": neg(skew(F_N)), "vv": scale("-2", spin), "vp": vp, "vb": C, "pv": E}
+    return document("avpbg", blocks, quantities, rS="positive", W="positive")
+
+
+def sola_local() -> dict[str, Any]:
+    """Sola, Quaternion kinematics for the error-state Kalman filter, section 5.3: angular error in the body."""
+    quantities = {"specific_force_body": F_B, "angular_rate": W_B, "rotation": C}
+    blocks = {"pv": E, "va": neg(mul(C, skew(F_B))), "vb": neg(C), "aa": neg(skew(W_B)), "ag": neg(E)}
+    return document("pvabg", blocks, quantities, {"frame": "inertial"})
+
+
+def sola_global() -> dict[str, Any]:
+    """Sola, section 7: angular error in the global frame."""
+    quantities = {"specific_force_body": F_B, "angular_rate": W_B, "rotation": C}
+    turned = [" + ".join(f"{C[i][k]}*{F_B[k]}" for k in range(3)) for i in range(3)]
+    blocks = {"pv": E, "va": neg(skew(turned)), "vb": neg(C), "ag": neg(C)}
+    return document("pvabg", blocks, quantities, {"frame": "inertial"})
+
+
+def psi_level() -> dict[str, Any]:
+    """The psi-angle model in the computer frame (Benson 1975; Goshen-Meskin and Bar-Itzhack 1992)."""
+    quantities = {
+        "specific_force": F_N, "rotation": C, "earth_rate": ["e1", "e2", "e3"], "transport_rate": ["t1", "t2", "t3"],
+        "gravity": "g", "radii": ["R"], "latitude": "L", "velocity": ["vN", "vE", "vD"],
+    }  # fmt: skip
+    both = ["e1 + t1", "e2 + t2", "e3 + t3"]
+    blocks = {
+        "pp": neg(skew(["t1", "t2", "t3"])), "pv": E, "va": skew(F_N), "vb": C, "aa": neg(skew(both)), "ag": neg(C),
+        "vv": neg(skew(["2*e1 + t1", "2*e2 + t2", "2*e3 + t3"])),
+        "vp": [["-g/R", "0", "0"], ["0", "-g/R", "0"], ["0", "0", "2*g/R"]],
+    }  # fmt: skip
+    return document("pvagb", blocks, quantities, **declared(quantities))
+
+
+def right_invariant() -> dict[str, Any]:
+    """Barrau and Bonnabel; Hartley et al. 2020: right-invariant error with biases, world frame."""
+    quantities = {
+        "specific_force_body": F_B, "angular_rate": W_B, "rotation": C, "velocity": ["v1", "v2", "v3"],
+        "position": ["r1", "r2", "r3"], "gravity": ["g1", "g2", "g3"],
+    }  # fmt: skip
+    blocks = {
+        "va": skew(["g1", "g2", "g3"]), "pv": E, "ag": neg(C), "vg": neg(mul(skew(["v1", "v2", "v3"]), C)),
+        "vb": neg(C),
+        "pg": neg(mul(skew(["r1", "r2", "r3"]), C)),
+    }  # fmt: skip
+    return document("avpgb", blocks, quantities, {"frame": "inertial"})
+
+
+def left_invariant() -> dict[str, Any]:
+    """Barrau and Bonnabel; Hartley et al. 2020: left-invariant error with biases."""
+    quantities = {"specific_force_body": F_B, "angular_rate": W_B, "rotation": C}
+    turn = neg(skew(W_B))
+    blocks = {"aa": turn, "va": neg(skew(F_B)), "vv": turn, "pv": E, "pp": turn, "ag": neg(E), "vb": neg(E)}
+    return document("avpgb", blocks, quantities, {"frame": "inertial"})
+
+
+def msckf() -> dict[str, Any]:
+    """Mourikis and Roumeliotis 2007, error state truth minus estimate; VINS-Mono has the same matrix."""
+    return {**sola_local(), "known": {"frame": "inertial", "error": "truth - estimate"}}
+
+
+def psins() -> dict[str, Any]:
+    """Yan, PSINS toolbox, etm: phi angle in east-north-up, geodetic position, no gradient of gravity."""
+    m, n = "(RN + h)", "(RE + h)"
+    quantities = {**NED, "velocity": ["vE", "vN", "vU"]}
+    earth, turn = ["0", "W*cos(L)", "W*sin(L)"], [f"-vN/{m}", f"vE/{n}", f"vE*tan(L)/{n}"]
+    both = [f"{x} + {y}" for x, y in zip(earth, turn, strict=True)]
+    twice = [f"2*({x}) + {y}" for x, y in zip(earth, turn, strict=True)]
+    m1 = [["0", "0", "0"], ["-W*sin(L)", "0", "0"], ["W*cos(L)", "0", "0"]]
+    m2 = [["0", "0", f"vN/{m}**2"], ["0", "0", f"-vE/{n}**2"], [f"vE/({n}*cos(L)**2)", "0", f"-vE*tan(L)/{n}**2"]]
+    av = [["0", f"-1/{m}", "0"], [f"1/{n}", "0", "0"], [f"tan(L)/{n}", "0", "0"]]
+    v = skew(["vE", "vN", "vU"])
+    vv = plus(mul(v, av), neg(skew(twice)))
+    pp = [["0", "0", f"-vN/{m}**2"], [f"vE*tan(L)/({n}*cos(L))", "0", f"-vE/(cos(L)*{n}**2)"], ["0", "0", "0"]]
+    blocks = {
+        "aa": neg(skew(both)), "av": av, "ap": plus(m1, m2), "ag": neg(C), "va": skew(F_N), "vv": vv,
+        "vp": mul(v, plus(plus(m1, m1), m2)), "vb": C,
+        "pv": [["0", f"1/{m}", "0"], [f"1/({n}*cos(L))", "0", "0"], ["0", "0", "1"]], "pp": pp,
+    }  # fmt: skip
+    return document("avpgb", blocks, quantities, **declared(quantities))
+
+
+def plus(A: Grid, B: Grid) -> Grid:
+    """A + B."""
+    return [[f"({x}) + ({y})" for x, y in zip(*rows, strict=True)] for rows in zip(A, B, strict=True)]
+
+
+def navego() -> dict[str, Any]:
+    """NaveGo, F_update as found in a public copy: one radius R, both bias blocks +C beside + f x."""
+    quantities = {**NED, "radii": ["R", "R", "rS"]}
+    quantities.pop("height")
+    aa = neg(skew(local_rate("R", "R")))
+    av = [["0", "1/R", "0"], ["-1/R", "0", "0"], ["0", "-tan(L)/R", "0"]]
+    ap = [
+        ["-W*sin(L)", "0", "-vE/R**2"],
+        ["0", "0", "vN/R**2"],
+        ["-W*cos(L) - vE/(R*cos(L)**2)", "0", "vE*tan(L)/R**2"],
+    ]
+    vv = [
+        ["vD/R", "-2*(W*sin(L) + vE*tan(L)/R)", "vN/R"],
+        ["2*W*sin(L) + vE*tan(L)/R", "(vN*tan(L) + vD)/R", "2*W*cos(L) + vE/R"],
+        ["-2*vN/R", "-2*(W*cos(L) + vE/R)", "0"],
+    ]
+    vp = [
+        ["-vE*(2*W*cos(L) + vE/(R*cos(L)**2))", "0", "(vE**2*tan(L) - vN*vD)/R**2"],
+        ["2*W*(vN*cos(L) - vD*sin(L)) + vN*vE/(R*cos(L)**2)", "0", "-vE*(vN*tan(L) + vD)/R**2"],
+        ["2*W*vE*sin(L)", "0", "vE**2/R**2 + vN**2/R**2 - 2*g/rS"],
+    ]
+    pv = [["1/R", "0", "0"], ["0", "1/(R*cos(L))", "0"], ["0", "0", "-1"]]
+    pp = [["0", "0", "-vN/R**2"], ["vE*tan(L)/(R*cos(L))", "0", "-vE/(R**2*cos(L))"], ["0", "0", "0"]]
+    blocks = {
+        "aa": aa, "av": av, "ap": ap, "ag": C, "va": skew(F_N), "vv": vv, "vp": vp, "vb": C, "pv": pv, "pp": pp,
+    }  # fmt: skip
+    return document("avpgb", blocks, quantities, rS="positive", **declared(quantities))
+
+
+PUBLISHED = {
+    "Groves, inertial frame": groves_inertial,
+    "Groves, Earth frame": groves_earth,
+    "Groves, local level": groves_ned,
+    "KF-GINS": kf_gins,
+    "Sola, local error": sola_local,
+    "Sola, global error": sola_global,
+    "psi angle": psi_level,
+    "right invariant": right_invariant,
+    "left invariant": left_invariant,
+    "MSCKF": msckf,
+    "PSINS": psins,
+    "NaveGo": navego,
+}

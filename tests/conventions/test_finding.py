@@ -1,0 +1,226 @@
+"""Which cards are found: published models, models made from a card, and models that were spoiled."""
+
+from __future__ import annotations
+
+import random
+import re
+from typing import Any
+
+import pytest
+
+import navsym as nav
+from navsym.conventions.card import CHOICES, Card, list_structures
+from navsym.conventions.reading import read_problem
+from navsym.conventions.search import Comparison, find_candidates
+from navsym.conventions.symbols import Formulas
+from tests.conventions import models
+
+PLUS, MINUS = "estimate - truth", "truth - estimate"
+
+#: Model -> what its card says; the other card of the pair changes the signs of all states.
+CARDS: dict[str, dict[str, Any]] = {
+    "Groves, inertial frame": {
+        "frame": "inertial",
+        "attitude_error": "frame",
+        "rotation_sign": "+",
+        "bias_sign": MINUS,
+    },
+    "Groves, Earth frame": {"frame": "earth", "attitude_error": "frame", "rotation_sign": "+", "bias_sign": MINUS},
+    "Sola, local error": {"attitude_error": "body", "rotation_sign": "+", "bias_sign": PLUS, "earth": "none"},
+    "Sola, global error": {"attitude_error": "frame", "rotation_sign": "+", "bias_sign": PLUS},
+    "right invariant": {"attitude_error": "frame", "vector_error": "rotated", "bias_sign": PLUS},
+    "left invariant": {"attitude_error": "body", "vector_error": "body", "bias_sign": PLUS},
+    "MSCKF": {"attitude_error": "body", "error": MINUS, "rotation_sign": "-", "bias_sign": MINUS},
+}
+LEVEL: dict[str, dict[str, Any]] = {
+    "Groves, local level": {
+        "axes": "NED",
+        "angle": "phi",
+        "rotation_sign": "+",
+        "bias_sign": MINUS,
+        "earth": "ellipsoid",
+    },
+    "KF-GINS": {"axes": "NED", "angle": "phi", "rotation_sign": "-", "bias_sign": MINUS, "position_error": "metres"},
+    "PSINS": {"axes": "ENU", "angle": "phi", "rotation_sign": "-", "bias_sign": MINUS, "position_error": "geodetic"},
+    "psi angle": {"angle": "psi", "rotation_sign": "-", "bias_sign": MINUS, "position_error": "metres"},
+}
+
+
+def has_card(answer: nav.Conventions, words: dict[str, Any]) -> bool:
+    """True where one of the cards says these words."""
+    return any(all(getattr(card, name) == word for name, word in words.items()) for card in answer.cards)
+
+
+@pytest.mark.parametrize("name", CARDS)
+def test_a_published_model_has_the_card_of_its_source(name):
+    answer = nav.conventions(models.PUBLISHED[name]())
+    assert answer.complete
+    assert has_card(answer, CARDS[name])
+    assert len(answer.cards) == (1 if name == "MSCKF" else 2)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", LEVEL)
+def test_a_published_model_of_a_local_level_has_the_card_of_its_source(name):
+    answer = nav.conventions(models.PUBLISHED[name]())
+    assert answer.complete
+    assert has_card(answer, {"error": PLUS, "frame": "local-level", **LEVEL[name]})
+
+
+@pytest.mark.long
+def test_two_bias_blocks_of_one_sign_beside_a_positive_force_contradict_each_other():
+    document = models.navego() | {"known": {"frame": "local-level", "axes": "NED", "angle": "phi"}}
+    answer = nav.conventions(document)
+    assert not answer.cards
+    assert [(c.block, c.status) for c in answer.conflicts] == [(("velocity", "accelerometer_bias"), "PROVED")]
+    assert answer.conflicts[0].change.startswith("change the sign")
+    assert (("attitude", "gyro_bias"),) in answer.alternatives
+    for conflict in answer.conflicts:  # the mended model has a card
+        for i, j in conflict.entries:
+            entry = document["model"]["F"][i - 1][j - 1]
+            document["model"]["F"][i - 1][j - 1] = f"-({entry})"
+    assert nav.conventions(document).cards
+
+
+def document_of(card: Card, order: str, quantities: dict[str, Any]) -> dict[str, Any]:
+    """The model that the generator gives for a card."""
+    empty = models.document(order, {}, quantities, **models.declared(quantities))
+    formulas, signs = Formulas(read_problem(empty), card), card.signs()
+    blocks = {
+        a + b: formulas.block(models.SHORT[a], models.SHORT[b], signs[models.SHORT[a]] * signs[models.SHORT[b]])
+        for a in order
+        for b in order
+    }
+    return models.document(order, blocks, quantities, **models.declared(quantities))
+
+
+QUANTITIES = {
+    "specific_force_body": models.F_B, "angular_rate": models.W_B, "rotation": models.C, "velocity": ["v1", "v2", "v3"],
+    "position": ["r1", "r2", "r3"], "gravity": ["g1", "g2", "g3"],
+}  # fmt: skip
+
+
+@pytest.mark.long
+def test_a_model_made_from_a_card_has_that_card():
+    pick = random.Random(11)
+    cards = [
+        card for card in list_structures(frozenset(models.SHORT.values()), 0, ("inertial",)) if card.earth == "none"
+    ]
+    for card in cards:
+        error, bias = (pick.choice((PLUS, MINUS)) for _ in range(2))
+        signed = Card(**{**plain(card), "error": error, "bias_sign": bias, "rotation_sign": pick.choice("+-")})
+        answer = nav.conventions(document_of(signed, "pvagb", QUANTITIES), known={"frame": "inertial"})
+        assert answer.complete
+        assert signed in answer.cards
+
+
+def plain(card: Card) -> dict[str, Any]:
+    """The fields of a card."""
+    return {name: getattr(card, name) for name in Card.__dataclass_fields__}
+
+
+def list_mutants(document: dict[str, Any]) -> list[dict[str, Any]]:
+    """One sign, a transposition, a swapped frame."""
+    mutants = []
+
+    def spoil(change: Any) -> None:
+        F = [list(row) for row in document["model"]["F"]]
+        change(F)
+        if document["model"]["F"] != F:
+            mutants.append({**document, "model": {**document["model"], "F": F}})
+
+    size = len(document["model"]["F"])
+    for i in range(size):
+        for j in range(size):
+            spoil(lambda F, i=i, j=j: F[i].__setitem__(j, F[i][j] if F[i][j] == "0" else f"-({F[i][j]})"))
+    for a in range(0, size, 3):
+        for b in range(0, size, 3):
+
+            def transpose(F: Any, a: int = a, b: int = b) -> None:
+                block = [row[b : b + 3] for row in F[a : a + 3]]
+                for i in range(3):
+                    F[a + i][b : b + 3] = [block[k][i] for k in range(3)]
+
+            spoil(transpose)
+            spoil(lambda F, a=a, b=b: swap_frame(F, a, b))
+    return mutants
+
+
+def swap_frame(F: Any, a: int, b: int) -> None:
+    """The rotation from frame to body where that from body to frame stands."""
+    for i in range(3):
+        for j in range(3):
+            F[a + i][b + j] = re.sub(r"c(\d)(\d)", r"c\2\1", F[a + i][b + j])
+
+
+def cards_of(document: dict[str, Any]) -> tuple[Card, ...]:
+    """The candidates of a model; a complete answer has the same cards."""
+    problem = read_problem(document)
+    return find_candidates(problem, Comparison(problem)).candidates
+
+
+@pytest.mark.parametrize("name", ["Sola, local error", pytest.param("right invariant", marks=pytest.mark.long)])
+def test_spoiled_models_are_noticed(name):
+    document = models.PUBLISHED[name]()
+    right, mutants = cards_of(document), list_mutants(document)
+    pick = random.Random(2)
+    chosen = pick.sample(mutants, min(30, len(mutants)))
+    noticed = sum(cards_of(mutant) != right for mutant in chosen)
+    assert noticed >= 0.97 * len(chosen)
+
+
+def test_neighbours_are_excluded_by_an_entry_at_a_point():
+    answer = nav.conventions(models.sola_local())
+    fields = {exclusion.field for exclusion in answer.excluded}
+    assert {"error", "attitude_error", "rotation_sign", "bias_sign", "vector_error"} <= fields
+    assert all(exclusion.entry and exclusion.why for exclusion in answer.excluded)
+
+
+@pytest.mark.long
+def test_without_a_known_frame_a_flat_model_fits_every_frame():
+    document = models.sola_global()
+    document["known"] = {"error": PLUS}
+    answer = nav.conventions(document)
+    assert {card.frame for card in answer.cards} == set(CHOICES["frame"])
+    assert {card.earth for card in answer.cards} == {"none"}
+
+
+@pytest.mark.parametrize(("order", "gone"), [("va", "bgp"), ("ag", "pvb"), ("vab", "pg")])
+def test_parts_of_a_model_are_enough(order, gone):
+    whole = models.sola_local()
+    keep = [k for k, state in enumerate(whole["model"]["states"]) if state[2] not in gone]
+    F = [[whole["model"]["F"][i][j] for j in keep] for i in keep]
+    states = [whole["model"]["states"][k] for k in keep]
+    roles = {role: names for role, names in whole["roles"].items() if names[0] in states}
+    answer = nav.conventions({**whole, "model": {"states": states, "F": F}, "roles": roles})
+    assert answer.complete
+    assert {card.attitude_error for card in answer.cards} == {"body"}
+
+
+def test_biases_may_decay_and_not_grow():
+    document = models.sola_local()
+    document["parameters"]["tau"] = "positive"
+    for entry, conflicts in (("-1/tau", 0), ("1/tau", 1)):
+        for k in range(9, 12):
+            document["model"]["F"][k][k] = entry
+        answer = nav.conventions(document)
+        assert bool(answer.cards) == (conflicts == 0)
+        assert [c.block for c in answer.conflicts] == [("accelerometer_bias", "accelerometer_bias")] * conflicts
+
+
+def test_a_rotation_may_be_given_by_angles():
+    quantities = {
+        "specific_force_body": models.F_B,
+        "rotation": [["cos(y)", "-sin(y)", "0"], ["sin(y)", "cos(y)", "0"], ["0", "0", "1"]],
+    }
+    C = quantities["rotation"]
+    blocks = {
+        "va": models.neg(models.mul(C, models.skew(models.F_B))),
+        "vb": models.neg(C),
+        "ag": models.neg([[*row] for row in models.E]),
+    }
+    document = models.document("vagb", blocks, quantities, {"frame": "inertial", "error": PLUS}, y="real")
+    document["quantities"]["angular_rate"] = ["0", "0", "0"]
+    answer = nav.conventions(document)
+    assert answer.complete
+    assert [(c.attitude_error, c.rotation_sign, c.bias_sign) for c in answer.cards] == [("body", "+", PLUS)]
