@@ -12,7 +12,7 @@ from flint import arb, arb_mat, fmpq
 from navsym.claims.display import write_card, write_table
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
-from navsym.core.exact import decimal, lower_end, upper_end
+from navsym.core.exact import decimal, lower_end, to_fmpq, upper_end
 from navsym.core.numbers import Number
 from navsym.guaranteed.streaming.flow import BITS, Flow, write_rational
 from navsym.guaranteed.streaming.memory import Row
@@ -20,7 +20,7 @@ from navsym.guaranteed.streaming.numbers import middle, to_float
 from navsym.language.names import quote
 
 #: Digits of radii and duals.
-DIGITS = 30
+DIGITS = 24
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,7 +94,7 @@ class Estimate(Answer):
         if self.low is None or self.high is None:
             return None
         with precision(BITS):
-            return Number(lower_end(self.low, DIGITS), upper_end(self.high, DIGITS))
+            return enclose_radius(self.low, self.high)
 
     @property
     def weights(self) -> list[tuple[float, str, float]]:
@@ -142,6 +142,15 @@ class Estimate(Answer):
             "certificate": self.certificate,
         } | rest
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Estimate) and all(
+            getattr(self, name) == getattr(other, name)
+            for name in "t target value kind support excluded others radius weights".split()
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.t, self.target, self.value))
+
     def __repr__(self) -> str:
         name = quote(self.target)[1:-1]
         if self.value is None or self.high is None:
@@ -151,6 +160,18 @@ class Estimate(Answer):
     def _repr_html_(self) -> str:
         rows = [(f"{t:g}", name, f"{w:.6g}") for t, name, w in self.weights]
         return write_card([repr(self), write_table(("time", "measurement", "weight"), rows)], "")
+
+
+def enclose_radius(low: arb, high: arb) -> Number:
+    """Decimals outside both ends, by less than 1e-23 of them.
+
+    The ends move apart before they are rounded: a radius such as 1 or 2/3 then has the same digits however its balls
+    were computed.
+    """
+    margin = fmpq(1, 10**28)
+    below, above = to_fmpq(low.lower()), to_fmpq(high.upper())
+    lower = decimal(below - abs(below) * margin, DIGITS, -1)
+    return Number(lower, decimal(above + abs(above) * margin, DIGITS, 1))
 
 
 def write_certificate(plan: Plan) -> dict[str, Any] | None:

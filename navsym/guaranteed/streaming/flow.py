@@ -70,6 +70,7 @@ class Flow:
         self.programs: list[list[Tape]] = [[tape(e) for e in row] for row in self.h]
         self.constant = [not any(e.has(self.time) for e in row) for row in self.h]
         self.steady: dict[int, arb_mat] = {}
+        self.bounds: dict[int, tuple[arb, str]] = {}
 
     @cached_property
     def is_steady(self) -> bool:
@@ -200,12 +201,18 @@ class Flow:
 
     def sigma(self, j: int, t: fmpq) -> tuple[arb, str]:
         """The noise bound of a measurement and its text, which has no time in it any more."""
+        known = self.bounds.get(j)
+        if known is not None:
+            return known
         text = to_text(self.sigmas[j])
         value = arb(tape(sp.sympify(self.sigmas[j])).run({self.time: arb(t)}))
         if not value > 0:
             message = f"expected a positive noise bound; got {quote(text)} of {quote(self.names[j])}; correct sigma"
             raise DomainError(message, where=f"t = {write_rational(t)}")
-        return value, put_number(text, self.time.name, t)
+        answer = value, put_number(text, self.time.name, t)
+        if not self.sigmas[j].has(self.time):
+            self.bounds[j] = answer
+        return answer
 
     def cut(self, row: arb_mat) -> arb_mat:
         """A row without the unknowns that are not kept."""

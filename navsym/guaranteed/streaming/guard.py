@@ -12,7 +12,7 @@ from flint import arb, arb_mat, fmpq
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError, DuplicateError, NavsymError, ShapeError, UnknownSymbolError
 from navsym.guaranteed.streaming.estimate import Estimate, Plan
-from navsym.guaranteed.streaming.exchange import Optimum, exchange, price_basis, violated_row
+from navsym.guaranteed.streaming.exchange import Cloud, Optimum, exchange, price_basis, solve_basis, violated_row
 from navsym.guaranteed.streaming.explanations import contradiction, explain_data
 from navsym.guaranteed.streaming.flow import BITS, Flow
 from navsym.guaranteed.streaming.memory import MOST_ROWS, Memory
@@ -89,6 +89,7 @@ class Guard:
         with precision(BITS):
             self.flow = Flow(self.model.read(), target, "Guard")
         self.memory = Memory(self.flow, self.length)
+        # Hints for the search; nothing that is said of an epoch rests on them.
         self.basis: list[int] = []
         self.signs: list[int] = []
         self.solved: Optimum | None = None
@@ -207,7 +208,7 @@ class Guard:
         """The estimate from what is in memory."""
         if self.outliers:
             return self.answer_with_outliers(at)
-        plan = self.repeat(at, fresh) or self.optimise(at) or self.solve_scarcely(at)
+        plan = self.repeat(at, fresh) or self.optimise(at, fresh) or self.solve_scarcely(at)
         if self.bound == "bounded" and self.solved is not None:
             self.need_consistent(fresh)
         if plan is None:
@@ -230,23 +231,23 @@ class Guard:
         self.basis = [i + fresh for i in self.basis]
         return self.make_plan(at, before)
 
-    def optimise(self, at: fmpq) -> Plan | None:
+    def optimise(self, at: fmpq, fresh: int) -> Plan | None:
         """The optimum, from the last support where that is still in memory."""
         memory = self.memory
         if len(memory) < self.flow.size:
             self.solved, self.basis, self.signs = None, [], []
             return None
         cloud, target = memory.cloud(), memory.target()
-        found = self.solved
+        old, end = self.solved, len(memory.rows)
         kept = bool(self.basis) and min(self.basis) >= memory.first
-        if kept and found is not None and found.basis == self.basis:
-            old = found
+        found = None
+        if kept and old is not None and old.basis == self.basis:
             found = price_basis(cloud, target, old.basis, old.signs, old.inverse)
-            if violated_row(cloud, found) is not None:
-                found = exchange(cloud, target, found.basis, found.signs)
-        else:
-            start = self.basis if kept else shifted_basis(self.basis, memory.first, len(memory.rows))
-            found = exchange(cloud, target, start, self.signs) if start else None
+            if violated_row(cloud, found) is None:
+                self.solved, self.signs = found, found.signs
+                return self.make_plan(at, found)
+        start = shifted_basis(self.basis, fresh if kept else memory.first - min(self.basis, default=0), end)
+        found = exchange_from_better(cloud, target, found, start)
         if found is None:
             start = cloud.start() or []
             found = exchange(cloud, target, start) if start else None
@@ -268,12 +269,38 @@ class Guard:
         """The optimum where the measurements do not determine the state."""
         return solve_scarce(self.flow, self.memory.rows[self.memory.first :], at)
 
+    # Saved and continued
+
+    def save(self, path: str | os.PathLike[str] | None = None) -> dict[str, Any]:
+        """The guard as plain data, written to a JSON file where a path is given; :meth:`load` continues from it.
+
+        Model, options and the measurements in memory are exact, the last support is a hint. Raises OutputError.
+        """
+        from navsym.guaranteed.streaming.state import write_state
+
+        return write_state(self, path)
+
+    @staticmethod
+    def load(source: str | os.PathLike[str] | Mapping[str, Any]) -> Guard:
+        """The guard that :meth:`save` wrote: a path, or its plain data. It goes on as the saved one would.
+
+        Raises NavsymError for a file that is not one.
+
+        >>> import navsym as nav
+        >>> guard = nav.Guard(nav.Model(states="b", F=[["0"]], H=["b"], sigma="1/2"))
+        >>> first = guard.step(3, t=0)
+        >>> nav.Guard.load(guard.save()).step("3.5", t=1) == guard.step("3.5", t=1)
+        True
+        """
+        from navsym.guaranteed.streaming.state import read_state
+
+        return read_state(source)
+
     # Data that contradict each other
 
     def need_consistent(self, fresh: int) -> None:
         """Raise InconsistentError where it is proved that no state keeps all bounds; look only where doubles doubt."""
         memory = self.memory
-        window = slice(memory.first, len(memory.rows))
         if self.state is not None:
             new = slice(len(memory.rows) - fresh, len(memory.rows))
             gap = np.abs(memory.scaled[new] @ self.state - memory.shifted[new])
@@ -291,7 +318,6 @@ class Guard:
                 raise contradiction(memory, np.repeat(np.arange(len(counts)), counts), rows, 0)
             ends.append(np.array([middle(e) for e in found.dual.entries()]))
         self.state = (ends[0] + ends[1]) / 2.0
-        del window
 
     def answer_with_outliers(self, at: fmpq) -> Estimate:
         """Middle and half width of the target over all explanations."""
@@ -333,13 +359,24 @@ class Window(Sequence[Any]):
         return self.entries[self.first + place]
 
 
-def shifted_basis(basis: Sequence[int], first: int, end: int) -> list[int]:
-    """The support moved on with a memory that slides: its oldest row has left."""
-    if not basis:
-        return []
-    shift = first - min(basis)
+def shifted_basis(basis: Sequence[int], shift: int, end: int) -> list[int]:
+    """The support as it moves on with time; empty where two rows become one."""
     moved = [min(i + shift, end - 1) for i in basis]
     return moved if len(set(moved)) == len(moved) else []
+
+
+def exchange_from_better(cloud: Cloud, target: arb_mat, found: Optimum | None, start: list[int]) -> Optimum | None:
+    """The optimum from the last support, or from that moved on with time, whichever costs less."""
+    moved = solve_basis(cloud, target, start, []) if start else None
+    if found is not None and (moved is None or rough_cost(cloud, found) <= rough_cost(cloud, moved)):
+        moved = found
+    return None if moved is None else exchange(cloud, target, moved.basis, moved.signs)
+
+
+def rough_cost(cloud: Cloud, found: Optimum) -> float:
+    """``sum sigma |w|`` in doubles."""
+    pairs = zip(found.basis, found.weights.entries(), strict=True)
+    return sum(middle(cloud.sigma[i]) * abs(middle(w)) for i, w in pairs)
 
 
 def whole_number(value: Any, low: int, high: int, where: str) -> int:

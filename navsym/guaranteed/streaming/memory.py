@@ -51,6 +51,7 @@ class Memory:
         self.sigmas: list[arb] = []
         self.data: list[arb] = []
         self.first = self.oldest = 0
+        self.gone = 0  # epochs that have left since the reference time was chosen
         self.scaled = np.zeros((64, flow.size))
         self.shifted = np.zeros(64)
         self.carry: arb_mat | None = None
@@ -73,6 +74,7 @@ class Memory:
         if self.length is not None and len(self.times) - self.oldest > self.length:
             self.first += self.counts[self.oldest]
             self.oldest += 1
+            self.gone += 1
 
     def put(self, row: Row) -> None:
         """A row at the end of all lists."""
@@ -98,7 +100,7 @@ class Memory:
 
     def take_back(self, before: tuple[Any, ...]) -> None:
         """The state that :meth:`mark` described."""
-        epochs, rows, self.first, self.oldest, self.reference, self.flow.stride = before
+        epochs, rows, self.first, self.oldest, self.gone, self.reference, self.flow.stride = before
         for entries, size in ((self.times, epochs), (self.counts, epochs)):
             del entries[size:]
         for entries in (self.rows, self.vectors, self.sigmas, self.data):
@@ -106,17 +108,17 @@ class Memory:
 
     def mark(self) -> tuple[Any, ...]:
         """What :meth:`take_back` needs."""
-        return len(self.times), len(self.rows), self.first, self.oldest, self.reference, self.flow.stride
+        return len(self.times), len(self.rows), self.first, self.oldest, self.gone, self.reference, self.flow.stride
 
     def is_due(self) -> bool:
         """Whether half of what is kept has left the memory."""
-        return self.length is not None and self.oldest >= max(self.length, STRIDE)
+        return self.length is not None and self.gone >= max(self.length, STRIDE)
 
     def refer(self) -> None:
         """Drop what has left, and refer everything to the oldest epoch in memory."""
         times, counts, rows = self.times[self.oldest :], self.counts[self.oldest :], self.rows[self.first :]
         self.times, self.counts, self.rows, self.vectors, self.sigmas, self.data = [], [], [], [], [], []
-        self.first = self.oldest = 0
+        self.first = self.oldest = self.gone = 0
         self.reference = times[0]
         self.fill(times, counts, rows)
 
@@ -147,7 +149,3 @@ class Memory:
         """P Phi(now, reference)."""
         row = self.flow.row_of_target
         return self.flow.cut(row if self.carry is None else row * self.carry)
-
-    def float_times(self) -> list[float]:
-        """Times of the rows in memory."""
-        return [to_float(row.t) for row in self.rows[self.first :]]
