@@ -14,7 +14,7 @@ from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.exact import decimal, lower_end, to_fmpq, upper_end
 from navsym.core.numbers import Number
-from navsym.guaranteed.streaming.flow import BITS, Flow, write_rational
+from navsym.guaranteed.streaming.flow import BITS, Flow
 from navsym.guaranteed.streaming.memory import Row
 from navsym.guaranteed.streaming.numbers import middle, to_float
 from navsym.language.names import quote
@@ -105,8 +105,8 @@ class Estimate(Answer):
     def worst_case(self) -> list[tuple[float, str, float]]:
         """(time, measurement, error) of the noise that attains the radius; all others may be zero.
 
-        ``r_i = sigma_i sign(w_i)`` on the support, so that ``sum w_i r_i`` is the radius. Under "variance" the errors are
-        these numbers times one common random factor of variance 1: the worst correlation.
+        ``r_i = sigma_i sign(w_i)`` on the support, so that ``sum w_i r_i`` is the radius. Under "variance" the errors
+        are these numbers times one common random factor of variance 1: the worst correlation.
 
         >>> import navsym as nav
         >>> guard = nav.Guard(nav.Model(states="b", F=[["0"]], H=["b"], sigma="1/2"))
@@ -121,8 +121,8 @@ class Estimate(Answer):
     def certificate(self) -> Mapping[str, Any] | None:
         """Plain data that the independent checker replays: kind ``gap``, one panel for each measurement in memory.
 
-        On a panel regressor and bound are constant, so that the optimum over panels is that over measurements. None while
-        the target is not estimable, for "outliers", and where exp(F t) has no formula.
+        On a panel regressor and bound are constant, so that the optimum over panels is that over measurements. None
+        while the target is not estimable, for "outliers", and where exp(F t) has no formula.
         """
         return write_certificate(self.plan) if self.plan is not None and self.plan.whole else None
 
@@ -130,8 +130,8 @@ class Estimate(Answer):
         """The certificate in a list, for :func:`navsym.check`."""
         return [self.certificate] if self.certificate is not None else []
 
-    def document(self) -> dict[str, Any]:
-        """The row of the epoch in the document of ``navsym guard``, with its certificate."""
+    def document(self, *, certificate: bool = True) -> dict[str, Any]:
+        """The row of the epoch in the document of ``navsym guard``, with its certificate or with null in its place."""
         rest = {"others": [list(times) for times in self.others]} if self.others else {}
         return {
             "t": self.t,
@@ -139,7 +139,7 @@ class Estimate(Answer):
             "radius": None if self.radius is None else self.radius.document(),
             "support": self.support,
             "excluded": list(self.excluded),
-            "certificate": self.certificate,
+            "certificate": self.certificate if certificate else None,
         } | rest
 
     def __eq__(self, other: object) -> bool:
@@ -176,24 +176,26 @@ def enclose_radius(low: arb, high: arb) -> Number:
 
 def write_certificate(plan: Plan) -> dict[str, Any] | None:
     """The certificate of kind gap; None where a regressor has no formula."""
-    flow, kept = plan.flow, set(plan.columns)
-    places = [place for place, column in enumerate(flow.columns) if column in kept]
+    flow = plan.flow
     with precision(BITS):
         texts = [flow.row_text(row.j, row.t, plan.now) for row in plan.rows]
         if any(text is None for text in texts):
             return None
-        balls = arb_mat([[flow.ball_row(plan.rows[i].j, plan.rows[i].t, plan.now)[k] for k in plan.columns] for i in plan.basis])
-        side = arb_mat([[plan.rows[i].sigma * s] for i, s in zip(plan.basis, plan.signs, strict=True)])
+        support = [plan.rows[i] for i in plan.basis]
+        whole = [flow.ball_row(row.j, row.t, plan.now) for row in support]
+        balls = arb_mat([[row[k] for k in plan.columns] for row in whole])
+        side = arb_mat([[row.sigma * s] for row, s in zip(support, plan.signs, strict=True)])
         shrink = arb(fmpq(10**15 - 1, 10**15)) * plan.lower / plan.upper
         dual = [decimal(e * shrink, 60) for e in (balls.inv() * side).entries()]
-        rows = zip(plan.rows, texts, strict=True)
+        panels = [
+            {"measurement": row.j, "from": "0", "to": "1", "sigma": row.text, "H": [text[k] for k in plan.columns]}
+            for row, text in zip(plan.rows, texts, strict=True)
+            if text is not None
+        ]
         return {
             "kind": "gap",
             "variable": "place",
-            "panels": [
-                {"measurement": row.j, "from": "0", "to": "1", "sigma": row.text, "H": [text[k] for k in places]}  # type: ignore[index]
-                for row, text in rows
-            ],
+            "panels": panels,
             "functional": [flow.functional_text(k) for k in plan.columns],
             "bits": BITS + 64,
             "cells": min(len(plan.rows) // 4 + 1, 20_000),

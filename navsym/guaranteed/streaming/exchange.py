@@ -34,6 +34,7 @@ class Cloud:
     scaled  : (N, m) doubles near v_i / sigma_i, relative error of each entry at most 2**-50
     offset  : e_i, balls; empty where all are zero
     shifted : (N,) doubles near e_i / sigma_i
+    wide    : no entry of ``scaled`` is further than this, beside its rounding, from that of the ball
     first   : the rows before are no longer in memory; ``scaled``, ``shifted`` and ``active`` begin with this one
     active  : (N,) rows that may be used, None for all
     """
@@ -43,6 +44,7 @@ class Cloud:
     scaled: Array
     offset: Sequence[arb] = ()
     shifted: Array | None = None
+    wide: float = 0.0
     first: int = 0
     active: NDArray[np.bool_] | None = None
 
@@ -58,15 +60,16 @@ class Cloud:
         rows = rows / np.maximum(np.abs(rows).max(axis=1), 1e-300)[:, None]
         return [int(places[k]) + self.first for k in spread_rows(rows)]
 
-    def suspects(self, x: Array) -> list[int]:
-        """Rows whose bound is not seen to be kept in doubles, the worst first."""
+    def suspects(self, x: Array, radii: Array) -> list[int]:
+        """Rows whose bound is not seen to be kept in doubles by all vectors of a ball, the worst first."""
         f = self.scaled @ x
-        slack = np.abs(self.scaled) @ np.abs(x)
+        rounding = ROUNDING * (len(x) + 4)
+        slack = np.abs(self.scaled) @ (np.abs(x) * rounding + radii) + self.wide * (np.abs(x) + radii).sum() + 1e-12
         if self.shifted is not None:
             f = f - self.shifted
-            slack = slack + np.abs(self.shifted)
+            slack = slack + np.abs(self.shifted) * rounding
         size = np.abs(f)
-        seen = size + slack * (ROUNDING * (len(x) + 4)) > 1.0
+        seen = ~(size + slack <= 1.0)
         if self.active is not None:
             seen &= self.active
         places = np.flatnonzero(seen)
@@ -140,10 +143,12 @@ def price_basis(cloud: Cloud, target: arb_mat, basis: list[int], signs: list[int
 def violated_row(cloud: Cloud, found: Optimum, *, bland: bool = False) -> tuple[int, int] | None:
     """The row that breaks its bound most, as doubles order them, or the first; None where none is seen to."""
     x = np.array([float(e.mid()) for e in found.dual.entries()])
-    if not np.isfinite(x).all():
+    radii = np.array([float(e.rad()) for e in found.dual.entries()]) * (1.0 + ROUNDING)
+    if not np.isfinite(x).all() or not np.isfinite(radii).all():
+        found.ratio = arb("inf")  # doubles see nothing here: no lower bound is known
         return None
     found.ratio = arb(1)
-    suspects = cloud.suspects(x)
+    suspects = cloud.suspects(x, radii)
     for i in sorted(suspects) if bland else suspects:
         if i in found.basis:
             continue
@@ -180,3 +185,11 @@ def cost_of(cloud: Cloud, weights: dict[int, arb]) -> arb:
         ((w * cloud.offset[i] if cloud.offset else arb(0)) + cloud.sigma[i] * abs(w) for i, w in weights.items()),
         arb(0),
     )
+
+
+def bounds_of(cloud: Cloud, found: Optimum) -> tuple[arb, arb]:
+    """Bounds of the optimum with e = 0: ``P d`` of the dual, shrunk until it is feasible, and the cost of the weights."""
+    lower, upper = arb(0), arb(0)
+    for i, s, w in zip(found.basis, found.signs, found.weights.entries(), strict=True):
+        lower, upper = lower + cloud.sigma[i] * w * s, upper + cloud.sigma[i] * abs(w)
+    return lower / found.ratio, upper

@@ -134,8 +134,7 @@ def contradiction(memory: Memory, epoch: Any, rows: Sequence[int], most: int) ->
     used = sorted({int(epoch[i - memory.first]) for i in rows})
     times = ", ".join(f"{to_float(memory.times[memory.oldest + e]):.12g}" for e in used)
     but = f" but {most}" if most else ""
-    remedy = "check these, raise sigma, or allow gross errors" if not most else "raise sigma, or allow more gross errors"
-    message = (
-        f"expected data that some state explains in all epochs{but}; got a contradiction at t = {times}; {remedy} (outliers)"
-    )
+    remedy = "raise sigma, or allow more gross errors" if most else "check them, raise sigma, or allow gross errors"
+    got = f"a contradiction at t = {times}"
+    message = f"expected data that some state explains in all epochs{but}; got {got}; {remedy} (outliers)"
     return InconsistentError(message, where=f"t = {times}")

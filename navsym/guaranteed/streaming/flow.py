@@ -35,7 +35,7 @@ class Flow:
 
     names    : measurements
     target   : name of the target; ``functional`` its entries, exact
-    columns  : the unknowns that are kept; the others depend on them wherever the model is measured
+    columns  : the unknowns that are kept for the measurements in memory; the others depend on them
     size     : m, their number
 
     Raises DomainError for a parameter without a value, for F(t) and for a target that is zero, EmptyError without
@@ -57,8 +57,13 @@ class Flow:
             self.names = tuple(m.name for m in contents.measurements)
         self.need_values(where)
         n = len(self.functional)
-        self.columns = self.reduce_unknowns(where) or list(range(n))
-        self.size = len(self.columns)
+        self.columns, self.size = list(range(n)), n
+        self.spaces: dict[frozenset[int], list[int] | None] = {}
+        if not self.choose_unknowns(frozenset(range(len(self.h)))):
+            message = (
+                f"expected a target that the measurements can show; got {quote(self.target)}, which is outside the"
+            )
+            raise NotEstimableError(f"{message} observable subspace; add a measurement", where=f"{where}: target")
         self.memory: OrderedDict[Any, arb_mat] = OrderedDict()
         self.stride = fmpq(0)
         with precision(BITS):
@@ -114,30 +119,38 @@ class Flow:
             message = "expected a target that is not zero; got zeros; every estimator of it is free"
             raise DomainError(message, where=f"{where}: target")
 
-    def reduce_unknowns(self, where: str) -> list[int] | None:
-        """Pivots of the observability matrix of a constant rational model; None where all unknowns are kept.
+    @cached_property
+    def is_rational(self) -> bool:
+        """Whether F, h and the functional are rational numbers, so that spaces are known exactly."""
+        entries = [*(e for row in self.h for e in row), *(e for p in self.F for e in p.F), *self.functional]
+        return bool(self.F) and self.is_steady and all(sp.sympify(e).is_Rational for e in entries)
 
-        Every regressor ``h exp(F s)`` lies in its row space (Cayley and Hamilton), and a vector of that space is
-        determined by its entries at the pivots.
+    def choose_unknowns(self, kinds: frozenset[int]) -> bool:
+        """Keep the unknowns in which some measurements are unbiased; False where they never show the target.
+
+        Every regressor ``h exp(F s)`` lies in the row space of the observability matrix (Cayley and Hamilton), and a
+        vector of that space is determined by its entries at the pivots. Without rational numbers all are kept.
         """
-        constant = self.F and self.is_steady and not any(e.has(self.time) for r in self.h for e in r)
-        exact = [*(e for row in self.h for e in row), *(e for p in self.F for e in p.F), *self.functional]
-        if not constant or not all(sp.sympify(e).is_Rational for e in exact):
+        if not self.is_rational:
+            return bool(kinds)
+        if kinds not in self.spaces:
+            self.spaces[kinds] = self.reduce_unknowns(kinds)
+        columns = self.spaces[kinds]
+        if columns is not None:
+            self.columns, self.size = columns, len(columns)
+        return columns is not None
+
+    def reduce_unknowns(self, kinds: frozenset[int]) -> list[int] | None:
+        """Pivots of the observability matrix; None where the target is not in its row space."""
+        if not kinds:
             return None
         F = fmpq_mat([[to_fmpq(e) for e in row] for row in self.F[0].F.tolist()])
-        blocks = [fmpq_mat([[to_fmpq(e) for e in row] for row in self.h])]
+        blocks = [fmpq_mat([[to_fmpq(e) for e in self.h[j]] for j in sorted(kinds)])]
         for _ in range(F.nrows() - 1):
             blocks.append(blocks[-1] * F)
         rows = [row for block in blocks for row in block.tolist()]
-        pivots = pivot_columns(rows)
         functional = [to_fmpq(p) for p in self.functional]
-        if not in_row_space(functional, rows):
-            states = ", ".join(getattr(self.contents, "states", ())[:8])
-            message = f"expected a target that the measurements can show; got {quote(self.target)} of {states}, "
-            raise NotEstimableError(
-                f"{message}outside the observable subspace of dimension {len(pivots)}; add a measurement", where=where
-            )
-        return pivots
+        return pivot_columns(rows) if in_row_space(functional, rows) else None
 
     # Balls
 
@@ -148,7 +161,7 @@ class Flow:
         if self.is_steady:
             return self.long_exponential(end - start)
         total, at = None, start
-        for k, piece in enumerate(self.F):
+        for k in range(len(self.F)):
             last = self.ends[k]
             if last is not None and last <= at and not (k == len(self.F) - 1 and at == end):
                 continue
@@ -283,14 +296,14 @@ class Flow:
         return [[to_text(e) for e in row] for row in matrix.tolist()]
 
     def row_text(self, j: int, t: fmpq, now: fmpq) -> list[str] | None:
-        """The kept entries of ``h_j(t) Phi(t, now)`` as formulas without symbols."""
+        """The entries of ``h_j(t) Phi(t, now)`` as formulas without symbols; None where there are none."""
         h = [put_number(to_text(e), self.time.name, t) for e in self.h[j]]
         if not self.F or (t == now and self.closed_form is not None):
-            return [h[k] for k in self.columns]
+            return h
         if self.closed_form is None:
             return None
         span = f"({write_rational(t - now)})"
-        return [self.entry_text(h, [row[k] for row in self.closed_form], span) for k in self.columns]
+        return [self.entry_text(h, [row[k] for row in self.closed_form], span) for k in range(len(h))]
 
     @staticmethod
     def entry_text(h: Sequence[str], column: Sequence[str], span: str) -> str:

@@ -38,7 +38,9 @@ def read_decimal(text: str, where: str) -> fmpq:
     if text.lower() in WORDS:
         raise NotFiniteError(f"expected a finite number; got {quote(text)}; leave it out", where=where)
     if len(text) > LONGEST:
-        raise TooLargeError(f"expected a number of at most {LONGEST} characters; got {quote(text)}; round it", where=where)
+        raise TooLargeError(
+            f"expected a number of at most {LONGEST} characters; got {quote(text)}; round it", where=where
+        )
     if not NUMBER.fullmatch(text):
         raise ExpressionSyntaxError(f"expected a number such as -1.25e3; got {quote(text)}; correct it", where=where)
     return to_fmpq(Fraction(text))

@@ -1,18 +1,17 @@
-"""Epochs with too few measurements to determine the state: is the target determined, exactly?"""
+"""Epochs with too few measurements to determine the state: the target may be determined all the same, exactly."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 import numpy as np
-from flint import arb_mat, fmpq, fmpq_mat
+from flint import arb_mat, fmpq
 
 from navsym.guaranteed.streaming.estimate import Plan
-from navsym.guaranteed.streaming.exchange import Cloud, exchange
+from navsym.guaranteed.streaming.exchange import Cloud, bounds_of, exchange
 from navsym.guaranteed.streaming.flow import Flow, in_row_space, pivot_columns
 from navsym.guaranteed.streaming.memory import Row
 from navsym.guaranteed.streaming.numbers import to_float
-from navsym.core.exact import to_fmpq
 
 #: With more rows than this, rational ranks cost more than they are worth.
 MOST = 400
@@ -58,8 +57,7 @@ def solve_reduced(
     found = start and exchange(cloud, arb_mat([[functional[k] for k in columns]]), start)
     if not found:
         return None
-    upper = sum(s * abs(w) for s, w in zip((sigma[i] for i in found.basis), found.weights.entries(), strict=True))
-    lower = upper / found.ratio
+    lower, upper = bounds_of(cloud, found)
     basis, whole = [places[i] for i in found.basis], len(places) == len(rows)
     return Plan(flow, now, list(rows), columns, basis, found.signs, found.weights.entries(), lower, upper, whole)
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+from collections import Counter
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -106,15 +108,13 @@ def fill_guard(document: dict[str, Any], where: str) -> Guard:
     counts = [need_count(c) for c in document["counts"]]
     if len(times) != len(counts) or sum(counts) != len(document["rows"]) or len(document["rows"]) > MOST_ROWS:
         raise ValueError("counts")
-    if any(a >= b for a, b in zip(times[:-1], times[1:], strict=True)):
+    if any(a >= b for a, b in pairwise(times)):
         raise ValueError("times")
     reference = document["reference"]
     with precision(BITS):
         flow.stride = read_exact(document["stride"], f"{where}: stride")
         memory.reference = None if reference is None else read_exact(reference, f"{where}: reference")
-        if flow.stride < 0 or (memory.reference is None) != (not times):
-            raise ValueError("reference")
-        if times and memory.reference > times[0]:
+        if flow.stride < 0 or bool(times) != (memory.reference is not None and memory.reference <= times[0]):
             raise ValueError("reference")
         entries = iter(document["rows"])
         rows = [
@@ -122,6 +122,9 @@ def fill_guard(document: dict[str, Any], where: str) -> Guard:
             for at, count in zip(times, counts, strict=True)
             for _ in range(count)
         ]
+        memory.seen = Counter(row.j for row in rows)
+        guard.choose_kinds()
+        memory.widen()
         memory.fill(times, counts, rows)
     memory.gone, guard.epochs, guard.alike = (need_count(document[k]) for k in ("gone", "epochs", "alike"))
     step, own = document["pattern"]

@@ -22,8 +22,8 @@ Epoch = tuple[str, dict[str, str], dict[str, str]]
 def read_epochs(path: str | os.PathLike[str], names: tuple[str, ...]) -> Iterator[tuple[str, Epoch]]:
     """(place, (t, values, bounds)) of each row; numbers stay text, which is exact.
 
-    Columns: ``t``, measurements of the model, and ``sigma NAME`` for a bound that changes. A line that starts with # is a
-    remark. Raises NavsymError with file and line.
+    Columns: ``t``, measurements of the model, and ``sigma NAME`` for a bound that changes. A line that starts with # is
+    a remark. Raises NavsymError with file and line.
     """
     where = name_file(path)
     lines = io.StringIO(read_text(path, LARGEST), newline="")
