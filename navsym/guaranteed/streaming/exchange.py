@@ -188,7 +188,7 @@ def cost_of(cloud: Cloud, weights: dict[int, arb]) -> arb:
 
 
 def bounds_of(cloud: Cloud, found: Optimum) -> tuple[arb, arb]:
-    """Bounds of the optimum with e = 0: ``P d`` of the dual, shrunk until it is feasible, and the cost of the weights."""
+    """Bounds of the optimum with e = 0: ``P d`` of the dual, shrunk to feasible, and the cost of the weights."""
     lower, upper = arb(0), arb(0)
     for i, s, w in zip(found.basis, found.signs, found.weights.entries(), strict=True):
         lower, upper = lower + cloud.sigma[i] * w * s, upper + cloud.sigma[i] * abs(w)
