@@ -73,8 +73,7 @@ def test_the_radius_lies_in_the_enclosure_for_many_problems():
         rng = np.random.default_rng(seed)
         model, plain, sigma = random_model(rng, int(rng.integers(1, 6)), int(rng.integers(1, 4)))
         try:
-            for _, estimate, t in feed(rng, model, plain, sigma, 20, [None, 8][seed % 2]):
-                pass
+            *_, (_, estimate, t) = feed(rng, model, plain, sigma, 20, [None, 8][seed % 2])
         except nav.NavsymError as error:
             assert error.kind == "not-estimable"
             continue
