@@ -329,6 +329,12 @@ def test_a_saved_guard_goes_on_bit_for_bit(options, tmp_path):
             assert kept.save() == going.save()
 
 
+def test_a_restart_resolves_ties_as_without_it():
+    guard = nav.Guard(nav.Model("b", [["0"]], ["b"], sigma="1/2"))
+    assert guard.step(3, t=0).value == 3.0
+    assert nav.Guard.load(guard.save()).step("3.5", t=1) == guard.step("3.5", t=1)
+
+
 def test_a_damaged_state_is_refused_in_words(tmp_path):
     guard = nav.Guard(nav.Model("x v", [["0", "1"], ["0", "0"]], ["x"], targets={"v": "v"}), memory=5)
     for k in range(8):
