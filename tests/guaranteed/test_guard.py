@@ -224,6 +224,14 @@ def test_certificates_are_accepted_and_spoiled_ones_refused():
     assert accepted > 10 and refused > 30
 
 
+def test_a_certificate_asked_for_later_is_that_of_its_epoch():
+    guard = nav.Guard(nav.Model.from_basis(["1", "s", "s**2"]), "c1", memory=70)
+    early = [guard.step(0, t=k) for k in range(6)][-1]
+    for k in range(7, 160):  # beyond the point where the memory is written anew
+        guard.step(0, t=k)
+    assert len(early.certificate["panels"]) == 6 and nav.check(early)[0].status == "ACCEPTED"
+
+
 @pytest.mark.long
 def test_thousands_of_spoiled_certificates_are_refused():
     rng = np.random.default_rng(80)

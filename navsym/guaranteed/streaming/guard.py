@@ -412,6 +412,8 @@ class Window(Sequence[Any]):
     def __getitem__(self, place: Any) -> Any:
         if isinstance(place, slice):
             return self.entries[self.first : self.last][place]
+        if not 0 <= place < len(self):  # the list behind goes on growing, and iteration ends here
+            raise IndexError(place)
         return self.entries[self.first + place]
 
 
