@@ -51,6 +51,8 @@ _HOMES = {
     "Comparison": "navsym.guaranteed.baselines",
     "Estimator": "navsym.guaranteed.solver",
     "Formulation": "navsym.guaranteed.formulate",
+    "Guard": "navsym.guaranteed.streaming.guard",
+    "Estimate": "navsym.guaranteed.streaming.estimate",
     "NavsymError": "navsym.core.errors",
     "Number": "navsym.core.numbers",
     "Phases": "navsym.guaranteed.phases.answer",
@@ -112,6 +114,8 @@ if TYPE_CHECKING:
     from navsym.guaranteed.phases.driver import phases as phases
     from navsym.guaranteed.solver import Estimator as Estimator
     from navsym.guaranteed.solver import solve as solve
+    from navsym.guaranteed.streaming.estimate import Estimate as Estimate
+    from navsym.guaranteed.streaming.guard import Guard as Guard
     from navsym.models.derivation import Derivation as Derivation
     from navsym.models.derivation import derive as derive
     from navsym.models.model import Model as Model

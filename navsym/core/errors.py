@@ -128,6 +128,12 @@ class DomainError(NavsymError):
     kind = "domain"
 
 
+class InconsistentError(NavsymError):
+    """Data that no state explains."""
+
+    kind = "inconsistent"
+
+
 class NotEstimableError(NavsymError):
     """A functional that the measurements do not determine."""
 

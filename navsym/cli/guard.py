@@ -1,0 +1,70 @@
+"""The target at every epoch of a stream of measurements, with a guaranteed radius; gross errors excluded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from navsym.cli._options import called_options
+from navsym.cli._settings import values_of
+from navsym.cli.output import emit, remark, table
+
+if TYPE_CHECKING:
+    from navsym.guaranteed.streaming.run import Stream
+
+#: Rows of the table at its start and at its end.
+SHOWN = 12
+
+
+def command(
+    file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
+    data: Annotated[Path, typer.Option(help="CSV: t and one column per measurement; an empty cell is no measurement")],
+    target: Annotated[str | None, typer.Option(help="name of the target; not needed where the file has one")] = None,
+    memory: Annotated[int | None, typer.Option(help="epochs that are remembered; default: all")] = None,
+    outliers: Annotated[int, typer.Option(help="at most so many epochs have gross errors: 0 to 4")] = 0,
+    bound: Annotated[
+        str, typer.Option(help="what sigma bounds: bounded (the error itself) or variance (its standard deviation)")
+    ] = "bounded",
+    state: Annotated[Path | None, typer.Option(help="continue from this file where it exists, and save there")] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="value of a parameter, such as w=2; may be repeated")
+    ] = None,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> None:
+    """Estimate the target at the time of each epoch, from all epochs so far or the last --memory, with its radius.
+
+    The radius is the least sum of sigma times weight of an unbiased estimate. Data that no state explains are an error.
+    Certificates stand in the JSON document: of all epochs where these are few, else of the last.
+
+    Example: navsym guard examples/guard.toml --data examples/guard.csv --target range --outliers 1
+    """
+    from navsym.guaranteed.streaming.run import run_stream
+
+    with called_options("Guard"):
+        stream = run_stream(
+            file, data, target, bound, memory=memory, outliers=outliers, values=values_of(set_), state=state
+        )
+    for line in stream.remarks:
+        remark(line)
+    emit(stream.document(), as_json=json_, text=lambda: as_text(stream))
+
+
+def as_text(stream: Stream) -> str:
+    """The first and the last rows, and how many are left out."""
+    rows: list[Any] = [describe_row(row) for row in stream.rows]
+    left = len(rows) - 2 * SHOWN
+    if left > 0:
+        rows = [*rows[:SHOWN], (f"({left} more)", "", "", "", ""), *rows[-SHOWN:]]
+    head = ("t", "estimate", "radius", "support", "excluded")
+    return f"{stream.summary()}\n{table(head, rows, right=head[:4])}"
+
+
+def describe_row(row: dict[str, Any]) -> tuple[str, ...]:
+    """One epoch in words."""
+    if row["estimate"] is None:
+        return f"{row['t']:.9g}", "not estimable", "", "", ""
+    excluded = ", ".join(f"{t:.9g}" for t in row["excluded"])
+    radius = f"{float(row['radius']['upper']):.6g}"
+    return f"{row['t']:.9g}", f"{row['estimate']:.9g}", radius, str(row["support"]), excluded

@@ -1,0 +1,209 @@
+"""The answer of one epoch: estimate, radius, where they come from, and the certificate on demand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from flint import arb, arb_mat, fmpq
+
+from navsym.claims.display import write_card, write_table
+from navsym.core.answers import Answer
+from navsym.core.balls import precision
+from navsym.core.exact import decimal, lower_end, to_fmpq, upper_end
+from navsym.core.numbers import Number
+from navsym.guaranteed.streaming.flow import BITS, Flow
+from navsym.guaranteed.streaming.memory import Row
+from navsym.guaranteed.streaming.numbers import middle, to_float
+from navsym.language.names import quote
+
+#: Digits of radii and duals.
+DIGITS = 24
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """The weights of an epoch and what they came from.
+
+    rows    : the measurements in memory then
+    columns : the unknowns in which the weights are unbiased; the others follow from them
+    basis   : places among the rows
+    signs   : sides of the dual there
+    weights : balls
+    lower, upper : of the radius
+    whole   : whether the optimum over these rows is that over all rows in memory by itself
+    """
+
+    flow: Flow
+    now: fmpq
+    rows: Sequence[Row]
+    columns: Sequence[int]
+    basis: Sequence[int]
+    signs: Sequence[int]
+    weights: Sequence[arb]
+    lower: arb
+    upper: arb
+    whole: bool = True
+
+    def support(self) -> list[tuple[Row, arb]]:
+        """Rows with a weight that is not zero, as far as balls tell."""
+        pairs = [(self.rows[i], w) for i, w in zip(self.basis, self.weights, strict=True)]
+        return [(row, w) for row, w in pairs if not w.contains(0)]
+
+    def value(self) -> arb:
+        """``sum w z``."""
+        pairs = zip(self.basis, self.weights, strict=True)
+        return sum((w * arb(self.rows[i].z) for i, w in pairs), arb(0))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Estimate(Answer):
+    """The target at the time of one epoch.
+
+    t        : the time
+    target   : its name
+    value    : the estimate, a double; None while the target is not estimable
+    radius   : the guaranteed error, a :class:`Number` with ``lower`` and ``upper``; None while not estimable
+    kind     : "bounded", "variance" or "outliers"
+    excluded : times of the epochs that every explanation of the data gives a gross error
+    others   : other sets of times that explain the data, where there are several
+    support  : number of measurements with a weight
+
+    >>> import navsym as nav
+    >>> guard = nav.Guard(nav.Model(states="b", F=[["0"]], H=["b"], sigma="1/2"))
+    >>> guard.step(3, t=0)
+    Estimate(b at 0: 3.0 within 0.5, bounded)
+    """
+
+    t: float
+    target: str
+    value: float | None
+    kind: str
+    support: int = 0
+    excluded: tuple[float, ...] = ()
+    others: tuple[tuple[float, ...], ...] = ()
+    low: arb | None = field(default=None)
+    high: arb | None = field(default=None)
+    plan: Plan | None = field(default=None)
+
+    @cached_property
+    def radius(self) -> Number | None:
+        """Enclosure of the radius."""
+        if self.low is None or self.high is None:
+            return None
+        with precision(BITS):
+            return enclose_radius(self.low, self.high)
+
+    @property
+    def weights(self) -> list[tuple[float, str, float]]:
+        """(time, measurement, weight) of the support."""
+        rows = self.plan.support() if self.plan else []
+        return [(to_float(row.t), self.plan.flow.names[row.j], middle(w)) for row, w in rows]  # type: ignore[union-attr]
+
+    def worst_case(self) -> list[tuple[float, str, float]]:
+        """(time, measurement, error) of the noise that attains the radius; all others may be zero.
+
+        ``r_i = sigma_i sign(w_i)`` on the support, so that ``sum w_i r_i`` is the radius. Under "variance" the errors
+        are these numbers times one common random factor of variance 1: the worst correlation.
+
+        >>> import navsym as nav
+        >>> guard = nav.Guard(nav.Model(states="b", F=[["0"]], H=["b"], sigma="1/2"))
+        >>> guard.step(3, t=0).worst_case()
+        [(0.0, 'z1', 0.5)]
+        """
+        rows = self.plan.support() if self.plan else []
+        names = self.plan.flow.names if self.plan else ()
+        return [(to_float(row.t), names[row.j], middle(row.sigma) * (1.0 if w > 0 else -1.0)) for row, w in rows]
+
+    @cached_property
+    def certificate(self) -> Mapping[str, Any] | None:
+        """Plain data that the independent checker replays: kind ``gap``, one panel for each measurement in memory.
+
+        On a panel regressor and bound are constant, so that the optimum over panels is that over measurements. None
+        while the target is not estimable, for "outliers", and where exp(F t) has no formula.
+        """
+        return write_certificate(self.plan) if self.plan is not None and self.plan.whole else None
+
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """The certificate in a list, for :func:`navsym.check`."""
+        return [self.certificate] if self.certificate is not None else []
+
+    def document(self, *, certificate: bool = True) -> dict[str, Any]:
+        """The row of the epoch in the document of ``navsym guard``, with its certificate or with null in its place."""
+        rest = {"others": [list(times) for times in self.others]} if self.others else {}
+        return {
+            "t": self.t,
+            "estimate": self.value,
+            "radius": None if self.radius is None else self.radius.document(),
+            "support": self.support,
+            "excluded": list(self.excluded),
+            "certificate": self.certificate if certificate else None,
+        } | rest
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Estimate) and all(
+            getattr(self, name) == getattr(other, name)
+            for name in "t target value kind support excluded others radius weights".split()
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.t, self.target, self.value))
+
+    def __repr__(self) -> str:
+        name = quote(self.target)[1:-1]
+        if self.value is None or self.high is None:
+            return f"Estimate({name} at {self.t:g}: not estimable yet, {self.kind})"
+        return f"Estimate({name} at {self.t:g}: {self.value!r} within {float(self.high.mid()):.6g}, {self.kind})"
+
+    def _repr_html_(self) -> str:
+        rows = [(f"{t:g}", name, f"{w:.6g}") for t, name, w in self.weights]
+        return write_card([repr(self), write_table(("time", "measurement", "weight"), rows)], "")
+
+
+def enclose_radius(low: arb, high: arb) -> Number:
+    """Decimals outside both ends, by less than 1e-23 of them.
+
+    The ends move apart before they are rounded: a radius such as 1 or 2/3 then has the same digits however its balls
+    were computed.
+    """
+    margin = fmpq(1, 10**28)
+    below, above = to_fmpq(low.lower()), to_fmpq(high.upper())
+    lower = decimal(below - abs(below) * margin, DIGITS, -1)
+    return Number(lower, decimal(above + abs(above) * margin, DIGITS, 1))
+
+
+def write_certificate(plan: Plan) -> dict[str, Any] | None:
+    """The certificate of kind gap; None where a regressor has no formula."""
+    flow = plan.flow
+    with precision(BITS):
+        texts = [flow.row_text(row.j, row.t, plan.now) for row in plan.rows]
+        if any(text is None for text in texts):
+            return None
+        support = [plan.rows[i] for i in plan.basis]
+        whole = [flow.ball_row(row.j, row.t, plan.now) for row in support]
+        balls = arb_mat([[row[k] for k in plan.columns] for row in whole])
+        side = arb_mat([[row.sigma * s] for row, s in zip(support, plan.signs, strict=True)])
+        shrink = arb(fmpq(10**15 - 1, 10**15)) * plan.lower / plan.upper
+        dual = [decimal(e * shrink, 60) for e in (balls.inv() * side).entries()]
+        panels = [
+            {"measurement": row.j, "from": "0", "to": "1", "sigma": row.text, "H": [text[k] for k in plan.columns]}
+            for row, text in zip(plan.rows, texts, strict=True)
+            if text is not None
+        ]
+        return {
+            "kind": "gap",
+            "variable": "place",
+            "panels": panels,
+            "functional": [flow.functional_text(k) for k in plan.columns],
+            "bits": BITS + 64,
+            "cells": min(len(plan.rows) // 4 + 1, 20_000),
+            "parameter": "none",
+            "from": "0",
+            "to": "0",
+            "lower": lower_end(plan.upper * shrink, DIGITS),
+            "upper": upper_end(plan.upper, DIGITS),
+            "dual": dual,
+            "support": [[i, "0"] for i in plan.basis],
+        }

@@ -1,0 +1,195 @@
+"""The exchange over discrete measurements: doubles say where to look, balls decide every step.
+
+Minimise ``sum_i w_i e_i + sigma_i |w_i|`` subject to ``sum_i w_i v_i = P``. Its dual: maximise ``P d`` over
+``|v_i d - e_i| <= sigma_i``. With e = 0 the optimum is the least guaranteed error; with e the residuals of the data at
+a reference state, d is the distance of a consistent state from there, and no d at all shows itself as weights with
+``sum w_i v_i = 0`` and a negative cost (Farkas). Any m independent rows are a start, because weights may have
+either sign (Dantzig; Bland 1977 for the rule against cycles).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from flint import arb, arb_mat
+from numpy.typing import NDArray
+
+from navsym.core.simplex import spread_rows
+
+Array = NDArray[np.float64]
+
+#: Unit roundoff of doubles, with room for the conversions from balls.
+ROUNDING = 2.0**-50
+MOST_EXCHANGES = 400
+
+
+@dataclass(slots=True)
+class Cloud:
+    """The measurements in memory.
+
+    vectors : v_i, (1, m) balls each
+    sigma   : noise bounds, balls
+    scaled  : (N, m) doubles near v_i / sigma_i, relative error of each entry at most 2**-50
+    offset  : e_i, balls; empty where all are zero
+    shifted : (N,) doubles near e_i / sigma_i
+    wide    : no entry of ``scaled`` is further than this, beside its rounding, from that of the ball
+    first   : the rows before are no longer in memory; ``scaled``, ``shifted`` and ``active`` begin with this one
+    active  : (N,) rows that may be used, None for all
+    """
+
+    vectors: Sequence[arb_mat]
+    sigma: Sequence[arb]
+    scaled: Array
+    offset: Sequence[arb] = ()
+    shifted: Array | None = None
+    wide: float = 0.0
+    first: int = 0
+    active: NDArray[np.bool_] | None = None
+
+    def start(self) -> list[int] | None:
+        """m rows that are far from dependent; None where there are too few."""
+        m = self.scaled.shape[1]
+        places = np.arange(len(self.scaled)) if self.active is None else np.flatnonzero(self.active)
+        if len(places) < m:
+            return None
+        rows = self.scaled[places]
+        size = np.abs(rows).max(axis=0)
+        rows = rows / np.where(size > 0.0, size, 1.0)
+        rows = rows / np.maximum(np.abs(rows).max(axis=1), 1e-300)[:, None]
+        return [int(places[k]) + self.first for k in spread_rows(rows)]
+
+    def suspects(self, x: Array, radii: Array) -> list[int]:
+        """Rows whose bound is not seen to be kept in doubles by all vectors of a ball, the worst first."""
+        f = self.scaled @ x
+        rounding = ROUNDING * (len(x) + 4)
+        slack = np.abs(self.scaled) @ (np.abs(x) * rounding + radii) + self.wide * (np.abs(x) + radii).sum() + 1e-12
+        if self.shifted is not None:
+            f = f - self.shifted
+            slack = slack + np.abs(self.shifted) * rounding
+        size = np.abs(f)
+        seen = ~(size + slack <= 1.0)
+        if self.active is not None:
+            seen &= self.active
+        places = np.flatnonzero(seen)
+        if len(places) > 1:
+            places = places[np.argsort(-size[places], kind="stable")]
+        return [int(i) + self.first for i in places]
+
+    def excess(self, i: int, x: arb_mat) -> arb:
+        """``v_i x - e_i``."""
+        value = (self.vectors[i] * x)[0, 0]
+        return value - self.offset[i] if self.offset else value
+
+
+@dataclass(slots=True)
+class Optimum:
+    """A basis with its weights and dual.
+
+    basis, signs : rows, and the signs with which their weights enter
+    inverse      : of the matrix with these rows
+    weights      : (1, m), ``weights @ rows = P``
+    dual         : (m, 1), ``row d = e + sign sigma`` on the basis
+    ratio        : at least ``|v_i d - e_i| / sigma_i`` for every row
+    ray          : row -> weight where there is no d: ``sum w v = 0``, ``sum w e + sigma |w| < 0``
+    """
+
+    basis: list[int]
+    signs: list[int]
+    inverse: arb_mat
+    weights: arb_mat
+    dual: arb_mat
+    ratio: arb = field(default_factory=lambda: arb(1))
+    ray: dict[int, arb] | None = None
+
+
+def exchange(cloud: Cloud, target: arb_mat, basis: Sequence[int], signs: Sequence[int] = ()) -> Optimum | None:
+    """The optimum from a start; None where the rows are not seen to be independent, or the limit is met."""
+    found = solve_basis(cloud, target, list(basis), list(signs))
+    for count in range(MOST_EXCHANGES):
+        if found is None:
+            return None
+        entering = violated_row(cloud, found, bland=count > MOST_EXCHANGES // 2)
+        if entering is None:
+            return found
+        leave, along = leaving_place(found, cloud, *entering)
+        if leave < 0:
+            found.ray = ray_of(found, *entering, along)
+            return found if cost_of(cloud, found.ray) < 0 else None
+        found.basis[leave], found.signs[leave] = entering
+        found = solve_basis(cloud, target, found.basis, found.signs)
+    return None
+
+
+def solve_basis(cloud: Cloud, target: arb_mat, basis: list[int], signs: list[int]) -> Optimum | None:
+    """Weights and dual of a basis; a weight of certain sign has that sign, the others keep the one they came with."""
+    try:
+        inverse = arb_mat([cloud.vectors[i].entries() for i in basis]).inv()
+    except ZeroDivisionError:
+        return None
+    return price_basis(cloud, target, basis, signs, inverse)
+
+
+def price_basis(cloud: Cloud, target: arb_mat, basis: list[int], signs: list[int], inverse: arb_mat) -> Optimum:
+    """The same for an inverse that is known."""
+    weights = target * inverse
+    entries = weights.entries()
+    signs = [1 if w > 0 else -1 if w < 0 else s for w, s in zip(entries, signs or [1] * len(basis), strict=True)]
+    side = [[cloud.sigma[i] * s + (cloud.offset[i] if cloud.offset else 0)] for i, s in zip(basis, signs, strict=True)]
+    return Optimum(basis, signs, inverse, weights, inverse * arb_mat(side))
+
+
+def violated_row(cloud: Cloud, found: Optimum, *, bland: bool = False) -> tuple[int, int] | None:
+    """The row that breaks its bound most, as doubles order them, or the first; None where none is seen to."""
+    x = np.array([float(e.mid()) for e in found.dual.entries()])
+    radii = np.array([float(e.rad()) for e in found.dual.entries()]) * (1.0 + ROUNDING)
+    if not np.isfinite(x).all() or not np.isfinite(radii).all():
+        found.ratio = arb("inf")  # doubles see nothing here: no lower bound is known
+        return None
+    found.ratio = arb(1)
+    suspects = cloud.suspects(x, radii)
+    for i in sorted(suspects) if bland else suspects:
+        if i in found.basis:
+            continue
+        value, bound = cloud.excess(i, found.dual), cloud.sigma[i]
+        if value > bound or value < -bound:
+            return i, 1 if value > 0 else -1
+        if not (value <= bound and value >= -bound):
+            found.ratio = found.ratio.max(arb((abs(value) / bound).upper()))
+    return None
+
+
+def leaving_place(found: Optimum, cloud: Cloud, enter: int, sign: int) -> tuple[int, list[arb]]:
+    """The place of the basis whose weight vanishes first; -1 where none does."""
+    along = (cloud.vectors[enter] * found.inverse).entries()
+    best, least, pivot = -1, np.inf, 0.0
+    for k, (a, w, s) in enumerate(zip(along, found.weights.entries(), found.signs, strict=True)):
+        slope = s * sign * float(a.mid())
+        if slope > 0.0 and not a.contains(0):
+            step = max(s * float(w.mid()), 0.0) / slope
+            if step < least or (step == least and slope > pivot):
+                best, least, pivot = k, step, slope
+    return best, along
+
+
+def ray_of(found: Optimum, enter: int, sign: int, along: Sequence[arb]) -> dict[int, arb]:
+    """Weights with ``sum w v = 0``: the entering row and what the basis has to give for it."""
+    ray = {i: -a * sign for i, a in zip(found.basis, along, strict=True) if not a.is_zero()}
+    return {**ray, enter: arb(sign)}
+
+
+def cost_of(cloud: Cloud, weights: dict[int, arb]) -> arb:
+    """``sum w e + sigma |w|``."""
+    return sum(
+        ((w * cloud.offset[i] if cloud.offset else arb(0)) + cloud.sigma[i] * abs(w) for i, w in weights.items()),
+        arb(0),
+    )
+
+
+def bounds_of(cloud: Cloud, found: Optimum) -> tuple[arb, arb]:
+    """Bounds of the optimum with e = 0: ``P d`` of the dual, shrunk to feasible, and the cost of the weights."""
+    lower, upper = arb(0), arb(0)
+    for i, s, w in zip(found.basis, found.signs, found.weights.entries(), strict=True):
+        lower, upper = lower + cloud.sigma[i] * w * s, upper + cloud.sigma[i] * abs(w)
+    return lower / found.ratio, upper

@@ -1,0 +1,140 @@
+"""States that explain all epochs but a few: the target over all of them, and which epochs no explanation can keep.
+
+A set E of epochs explains the data when some state keeps the bounds of all other epochs. The tree of sets starts at the
+empty one. Where the rows outside E admit no state, Farkas' weights contradict each other, and every
+explanation that contains E contains one of their epochs too. Where they admit one, the weights of the optimum bound the
+target for every explanation that keeps their epochs; the others contain one of them. So the children of E are
+E with one of these at most m + 1 epochs, the tree ends at sets of K epochs, and its bounds hold for all explanations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from flint import arb, arb_mat
+
+from navsym.core.errors import InconsistentError
+from navsym.guaranteed.streaming.exchange import Cloud, Optimum, cost_of, exchange
+from navsym.guaranteed.streaming.memory import Memory
+from navsym.guaranteed.streaming.numbers import to_float
+
+Epochs = frozenset[int]
+
+
+@dataclass(slots=True)
+class Search:
+    """One direction of the target: the largest value of P d over all explanations.
+
+    epoch    : (N,) the epoch of each row in memory
+    upper    : bound of the target that no explanation exceeds
+    reached  : a value that one explanation takes
+    explained, refuted : sets of epochs; the former explain the data, the latter do not
+    open     : whether some set stays undecided, so that no bound is known
+    """
+
+    cloud: Cloud
+    target: arb_mat
+    epoch: np.ndarray
+    most: int
+    upper: arb | None = None
+    reached: arb | None = None
+    explained: set[Epochs] = field(default_factory=set)
+    refuted: dict[Epochs, list[int]] = field(default_factory=dict)
+    open: bool = False
+    dual: arb_mat | None = None
+
+    def visit(self, excluded: Epochs, start: Sequence[int], signs: Sequence[int]) -> None:
+        """The tree below a set of epochs."""
+        if self.open or excluded in self.refuted or excluded in self.explained:
+            return
+        self.cloud.active = ~np.isin(self.epoch, list(excluded)) if excluded else None
+        first = self.cloud.first
+        if any(self.epoch[i - first] in excluded for i in start):
+            start, signs = self.cloud.start() or [], []
+        found = exchange(self.cloud, self.target, start, signs) if start else None
+        if found is None:
+            self.open = True
+            return
+        if found.ray is not None:
+            rows = [i for i, w in found.ray.items() if not w.is_zero()]
+            self.refuted[excluded] = rows
+        else:
+            rows = [i for i, w in zip(found.basis, found.weights.entries(), strict=True) if not w.is_zero()]
+            self.note(excluded, found)
+        if len(excluded) < self.most:
+            for e in sorted({int(self.epoch[i - first]) for i in rows}):
+                self.visit(excluded | {e}, found.basis, found.signs)
+
+    def note(self, excluded: Epochs, found: Optimum) -> None:
+        """The bound of a set that is not refuted."""
+        self.explained.add(excluded)
+        weights = dict(zip(found.basis, found.weights.entries(), strict=True))
+        cost = arb(cost_of(self.cloud, weights).upper())
+        if self.upper is None or cost > self.upper:
+            self.upper = cost
+        if found.ratio == 1:  # the dual keeps every bound for certain: it is a state
+            value = (self.target * found.dual)[0, 0]
+            if self.reached is None or value > self.reached:
+                self.reached, self.dual = value, found.dual
+
+
+@dataclass(frozen=True, slots=True)
+class Explanations:
+    """What is known about the target from all explanations of the data by at most K gross errors.
+
+    low, high : enclosures of the ends of its values; None while they are not bounded
+    sets      : the smallest sets of epochs (places in memory) that explain the data
+    """
+
+    low: tuple[arb, arb] | None
+    high: tuple[arb, arb] | None
+    sets: tuple[Epochs, ...]
+
+    @property
+    def excluded(self) -> list[int]:
+        """Epochs that belong to every explanation."""
+        return sorted(frozenset.intersection(*self.sets)) if self.sets else []
+
+    @property
+    def others(self) -> list[list[int]]:
+        """All smallest sets, where there are several."""
+        return [sorted(s) for s in self.sets] if len(self.sets) > 1 else []
+
+
+def explain_data(memory: Memory, most: int, basis: Sequence[int], signs: Sequence[int]) -> Explanations:
+    """Bounds of the target over all states that keep all epochs in memory but ``most``.
+
+    Raises InconsistentError where no state does.
+    """
+    epoch = np.repeat(np.arange(len(memory.counts) - memory.oldest), memory.counts[memory.oldest :])
+    target = memory.target()
+    searches = []
+    for sign in (1, -1):
+        search = Search(memory.cloud(data=True), target * sign, epoch, most)
+        search.visit(frozenset(), basis, [s * sign for s in signs])
+        if not search.open and not search.explained:
+            raise contradiction(memory, epoch, search.refuted[frozenset()], most)
+        searches.append(search)
+    up, down = searches
+    if up.open or down.open:
+        return Explanations(None, None, ())
+    sets = up.explained | down.explained
+    smallest = sorted((s for s in sets if not any(other < s for other in sets)), key=sorted)
+    assert up.upper is not None and down.upper is not None
+    high = (up.reached if up.reached is not None else arb("-inf"), up.upper)
+    low = (-down.upper, -down.reached if down.reached is not None else arb("inf"))
+    return Explanations(low, high, tuple(smallest))
+
+
+def contradiction(memory: Memory, epoch: Any, rows: Sequence[int], most: int) -> InconsistentError:
+    """The error for data that no state explains; it names the epochs of one contradiction."""
+    used = sorted({int(epoch[i - memory.first]) for i in rows})
+    times = ", ".join(f"{to_float(memory.times[memory.oldest + e]):.12g}" for e in used)
+    but = f" but {most}" if most else ""
+    remedy = "raise sigma, or allow more gross errors" if most else "check them, raise sigma, or allow gross errors"
+    got = f"a contradiction at t = {times}"
+    message = f"expected data that some state explains in all epochs{but}; got {got}; {remedy} (outliers)"
+    return InconsistentError(message, where=f"t = {times}")

@@ -1,0 +1,445 @@
+"""Guaranteed estimation in operation: at every epoch the target at that time, with an enclosed radius."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from flint import arb, arb_mat, fmpq
+
+from navsym.core.balls import precision
+from navsym.core.errors import DomainError, DuplicateError, NavsymError, ShapeError, UnknownSymbolError
+from navsym.core.exact import decimal, to_fmpq
+from navsym.core.numbers import Number
+from navsym.guaranteed.streaming.estimate import Estimate, Plan
+from navsym.guaranteed.streaming.exchange import (
+    Cloud,
+    Optimum,
+    bounds_of,
+    exchange,
+    price_basis,
+    solve_basis,
+    violated_row,
+)
+from navsym.guaranteed.streaming.explanations import contradiction, explain_data
+from navsym.guaranteed.streaming.flow import BITS, Flow
+from navsym.guaranteed.streaming.memory import MOST_ROWS, Memory
+from navsym.guaranteed.streaming.numbers import middle, read_exact, to_float, write_rational
+from navsym.guaranteed.streaming.scarce import solve_scarce
+from navsym.language.names import quote
+from navsym.models.model import Model, as_model
+
+BOUNDS = ("bounded", "variance")
+MOST_OUTLIERS = 4
+
+Taken = list[tuple[int, fmpq, fmpq | None]]
+
+
+class Guard:
+    """The guaranteed estimator of a target, epoch by epoch.
+
+    At every epoch it holds the linear unbiased estimate ``sum w_i z_i`` of the target at the time of that epoch, from
+    all epochs so far or from the last ``memory``, whose radius ``sum sigma_i |w_i|`` is the least there is. The weights
+    bound the radius from above, a dual vector x with ``|x . h_i| <= sigma_i`` from below, both in ball arithmetic.
+
+    model    : a :class:`navsym.Model`, or the path of a model file; its interval is not used
+    target   : name of the target; not needed where the model has one
+    bound    : "bounded": ``|r_i| <= sigma_i``; "variance": standard deviations of at most sigma_i, any correlation
+    memory   : epochs that are remembered; None: all
+    outliers : at most so many epochs have gross errors of any size, at unknown places; 0 to 4
+    step     : time between epochs, for :meth:`step` without ``t``; the first epoch is then at 0
+    values   : exact values of parameters of the model
+
+    Times, measurements and bounds are exact: a float is the decimal that it prints as. Under "variance" no data are
+    impossible. Under "bounded" data that no state explains raise InconsistentError, which names the epochs of a
+    contradiction; the guard stays as it was. With outliers, estimate and radius are the middle and half the
+    width of all values of the target at states that explain all epochs but so many.
+
+    Raises NotEstimableError for a target that the measurements never show, DomainError for F(t) and for parameters
+    without a value.
+
+    >>> import navsym as nav
+    >>> model = nav.Model(states="x v", F=[["0", "1"], ["0", "0"]], H=["x"], sigma="1", targets={"speed": "v"})
+    >>> guard = nav.Guard(model, "speed")
+    >>> for k, z in enumerate([0.1, 1.2, 1.9, 3.1]):
+    ...     estimate = guard.step(z, t=k)
+    >>> estimate
+    Estimate(speed at 3: 1.0 within 0.666667, bounded)
+    >>> estimate.check()
+    <1 checked, all ACCEPTED>
+    """
+
+    def __init__(
+        self,
+        model: Model | str | os.PathLike[str],
+        target: str | None = None,
+        bound: str = "bounded",
+        *,
+        memory: int | None = None,
+        outliers: int = 0,
+        step: Any = None,
+        values: Mapping[str, Any] | None = None,
+    ):
+        if bound not in BOUNDS:
+            message = f'expected "bounded" or "variance"; got {quote(bound)}; choose one'
+            raise DomainError(message, where="Guard: bound")
+        self.bound = bound
+        self.length = None if memory is None else whole_number(memory, 1, MOST_ROWS, "Guard: memory")
+        self.outliers = whole_number(outliers, 0, MOST_OUTLIERS, "Guard: outliers")
+        if self.outliers and bound == "variance":
+            message = 'expected bounded errors beside gross errors; got "variance"; leave the bound out'
+            raise DomainError(message, where="Guard: outliers")
+        self.pace = None if step is None else read_exact(step, "Guard: step")
+        if self.pace is not None and not self.pace > 0:
+            got = write_rational(self.pace)
+            raise DomainError(f"expected a positive time step; got {got}; correct it", where="Guard: step")
+        self.model = as_model(model, "Guard: model").with_values(**dict(values or {}))
+        with precision(BITS):
+            self.flow = Flow(self.model.read(), target, "Guard")
+        self.memory = Memory(self.flow, self.length)
+        # Hints for the search; nothing that is said of an epoch rests on them.
+        self.basis: list[int] = []
+        self.signs: list[int] = []
+        self.solved: Optimum | None = None
+        self.state: np.ndarray | None = None
+        self.epochs = 0
+        self.alike = 0
+        self.pattern: Any = None
+        self.choose_kinds()
+
+    @property
+    def target(self) -> str:
+        """Name of the target."""
+        return self.flow.target
+
+    @property
+    def radius_kind(self) -> str:
+        """The noise law: "bounded", "variance" or "outliers"."""
+        return "outliers" if self.outliers else self.bound
+
+    @property
+    def remembered(self) -> int:
+        """Number of measurements in memory."""
+        return len(self.memory)
+
+    def __repr__(self) -> str:
+        span = "all epochs" if self.length is None else f"the last {self.length} epochs"
+        return f"Guard({quote(self.target)[1:-1]}: {self.radius_kind}, {span}; {self.epochs} so far)"
+
+    # One epoch
+
+    def step(self, z: Any = None, t: Any = None, *, sigma: Mapping[str, Any] | None = None) -> Estimate:
+        """Take the measurements of an epoch and return the estimate at its time.
+
+        z     : name -> number, a list with one entry per measurement, or one number where the model has one
+                measurement; None is no measurement
+        t     : time of the epoch, later than the last; the last time plus ``step`` where it is left out
+        sigma : name -> noise bound in this epoch, in place of the model's
+
+        Raises NavsymError for what is no finite number, for times that do not rise, and InconsistentError for data
+        that no state explains where errors are bounded; the guard is then as before.
+        """
+        at = self.next_time(t)
+        taken = self.read_values(z, sigma, at)
+        before = self.memory.mark(), self.basis, self.signs, self.solved, self.state, self.alike, self.pattern
+        with precision(BITS):
+            try:
+                self.memory.add(at, taken)
+                self.note_pattern(at, taken)
+                self.change_kinds()
+                answer = self.answer(at, len(taken))
+            except NavsymError:
+                mark, self.basis, self.signs, self.solved, self.state, self.alike, self.pattern = before
+                self.memory.take_back(mark)
+                self.change_kinds()
+                raise
+            self.epochs += 1
+            if self.memory.is_due():
+                self.refer()
+        return answer
+
+    def next_time(self, t: Any) -> fmpq:
+        """The time of the epoch, later than the last."""
+        before = self.memory.times[-1] if self.memory.times else None
+        if t is None:
+            if self.pace is None:
+                raise DomainError("expected a time; got none; give t, or a step to Guard", where="Guard.step: t")
+            return fmpq(0) if before is None else before + self.pace
+        at = read_exact(t, "Guard.step: t")
+        if before is not None and at <= before:
+            got = f"{to_float(at):.12g} after {to_float(before):.12g}"
+            kind = DuplicateError if at == before else DomainError
+            raise kind(f"expected times that rise; got {got}; sort them and join equal ones", where="Guard.step: t")
+        return at
+
+    def read_values(self, z: Any, sigma: Mapping[str, Any] | None, at: fmpq) -> Taken:
+        """(measurement, value, own noise bound) of what was measured."""
+        names = self.flow.names
+        given = dict(z) if isinstance(z, Mapping) else self.name_values(z)
+        for name in (*given, *(sigma or {})):
+            if name not in names:
+                message = f"expected a measurement of the model; got {quote(name)}; name one of {', '.join(names)}"
+                raise UnknownSymbolError(message, where="Guard.step: z")
+        taken: Taken = []
+        for j, name in enumerate(names):
+            if given.get(name) is None:
+                continue
+            own = (sigma or {}).get(name)
+            bound = None if own is None else read_exact(own, f"Guard.step: sigma of {name}")
+            if bound is not None and not bound > 0:
+                message = f"expected a positive noise bound; got {quote(own)}; correct it"
+                raise DomainError(message, where=f"Guard.step: sigma of {name}")
+            taken.append((j, read_exact(given[name], f"Guard.step: {name}"), bound))
+        return taken
+
+    def name_values(self, z: Any) -> dict[str, Any]:
+        """Values in the order of the model by their names."""
+        values = [] if z is None else list(z) if isinstance(z, list | tuple | np.ndarray) else [z]
+        names = self.flow.names
+        if z is not None and len(values) != len(names):
+            message = f"expected {len(names)} values, one per measurement; got {len(values)}; put None for none"
+            raise ShapeError(message, where="Guard.step: z")
+        return dict(zip(names, values, strict=False))
+
+    def choose_kinds(self) -> None:
+        """Keep the unknowns that the measurements in memory need, and note whether they can show the target."""
+        self.kinds = self.memory.kinds()
+        self.showing = self.flow.choose_unknowns(self.kinds)
+
+    def change_kinds(self) -> None:
+        """The same when a measurement appears or disappears; all rows are then written in the new unknowns."""
+        if self.kinds == self.memory.kinds():
+            return
+        before = self.flow.columns
+        self.choose_kinds()
+        if self.flow.columns != before:
+            self.memory.refer(self.memory.reference)
+            self.basis, self.signs, self.solved, self.state = [], [], None, None
+
+    def note_pattern(self, at: fmpq, taken: Taken) -> None:
+        """Count the epochs that repeat the one before: same step, same measurements, same bounds."""
+        times = self.memory.times
+        pattern = (at - times[-2] if len(times) > 1 else None, [(j, own) for j, _, own in taken])
+        self.alike = self.alike + 1 if pattern == self.pattern else 1
+        self.pattern = pattern
+
+    def refer(self) -> None:
+        """Refer the memory to a newer time; places of rows change with it."""
+        first = self.memory.first
+        self.memory.refer()
+        self.basis = [i - first for i in self.basis]
+        self.solved = self.state = None
+
+    def answer(self, at: fmpq, fresh: int) -> Estimate:
+        """The estimate from what is in memory."""
+        if not self.showing:
+            return Estimate(to_float(at), self.target, None, self.radius_kind)
+        if self.outliers:
+            return self.answer_with_outliers(at)
+        plan = self.repeat(at, fresh) or self.optimise(at, fresh) or self.solve_scarcely(at)
+        if self.bound == "bounded" and self.solved is not None:
+            self.need_consistent(fresh)
+        if plan is None:
+            return Estimate(to_float(at), self.target, None, self.radius_kind)
+        value = middle(plan.value())
+        count = len(plan.support())
+        return Estimate(
+            to_float(at), self.target, value, self.radius_kind, count, low=plan.lower, high=plan.upper, plan=plan
+        )
+
+    def repeat(self, at: fmpq, fresh: int) -> Plan | None:
+        """The weights of the epoch before, where the problem is the same but for its time.
+
+        With F, h and bounds constant a shift of all times changes nothing, so that a full memory of equal epochs has
+        the optimum that it had: a fixed-memory rule with constant weights.
+        """
+        before = self.solved
+        if self.length is None or before is None or self.alike <= self.length + 1 or not self.flow.is_invariant:
+            return None
+        self.basis = [i + fresh for i in self.basis]
+        return self.make_plan(at, before)
+
+    def optimise(self, at: fmpq, fresh: int) -> Plan | None:
+        """The optimum, from the last support where that is still in memory."""
+        memory = self.memory
+        if len(memory) < self.flow.size:
+            self.solved, self.basis, self.signs = None, [], []
+            return None
+        cloud, target = memory.cloud(), memory.target()
+        old, end = self.solved, len(memory.rows)
+        kept = bool(self.basis) and min(self.basis) >= memory.first
+        found = None
+        if kept:  # also after a restart, so that a tie ends as it would have without one
+            if old is not None and old.basis == self.basis:
+                found = price_basis(cloud, target, old.basis, old.signs, old.inverse)
+            else:
+                found = solve_basis(cloud, target, self.basis, self.signs)
+            if found is not None and violated_row(cloud, found) is None:
+                self.solved, self.signs = found, found.signs
+                return self.make_plan(at, found)
+        start = shifted_basis(self.basis, fresh if kept else memory.first - min(self.basis, default=0), end)
+        found = exchange_from_better(cloud, target, found, start)
+        if found is None:
+            start = cloud.start() or []
+            found = exchange(cloud, target, start) if start else None
+        self.solved = found
+        self.basis, self.signs = (found.basis, found.signs) if found else ([], [])
+        return None if found is None else self.make_plan(at, found)
+
+    def make_plan(self, at: fmpq, found: Optimum) -> Plan:
+        """The weights as the estimate keeps them."""
+        memory = self.memory
+        window = Window(memory.rows, memory.first, len(memory.rows))
+        places = [i - memory.first for i in self.basis]
+        lower, upper = bounds_of(memory.cloud(), found)
+        return Plan(self.flow, at, window, self.flow.columns, places, self.signs, found.weights.entries(), lower, upper)
+
+    def solve_scarcely(self, at: fmpq) -> Plan | None:
+        """The optimum where the measurements do not determine the state."""
+        return solve_scarce(self.flow, self.memory.rows[self.memory.first :], at)
+
+    def interval(self) -> Number | None:
+        """All values of the target at the last epoch that the data allow, as an enclosure from both sides.
+
+        Of all states that keep every bound, or every bound but those of ``outliers`` epochs. It is never wider than
+        estimate and radius say, and often much narrower, because it uses the data. None under "variance", where data
+        exclude nothing, and while the state is not determined.
+
+        >>> import navsym as nav
+        >>> guard = nav.Guard(nav.Model(states="b", F=[["0"]], H=["b"], sigma="1/2"))
+        >>> [guard.step(z, t=k).value for k, z in enumerate(["3", "3.75"])]
+        [3.0, 3.0]
+        >>> guard.interval()
+        Number(lower='3.25', upper='3.5')
+        """
+        memory = self.memory
+        if self.bound == "variance" or not self.showing or len(memory) < self.flow.size:
+            return None
+        with precision(BITS):
+            start = memory.cloud().start() or []
+            found = explain_data(memory, self.outliers, start, [])
+            if found.low is None or found.high is None:
+                return None
+            low, high = to_fmpq(found.low[0].lower()), to_fmpq(found.high[1].upper())
+            return Number(decimal(low, 24, -1), decimal(high, 24, 1))
+
+    # Saved and continued
+
+    def save(self, path: str | os.PathLike[str] | None = None) -> dict[str, Any]:
+        """The guard as plain data, written to a JSON file where a path is given; :meth:`load` continues from it.
+
+        Model, options and the measurements in memory are exact, the last support is a hint. Raises OutputError.
+        """
+        from navsym.guaranteed.streaming.state import write_state
+
+        return write_state(self, path)
+
+    @staticmethod
+    def load(source: str | os.PathLike[str] | Mapping[str, Any]) -> Guard:
+        """The guard that :meth:`save` wrote: a path, or its plain data. It goes on as the saved one would.
+
+        Raises NavsymError for a file that is not one.
+
+        >>> import navsym as nav
+        >>> guard = nav.Guard(nav.Model(states="b", F=[["0"]], H=["b"], sigma="1/2"))
+        >>> first = guard.step(3, t=0)
+        >>> nav.Guard.load(guard.save()).step("3.5", t=1) == guard.step("3.5", t=1)
+        True
+        """
+        from navsym.guaranteed.streaming.state import read_state
+
+        return read_state(source)
+
+    # Data that contradict each other
+
+    def need_consistent(self, fresh: int) -> None:
+        """Raise InconsistentError where it is proved that no state keeps all bounds; look only where doubles doubt."""
+        memory = self.memory
+        if self.state is not None:
+            new = slice(len(memory.rows) - fresh, len(memory.rows))
+            gap = np.abs(memory.scaled[new] @ self.state - memory.shifted[new])
+            if (gap <= 1.0).all():
+                return
+        cloud, target = memory.cloud(data=True), memory.target()
+        ends = []
+        for sign in (1, -1):
+            found = exchange(cloud, target * sign, self.basis, [s * sign for s in self.signs])
+            if found is None:
+                return
+            if found.ray is not None:
+                counts = memory.counts[memory.oldest :]
+                rows = [i for i, w in found.ray.items() if not w.contains(0)]
+                raise contradiction(memory, np.repeat(np.arange(len(counts)), counts), rows, 0)
+            ends.append(np.array([middle(e) for e in found.dual.entries()]))
+        self.state = (ends[0] + ends[1]) / 2.0
+
+    def answer_with_outliers(self, at: fmpq) -> Estimate:
+        """Middle and half width of the target over all explanations."""
+        found, memory = None, self.memory
+        if len(memory) >= self.flow.size:
+            start = self.basis if self.basis and min(self.basis) >= memory.first else memory.cloud().start() or []
+            self.basis, self.signs = list(start), []
+            found = explain_data(memory, self.outliers, start, []) if start else None
+        if found is None or found.low is None or found.high is None:
+            return Estimate(to_float(at), self.target, None, "outliers")
+        times = [to_float(t) for t in memory.times[memory.oldest :]]
+        (low, low_inner), (high_inner, high) = found.low, found.high
+        return Estimate(
+            to_float(at),
+            self.target,
+            middle((low + high) / 2),
+            "outliers",
+            excluded=tuple(times[e] for e in found.excluded),
+            others=tuple(tuple(times[e] for e in s) for s in found.others),
+            low=((high_inner - low_inner) / 2).max(arb(0)),
+            high=(high - low) / 2,
+        )
+
+
+class Window(Sequence[Any]):
+    """Part of a list that only grows: what was in memory at one epoch, without a copy."""
+
+    __slots__ = ("entries", "first", "last")
+
+    def __init__(self, entries: list[Any], first: int, last: int):
+        self.entries, self.first, self.last = entries, first, last
+
+    def __len__(self) -> int:
+        return self.last - self.first
+
+    def __getitem__(self, place: Any) -> Any:
+        if isinstance(place, slice):
+            return self.entries[self.first : self.last][place]
+        if not 0 <= place < len(self):  # the list behind goes on growing, and iteration ends here
+            raise IndexError(place)
+        return self.entries[self.first + place]
+
+
+def shifted_basis(basis: Sequence[int], shift: int, end: int) -> list[int]:
+    """The support as it moves on with time; empty where two rows become one."""
+    moved = [min(i + shift, end - 1) for i in basis]
+    return moved if len(set(moved)) == len(moved) else []
+
+
+def exchange_from_better(cloud: Cloud, target: arb_mat, found: Optimum | None, start: list[int]) -> Optimum | None:
+    """The optimum from the last support, or from that moved on with time, whichever costs less."""
+    moved = solve_basis(cloud, target, start, []) if start else None
+    if found is not None and (moved is None or rough_cost(cloud, found) <= rough_cost(cloud, moved)):
+        moved = found
+    return None if moved is None else exchange(cloud, target, moved.basis, moved.signs)
+
+
+def rough_cost(cloud: Cloud, found: Optimum) -> float:
+    """``sum sigma |w|`` in doubles."""
+    pairs = zip(found.basis, found.weights.entries(), strict=True)
+    return sum(middle(cloud.sigma[i]) * abs(middle(w)) for i, w in pairs)
+
+
+def whole_number(value: Any, low: int, high: int, where: str) -> int:
+    """An int of a range. Raises DomainError."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not low <= value <= high:
+        message = f"expected a whole number from {low} to {high}; got {quote(value)}; choose one"
+        raise DomainError(message, where=where)
+    return int(value)

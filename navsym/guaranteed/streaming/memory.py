@@ -1,0 +1,171 @@
+"""What the stream remembers: epochs and their measurements, referred to the state at one time."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from flint import arb, arb_mat, fmpq
+
+from navsym.core.errors import TooLargeError
+from navsym.guaranteed.streaming.exchange import Cloud
+from navsym.guaranteed.streaming.flow import Flow
+from navsym.guaranteed.streaming.numbers import middle, write_rational
+
+MOST_ROWS = 200_000
+#: Steps whose transitions are one stride, see Flow.long_exponential.
+STRIDE = 64
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One measurement: time, place in the model, value and bound; the bound also as exact text.
+
+    own : the bound that was given with the measurement, None where it is the model's
+    """
+
+    t: fmpq
+    j: int
+    z: fmpq
+    sigma: arb
+    text: str
+    own: fmpq | None
+
+
+class Memory:
+    """Rows ``v_i = h_j(t_i) Phi(t_i, reference)``, balls and doubles, in the order of time.
+
+    Lists grow at their end; what leaves is counted in ``first`` (rows) and ``oldest`` (epochs) and dropped when half
+    of a list has left, into new lists, so that an estimate that holds the old ones stays as it is.
+    """
+
+    def __init__(self, flow: Flow, length: int | None):
+        self.flow, self.length = flow, length
+        self.reference: fmpq | None = None
+        self.times: list[fmpq] = []
+        self.counts: list[int] = []
+        self.rows: list[Row] = []
+        self.vectors: list[arb_mat] = []
+        self.sigmas: list[arb] = []
+        self.data: list[arb] = []
+        self.first = self.oldest = 0
+        self.gone = 0  # epochs that have left since the reference time was chosen
+        self.scaled = np.zeros((64, flow.size))
+        self.shifted = np.zeros(64)
+        self.wide = 0.0
+        self.seen: Counter[int] = Counter()
+        self.carry: arb_mat | None = None
+
+    def __len__(self) -> int:
+        return len(self.rows) - self.first
+
+    def add(self, at: fmpq, taken: Sequence[tuple[int, fmpq, fmpq | None]]) -> None:
+        """Put an epoch in; where the memory is full the oldest leaves. Call it at the working precision."""
+        if self.reference is None:
+            self.reference = at
+        elif self.flow.stride == 0:
+            self.flow.stride = (at - self.times[-1]) * STRIDE
+        self.carry = self.flow.transition(self.reference, at)
+        for j, z, own in taken:
+            sigma, text = (arb(own), write_rational(own)) if own is not None else self.flow.sigma(j, at)
+            self.seen[j] += 1
+            self.put(Row(at, j, z, sigma, text, own))
+        self.times.append(at)
+        self.counts.append(len(taken))
+        if self.length is not None and len(self.times) - self.oldest > self.length:
+            self.seen.subtract(row.j for row in self.rows[self.first : self.first + self.counts[self.oldest]])
+            self.first += self.counts[self.oldest]
+            self.oldest += 1
+            self.gone += 1
+
+    def put(self, row: Row) -> None:
+        """A row at the end of all lists."""
+        n = len(self.rows)
+        if len(self) >= MOST_ROWS:
+            message = f"expected at most {MOST_ROWS} measurements in memory; got more; give a memory (--memory)"
+            raise TooLargeError(message, where="Guard")
+        if n == len(self.scaled):
+            self.scaled = np.concatenate([self.scaled, np.zeros_like(self.scaled)])
+            self.shifted = np.concatenate([self.shifted, np.zeros_like(self.shifted)])
+        h = self.flow.row(row.j, row.t)
+        vector = self.flow.cut(h if self.carry is None else h * self.carry)
+        scaled = [middle(e / row.sigma) for e in vector.entries()]
+        if not np.isfinite(scaled).all():
+            message = "expected regressors within the range of doubles; got an overflow; give a memory (--memory)"
+            raise TooLargeError(message, where="Guard")
+        self.scaled[n] = scaled
+        self.wide = max(self.wide, *(float((e / row.sigma).rad()) for e in vector.entries()))
+        self.shifted[n] = middle(arb(row.z) / row.sigma)
+        self.rows.append(row)
+        self.vectors.append(vector)
+        self.sigmas.append(row.sigma)
+        self.data.append(arb(row.z))
+
+    def take_back(self, before: tuple[Any, ...]) -> None:
+        """The state that :meth:`mark` described."""
+        epochs, rows, self.first, self.oldest, self.gone, self.carry, self.reference, self.flow.stride = before
+        for entries, size in ((self.times, epochs), (self.counts, epochs)):
+            del entries[size:]
+        for column in (self.rows, self.vectors, self.sigmas, self.data):
+            del column[rows:]  # type: ignore[attr-defined]
+        self.seen = Counter(row.j for row in self.rows[self.first :])
+
+    def mark(self) -> tuple[Any, ...]:
+        """What :meth:`take_back` needs."""
+        place = len(self.times), len(self.rows), self.first, self.oldest, self.gone
+        return *place, self.carry, self.reference, self.flow.stride
+
+    def is_due(self) -> bool:
+        """Whether half of what is kept has left the memory."""
+        return self.length is not None and self.gone >= max(self.length, STRIDE)
+
+    def refer(self, reference: fmpq | None = None) -> None:
+        """Drop what has left, and refer everything to a time: the oldest epoch in memory where none is given."""
+        times, counts, rows = self.times[self.oldest :], self.counts[self.oldest :], self.rows[self.first :]
+        self.times, self.counts, self.rows, self.vectors, self.sigmas, self.data = [], [], [], [], [], []
+        self.widen()
+        self.first = self.oldest = 0
+        if reference is None:
+            self.gone = 0
+        self.reference = times[0] if reference is None else reference
+        self.fill(times, counts, rows)
+
+    def widen(self) -> None:
+        """Room for rows of the present number of unknowns."""
+        self.scaled, self.wide = np.zeros((len(self.scaled), self.flow.size)), 0.0
+
+    def kinds(self) -> frozenset[int]:
+        """The measurements of the model that are in memory."""
+        return frozenset(j for j, count in self.seen.items() if count)
+
+    def fill(self, times: Sequence[fmpq], counts: Sequence[int], rows: Sequence[Row]) -> None:
+        """Put known epochs in again, referred to the reference time as it is."""
+        entries = iter(rows)
+        for at, count in zip(times, counts, strict=True):
+            self.carry = self.flow.transition(self.reference, at)  # type: ignore[arg-type]
+            for _ in range(count):
+                self.put(next(entries))
+            self.times.append(at)
+            self.counts.append(count)
+
+    def cloud(self, *, data: bool = False, active: Any = None) -> Cloud:
+        """The rows in memory as the exchange takes them, with the measurements where they matter."""
+        window = slice(self.first, len(self.rows))
+        return Cloud(
+            self.vectors,
+            self.sigmas,
+            self.scaled[window],
+            self.data if data else (),
+            self.shifted[window] if data else None,
+            self.wide,
+            self.first,
+            active,
+        )
+
+    def target(self) -> arb_mat:
+        """P Phi(now, reference)."""
+        row = self.flow.row_of_target
+        return self.flow.cut(row if self.carry is None else row * self.carry)

@@ -1,0 +1,61 @@
+"""Numbers of the stream: exact rationals from text, integers, fractions and floats, and back to text."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from numbers import Integral, Rational, Real
+from typing import Any
+
+from flint import arb, fmpq
+
+from navsym.core.errors import DomainError, ExpressionSyntaxError, NotFiniteError, TooLargeError
+from navsym.core.exact import to_fmpq
+from navsym.language.names import quote
+
+NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d{1,3})?|[+-]?\d+/\d*[1-9]\d*", re.ASCII)
+WORDS = frozenset("nan inf +inf -inf infinity +infinity -infinity".split())
+LONGEST = 60
+
+
+def read_exact(value: Any, where: str) -> fmpq:
+    """The rational number that a value means; a float is the decimal that it prints as.
+
+    Raises ExpressionSyntaxError, NotFiniteError, TooLargeError or DomainError, all with ``where``.
+    """
+    if isinstance(value, str):
+        return read_decimal(value.strip(), where)
+    if isinstance(value, bool) or not isinstance(value, Real):
+        message = f"expected a number; got {quote(value)}; give text, an int, a Fraction or a float"
+        raise DomainError(message, where=where)
+    if isinstance(value, Integral | Rational):
+        return to_fmpq(Fraction(int(value.numerator), int(value.denominator)))
+    return read_decimal(repr(float(value)), where)
+
+
+def read_decimal(text: str, where: str) -> fmpq:
+    """The number of a decimal or a fraction."""
+    if text.lower() in WORDS:
+        raise NotFiniteError(f"expected a finite number; got {quote(text)}; leave it out", where=where)
+    if len(text) > LONGEST:
+        raise TooLargeError(
+            f"expected a number of at most {LONGEST} characters; got {quote(text)}; round it", where=where
+        )
+    if not NUMBER.fullmatch(text):
+        raise ExpressionSyntaxError(f"expected a number such as -1.25e3; got {quote(text)}; correct it", where=where)
+    return to_fmpq(Fraction(text))
+
+
+def write_rational(q: fmpq) -> str:
+    """``-3/10``, ``2``."""
+    return f"{int(q.p)}/{int(q.q)}" if q.q != 1 else str(int(q.p))
+
+
+def to_float(q: fmpq) -> float:
+    """The double nearest to a rational number."""
+    return int(q.p) / int(q.q)
+
+
+def middle(x: arb) -> float:
+    """The double nearest to the middle of a ball."""
+    return float(x.mid())

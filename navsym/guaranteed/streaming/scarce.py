@@ -1,0 +1,76 @@
+"""Epochs with too few measurements to determine the state: the target may be determined all the same, exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from flint import arb_mat, fmpq
+
+from navsym.guaranteed.streaming.estimate import Plan
+from navsym.guaranteed.streaming.exchange import Cloud, bounds_of, exchange
+from navsym.guaranteed.streaming.flow import Flow, in_row_space, pivot_columns
+from navsym.guaranteed.streaming.memory import Row
+from navsym.guaranteed.streaming.numbers import to_float
+
+#: With more rows than this, rational ranks cost more than they are worth.
+MOST = 400
+
+
+def solve_scarce(flow: Flow, rows: Sequence[Row], now: fmpq) -> Plan | None:
+    """The least radius from rows that do not determine the state; None where the target is not proved to be estimable.
+
+    Where all rows are rational, the space that they span is known exactly, and a vector of it by its entries at the
+    pivots. Otherwise those of the present epoch alone are (Phi is the identity there); they give the optimum
+    where all rows together are independent, because an unbiased estimator is then unique.
+    """
+    functional = [flow.exact_target(k) for k in range(len(flow.functional))]
+    if not rows or len(rows) > MOST or any(p is None for p in functional):
+        return None
+    exact = [flow.exact_row(row.j, row.t, now) for row in rows]
+    places = [i for i, row in enumerate(exact) if row is not None]
+    if len(places) < len(rows):
+        places = [i for i in places if rows[i].t == now]
+        if not places or not are_independent(flow, rows, now):
+            return None
+    table = [exact[i] for i in places]
+    if not in_row_space(functional, table):  # type: ignore[arg-type]
+        return None
+    return solve_reduced(flow, rows, now, places, table, functional)  # type: ignore[arg-type]
+
+
+def solve_reduced(
+    flow: Flow,
+    rows: Sequence[Row],
+    now: fmpq,
+    places: Sequence[int],
+    table: Sequence[Sequence[fmpq]],
+    functional: Sequence[fmpq],
+) -> Plan | None:
+    """The optimum in the unknowns at the pivots of the rows."""
+    columns = pivot_columns(table)
+    vectors = [arb_mat([[row[k] for k in columns]]) for row in table]
+    sigma = [rows[i].sigma for i in places]
+    scaled = [[to_float(row[k]) / float(s.mid()) for k in columns] for row, s in zip(table, sigma, strict=True)]
+    cloud = Cloud(vectors, sigma, np.array(scaled))
+    start = cloud.start()
+    found = start and exchange(cloud, arb_mat([[functional[k] for k in columns]]), start)
+    if not found:
+        return None
+    lower, upper = bounds_of(cloud, found)
+    basis, whole = [places[i] for i in found.basis], len(places) == len(rows)
+    return Plan(flow, now, list(rows), columns, basis, found.signs, found.weights.entries(), lower, upper, whole)
+
+
+def are_independent(flow: Flow, rows: Sequence[Row], now: fmpq) -> bool:
+    """Whether balls show that no row is a combination of the others: some square minor is not zero."""
+    k = len(rows)
+    if k > flow.size:
+        return False
+    balls = [[flow.ball_row(row.j, row.t, now)[c] for c in flow.columns] for row in rows]
+    doubles = np.array([[float(e.mid()) for e in row] for row in balls])
+    chosen: list[int] = []
+    for column in np.argsort(-np.abs(doubles).max(axis=0)):
+        if np.linalg.matrix_rank(doubles[:, [*chosen, int(column)]]) > len(chosen):
+            chosen.append(int(column))
+    return len(chosen) == k and not arb_mat([[row[c] for c in chosen] for row in balls]).det().contains(0)
