@@ -17,8 +17,8 @@ from itertools import product
 import sympy as sp
 from flint import nmod_mat
 
-from navsym.core.errors import DomainError, DuplicateError, EmptyError, TooLargeError, UnobservableError
-from navsym.core.rational_functions import Quotient, cancel_fraction, clear_denominators, multiply_coefficients
+from navsym.core.errors import DomainError, EmptyError, TooLargeError, UnobservableError
+from navsym.core.rational_functions import (Quotient, cancel_fraction, clear_denominators, factor_exactly, multiply_coefficients)
 from navsym.models.linear import LinearModel
 from navsym.observability.linear import (
     PRIME,
@@ -118,7 +118,7 @@ def monic_factors(coefficients: Sequence[Poly], degree: int, ring: Ring) -> list
         ),
         wider.constant(0),
     )
-    parts = [(monic_by_power(f, p, ring), int(power)) for f, power in total.factor()[1]]
+    parts = [(monic_by_power(f, p, ring), int(power)) for f, power in factor_exactly(total)[1]]
     found = []
     for count, powers in enumerate(product(*(range(power + 1) for _, power in parts))):
         if count > CHOICES:
@@ -217,11 +217,11 @@ def chains_of(model: LinearModel) -> Chains:
     """Chains of all measurements of a constant model, with proofs of their dimensions.
 
     Raises DomainError (time-varying model, zero row h, entries that are no rational functions),
-    EmptyError (no measurement), DuplicateError (two measurements with equal rows), TooLargeError.
+    EmptyError (no measurement), TooLargeError. Measurements with equal rows are redundant, not wrong.
     """
     need_chains(model)
     ring = Ring.of([model.F, model.H])
-    need_own_rows(model, ring)
+    need_nonzero_rows(model, ring)
     n = model.size
     matrix, clock = numerators([model.F[i, :] for i in range(n)], ring)
     rows = [numerators([model.H[k, :]], ring) for k in range(model.H.rows)]
@@ -243,19 +243,11 @@ def need_chains(model: LinearModel) -> None:
         raise EmptyError("expected at least one measurement; got none; add a row h")
 
 
-def need_own_rows(model: LinearModel, ring: Ring) -> None:
-    """Refuse rows h that are zero or equal, also in disguise: (a + 1)^2 and a^2 + 2 a + 1 are one number."""
-    seen: dict[tuple[str, ...], str] = {}
+def need_nonzero_rows(model: LinearModel, ring: Ring) -> None:
+    """Refuse rows h that are zero, also in disguise: (a + 1)^2 - a^2 - 2 a - 1 is zero."""
     for k, name in enumerate(model.measurements):
-        quotients = [ring.quotient(entry) for entry in model.H[k, :]]
-        if all(q.top == 0 for q in quotients):
+        if all(ring.quotient(entry).top == 0 for entry in model.H[k, :]):
             raise DomainError(f"measurement {name}: expected a row h that is not zero; got zeros; remove it")
-        key = tuple(f"{q.top}/{q.bottom}" for q in quotients)
-        if key in seen:
-            raise DuplicateError(
-                f"measurement {name}: expected a row of its own; got that of {seen[key]}; remove one of them"
-            )
-        seen[key] = name
 
 
 def numerators(rows: Sequence[sp.Matrix], ring: Ring) -> tuple[Matrix, Poly]:
@@ -358,7 +350,7 @@ def prove_rank(model: LinearModel) -> ProvedRank:
     """
     need_chains(model)
     ring = Ring.of([model.F, model.H])
-    need_own_rows(model, ring)
+    need_nonzero_rows(model, ring)
     matrix, _ = numerators([model.F[i, :] for i in range(model.size)], ring)
     rows = [numerators([model.H[k, :]], ring)[0][0] for k in range(model.H.rows)]
     rank, point = generic_rank(rows, matrix, ring)
@@ -488,7 +480,15 @@ def model_denominators(chains: Chains) -> tuple[sp.Expr, ...]:
 
 
 def direction_names(vector: Sequence[sp.Expr], states: Sequence[str]) -> str:
-    """A direction by the states it mixes: ``x1 - 2*x3``; parentheses around sums."""
+    """A direction of the state by its components: ``(x1, x3) = (1, -2)``; the others are zero."""
+    parts = [(state, str(value)) for value, state in zip(vector, states, strict=True) if value != 0]
+    if len(parts) == 1:
+        return parts[0][0]
+    return f"({', '.join(state for state, _ in parts)}) = ({', '.join(value for _, value in parts)})"
+
+
+def functional_names(vector: Sequence[sp.Expr], states: Sequence[str]) -> str:
+    """A functional as the combination of states that it measures: ``x1 - 2*x3``; parentheses around sums."""
     parts = []
     for value, state in zip(vector, states, strict=True):
         if value != 0:

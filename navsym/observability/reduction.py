@@ -12,10 +12,12 @@ from dataclasses import dataclass
 from math import gcd
 from typing import Any
 
-from flint import fmpz_mpoly_vec
+from flint import fmpq_mpoly_ctx, fmpz_mpoly_vec
 
 from navsym.observability.linear import Matrix, at_point, independent_places, integer_points, transposed_times
 from navsym.observability.ring import Poly, Ring, gcd_all, irreducible_factors, is_divisor
+from navsym.prove.signs.exact import Sign
+from navsym.prove.signs.polynomials import Effort, VariableRange, polynomial_sign
 
 # Common real zeros of polynomials as a list of simple systems.
 #
@@ -28,6 +30,8 @@ System = list[Poly]
 #: Groebner bases: number of polynomials, terms of each, bits of a coefficient.
 LIMITS = (24, 120, 1000)
 BRANCHES = 40
+#: Polynomials whose sign is asked for: number of terms, and the effort of one question.
+DEFINITE_TERMS, EFFORT = 20, 200
 
 
 def components(polynomials: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
@@ -47,7 +51,7 @@ def components(polynomials: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
 def hypersurfaces(common: Poly, ring: Ring) -> list[list[Poly]]:
     """Real zeros of one polynomial, factor by factor; a sum of squares breaks up further."""
     found: list[list[Poly]] = []
-    for f in irreducible_factors(common):
+    for f in (f for f in irreducible_factors(common) if not is_definite(f)):
         for system in real_systems([f], ring):
             found += [system] if system == [f] else split_system(system, ring)
     return found
@@ -98,7 +102,7 @@ def real_systems(system: list[Poly], ring: Ring) -> list[list[Poly]]:
 def reduce_generators(system: list[Poly], ring: Ring) -> list[Poly] | None:
     """Reduced generators of the same real zeros; None when there are none."""
     system = [p.primitive()[1] for p in system if p != 0]
-    if any(p.is_constant() for p in system) or is_nowhere(system, ring):
+    if any(p.is_constant() for p in system) or is_nowhere(system, ring) or any(map(is_definite, system)):
         return None
     kept: list[Poly] = []
     for p in sorted(dict.fromkeys(map(Hashed, system)), key=lambda h: (h.poly.total_degree(), len(h.poly))):
@@ -109,10 +113,21 @@ def reduce_generators(system: list[Poly], ring: Ring) -> list[Poly] | None:
         basis, done = generators.buchberger_naive(limits=LIMITS)
         if done:
             reduced = [p for p in basis.autoreduction(groebner=True) if p != 0]
-            if any(p.is_constant() for p in reduced) or is_nowhere(reduced, ring):
+            if any(p.is_constant() for p in reduced) or is_nowhere(reduced, ring) or any(map(is_definite, reduced)):
                 return None
             kept = reduced
     return kept
+
+
+def is_definite(f: Poly) -> bool:
+    """True for a polynomial that is proved to have one sign at all real points: it vanishes nowhere."""
+    terms = f.to_dict()
+    at_zero = terms.get((0,) * f.context().nvars(), 0)
+    if at_zero == 0 or f.total_degree() % 2 or len(terms) > DEFINITE_TERMS:
+        return False
+    context = fmpq_mpoly_ctx.get(f.context().names(), f.context().ordering())
+    positive = context.from_dict({powers: c if at_zero > 0 else -c for powers, c in terms.items()})
+    return polynomial_sign(positive, [VariableRange()] * f.context().nvars(), Effort(EFFORT)) == Sign.POSITIVE
 
 
 def is_nowhere(system: Sequence[Poly], ring: Ring) -> bool:
@@ -135,12 +150,18 @@ class Hashed:
 
 
 def irredundant(systems: list[list[Poly]]) -> list[list[Poly]]:
-    """Without repetitions and without systems that lie inside another one."""
+    """Without repetitions and without systems whose zeros visibly lie inside those of another one."""
     kept: list[list[Poly]] = []
     for system in sorted(systems, key=lambda s: (len(s), [len(f) for f in s], [str(f) for f in s])):
-        if not any(all(lies_in_ideal(f, system) for f in other) for other in kept):
+        if not any(is_inside(system, other) for other in kept):
+            kept = [other for other in kept if not is_inside(other, system)]
             kept.append(system)
     return kept
+
+
+def is_inside(inner: System, outer: System) -> bool:
+    """True when every polynomial of the outer system lies in the ideal of the inner one: it vanishes there too."""
+    return all(lies_in_ideal(f, inner) for f in outer)
 
 
 def lies_in_ideal(value: Poly, system: System) -> bool:

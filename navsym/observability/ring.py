@@ -16,14 +16,7 @@ from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
 from sympy.functions.elementary.trigonometric import TrigonometricFunction
 
 from navsym.core.errors import DomainError, TooLargeError
-from navsym.core.rational_functions import (
-    Quotient,
-    cancel_fraction,
-    polynomial_sum,
-    powers_apart,
-    read_arithmetic,
-    replace_square,
-)
+from navsym.core.rational_functions import (Quotient, cancel_fraction, factor_exactly, polynomial_sum, powers_apart, read_arithmetic, replace_square)
 
 # Sines and cosines of parameters as polynomials.
 #
@@ -270,14 +263,14 @@ class Ring:
             return self.factored(top) / self.factored(bottom)
         if value == 0:
             return sp.Integer(0)
-        content, factors = value.factor()
+        content, factors = factor_exactly(value)
         whole, halves = [], self.constant(1)
-        for factor, power in factors:
-            if any(is_odd(factor, cosine) for _, cosine in self.pairs()):
-                whole.append(self.expression(factor**2) ** (int(power) // 2))
-                halves *= factor ** (int(power) % 2)
+        for base, power in factors:
+            if any(is_odd(base, cosine) for _, cosine in self.pairs()):
+                whole.append(self.expression(base**2) ** (int(power) // 2))
+                halves *= base ** (int(power) % 2)
             else:
-                whole.append(self.expression(factor) ** int(power))
+                whole.append(self.expression(base) ** int(power))
         return sp.Mul(sp.Integer(int(content)), *whole, self.expression(halves))
 
 
@@ -304,4 +297,4 @@ def gcd_all(values: Iterable[Poly], zero: Poly) -> Poly:
 
 def irreducible_factors(value: Poly) -> list[Poly]:
     """Different irreducible factors that are not numbers."""
-    return [factor for factor, _ in value.factor()[1]]
+    return [base for base, _ in factor_exactly(value)[1]]
