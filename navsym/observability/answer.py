@@ -17,10 +17,11 @@ from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxErro
 from navsym.language.expression import parse, symbol
 from navsym.language.names import RESERVED, join_place, quote
 from navsym.language.values import write_entries, write_value
+from navsym.models.along import model_along_motion
 from navsym.models.certificates import rank_certificate
 from navsym.models.linear import LinearModel, linear_row, observability_matrix
 from navsym.models.model import Model, contents_of, file_in_errors
-from navsym.models.modelfile import ModelFile, linear_model
+from navsym.models.modelfile import ModelFile
 from navsym.observability.chains import (
     JointObservability,
     MeasurementObservability,
@@ -188,11 +189,14 @@ def observe(
         if not isinstance(contents, ModelFile):
             message = "expected a [model] with F and h; got a [basis] of regressors; give the system"
             raise DomainError(message, where="observe: model")
+        if contents.dynamics and (split is not None or poles is not None or restore or candidates):
+            message = "expected a linear model for splits, poles and candidates; got dynamics; leave them out"
+            raise DomainError(message, where="observe: model")
         request = read_split(split) if split is not None else None
         polynomials = read_poles(poles, contents) if poles is not None else ()
         rows = read_candidate_rows(candidates or {}, contents)
         asked = restore or bool(candidates)
-        return observe_linear(linear_model(contents), contents.name, request, polynomials, rows if asked else None)
+        return observe_linear(model_along_motion(contents), contents.name, request, polynomials, rows if asked else None)
 
 
 def observe_linear(
@@ -204,9 +208,12 @@ def observe_linear(
 ) -> Observability:
     """Like :func:`observe` for exact data: poles in the symbol p, rows of candidates, empty for all states."""
     joint = observe_jointly(model)
+    if (request is not None or poles) and not model.constant:
+        message = "expected constant F and H for splits and poles; got entries that move; leave them out"
+        raise DomainError(message, where="observe: split")
     if request is not None or poles:
         need_observable(joint)
-    two = len(joint.measurements) == 2 and joint.observable
+    two = model.constant and len(joint.measurements) == 2 and joint.observable
     if request is not None and not two:
         raise ShapeError(f"split: expected two measurements; got {len(joint.measurements)}; choose two of them")
     chosen = choose_split(joint, *(request or ())) if two else None

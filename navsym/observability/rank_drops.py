@@ -231,7 +231,7 @@ def all_drops(chains: Chains) -> dict[str, tuple[list[System], bool]]:
 def drops_of_group(chains: Chains, part: tuple[Chain, ...], rank: int) -> tuple[list[System], bool]:
     """Drops of what some chains span together: by cases, or else by the definition, written in one of three ways."""
     ring = chains.ring
-    rest = krylov_remainder([(chain.vectors[0], chain.dimension) for chain in part], chains.matrix, ring)
+    rest = krylov_remainder([(chain.vectors[0], chain.dimension) for chain in part], chains.motion)
     found, complete = drops_by_cases(rest.rows, rank - rest.regular, ring)
     if not complete:
         for written in (

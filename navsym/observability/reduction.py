@@ -14,7 +14,9 @@ from typing import Any
 
 from flint import fmpq_mpoly_ctx, fmpz_mpoly_vec
 
-from navsym.observability.linear import Matrix, at_point, independent_places, integer_points, transposed_times
+from navsym.core.errors import TooLargeError
+from navsym.observability.linear import Matrix, at_point, independent_places
+from navsym.observability.motion import Motion
 from navsym.observability.ring import Poly, Ring, gcd_all, irreducible_factors, is_divisor
 from navsym.prove.signs.exact import Sign
 from navsym.prove.signs.polynomials import Effort, VariableRange, polynomial_sign
@@ -32,6 +34,8 @@ LIMITS = (24, 120, 1000)
 BRANCHES = 40
 #: Polynomials whose sign is asked for: number of terms, and the effort of one question.
 DEFINITE_TERMS, EFFORT = 20, 200
+#: Terms of the rows of one step of a moving model.
+MOVING_TERMS = 2000
 
 
 def components(polynomials: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
@@ -260,24 +264,24 @@ def row_weight(row: list[Poly]) -> int:
     return sum(len(entry) for entry in row)
 
 
-def krylov_remainder(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring: Ring) -> Remainder:
+def krylov_remainder(starts: Sequence[tuple[list[Poly], int]], motion: Motion) -> Remainder:
     """Regular part and remainder of the chains h, G^T h, ...: (h, number of vectors) for each of them."""
-    basis, rest = krylov_basis(starts, matrix, ring)
+    basis, rest = krylov_basis(starts, motion)
     inner = take_out_regular(without_columns(basis, rest).rows)
     return Remainder(len(basis.rows) + inner.regular, inner.rows)
 
 
-def krylov_rows(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, rank: int, ring: Ring) -> Matrix:
+def krylov_rows(starts: Sequence[tuple[list[Poly], int]], motion: Motion, rank: int) -> Matrix:
     """``rank`` generically independent rows that span what the chains span."""
-    basis, rest = krylov_basis(starts, matrix, ring)
+    basis, rest = krylov_basis(starts, motion)
     rows = [basis.reduced(row) for row in sorted(rest, key=row_weight)]
-    point = integer_points(ring)
+    point = motion.points()
     chosen = max((independent_places(at_point([*basis.rows, *rows], p)) for p in point), key=len)
     listed = [*basis.rows, *rows]
     return [listed[k] for k in chosen[:rank]]
 
 
-def krylov_basis(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring: Ring) -> tuple[UnitBasis, Matrix]:
+def krylov_basis(starts: Sequence[tuple[list[Poly], int]], motion: Motion) -> tuple[UnitBasis, Matrix]:
     """Regular rows of the chains and all others, which span together what the chains span at every point.
 
     Every vector is reduced before it is multiplied on: modulo the basis, which is multiplied on as well,
@@ -295,6 +299,8 @@ def krylov_basis(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring:
             if not basis.take(row):
                 rest.append(row)
             if count > 1:
-                following.append((transposed_times(matrix, row, ring), count - 1))
+                following.append((motion.advance(row), count - 1))
+        if motion.rates and sum(len(entry) for row, _ in following for entry in row) > MOVING_TERMS:
+            raise TooLargeError("expected rows that can be written; got too many terms; fix some parameters")
         step = following
     return basis, rest
