@@ -26,8 +26,10 @@ from navsym.observability.chains import (
     JointObservability,
     MeasurementObservability,
     direction_names,
+    functional_names,
     need_observable,
     observe_jointly,
+    prove_rank,
 )
 from navsym.observability.document import as_html, as_latex, document_of_observability
 from navsym.observability.rank_drops import RankDrop, drops_and_completeness
@@ -41,7 +43,7 @@ VARIABLE = "p"
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Observability(Answer):
-    """Observability of a constant model: the directions of the state that its measurements determine.
+    """Observability of a model: the directions of the state that its measurements determine.
 
     Ranks hold for generic parameters; ``rank_drops`` lists the special ones.
 
@@ -49,6 +51,9 @@ class Observability(Answer):
     joint               : chains, dimensions and the staircase of all measurements
     rank_drops          : where a dimension drops for special parameters
     rank_drops_complete : subspace -> whether the list of its drops is proved to hold all of them
+    kind                : "constant", "varying", "nonlinear" or "pieces"
+    frozen_rank         : of a varying model, the rank that it has with F and h frozen at one time: another question
+    pieces              : of a model in pieces, from, to and the rank of each by itself
     splits, best_split  : two-stage splits of two measurements that observe all; empty and None elsewhere
     split               : the chosen split, None where there is none
     gains               : of the stages, None unless poles were asked for
@@ -71,6 +76,9 @@ class Observability(Answer):
     gains: StageGains | None = None
     restoration: Restoration | None = None
     candidates: tuple[str, ...] = ()
+    kind: str = "constant"
+    frozen_rank: int | None = None
+    pieces: tuple[Mapping[str, Any], ...] = ()
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -94,9 +102,21 @@ class Observability(Answer):
 
     @property
     def unobservable(self) -> tuple[str, ...]:
-        """Directions that no measurement shows, by the states that they mix: ``"x1 - 2*x3"``."""
+        """Directions that no measurement shows, by their components: ``"(x1, x3) = (1, -2)"``."""
         rows = self.unobservable_basis
         return tuple(direction_names(rows[k, :], self.states) for k in range(rows.rows))
+
+    @property
+    def observable_functionals(self) -> tuple[str, ...]:
+        """Combinations of states that span what is observed: ``"x1 + 2*x3"``; all that show no unobservable direction."""
+        rows = self.joint.observed
+        return tuple(functional_names(rows[k, :], self.states) for k in range(rows.rows))
+
+    @property
+    def redundant(self) -> tuple[str, ...]:
+        """Measurements that show nothing beside those before them."""
+        pairs = zip(self.measurements, self.joint.staircase, strict=True)
+        return tuple(measurement.name for measurement, count in pairs if count == 0)
 
     @property
     def unobservable_basis(self) -> sp.ImmutableMatrix:
@@ -109,6 +129,8 @@ class Observability(Answer):
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """The generic rank of the observability matrix, where a point of a few attains it."""
+        if self.kind in ("nonlinear", "pieces"):
+            return []
         proof = rank_certificate(observability_matrix(self.model))
         return [] if proof is None else [proof]
 
@@ -158,10 +180,13 @@ def observe(
     values: Mapping[str, Any] | None = None,
     **parameters: Any,
 ) -> Observability:
-    """Exact observability of a model ``dx/dt = F x, z = H x`` with constant F and H.
+    """Exact observability of a model: ``dx/dt = F x, z = H x``, or ``dx/dt = f(x), z = h(x)``.
 
     Ranks are those of ``H, H F, ..., H F^(n-1)`` for generic parameters (Kalman); what each measurement observes is
-    spanned by its chain ``a_1 = h, a_(j+1) = F^T a_j`` (Kalenova et al. 1979, (1.2), (1.4)).
+    spanned by its chain ``a_1 = h, a_(j+1) = F^T a_j`` (Kalenova et al. 1979, (1.2), (1.4)). Where F and H hold the time or
+    parameters with rates it is ``a_(j+1) = a_j' + F^T a_j`` (Silverman and Meadows 1967): the rank over an interval. A
+    nonlinear model is linearised along its own motion, so that the rows are gradients of Lie derivatives (Hermann and
+    Krener 1977): the local rank at a generic state. Pieces are stacked.
 
     model      : a :class:`navsym.Model`, a LinearModel, or the path of a model file
     split      : (i, j), vectors taken from each of two measurements; by default (m, n - m)
@@ -171,8 +196,8 @@ def observe(
     parameters : exact values of parameters, such as ``w="1/2"``; ``values`` is the same as a mapping
 
     Raises UnobservableError with the direction when a split or poles are asked for and the states are not observed,
-    ShapeError for the wrong number of vectors or polynomials, DomainError for entries that vary in time or are no
-    rational functions, roots that are not in the left half-plane, and regressors without F.
+    ShapeError for the wrong number of vectors or polynomials, DomainError for functions that cannot be
+    read, roots that are not in the left half-plane, and regressors without F.
 
     >>> import navsym as nav
     >>> sensor = nav.Model("x v b", F=[[0, 1, 0], [0, 0, "g"], [0, 0, 0]], H=["x + b"], g="real")
@@ -228,9 +253,26 @@ def observe_linear(
         best_split=best_split(joint) if two else None,
         split=chosen,
         gains=gains_for(joint, chosen, poles) if poles else None,
+        kind=kind_of(model),
+        frozen_rank=frozen_rank(model),
         restoration=restore_observability(model, candidates or None) if candidates is not None else None,
         candidates=tuple(candidates or model.states) if candidates is not None else (),
     )
+
+
+def kind_of(model: LinearModel) -> str:
+    """constant, varying or nonlinear."""
+    if model.constant:
+        return "constant"
+    return "nonlinear" if {symbol.name for symbol in model.rates} & set(model.states) else "varying"
+
+
+def frozen_rank(model: LinearModel) -> int | None:
+    """Rank of a varying model with its time and moving parameters held, which is the answer to another question."""
+    if kind_of(model) != "varying":
+        return None
+    still = LinearModel(model.F, None, model.H, model.states, model.measurements, sp.Dummy("still", real=True))
+    return prove_rank(still).rank
 
 
 def gains_for(joint: JointObservability, chosen: Split | None, poles: Sequence[sp.Expr]) -> StageGains:

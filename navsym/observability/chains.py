@@ -399,6 +399,7 @@ class JointObservability:
 
     staircase    : how many chain vectors of every measurement form a basis of the observed functionals
     unobservable : (n - joint_dimension, n) rows x with h_k^T G^j x = 0 for all j and k; no rows where none were found
+    observed     : (joint_dimension, n) functionals that are known: all that vanish on the unobservable directions
     proved       : False when the rank is proved from below only
     assumptions  : denominators that are taken to be nonzero
     """
@@ -408,7 +409,8 @@ class JointObservability:
     staircase: tuple[int, ...]
     unobservable: sp.ImmutableMatrix
     assumptions: tuple[sp.Expr, ...]
-    chains: Chains
+    chains: Chains | None
+    observed: sp.ImmutableMatrix
     proved: bool = True
 
     @property
@@ -446,8 +448,16 @@ def observe_jointly(model: LinearModel) -> JointObservability:
         unobservable=sp.ImmutableMatrix(len(directions), n, entries),
         assumptions=model_denominators(chains),
         chains=chains,
+        observed=observed_rows(chains),
         proved=chains.directions is not None,
     )
+
+
+def observed_rows(chains: Chains) -> sp.ImmutableMatrix:
+    """Functionals that vanish on all unobservable directions; none where these are not known."""
+    ring, n = chains.ring, chains.size
+    rows = [] if chains.directions is None else null_vectors(chains.directions, n, ring)
+    return sp.ImmutableMatrix(len(rows), n, [ring.expression(x) for row in rows for x in row])
 
 
 def chain_rows(vectors: Matrix, chain: Chain, ring: Ring) -> sp.ImmutableMatrix:

@@ -20,7 +20,15 @@ from navsym.core.errors import TooLargeError
 from navsym.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_all_minors, drops_by_cases, minor_on
 from navsym.observability.chains import Chain, Chains, JointObservability
 from navsym.observability.linear import Matrix
-from navsym.observability.reduction import System, components, irredundant, krylov_remainder
+from navsym.observability.motion import Motion
+from navsym.observability.reduction import (
+    System,
+    components,
+    irredundant,
+    is_inside,
+    krylov_remainder,
+    lies_in_ideal,
+)
 from navsym.observability.ring import Poly, Ring, is_odd
 
 # Determinants of chains by values at integer points.
@@ -148,6 +156,8 @@ def newton(bound: int) -> fmpz_mat:
 
 #: So many staircases at most, when the joint locus is written down by its definition.
 MOST_STAIRCASES = 40
+#: Systems that are looked at when the part of a drop is sought that the motion keeps.
+KEPT_STEPS = 60
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -157,11 +167,13 @@ class RankDrop:
     subspace : name of a measurement, or "joint"
     zeros    : polynomials, irreducible over the rationals where that could be reached
     complete : True when the drops listed for this subspace are proved to be all real ones
+    lasting  : False where the condition holds at an instant only: the motion leaves it, and the interval shows all
     """
 
     subspace: str
     zeros: tuple[sp.Expr, ...]
     complete: bool
+    lasting: bool = True
 
     @property
     def condition(self) -> str:
@@ -187,14 +199,46 @@ def rank_drops(found: JointObservability) -> tuple[RankDrop, ...]:
 
 
 def drops_and_completeness(found: JointObservability) -> tuple[tuple[RankDrop, ...], dict[str, bool]]:
-    """The drops, and for every subspace whether its list is proved complete, also when it is empty."""
-    ring, answer = found.chains.ring, all_drops(found.chains)
-    drops = tuple(
-        RankDrop(name, tuple(ring.condition(f) for f in system), complete)
-        for name, (systems, complete) in answer.items()
-        for system in join_half_angles(systems, ring)
-    )
-    return drops, {name: complete for name, (_, complete) in answer.items()}
+    """The drops, and for every subspace whether its list is proved complete, also when it is empty.
+
+    Of a model that moves, the conditions that last come first: those that the motion keeps once they hold.
+    """
+    if found.chains is None:
+        return (), {"joint": False}
+    motion, answer = found.chains.motion, all_drops(found.chains)
+    drops, complete = [], {}
+    for name, (systems, whole) in answer.items():
+        lasting, ended = kept_parts(systems, motion)
+        complete[name] = whole and ended
+        passing = [system for system in systems if not any(is_inside(system, other) for other in lasting)]
+        for listed, lasts in ((lasting, True), (passing, False)):
+            drops += [
+                RankDrop(name, tuple(motion.ring.condition(f) for f in written), complete[name], lasts)
+                for written in join_half_angles(listed, motion.ring)
+            ]
+    return tuple(sorted(drops, key=lambda drop: not drop.lasting)), complete
+
+
+def kept_parts(systems: list[System], motion: Motion) -> tuple[list[System], bool]:
+    """The parts of some real zeros that the motion never leaves, and whether all of them were found.
+
+    Where a system holds along the motion, so do the derivatives of its equations. They are added until they add nothing;
+    an ideal that holds its derivatives is kept.
+    """
+    if not motion.rates:
+        return systems, True
+    waiting, kept, steps = list(systems), [], 0
+    while waiting:
+        system = waiting.pop()
+        steps += 1
+        if steps > KEPT_STEPS:
+            return irredundant(kept), False
+        fresh = [f for f in map(motion.derivative, system) if not lies_in_ideal(f, system)]
+        if fresh:
+            waiting += components([*system, *fresh], motion.ring)
+        else:
+            kept.append(system)
+    return irredundant(kept), True
 
 
 def join_half_angles(systems: list[System], ring: Ring) -> list[System]:
@@ -230,10 +274,15 @@ def all_drops(chains: Chains) -> dict[str, tuple[list[System], bool]]:
 
 def drops_of_group(chains: Chains, part: tuple[Chain, ...], rank: int) -> tuple[list[System], bool]:
     """Drops of what some chains span together: by cases, or else by the definition, written in one of three ways."""
-    ring = chains.ring
-    rest = krylov_remainder([(chain.vectors[0], chain.dimension) for chain in part], chains.motion)
+    ring, motion = chains.ring, chains.motion
+    if motion.roots:
+        return [], False
+    try:
+        rest = krylov_remainder([(chain.vectors[0], chain.dimension) for chain in part], motion)
+    except TooLargeError:
+        return [], False
     found, complete = drops_by_cases(rest.rows, rank - rest.regular, ring)
-    if not complete:
+    if not complete and not motion.rates:
         for written in (
             lambda: drops_by_staircases(chains, part, rank, determinant_by_values),
             lambda: drops_by_all_minors(rest.rows, rank - rest.regular, ring),
