@@ -32,6 +32,7 @@ from navsym.observability.chains import (
     prove_rank,
 )
 from navsym.observability.document import as_html, as_latex, document_of_observability
+from navsym.observability.pieces import observe_pieces
 from navsym.observability.rank_drops import RankDrop, drops_and_completeness
 from navsym.observability.sensors import Restoration, restore_observability
 from navsym.observability.splits import FeasibleSplit, Split, best_split, choose_split, feasible_splits
@@ -108,9 +109,13 @@ class Observability(Answer):
 
     @property
     def observable_functionals(self) -> tuple[str, ...]:
-        """Combinations of states that span what is observed: ``"x1 + 2*x3"``; all that show no unobservable direction."""
+        """Combinations of states that span what is observed, such as ``"x1 + 2*x3"``.
+
+        Of a nonlinear model, of their differentials: ``"k*dS + S*dk"`` is the differential of k S.
+        """
         rows = self.joint.observed
-        return tuple(functional_names(rows[k, :], self.states) for k in range(rows.rows))
+        names = [f"d{state}" for state in self.states] if self.kind == "nonlinear" else self.states
+        return tuple(functional_names(rows[k, :], names) for k in range(rows.rows))
 
     @property
     def redundant(self) -> tuple[str, ...]:
@@ -214,9 +219,13 @@ def observe(
         if not isinstance(contents, ModelFile):
             message = "expected a [model] with F and h; got a [basis] of regressors; give the system"
             raise DomainError(message, where="observe: model")
-        if contents.dynamics and (split is not None or poles is not None or restore or candidates):
-            message = "expected a linear model for splits, poles and candidates; got dynamics; leave them out"
+        if (contents.dynamics or len(contents.pieces) > 1) and (split is not None or poles is not None or restore or candidates):
+            got = "dynamics" if contents.dynamics else f"{len(contents.pieces)} pieces"
+            message = f"expected one constant F for splits, poles and candidates; got {got}; leave them out"
             raise DomainError(message, where="observe: model")
+        if len(contents.pieces) > 1:
+            first, joint, pieces = observe_pieces(contents)
+            return Observability(contents.name, first, joint, (), {"joint": False}, kind="pieces", pieces=pieces)
         request = read_split(split) if split is not None else None
         polynomials = read_poles(poles, contents) if poles is not None else ()
         rows = read_candidate_rows(candidates or {}, contents)

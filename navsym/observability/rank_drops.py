@@ -212,11 +212,24 @@ def drops_and_completeness(found: JointObservability) -> tuple[tuple[RankDrop, .
         complete[name] = whole and ended
         passing = [system for system in systems if not any(is_inside(system, other) for other in lasting)]
         for listed, lasts in ((lasting, True), (passing, False)):
-            drops += [
-                RankDrop(name, tuple(motion.ring.condition(f) for f in written), complete[name], lasts)
-                for written in join_half_angles(listed, motion.ring)
-            ]
+            written = (conditions_on(system, motion.ring) for system in join_half_angles(listed, motion.ring))
+            drops += [RankDrop(name, zeros, complete[name], lasts) for zeros in written if zeros]
     return tuple(sorted(drops, key=lambda drop: not drop.lasting)), complete
+
+
+def conditions_on(system: System, ring: Ring) -> tuple[sp.Expr, ...]:
+    """The equations in the symbols of the model; none where no point satisfies them.
+
+    Generators that stand for functions follow the symbols in them: with w = 0 also sin(w*t) = 0, and cos(w*t) is not.
+    """
+    zeros = [ring.condition(f) for f in system]
+    fixed = {zero: sp.Integer(0) for zero in zeros if zero.is_Symbol}
+    if not ring.meaning or not fixed:
+        return tuple(zeros)
+    rest = [zero.subs(fixed) for zero in zeros if zero not in fixed]
+    if any(zero.is_Number and zero != 0 for zero in rest):
+        return ()
+    return (*fixed, *(zero for zero in rest if zero != 0))
 
 
 def kept_parts(systems: list[System], motion: Motion) -> tuple[list[System], bool]:
