@@ -18,6 +18,7 @@ from navsym.observability.linear import (
     PRIME,
     Matrix,
     at_point,
+    independent_places,
     linear_relation,
     null_vectors,
     primitive_vector,
@@ -25,7 +26,8 @@ from navsym.observability.linear import (
     scalar_product,
 )
 from navsym.observability.motion import Motion, residue_chains
-from navsym.observability.ring import Poly
+from navsym.observability.reduction import UnitBasis
+from navsym.observability.ring import Poly, Ring
 
 #: Terms of the rows that are eliminated for a moving model, unknowns of a guess, and the size of a rebuilt fraction.
 ROW_TERMS, UNKNOWNS, SIZE = 1500, 700, 10**6
@@ -37,12 +39,41 @@ def find_unobservable(rows: Matrix, motion: Motion, rank: int, point: Sequence[i
     rows : one row h per measurement;  point : where the rank is attained, modulo the prime
     """
     if not motion.rates and not motion.roots:
-        return exhibit_unobservable(rows, motion, rank, point)
+        resting = resting_directions(rows, motion, rank, point)
+        return exhibit_unobservable(rows, motion, rank, point) if resting is None else resting
     return (
         guess_unobservable(rows, motion, rank, (0, 1))
         or (exhibit_unobservable(rows, motion, rank, point) if not motion.roots else None)
         or guess_unobservable(rows, motion, rank, (2, 3))
     )
+
+
+def resting_directions(rows: Matrix, motion: Motion, rank: int, point: Sequence[int]) -> Matrix | None:
+    """Directions with h N = 0 and F N = 0 of a constant model, where these are all: short rows, so that it is quick."""
+    listed = [*rows, *motion.matrix]
+    chosen = independent_places(at_point(listed, point))
+    if len(chosen) != rank:
+        return None
+    found = null_vectors(simplified_rows([listed[k] for k in chosen], motion.ring), motion.size, motion.ring)
+    zero = motion.ring.constant(0)
+    seen = any(motion.reduced(scalar_product(row, vector, zero)) != 0 for row in listed for vector in found)
+    return None if seen else found
+
+
+def simplified_rows(rows: Matrix, ring: Ring) -> Matrix:
+    """Rows with the same span over the field, without common factors; those with a number clear its column."""
+    basis, rest, waiting = UnitBasis(), list[list[Poly]](), list(rows)
+    while waiting:
+        rest, taken = [], False
+        for row in waiting:
+            row = basis.reduced(primitive_vector(row, ring))
+            row = primitive_vector(row, ring)
+            if basis.take(row):
+                taken = True
+            else:
+                rest.append(row)
+        waiting = rest if taken else []
+    return [*basis.rows, *rest]
 
 
 def exhibit_unobservable(rows: Matrix, motion: Motion, rank: int, point: Sequence[int]) -> Matrix | None:
