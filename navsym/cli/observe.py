@@ -89,7 +89,11 @@ def overview(data: Mapping[str, Any]) -> str:
             *(["unobservable directions: " + "; ".join(directions) + "\n"] if directions else []),
             *(["observed combinations: " + "; ".join(data["observable_functionals"]) + "\n"] if directions else []),
             *(["redundant: " + ", ".join(data["redundant"]) + "\n"] if data["redundant"] else []),
-            *([] if data["proved"] else ["the rank is proved from below only: no unobservable directions were found\n"]),
+            *(
+                []
+                if data["proved"]
+                else ["the rank is proved from below only: no unobservable directions were found\n"]
+            ),
             *pieces_text(data["pieces"], data["n"]),
         ]
     )

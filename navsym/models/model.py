@@ -510,9 +510,7 @@ def measurement_blocks(
         message = f"expected {len(rows)} names, one per row of H; got {len(names)}; name each once"
         raise ShapeError(message, where="Model: measurements")
     if states is None:
-        return [
-            {"name": name, "z": row, "sigma": bound} for name, row, bound in zip(names, rows, sigmas, strict=True)
-        ]
+        return [{"name": name, "z": row, "sigma": bound} for name, row, bound in zip(names, rows, sigmas, strict=True)]
     known = {**known_symbols(declared), "t": symbol("t")}
     return [
         {"name": name, "h": read_row(row, states, known, f"Model: H[{k}]"), "sigma": bound}

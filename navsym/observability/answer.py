@@ -188,8 +188,8 @@ def observe(
     """Exact observability of a model: ``dx/dt = F x, z = H x``, or ``dx/dt = f(x), z = h(x)``.
 
     Ranks are those of ``H, H F, ..., H F^(n-1)`` for generic parameters (Kalman); what each measurement observes is
-    spanned by its chain ``a_1 = h, a_(j+1) = F^T a_j`` (Kalenova et al. 1979, (1.2), (1.4)). Where F and H hold the time or
-    parameters with rates it is ``a_(j+1) = a_j' + F^T a_j`` (Silverman and Meadows 1967): the rank over an interval. A
+    spanned by its chain ``a_1 = h, a_(j+1) = F^T a_j`` (Kalenova et al. 1979, (1.2), (1.4)). Where F and H hold the time
+    or parameters with rates it is ``a_(j+1) = a_j' + F^T a_j`` (Silverman and Meadows 1967): the rank over an interval. A
     nonlinear model is linearised along its own motion, so that the rows are gradients of Lie derivatives (Hermann and
     Krener 1977): the local rank at a generic state. Pieces are stacked.
 
@@ -219,7 +219,9 @@ def observe(
         if not isinstance(contents, ModelFile):
             message = "expected a [model] with F and h; got a [basis] of regressors; give the system"
             raise DomainError(message, where="observe: model")
-        if (contents.dynamics or len(contents.pieces) > 1) and (split is not None or poles is not None or restore or candidates):
+        if (contents.dynamics or len(contents.pieces) > 1) and (
+            split is not None or poles is not None or restore or candidates
+        ):
             got = "dynamics" if contents.dynamics else f"{len(contents.pieces)} pieces"
             message = f"expected one constant F for splits, poles and candidates; got {got}; leave them out"
             raise DomainError(message, where="observe: model")
@@ -230,7 +232,9 @@ def observe(
         polynomials = read_poles(poles, contents) if poles is not None else ()
         rows = read_candidate_rows(candidates or {}, contents)
         asked = restore or bool(candidates)
-        return observe_linear(model_along_motion(contents), contents.name, request, polynomials, rows if asked else None)
+        return observe_linear(
+            model_along_motion(contents), contents.name, request, polynomials, rows if asked else None
+        )
 
 
 def observe_linear(

@@ -144,6 +144,8 @@ def monic_by_power(f: Poly, place: int, ring: Ring) -> list[Poly]:
 STATES = 40
 #: Terms of a vector, or of a whole chain to be solved, up to which those of a moving model are written.
 LONGEST = 300
+#: The same for a vector of a constant model, whose relation comes from the characteristic polynomial.
+LONGEST_CONSTANT = 800
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -267,7 +269,7 @@ def chain_of(name: str, row: list[Poly], bottom: Poly, motion: Motion) -> Chain:
         clock = bottom = ring.constant(1)
     while True:
         while len(vectors) <= dimension:
-            if motion.rates and sum(len(entry) for entry in vectors[-1]) > LONGEST:
+            if sum(len(entry) for entry in vectors[-1]) > (LONGEST if motion.rates else LONGEST_CONSTANT):
                 return Chain(name, vectors[:dimension], bottom, clock, None, dimension)
             vectors.append(motion.advance(vectors[-1]))
         if motion.rates and (motion.roots or sum(len(x) for v in vectors for x in v) > LONGEST):
@@ -315,7 +317,7 @@ def joint_staircase(chains: tuple[Chain, ...], motion: Motion) -> tuple[tuple[in
     if sum(counts) == n:
         return counts, []
     directions = find_unobservable(starts, motion, sum(counts), point)
-    if directions is None and not motion.rates:
+    if directions is None and all(chain.companion is not None for chain in chains):
         counts = staircase_by_relations(chains, motion.ring, n)
         krylov = krylov_rows([(chain.vectors[0], chain.dimension) for chain in chains], motion, sum(counts))
         directions = null_vectors(krylov, n, motion.ring)
@@ -454,9 +456,10 @@ def observe_jointly(model: LinearModel) -> JointObservability:
 
 
 def observed_rows(chains: Chains) -> sp.ImmutableMatrix:
-    """Functionals that vanish on all unobservable directions; none where these are not known."""
+    """Functionals that vanish on all unobservable directions; none where these are not known, or too long."""
     ring, n = chains.ring, chains.size
-    rows = [] if chains.directions is None else null_vectors(chains.directions, n, ring)
+    short = sum(len(x) for column in chains.directions or [] for x in column) <= LONGEST
+    rows = null_vectors(chains.directions, n, ring) if chains.directions is not None and short else []
     return sp.ImmutableMatrix(len(rows), n, [ring.expression(x) for row in rows for x in row])
 
 

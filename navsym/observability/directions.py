@@ -1,8 +1,8 @@
 """Directions of the state that no measurement ever shows, exhibited and checked: the proof that a rank is not larger.
 
 Columns N with h N = 0 for every measurement and F N - N' in their own span stay unseen by every derivative: the
-derivative of h N = 0 is (D h) N = h (F N - N') taken once more. Both are polynomial identities. Where they come from does
-not matter: elimination of the rows, or a guess of low degree in the symbols (a symmetry such as a turn about gravity,
+derivative of h N = 0 is (D h) N = h (F N - N') taken once more. Both are polynomial identities. Where they come from
+does not matter: elimination of the rows, or a guess of low degree in the symbols (a symmetry such as a turn about gravity,
 a change of scale, a common shift) that is fitted at points modulo a prime and rebuilt in whole numbers.
 """
 
@@ -161,7 +161,9 @@ def fit_columns(rows: Matrix, motion: Motion, terms: Sequence[Poly], rank: int) 
     kernel, count = nmod_mat(equations, PRIME).nullspace() if equations else (None, 0)
     if kernel is None:
         return
-    table, _ = nmod_mat([[int(kernel[i, k]) for i in range(width)] for k in range(count)] or [[0] * width], PRIME).rref()
+    table, _ = nmod_mat(
+        [[int(kernel[i, k]) for i in range(width)] for k in range(count)] or [[0] * width], PRIME
+    ).rref()
     for k in range(count):
         rebuilt = rebuild_integers([int(table[k, i]) for i in range(width)])
         if rebuilt is not None:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import lcm
 
 import sympy as sp
 from flint import nmod_mat, nmod_poly
@@ -70,7 +69,9 @@ class Motion:
     def retreat(self, column: list[Poly]) -> list[Poly]:
         """clock times (F N - N'): where this lies in the span of all N, and h N = 0, no derivative ever shows N."""
         zero = self.ring.constant(0)
-        moved = [sum((a * b for a, b in zip(row, column, strict=True) if a != 0 and b != 0), zero) for row in self.matrix]
+        moved = [
+            sum((a * b for a, b in zip(row, column, strict=True) if a != 0 and b != 0), zero) for row in self.matrix
+        ]
         return [self.reduced(x - self.derivative(own)) for x, own in zip(moved, column, strict=True)]
 
     def points(self, count: int = 3) -> list[tuple[int, ...]]:
@@ -82,7 +83,9 @@ class Motion:
                 found.append(here)
             if len(found) == count:
                 return found
-        raise DomainError("expected roots that are real somewhere; got none at the points tried; square the measurement")
+        raise DomainError(
+            "expected roots that are real somewhere; got none at the points tried; square the measurement"
+        )
 
     def lifted(self, point: tuple[int, ...]) -> tuple[int, ...] | None:
         """The point with the roots put in; None where a radicand is no square modulo the prime."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import sympy as sp
@@ -66,13 +67,17 @@ def observe_pieces(contents: ModelFile) -> tuple[LinearModel, JointObservability
     models = [model_along_motion(contents, piece) for piece in contents.pieces]
     names = models[0].measurements
     every = [stage_of(contents, k, model) for k, model in enumerate(models)]
-    single = [[stage_of(contents, k, measured(model, (j,))) for k, model in enumerate(models)] for j in range(len(names))]
+    single = [
+        [stage_of(contents, k, measured(model, (j,))) for k, model in enumerate(models)] for j in range(len(names))
+    ]
     own = [unobservable_over(stages) for stages in single]
     counts = []
     for j in range(1, len(names) + 1):
-        stages = every if j == len(names) else [
-            stage_of(contents, k, measured(model, range(j))) for k, model in enumerate(models)
-        ]
+        stages = (
+            every
+            if j == len(names)
+            else [stage_of(contents, k, measured(model, range(j))) for k, model in enumerate(models)]
+        )
         counts.append(models[0].size - unobservable_over(stages).rows - sum(counts))
     directions = unobservable_over(every)
     joint = JointObservability(
@@ -120,7 +125,7 @@ def piece_data(stage: Stage) -> Mapping[str, Any]:
 def unobservable_over(stages: Sequence[Stage]) -> sp.ImmutableMatrix:
     """Rows of the directions that no piece shows, at the start of the last piece."""
     unseen = stages[0].unobservable_at(stages[0].end)
-    for before, stage in zip(stages, stages[1:], strict=False):
+    for before, stage in pairwise(stages):
         if before is not stages[0]:
             unseen = carried(unseen, before)
         unseen = intersection(unseen, stage.unobservable_at(stage.start))
@@ -161,7 +166,9 @@ def polynomial_rows(*matrices: sp.MatrixBase) -> tuple[list[Matrix], Any]:
         first += matrix.rows
     if motion.roots:
         got = f"roots beside {', '.join(str(root) for root in motion.ring.symbols[:6])}"
-        raise DomainError(f"expected pieces without square roots; got {got}; name each root as a parameter", where="piece")
+        raise DomainError(
+            f"expected pieces without square roots; got {got}; name each root as a parameter", where="piece"
+        )
     return parts, motion
 
 

@@ -19,16 +19,10 @@ from flint import fmpz, fmpz_mat
 from navsym.core.errors import TooLargeError
 from navsym.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_all_minors, drops_by_cases, minor_on
 from navsym.observability.chains import Chain, Chains, JointObservability
-from navsym.observability.linear import Matrix
-from navsym.observability.motion import Motion
-from navsym.observability.reduction import (
-    System,
-    components,
-    irredundant,
-    is_inside,
-    krylov_remainder,
-    lies_in_ideal,
-)
+from navsym.observability.directions import find_unobservable
+from navsym.observability.linear import Matrix, residue_rank
+from navsym.observability.motion import Motion, residue_chains
+from navsym.observability.reduction import System, components, irredundant, is_inside, krylov_remainder, lies_in_ideal
 from navsym.observability.ring import Poly, Ring, is_odd
 
 # Determinants of chains by values at integer points.
@@ -235,7 +229,7 @@ def conditions_on(system: System, ring: Ring) -> tuple[sp.Expr, ...]:
 def kept_parts(systems: list[System], motion: Motion) -> tuple[list[System], bool]:
     """The parts of some real zeros that the motion never leaves, and whether all of them were found.
 
-    Where a system holds along the motion, so do the derivatives of its equations. They are added until they add nothing;
+    Where a system holds along the motion, so do the derivatives of its equations. They are added until nothing is new:
     an ideal that holds its derivatives is kept.
     """
     if not motion.rates:
@@ -293,7 +287,7 @@ def drops_of_group(chains: Chains, part: tuple[Chain, ...], rank: int) -> tuple[
     try:
         rest = krylov_remainder([(chain.vectors[0], chain.dimension) for chain in part], motion)
     except TooLargeError:
-        return [], False
+        return parameters_zero(chains, part, rank), False
     found, complete = drops_by_cases(rest.rows, rank - rest.regular, ring)
     if not complete and not motion.rates:
         for written in (
@@ -305,6 +299,39 @@ def drops_of_group(chains: Chains, part: tuple[Chain, ...], rank: int) -> tuple[
             if listed is not None:
                 return irredundant(listed), True
     return irredundant(found), complete
+
+
+def parameters_zero(chains: Chains, part: tuple[Chain, ...], rank: int) -> list[System]:
+    """Drops where one symbol is zero, or all components of a vector (f1, f2, f3), each proved.
+
+    For a constant model that is too long for a complete list.
+    """
+    motion, rows = chains.motion, [chain.vectors[0] for chain in part]
+    if motion.rates:
+        return []
+    names = [str(symbol) for symbol in motion.ring.symbols]
+    vectors = [[k for k, name in enumerate(names) if name[:-1] == stem] for stem in sorted({n[:-1] for n in names})]
+    found = []
+    for places in [*([k] for k in range(len(names))), *(v for v in vectors if len(v) > 1)]:
+        system = [motion.ring.context.gen(place) for place in places]
+        if any(is_inside(system, other) for other in found):
+            continue
+        still = [[without_generators(entry, places) for entry in row] for row in motion.matrix]
+        starts = [[without_generators(entry, places) for entry in row] for row in rows]
+        clock = without_generators(motion.clock, places)
+        if clock == 0 or not all(any(entry != 0 for entry in row) for row in starts):
+            continue
+        there = Motion(motion.ring, still, clock)
+        best, point = max((residue_rank(residue_chains(starts, there, p)), p) for p in there.points())
+        if best < rank and find_unobservable(starts, there, best, point) is not None:
+            found.append(system)
+    return found
+
+
+def without_generators(entry: Poly, places: Sequence[int]) -> Poly:
+    """The polynomial where some generators are zero."""
+    kept = {powers: c for powers, c in entry.to_dict().items() if not any(powers[place] for place in places)}
+    return entry.context().from_dict(kept)
 
 
 #: The determinant of the first vectors of some chains, so many of each; None when it is too long to form.

@@ -34,8 +34,8 @@ LIMITS = (24, 120, 1000)
 BRANCHES = 40
 #: Polynomials whose sign is asked for: number of terms, and the effort of one question.
 DEFINITE_TERMS, EFFORT = 20, 200
-#: Terms of the rows of one step of a moving model.
-MOVING_TERMS = 2000
+#: Terms of the rows of one step, of a moving and of a constant model.
+MOVING_TERMS, CONSTANT_TERMS = 2000, 20_000
 
 
 def components(polynomials: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
@@ -300,7 +300,8 @@ def krylov_basis(starts: Sequence[tuple[list[Poly], int]], motion: Motion) -> tu
                 rest.append(row)
             if count > 1:
                 following.append((motion.advance(row), count - 1))
-        if motion.rates and sum(len(entry) for row, _ in following for entry in row) > MOVING_TERMS:
+        longest = MOVING_TERMS if motion.rates else CONSTANT_TERMS
+        if sum(len(entry) for row, _ in following for entry in row) > longest:
             raise TooLargeError("expected rows that can be written; got too many terms; fix some parameters")
         step = following
     return basis, rest

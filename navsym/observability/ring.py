@@ -16,7 +16,15 @@ from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
 from sympy.functions.elementary.trigonometric import TrigonometricFunction
 
 from navsym.core.errors import DomainError, TooLargeError
-from navsym.core.rational_functions import (Quotient, cancel_fraction, factor_exactly, polynomial_sum, powers_apart, read_arithmetic, replace_square)
+from navsym.core.rational_functions import (
+    Quotient,
+    cancel_fraction,
+    factor_exactly,
+    polynomial_sum,
+    powers_apart,
+    read_arithmetic,
+    replace_square,
+)
 
 # Sines and cosines of parameters as polynomials.
 #

@@ -21,7 +21,15 @@ from typing import Any
 import sympy as sp
 
 from navsym.core.errors import DomainError, TooLargeError
-from navsym.core.rational_functions import (Quotient, add_fractions, cancel_fraction, clear_denominators, factor_exactly, multiply_coefficients, polynomial_sum)
+from navsym.core.rational_functions import (
+    Quotient,
+    add_fractions,
+    cancel_fraction,
+    clear_denominators,
+    factor_exactly,
+    multiply_coefficients,
+    polynomial_sum,
+)
 from navsym.models.linear import LinearModel, exact_entry, need_square
 from navsym.models.transition.factors import closed_form
 from navsym.models.transition.pieces import Form, Surd, Wave

@@ -18,7 +18,15 @@ from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from navsym.core.errors import DomainError
 from navsym.core.exact import to_rational
-from navsym.core.rational_functions import (Quotient, cancel_fraction, factor_exactly, polynomial_sum, powers_apart, read_arithmetic, replace_square)
+from navsym.core.rational_functions import (
+    Quotient,
+    cancel_fraction,
+    factor_exactly,
+    polynomial_sum,
+    powers_apart,
+    read_arithmetic,
+    replace_square,
+)
 
 Poly = fmpq_mpoly
 Fraction = tuple[Poly, Poly]
