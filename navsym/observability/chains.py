@@ -411,9 +411,16 @@ class JointObservability:
     staircase: tuple[int, ...]
     unobservable: sp.ImmutableMatrix
     assumptions: tuple[sp.Expr, ...]
-    chains: Chains | None
+    written: Chains | None
     observed: sp.ImmutableMatrix
     proved: bool = True
+
+    @property
+    def chains(self) -> Chains:
+        """The chains of a model in one piece. Raises DomainError for several pieces."""
+        if self.written is None:
+            raise DomainError("expected a model in one piece; got several; ask for one of them")
+        return self.written
 
     @property
     def joint_dimension(self) -> int:
@@ -449,7 +456,7 @@ def observe_jointly(model: LinearModel) -> JointObservability:
         staircase=chains.staircase,
         unobservable=sp.ImmutableMatrix(len(directions), n, entries),
         assumptions=model_denominators(chains),
-        chains=chains,
+        written=chains,
         observed=observed_rows(chains),
         proved=chains.directions is not None,
     )

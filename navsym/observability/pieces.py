@@ -71,7 +71,7 @@ def observe_pieces(contents: ModelFile) -> tuple[LinearModel, JointObservability
         [stage_of(contents, k, measured(model, (j,))) for k, model in enumerate(models)] for j in range(len(names))
     ]
     own = [unobservable_over(stages) for stages in single]
-    counts = []
+    counts: list[int] = []
     for j in range(1, len(names) + 1):
         stages = (
             every
@@ -89,7 +89,7 @@ def observe_pieces(contents: ModelFile) -> tuple[LinearModel, JointObservability
         staircase=tuple(counts),
         unobservable=directions,
         assumptions=tuple(dict.fromkeys(a for stage in every for a in stage.found.assumptions)),
-        chains=None,
+        written=None,
         observed=annihilator(directions, models[0].size),
     )
     return models[0], joint, tuple(piece_data(stage) for stage in every)

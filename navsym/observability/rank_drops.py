@@ -19,7 +19,7 @@ from flint import fmpz, fmpz_mat
 from navsym.core.errors import TooLargeError
 from navsym.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_all_minors, drops_by_cases, minor_on
 from navsym.observability.chains import Chain, Chains, JointObservability
-from navsym.observability.directions import find_unobservable
+from navsym.observability.directions import resting_directions
 from navsym.observability.linear import Matrix, residue_rank
 from navsym.observability.motion import Motion, residue_chains
 from navsym.observability.reduction import System, components, irredundant, is_inside, krylov_remainder, lies_in_ideal
@@ -151,7 +151,7 @@ def newton(bound: int) -> fmpz_mat:
 #: So many staircases at most, when the joint locus is written down by its definition.
 MOST_STAIRCASES = 40
 #: Systems that are looked at when the part of a drop is sought that the motion keeps.
-KEPT_STEPS = 60
+KEPT_STEPS, KEPT_TERMS = 60, 40
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -197,7 +197,7 @@ def drops_and_completeness(found: JointObservability) -> tuple[tuple[RankDrop, .
 
     Of a model that moves, the conditions that last come first: those that the motion keeps once they hold.
     """
-    if found.chains is None:
+    if found.written is None:
         return (), {"joint": False}
     motion, answer = found.chains.motion, all_drops(found.chains)
     drops, complete = [], {}
@@ -234,18 +234,22 @@ def kept_parts(systems: list[System], motion: Motion) -> tuple[list[System], boo
     """
     if not motion.rates:
         return systems, True
-    waiting, kept, steps = list(systems), [], 0
+    waiting, steps = list(systems), 0
+    kept: list[System] = []
+    whole = True
     while waiting:
         system = waiting.pop()
         steps += 1
         if steps > KEPT_STEPS:
             return irredundant(kept), False
         fresh = [f for f in map(motion.derivative, system) if not lies_in_ideal(f, system)]
-        if fresh:
+        if sum(map(len, fresh)) > KEPT_TERMS:
+            whole = False
+        elif fresh:
             waiting += components([*system, *fresh], motion.ring)
         else:
             kept.append(system)
-    return irredundant(kept), True
+    return irredundant(kept), whole
 
 
 def join_half_angles(systems: list[System], ring: Ring) -> list[System]:
@@ -311,7 +315,7 @@ def parameters_zero(chains: Chains, part: tuple[Chain, ...], rank: int) -> list[
         return []
     names = [str(symbol) for symbol in motion.ring.symbols]
     vectors = [[k for k, name in enumerate(names) if name[:-1] == stem] for stem in sorted({n[:-1] for n in names})]
-    found = []
+    found: list[System] = []
     for places in [*([k] for k in range(len(names))), *(v for v in vectors if len(v) > 1)]:
         system = [motion.ring.context.gen(place) for place in places]
         if any(is_inside(system, other) for other in found):
@@ -323,7 +327,7 @@ def parameters_zero(chains: Chains, part: tuple[Chain, ...], rank: int) -> list[
             continue
         there = Motion(motion.ring, still, clock)
         best, point = max((residue_rank(residue_chains(starts, there, p)), p) for p in there.points())
-        if best < rank and find_unobservable(starts, there, best, point) is not None:
+        if best < rank and resting_directions(starts, there, best, point) is not None:
             found.append(system)
     return found
 

@@ -35,7 +35,7 @@ BRANCHES = 40
 #: Polynomials whose sign is asked for: number of terms, and the effort of one question.
 DEFINITE_TERMS, EFFORT = 20, 200
 #: Terms of the rows of one step, of a moving and of a constant model.
-MOVING_TERMS, CONSTANT_TERMS = 2000, 20_000
+MOVING_TERMS, CONSTANT_TERMS = 150, 20_000
 
 
 def components(polynomials: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
