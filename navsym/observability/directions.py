@@ -2,8 +2,8 @@
 
 Columns N with h N = 0 for every measurement and F N - N' in their own span stay unseen by every derivative: the
 derivative of h N = 0 is (D h) N = h (F N - N') taken once more. Both are polynomial identities. Where they come from
-does not matter: elimination of the rows, or a guess of low degree in the symbols (a symmetry such as a turn about gravity,
-a change of scale, a common shift) that is fitted at points modulo a prime and rebuilt in whole numbers.
+does not matter: elimination of the rows, or a guess of low degree in the symbols (a symmetry such as a turn about
+gravity, a change of scale, a common shift) that is fitted at points modulo a prime and rebuilt in whole numbers.
 """
 
 from __future__ import annotations

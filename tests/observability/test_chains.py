@@ -134,7 +134,7 @@ def test_a_hidden_direction_is_named_by_its_states():
     model = LinearModel([[0, 0, 0], [0, 0, 0], [0, 0, 0]], None, [[1, 0, 2]], ("tilt", "drift", "bias"))
     found = observe_jointly(model)
     names = {direction_names(found.unobservable[k, :], found.states) for k in range(2)}
-    assert names == {"drift", "2*tilt - bias"} or names == {"drift", "-2*tilt + bias"}
+    assert names == {"drift", "(tilt, bias) = (2, -1)"} or names == {"drift", "(tilt, bias) = (-2, 1)"}
     with pytest.raises(UnobservableError, match=r"rank 1 of 3.*drift"):
         need_observable(found)
 

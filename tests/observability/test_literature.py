@@ -36,7 +36,14 @@ EXAMPLES = [
     ("predator and prey", "x y a b c d", "a*x - b*x*y; -c*y + d*x*y; 0; 0; 0; 0", "x", 5, {}),
     # Perelson's HIV model (Miao et al. 2011): the virus alone leaves the unit of the cells free
     ("HIV, virus", "T U V l r n d c N", "l - r*T - n*T*V; n*T*V - d*U; N*d*U - c*V; 0; 0; 0; 0; 0; 0", "V", 8, {}),
-    ("HIV, both", "T U V l r n d c N", "l - r*T - n*T*V; n*T*V - d*U; N*d*U - c*V; 0; 0; 0; 0; 0; 0", "V; T + U", 9, {}),
+    (
+        "HIV, both",
+        "T U V l r n d c N",
+        "l - r*T - n*T*V; n*T*V - d*U; N*d*U - c*V; 0; 0; 0; 0; 0; 0",
+        "V; T + U",
+        9,
+        {},
+    ),
     # Tuncer and Le 2018: prevalence with a known population; with an unknown reported share
     ("SIR, prevalence", "S I b g", "-b*S*I; b*S*I - g*I; 0; 0", "I", 4, {}),
     ("SIR, reported share", "S I b g k", "-b*S*I; b*S*I - g*I; 0; 0; 0", "k*I", 4, {}),
