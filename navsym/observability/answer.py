@@ -189,9 +189,9 @@ def observe(
 
     Ranks are those of ``H, H F, ..., H F^(n-1)`` for generic parameters (Kalman); what each measurement observes is
     spanned by its chain ``a_1 = h, a_(j+1) = F^T a_j`` (Kalenova et al. 1979, (1.2), (1.4)). Where F and H hold
-    the time or parameters with rates it is ``a_(j+1) = a_j' + F^T a_j`` (Silverman and Meadows 1967): the rank over an
-    interval. A nonlinear model is linearised along its own motion, so that the rows are gradients of Lie derivatives (Hermann and
-    Krener 1977): the local rank at a generic state. Pieces are stacked.
+    the time or parameters with rates it is ``a_(j+1) = a_j' + F^T a_j`` (Silverman and Meadows 1967): the rank
+    over an interval. A nonlinear model is linearised along its own motion, so that the rows are gradients of Lie
+    derivatives (Hermann and Krener 1977): the local rank at a generic state. Pieces are stacked.
 
     model      : a :class:`navsym.Model`, a LinearModel, or the path of a model file
     split      : (i, j), vectors taken from each of two measurements; by default (m, n - m)

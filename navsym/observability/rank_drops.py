@@ -217,6 +217,8 @@ def conditions_on(system: System, ring: Ring) -> tuple[sp.Expr, ...]:
     Generators that stand for functions follow the symbols in them: with w = 0 also sin(w*t) = 0, and cos(w*t) is not.
     """
     zeros = [ring.condition(f) for f in system]
+    if any(isinstance(zero, sp.exp) for zero in zeros):
+        return ()
     fixed = {zero: sp.Integer(0) for zero in zeros if zero.is_Symbol}
     if not ring.meaning or not fixed:
         return tuple(zeros)

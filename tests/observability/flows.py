@@ -108,7 +108,7 @@ def rank_in_time(F, H, times):
 
 
 def pad(entry):
-    return [*(mpmath.mpf(c) for c in entry), *[mpmath.mpf(0)] * (ORDER - len(entry))]
+    return [*(number(c) for c in entry), *[mpmath.mpf(0)] * (ORDER - len(entry))]
 
 
 def stacked(F, H, n, times):

@@ -175,7 +175,7 @@ def test_roots_are_read_with_their_square():
         "(x, y, u, v) = (y, -x, v, -u)",
     )
     with pytest.raises(DomainError, match="independent square roots"):
-        nav.observe(nav.Model("x y", dynamics=["y*sqrt(8*x)", "sqrt(2*x)"], H=["x*y"]))
+        nav.observe(nav.Model("x y", dynamics=["sqrt(x*y) + sqrt(x)", "sqrt(y)"], H=["x"]))
 
 
 def test_what_is_not_a_model_is_refused_in_words():
