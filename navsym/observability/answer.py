@@ -212,7 +212,7 @@ def observe(
     >>> [drop.zeros for drop in answer.rank_drops]
     [(g,), (g,)]
     >>> nav.observe(sensor, g=0).unobservable
-    ('x - b',)
+    ('(x, b) = (1, -1)',)
     """
     with file_in_errors(model):
         contents = contents_of(model, values, parameters, "observe")

@@ -170,12 +170,14 @@ def need_independent(squares: Mapping[sp.Symbol, sp.Expr]) -> None:
     pivots: dict[str, set[str]] = {}  # which factors stand in an odd power: linear algebra over two elements
     for root, square in squares.items():
         if square.free_symbols & squares.keys():
-            raise DomainError(f"expected roots that are not nested; got {root}; name the inner one as a state")
+            raise DomainError(f"expected roots that are not nested; got {root.name}; name the inner one as a state")
         number, factors = factor_exactly(ring.quotient(square).top)
         vector = {f"{base}" for base, power in factors if power % 2} | ({"-1"} if number < 0 else set())
         vector |= {str(p) for p, power in fmpz(abs(int(number))).factor() if int(power) % 2}
         while vector and max(vector) in pivots:
             vector = vector ^ pivots[max(vector)]
         if not vector:
-            raise DomainError(f"expected independent square roots; got {root}, a product of the others; simplify it")
+            raise DomainError(
+                f"expected independent square roots; got {root.name}, a product of the others; simplify it"
+            )
         pivots[max(vector)] = vector

@@ -165,7 +165,7 @@ def polynomial_rows(*matrices: sp.MatrixBase) -> tuple[list[Matrix], Any]:
         parts.append(rows[first : first + matrix.rows])
         first += matrix.rows
     if motion.roots:
-        got = f"roots beside {', '.join(str(root) for root in motion.ring.symbols[:6])}"
+        got = f"roots beside {', '.join(str(motion.ring.symbols[place]) for place in motion.roots)}"
         raise DomainError(
             f"expected pieces without square roots; got {got}; name each root as a parameter", where="piece"
         )
