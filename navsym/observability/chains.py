@@ -18,7 +18,13 @@ import sympy as sp
 from flint import nmod_mat
 
 from navsym.core.errors import DomainError, EmptyError, TooLargeError, UnobservableError
-from navsym.core.rational_functions import Quotient, cancel_fraction, factor_exactly, multiply_coefficients
+from navsym.core.rational_functions import (
+    Quotient,
+    cancel_fraction,
+    clear_denominators,
+    factor_exactly,
+    multiply_coefficients,
+)
 from navsym.models.linear import LinearModel
 from navsym.observability.directions import find_unobservable
 from navsym.observability.linear import (
@@ -258,6 +264,12 @@ def need_chains(model: LinearModel) -> None:
         raise TooLargeError(f"expected at most {STATES} states; got {model.size}; split the model")
     if model.H.rows == 0:
         raise EmptyError("expected at least one measurement; got none; add a row h")
+
+
+def numerators(rows: Sequence[sp.Matrix], ring: Ring) -> tuple[Matrix, Poly]:
+    """Entries times their least common denominator, and that denominator."""
+    known = {entry: ring.quotient(entry) for entry in dict.fromkeys(entry for row in rows for entry in row)}
+    return clear_denominators([[known[entry] for entry in row] for row in rows], ring.constant(1))
 
 
 def chain_of(name: str, row: list[Poly], bottom: Poly, motion: Motion) -> Chain:

@@ -19,10 +19,9 @@ import time
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from navsym.core.rational_functions import clear_denominators
 from navsym.models.inertial import FULL, full_model
 from navsym.models.linear import LinearModel, observability_matrix
-from navsym.observability.chains import chains_of, observe_jointly, prove_rank
+from navsym.observability.chains import chains_of, numerators, observe_jointly, prove_rank
 from navsym.observability.linear import pivot_rows
 from navsym.observability.rank_drops import chain_determinant
 from navsym.observability.ring import Ring
@@ -105,8 +104,7 @@ def square_part(model: LinearModel) -> sp.Matrix:
 def ours_reduce(matrix: sp.Matrix) -> int:
     """Fraction-free row-reduced form."""
     ring = Ring.of(matrix)
-    quotients = [[ring.quotient(entry) for entry in matrix[r, :]] for r in range(matrix.rows)]
-    entries, _ = clear_denominators(quotients, ring.constant(1))
+    entries, _ = numerators([matrix[r, :] for r in range(matrix.rows)], ring)
     return len(pivot_rows(entries, ring).rows)
 
 
