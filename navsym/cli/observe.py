@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -14,7 +14,7 @@ from navsym.core.errors import NavsymError
 
 
 def command(
-    file: Annotated[Path, typer.Argument(help="model file (TOML) with constant F and h")],
+    file: Annotated[Path, typer.Argument(help="model file (TOML): F and h, pieces, or dynamics and z")],
     split: Annotated[
         str | None, typer.Option(help='vectors taken from each measurement, such as "2,1"; default m,n-m')
     ] = None,
@@ -86,9 +86,23 @@ def overview(data: Mapping[str, Any]) -> str:
                 ["measurement", "dimension", "companion"],
                 [[m["name"], str(m["dimension"]), ", ".join(m["companion"])] for m in data["measurements"]],
             ),
-            *(["unobservable: " + "; ".join(directions) + "\n"] if directions else []),
+            *(["unobservable directions: " + "; ".join(directions) + "\n"] if directions else []),
+            *(["observed combinations: " + "; ".join(data["observable_functionals"]) + "\n"] if directions else []),
+            *(["redundant: " + ", ".join(data["redundant"]) + "\n"] if data["redundant"] else []),
+            *(
+                []
+                if data["proved"]
+                else ["the rank is proved from below only: no unobservable directions were found\n"]
+            ),
+            *pieces_text(data["pieces"], data["n"]),
         ]
     )
+
+
+def pieces_text(pieces: Sequence[Mapping[str, Any]], n: int) -> list[str]:
+    """The rank of each piece by itself."""
+    rows = [[piece["from"], piece["to"], f"{piece['joint_dimension']} of {n}"] for piece in pieces]
+    return [table(["piece from", "to", "observes alone"], rows)] if rows else []
 
 
 def drops_text(data: Mapping[str, Any]) -> str:
@@ -96,6 +110,12 @@ def drops_text(data: Mapping[str, Any]) -> str:
     blocks = ["no rank drops found\n"]
     if data["rank_drops"]:
         blocks = [table(["rank drops of", "where", "list complete"], [drop_row(d) for d in data["rank_drops"]])]
+    instant = data["instant"]
+    if instant and instant["rank_drops"]:
+        heads = ["at an instant, rank drops of", "where", "list complete"]
+        blocks.append(table(heads, [drop_row(d) for d in instant["rank_drops"]]))
+    if instant and instant["frozen_rank"] not in (None, data["joint_dimension"]):
+        blocks.append(f"with F and h frozen at one time the rank would be {instant['frozen_rank']}: another model\n")
     unsure = [name for name, complete in data["rank_drops_complete"].items() if not complete]
     if unsure:
         blocks.append(f"list of rank drops not proved complete for {', '.join(unsure)}\n")

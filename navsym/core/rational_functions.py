@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import sympy as sp
-from flint import fmpq_mpoly
+from flint import fmpq_mpoly, fmpq_mpoly_ctx
 
 from navsym.core.errors import DomainError
 from navsym.core.exact import to_rational
@@ -39,6 +39,34 @@ def cancel_fraction(top: Poly, bottom: Poly) -> Quotient:
     if isinstance(bottom, fmpq_mpoly):
         return Quotient(top / lead, bottom / lead)
     return Quotient(-top, -bottom) if lead < 0 else Quotient(top, bottom)
+
+
+def factor_exactly(poly: Poly) -> tuple[Any, list[tuple[Poly, int]]]:
+    """Content and irreducible factors with their multiplicities; the one call of flint's factorisation.
+
+    Over the integers flint 0.9 sorts the factors through a machine integer and overflows for two with equal monomials
+    whose coefficients differ by 2^31 or more, such as ``x - 7292115`` and ``x + 7292115`` beside a scale of 1e11.
+    The factors are the same over the rationals, where it does not.
+
+    >>> from flint import Ordering, fmpz_mpoly_ctx
+    >>> x = fmpz_mpoly_ctx.get(("x",), Ordering.lex).gen(0)
+    >>> factor_exactly(3 * (10**12 * x - 7) * (10**12 * x + 7))
+    (3, [(1000000000000*x - 7, 1), (1000000000000*x + 7, 1)])
+    """
+    try:
+        content, parts = poly.factor()
+    except OverflowError:
+        context = poly.context()
+        wider = fmpq_mpoly_ctx.get(context.names(), context.ordering())
+        parts = [
+            (context.from_dict({e: int(c) for e, c in base.to_dict().items()}).primitive()[1], power)
+            for base, power in wider.from_dict(poly.to_dict()).factor()[1]
+        ]
+        whole = context.constant(1)
+        for base, power in parts:
+            whole = whole * base ** int(power)
+        content = (poly / whole).leading_coefficient()
+    return content, [(base, int(power)) for base, power in parts]
 
 
 def add_fractions(first: Quotient, *others: Quotient) -> Quotient:

@@ -7,7 +7,7 @@ from a model (transition matrix, observability, regressors) are functions in the
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import sympy as sp
@@ -29,6 +29,8 @@ class LinearModel:
     states       : n different names
     measurements : p different names, by default z1, z2, ...
     time         : the symbol of the independent variable
+    rates        : symbol -> its derivative along the motion, for those beside the time that move
+    squares      : symbol -> its square, for a symbol that lies on a manifold such as q0^2 = 1 - q1^2
 
     Matrices may be given as nested lists of exact numbers and expressions; a missing F makes no
     model, a missing G means no process noise, a missing H no measurement.
@@ -42,6 +44,8 @@ class LinearModel:
     states: tuple[str, ...] = ()
     measurements: tuple[str, ...] = ()
     time: sp.Symbol = TIME
+    rates: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    squares: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         F = need_square("F", self.F)
@@ -65,8 +69,8 @@ class LinearModel:
 
     @property
     def constant(self) -> bool:
-        """True when neither F nor H contains the time."""
-        return self.time not in self.F.free_symbols | self.H.free_symbols
+        """True when F and H contain neither the time nor a symbol that moves."""
+        return not (self.F.free_symbols | self.H.free_symbols) & {self.time, *self.rates}
 
     @property
     def parameters(self) -> tuple[sp.Symbol, ...]:
@@ -90,7 +94,8 @@ class LinearModel:
         """
         exact = {symbol: exact_entry("value of", 0, 0, value) for symbol, value in values.items()}
         F, G, H = (matrix.subs(exact, simultaneous=True) for matrix in (self.F, self.G, self.H))
-        return LinearModel(F, G, H, self.states, self.measurements, self.time)
+        rates = {symbol: rate.subs(exact, simultaneous=True) for symbol, rate in self.rates.items()}
+        return LinearModel(F, G, H, self.states, self.measurements, self.time, rates, self.squares)
 
 
 def exact_matrix(name: str, value: Any) -> sp.ImmutableMatrix:

@@ -21,7 +21,7 @@ from navsym.language.names import join_place, quote
 from navsym.language.tomlfile import read_toml, toml_text
 from navsym.language.values import read_assumptions, write_declaration, write_entries, write_value
 from navsym.models.linear import LinearModel, linear_row
-from navsym.models.modelfile import BasisFile, ModelFile, Piece, model_from, piece_model, read_model
+from navsym.models.modelfile import BasisFile, ModelFile, Piece, model_from, need_fixed, piece_model, read_model
 
 #: Keys of a model file -> the arguments that write them, for the place of an error.
 PLACES = (
@@ -49,6 +49,9 @@ class Model:
     targets      : name -> n entries, or a formula of the states: functionals of x(T); by default every state
     measurements : p names, by default z1, z2, ...
     pieces       : (from, to, F) in order, where F differs from piece to piece
+    dynamics     : f, one formula per state, in place of F: ``dx/dt = f(x)``; H then holds formulas z of the states
+    relations    : equations between the states that hold always, such as ``q0**2 + q1**2 = 1``; with dynamics
+    rates        : parameter -> its derivative by the time, for parameters that move; for ``observe`` only
     parameters   : name -> declaration; keywords that remain mean the same
 
     Entries are text of the language of files, ints, Fractions, sympy expressions, or matrices and integer arrays
@@ -87,19 +90,28 @@ class Model:
         *,
         measurements: str | Sequence[str] | None = None,
         pieces: Sequence[Any] | None = None,
+        dynamics: Any = None,
+        relations: Any = None,
+        rates: Mapping[str, Any] | None = None,
         name: str = "model",
         parameters: Mapping[str, Any] | None = None,
         **declared: Any,
     ):
         with places_of_arguments():
             names = name_list(states, "Model: states")
-            formulas = (F, H, sigma, interval, targets, pieces)
+            formulas = (F, H, sigma, interval, targets, pieces, dynamics, rates)
             declarations = declarations_of(parameters, declared, formulas, {*names, "t"})
             document: dict[str, Any] = {"model": {"name": name, "states": names}}
             if F is not None:
                 document["model"]["F"] = write_entries(F, "Model: F")
+            for key, value in (("dynamics", dynamics), ("relations", relations)):
+                if value is not None:
+                    document["model"][key] = value if key == "relations" else write_entries(value, f"Model: {key}")
             document["parameters"] = declarations
-            document["measurement"] = measurement_blocks(H, sigma, measurements, names, declarations)
+            if rates is not None:
+                document["rates"] = {key: write_value(value, f"Model: rates.{key}") for key, value in rates.items()}
+            linear = names if dynamics is None else None
+            document["measurement"] = measurement_blocks(H, sigma, measurements, linear, declarations)
             if pieces is not None:
                 document["piece"] = piece_blocks(pieces)
             if interval is not None:
@@ -265,6 +277,7 @@ class Model:
         Raises ShapeError for a system in pieces, DomainError for regressors.
         """
         contents = self._system(values)
+        need_fixed(contents, "Model")
         return piece_model(contents, contents.F)
 
     def _system(self, values: Mapping[str, Any] | None = None) -> ModelFile:
@@ -301,8 +314,10 @@ class Model:
 
     @property
     def H(self) -> sp.ImmutableMatrix:
-        """Rows of the measurements (p, n)."""
+        """Rows of the measurements (p, n). Raises DomainError beside dynamics."""
         contents = self._contents
+        if isinstance(contents, ModelFile) and contents.dynamics:
+            need_fixed(contents, "Model")
         rows = [m.h for m in contents.measurements] if isinstance(contents, ModelFile) else contents.H
         return sp.ImmutableMatrix(rows)
 
@@ -376,8 +391,12 @@ def contents_of(
     given = {**(values or {}), **parameters}
     try:
         if isinstance(model, str | os.PathLike):
-            return read_model(model, {name: write_value(value, f"--set {name}") for name, value in given.items()})
-        return as_model(model, f"{where}: model").read(given)
+            found = read_model(model, {name: write_value(value, f"--set {name}") for name, value in given.items()})
+        else:
+            found = as_model(model, f"{where}: model").read(given)
+        if where != "observe":
+            need_fixed(found, f"{where}: model")
+        return found
     except NavsymError as error:
         for start in ("Model: values.", "--set "):
             error.where = error.where.replace(start, f"{where}: ", 1) if error.where.startswith(start) else error.where
@@ -476,9 +495,9 @@ def need_sign(name: str, word: str, declaration: Any) -> None:
 
 
 def measurement_blocks(
-    H: Any, sigma: Any, measurements: Any, states: Sequence[str], declared: Mapping[str, Any]
+    H: Any, sigma: Any, measurements: Any, states: Sequence[str] | None, declared: Mapping[str, Any]
 ) -> list[dict[str, Any]]:
-    """The [[measurement]] blocks."""
+    """The [[measurement]] blocks: rows h, or formulas z where no states are given."""
     if H is None:
         raise EmptyError("expected H with one row per measurement; got none; give H=[[…]]", where="Model: H")
     rows = write_entries(H, "Model: H")
@@ -490,6 +509,8 @@ def measurement_blocks(
     if len(names) != len(rows):
         message = f"expected {len(rows)} names, one per row of H; got {len(names)}; name each once"
         raise ShapeError(message, where="Model: measurements")
+    if states is None:
+        return [{"name": name, "z": row, "sigma": bound} for name, row, bound in zip(names, rows, sigmas, strict=True)]
     known = {**known_symbols(declared), "t": symbol("t")}
     return [
         {"name": name, "h": read_row(row, states, known, f"Model: H[{k}]"), "sigma": bound}
@@ -572,11 +593,17 @@ def document_of(contents: ModelFile | BasisFile) -> dict[str, Any]:
         tables: dict[str, Any] = {"basis": basis, "parameters": parameters, "targets": targets}
         return {table: content for table, content in tables.items() if content}
     tables = {"model": {"name": contents.name, "states": list(contents.states)}, "parameters": parameters}
+    tables["rates"] = {name: to_text(rate) for name, rate in contents.rates.items()}
     tables["measurement"] = [
-        {"name": m.name, "h": [to_text(entry) for entry in m.h], "sigma": to_text(m.sigma)}
+        {"name": m.name, "sigma": to_text(m.sigma)}
+        | ({"h": [to_text(entry) for entry in m.h]} if m.z is None else {"z": to_text(m.z)})
         for m in contents.measurements
     ]
-    if len(contents.pieces) == 1 and contents.pieces[0].end in (None, contents.T):
+    if contents.dynamics:
+        tables["model"]["dynamics"] = [to_text(entry) for entry in contents.dynamics]
+        if contents.relations:
+            tables["model"]["relations"] = [f"{to_text(value)} = 0" for value in contents.relations]
+    elif len(contents.pieces) == 1 and contents.pieces[0].end in (None, contents.T):
         tables["model"]["F"] = write_entries(contents.F, "F")
     else:
         tables["piece"] = [piece_table(piece) for piece in contents.pieces]
@@ -626,6 +653,9 @@ def equations_latex(contents: ModelFile | BasisFile) -> list[str]:
     if isinstance(contents, BasisFile):
         rows = latex_of(sp.ImmutableMatrix(contents.H))
         return [rf"z({latex_of(contents.variable)}) = {rows} q + r"]
+    if contents.dynamics:
+        column, z = sp.ImmutableMatrix(contents.dynamics), sp.ImmutableMatrix([m.z for m in contents.measurements])
+        return [rf"\frac{{d}}{{dt}} x = {latex_of(column)}", rf"z = {latex_of(z)} + r"]
     lines = []
     for piece in contents.pieces:
         where = ""

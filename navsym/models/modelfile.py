@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, ShapeError, UnknownSymbolError
@@ -47,11 +47,15 @@ Targets = Mapping[str, tuple[Expr, ...]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Measurement:
-    """``z = h x + r`` with a standard deviation of r of at most sigma; h has one entry per state."""
+    """``z = h x + r`` with a standard deviation of r of at most sigma; h has one entry per state.
+
+    z : the formula of a measurement that is given as one, beside ``dynamics``; h is empty then
+    """
 
     name: str
     h: tuple[Expr, ...]
     sigma: Expr
+    z: Expr | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,13 +69,16 @@ class Piece:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ModelFile:
-    """``dx/dt = F x`` with scalar measurements on [0, T].
+    """``dx/dt = F x``, or ``dx/dt = f(x)``, with scalar measurements on [0, T].
 
     time         : the symbol t, which F and h may contain
     states       : n names
     pieces       : one piece for a constant (or continuously varying) F, otherwise one for each [[piece]]
     T            : length of the interval, None when the file has no [interval]
     targets      : name -> n expressions, a functional of the state at T
+    rates        : parameter -> its derivative by the time; the others are constant
+    dynamics     : f, one entry per state, of a nonlinear model; there are no pieces then
+    relations    : functions of the states that are zero on the manifold on which they move
     """
 
     name: str
@@ -82,6 +89,9 @@ class ModelFile:
     measurements: tuple[Measurement, ...]
     T: Expr | None
     targets: Targets
+    rates: Mapping[str, Expr] = field(default_factory=dict)
+    dynamics: tuple[Expr, ...] = ()
+    relations: tuple[Expr, ...] = ()
 
     def _repr_latex_(self) -> str:
         """The matrix of the system, for notebooks."""
@@ -89,7 +99,8 @@ class ModelFile:
 
     @property
     def F(self) -> Matrix:
-        """The matrix of a model in one piece. Raises ShapeError when there are several."""
+        """The matrix of a model in one piece. Raises ShapeError when there are several, DomainError for dynamics."""
+        need_fixed(self, "Model")
         if len(self.pieces) != 1:
             message = f"expected one F; got {len(self.pieces)} pieces; use a method that takes pieces"
             raise ShapeError(message)
@@ -123,6 +134,14 @@ class BasisFile:
     def box(self) -> dict[Symbol, tuple[Expr, Expr]]:
         """Symbol -> (lower, upper) for the parameters that have a range."""
         return box_of(self.parameters)
+
+
+def need_fixed(found: ModelFile | BasisFile, where: str) -> None:
+    """Refuse what only observability is asked about: nonlinear dynamics, and parameters that move."""
+    if isinstance(found, ModelFile) and (found.dynamics or found.rates):
+        got = "nonlinear dynamics" if found.dynamics else f"the rate of {next(iter(found.rates))}"
+        message = f"expected a linear model with constant parameters; got {got}; ask observe, or write F as F(t)"
+        raise DomainError(message, where=where)
 
 
 def linear_model(found: ModelFile) -> LinearModel:
@@ -213,7 +232,7 @@ def read_targets(document: Table, known: Known, names: tuple[str, ...], where: s
     return targets
 
 
-TABLES = ("model", "basis", "parameters", "measurement", "piece", "interval", "targets")
+TABLES = ("model", "basis", "parameters", "rates", "measurement", "piece", "interval", "targets")
 
 
 def read_model(path: str | os.PathLike[str], values: Mapping[str, str] | None = None) -> ModelFile | BasisFile:
@@ -270,11 +289,13 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
     expect_keys(document, tuple(key for key in TABLES if key != "basis"), where)
     place = join_place(where, "model")
     model = as_table(document["model"], place)
-    expect_keys(model, ("name", "states", "F"), place)
+    expect_keys(model, ("name", "states", "F", "dynamics", "relations"), place)
     states = read_names(require_key(model, "states", place), join_place(place, "states"))
     require_distinct((*known, "t", *states), join_place(place, "states"))
     time = symbol("t")
     moving = {**known, "t": time}
+    if "dynamics" in model or "relations" in model:
+        return read_nonlinear(document, where, parameters, moving | {name: symbol(name) for name in states}, states)
     T = read_interval(document, known, join_place(where, "interval"))
     return ModelFile(
         name=as_title(model.get("name", "model"), join_place(place, "name")),
@@ -285,7 +306,64 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
         measurements=read_measurements(document, moving, len(states), where),
         T=T,
         targets=read_targets(document, known, states, where),
+        rates=read_rates(document, moving, parameters, where),
     )
+
+
+def read_nonlinear(
+    document: Table, where: str, parameters: Mapping[str, Parameter], moving: Known, states: tuple[str, ...]
+) -> ModelFile:
+    """A model with ``dynamics`` in place of F: entries and measurements are formulas of the states."""
+    place = join_place(where, "model")
+    model = as_table(document["model"], place)
+    for key, table in (("F", model), ("piece", document), ("targets", document)):
+        if key in table:
+            message = f"expected dynamics or {key}; got both; remove one of them"
+            raise DuplicateError(message, where=join_place(place, key))
+    dynamics = require_key(model, "dynamics", place)
+    relations = as_list(model.get("relations", ["0 = 0"]), join_place(place, "relations"), "a list of equations")
+    known = {name: value for name, value in moving.items() if name not in (*states, "t")}
+    return ModelFile(
+        name=as_title(model.get("name", "model"), join_place(place, "name")),
+        parameters=parameters,
+        states=states,
+        time=symbol("t"),
+        pieces=(),
+        measurements=read_measurements(document, moving, 0, where),
+        T=read_interval(document, known, join_place(where, "interval")),
+        targets={},
+        rates=read_rates(document, moving, parameters, where),
+        dynamics=read_vector(dynamics, moving, join_place(place, "dynamics"), len(states), "one per state"),
+        relations=tuple(
+            read_relation(text, moving, join_place(join_place(place, "relations"), i))
+            for i, text in enumerate(relations)
+            if "relations" in model
+        ),
+    )
+
+
+def read_relation(text: Any, moving: Known, where: str) -> Expr:
+    """left - right of an equation between the states."""
+    sides = as_text(text, where, 'an equation such as "q0**2 + q1**2 = 1"').split("=")
+    if len(sides) != 2:
+        message = f"expected one equation; got {quote(text)}; write both sides with one = between them"
+        raise DomainError(message, where=where)
+    return parse(sides[0], moving, where=where) - parse(sides[1], moving, where=where)
+
+
+def read_rates(document: Table, moving: Known, parameters: Mapping[str, Parameter], where: str) -> dict[str, Expr]:
+    """The [rates] table: derivatives of parameters by the time; what ``--set`` fixes has none."""
+    place = join_place(where, "rates")
+    table = as_table(document.get("rates", {}), place)
+    for name in table:
+        if name not in moving or name == "t":
+            hint = suggest_nearest(name, [known for known in moving if known != "t"])
+            message = f"expected a declared parameter; got {quote(name)}; declare it: {hint}"
+            raise UnknownSymbolError(message, where=place)
+        if name not in parameters:
+            message = f"expected a parameter that is left free; got a value for {name}, which moves; drop its rate"
+            raise DomainError(message, where=place)
+    return {name: read_entry(value, moving, join_place(place, name)) for name, value in table.items()}
 
 
 def read_names(value: Any, where: str) -> tuple[str, ...]:
@@ -341,19 +419,22 @@ def read_piece(block: Any, moving: Known, n: int, where: str) -> Piece:
 
 
 def read_measurements(document: Table, moving: Known, n: int, where: str) -> tuple[Measurement, ...]:
-    """The [[measurement]] blocks, with distinct names."""
+    """The [[measurement]] blocks, with distinct names; rows h of n entries, formulas z where n is 0."""
     place = join_place(where, "measurement")
     blocks = as_list(require_key(document, "measurement", where), place, "[[measurement]] blocks")
     found = []
     for i, block in enumerate(blocks):
         here = join_place(place, i)
         table = as_table(block, here)
-        expect_keys(table, ("name", "h", "sigma"), here)
+        key = "h" if n else "z"
+        expect_keys(table, ("name", key, "sigma"), here)
         name = as_label(table.get("name", f"z{i + 1}"), join_place(here, "name"))
-        h = read_vector(require_key(table, "h", here), moving, join_place(here, "h"), n, "one per state")
+        value, there = require_key(table, key, here), join_place(here, key)
+        h = read_vector(value, moving, there, n, "one per state") if n else ()
+        z = None if n else read_entry(value, moving, there)
         fixed = {key: value for key, value in moving.items() if key != "t"}
         sigma = read_entry(table.get("sigma", 1), fixed, join_place(here, "sigma"))
         require_positive(sigma, "a standard deviation", join_place(here, "sigma"))
-        found.append(Measurement(name, h, sigma))
+        found.append(Measurement(name, h, sigma, z))
     require_distinct((measurement.name for measurement in found), place)
     return tuple(found)

@@ -17,18 +17,22 @@ from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxErro
 from navsym.language.expression import parse, symbol
 from navsym.language.names import RESERVED, join_place, quote
 from navsym.language.values import write_entries, write_value
+from navsym.models.along import model_along_motion
 from navsym.models.certificates import rank_certificate
 from navsym.models.linear import LinearModel, linear_row, observability_matrix
 from navsym.models.model import Model, contents_of, file_in_errors
-from navsym.models.modelfile import ModelFile, linear_model
+from navsym.models.modelfile import ModelFile
 from navsym.observability.chains import (
     JointObservability,
     MeasurementObservability,
     direction_names,
+    functional_names,
     need_observable,
     observe_jointly,
+    prove_rank,
 )
 from navsym.observability.document import as_html, as_latex, document_of_observability
+from navsym.observability.pieces import observe_pieces
 from navsym.observability.rank_drops import RankDrop, drops_and_completeness
 from navsym.observability.sensors import Restoration, restore_observability
 from navsym.observability.splits import FeasibleSplit, Split, best_split, choose_split, feasible_splits
@@ -40,7 +44,7 @@ VARIABLE = "p"
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Observability(Answer):
-    """Observability of a constant model: the directions of the state that its measurements determine.
+    """Observability of a model: the directions of the state that its measurements determine.
 
     Ranks hold for generic parameters; ``rank_drops`` lists the special ones.
 
@@ -48,6 +52,9 @@ class Observability(Answer):
     joint               : chains, dimensions and the staircase of all measurements
     rank_drops          : where a dimension drops for special parameters
     rank_drops_complete : subspace -> whether the list of its drops is proved to hold all of them
+    kind                : "constant", "varying", "nonlinear" or "pieces"
+    frozen_rank         : of a varying model, the rank that it has with F and h frozen at one time: another question
+    pieces              : of a model in pieces, from, to and the rank of each by itself
     splits, best_split  : two-stage splits of two measurements that observe all; empty and None elsewhere
     split               : the chosen split, None where there is none
     gains               : of the stages, None unless poles were asked for
@@ -70,6 +77,9 @@ class Observability(Answer):
     gains: StageGains | None = None
     restoration: Restoration | None = None
     candidates: tuple[str, ...] = ()
+    kind: str = "constant"
+    frozen_rank: int | None = None
+    pieces: tuple[Mapping[str, Any], ...] = ()
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -93,9 +103,25 @@ class Observability(Answer):
 
     @property
     def unobservable(self) -> tuple[str, ...]:
-        """Directions that no measurement shows, by the states that they mix: ``"x1 - 2*x3"``."""
+        """Directions that no measurement shows, by their components: ``"(x1, x3) = (1, -2)"``."""
         rows = self.unobservable_basis
         return tuple(direction_names(rows[k, :], self.states) for k in range(rows.rows))
+
+    @property
+    def observable_functionals(self) -> tuple[str, ...]:
+        """Combinations of states that span what is observed, such as ``"x1 + 2*x3"``.
+
+        Of a nonlinear model, of their differentials: ``"k*dS + S*dk"`` is the differential of k S.
+        """
+        rows = self.joint.observed
+        names = [f"d{state}" for state in self.states] if self.kind == "nonlinear" else self.states
+        return tuple(functional_names(rows[k, :], names) for k in range(rows.rows))
+
+    @property
+    def redundant(self) -> tuple[str, ...]:
+        """Measurements that show nothing beside those before them."""
+        pairs = zip(self.measurements, self.joint.staircase, strict=True)
+        return tuple(measurement.name for measurement, count in pairs if count == 0)
 
     @property
     def unobservable_basis(self) -> sp.ImmutableMatrix:
@@ -108,6 +134,8 @@ class Observability(Answer):
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """The generic rank of the observability matrix, where a point of a few attains it."""
+        if self.kind in ("nonlinear", "pieces"):
+            return []
         proof = rank_certificate(observability_matrix(self.model))
         return [] if proof is None else [proof]
 
@@ -157,10 +185,13 @@ def observe(
     values: Mapping[str, Any] | None = None,
     **parameters: Any,
 ) -> Observability:
-    """Exact observability of a model ``dx/dt = F x, z = H x`` with constant F and H.
+    """Exact observability of a model: ``dx/dt = F x, z = H x``, or ``dx/dt = f(x), z = h(x)``.
 
     Ranks are those of ``H, H F, ..., H F^(n-1)`` for generic parameters (Kalman); what each measurement observes is
-    spanned by its chain ``a_1 = h, a_(j+1) = F^T a_j`` (Kalenova et al. 1979, (1.2), (1.4)).
+    spanned by its chain ``a_1 = h, a_(j+1) = F^T a_j`` (Kalenova et al. 1979, (1.2), (1.4)). Where F and H hold
+    the time or parameters with rates it is ``a_(j+1) = a_j' + F^T a_j`` (Silverman and Meadows 1967): the rank
+    over an interval. A nonlinear model is linearised along its own motion, so that the rows are gradients of Lie
+    derivatives (Hermann and Krener 1977): the local rank at a generic state. Pieces are stacked.
 
     model      : a :class:`navsym.Model`, a LinearModel, or the path of a model file
     split      : (i, j), vectors taken from each of two measurements; by default (m, n - m)
@@ -170,8 +201,8 @@ def observe(
     parameters : exact values of parameters, such as ``w="1/2"``; ``values`` is the same as a mapping
 
     Raises UnobservableError with the direction when a split or poles are asked for and the states are not observed,
-    ShapeError for the wrong number of vectors or polynomials, DomainError for entries that vary in time or are no
-    rational functions, roots that are not in the left half-plane, and regressors without F.
+    ShapeError for the wrong number of vectors or polynomials, DomainError for functions that cannot be
+    read, roots that are not in the left half-plane, and regressors without F.
 
     >>> import navsym as nav
     >>> sensor = nav.Model("x v b", F=[[0, 1, 0], [0, 0, "g"], [0, 0, 0]], H=["x + b"], g="real")
@@ -181,18 +212,29 @@ def observe(
     >>> [drop.zeros for drop in answer.rank_drops]
     [(g,), (g,)]
     >>> nav.observe(sensor, g=0).unobservable
-    ('x - b',)
+    ('(x, b) = (1, -1)',)
     """
     with file_in_errors(model):
         contents = contents_of(model, values, parameters, "observe")
         if not isinstance(contents, ModelFile):
             message = "expected a [model] with F and h; got a [basis] of regressors; give the system"
             raise DomainError(message, where="observe: model")
+        if (contents.dynamics or len(contents.pieces) > 1) and (
+            split is not None or poles is not None or restore or candidates
+        ):
+            got = "dynamics" if contents.dynamics else f"{len(contents.pieces)} pieces"
+            message = f"expected one constant F for splits, poles and candidates; got {got}; leave them out"
+            raise DomainError(message, where="observe: model")
+        if len(contents.pieces) > 1:
+            first, joint, pieces = observe_pieces(contents)
+            return Observability(contents.name, first, joint, (), {"joint": False}, kind="pieces", pieces=pieces)
         request = read_split(split) if split is not None else None
         polynomials = read_poles(poles, contents) if poles is not None else ()
         rows = read_candidate_rows(candidates or {}, contents)
         asked = restore or bool(candidates)
-        return observe_linear(linear_model(contents), contents.name, request, polynomials, rows if asked else None)
+        return observe_linear(
+            model_along_motion(contents), contents.name, request, polynomials, rows if asked else None
+        )
 
 
 def observe_linear(
@@ -204,9 +246,12 @@ def observe_linear(
 ) -> Observability:
     """Like :func:`observe` for exact data: poles in the symbol p, rows of candidates, empty for all states."""
     joint = observe_jointly(model)
+    if (request is not None or poles) and not model.constant:
+        message = "expected constant F and H for splits and poles; got entries that move; leave them out"
+        raise DomainError(message, where="observe: split")
     if request is not None or poles:
         need_observable(joint)
-    two = len(joint.measurements) == 2 and joint.observable
+    two = model.constant and len(joint.measurements) == 2 and joint.observable
     if request is not None and not two:
         raise ShapeError(f"split: expected two measurements; got {len(joint.measurements)}; choose two of them")
     chosen = choose_split(joint, *(request or ())) if two else None
@@ -221,9 +266,26 @@ def observe_linear(
         best_split=best_split(joint) if two else None,
         split=chosen,
         gains=gains_for(joint, chosen, poles) if poles else None,
+        kind=kind_of(model),
+        frozen_rank=frozen_rank(model),
         restoration=restore_observability(model, candidates or None) if candidates is not None else None,
         candidates=tuple(candidates or model.states) if candidates is not None else (),
     )
+
+
+def kind_of(model: LinearModel) -> str:
+    """constant, varying or nonlinear."""
+    if model.constant:
+        return "constant"
+    return "nonlinear" if {symbol.name for symbol in model.rates} & set(model.states) else "varying"
+
+
+def frozen_rank(model: LinearModel) -> int | None:
+    """Rank of a varying model with its time and moving parameters held, which is the answer to another question."""
+    if kind_of(model) != "varying":
+        return None
+    still = LinearModel(model.F, None, model.H, model.states, model.measurements, sp.Dummy("still", real=True))
+    return prove_rank(still).rank
 
 
 def gains_for(joint: JointObservability, chosen: Split | None, poles: Sequence[sp.Expr]) -> StageGains:

@@ -17,25 +17,29 @@ from itertools import product
 import sympy as sp
 from flint import nmod_mat
 
-from navsym.core.errors import DomainError, DuplicateError, EmptyError, TooLargeError, UnobservableError
-from navsym.core.rational_functions import Quotient, cancel_fraction, clear_denominators, multiply_coefficients
+from navsym.core.errors import DomainError, EmptyError, TooLargeError, UnobservableError
+from navsym.core.rational_functions import (
+    Quotient,
+    cancel_fraction,
+    clear_denominators,
+    factor_exactly,
+    multiply_coefficients,
+)
 from navsym.models.linear import LinearModel
+from navsym.observability.directions import find_unobservable
 from navsym.observability.linear import (
     PRIME,
     Matrix,
     at_point,
     independent_places,
-    integer_points,
     linear_relation,
     null_vectors,
     residue,
-    residue_chains,
     residue_rank,
     scalar_product,
-    transposed_times,
-    triangular_form,
 )
-from navsym.observability.reduction import krylov_remainder, krylov_rows
+from navsym.observability.motion import Motion, motion_of, residue_chains
+from navsym.observability.reduction import krylov_rows
 from navsym.observability.ring import Poly, Ring
 
 # The relation that ends a chain, from the characteristic polynomial.
@@ -118,7 +122,7 @@ def monic_factors(coefficients: Sequence[Poly], degree: int, ring: Ring) -> list
         ),
         wider.constant(0),
     )
-    parts = [(monic_by_power(f, p, ring), int(power)) for f, power in total.factor()[1]]
+    parts = [(monic_by_power(f, p, ring), int(power)) for f, power in factor_exactly(total)[1]]
     found = []
     for count, powers in enumerate(product(*(range(power + 1) for _, power in parts))):
         if count > CHOICES:
@@ -144,45 +148,62 @@ def monic_by_power(f: Poly, place: int, ring: Ring) -> list[Poly]:
 
 #: Largest number of states; exact symbolic answers grow fast.
 STATES = 40
+#: Terms of a vector, or of a whole chain to be solved, up to which those of a moving model are written.
+LONGEST = 300
+#: The same for a vector of a constant model, whose relation comes from the characteristic polynomial.
+LONGEST_CONSTANT = 800
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Chain:
     """The vectors a_1 ... a_m of one measurement, without denominators.
 
-    vectors   : m polynomial vectors; ``a_j = vectors[j - 1] / (bottom * clock**(j - 1))``
+    vectors   : m polynomial vectors; ``a_j = vectors[j - 1] / (bottom * clock**(j - 1))``. Of a nonlinear model the
+                first ones only, where the others are too long to write
     bottom    : common denominator of h
-    clock     : common denominator of G, the same for all chains
-    companion : theta_1 ... theta_m
+    clock     : common denominator of G, the same for all chains; both are 1 where they move
+    companion : theta_1 ... theta_m; None where the relation is too long to write
+    dimension : m, what the measurement observes
     """
 
     name: str
     vectors: Matrix
     bottom: Poly
     clock: Poly
-    companion: tuple[Quotient, ...]
-
-    @property
-    def dimension(self) -> int:
-        """m, the dimension of what the measurement observes."""
-        return len(self.vectors)
+    companion: tuple[Quotient, ...] | None
+    dimension: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Chains:
     """All chains of a model, and the staircase that spans what is observed jointly.
 
-    matrix    : numerator of G, (n, n); ``G = matrix / clock``
-    staircase : (k_1, ..., k_s): k_1 vectors of the first chain, then k_2 of the second, ... are a
-                basis of the jointly observable functionals
+    staircase  : (k_1, ..., k_s): k_1 vectors of the first chain, then k_2 of the second, ... are a
+                 basis of the jointly observable functionals
+    directions : columns that no measurement shows, without denominators; None where none could be exhibited, so that
+                 the rank is proved from below only
     """
 
-    ring: Ring
     states: tuple[str, ...]
-    matrix: Matrix
-    clock: Poly
+    motion: Motion
     chains: tuple[Chain, ...]
     staircase: tuple[int, ...]
+    directions: Matrix | None
+
+    @property
+    def ring(self) -> Ring:
+        """The ring of the entries."""
+        return self.motion.ring
+
+    @property
+    def matrix(self) -> Matrix:
+        """Numerator of G, (n, n); ``G = matrix / clock``."""
+        return self.motion.matrix
+
+    @property
+    def clock(self) -> Poly:
+        """Denominator of G."""
+        return self.motion.clock
 
     @property
     def size(self) -> int:
@@ -202,7 +223,7 @@ class Chains:
         """The first vectors of a chain, also beyond its dimension."""
         vectors = list(chain.vectors[:count])
         while len(vectors) < count:
-            vectors.append(transposed_times(self.matrix, vectors[-1], self.ring))
+            vectors.append(self.motion.advance(vectors[-1]))
         return vectors
 
     def weight(self, counts: Sequence[int]) -> Poly:
@@ -214,48 +235,35 @@ class Chains:
 
 
 def chains_of(model: LinearModel) -> Chains:
-    """Chains of all measurements of a constant model, with proofs of their dimensions.
+    """Chains of all measurements of a model, with proofs of their dimensions.
 
     Raises DomainError (time-varying model, zero row h, entries that are no rational functions),
-    EmptyError (no measurement), DuplicateError (two measurements with equal rows), TooLargeError.
+    EmptyError (no measurement), TooLargeError. Measurements with equal rows are redundant, not wrong.
     """
-    need_chains(model)
-    ring = Ring.of([model.F, model.H])
-    need_own_rows(model, ring)
-    n = model.size
-    matrix, clock = numerators([model.F[i, :] for i in range(n)], ring)
-    rows = [numerators([model.H[k, :]], ring) for k in range(model.H.rows)]
+    motion, rows = moving_rows(model)
     chains = tuple(
-        chain_of(name, row[0], bottom, matrix, clock, ring)
-        for name, (row, bottom) in zip(model.measurements, rows, strict=True)
+        chain_of(name, row, bottom, motion) for name, (row, bottom) in zip(model.measurements, rows, strict=True)
     )
-    staircase = joint_staircase(chains, matrix, ring, n)
-    return Chains(ring, model.states, matrix, clock, chains, staircase)
+    staircase, directions = joint_staircase(chains, motion)
+    return Chains(model.states, motion, chains, staircase, directions)
+
+
+def moving_rows(model: LinearModel) -> tuple[Motion, list[tuple[list[Poly], Poly]]]:
+    """The motion of a model and its rows h with their denominators; refuses rows that are zero."""
+    need_chains(model)
+    motion, rows = motion_of(model)
+    for name, (row, _) in zip(model.measurements, rows, strict=True):
+        if all(entry == 0 for entry in row):
+            raise DomainError(f"measurement {name}: expected a row h that is not zero; got zeros; remove it")
+    return motion, rows
 
 
 def need_chains(model: LinearModel) -> None:
-    """Refuse what has no chains: time-varying or too large models, and models without a measurement."""
-    if not model.constant:
-        raise DomainError(f"expected constant F and H; got entries with the time {model.time}; freeze them at one time")
+    """Refuse what has no chains: too large models, and models without a measurement."""
     if model.size > STATES:
         raise TooLargeError(f"expected at most {STATES} states; got {model.size}; split the model")
     if model.H.rows == 0:
         raise EmptyError("expected at least one measurement; got none; add a row h")
-
-
-def need_own_rows(model: LinearModel, ring: Ring) -> None:
-    """Refuse rows h that are zero or equal, also in disguise: (a + 1)^2 and a^2 + 2 a + 1 are one number."""
-    seen: dict[tuple[str, ...], str] = {}
-    for k, name in enumerate(model.measurements):
-        quotients = [ring.quotient(entry) for entry in model.H[k, :]]
-        if all(q.top == 0 for q in quotients):
-            raise DomainError(f"measurement {name}: expected a row h that is not zero; got zeros; remove it")
-        key = tuple(f"{q.top}/{q.bottom}" for q in quotients)
-        if key in seen:
-            raise DuplicateError(
-                f"measurement {name}: expected a row of its own; got that of {seen[key]}; remove one of them"
-            )
-        seen[key] = name
 
 
 def numerators(rows: Sequence[sp.Matrix], ring: Ring) -> tuple[Matrix, Poly]:
@@ -264,19 +272,21 @@ def numerators(rows: Sequence[sp.Matrix], ring: Ring) -> tuple[Matrix, Poly]:
     return clear_denominators([[known[entry] for entry in row] for row in rows], ring.constant(1))
 
 
-def chain_of(name: str, row: list[Poly], bottom: Poly, matrix: Matrix, clock: Poly, ring: Ring) -> Chain:
+def chain_of(name: str, row: list[Poly], bottom: Poly, motion: Motion) -> Chain:
     """Vectors up to the first dependent one; its relation proves that the chain ends there."""
-    vectors = [row]
-    dimension, point = generic_rank([row], matrix, ring)
+    vectors, ring = [row], motion.ring
+    dimension, point = generic_rank([row], motion)
+    clock = motion.clock
+    if motion.derivative(clock) != 0 or motion.derivative(bottom) != 0:
+        clock = bottom = ring.constant(1)
     while True:
         while len(vectors) <= dimension:
-            vectors.append(transposed_times(matrix, vectors[-1], ring))
-        theta = chain_relation(vectors, dimension, matrix, ring, point)
-        coefficients = (
-            linear_relation(vectors[:dimension], vectors[dimension], ring)
-            if theta is None
-            else [Quotient(part, ring.constant(1)) for part in theta]
-        )
+            if sum(len(entry) for entry in vectors[-1]) > (LONGEST if motion.rates else LONGEST_CONSTANT):
+                return Chain(name, vectors[:dimension], bottom, clock, None, dimension)
+            vectors.append(motion.advance(vectors[-1]))
+        if motion.rates and (motion.roots or sum(len(x) for v in vectors for x in v) > LONGEST):
+            return Chain(name, vectors[:dimension], bottom, clock, None, dimension)
+        coefficients = chain_coefficients(vectors, dimension, motion, point)
         if coefficients is not None:
             break
         dimension += 1  # the points were unlucky: the relation, not they, decides
@@ -284,42 +294,53 @@ def chain_of(name: str, row: list[Poly], bottom: Poly, matrix: Matrix, clock: Po
     companion = tuple(  # joint_correction:1.4
         cancel_fraction(c.top * clock**j, c.bottom * clock**m) for j, c in enumerate(coefficients)
     )
-    return Chain(name, vectors[:m], bottom, clock, companion)
+    return Chain(name, vectors[:m], bottom, clock, companion, m)
 
 
-def generic_rank(rows: Matrix, matrix: Matrix, ring: Ring) -> tuple[int, tuple[int, ...]]:
-    """Largest rank of the chains of the rows at the integer points, a proved lower bound, and its point.
+def chain_coefficients(vectors: Matrix, m: int, motion: Motion, point: Sequence[int]) -> list[Quotient] | None:
+    """theta_1 ... theta_m without the clock: from the characteristic polynomial where nothing moves, or solved for."""
+    if not motion.rates:
+        theta = chain_relation(vectors, m, motion.matrix, motion.ring, point)
+        if theta is not None:
+            return [Quotient(part, motion.ring.constant(1)) for part in theta]
+    return linear_relation(vectors[:m], vectors[m], motion.ring)
 
-    The chains run in residues, so that this takes microseconds even for many symbols.
+
+def generic_rank(rows: Matrix, motion: Motion) -> tuple[int, tuple[int, ...]]:
+    """Largest rank of the chains of the rows at a few points, a proved lower bound, and its point.
+
+    The chains run in residues, so that this takes milliseconds even for many symbols.
     """
-    ranks = {point: residue_rank(residue_chains(rows, matrix, point)) for point in integer_points(ring)}
+    ranks = {point: residue_rank(residue_chains(rows, motion, point)) for point in motion.points()}
     best = max(ranks, key=lambda point: ranks[point])
     return ranks[best], best
 
 
-def joint_staircase(chains: tuple[Chain, ...], matrix: Matrix, ring: Ring, n: int) -> tuple[int, ...]:
-    """Numbers of vectors of every chain that are needed after those of the earlier chains.
+def joint_staircase(chains: tuple[Chain, ...], motion: Motion) -> tuple[tuple[int, ...], Matrix | None]:
+    """Numbers of vectors of every chain that are needed after those of the earlier chains, and what they leave.
 
-    The counts at a point are a proved lower bound of the rank; elimination of what is not regular everywhere
-    proves the upper one. Where they differ the points were unlucky, and relations decide.
+    The counts at a point are a proved lower bound of the rank; unobservable directions prove the upper one. Where
+    there are none, the points of a constant model were unlucky, and relations decide.
     """
-    tries = [staircase_at(chains, point) for point in integer_points(ring)]
-    counts = max(tries, key=sum)
-    starts = [(chain.vectors[0], chain.dimension) for chain in chains]
-    rest = krylov_remainder(starts, matrix, ring)
-    upper = n if sum(counts) == n else rest.regular + len(triangular_form(rest.rows, ring).rows)
-    return counts if sum(counts) == upper else staircase_by_relations(chains, ring, n)
+    starts = [chain.vectors[0] for chain in chains]
+    tries = {point: staircase_at(starts, motion, point) for point in motion.points()}
+    point = max(tries, key=lambda key: sum(tries[key]))
+    counts, n = tries[point], motion.size
+    if sum(counts) == n:
+        return counts, []
+    directions = find_unobservable(starts, motion, sum(counts), point)
+    if directions is None and all(chain.companion is not None for chain in chains):
+        counts = staircase_by_relations(chains, motion.ring, n)
+        krylov = krylov_rows([(chain.vectors[0], chain.dimension) for chain in chains], motion, sum(counts))
+        directions = null_vectors(krylov, n, motion.ring)
+    return counts, directions
 
 
-def staircase_at(chains: tuple[Chain, ...], point: Sequence[int]) -> tuple[int, ...]:
+def staircase_at(starts: Matrix, motion: Motion, point: Sequence[int]) -> tuple[int, ...]:
     """The counts at a point, modulo the prime."""
-    rows = at_point([vector for chain in chains for vector in chain.vectors], point)
-    chosen = set(independent_places(rows))
-    counts, first = [], 0
-    for chain in chains:
-        counts.append(sum(1 for k in range(first, first + chain.dimension) if k in chosen))
-        first += chain.dimension
-    return tuple(counts)
+    n = motion.size
+    chosen = independent_places(residue_chains(starts, motion, point))
+    return tuple(sum(1 for place in chosen if place // n == k) for k in range(len(starts)))
 
 
 def staircase_by_relations(chains: tuple[Chain, ...], ring: Ring, n: int) -> tuple[int, ...]:
@@ -356,43 +377,15 @@ def prove_rank(model: LinearModel) -> ProvedRank:
     Below: a minor that is not zero at a point. Above: either there are no more states, or as many
     unobservable directions N are exhibited, with h N = 0 for every measurement and G N inside the span of N.
     """
-    need_chains(model)
-    ring = Ring.of([model.F, model.H])
-    need_own_rows(model, ring)
-    matrix, _ = numerators([model.F[i, :] for i in range(model.size)], ring)
-    rows = [numerators([model.H[k, :]], ring)[0][0] for k in range(model.H.rows)]
-    rank, point = generic_rank(rows, matrix, ring)
+    motion, listed = moving_rows(model)
+    rows = [row for row, _ in listed]
+    rank, point = generic_rank(rows, motion)
     if rank == model.size:
         return ProvedRank(model.size, point, "the number of states")
-    if exhibit_unobservable(rows, matrix, ring, rank, point) is not None:
+    if find_unobservable(rows, motion, rank, point) is not None:
         count = model.size - rank
         return ProvedRank(rank, point, f"{count} hidden directions, invariant and seen by no measurement")
     return ProvedRank(chains_of(model).joint_dimension, point, "relations close the staircase")
-
-
-def exhibit_unobservable(rows: Matrix, matrix: Matrix, ring: Ring, rank: int, point: Sequence[int]) -> Matrix | None:
-    """n - rank directions that no measurement ever shows, or None when the rank was too small.
-
-    The basis takes the chains step by step, all measurements in turn, which keeps the degrees low.
-    """
-    n, step = len(matrix), list(rows)
-    basis: Matrix = []
-    residues: list[list[int]] = []
-    while len(basis) < rank:
-        for vector in step:
-            trial = [*residues, *at_point([vector], point)]
-            if residue_rank(trial) > len(residues):
-                basis.append(vector)
-                residues = trial
-        step = [transposed_times(matrix, vector, ring) for vector in step]
-    directions = null_vectors(basis, n, ring)
-    zero = ring.constant(0)
-    for vector in directions:
-        moved = [scalar_product(row, vector, zero) for row in matrix]
-        seen = [scalar_product(row, vector, zero) for row in rows] + [scalar_product(row, moved, zero) for row in basis]
-        if any(value != 0 for value in seen):
-            return None
-    return directions
 
 
 # The answer in sympy
@@ -403,17 +396,15 @@ class MeasurementObservability:
     """The subspace that one scalar measurement observes.
 
     basis     : (m, n) rows a_1 ... a_m
-    companion : theta_1 ... theta_m with a_{m+1} = sum theta_j a_j
+                Fewer rows where those of a nonlinear model are too long to write
+    companion : theta_1 ... theta_m with a_{m+1} = sum theta_j a_j; empty where it is too long to write
+    dimension : m, the dimension of what the measurement observes
     """
 
     name: str
     basis: sp.ImmutableMatrix
     companion: tuple[sp.Expr, ...]
-
-    @property
-    def dimension(self) -> int:
-        """m, the dimension of what the measurement observes."""
-        return self.basis.rows
+    dimension: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -421,7 +412,9 @@ class JointObservability:
     """Generic observability of a model, proved.
 
     staircase    : how many chain vectors of every measurement form a basis of the observed functionals
-    unobservable : (n - joint_dimension, n) rows x with h_k^T G^j x = 0 for all j and k
+    unobservable : (n - joint_dimension, n) rows x with h_k^T G^j x = 0 for all j and k; no rows where none were found
+    observed     : (joint_dimension, n) functionals that are known: all that vanish on the unobservable directions
+    proved       : False when the rank is proved from below only
     assumptions  : denominators that are taken to be nonzero
     """
 
@@ -430,7 +423,16 @@ class JointObservability:
     staircase: tuple[int, ...]
     unobservable: sp.ImmutableMatrix
     assumptions: tuple[sp.Expr, ...]
-    chains: Chains
+    written: Chains | None
+    observed: sp.ImmutableMatrix
+    proved: bool = True
+
+    @property
+    def chains(self) -> Chains:
+        """The chains of a model in one piece. Raises DomainError for several pieces."""
+        if self.written is None:
+            raise DomainError("expected a model in one piece; got several; ask for one of them")
+        return self.written
 
     @property
     def joint_dimension(self) -> int:
@@ -444,30 +446,40 @@ class JointObservability:
 
 
 def observe_jointly(model: LinearModel) -> JointObservability:
-    """Chains, dimensions, companion coefficients and unobservable directions of a constant model.
+    """Chains, dimensions, companion coefficients and unobservable directions of a model.
 
     Raises the same errors as :func:`chains_of`.
     """
     chains = chains_of(model)
     ring, n = chains.ring, chains.size
-    directions: Matrix = []
-    if chains.joint_dimension < n:
-        starts = [(chain.vectors[0], chain.dimension) for chain in chains.chains]
-        directions = null_vectors(krylov_rows(starts, chains.matrix, chains.joint_dimension, ring), n, ring)
+    directions = chains.directions or []
     entries = [ring.expression(x) for vector in directions for x in vector]
     return JointObservability(
         states=model.states,
         measurements=tuple(
             MeasurementObservability(
-                chain.name, chain_rows(chain.vectors, chain, ring), tuple(map(ring.expression, chain.companion))
+                chain.name,
+                chain_rows(chain.vectors, chain, ring),
+                tuple(map(ring.expression, chain.companion or ())),
+                chain.dimension,
             )
             for chain in chains.chains
         ),
         staircase=chains.staircase,
         unobservable=sp.ImmutableMatrix(len(directions), n, entries),
         assumptions=model_denominators(chains),
-        chains=chains,
+        written=chains,
+        observed=observed_rows(chains),
+        proved=chains.directions is not None,
     )
+
+
+def observed_rows(chains: Chains) -> sp.ImmutableMatrix:
+    """Functionals that vanish on all unobservable directions; none where these are not known, or too long."""
+    ring, n = chains.ring, chains.size
+    short = sum(len(x) for column in chains.directions or [] for x in column) <= LONGEST
+    rows = null_vectors(chains.directions, n, ring) if chains.directions is not None and short else []
+    return sp.ImmutableMatrix(len(rows), n, [ring.expression(x) for row in rows for x in row])
 
 
 def chain_rows(vectors: Matrix, chain: Chain, ring: Ring) -> sp.ImmutableMatrix:
@@ -482,13 +494,21 @@ def chain_rows(vectors: Matrix, chain: Chain, ring: Ring) -> sp.ImmutableMatrix:
 def model_denominators(chains: Chains) -> tuple[sp.Expr, ...]:
     """Denominators of the model, which must not vanish."""
     ring = chains.ring
-    bottoms = [chains.clock, *(chain.bottom for chain in chains.chains)]
+    bottoms = [chains.motion.clock, *(chain.bottom for chain in chains.chains)]
     written = dict.fromkeys(ring.factored(b) for b in bottoms if not b.is_constant())
     return tuple(value for value in written if not value.is_Number)
 
 
 def direction_names(vector: Sequence[sp.Expr], states: Sequence[str]) -> str:
-    """A direction by the states it mixes: ``x1 - 2*x3``; parentheses around sums."""
+    """A direction of the state by its components: ``(x1, x3) = (1, -2)``; the others are zero."""
+    parts = [(state, str(value)) for value, state in zip(vector, states, strict=True) if value != 0]
+    if len(parts) == 1:
+        return parts[0][0]
+    return f"({', '.join(state for state, _ in parts)}) = ({', '.join(value for _, value in parts)})"
+
+
+def functional_names(vector: Sequence[sp.Expr], states: Sequence[str]) -> str:
+    """A functional as the combination of states that it measures: ``x1 - 2*x3``; parentheses around sums."""
     parts = []
     for value, state in zip(vector, states, strict=True):
         if value != 0:

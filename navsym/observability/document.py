@@ -27,7 +27,13 @@ def document_of_observability(answer: Observability) -> dict[str, Any]:
         "joint_dimension": answer.rank,
         "unobservable_basis": text_rows(answer.unobservable_basis),
         "unobservable_directions": list(answer.unobservable),
-        "rank_drops": [drop_data(drop) for drop in answer.rank_drops],
+        "observable_functionals": list(answer.observable_functionals),
+        "redundant": list(answer.redundant),
+        "proved": answer.joint.proved,
+        "model": answer.kind,
+        "instant": instant_data(answer),
+        "pieces": [dict(piece) for piece in answer.pieces],
+        "rank_drops": [drop_data(drop) for drop in answer.rank_drops if drop.lasting],
         "rank_drops_complete": dict(answer.rank_drops_complete),
         "assumptions": [f"{to_text(a)} != 0" for a in answer.joint.assumptions],
         "splits": [{"i": s.i, "j": s.j, "det_L": to_text(s.determinant)} for s in answer.splits],
@@ -36,6 +42,17 @@ def document_of_observability(answer: Observability) -> dict[str, Any]:
         "gains": gains_data(answer.gains),
     }
     return data | ({"restore": restoration_data(answer)} if answer.restoration is not None else {})
+
+
+def instant_data(answer: Observability) -> dict[str, Any] | None:
+    """What is known at one instant, from a measurement and its derivatives there; None for a constant model.
+
+    Over an interval the rank is lost where the parameters are such that a drop lasts; at an instant also in passing.
+    """
+    if answer.kind in ("constant", "pieces"):
+        return None
+    passing = [drop_data(drop) for drop in answer.rank_drops if not drop.lasting]
+    return {"rank": answer.rank, "rank_drops": passing, "frozen_rank": answer.frozen_rank}
 
 
 def restoration_data(answer: Observability) -> dict[str, Any]:

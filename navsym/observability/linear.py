@@ -41,19 +41,6 @@ def residue(entry: Poly, point: Sequence[int]) -> int:
     return int(entry(*point) if point else entry.leading_coefficient()) % PRIME
 
 
-def residue_chains(rows: Matrix, matrix: Matrix, point: Sequence[int]) -> list[list[int]]:
-    """All n vectors of every chain a, G^T a, ... at an integer point, one chain after the other."""
-    n = len(matrix)
-    residues = nmod_mat(at_point(matrix, point), PRIME)
-    found = []
-    for start in at_point(rows, point):
-        vector = nmod_mat(1, n, start, PRIME)
-        for _ in range(n):
-            found.append([int(x) for x in vector.entries()])
-            vector = vector * residues
-    return found
-
-
 def residue_rank(rows: list[list[int]]) -> int:
     """Rank of a matrix of residues."""
     return nmod_mat(rows, PRIME).rank()

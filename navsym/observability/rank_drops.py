@@ -19,8 +19,10 @@ from flint import fmpz, fmpz_mat
 from navsym.core.errors import TooLargeError
 from navsym.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_all_minors, drops_by_cases, minor_on
 from navsym.observability.chains import Chain, Chains, JointObservability
-from navsym.observability.linear import Matrix
-from navsym.observability.reduction import System, components, irredundant, krylov_remainder
+from navsym.observability.directions import resting_directions
+from navsym.observability.linear import Matrix, residue_rank
+from navsym.observability.motion import Motion, residue_chains
+from navsym.observability.reduction import System, components, irredundant, is_inside, krylov_remainder, lies_in_ideal
 from navsym.observability.ring import Poly, Ring, is_odd
 
 # Determinants of chains by values at integer points.
@@ -148,6 +150,8 @@ def newton(bound: int) -> fmpz_mat:
 
 #: So many staircases at most, when the joint locus is written down by its definition.
 MOST_STAIRCASES = 40
+#: Systems that are looked at when the part of a drop is sought that the motion keeps.
+KEPT_STEPS, KEPT_TERMS = 60, 40
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -157,11 +161,13 @@ class RankDrop:
     subspace : name of a measurement, or "joint"
     zeros    : polynomials, irreducible over the rationals where that could be reached
     complete : True when the drops listed for this subspace are proved to be all real ones
+    lasting  : False where the condition holds at an instant only: the motion leaves it, and the interval shows all
     """
 
     subspace: str
     zeros: tuple[sp.Expr, ...]
     complete: bool
+    lasting: bool = True
 
     @property
     def condition(self) -> str:
@@ -187,14 +193,65 @@ def rank_drops(found: JointObservability) -> tuple[RankDrop, ...]:
 
 
 def drops_and_completeness(found: JointObservability) -> tuple[tuple[RankDrop, ...], dict[str, bool]]:
-    """The drops, and for every subspace whether its list is proved complete, also when it is empty."""
-    ring, answer = found.chains.ring, all_drops(found.chains)
-    drops = tuple(
-        RankDrop(name, tuple(ring.condition(f) for f in system), complete)
-        for name, (systems, complete) in answer.items()
-        for system in join_half_angles(systems, ring)
-    )
-    return drops, {name: complete for name, (_, complete) in answer.items()}
+    """The drops, and for every subspace whether its list is proved complete, also when it is empty.
+
+    Of a model that moves, the conditions that last come first: those that the motion keeps once they hold.
+    """
+    if found.written is None:
+        return (), {"joint": False}
+    motion, answer = found.chains.motion, all_drops(found.chains)
+    drops, complete = [], {}
+    for name, (systems, whole) in answer.items():
+        lasting, ended = kept_parts(systems, motion)
+        complete[name] = whole and ended
+        passing = [system for system in systems if not any(is_inside(system, other) for other in lasting)]
+        for listed, lasts in ((lasting, True), (passing, False)):
+            written = (conditions_on(system, motion.ring) for system in join_half_angles(listed, motion.ring))
+            drops += [RankDrop(name, zeros, complete[name], lasts) for zeros in written if zeros]
+    return tuple(sorted(drops, key=lambda drop: not drop.lasting)), complete
+
+
+def conditions_on(system: System, ring: Ring) -> tuple[sp.Expr, ...]:
+    """The equations in the symbols of the model; none where no point satisfies them.
+
+    Generators that stand for functions follow the symbols in them: with w = 0 also sin(w*t) = 0, and cos(w*t) is not.
+    """
+    zeros = [ring.condition(f) for f in system]
+    if any(isinstance(zero, sp.exp) for zero in zeros):
+        return ()
+    fixed = {zero: sp.Integer(0) for zero in zeros if zero.is_Symbol}
+    if not ring.meaning or not fixed:
+        return tuple(zeros)
+    rest = [zero.subs(fixed) for zero in zeros if zero not in fixed]
+    if any(zero.is_Number and zero != 0 for zero in rest):
+        return ()
+    return (*fixed, *(zero for zero in rest if zero != 0))
+
+
+def kept_parts(systems: list[System], motion: Motion) -> tuple[list[System], bool]:
+    """The parts of some real zeros that the motion never leaves, and whether all of them were found.
+
+    Where a system holds along the motion, so do the derivatives of its equations. They are added until nothing is new:
+    an ideal that holds its derivatives is kept.
+    """
+    if not motion.rates:
+        return systems, True
+    waiting, steps = list(systems), 0
+    kept: list[System] = []
+    whole = True
+    while waiting:
+        system = waiting.pop()
+        steps += 1
+        if steps > KEPT_STEPS:
+            return irredundant(kept), False
+        fresh = [f for f in map(motion.derivative, system) if not lies_in_ideal(f, system)]
+        if sum(map(len, fresh)) > KEPT_TERMS:
+            whole = False
+        elif fresh:
+            waiting += components([*system, *fresh], motion.ring)
+        else:
+            kept.append(system)
+    return irredundant(kept), whole
 
 
 def join_half_angles(systems: list[System], ring: Ring) -> list[System]:
@@ -230,10 +287,15 @@ def all_drops(chains: Chains) -> dict[str, tuple[list[System], bool]]:
 
 def drops_of_group(chains: Chains, part: tuple[Chain, ...], rank: int) -> tuple[list[System], bool]:
     """Drops of what some chains span together: by cases, or else by the definition, written in one of three ways."""
-    ring = chains.ring
-    rest = krylov_remainder([(chain.vectors[0], chain.dimension) for chain in part], chains.matrix, ring)
+    ring, motion = chains.ring, chains.motion
+    if motion.roots:
+        return [], False
+    try:
+        rest = krylov_remainder([(chain.vectors[0], chain.dimension) for chain in part], motion)
+    except TooLargeError:
+        return parameters_zero(chains, part, rank), False
     found, complete = drops_by_cases(rest.rows, rank - rest.regular, ring)
-    if not complete:
+    if not complete and not motion.rates:
         for written in (
             lambda: drops_by_staircases(chains, part, rank, determinant_by_values),
             lambda: drops_by_all_minors(rest.rows, rank - rest.regular, ring),
@@ -243,6 +305,39 @@ def drops_of_group(chains: Chains, part: tuple[Chain, ...], rank: int) -> tuple[
             if listed is not None:
                 return irredundant(listed), True
     return irredundant(found), complete
+
+
+def parameters_zero(chains: Chains, part: tuple[Chain, ...], rank: int) -> list[System]:
+    """Drops where one symbol is zero, or all components of a vector (f1, f2, f3), each proved.
+
+    For a constant model that is too long for a complete list.
+    """
+    motion, rows = chains.motion, [chain.vectors[0] for chain in part]
+    if motion.rates:
+        return []
+    names = [str(symbol) for symbol in motion.ring.symbols]
+    vectors = [[k for k, name in enumerate(names) if name[:-1] == stem] for stem in sorted({n[:-1] for n in names})]
+    found: list[System] = []
+    for places in [*([k] for k in range(len(names))), *(v for v in vectors if len(v) > 1)]:
+        system = [motion.ring.context.gen(place) for place in places]
+        if any(is_inside(system, other) for other in found):
+            continue
+        still = [[without_generators(entry, places) for entry in row] for row in motion.matrix]
+        starts = [[without_generators(entry, places) for entry in row] for row in rows]
+        clock = without_generators(motion.clock, places)
+        if clock == 0 or not all(any(entry != 0 for entry in row) for row in starts):
+            continue
+        there = Motion(motion.ring, still, clock)
+        best, point = max((residue_rank(residue_chains(starts, there, p)), p) for p in there.points())
+        if best < rank and resting_directions(starts, there, best, point) is not None:
+            found.append(system)
+    return found
+
+
+def without_generators(entry: Poly, places: Sequence[int]) -> Poly:
+    """The polynomial where some generators are zero."""
+    kept = {powers: c for powers, c in entry.to_dict().items() if not any(powers[place] for place in places)}
+    return entry.context().from_dict(kept)
 
 
 #: The determinant of the first vectors of some chains, so many of each; None when it is too long to form.

@@ -12,10 +12,14 @@ from dataclasses import dataclass
 from math import gcd
 from typing import Any
 
-from flint import fmpz_mpoly_vec
+from flint import fmpq_mpoly_ctx, fmpz_mpoly_vec
 
-from navsym.observability.linear import Matrix, at_point, independent_places, integer_points, transposed_times
+from navsym.core.errors import TooLargeError
+from navsym.observability.linear import Matrix, at_point, independent_places
+from navsym.observability.motion import Motion
 from navsym.observability.ring import Poly, Ring, gcd_all, irreducible_factors, is_divisor
+from navsym.prove.signs.exact import Sign
+from navsym.prove.signs.polynomials import Effort, VariableRange, polynomial_sign
 
 # Common real zeros of polynomials as a list of simple systems.
 #
@@ -28,6 +32,10 @@ System = list[Poly]
 #: Groebner bases: number of polynomials, terms of each, bits of a coefficient.
 LIMITS = (24, 120, 1000)
 BRANCHES = 40
+#: Polynomials whose sign is asked for: number of terms, and the effort of one question.
+DEFINITE_TERMS, EFFORT = 20, 200
+#: Terms of the rows of one step, of a moving and of a constant model.
+MOVING_TERMS, CONSTANT_TERMS = 150, 20_000
 
 
 def components(polynomials: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
@@ -47,7 +55,7 @@ def components(polynomials: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
 def hypersurfaces(common: Poly, ring: Ring) -> list[list[Poly]]:
     """Real zeros of one polynomial, factor by factor; a sum of squares breaks up further."""
     found: list[list[Poly]] = []
-    for f in irreducible_factors(common):
+    for f in (f for f in irreducible_factors(common) if not is_definite(f)):
         for system in real_systems([f], ring):
             found += [system] if system == [f] else split_system(system, ring)
     return found
@@ -98,7 +106,7 @@ def real_systems(system: list[Poly], ring: Ring) -> list[list[Poly]]:
 def reduce_generators(system: list[Poly], ring: Ring) -> list[Poly] | None:
     """Reduced generators of the same real zeros; None when there are none."""
     system = [p.primitive()[1] for p in system if p != 0]
-    if any(p.is_constant() for p in system) or is_nowhere(system, ring):
+    if any(p.is_constant() for p in system) or is_nowhere(system, ring) or any(map(is_definite, system)):
         return None
     kept: list[Poly] = []
     for p in sorted(dict.fromkeys(map(Hashed, system)), key=lambda h: (h.poly.total_degree(), len(h.poly))):
@@ -109,10 +117,21 @@ def reduce_generators(system: list[Poly], ring: Ring) -> list[Poly] | None:
         basis, done = generators.buchberger_naive(limits=LIMITS)
         if done:
             reduced = [p for p in basis.autoreduction(groebner=True) if p != 0]
-            if any(p.is_constant() for p in reduced) or is_nowhere(reduced, ring):
+            if any(p.is_constant() for p in reduced) or is_nowhere(reduced, ring) or any(map(is_definite, reduced)):
                 return None
             kept = reduced
     return kept
+
+
+def is_definite(f: Poly) -> bool:
+    """True for a polynomial that is proved to have one sign at all real points: it vanishes nowhere."""
+    terms = f.to_dict()
+    at_zero = terms.get((0,) * f.context().nvars(), 0)
+    if at_zero == 0 or f.total_degree() % 2 or len(terms) > DEFINITE_TERMS:
+        return False
+    context = fmpq_mpoly_ctx.get(f.context().names(), f.context().ordering())
+    positive = context.from_dict({powers: c if at_zero > 0 else -c for powers, c in terms.items()})
+    return polynomial_sign(positive, [VariableRange()] * f.context().nvars(), Effort(EFFORT)) == Sign.POSITIVE
 
 
 def is_nowhere(system: Sequence[Poly], ring: Ring) -> bool:
@@ -135,12 +154,18 @@ class Hashed:
 
 
 def irredundant(systems: list[list[Poly]]) -> list[list[Poly]]:
-    """Without repetitions and without systems that lie inside another one."""
+    """Without repetitions and without systems whose zeros visibly lie inside those of another one."""
     kept: list[list[Poly]] = []
     for system in sorted(systems, key=lambda s: (len(s), [len(f) for f in s], [str(f) for f in s])):
-        if not any(all(lies_in_ideal(f, system) for f in other) for other in kept):
+        if not any(is_inside(system, other) for other in kept):
+            kept = [other for other in kept if not is_inside(other, system)]
             kept.append(system)
     return kept
+
+
+def is_inside(inner: System, outer: System) -> bool:
+    """True when every polynomial of the outer system lies in the ideal of the inner one: it vanishes there too."""
+    return all(lies_in_ideal(f, inner) for f in outer)
 
 
 def lies_in_ideal(value: Poly, system: System) -> bool:
@@ -239,24 +264,24 @@ def row_weight(row: list[Poly]) -> int:
     return sum(len(entry) for entry in row)
 
 
-def krylov_remainder(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring: Ring) -> Remainder:
+def krylov_remainder(starts: Sequence[tuple[list[Poly], int]], motion: Motion) -> Remainder:
     """Regular part and remainder of the chains h, G^T h, ...: (h, number of vectors) for each of them."""
-    basis, rest = krylov_basis(starts, matrix, ring)
+    basis, rest = krylov_basis(starts, motion)
     inner = take_out_regular(without_columns(basis, rest).rows)
     return Remainder(len(basis.rows) + inner.regular, inner.rows)
 
 
-def krylov_rows(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, rank: int, ring: Ring) -> Matrix:
+def krylov_rows(starts: Sequence[tuple[list[Poly], int]], motion: Motion, rank: int) -> Matrix:
     """``rank`` generically independent rows that span what the chains span."""
-    basis, rest = krylov_basis(starts, matrix, ring)
+    basis, rest = krylov_basis(starts, motion)
     rows = [basis.reduced(row) for row in sorted(rest, key=row_weight)]
-    point = integer_points(ring)
+    point = motion.points()
     chosen = max((independent_places(at_point([*basis.rows, *rows], p)) for p in point), key=len)
     listed = [*basis.rows, *rows]
     return [listed[k] for k in chosen[:rank]]
 
 
-def krylov_basis(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring: Ring) -> tuple[UnitBasis, Matrix]:
+def krylov_basis(starts: Sequence[tuple[list[Poly], int]], motion: Motion) -> tuple[UnitBasis, Matrix]:
     """Regular rows of the chains and all others, which span together what the chains span at every point.
 
     Every vector is reduced before it is multiplied on: modulo the basis, which is multiplied on as well,
@@ -274,6 +299,9 @@ def krylov_basis(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring:
             if not basis.take(row):
                 rest.append(row)
             if count > 1:
-                following.append((transposed_times(matrix, row, ring), count - 1))
+                following.append((motion.advance(row), count - 1))
+        longest = MOVING_TERMS if motion.rates else CONSTANT_TERMS
+        if sum(len(entry) for row, _ in following for entry in row) > longest:
+            raise TooLargeError("expected rows that can be written; got too many terms; fix some parameters")
         step = following
     return basis, rest

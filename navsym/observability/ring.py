@@ -19,6 +19,7 @@ from navsym.core.errors import DomainError, TooLargeError
 from navsym.core.rational_functions import (
     Quotient,
     cancel_fraction,
+    factor_exactly,
     polynomial_sum,
     powers_apart,
     read_arithmetic,
@@ -139,16 +140,20 @@ EXPONENT = 64
 class Ring:
     """Z[symbols], graded reverse lexicographic.
 
-    angles : symbols that stand under sines and cosines; their halves are generators, as explained above
+    angles  : symbols that stand under sines and cosines; their halves are generators, as explained above
+    meaning : symbols that stand for functions -> the functions, put in on the way back
     """
 
     symbols: tuple[sp.Basic, ...]
     context: Any
     angles: tuple[Angle, ...] = ()
     places: dict[sp.Basic, int] = field(default_factory=dict)
+    meaning: Mapping[sp.Basic, sp.Basic] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, expressions: Iterable[sp.Basic | sp.MatrixBase]) -> Ring:
+    def of(
+        cls, expressions: Iterable[sp.Basic | sp.MatrixBase], meaning: Mapping[sp.Basic, sp.Basic] | None = None
+    ) -> Ring:
         """The ring of all symbols of the expressions, in the order of their names.
 
         The number pi is a symbol too: it is transcendental, so no relation is lost.
@@ -159,15 +164,20 @@ class Ring:
         varying = [entry for entry in entries if not isinstance(entry, sp.Number)]
         angles = angles_of(varying)
         found: set[sp.Basic] = set().union(*map(symbols_outside_angles, varying))
-        return cls.over(sorted(found, key=str), angles)
+        return cls.over(sorted(found, key=str), angles, meaning)
 
     @classmethod
-    def over(cls, symbols: Sequence[sp.Basic], angles: tuple[Angle, ...] = ()) -> Ring:
+    def over(
+        cls,
+        symbols: Sequence[sp.Basic],
+        angles: tuple[Angle, ...] = (),
+        meaning: Mapping[sp.Basic, sp.Basic] | None = None,
+    ) -> Ring:
         """The ring of the given symbols and angles."""
         listed = (*symbols, *(half for angle in angles for half in (angle.sine, angle.cosine)))
         names = tuple(f"g{place}" for place in range(len(listed)))
         context = fmpz_mpoly_ctx.get(names, Ordering.degrevlex)
-        return cls(listed, context, angles, {symbol: place for place, symbol in enumerate(listed)})
+        return cls(listed, context, angles, {symbol: place for place, symbol in enumerate(listed)}, meaning or {})
 
     def halves(self, angle: Angle) -> tuple[Poly, Poly]:
         """The generators sin and cos of half the smallest part of an angle."""
@@ -219,7 +229,7 @@ class Ring:
             top, bottom = self.even_angles(value)
             return self.expression(top) / self.expression(bottom)
         whole, power, names = self.whole_angles(value)
-        return polynomial_sum(names, whole, 2**power)
+        return polynomial_sum(self.named(names), whole, 2**power)
 
     def even_angles(self, value: Quotient) -> Quotient:
         """The quotient with forms of even degree in the halves of every angle, where both were odd."""
@@ -234,7 +244,11 @@ class Ring:
         whole, _, names = self.whole_angles(value)
         plain = whole.primitive()[1]
         plain = -plain if plain.leading_coefficient() < 0 else plain
-        return polynomial_sum(names, plain)
+        return polynomial_sum(self.named(names), plain)
+
+    def named(self, names: Sequence[sp.Basic]) -> Sequence[sp.Basic]:
+        """The names with the functions that they stand for."""
+        return [name.xreplace(dict(self.meaning)) for name in names] if self.meaning else names
 
     def whole_angles(self, value: Poly) -> tuple[Poly, int, list[sp.Basic]]:
         """(numerator, k, names): the value is numerator/2^k with the generators read as the names.
@@ -270,14 +284,14 @@ class Ring:
             return self.factored(top) / self.factored(bottom)
         if value == 0:
             return sp.Integer(0)
-        content, factors = value.factor()
+        content, factors = factor_exactly(value)
         whole, halves = [], self.constant(1)
-        for factor, power in factors:
-            if any(is_odd(factor, cosine) for _, cosine in self.pairs()):
-                whole.append(self.expression(factor**2) ** (int(power) // 2))
-                halves *= factor ** (int(power) % 2)
+        for base, power in factors:
+            if any(is_odd(base, cosine) for _, cosine in self.pairs()):
+                whole.append(self.expression(base**2) ** (int(power) // 2))
+                halves *= base ** (int(power) % 2)
             else:
-                whole.append(self.expression(factor) ** int(power))
+                whole.append(self.expression(base) ** int(power))
         return sp.Mul(sp.Integer(int(content)), *whole, self.expression(halves))
 
 
@@ -304,4 +318,4 @@ def gcd_all(values: Iterable[Poly], zero: Poly) -> Poly:
 
 def irreducible_factors(value: Poly) -> list[Poly]:
     """Different irreducible factors that are not numbers."""
-    return [factor for factor, _ in value.factor()[1]]
+    return [base for base, _ in factor_exactly(value)[1]]

@@ -14,21 +14,21 @@ from math import comb
 
 import sympy as sp
 
-from navsym.core.errors import EmptyError, ShapeError, TooLargeError
+from navsym.core.errors import DomainError, EmptyError, ShapeError, TooLargeError
 from navsym.models.linear import LinearModel, exact_matrix
-from navsym.observability.chains import exhibit_unobservable, need_chains, numerators, prove_rank
+from navsym.observability.chains import need_chains, prove_rank
+from navsym.observability.directions import exhibit_unobservable
 from navsym.observability.linear import (
     Matrix,
     at_point,
     independent_places,
-    integer_points,
     null_vectors,
-    residue_chains,
     residue_kernel,
     residue_rank,
     residues_on,
     scalar_product,
 )
+from navsym.observability.motion import Motion, motion_of, residue_chains
 from navsym.observability.ring import Poly, Ring
 
 #: Sets of candidates that are looked at, and sets for which a proof that they fail is written out, at most.
@@ -65,7 +65,7 @@ class Setting:
     """
 
     ring: Ring
-    matrix: Matrix
+    motion: Motion
     own: Matrix
     rows: dict[str, list[Poly]]
     point: tuple[int, ...]
@@ -75,7 +75,7 @@ class Setting:
     @property
     def size(self) -> int:
         """n, the number of states."""
-        return len(self.matrix)
+        return self.motion.size
 
     def seen_by(self, names: Sequence[str]) -> int:
         """Dimension of the unobservable part that a set of candidates shows, at the point."""
@@ -90,6 +90,8 @@ def restore_observability(model: LinearModel, candidates: Mapping[str, Sequence[
     and DomainError, EmptyError or TooLargeError for a model that has no chains.
     """
     need_chains(model)
+    if not model.constant:
+        raise DomainError("expected constant F and H to restore; got entries that move; leave candidates out")
     setting = lay_out(model, candidate_rows(model, candidates))
     missing, needed = model.size - prove_rank(model).rank, unseen_constants(setting)
     if not missing:
@@ -115,20 +117,19 @@ def candidate_rows(model: LinearModel, candidates: Mapping[str, Sequence[sp.Expr
 
 def lay_out(model: LinearModel, rows: Mapping[str, sp.Matrix]) -> Setting:
     """Everything over one ring, and the chains at the point where the model's own measurements see most."""
-    ring = Ring.of([model.F, model.H, *rows.values()])
-    matrix, _ = numerators([model.F[i, :] for i in range(model.size)], ring)
-    own = [numerators([model.H[k, :]], ring)[0][0] for k in range(model.H.rows)]
-    free = {name: numerators([row], ring)[0][0] for name, row in rows.items()}
-    seen = {point: residue_chains(own, matrix, point) for point in integer_points(ring)}
+    motion, listed = motion_of(model, list(rows.values()))
+    every = [row for row, _ in listed]
+    own, free = every[: model.H.rows], dict(zip(rows, every[model.H.rows :], strict=True))
+    seen = {point: residue_chains(own, motion, point) for point in motion.points()}
     point = max(seen, key=lambda key: residue_rank(seen[key]))
     kernel, missing = residue_kernel(seen[point])
-    chains = {name: residues_on(residue_chains([row], matrix, point), kernel, missing) for name, row in free.items()}
-    return Setting(ring, matrix, own, free, point, missing, chains)
+    chains = {name: residues_on(residue_chains([row], motion, point), kernel, missing) for name, row in free.items()}
+    return Setting(motion.ring, motion, own, free, point, missing, chains)
 
 
 def unseen_constants(setting: Setting) -> int:
     """n - rank [G; H], exhibited as independent constants: each needs a further measurement of its own."""
-    rows = [*setting.matrix, *setting.own]
+    rows = [*setting.motion.matrix, *setting.own]
     kept = [rows[k] for k in independent_places(at_point(rows, setting.point))]
     candidates = null_vectors(kept, setting.size, setting.ring)
     zero = setting.ring.constant(0)
@@ -156,4 +157,4 @@ def is_insufficient(setting: Setting, names: Sequence[str]) -> bool:
     """True when unobservable directions of a set are exhibited."""
     rows = [*setting.own, *(setting.rows[name] for name in names)]
     rank = setting.size - setting.unobservable + setting.seen_by(names)
-    return rank < setting.size and bool(exhibit_unobservable(rows, setting.matrix, setting.ring, rank, setting.point))
+    return rank < setting.size and bool(exhibit_unobservable(rows, setting.motion, rank, setting.point))

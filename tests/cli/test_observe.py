@@ -114,12 +114,12 @@ def test_an_unobservable_pair_is_described(observe):
         (GOOD, ["--poles", "(p+x1)**3; (p+1)**3"], "duplicate", "x1"),
         (GOOD.replace("kappa", "p"), ["--poles", "(p+1)**3; (p+1)**3"], "duplicate", "p to be free"),
         (GOOD, ["--poles", "__import__('os'); p"], "syntax", ""),
-        (with_second_row('"0", "1", "1", "kappa", "0", "0"'), [], "duplicate", "row of its own"),
         (with_second_row('"0", "0", "0", "0", "0", "0"'), [], "domain", "not zero"),
         (GOOD.replace('["0","1","0","0","0","0"], ', '["0","1","0","0","0"], '), [], "shape", ""),
-        (GOOD.replace('"-1","0","0"', '"-exp(kappa)","0","0"'), [], "domain", "rational function"),
-        (GOOD.replace('"-1","0","0"', '"-sin(kappa**2)","0","0"'), [], "domain", "angles such as"),
-        (GOOD.replace('"-1","0","0"', '"-t","0","0"'), [], "domain", "constant"),
+        (GOOD.replace('"-1","0","0"', '"-log(kappa)","0","0"'), [], "domain", "rational function"),
+        (GOOD.replace('"-1","0","0"', '"-sin(1/(1+kappa))","0","0"'), [], "domain", "angles and exponents"),
+        (GOOD.replace('"-1","0","0"', '"-t","0","0"'), ["--split", "3,3"], "domain", "constant"),
+        (GOOD.replace('"-1","0","0"', '"-t","0","0"'), ["--poles", "p + 1"], "domain", "constant"),
     ],
 )
 def test_bad_input_ends_with_status_two_and_one_clear_error(observe, text, options, kind, words):

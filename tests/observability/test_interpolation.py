@@ -8,8 +8,9 @@ import pytest
 import sympy as sp
 
 from navsym.models.linear import LinearModel
-from navsym.observability.chains import numerators, observe_jointly
+from navsym.observability.chains import observe_jointly
 from navsym.observability.linear import determinant, transposed_times
+from navsym.observability.motion import motion_of
 from navsym.observability.rank_drops import (
     POINTS,
     affine_steps,
@@ -19,15 +20,13 @@ from navsym.observability.rank_drops import (
     newton,
     points_needed,
 )
-from navsym.observability.ring import Ring
 
 p1, p2, p3 = sp.symbols("p1:4", real=True)
 
 
 def prepared(F: sp.Matrix, H: sp.Matrix):
-    ring = Ring.of([F, H])
-    matrix, _ = numerators([F[i, :] for i in range(F.rows)], ring)
-    return ring, matrix, [numerators([H[k, :]], ring)[0][0] for k in range(H.rows)]
+    motion, rows = motion_of(LinearModel(F, None, H))
+    return motion.ring, motion.matrix, [row for row, _ in rows]
 
 
 def by_elimination(starts, matrix, ring):

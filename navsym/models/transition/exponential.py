@@ -26,6 +26,7 @@ from navsym.core.rational_functions import (
     add_fractions,
     cancel_fraction,
     clear_denominators,
+    factor_exactly,
     multiply_coefficients,
     polynomial_sum,
 )
@@ -201,7 +202,7 @@ def irreducible_divisors(ring: Ring, monic: list[Poly]) -> list[tuple[list[Poly]
     """Irreducible monic factors with multiplicities, the zero eigenvalue first, then by degree."""
     whole = sum((c * ring.mu**k for k, c in enumerate(monic)), ring.zero)
     found = []
-    for base, times in whole.factor()[1]:
+    for base, times in factor_exactly(whole)[1]:
         parts = mu_coefficients(ring, base)
         found.append(([part / parts[-1] for part in parts], int(times)))
     return sorted(found, key=lambda item: (len(item[0]), not item[0][0].is_zero(), str(item[0])))
@@ -306,7 +307,7 @@ def list_conditions(ring: Ring, divisors: Iterable[Poly], forms: Iterable[Form])
         sp.expand(side * r.lhs) for r in relations if isinstance(r, sp.core.relational.Relational) for side in (1, -1)
     }
     for divisor in divisors:
-        for base, _ in divisor.factor()[1]:
+        for base, _ in factor_exactly(divisor)[1]:
             expression = polynomial_sum(ring.generators, base)
             if expression not in stated:
                 relations.setdefault(sp.Ne(expression, 0))

@@ -20,7 +20,7 @@ from dataclasses import replace
 import sympy as sp
 
 from navsym.core.errors import DomainError
-from navsym.core.rational_functions import cancel_fraction, multiply_coefficients, polynomial_sum
+from navsym.core.rational_functions import cancel_fraction, factor_exactly, multiply_coefficients, polynomial_sum
 from navsym.models.transition.pieces import (
     LAMBDA,
     RATIONAL,
@@ -90,7 +90,7 @@ def biquadratic(frame: Frame, base: Coefficients, depressed: Coefficients, facto
 
 def polynomial_root(ring: Ring, b: Poly) -> Poly | None:
     """The polynomial square root of b, of positive sign if signs are declared, or None."""
-    content, factors = b.factor()
+    content, factors = factor_exactly(b)
     root = sp.sqrt(sp.Rational(int(content.p), int(content.q)))
     if content < 0 or not root.is_Rational or any(int(power) % 2 for _, power in factors):
         return None

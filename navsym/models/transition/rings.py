@@ -21,6 +21,7 @@ from navsym.core.exact import to_rational
 from navsym.core.rational_functions import (
     Quotient,
     cancel_fraction,
+    factor_exactly,
     polynomial_sum,
     powers_apart,
     read_arithmetic,
@@ -155,7 +156,7 @@ def factor_polynomial(ring: Ring, poly: Poly) -> sp.Expr:
     """A polynomial as a sympy product of its irreducible factors."""
     if len(poly) <= 1:
         return polynomial_sum(ring.generators, poly)
-    content, factors = poly.factor()
+    content, factors = factor_exactly(poly)
     return sp.Mul(
         to_rational(content), *(polynomial_sum(ring.generators, base) ** int(times) for base, times in factors)
     )
@@ -171,7 +172,7 @@ def declared_sign(ring: Ring, poly: Poly) -> int:
     """+1 or -1 when the declared signs of the parameters decide it factor by factor and term by term, else 0."""
     if poly.is_zero():
         return 0
-    content, factors = poly.factor()
+    content, factors = factor_exactly(poly)
     result = 1 if content > 0 else -1
     for base, times in factors:
         if int(times) % 2:
@@ -198,7 +199,7 @@ def split_square_root(ring: Ring, number_: Poly, divisor: Poly) -> tuple[Quotien
     Squares are taken out without absolute values: the callers use even functions of the root only,
     for which its sign does not matter. The radicand is a polynomial.
     """
-    content, factors = (number_ * divisor).factor()  # sqrt(n / d) = sqrt(n d) / d
+    content, factors = factor_exactly(number_ * divisor)  # sqrt(n / d) = sqrt(n d) / d
     outer, inner = ring.one, ring.one
     for base, times in factors:
         outer *= base ** (int(times) // 2)

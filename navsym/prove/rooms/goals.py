@@ -13,7 +13,7 @@ from flint import Ordering, arb, fmpq, fmpq_mpoly_ctx
 
 from navsym import checker
 from navsym.core.exact import to_fmpq, to_rational
-from navsym.core.rational_functions import polynomial_sum
+from navsym.core.rational_functions import factor_exactly, polynomial_sum
 from navsym.language.expression import parse, symbol
 
 Term = tuple[Any, ...]
@@ -98,7 +98,7 @@ def factor(expression: sp.Expr) -> sp.Expr:
             result *= part**sign
             continue
         context = fmpq_mpoly_ctx.get([f"g{k}" for k in range(len(whole.gens))], Ordering.lex)
-        content, factors = context.from_dict({powers: to_fmpq(c) for powers, c in whole.terms()}).factor()
+        content, factors = factor_exactly(context.from_dict({powers: to_fmpq(c) for powers, c in whole.terms()}))
         for polynomial, power in factors:
             result *= polynomial_sum(whole.gens, polynomial) ** (sign * int(power))
         result *= to_rational(content) ** sign

@@ -17,6 +17,7 @@ from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
+from navsym.core.rational_functions import factor_exactly
 from navsym.prove.signs.exact import Sign
 
 # Polynomials that are nonnegative where all variables are: by their coefficients, dividing the cone.
@@ -144,7 +145,7 @@ def polynomial_sign(polynomial: fmpq_mpoly, spans: Sequence[VariableRange], effo
         return Sign.NONNEGATIVE
     if polynomial.total_degree() > MOST_DEGREE or len(polynomial) > MOST_TERMS or not effort.spend():
         return Sign.UNKNOWN
-    constant, factors = polynomial.factor()
+    constant, factors = factor_exactly(polynomial)
     rest, worst = polynomial.context().constant(constant), Sign.POSITIVE
     for factor, power in factors:
         sign, flipped = (

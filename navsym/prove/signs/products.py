@@ -15,6 +15,7 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from navsym.core.exact import to_fraction, to_rational
+from navsym.core.rational_functions import factor_exactly
 from navsym.prove.identities.converter import Converter, vanishes_identically
 from navsym.prove.identities.ingredients import Monomial, OutsideLanguageError
 
@@ -59,7 +60,7 @@ def real_factors(converter: Converter, polynomial: fmpq_mpoly) -> list[sp.Expr] 
     reduced = converter.reduce_unity(polynomial)
     if reduced.is_zero():
         return None
-    _, factors = reduced.factor()
+    _, factors = factor_exactly(reduced)
     result: list[sp.Expr] = []
     for factor, multiplicity in factors:
         real = real_form(converter, factor)
