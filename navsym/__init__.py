@@ -61,6 +61,7 @@ _HOMES = {
         ("Verdict", "Verdicts", "Status", "PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"), "navsym.claims"
     ),
     "prove": "navsym.prove.formulas",
+    **dict.fromkeys(("Reading", "read"), "navsym.language.latex.reading"),
     "new_paper": "navsym.prove.drafts",
     "Bank": "navsym.multimodel.bank",
     "condition": "navsym.trajectory.conditioning",
@@ -109,6 +110,8 @@ if TYPE_CHECKING:
     from navsym.guaranteed.phases.driver import phases as phases
     from navsym.guaranteed.solver import Estimator as Estimator
     from navsym.guaranteed.solver import solve as solve
+    from navsym.language.latex.reading import Reading as Reading
+    from navsym.language.latex.reading import read as read
     from navsym.models.derivation import Derivation as Derivation
     from navsym.models.derivation import derive as derive
     from navsym.models.model import Model as Model

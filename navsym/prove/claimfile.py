@@ -42,6 +42,7 @@ from navsym.prove.wording import expression_text, scope_of
 
 RELATIONS = ("=", "!=", "<", "<=", ">", ">=")
 CLAIMS = 2_000
+NOTES = ("printed", "source")  # LaTeX and place in a document, as `read` writes them
 
 Box = dict[Symbol, tuple[Expr, Expr]]
 
@@ -173,7 +174,9 @@ def read_claim_or_error(block: Any, symbols: Symbols, where: str, place: int) ->
 def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim:
     """One [[claim]] block."""
     table = as_table(block, where)
-    expect_keys(table, ("id", "left", "right", "relation", "box", "tolerance", "exists"), where)
+    expect_keys(table, ("id", "left", "right", "relation", "box", "tolerance", "exists", *NOTES), where)
+    for note in NOTES:
+        as_text(table.get(note, ""), join_place(where, note), "a text")
     as_label(require_key(table, "id", where), join_place(where, "id"))
     relation = as_text(table.get("relation", "="), join_place(where, "relation"), "a relation")
     if relation not in RELATIONS:

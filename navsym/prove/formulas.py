@@ -59,9 +59,9 @@ def prove(
 ) -> Verdict | Verdicts:
     """Verdict of a formula, or the verdicts of a claim file.
 
-    statement : a formula as text, ``"sin(2*a) = 2*sin(a)*cos(a)"``; or its left side, followed by ``relation`` and
-                ``right``; or the path of a claim file (TOML). A side is text, an exact number, a sympy expression, or
-                a list of rows or matrix of these.
+    statement : a formula as text, ``"sin(2*a) = 2*sin(a)*cos(a)"``, or in LaTeX (a text with a backslash); or its left
+                side, followed by ``relation`` and ``right``; or the path of a claim file (TOML). A side is text, an
+                exact number, a sympy expression, or a list of rows or matrix of these.
     relation  : one of ``= != < <= > >=``
     symbols   : declarations, ``T=("0", "2*pi")`` for a closed range, or one of ``"real"``, ``"positive"``,
                 ``"nonnegative"``, ``"nonzero"``. A symbol without one is real, or what its sympy assumptions say.
@@ -83,6 +83,8 @@ def prove(
     <PROVED: sin(2*a) = 2*sin(a)*cos(a); normal form; all real a>
     >>> nav.prove("sin(T) <= T", T=("0", "pi")).status
     <Status.PROVED: 'PROVED'>
+    >>> nav.prove(r"\\sin 2\\alpha = 2\\sin\\alpha\\cos\\alpha").holds
+    True
     >>> nav.prove("22/7 = pi", tolerance="0.005").holds
     True
     >>> nav.prove("a = a", exists="log(a)").assumptions
@@ -101,7 +103,11 @@ def prove(
         if given := symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())}:
             raise misplaced_declarations(given)
         return prove_file(statement, seconds, jobs, progress)
-    sides = split_formula(statement) if relation is None else Sides(statement, relation, right)
+    if relation is not None:
+        sides = Sides(statement, relation, right)
+    else:
+        is_latex = isinstance(statement, str) and "\\" in statement
+        sides = read_latex(statement, symbols) if is_latex else split_formula(statement)
     return prove_formula(sides, symbols, beside, seconds)
 
 
@@ -197,6 +203,24 @@ def split_formula(statement: Any) -> Sides:
         raise ExpressionSyntaxError(message, where="prove: statement")
     (mark,) = marks
     return Sides(statement[: mark.start()].strip(), mark[0], statement[mark.end() :].strip())
+
+
+def read_latex(statement: str, given: Mapping[str, Any]) -> Sides:
+    """The two sides of a formula in LaTeX; a letter without a declaration is real."""
+    from navsym.language.latex.reading import read
+
+    reading = read(statement, symbols=given)
+    unknown = {name: spelled for formula in reading.formulas for name, spelled in formula.unknown}
+    if unknown and not any(re.fullmatch("[A-Za-z]{2,}", spelled) for spelled in unknown.values()):
+        reading = read(statement, symbols=dict(given) | dict.fromkeys(unknown, "real"))
+    refused = next((formula for formula in reading.formulas if formula.status != "READ"), None)
+    if refused is not None:
+        raise ExpressionSyntaxError(str(refused.why).partition(": ")[2], where=f"prove: statement, line {refused.line}")
+    if len(reading.formulas) != 1:
+        message = f"expected one relation; got {len(reading.formulas)} in {quote(statement)}; prove them one by one"
+        raise ExpressionSyntaxError(message, where="prove: statement")
+    (formula,) = reading.formulas
+    return Sides(formula.left, str(formula.relation), formula.right)
 
 
 def symbols_in(sides: Iterable[Any], given: Mapping[str, Any]) -> set[str]:
