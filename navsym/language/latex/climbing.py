@@ -8,20 +8,10 @@ from __future__ import annotations
 import re
 from copy import copy
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
-from navsym.language.latex.notation import (
-    ACCENTS,
-    BOLD,
-    CALLS,
-    COMMANDS,
-    DOTS,
-    GREEK,
-    SIZES,
-    SPACES,
-    WORDS,
-    Notation,
-)
+from navsym.language.latex.notation import ACCENTS, BOLD, CALLS, COMMANDS, DOTS, GREEK, SIZES, SPACES, WORDS, Notation
 from navsym.language.latex.parts import Part, Refusal
 
 TOKEN = re.compile(r"\\(?:operatorname\*|[A-Za-z]+|.)|\s+|[^\\]", re.S)
@@ -131,6 +121,17 @@ def match_brace(tokens: list[Token], place: int) -> int:
     raise Refusal(tokens[place].at, "a closing brace", "the end", "close it")
 
 
+@lru_cache(10_000)
+def list_clusters(latex: str) -> list[Cluster]:
+    """An entry of ``[latex]`` as symbols; nobody changes them."""
+    other = object.__new__(Climber)
+    other.tokens, other.end, found, place = clean(latex), len(latex), [], 0
+    while place < len(other.tokens):
+        found.append(other.cluster(place))
+        place = found[-1].after
+    return found
+
+
 class Climber:
     """The tokens, and the place among them."""
 
@@ -139,17 +140,8 @@ class Climber:
         self.bound: frozenset[str] = frozenset()
         self.place = 0
         self.stops: list[str] = []
-        self.entries = [(name, self.list_clusters(clean(latex))) for name, latex in notation.spellings]
+        self.entries = [(name, list_clusters(latex)) for name, latex in notation.spellings]
         self.entries.sort(key=lambda entry: entry_rank(entry[1]), reverse=True)
-
-    def list_clusters(self, tokens: list[Token]) -> list[Cluster]:
-        """A spelling as symbols."""
-        other = object.__new__(Climber)
-        other.tokens, other.end, found, place = tokens, 0, [], 0
-        while place < len(tokens):
-            found.append(other.cluster(place))
-            place = found[-1].after
-        return found
 
     def look(self, ahead: int = 0) -> str:
         """The text of a token, nothing behind the end."""
@@ -285,8 +277,16 @@ class Climber:
     def cluster_scripts(self, place: int) -> tuple[list[Token] | None, list[Token] | None, int]:
         """Subscript, superscript and the place behind them."""
         scripts: dict[str, list[Token]] = {}
-        while self.look_at(place) in ("_", "^"):
+        while self.look_at(place) in ("_", "^", "'"):
             side = self.tokens[place].text
+            if side == "'":
+                stop = place
+                while self.look_at(stop) == "'":
+                    stop += 1
+                if "^" in scripts:
+                    raise Refusal(self.tokens[place].at, "a name before its primes", "'", "write the name in [latex]")
+                scripts["^"], place = self.tokens[place:stop], stop
+                continue
             if side in scripts:
                 raise Refusal(self.tokens[place].at, "one script of a kind", "two", "use braces")
             bare = self.look_at(place + 1).isdigit()
@@ -409,8 +409,8 @@ class Climber:
         if word == "e" and here.sup and "e" not in self.notation:
             return Part("num", ("1",), token.at)
         name = word + underscore(here.sub)
-        if name in self.notation or name in self.bound:
-            return Part("name", (name,), token.at) if here.sub is None or underscore(here.sub) else None
+        if (here.sub is None or underscore(here.sub)) and (name in self.notation or name in self.bound):
+            return Part("name", (name,), token.at)
         subscript = "".join(t.text for t in here.sub or ())
         if word in self.notation and self.notation.shapes[word] and subscript:
             pieces = subscript.split(",")
@@ -445,7 +445,7 @@ class Climber:
             return Part("mark", ("skew",), sup[0].at)
         if texts == (r"\mathsf", "T") or texts == ("-", r"\mathsf", "T"):
             return Part("mark", ("top" if len(texts) == 2 else "-top",), sup[0].at)
-        if texts[0] in ("(", "["):
+        if texts[0] in ("(", "[", "'"):
             raise Refusal(sup[0].at, "a power", "an index", "use [latex]")
         return self.part_of(sup)
 
@@ -498,7 +498,12 @@ class Climber:
         sub, sup, self.place = self.cluster_scripts(self.place)
         if sub:
             size = "".join(t.text for t in sub).split(r"\times")
-            if text != "0" or not first.bold or len(size) != 2 or not all(re.fullmatch("[1-9][0-9]?|[a-z]", s) for s in size):
+            if (
+                text != "0"
+                or not first.bold
+                or len(size) != 2
+                or not all(re.fullmatch("[1-9][0-9]?|[a-z]", s) for s in size)
+            ):
                 self.refuse("a number without subscript", first.at)
             return self.raised(Part("zeros", tuple(size), first.at), sup)
         return self.raised(Part("num", (text,), first.at), sup)
@@ -759,7 +764,9 @@ def canonical(tokens: list[Token]) -> list[Token]:
             sub, sup, place = other.cluster_scripts(place)
             for side, script in (("_", sub), ("^", sup)):
                 inner = canonical(script) if script else []
-                done += [Token(side, 0, 0, True), Token("{", 0, 0, True), *inner, Token("}", 0, 0, True)] if inner else []
+                done += (
+                    [Token(side, 0, 0, True), Token("{", 0, 0, True), *inner, Token("}", 0, 0, True)] if inner else []
+                )
             continue
         if text not in "{}":
             done.append(tokens[place])

@@ -6,11 +6,12 @@ import re
 from copy import copy
 from typing import Any
 
-from navsym.language.latex.mathlists import MATRICES, Noad, is_same, list_noads
+from navsym.language.latex.mathlists import MATRICES, Noad, is_same, list_noads, list_spelling
 from navsym.language.latex.notation import CALLS, COMMANDS, DOTS, GREEK, Notation
 from navsym.language.latex.parts import Part, Refusal, join_factors, join_terms
 
 PAIRS = {"(": ")", "[": "]", "|": "|", "||": "||", "floor": "floor", "{": "}"}
+POWER = re.compile(r"(.*)\^(?:\{[^{}]*\}|\\[a-z]+|.)(?=(?:_.*)?$)", re.S)
 BIG = {"sum": "sum", "prod": "product"}
 
 
@@ -35,7 +36,7 @@ class Descent:
         self.bound: tuple[str, ...] = ()
         self.place, self.integrals = 0, 0
         self.bars: list[str] = []
-        spelled = [(name, list_noads(latex)) for name, latex in notation.spellings]
+        spelled = [(name, list_spelling(latex)) for name, latex in notation.spellings]
         self.spelled = sorted(spelled, key=lambda pair: spelling_rank(pair[1]), reverse=True)
 
     def start(self, noads: list[Noad]) -> Descent:
@@ -258,8 +259,12 @@ class Descent:
         """A symbol that nobody declared, with the name that it might have."""
         if noad.kind in ("sym", "cmd") and self.base(noad) is None:
             self.refuse("a symbol of the language", "write it otherwise, or as a name in [latex]")
+        if noad.kind == "word" and self.base(noad) is None:
+            self.refuse("a formula without words", "write the words outside")
         self.place += 1
-        spelled = self.text[noad.at : noad.end]
+        spelled = self.text[noad.at if noad.shown < 0 else noad.shown : noad.end]
+        if noad.sup and is_power(noad.sup):
+            spelled = POWER.sub(r"\1", spelled)
         word, flat = self.base(noad), self.flat_subscript(noad)
         if word and (flat or noad.sub is None) and noad.before == (None, None):
             return self.power(Part("unknown", (word + flat, spelled), noad.at), noad)
@@ -284,14 +289,17 @@ class Descent:
             return Part("mark", ("*",), first.at)
         if len(sup) == 1 and last.is_command("times", "wedge"):
             return Part("mark", ("skew",), first.at)
-        if (len(sup) == 1 and not self.is_operand(last)) or first.kind == "open":
+        if (len(sup) == 1 and not self.is_operand(last)) or first.kind == "open" or first.is_command("prime"):
             raise Refusal(first.at, "a power", "an index", "write the name with its index in [latex]")
         return self.inside(sup)
 
     def is_operand(self, noad: Noad) -> bool:
         """True for what may be a power alone."""
-        return noad.kind in ("arg", "word", "bar") or noad.is_sign(*"0123456789") or self.base(noad) is not None or (
-            noad.is_command("pi")
+        return (
+            noad.kind in ("arg", "word", "bar")
+            or noad.is_sign(*"0123456789")
+            or self.base(noad) is not None
+            or (noad.is_command("pi"))
         )
 
     def bracket(self, opening: Noad) -> Part:
@@ -320,7 +328,9 @@ class Descent:
     def close(self, opening: Noad, inner: Part, closing: Noad, crossed: bool) -> Part:
         """A group by its bracket and by the subscript of the closing one."""
         kind = opening.value
-        crossed |= bool(closing.sub) and len(closing.sub or ()) == 1 and (closing.sub or [closing])[0].is_command("times")
+        crossed |= (
+            bool(closing.sub) and len(closing.sub or ()) == 1 and (closing.sub or [closing])[0].is_command("times")
+        )
         part = Part("()", (kind, inner), opening.at)
         if crossed and kind in ("[", "(", "floor"):
             part = Part("skew", (inner,), opening.at)
@@ -380,7 +390,9 @@ class Descent:
         if noad.sub is not None:
             base = "".join(str(n.value) for n in noad.sub)
             if name != "log" or base not in ("2", "10") or power:
-                raise Refusal(noad.at, "a function without subscript", self.text[noad.at : noad.end], "write it otherwise")
+                raise Refusal(
+                    noad.at, "a function without subscript", self.text[noad.at : noad.end], "write it otherwise"
+                )
             name = f"log_{base}"
         elif noad.is_command("log"):
             name = "log?"
@@ -557,6 +569,12 @@ def transpose_mark(noad: Noad) -> str:
     return "T" if noad.is_sign("T") else ""
 
 
+def is_power(sup: list[Noad]) -> bool:
+    """True for a superscript that is no part of a name: a number, or the mark of a transpose."""
+    rest = sup[1:] if sup[0].is_sign("-") else sup
+    return bool(rest) and (all(n.is_sign(*"0123456789") for n in rest) or transpose_mark(rest[0]) != "")
+
+
 def split_noads(noads: list[Noad], mark: str) -> list[list[Noad]]:
     """A list cut at a mark."""
     pieces: list[list[Noad]] = [[]]
@@ -568,7 +586,7 @@ def split_noads(noads: list[Noad], mark: str) -> list[list[Noad]]:
     return pieces
 
 
-def spelling_rank(noads: list[Noad]) -> tuple[int, int]:
+def spelling_rank(noads: tuple[Noad, ...]) -> tuple[int, int]:
     """Longer spellings first, and of the same length those with more scripts and bold type."""
     return (len(noads), sum(n.bold + (n.sub is not None) + (n.sup is not None) for n in noads))
 
@@ -579,5 +597,3 @@ def suggest_name(spelled: str) -> str:
     words = words.replace("+", "p").replace("-", "m").replace("|", "_")
     name = re.sub(r"[^A-Za-z0-9]+", "_", words).strip("_")[:60]
     return name if name[:1].isalpha() else f"s_{name}" if name else "symbol"
-
-

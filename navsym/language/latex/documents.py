@@ -14,10 +14,13 @@ TEX = re.compile(
     r"|(?P<dollar>\$)|\\begin\{(?P<skip>verbatim\*?|lstlisting|comment)\}|\\."
 )
 MARKDOWN = re.compile(
-    r"^[ ]*(?P<fence>`{3,}|~{3,})(?P<kind>[^\n]*)$|(?P<code>`+)|(?P<dollars>\$\$)|(?P<dollar>\$)|(?P<square>\\\[)|\\.", re.M
+    r"^[ ]*(?P<fence>`{3,}|~{3,})(?P<kind>[^\n]*)$|(?P<code>`+)|(?P<dollars>\$\$)|(?P<dollar>\$)|(?P<square>\\\[)|\\.",
+    re.M,
 )
 DIRECTIVE = re.compile(r"^(?P<indent>[ \t]*)\.\. math::(?P<first>[^\n]*)$|:math:`(?P<inline>[^`]+)`", re.M)
-DOXYGEN = re.compile(r"\\f\[(?P<square>.*?)\\f\]|\\f\$(?P<dollar>.*?)\\f\$|\\f\{(?P<env>[a-z]+\*?)\}\{?(?P<body>.*?)\\f\}", re.S)
+DOXYGEN = re.compile(
+    r"\\f\[(?P<square>.*?)\\f\]|\\f\$(?P<dollar>.*?)\\f\$|\\f\{(?P<env>[a-z]+\*?)\}\{?(?P<body>.*?)\\f\}", re.S
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,9 @@ DEFINITION = re.compile(
     r"\\(?:(?:re|provide)?newcommand\*?|def)\s*(?:\{\s*(\\[A-Za-z]+)\s*\}|(\\[A-Za-z]+))\s*(?:\[([1-9])\])?\s*(\[?)(?=[{\[])"
 )
 OPERATOR = re.compile(r"\\DeclareMathOperator\*?\s*\{\s*(\\[A-Za-z]+)\s*\}\s*\{([A-Za-z]+)\}")
-CODE = re.compile(r"\\(if|else|fi\b|csname|expandafter|input|include|write|catcode|def|newcommand|let|loop|read|open|@)|@")
+CODE = re.compile(
+    r"\\(if|else|fi\b|csname|expandafter|input|include|write|catcode|def|newcommand|let|loop|read|open|@)|@"
+)
 COMMAND = re.compile(r"\\[A-Za-z]+")
 EXPANSIONS, LENGTH, MACROS = 2_000, 20_000, 2_000
 
@@ -76,7 +78,9 @@ def expand_macros(text: str, macros: Mapping[str, Macro]) -> tuple[str, list[int
                 raise Refusal(places[found.start()], f"{macro.count} arguments of {found[0]}", "fewer", "write them")
             given.append(text[stop + 1 : close] if text[stop] == "{" else text[stop])
             stop = close + 1
-        body = re.sub(r"#([1-9])", lambda m, given=given: given[int(m[1]) - 1] if int(m[1]) <= len(given) else "", macro.body)
+        body = re.sub(
+            r"#([1-9])", lambda m, given=given: given[int(m[1]) - 1] if int(m[1]) <= len(given) else "", macro.body
+        )
         body = f"{body} " if body[-1:].isalpha() and text[stop : stop + 1].isalpha() else body
         count += 1
         if count > EXPANSIONS or len(text) + len(body) > LENGTH:

@@ -6,7 +6,7 @@ Braces around one symbol, spaces, sizes of brackets and the commands of bold typ
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 from navsym.core.errors import MissingEngineError
@@ -36,6 +36,7 @@ class Noad:
     sub: list[Noad] | None = None
     sup: list[Noad] | None = None
     before: tuple[list[Noad] | None, list[Noad] | None] = (None, None)
+    shown: int = -1  # where it begins with the command of bold type before it
 
     def is_command(self, *names: str) -> bool:
         """True for one of these commands without arguments."""
@@ -80,10 +81,18 @@ def load_context() -> Any:
     one = (*BOLD, *(WORDS - {"rm"}), *ACCENTS, *DOTS)
     macros = [MacroSpec(name, "{") for name in one] + [MacroSpec(name, "{{") for name in ("frac", "dfrac", "tfrac")]
     arrays = [EnvironmentSpec(name, "{" if name == "array" else "") for name in MATRICES]
-    context.add_context_category("formulas", macros=[*macros, MacroSpec("sqrt", "[{")], environments=arrays, specials=[])
+    context.add_context_category(
+        "formulas", macros=[*macros, MacroSpec("sqrt", "[{")], environments=arrays, specials=[]
+    )
     context.set_unknown_macro_spec(MacroSpec(""))
     context.set_unknown_environment_spec(EnvironmentSpec(""))
     return context
+
+
+@lru_cache(10_000)
+def list_spelling(latex: str) -> tuple[Noad, ...]:
+    """The symbols of an entry of ``[latex]``; nobody changes them."""
+    return tuple(list_noads(latex))
 
 
 def list_noads(text: str) -> list[Noad]:
@@ -128,7 +137,11 @@ class Builder:
                 if not done or not takes_script(done[-1]):
                     done.append(Noad("group", None, unit.at, unit.at))
             elif unit.is_sign("'"):
-                raise Refusal(unit.at, "a name without primes", "'", "write the name with its primes in [latex]")
+                prime = Noad("cmd", "prime", unit.at, unit.end)
+                primed = done and (done[-1].sup is None or done[-1].sup[-1].is_command("prime"))
+                if not primed or not takes_script(done[-1]):
+                    raise Refusal(unit.at, "a name before its primes", "'", "write the name in [latex]")
+                done[-1].sup, done[-1].end = [*(done[-1].sup or []), prime], unit.end
             else:
                 done.append(unit)
         if side:
@@ -159,7 +172,7 @@ class Builder:
                 continue
             for inner in self.unwrap(noad):
                 if before is not None:
-                    inner.before, inner.at, before = before, start, None
+                    inner.before, inner.at, inner.shown, before = before, start, start, None
                 done.append(inner)
         if before is not None:
             raise Refusal(start, "a symbol beside its scripts", "none", "write the symbol")
@@ -172,11 +185,11 @@ class Builder:
         inner = noad.args[0]
         if not noad.has_scripts:
             if noad.bold and len(inner) == 1:
-                inner[0].end = noad.end
+                inner[0].end, inner[0].shown = noad.end, noad.at
             return inner
         last = inner[-1]
         if noad.bold:
-            last.end = noad.end
+            last.end, inner[0].shown = noad.end, noad.at
         if len(inner) == 1 and any(getattr(noad, side) and getattr(last, side) for side in ("sub", "sup")):
             closing = Noad("close", "}", noad.end, noad.end, sub=noad.sub, sup=noad.sup)
             return [Noad("open", "{", noad.at, noad.at + 1), last, closing]
@@ -228,7 +241,16 @@ class Builder:
         args = tuple(self.build_argument(arg, bold or name in BOLD) for arg in given)
         if name in BOLD:
             return [Noad("group", None, at, end, True, args)]
-        return [Noad("arg" if args else "cmd", name.replace("dfrac", "frac").replace("tfrac", "frac"), at, end if args else name_end, bold, args)]
+        return [
+            Noad(
+                "arg" if args else "cmd",
+                name.replace("dfrac", "frac").replace("tfrac", "frac"),
+                at,
+                end if args else name_end,
+                bold,
+                args,
+            )
+        ]
 
     def build_argument(self, node: Any, bold: bool) -> list[Noad]:
         """What stands in the braces of an argument, or its one symbol."""

@@ -52,7 +52,9 @@ def fit_sides(left: Term, right: Term, at: int) -> tuple[Term, Term]:
             if one.text == "0" and other.shape:
                 zero = Term(f"zeros({', '.join(other.shape)})", WHOLE, other.shape)
                 return (zero, other) if one is left else (other, zero)
-        raise Refusal(at, "two sides of one shape", f"{say(left.shape)} and {say(right.shape)}", "correct a declaration")
+        raise Refusal(
+            at, "two sides of one shape", f"{say(left.shape)} and {say(right.shape)}", "correct a declaration"
+        )
     return left, right
 
 
@@ -157,7 +159,9 @@ class Explainer:
                 if self.notation.functions.get(name) == inner and kept[-1].head != "^":
                     continue
                 question = f"is {name}({inner}) a product or a function?"
-                raise Refusal(factor.at, "a product that is plain", question, r"write \cdot, or name the value in [latex]")
+                raise Refusal(
+                    factor.at, "a product that is plain", question, r"write \cdot, or name the value in [latex]"
+                )
             kept += [mark, factor]
         return tuple(kept)
 
@@ -211,7 +215,9 @@ class Explainer:
             if not base.shape and kind == "T" and "T" in self.notation and not self.notation.shapes["T"]:
                 return Term(f"{base.inside(WHOLE)}**T", POWER)
             if not base.shape:
-                raise Refusal(mark.at, "a vector or matrix before a transpose", "a scalar", "declare it, or name the power")
+                raise Refusal(
+                    mark.at, "a vector or matrix before a transpose", "a scalar", "declare it, or name the power"
+                )
             if kind[0] == "-":
                 if base.shape[0] != base.shape[1]:
                     raise Refusal(mark.at, "a square matrix", say(base.shape), "correct a declaration")
@@ -222,7 +228,9 @@ class Explainer:
             return Term(f"conj({base.text})", WHOLE, base.shape, "", True, base.is_unit)
         if kind == "skew" and base.shape == ("3", "1"):
             return Term(f"skew({base.text})", WHOLE, ("3", "3"))
-        raise Refusal(mark.at, "a transpose, a conjugate of a quaternion or a power", "another mark", "name it in [latex]")
+        raise Refusal(
+            mark.at, "a transpose, a conjugate of a quaternion or a power", "another mark", "name it in [latex]"
+        )
 
     def explain_fraction(self, part: Part) -> Term:
         above, below = self.explain(part.args[0]), self.scalar(part.args[1], "as denominator")

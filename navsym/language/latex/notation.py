@@ -27,19 +27,21 @@ ACCENTS = frozenset(
     "mathfrak mathscr mathsf mathit mathtt".split()
 )
 DOTS = {"dot": 1, "ddot": 2, "dddot": 3}
-SPACES = frozenset([*",;:! >", "quad", "qquad", "displaystyle", "textstyle", "limits", "nolimits", "thinspace", "mathstrut"])
+SPACES = frozenset(
+    [*",;:! >\n", "quad", "qquad", "displaystyle", "textstyle", "limits", "nolimits", "thinspace", "mathstrut"]
+)
 SIZES = frozenset(f"{size}{side}" for size in ("big", "Big", "bigg", "Bigg") for side in ("", "l", "r"))
 
 #: Commands and words that are functions of the language.
 CALLS: Mapping[str, str] = {
     **{name: name for name in FUNCTIONS},
     **dict(arcsin="asin", arccos="acos", arctan="atan", ln="log", arctan2="atan2", sgn="sign", sign="sign", tr="trace"),
-    **dict(Tr="trace", trace="trace", det="det", diag="diag", skew="skew", erf="erf", min="min", max="max", expm="expm"),
+    **dict(
+        Tr="trace", trace="trace", det="det", diag="diag", skew="skew", erf="erf", min="min", max="max", expm="expm"
+    ),
 }
 #: Commands of LaTeX that are functions; other names of functions stand in ``\operatorname`` or ``\mathrm``.
-COMMANDS = frozenset(
-    "sin cos tan cot sec csc exp ln log sinh cosh tanh arcsin arccos arctan det min max".split()
-)
+COMMANDS = frozenset("sin cos tan cot sec csc exp ln log sinh cosh tanh arcsin arccos arctan det min max".split())
 
 DECLARATIONS = ("vector", "rotation", "quaternion", "matrix", "function", "integer", "random")
 COMPANIONS = ("unit", "frame", "range", "symmetric", "positive", "invertible", "orthogonal", "skew", "diagonal")

@@ -62,7 +62,12 @@ class ReadFormula:
         """The formula as plain data."""
         place = {"file": self.file, "line": self.line, "column": self.column}
         keys = ("source", "status", "why", "left", "relation", "right")
-        return {"place": place, **{k: getattr(self, k) for k in keys}, "symbols": list(self.symbols), "latex": self.latex}
+        return {
+            "place": place,
+            **{k: getattr(self, k) for k in keys},
+            "symbols": list(self.symbols),
+            "latex": self.latex,
+        }
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -143,7 +148,7 @@ class Reading(Answer):
                 if plain_spelling(spelled) != safe:
                     latex[safe] = spelled
         rates = dict(self.notation.rates)
-        head = "# Declare each name: real, positive, a range, { vector = 3 }, { matrix = [3, 3] }, { rotation = \"b to n\" }, …\n"
+        head = '# Declare each name: real, positive, a range, { vector = 3 }, { matrix = [3, 3] }, { rotation = "b to n" }, …\n'
         tables = {"symbols": symbols, **({"latex": latex} if latex else {}), **({"rates": rates} if rates else {})}
         return head + questions + toml_text(tables)
 
@@ -262,7 +267,9 @@ def read_block(block: Block, macros: Mapping[str, Macro], notation: Notation, li
     for relation in relations:
         if not block.display and relation.trouble is not None and not relation.sign and "=" not in block.text:
             continue
-        yield read_relation(relation, [block.start + place for place in [*places, len(block.text)]], notation, lines, block)
+        yield read_relation(
+            relation, [block.start + place for place in [*places, len(block.text)]], notation, lines, block
+        )
 
 
 def refuse_length(text: str) -> list[Relation]:
@@ -272,9 +279,7 @@ def refuse_length(text: str) -> list[Relation]:
     return [Relation(side, "", side, 0, trouble)]
 
 
-def read_relation(
-    relation: Relation, places: list[int], notation: Notation, lines: Lines, block: Block
-) -> ReadFormula:
+def read_relation(relation: Relation, places: list[int], notation: Notation, lines: Lines, block: Block) -> ReadFormula:
     """One relation, read or refused."""
     left, right = relation.left, relation.right
 
@@ -297,9 +302,7 @@ def read_relation(
         spot = lines.place(places[min(max(refusal.at, 0), len(places) - 1)])
         why = f"line {spot[0]}, column {spot[1]}: {refusal}"
         pairs = tuple(dict.fromkeys((str(u.args[0]), str(u.args[1])) for u in unknown))
-        return ReadFormula(
-            lines.name, row, column, source, "REFUSED", why, None, None, None, (), latex, spot, pairs
-        )
+        return ReadFormula(lines.name, row, column, source, "REFUSED", why, None, None, None, (), latex, spot, pairs)
 
 
 def read_sides(relation: Relation, notation: Notation, unknown: list[Part]) -> tuple[tuple[str, str], tuple[str, ...]]:

@@ -17,8 +17,12 @@ OTHERS = frozenset(
     r"\gets \ll \gg \subset \longrightarrow \Longrightarrow \stackrel \overset \underset \pm \mp".split()
 )
 TOKEN = re.compile(r":=|\\[A-Za-z]+|\\.|.", re.S)
-WRAPPER = re.compile(r"\\(?:begin|end)\{(?:aligned|split|align\*?|gather\*?|gathered|eqnarray\*?|equation\*?|multline\*?|alignedat)\}(?:\{\d+\})?")
-LABEL = re.compile(r"\\(?:label|tag\*?|hspace\*?|vspace\*?)\{[^{}]*\}|\\(?:nonumber|notag)(?![A-Za-z])|\\text\{[\s.,;:]*\}")
+WRAPPER = re.compile(
+    r"\\(?:begin|end)\{(?:aligned|split|align\*?|gather\*?|gathered|eqnarray\*?|equation\*?|multline\*?|alignedat)\}(?:\{\d+\})?"
+)
+LABEL = re.compile(
+    r"\\(?:label|tag\*?|hspace\*?|vspace\*?)\{[^{}]*\}|\\(?:nonumber|notag)(?![A-Za-z])|\\text\{[\s.,;:]*\}"
+)
 OPERATORS = ("+", "-", r"\cdot", r"\times", r"\otimes")
 
 
@@ -54,6 +58,7 @@ class Piece:
 def mask(text: str) -> str:
     """The text with blanks in place of labels and of environments that only align."""
     blank = re.compile(r"[^\n]")
+    text = re.sub(r"\\\\(\s*\[[-0-9. a-z]{1,12}\])", lambda m: "\\\\" + blank.sub(" ", m[1]), text)
     for pattern in (WRAPPER, LABEL):
         text = pattern.sub(lambda m: blank.sub(" ", m[0]), text)
     body = text.strip()
@@ -122,7 +127,9 @@ def list_pieces(text: str) -> list[Piece]:
         depth = max(0, depth + opens - closes)
         kind = ""
         if depth == 0:
-            kind = "relation" if token in RELATIONS else "row" if token == "\\\\" else "other" if token in OTHERS else ""
+            kind = (
+                "relation" if token in RELATIONS else "row" if token == "\\\\" else "other" if token in OTHERS else ""
+            )
             kind = "separator" if token in (",", ";") else kind
             if token in (r"\quad", r"\qquad") and separates(text, found.start(), found.end()):
                 kind = "separator"
@@ -151,7 +158,7 @@ def relate(text: str, row: list[Piece], previous: Side | None) -> list[Relation]
         trouble = Refusal(sides[0].start, "a relation such as =", "none", "write both sides")
         return [Relation(whole, "", whole, whole.start, trouble)]
     if other := next((piece for piece in row if piece.kind == "other"), None):
-        trouble = Refusal(other.stop, "one of = != < <= > >=", other.mark, "say what is meant as one of these")
+        trouble = Refusal(other.stop, "a relation among = != < <= > >=", other.mark, "say what is meant as one of these")
         return [Relation(whole, "", whole, whole.start, trouble)]
     if not sides[0].text and previous is not None:
         sides[0] = previous
