@@ -99,7 +99,7 @@ def embolden(tokens: list[Token]) -> list[Token]:
     """Bold type as a flag of what it sets."""
     place = 0
     while place < len(tokens):
-        if tokens[place].text[0] == "\\" and tokens[place].text[1:] in BOLD and not tokens[place].word:
+        if tokens[place].text[:1] == "\\" and tokens[place].text[1:] in BOLD and not tokens[place].word:
             if place + 1 == len(tokens):
                 raise Refusal(tokens[place].at, "what is bold", "the end", "write it")
             del tokens[place]
@@ -118,7 +118,8 @@ def match_brace(tokens: list[Token], place: int) -> int:
         depth += (tokens[at].text == "{") - (tokens[at].text == "}")
         if depth == 0:
             return at
-    raise Refusal(tokens[place].at, "a closing brace", "the end", "close it")
+    where = tokens[min(place, len(tokens) - 1)].at if tokens else 0
+    raise Refusal(where, "a closing brace", "the end", "close it")
 
 
 @lru_cache(10_000)
@@ -270,7 +271,10 @@ class Climber:
             return self.group(place + 1)[1]
         if text == r"\sqrt":
             if self.look_at(place + 1) == "[":
-                place = next(at for at in range(place, len(self.tokens)) if self.tokens[at].text == "]")
+                stops = [at for at in range(place, len(self.tokens)) if self.tokens[at].text == "]"]
+                if not stops:
+                    raise Refusal(self.tokens[place].at, "] behind the order of the root", "the end", "close it")
+                place = stops[0]
             return self.group(place + 1)[1]
         return place + 1
 
@@ -522,6 +526,7 @@ class Climber:
         self.open_braces()
         if self.look().isdigit():
             number = self.numeral()
+            self.open_braces()
             following = self.look()
             named = following[:1].isalpha() or following[1:] in GREEK or following == r"\pi"
             if self.is_end() or following in MARKS or not (named or self.has_arguments(following)):

@@ -276,10 +276,15 @@ class Descent:
         """The base with the superscript of the symbol: a power, or a mark such as the T of a transpose."""
         if noad.sup is None:
             return base
+        if base.head in ("name", "index", "unknown") and self.is_index(noad.sup):
+            spelled = self.text[noad.at if noad.shown < 0 else noad.shown : noad.end]
+            return Part("unknown", (suggest_name(spelled), spelled), base.at)
         return Part("^", (base, self.exponent(noad.sup)), base.at)
 
     def exponent(self, sup: list[Noad]) -> Part:
         """A superscript."""
+        if not sup:
+            raise Refusal(self.noads[self.place - 1].at, "a power", "empty braces", "write it")
         first, last = sup[0], sup[-1]
         minus = len(sup) == 2 and first.is_sign("-")
         mark = transpose_mark(last) if len(sup) == 1 or minus else ""
@@ -289,9 +294,18 @@ class Descent:
             return Part("mark", ("*",), first.at)
         if len(sup) == 1 and last.is_command("times", "wedge"):
             return Part("mark", ("skew",), first.at)
-        if (len(sup) == 1 and not self.is_operand(last)) or first.kind == "open" or first.is_command("prime"):
+        if self.is_index(sup):
             raise Refusal(first.at, "a power", "an index", "write the name with its index in [latex]")
         return self.inside(sup)
+
+    def is_index(self, sup: list[Noad]) -> bool:
+        """True for a superscript that can only be part of a name."""
+        if not sup:
+            return False
+        first, last = sup[0], sup[-1]
+        if len(sup) == 1 and (transpose_mark(last) or last.is_sign("*") or last.is_command("ast", "times", "wedge")):
+            return False
+        return (len(sup) == 1 and not self.is_operand(last)) or first.kind == "open" or first.is_command("prime")
 
     def is_operand(self, noad: Noad) -> bool:
         """True for what may be a power alone."""
@@ -594,6 +608,6 @@ def spelling_rank(noads: tuple[Noad, ...]) -> tuple[int, int]:
 def suggest_name(spelled: str) -> str:
     """A name for a symbol that is written with more than letters."""
     words = re.sub(r"\\(mathbf|boldsymbol|bm|mathrm|text|mathcal|left|right)\b", "", spelled)
-    words = words.replace("+", "p").replace("-", "m").replace("|", "_")
+    words = words.replace("'", "_prime").replace("+", "p").replace("-", "m").replace("|", "_")
     name = re.sub(r"[^A-Za-z0-9]+", "_", words).strip("_")[:60]
     return name if name[:1].isalpha() else f"s_{name}" if name else "symbol"

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import islice
 
 from navsym.language.latex.parts import Refusal
 
@@ -18,6 +19,7 @@ OPERATOR = re.compile(r"\\DeclareMathOperator\*?\s*\{\s*(\\[A-Za-z]+)\s*\}\s*\{(
 CODE = re.compile(
     r"\\(if|else|fi\b|csname|expandafter|input|include|write|catcode|def|newcommand|let|loop|read|open|@)|@"
 )
+BRACE = re.compile(r"\\.|[{}]", re.S)
 COMMAND = re.compile(r"\\[A-Za-z]+")
 EXPANSIONS, LENGTH, MACROS = 2_000, 20_000, 2_000
 
@@ -33,15 +35,15 @@ class Macro:
 def list_macros(text: str) -> dict[str, Macro]:
     """The abbreviations that a document defines, by command; the last definition counts."""
     macros: dict[str, Macro] = {}
-    for found in DEFINITION.finditer(text):
+    for found in islice(DEFINITION.finditer(text), MACROS):
         name, count = found[1] or found[2], int(found[3] or 0)
         stop = close_brace(text, found.end())
-        if found[4] or stop < 0 or len(macros) >= MACROS:
+        if found[4] or stop < 0:
             continue
         body = text[found.end() + 1 : stop]
         if not CODE.search(body) and len(body) <= 1_000:
             macros[name] = Macro(count, body)
-    for found in OPERATOR.finditer(text):
+    for found in islice(OPERATOR.finditer(text), MACROS):
         macros[found[1]] = Macro(0, rf"\operatorname{{{found[2]}}}")
     return macros
 
@@ -49,12 +51,10 @@ def list_macros(text: str) -> dict[str, Macro]:
 def close_brace(text: str, opening: int) -> int:
     """Place of the brace that closes the one at ``opening``; -1 where there is none in 2,000 characters."""
     depth = 0
-    for place in range(opening, min(len(text), opening + 2_000)):
-        if text[place - 1 : place] == "\\" and text[place] in "{}":
-            continue
-        depth += (text[place] == "{") - (text[place] == "}")
+    for found in BRACE.finditer(text, opening, opening + 2_000):
+        depth += (found[0] == "{") - (found[0] == "}")
         if depth == 0:
-            return place
+            return found.start()
     return -1
 
 

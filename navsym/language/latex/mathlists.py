@@ -138,7 +138,7 @@ class Builder:
                     done.append(Noad("group", None, unit.at, unit.at))
             elif unit.is_sign("'"):
                 prime = Noad("cmd", "prime", unit.at, unit.end)
-                primed = done and (done[-1].sup is None or done[-1].sup[-1].is_command("prime"))
+                primed = done and (not done[-1].sup or done[-1].sup[-1].is_command("prime"))
                 if not primed or not takes_script(done[-1]):
                     raise Refusal(unit.at, "a name before its primes", "'", "write the name in [latex]")
                 done[-1].sup, done[-1].end = [*(done[-1].sup or []), prime], unit.end
@@ -172,6 +172,8 @@ class Builder:
                 continue
             for inner in self.unwrap(noad):
                 if before is not None:
+                    if not takes_script(inner) or inner.kind in ("close", "bar"):
+                        raise Refusal(start, "a symbol behind its scripts", "another mark", "write the symbol")
                     inner.before, inner.at, inner.shown, before = before, start, start, None
                 done.append(inner)
         if before is not None:

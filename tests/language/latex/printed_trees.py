@@ -131,7 +131,7 @@ class Printer:
             return Printed(f"{head} {inner.latex}", OPEN, value)
         if self.random.random() < 0.2 and not square:
             return Printed(rf"e^{{-{self.group(inner, WHOLE)}^2}}", POWER, np.exp(-(inner.value**2)))
-        return Printed(rf"{head}\left({inner.latex}\right)" if self.sized else f"{head}({inner.latex})", WHOLE, value)
+        return Printed(rf"{head}\left({inner.latex}\right)" if self.sized else f"{head}({inner.latex})", POWER, value)
 
     def length(self, rule, depth):
         one, other = self.vector(depth - 1), self.vector(depth - 1)
@@ -180,7 +180,7 @@ class Printer:
             mark = self.random.choice(["^T", r"^\top", r"^{\mathrm{T}}", "^{T}"])
             return Printed(self.group(one, WHOLE) + mark, POWER, one.value.T)
         if rule == "inverse":
-            two = self.name("AM")
+            two = self.name("AM", bold=True)
             return Printed(two.latex + "^{-1}", POWER, np.linalg.inv(two.value))
         other = self.matrix(depth - 1)
         left, right = self.group(one, POWER), self.group(other, POWER)

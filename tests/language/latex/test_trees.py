@@ -33,11 +33,9 @@ def read_back(seeds):
 
 
 def test_random_formulas_keep_their_value():
-    refused = read_back(range(250))
-    assert len(refused) <= 5, refused
+    assert read_back(range(400)) == {}
 
 
 @pytest.mark.long
 def test_two_thousand_random_formulas_keep_their_value():
-    refused = read_back(range(1_000, 3_000))
-    assert len(refused) <= 40, refused
+    assert read_back(range(1_000, 3_000)) == {}
