@@ -9,6 +9,7 @@ import re
 from copy import copy
 from dataclasses import dataclass
 from functools import lru_cache
+from math import prod
 from typing import Any
 
 from navsym.language.latex.notation import ACCENTS, BOLD, CALLS, COMMANDS, DOTS, GREEK, SIZES, SPACES, WORDS, Notation
@@ -68,6 +69,9 @@ def clean(text: str) -> list[Token]:
             side = name
             continue
         token.text = DELIMITERS.get(token.text, token.text)
+        if name == "empty":
+            tokens += [Token("{", token.at, token.at), Token("}", token.end, token.end)]
+            continue
         if side:
             if token.text in ("|", "||"):
                 token.text = f"{token.text}<" if side == "left" else f">{token.text}"
@@ -499,6 +503,10 @@ class Climber:
         text = "".join(t.text for t in digits)
         if not re.fullmatch(r"\d*\.?\d+", text):
             self.refuse("a number", first.at)
+        if self.look() == "!" and text.isdigit() and int(text) <= 20 and self.look(1) not in ("_", "^", "'"):
+            self.place += 1
+            text = str(prod(range(2, int(text) + 1)))
+            return Part("num", (text,), first.at)
         sub, sup, self.place = self.cluster_scripts(self.place)
         if sub:
             size = "".join(t.text for t in sub).split(r"\times")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from copy import copy
+from math import factorial
 from typing import Any
 
 from navsym.language.latex.mathlists import MATRICES, Noad, is_same, list_noads, list_spelling
@@ -265,10 +266,24 @@ class Descent:
         spelled = self.text[noad.at if noad.shown < 0 else noad.shown : noad.end]
         if noad.sup and is_power(noad.sup):
             spelled = POWER.sub(r"\1", spelled)
+        spelled = self.balance(spelled, noad)
         word, flat = self.base(noad), self.flat_subscript(noad)
         if word and (flat or noad.sub is None) and noad.before == (None, None):
             return self.power(Part("unknown", (word + flat, spelled), noad.at), noad)
         return Part("unknown", (suggest_name(spelled), spelled), noad.at)
+
+    def balance(self, spelled: str, noad: Noad) -> str:
+        """The LaTeX of a name with the braces that it needs."""
+        missing = spelled.count("}") - spelled.count("{")
+        start, end = noad.at if noad.shown < 0 else noad.shown, noad.end
+        while missing > 0 and start > 0:
+            start -= 1
+            missing -= (self.text[start] == "{") - (self.text[start] == "}")
+            spelled = self.text[start] + spelled
+        while missing < 0 and end < len(self.text):
+            missing += (self.text[end] == "}") - (self.text[end] == "{")
+            spelled, end = spelled + self.text[end], end + 1
+        return spelled
 
     # -- powers and brackets --------------------------------------------------------------
 
@@ -368,6 +383,11 @@ class Descent:
                 break
             noad = following
         last = self.noads[self.place - 1]
+        if self.noad is not None and self.noad.is_sign("!") and text.isdigit() and not last.has_scripts:
+            if int(text) > 20 or self.noad.has_scripts:
+                self.refuse("a factorial up to 20!", "write the number")
+            text, last = str(factorial(int(text))), self.noad
+            self.place += 1
         if not re.fullmatch(r"[0-9]*\.?[0-9]+", text) or start.before != (None, None):
             raise Refusal(start.at, "a number", text, "correct it")
         if last.sub is not None:
@@ -500,12 +520,17 @@ class Descent:
         if variable is None or name is None or self.order(variable.sup, noad) != order or below[0].sup:
             raise Refusal(noad.at, "one variable and one order", "others", "write one derivative after the other")
         found = self.resolve(variable, name)
-        by = found or Part("unknown", (name + self.flat_subscript(variable), name), variable.at)
+        by = found or self.variable(variable, name)
         if len(above) > 1:
             return Part("diff", (self.inside(above[1:]), by, order, letter, True), noad.at)
         if self.ends():
             self.refuse("what is differentiated", "write it behind the operator")
         return Part("diff", (self.factor(), by, order, letter, False), noad.at)
+
+    def variable(self, noad: Noad, name: str) -> Part:
+        """A variable that nobody declared."""
+        spelled = self.balance(self.text[noad.at : noad.end].split("^")[0], noad)
+        return Part("unknown", (name + self.flat_subscript(noad), spelled), noad.at)
 
     def order(self, sup: list[Noad] | None, noad: Noad) -> int:
         """The order of a derivative."""
@@ -548,7 +573,7 @@ class Descent:
             self.refuse("the variable of the integral", "write one name behind d")
             raise AssertionError
         found = self.resolve(variable, name)
-        by = found or Part("unknown", (name + self.flat_subscript(variable), name), variable.at)
+        by = found or self.variable(variable, name)
         self.place += 1
         return Part("integral", (body, by, start, end), noad.at)
 

@@ -227,6 +227,8 @@ class Builder:
         name = node.macroname
         if name in SPACES or name in SIZES:
             return []
+        if name == "empty":
+            return [Noad("group", None, at, end, bold, ([],))]
         if name in ("left", "right"):
             return [Noad("side", name, at, name_end)]
         if name in OPENERS or name in CLOSERS:

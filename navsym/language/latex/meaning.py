@@ -226,7 +226,7 @@ class Explainer:
             return Term(f"{base.inside(WHOLE)}.T", WHOLE, base.shape[::-1], column)
         if kind == "*" and base.is_quaternion:
             return Term(f"conj({base.text})", WHOLE, base.shape, "", True, base.is_unit)
-        if kind == "skew" and base.shape == ("3", "1"):
+        if kind == "skew" and may_be_same(base.shape, ("3", "1")):
             return Term(f"skew({base.text})", WHOLE, ("3", "3"))
         raise Refusal(
             mark.at, "a transpose, a conjugate of a quaternion or a power", "another mark", "name it in [latex]"
@@ -260,7 +260,7 @@ class Explainer:
 
     def explain_skew(self, part: Part) -> Term:
         inner = self.explain(part.args[0])
-        if inner.shape != ("3", "1"):
+        if not may_be_same(inner.shape, ("3", "1")):
             raise Refusal(part.at, "the cross matrix of a vector of three", say(inner.shape), "declare { vector = 3 }")
         return Term(f"skew({inner.text})", WHOLE, ("3", "3"))
 
@@ -290,7 +290,7 @@ class Explainer:
             return Term(f"{name}({text})")
         if name in ("exp", "expm") and square:
             return Term(f"expm({text})", WHOLE, shapes[0])
-        if name == "skew" and shapes == [("3", "1")]:
+        if name == "skew" and len(shapes) == 1 and may_be_same(shapes[0], ("3", "1")):
             return Term(f"skew({text})", WHOLE, ("3", "3"))
         if name == "diag" and not any(shapes):
             return Term(f"diag({text})", WHOLE, (str(len(shapes)),) * 2)
@@ -311,7 +311,7 @@ class Explainer:
         sizes = [[term.shape or ("1", "1") for term in row] for row in rows]
         for row in sizes:
             for size, first in zip(row, sizes[0], strict=True):
-                if size[0] != row[0][0] or size[1] != first[1]:
+                if not may_be_same(size, (row[0][0], first[1])):
                     raise Refusal(part.at, "blocks that fit", "others", r"write zeros as \mathbf{0}_{3\times 3}")
         return Term(text, WHOLE, (add(row[0][0] for row in sizes), add(size[1] for size in sizes[0])))
 
@@ -436,6 +436,8 @@ def join_chain(factors: list[Term]) -> Term:
 def add(sizes: Any) -> str:
     """A sum of sizes."""
     found = list(sizes)
+    if "?" in found:
+        return "?"
     if all(size.isdigit() for size in found):
         return str(sum(map(int, found)))
     return found[0] if len(found) == 1 else "+".join(found)
