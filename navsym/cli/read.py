@@ -11,7 +11,7 @@ import typer
 from navsym.cli.output import emit, remark, write_text
 
 if TYPE_CHECKING:
-    from navsym.language.latex.reading import Reading, ReadFormula
+    from navsym.language.latex.reading import ReadFormula, Reading
 
 
 def command(

@@ -57,7 +57,7 @@ def prove(
     progress: Progress | None = None,
     **symbols: Any,
 ) -> Verdict | Verdicts:
-    """Verdict of a formula, or the verdicts of a claim file.
+    r"""Verdict of a formula, or the verdicts of a claim file.
 
     statement : a formula as text, ``"sin(2*a) = 2*sin(a)*cos(a)"``, or in LaTeX (a text with a backslash); or its left
                 side, followed by ``relation`` and ``right``; or the path of a claim file (TOML). A side is text, an
@@ -83,7 +83,7 @@ def prove(
     <PROVED: sin(2*a) = 2*sin(a)*cos(a); normal form; all real a>
     >>> nav.prove("sin(T) <= T", T=("0", "pi")).status
     <Status.PROVED: 'PROVED'>
-    >>> nav.prove(r"\\sin 2\\alpha = 2\\sin\\alpha\\cos\\alpha").holds
+    >>> nav.prove(r"\sin 2\alpha = 2\sin\alpha\cos\alpha").holds
     True
     >>> nav.prove("22/7 = pi", tolerance="0.005").holds
     True

@@ -12,29 +12,14 @@ from functools import lru_cache
 from math import prod
 from typing import Any
 
-from navsym.language.latex.notation import ACCENTS, BOLD, CALLS, COMMANDS, DOTS, GREEK, SIZES, SPACES, WORDS, Notation
+from navsym.language.latex.notation import ACCENTS, CALLS, COMMANDS, DOTS, GREEK, Notation
 from navsym.language.latex.parts import Part, Refusal
+from navsym.language.latex.tokens import Token, clean, match_brace, plain_word, split_tokens, underscore
 
-TOKEN = re.compile(r"\\(?:operatorname\*|[A-Za-z]+|.)|\s+|[^\\]", re.S)
 FRACTIONS = (r"\frac", r"\dfrac", r"\tfrac")
-DELIMITERS = {
-    r"\lvert": "|<", r"\rvert": ">|", r"\lVert": "||<", r"\rVert": ">||", r"\|": "||", r"\Vert": "||", r"\vert": "|",
-    r"\lfloor": "floor<", r"\rfloor": ">floor", r"\lbrack": "[", r"\rbrack": "]", r"\lparen": "(", r"\rparen": ")",
-}  # fmt: skip
 CLOSING = {"(": ")", "[": "]", "|<": ">|", "||<": ">||", "|": "|", "||": "||", "floor<": ">floor"}
 MARKS = {r"\cdot": ".", r"\times": "x", r"\otimes": "ox", "/": "/"}
 TRANSPOSES = {r"\top": "top", r"\intercal": "top", "T": "T"}
-
-
-@dataclass(slots=True)
-class Token:
-    """A command, a character, or a word of ``\\mathrm``; where it stands in the text."""
-
-    text: str
-    at: int
-    end: int
-    bold: bool = False
-    word: bool = False
 
 
 @dataclass(slots=True)
@@ -54,76 +39,6 @@ def climb(text: str, notation: Notation) -> Part:
     if climber.place < len(climber.tokens):
         climber.refuse("the end")
     return part
-
-
-def clean(text: str) -> list[Token]:
-    """Tokens without spaces, sizes and bold commands; brackets of one kind have one spelling."""
-    raw = [Token(m[0], m.start(), m.end()) for m in TOKEN.finditer(text) if not m[0].isspace() and m[0] != "~"]
-    tokens: list[Token] = []
-    side = ""
-    for token in raw:
-        name = token.text[1:] if token.text[0] == "\\" else ""
-        if name in SPACES or name in SIZES:
-            continue
-        if name in ("left", "right"):
-            side = name
-            continue
-        token.text = DELIMITERS.get(token.text, token.text)
-        if name == "empty":
-            tokens += [Token("{", token.at, token.at), Token("}", token.end, token.end)]
-            continue
-        if side:
-            if token.text in ("|", "||"):
-                token.text = f"{token.text}<" if side == "left" else f">{token.text}"
-            elif token.text not in "()[]" and "<" not in token.text and ">" not in token.text:
-                raise Refusal(token.at, f"a bracket behind \\{side}", token.text, "write one")
-            side = ""
-        tokens.append(token)
-    return embolden(join_words(tokens, text))
-
-
-def join_words(tokens: list[Token], text: str) -> list[Token]:
-    r"""``\mathrm{ab}`` as one token."""
-    done: list[Token] = []
-    place = 0
-    while place < len(tokens):
-        token = tokens[place]
-        if token.text[1:] in WORDS and token.text[0] == "\\" and place + 1 < len(tokens):
-            stop = match_brace(tokens, place + 1) if tokens[place + 1].text == "{" else place + 1
-            word = text[tokens[place + 1].at : tokens[stop].end].strip("{} ")
-            done.append(Token(word, token.at, tokens[stop].end, word=True))
-            place = stop + 1
-        else:
-            done.append(token)
-            place += 1
-    return done
-
-
-def embolden(tokens: list[Token]) -> list[Token]:
-    """Bold type as a flag of what it sets."""
-    place = 0
-    while place < len(tokens):
-        if tokens[place].text[:1] == "\\" and tokens[place].text[1:] in BOLD and not tokens[place].word:
-            if place + 1 == len(tokens):
-                raise Refusal(tokens[place].at, "what is bold", "the end", "write it")
-            del tokens[place]
-            stop = match_brace(tokens, place) if tokens[place].text == "{" else place
-            for token in tokens[place : stop + 1]:
-                token.bold = True
-        else:
-            place += 1
-    return tokens
-
-
-def match_brace(tokens: list[Token], place: int) -> int:
-    """Place of the brace that closes the one here."""
-    depth = 0
-    for at in range(place, len(tokens)):
-        depth += (tokens[at].text == "{") - (tokens[at].text == "}")
-        if depth == 0:
-            return at
-    where = tokens[min(place, len(tokens) - 1)].at if tokens else 0
-    raise Refusal(where, "a closing brace", "the end", "close it")
 
 
 @lru_cache(10_000)
@@ -307,7 +222,7 @@ class Climber:
     def cluster(self, place: int) -> Cluster:
         """The symbol at a place with its scripts, those before it as part of its base."""
         start = place
-        while self.look_at(place) == "{" and self.look_at(place + 1) == "}" or self.look_at(place) in ("_", "^"):
+        while (self.look_at(place) == "{" and self.look_at(place + 1) == "}") or self.look_at(place) in ("_", "^"):
             if self.tokens[place].text == "{":
                 place += 2
             place = self.cluster_scripts(place)[2]
@@ -382,6 +297,7 @@ class Climber:
         found = self.meaning(self.place)
         if found is None:
             self.refuse("a declared name")
+            raise AssertionError
         self.place = here.after
         return self.raised(found, here.sup)
 
@@ -662,7 +578,7 @@ class Climber:
         if index is None:
             self.refuse("one letter as the index", at)
             raise AssertionError
-        start, end = self.part_of(sub[2:]), self.part_of(here.sup)
+        start, end = self.part_of(sub[2:]), self.part_of(here.sup or [])
         self.place = here.after
         outer, self.bound = self.bound, self.bound.union((index,))
         body = self.climb(1)
@@ -672,8 +588,6 @@ class Climber:
     def integral(self, here: Cluster) -> Part:
         """An integral with both ends."""
         at = here.base[0].at
-        if not here.sub or not here.sup:
-            self.refuse("an integral with both ends", at)
         start, end = self.part_of(here.sub or []), self.part_of(here.sup or [])
         self.place = here.after
         self.stops = [*self.stops, "d"]
@@ -693,7 +607,7 @@ class Climber:
         at = self.tokens[self.place].at
         opening = self.named_environment(self.place)
         depth, stop = 0, self.place
-        for stop in range(self.place, len(self.tokens)):  # noqa: B007
+        for stop in range(self.place, len(self.tokens)):
             depth += (self.tokens[stop].text == r"\begin") - (self.tokens[stop].text == r"\end")
             if depth == 0:
                 break
@@ -716,37 +630,9 @@ class Climber:
         return self.raised(part, sup)
 
     def named_environment(self, place: int) -> str:
-        """The name behind ``\\begin`` or ``\\end``."""
+        r"""The name behind ``\begin`` or ``\end``."""
         stop = match_brace(self.tokens, place + 1)
         return "".join(t.text for t in self.tokens[place + 2 : stop])
-
-
-def split_tokens(tokens: list[Token], mark: str) -> list[list[Token]]:
-    """Tokens cut at a mark outside of braces and inner matrices."""
-    pieces: list[list[Token]] = [[]]
-    depth = 0
-    for token in tokens:
-        depth += (token.text in ("{", r"\begin")) - (token.text in ("}", r"\end"))
-        if depth == 0 and token.text == mark:
-            pieces.append([])
-        else:
-            pieces[-1].append(token)
-    return pieces
-
-
-def plain_word(token: Token) -> str | None:
-    """The name of a letter, a Greek letter or a word."""
-    if token.word:
-        return token.text if re.fullmatch("[A-Za-z][A-Za-z0-9]*", token.text) else None
-    if token.text[:1] == "\\":
-        return token.text[1:] if token.text[1:] in GREEK else None
-    return token.text if token.text.isascii() and token.text.isalpha() else None
-
-
-def underscore(sub: list[Token] | None) -> str:
-    """``_eS`` for a subscript of letters and digits."""
-    pieces = [t.text if t.text.isdigit() else plain_word(t) for t in sub or ()]
-    return "" if not pieces or None in pieces else "_" + "".join(map(str, pieces))
 
 
 def is_spelled(wanted: Cluster, found: Cluster, bare: bool) -> bool:

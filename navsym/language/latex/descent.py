@@ -100,7 +100,7 @@ class Descent:
         return join_factors(factors)
 
     def mark(self) -> str | None:
-        """The mark of a product, an empty one where nothing is written; None for the cross of ``[v \\times]``."""
+        r"""The mark of a product, an empty one where nothing is written; None for the cross of ``[v \times]``."""
         noad = self.noad
         if noad is None or noad.has_scripts:
             return ""
@@ -446,7 +446,7 @@ class Descent:
         return Part("call", (name, power, False, join_factors(factors)), noad.at)
 
     def starts_name(self, noad: Noad) -> bool:
-        """True for a name, behind the number in ``\\sin 2x``."""
+        r"""True for a name, behind the number in ``\sin 2x``."""
         return (self.base(noad) is not None and noad.value not in CALLS) or noad.is_command("pi") or noad.kind == "arg"
 
     def arguments(self, opening: Noad) -> list[Part]:

@@ -59,11 +59,11 @@ def close_brace(text: str, opening: int) -> int:
 
 
 def expand_macros(text: str, macros: Mapping[str, Macro]) -> tuple[str, list[int]]:
-    """The text without abbreviations, and for each character its place in the original; raises Refusal.
+    r"""The text without abbreviations, and for each character its place in the original; raises Refusal.
 
     >>> from navsym.language.latex.macros import Macro, expand_macros
-    >>> print(expand_macros(r"2\\half{x}", {r"\\half": Macro(1, r"\\frac{#1}{2}")})[0])
-    2\\frac{x}{2}
+    >>> print(expand_macros(r"2\half{x}", {r"\half": Macro(1, r"\frac{#1}{2}")})[0])
+    2\frac{x}{2}
     """
     places = list(range(len(text)))
     start = count = 0
@@ -78,9 +78,7 @@ def expand_macros(text: str, macros: Mapping[str, Macro]) -> tuple[str, list[int
                 raise Refusal(places[found.start()], f"{macro.count} arguments of {found[0]}", "fewer", "write them")
             given.append(text[stop + 1 : close] if text[stop] == "{" else text[stop])
             stop = close + 1
-        body = re.sub(
-            r"#([1-9])", lambda m, given=given: given[int(m[1]) - 1] if int(m[1]) <= len(given) else "", macro.body
-        )
+        body = fill_arguments(macro.body, given)
         body = f"{body} " if body[-1:].isalpha() and text[stop : stop + 1].isalpha() else body
         count += 1
         if count > EXPANSIONS or len(text) + len(body) > LENGTH:
@@ -89,3 +87,9 @@ def expand_macros(text: str, macros: Mapping[str, Macro]) -> tuple[str, list[int
         text = text[: found.start()] + body + text[stop:]
         start = found.start()
     return text, places
+
+
+def fill_arguments(body: str, given: list[str]) -> str:
+    """The body of a macro with its arguments in place of ``#1``; one that is not given is empty."""
+    filled = {str(place): text for place, text in enumerate(given, 1)}
+    return re.sub("#([1-9])", lambda found: filled.get(found[1], ""), body)

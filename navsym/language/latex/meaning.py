@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 from navsym.language.latex.notation import Notation, Shape
@@ -75,7 +76,7 @@ class Explainer:
         self.notation = notation
         self.methods = {
             "+": self.explain_sum, "*": self.explain_product, "^": self.explain_power, "()": self.explain_group,
-            "/": self.explain_fraction, "frac": self.explain_fraction, "-": self.explain_minus, "sqrt": self.explain_root,
+            "frac": self.explain_fraction, "-": self.explain_minus, "sqrt": self.explain_root,
             "abs": self.explain_length, "norm": self.explain_length, "floor": self.explain_floor,
             "call": self.explain_call, "matrix": self.explain_matrix, "skew": self.explain_skew,
             "dot": self.explain_dot, "diff": self.explain_derivative, "integral": self.explain_integral,
@@ -295,9 +296,9 @@ class Explainer:
         if name == "diag" and not any(shapes):
             return Term(f"diag({text})", WHOLE, (str(len(shapes)),) * 2)
         wanted = 2 if name == "atan2" else len(shapes) if name in ("min", "max") and len(shapes) > 1 else 1
-        if (name in FUNCTIONS or name in ("min", "max", "sign", "erf")) and shapes == [SCALAR] * wanted:
-            if name not in ("min", "max") or wanted > 1:
-                return Term(f"{name}({text})")
+        known = name in FUNCTIONS or name in ("sign", "erf") or (name in ("min", "max") and wanted > 1)
+        if known and shapes == [SCALAR] * wanted:
+            return Term(f"{name}({text})")
         got = ", ".join(map(say, shapes))
         raise Refusal(part.at, f"arguments that {name} takes", got, "correct the formula or a declaration")
 
@@ -343,12 +344,11 @@ class Explainer:
 
     def explain_series(self, part: Part) -> Term:
         name, body, index, start, end = part.args
-        shapes = {key: shape for key, shape in self.notation.shapes.items() if key != index}
         if self.notation.shapes.get(index):
             raise Refusal(part.at, "a scalar as the index", f"the vector or matrix {index}", "rename it")
-        inner = Explainer(self.notation).explain(body) if shapes is not None else None
+        inner = self.explain(body)
         ends = [self.scalar(piece, "as end of the sum").text for piece in (start, end)]
-        if inner is None or (name == "product" and inner.shape):
+        if name == "product" and inner.shape:
             raise Refusal(part.at, "a product of scalars", "matrices", "write the factors")
         return Term(f"{name}({inner.text}, {index}, {ends[0]}, {ends[1]})", WHOLE, inner.shape)
 
@@ -403,7 +403,7 @@ def scale(whole: Term, above: list[Term], below: list[Term]) -> Term:
 
 def chain(factors: list[Term], at: int) -> Term:
     """A product of matrices; a row that is a transposed column, up to the next column, is a dot product."""
-    for one, other in zip(factors, factors[1:], strict=False):
+    for one, other in pairwise(factors):
         if not may_be_same(one.shape[1:], other.shape[:1]):
             got = f"{say(one.shape)} and {say(other.shape)}"
             raise Refusal(at, "factors that fit", f"{got}: dot, cross or outer product?", r"write \cdot, \times or ^T")
@@ -428,9 +428,8 @@ def join_chain(factors: list[Term]) -> Term:
         return factors[0]
     text = " @ ".join([factors[0].inside(PRODUCT) if "*" not in factors[0].text else factors[0].inside(POWER),
                        *(f.inside(POWER) for f in factors[1:])])  # fmt: skip
-    column = factors[0].column and ""
     quaternion = factors[-1].is_quaternion
-    return Term(text, PRODUCT, (factors[0].shape[0], factors[-1].shape[1]), column, quaternion)
+    return Term(text, PRODUCT, (factors[0].shape[0], factors[-1].shape[1]), "", quaternion)
 
 
 def add(sizes: Any) -> str:

@@ -1,4 +1,4 @@
-r"""How names are written: the declarations of a document, and the table ``[latex]`` of names that are written otherwise."""
+"""How names are written: declarations, and the table ``[latex]`` of names that are printed otherwise."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ Shape = tuple[str, ...]
 
 GREEK = frozenset(
     "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi rho varrho sigma "
-    "varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega ell".split()
+    "varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega ell"
+    "".split()
 )
 BOLD = frozenset("mathbf boldsymbol bm pmb".split())
 WORDS = frozenset("mathrm text textrm operatorname operatorname* mathop rm textnormal".split())

@@ -13,7 +13,8 @@ DEPTH = 60
 class Part:
     """A piece of a formula.
 
-    head : ``num name unknown + - * ^ mark () / sqrt abs norm floor call matrix skew dot diff integral sum index eye zeros``
+    head : ``num name unknown + - * ^ mark () frac sqrt abs norm floor call matrix skew dot diff integral sum index``,
+           ``eye`` and ``zeros``
     args : parts and texts; a product has its marks between its factors: ``(a, "", b, "/", c)``
     at   : where it begins; two readings are compared without it
     """

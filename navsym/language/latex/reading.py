@@ -72,14 +72,14 @@ class ReadFormula:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Reading(Answer):
-    """The formulas of a document.
+    r"""The formulas of a document.
 
     formulas : :class:`ReadFormula`, in their order
     text     : the document
     notation : the declarations
 
     >>> import navsym as nav
-    >>> reading = nav.read(r"\\sin 2a = 2 \\sin a \\cos a", symbols={"a": "real"})
+    >>> reading = nav.read(r"\sin 2a = 2 \sin a \cos a", symbols={"a": "real"})
     >>> reading.formulas[0].left, reading.formulas[0].right
     ('sin(2*a)', '2*sin(a)*cos(a)')
     """
@@ -148,7 +148,7 @@ class Reading(Answer):
                 if plain_spelling(spelled) != safe:
                     latex[safe] = spelled
         rates = dict(self.notation.rates)
-        head = '# Declare each name: real, positive, a range, { vector = 3 }, { matrix = [3, 3] }, { rotation = "b to n" }, …\n'
+        head = "# Declare each name: real, positive, a range, { vector = 3 }, { matrix = [3, 3] } and so on.\n"
         tables = {"symbols": symbols, **({"latex": latex} if latex else {}), **({"rates": rates} if rates else {})}
         return head + questions + toml_text(tables)
 
@@ -165,20 +165,21 @@ def read(
 
     source  : a path (``.tex``, ``.rst``, ``.md``, ``.dox``), or text: one formula, or a document with formulas between
               dollars, brackets or ``\begin{equation}``
-    symbols : name -> declaration, as in ``[symbols]``: ``"real"``, a range, ``{"vector": 3}``; or the path of a TOML file
-              with the tables ``[symbols]``, ``[latex]`` and ``[rates]``
+    symbols : name -> declaration, as in ``[symbols]``: ``"real"``, a range, ``{"vector": 3}``; or the path of a TOML
+              file with the tables ``[symbols]``, ``[latex]`` and ``[rates]``
     latex   : name -> how it is printed, where that is not the name itself: ``{"C_bn": "C_b^n"}``
     rates   : name -> its rate, as in ``[rates]``
 
-    Every formula is read twice, by two grammars of which one shares no line with the other, and counts as read when both
-    agree, every name is declared and the shapes fit. Anything else is refused with its place and a question.
+    Every formula is read twice, by two grammars that share no rule, and counts as read when both agree, every name is
+    declared and the shapes fit. Anything else is refused with its place and a question.
 
     Returns a :class:`Reading`. Raises NavsymError for a file that cannot be read, EmptyError, TooLargeError, and
     ExpressionSyntaxError or ShapeError for a wrong declaration.
 
     >>> import navsym as nav
-    >>> nav.read(r"\dot L = \frac{v_N}{R_N + h}", symbols=dict(L="real", v_N="real", R_N="positive", h="real")).formulas[0]
-    ReadFormula(... left='dot_(L)', relation='=', right='v_N/(R_N + h)', ...)
+    >>> known = {"L": "real", "v_N": "real", "R_N": "positive", "h": "real"}
+    >>> nav.read(r"\dot L = \frac{v_N}{R_N + h}", symbols=known).formulas[0].right
+    'v_N/(R_N + h)'
     >>> nav.read("x = y z", symbols={"x": "real", "y": "real"}).undeclared
     ('z',)
     """

@@ -13,8 +13,8 @@ RELATIONS = {
     **dict.fromkeys((r"\ne", r"\neq"), "!="), r"\lt": "<", r"\gt": ">",
 }  # fmt: skip
 OTHERS = frozenset(
-    r"\approx \simeq \cong \sim \propto \to \rightarrow \leftarrow \Rightarrow \implies \iff \Leftrightarrow \in \mapsto "
-    r"\gets \ll \gg \subset \longrightarrow \Longrightarrow \stackrel \overset \underset \pm \mp".split()
+    r"\approx \simeq \cong \sim \propto \to \rightarrow \leftarrow \Rightarrow \implies \iff \Leftrightarrow \in "
+    r"\mapsto \gets \ll \gg \subset \longrightarrow \Longrightarrow \stackrel \overset \underset \pm \mp".split()
 )
 TOKEN = re.compile(r":=|\\[A-Za-z]+|\\.|.", re.S)
 WRAPPER = re.compile(
@@ -113,7 +113,7 @@ def continues(text: str, row: list[Piece], following: Piece) -> bool:
     if not behind or not (here or len(row) > 1):
         return False
     starts = behind.startswith(OPERATORS) or re.match(r"\\q?quad\s*([-+]|\\cdot|\\times)", behind)
-    return bool(starts and following.kind != "relation" or (len(row) > 1 and not here) or here.endswith(OPERATORS))
+    return bool((starts and following.kind != "relation") or (len(row) > 1 and not here) or here.endswith(OPERATORS))
 
 
 def list_pieces(text: str) -> list[Piece]:
@@ -158,7 +158,7 @@ def relate(text: str, row: list[Piece], previous: Side | None) -> list[Relation]
         trouble = Refusal(sides[0].start, "a relation such as =", "none", "write both sides")
         return [Relation(whole, "", whole, whole.start, trouble)]
     if other := next((piece for piece in row if piece.kind == "other"), None):
-        trouble = Refusal(other.stop, "a relation among = != < <= > >=", other.mark, "say what is meant as one of these")
+        trouble = Refusal(other.stop, "a relation among = != < <= > >=", other.mark, "write one of these")
         return [Relation(whole, "", whole, whole.start, trouble)]
     if not sides[0].text and previous is not None:
         sides[0] = previous

@@ -115,8 +115,10 @@ class Printer:
         if rule == "fraction":
             frac = self.random.choice([r"\frac", r"\dfrac", r"\tfrac"])
             return Printed(f"{frac}{{{inner.latex}}}{{{safe.latex}}}", WHOLE, inner.value / safe.value, inner.is_number)
-        return Printed(f"{self.group(inner, OPEN)}/{self.group(safe, POWER)}", SUM, inner.value / safe.value) \
-            if inner.level != OPEN else Printed(rf"\frac{{{inner.latex}}}{{{safe.latex}}}", WHOLE, inner.value / safe.value)  # fmt: skip
+        value = inner.value / safe.value
+        if inner.level == OPEN:
+            return Printed(rf"\frac{{{inner.latex}}}{{{safe.latex}}}", WHOLE, value)
+        return Printed(f"{self.group(inner, OPEN)}/{self.group(safe, POWER)}", SUM, value)
 
     def call(self, inner):
         """A function, with its power behind the name or not."""
@@ -125,8 +127,10 @@ class Printer:
         square = self.random.random() < 0.3
         head = rf"\{name}^2" if square else rf"\{name}"
         value = value**2 if square else value
-        if inner.level == WHOLE and not inner.latex.startswith((r"\left", "(", "[", "|", r"\|", r"\frac")) and (
-            self.random.random() < 0.5
+        if (
+            inner.level == WHOLE
+            and not inner.latex.startswith((r"\left", "(", "[", "|", r"\|", r"\frac"))
+            and (self.random.random() < 0.5)
         ):
             return Printed(f"{head} {inner.latex}", OPEN, value)
         if self.random.random() < 0.2 and not square:

@@ -1,14 +1,15 @@
 """Printed lines with the reading that an engineer expects, and lines that readers take differently."""
 
 SYMBOLS = {
-    **dict.fromkeys("a b c x y z t s m g h L k_1 r_eS v_N v_E R_N R_E alpha beta phi theta psi omega lambda mu".split(), "real"),
-    **dict.fromkeys("sigma tau Phi Delta rho x_max omega_ie n T vdot dt xdd f_12".split(), "real"),
+    **dict.fromkeys("a b c x y z t s m g h L k_1 r_eS v_N v_E R_N R_E alpha beta phi theta psi omega".split(), "real"),
+    **dict.fromkeys("lambda mu sigma tau Phi Delta rho x_max omega_ie n T vdot dt xdd f_12".split(), "real"),
     "u": {"vector": 3}, "v": {"vector": 3}, "w": {"vector": 3}, "b_g": {"vector": 3}, "omega_b": {"vector": 3},
     "C": {"rotation": "b to n"}, "C_bn": {"rotation": "b to n"}, "R_GI": {"rotation": "I to G"},
     "p": {"quaternion": "unit"}, "q": {"quaternion": "unit"}, "r": {"quaternion": "any"},
     "P": {"matrix": ["n", "n"]}, "Q": {"matrix": ["n", "n"]}, "F": {"matrix": ["n", "n"]}, "H": {"matrix": ["m", "n"]},
     "R": {"matrix": ["m", "m"]}, "K": {"matrix": ["n", "m"]}, "Pm": {"matrix": ["n", "n"]}, "A": {"matrix": [3, 3]},
-    "B": {"matrix": [4, 4]}, "xh": {"vector": "n"}, "xm": {"vector": "n"}, "zk": {"vector": "m"}, "Id": {"matrix": ["n", "n"]},
+    "B": {"matrix": [4, 4]}, "xh": {"vector": "n"}, "xm": {"vector": "n"}, "zk": {"vector": "m"},
+    "Id": {"matrix": ["n", "n"]},
     "E3": {"matrix": [3, 3]}, "lat": {"function": "t"}, "pos": {"vector": 3, "function": "t"},
 }  # fmt: skip
 SPELLINGS = {

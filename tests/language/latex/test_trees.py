@@ -21,14 +21,15 @@ def read_back(seeds):
     refused = {}
     for seed in seeds:
         source = random.Random(seed)
-        part = Printer(source).draw(source.choice(["scalar", "scalar", "vector", "matrix"]), source.choice([1, 2, 3, 4]))
+        kind = source.choice(["scalar", "scalar", "vector", "matrix"])
+        part = Printer(source).draw(kind, source.choice([1, 2, 3, 4]))
         (formula,) = nav.read(f"{part.latex} = {part.latex}", symbols=SYMBOLS).formulas
         if formula.status != "READ":
             refused[seed] = f"{part.latex}: {formula.why}"
             continue
         value = np.asarray(evaluate(formula.left), dtype=float)
         assert value.shape == np.shape(part.value), (part.latex, formula.left)
-        np.testing.assert_allclose(value, part.value, rtol=1e-9, atol=1e-9, err_msg=f"{part.latex} read as {formula.left}")
+        np.testing.assert_allclose(value, part.value, rtol=1e-9, atol=1e-9, err_msg=part.latex)
     return refused
 
 
