@@ -10,7 +10,7 @@ from functools import cache, lru_cache
 from typing import Any
 
 from navsym.core.errors import MissingEngineError
-from navsym.language.latex.notation import ACCENTS, BOLD, DOTS, SIZES, SPACES, WORDS
+from navsym.language.latex.notation import ACCENTS, BOLD, DOTS, SETTINGS, SIZES, SPACES, WORDS
 from navsym.language.latex.parts import DEPTH, Refusal
 
 MATRICES = ("matrix", "pmatrix", "bmatrix", "Bmatrix", "vmatrix", "smallmatrix", "array")
@@ -207,7 +207,7 @@ class Builder:
         kind = type(node).__name__
         at, end = node.pos, node.pos + node.len
         if kind == "LatexCharsNode":
-            signs = [(at + place, char) for place, char in enumerate(node.chars) if not (char.isspace() or char == "~")]
+            signs = [(at + place, char) for place, char in enumerate(node.chars) if not char.isspace()]
             return [self.make_sign(where, char, bold) for where, char in signs]
         if kind == "LatexGroupNode":
             return [Noad("group", None, at, end, bold, (self.build(node.nodelist, bold),))]
@@ -218,15 +218,19 @@ class Builder:
         raise Refusal(at, "a formula", "a comment or another formula inside", "remove it")
 
     def make_sign(self, at: int, char: str, bold: bool) -> Noad:
-        """One character."""
+        """One character; a tie is a space."""
+        if char == "~":
+            return Noad("group", None, at, at + 1, bold, ([],))
         kind, value = BRACKETS.get(char, ("sym", char))
         return Noad(kind, value, at, at + 1, bold)
 
     def list_command(self, node: Any, at: int, name_end: int, end: int, bold: bool) -> list[Noad]:
         """A command: nothing for spaces, a bracket, or a symbol."""
         name = node.macroname
-        if name in SPACES or name in SIZES:
+        if name in SETTINGS or name in SIZES:
             return []
+        if name in SPACES:
+            return [Noad("group", None, at, name_end, bold, ([],))]
         if name == "empty":
             return [Noad("group", None, at, end, bold, ([],))]
         if name in ("left", "right"):

@@ -28,9 +28,9 @@ ACCENTS = frozenset(
     "mathfrak mathscr mathsf mathit mathtt".split()
 )
 DOTS = {"dot": 1, "ddot": 2, "dddot": 3}
-SPACES = frozenset(
-    [*",;:! >\n", "quad", "qquad", "displaystyle", "textstyle", "limits", "nolimits", "thinspace", "mathstrut"]
-)
+#: Spaces, behind which a script belongs to the symbol that follows; and commands that leave no trace.
+SPACES = frozenset([*",;:! >\n", "quad", "qquad", "thinspace"])
+SETTINGS = frozenset("displaystyle textstyle limits nolimits mathstrut".split())
 SIZES = frozenset(f"{size}{side}" for size in ("big", "Big", "bigg", "Bigg") for side in ("", "l", "r"))
 
 #: Commands and words that are functions of the language.

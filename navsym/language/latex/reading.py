@@ -124,7 +124,8 @@ class Reading(Answer):
         used |= {v for name, v in self.notation.functions.items() if name in used}
         symbols = {name: value for name, value in self.notation.written.items() if name in used}
         rates = {name: rate for name, rate in self.notation.rates.items() if name in used}
-        blocks, ids = [], set()
+        blocks: list[dict[str, Any]] = []
+        ids: set[str] = set()
         for formula in self.read:
             stem = re.sub(r"[^A-Za-z0-9_.-]", "", PurePath(formula.file).stem)[:40].lstrip("_.-") or "formula"
             count = sum(name.startswith(f"{stem}:{formula.line}.") for name in ids) + 1
@@ -332,11 +333,11 @@ def read_sides(relation: Relation, notation: Notation, unknown: list[Part]) -> t
         with shifted(side.start):
             compare_readings(part, side.text, notation)
             terms.append(explain(part, notation))
-    terms = list(fit_sides(terms[0], terms[1], relation.right.start))
-    if any(term.shape for term in terms) and relation.sign not in ("=", "!="):
+    first_term, second_term = fit_sides(terms[0], terms[1], relation.right.start)
+    if (first_term.shape or second_term.shape) and relation.sign not in ("=", "!="):
         raise Refusal(relation.right.start, "scalars on both sides of an order", "vectors", "compare entries")
     names = dict.fromkeys(name for part in parts for name in list_names(part) if name in notation)
-    return (terms[0].text, terms[1].text), tuple(names)
+    return (first_term.text, second_term.text), tuple(names)
 
 
 class shifted:

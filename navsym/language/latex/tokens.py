@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from navsym.language.latex.notation import BOLD, GREEK, SIZES, SPACES, WORDS
+from navsym.language.latex.notation import BOLD, GREEK, SETTINGS, SIZES, SPACES, WORDS
 from navsym.language.latex.parts import Refusal
 
 TOKEN = re.compile(r"\\(?:operatorname\*|[A-Za-z]+|.)|\s+|[^\\]", re.S)
@@ -28,13 +28,19 @@ class Token:
 
 def clean(text: str) -> list[Token]:
     """Tokens without spaces, sizes and bold commands; brackets of one kind have one spelling."""
-    raw = [Token(m[0], m.start(), m.end()) for m in TOKEN.finditer(text) if not m[0].isspace() and m[0] != "~"]
+    raw = [Token(m[0], m.start(), m.end()) for m in TOKEN.finditer(text) if not m[0].isspace()]
     tokens: list[Token] = []
-    side = ""
+    side, spaced = "", False
     for token in raw:
         name = token.text[1:] if token.text[0] == "\\" else ""
-        if name in SPACES or name in SIZES:
+        if name in SETTINGS or name in SIZES:
             continue
+        if name in SPACES or token.text == "~":
+            spaced = True
+            continue
+        if spaced and token.text in ("_", "^"):
+            tokens += [Token("{", token.at, token.at), Token("}", token.at, token.at)]
+        spaced = False
         if name in ("left", "right"):
             side = name
             continue
