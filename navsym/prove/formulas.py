@@ -57,7 +57,7 @@ def prove(
     progress: Progress | None = None,
     **symbols: Any,
 ) -> Verdict | Verdicts:
-    r"""Verdict of a formula, or the verdicts of a claim file.
+    """Verdict of a formula, or the verdicts of a claim file.
 
     statement : a formula as text, ``"sin(2*a) = 2*sin(a)*cos(a)"``, or in LaTeX (a text with a backslash); or its left
                 side, followed by ``relation`` and ``right``; or the path of a claim file (TOML). A side is text, an
@@ -83,8 +83,6 @@ def prove(
     <PROVED: sin(2*a) = 2*sin(a)*cos(a); normal form; all real a>
     >>> nav.prove("sin(T) <= T", T=("0", "pi")).status
     <Status.PROVED: 'PROVED'>
-    >>> nav.prove(r"\sin 2\alpha = 2\sin\alpha\cos\alpha").holds
-    True
     >>> nav.prove("22/7 = pi", tolerance="0.005").holds
     True
     >>> nav.prove("a = a", exists="log(a)").assumptions
@@ -103,11 +101,7 @@ def prove(
         if given := symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())}:
             raise misplaced_declarations(given)
         return prove_file(statement, seconds, jobs, progress)
-    if relation is not None:
-        sides = Sides(statement, relation, right)
-    else:
-        is_latex = isinstance(statement, str) and "\\" in statement
-        sides = read_latex(statement, symbols) if is_latex else split_formula(statement)
+    sides = split_formula(statement, symbols) if relation is None else Sides(statement, relation, right)
     return prove_formula(sides, symbols, beside, seconds)
 
 
@@ -188,8 +182,10 @@ def misplaced_declarations(names: Mapping[str, Any]) -> DomainError:
     return DomainError(message, where="prove")
 
 
-def split_formula(statement: Any) -> Sides:
-    """The two sides of a text at its one relation."""
+def split_formula(statement: Any, given: Mapping[str, Any]) -> Sides:
+    """The two sides of a text at its one relation; a text with a backslash is LaTeX."""
+    if isinstance(statement, str) and "\\" in statement:
+        return read_latex(statement, given)
     if not isinstance(statement, str):
         expected = "a formula as text, or two sides with their relation between them"
         message = f'expected {expected}; got {quote(statement)}; write prove(left, "=", right)'

@@ -336,8 +336,8 @@ def read_sides(relation: Relation, notation: Notation, unknown: list[Part]) -> t
     first_term, second_term = fit_sides(terms[0], terms[1], relation.right.start)
     if (first_term.shape or second_term.shape) and relation.sign not in ("=", "!="):
         raise Refusal(relation.right.start, "scalars on both sides of an order", "vectors", "compare entries")
-    names = dict.fromkeys(name for part in parts for name in list_names(part) if name in notation)
-    return (first_term.text, second_term.text), tuple(names)
+    used = dict.fromkeys(name for part in parts for name in list_names(part) if name in notation)
+    return (first_term.text, second_term.text), tuple(used)
 
 
 class shifted:
