@@ -363,6 +363,10 @@ def refuse_doubtful(args: tuple[Any, ...]) -> None:
         number = behind.args[0] if behind.head == "^" else behind
         if mark == "" and number.head == "num" and number.args[0][0] not in "po":
             raise Refusal(behind.at, "a number before its factors", "one behind", r"write \cdot, or a subscript")
+        named = behind.args[0] if behind.head == "^" else behind
+        if mark == "" and before.head == "name" and before.args[0] in ("Delta", "delta") and named.head == "name":
+            question = f"is {before.args[0]} {named.args[0]} one name or a product?"
+            raise Refusal(before.at, "a difference by its name", question, r"write it in [latex], or \cdot")
         if mark == "" and before.head == "num" and is_plain_fraction(behind):
             raise Refusal(behind.at, "a number or a product", "a mixed number?", r"write \cdot")
         is_open = (before.head == "call" and not before.args[2]) or (before.head == "diff" and not before.args[4])
