@@ -63,6 +63,7 @@ _HOMES = {
         ("Verdict", "Verdicts", "Status", "PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"), "navsym.claims"
     ),
     "prove": "navsym.prove.formulas",
+    **dict.fromkeys(("Reading", "read"), "navsym.language.latex.reading"),
     "new_paper": "navsym.prove.drafts",
     "Bank": "navsym.multimodel.bank",
     **dict.fromkeys(("Conventions", "conventions"), "navsym.conventions.answer"),
@@ -116,6 +117,8 @@ if TYPE_CHECKING:
     from navsym.guaranteed.solver import solve as solve
     from navsym.guaranteed.streaming.estimate import Estimate as Estimate
     from navsym.guaranteed.streaming.guard import Guard as Guard
+    from navsym.language.latex.reading import Reading as Reading
+    from navsym.language.latex.reading import read as read
     from navsym.models.derivation import Derivation as Derivation
     from navsym.models.derivation import derive as derive
     from navsym.models.model import Model as Model

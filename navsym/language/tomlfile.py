@@ -112,9 +112,10 @@ def check_values(value: Any, where: str, path: tuple[Any, ...]) -> None:
 
 
 def toml_text(document: Mapping[str, Any]) -> str:
-    """TOML text of tables of texts: ``parse_toml(toml_text(d)) == d``.
+    """TOML text of tables: ``parse_toml(toml_text(d)) == d``.
 
-    document : table -> its keys, or a list of such tables ([[table]] blocks); values are texts and nested lists of them
+    document : table -> its keys, or a list of such tables ([[table]] blocks); values are texts, integers, truth values,
+               and lists and tables of them
     """
     blocks = []
     for table, content in document.items():
@@ -133,10 +134,14 @@ def toml_key(key: str) -> str:
 
 
 def toml_value(value: Any) -> str:
-    """A text in quotes, or a list; the rows of a matrix stand below each other."""
+    """A text in quotes, an integer, a list or a table; the rows of a matrix stand below each other."""
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{toml_key(key)} = {toml_value(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, int):
+        return str(value).lower()
     if isinstance(value, list) and value and isinstance(value[0], list):
         return "[\n" + "".join(f"  {toml_value(row)},\n" for row in value) + "]"
-    if isinstance(value, list):
+    if isinstance(value, (list, tuple)):
         return "[" + ", ".join(toml_value(item) for item in value) + "]"
     escaped = str(value).replace("\\", "\\\\").replace('"', '\\"')
     return '"' + "".join(c if c.isprintable() else f"\\U{ord(c):08x}" for c in escaped) + '"'

@@ -46,6 +46,7 @@ from navsym.prove.wording import expression_text, scope_of
 
 RELATIONS = ("=", "!=", "<", "<=", ">", ">=")
 CLAIMS = 2_000
+NOTES = ("printed", "source")  # LaTeX and place in a document, as `read` writes them
 
 Box = dict[Symbol, tuple[Expr, Expr]]
 
@@ -198,7 +199,9 @@ def read_claim_or_error(block: Any, symbols: Symbols, where: str, place: int) ->
 
 def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim | TextClaim:
     """One [[claim]] block."""
-    table = as_table(block, where)
+    table = dict(as_table(block, where))
+    for note in NOTES:
+        as_text(table.pop(note, ""), join_place(where, note), "a text")
     if is_text_claim(table, symbols.written):
         as_label(require_key(table, "id", where), join_place(where, "id"))
         read_tolerance(table.get("tolerance"), table.get("relation", "="), join_place(where, "tolerance"))

@@ -63,9 +63,9 @@ def prove(
 ) -> Verdict | Verdicts:
     """Verdict of a formula, or the verdicts of a claim file.
 
-    statement : a formula as text, ``"sin(2*a) = 2*sin(a)*cos(a)"``; or its left side, followed by ``relation`` and
-                ``right``; or the path of a claim file (TOML). A side is text, an exact number, a sympy expression, or
-                a list of rows or matrix of these.
+    statement : a formula as text, ``"sin(2*a) = 2*sin(a)*cos(a)"``, or in LaTeX (a text with a backslash); or its left
+                side, followed by ``relation`` and ``right``; or the path of a claim file (TOML). A side is text, an
+                exact number, a sympy expression, or a list of rows or matrix of these.
     relation  : one of ``= != < <= > >=``
     symbols   : declarations: ``T=("0", "2*pi")`` for a closed range, ``"real"``, ``"positive"``, ``"nonnegative"``,
                 ``"nonzero"``, or a table such as ``u={"vector": 3}``; without one real, or as sympy assumes
@@ -103,7 +103,7 @@ def prove(
         if given := symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())}:
             raise misplaced_declarations(given)
         return prove_file(statement, seconds, jobs, progress)
-    sides = split_formula(statement) if relation is None else Sides(statement, relation, right)
+    sides = split_formula(statement, symbols) if relation is None else Sides(statement, relation, right)
     return prove_formula(sides, symbols, beside, seconds)
 
 
@@ -188,8 +188,10 @@ def misplaced_declarations(names: Mapping[str, Any]) -> DomainError:
     return DomainError(message, where="prove")
 
 
-def split_formula(statement: Any) -> Sides:
-    """The two sides of a text at its one relation."""
+def split_formula(statement: Any, given: Mapping[str, Any]) -> Sides:
+    """The two sides of a text at its one relation; a text with a backslash is LaTeX."""
+    if isinstance(statement, str) and "\\" in statement:
+        return read_latex(statement, given)
     if not isinstance(statement, str):
         expected = "a formula as text, or two sides with their relation between them"
         message = f'expected {expected}; got {quote(statement)}; write prove(left, "=", right)'
@@ -209,6 +211,24 @@ def is_outside_brackets(text: str, at: int) -> bool:
     """Whether a place of a text lies in no parentheses and brackets."""
     before = text[:at]
     return sum(map(before.count, "([")) <= sum(map(before.count, ")]"))
+
+
+def read_latex(statement: str, given: Mapping[str, Any]) -> Sides:
+    """The two sides of a formula in LaTeX; a letter without a declaration is real."""
+    from navsym.language.latex.reading import read
+
+    reading = read(statement, symbols=given)
+    unknown = {name: spelled for formula in reading.formulas for name, spelled in formula.unknown}
+    if unknown and not any(re.fullmatch("[A-Za-z]{2,}", spelled) for spelled in unknown.values()):
+        reading = read(statement, symbols=dict(given) | dict.fromkeys(unknown, "real"))
+    refused = next((formula for formula in reading.formulas if formula.status != "READ"), None)
+    if refused is not None:
+        raise ExpressionSyntaxError(str(refused.why).partition(": ")[2], where=f"prove: statement, line {refused.line}")
+    if len(reading.formulas) != 1:
+        message = f"expected one relation; got {len(reading.formulas)} in {quote(statement)}; prove them one by one"
+        raise ExpressionSyntaxError(message, where="prove: statement")
+    (formula,) = reading.formulas
+    return Sides(formula.left, str(formula.relation), formula.right)
 
 
 def symbols_in(sides: Iterable[Any], given: Mapping[str, Any]) -> set[str]:

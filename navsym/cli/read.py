@@ -1,0 +1,66 @@
+"""Read the formulas of a LaTeX, reStructuredText or Markdown document, with declared symbols only."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from navsym.cli.output import emit, remark, write_text
+
+if TYPE_CHECKING:
+    from navsym.language.latex.reading import ReadFormula, Reading
+
+
+def command(
+    file: Annotated[str, typer.Argument(help="document (.tex, .rst, .md, .dox), or - for LaTeX on standard input")],
+    symbols: Annotated[
+        Path | None, typer.Option(help="TOML file with [symbols], and [latex] for names that are printed otherwise")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="write the formulas that are read to this claim file (TOML)")] = None,
+    declare: Annotated[bool, typer.Option("--declare", help="print a skeleton of the declarations instead")] = False,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> int:
+    """Read the formulas of a document. Status 1 when one of them is refused.
+
+    Example: navsym read examples/double-angle.md --symbols examples/double-angle.toml
+    """
+    import navsym as nav
+
+    reading = nav.read(take_input() if file == "-" else Path(file), symbols=symbols)
+    if out is not None:
+        write_text(out, reading.claims())
+        remark(f"{len(reading.read)} claims in {out}")
+    if declare:
+        emit({**reading.document(), "declarations": reading.declarations()}, as_json=json_, text=reading.declarations)
+    else:
+        emit(reading.document(), as_json=json_, text=lambda: as_text(reading))
+    return 0 if len(reading.read) == len(reading.formulas) else 1
+
+
+def take_input() -> str:
+    """Standard input as text; more than four million bytes are cut, and refused by their number."""
+    return sys.stdin.buffer.read(4_000_001).decode("utf-8", "replace")
+
+
+def as_text(reading: Reading) -> str:
+    """Each formula with its reading, or with a caret below the trouble."""
+    rows = reading.text.split("\n")
+    blocks = [line for formula in reading.formulas for line in show_formula(formula, rows)]
+    count = f"{len(reading.read)} of {len(reading.formulas)} formulas read"
+    missing = f"undeclared: {', '.join(reading.undeclared)}" if reading.undeclared else ""
+    return "\n".join([*blocks, count, *filter(None, [missing])])
+
+
+def show_formula(formula: ReadFormula, rows: list[str]) -> list[str]:
+    """The lines of one formula."""
+    place = f"{formula.file}:{formula.line}:{formula.column}".lstrip(":")
+    if formula.trouble is None:
+        return [f"{place}  READ", f"  {formula.source}", f"  {formula.left} {formula.relation} {formula.right}", ""]
+    line, column = formula.trouble
+    row = rows[line - 1] if line <= len(rows) else ""
+    start = max(0, column - 60)
+    shown = row[start : start + 100].replace("\t", " ")
+    return [f"{place}  REFUSED", f"  {shown}", "  " + " " * (column - 1 - start) + "^", f"  {formula.why}", ""]

@@ -1,0 +1,638 @@
+r"""The first reader: recursive descent over lists of symbols with scripts."""
+
+from __future__ import annotations
+
+import re
+from copy import copy
+from math import factorial
+from typing import Any
+
+from navsym.language.latex.mathlists import MATRICES, Noad, is_same, list_noads, list_spelling
+from navsym.language.latex.notation import CALLS, COMMANDS, DOTS, GREEK, Notation
+from navsym.language.latex.parts import Part, Refusal, join_factors, join_terms
+
+PAIRS = {"(": ")", "[": "]", "|": "|", "||": "||", "floor": "floor", "{": "}"}
+POWER = re.compile(r"(.*)\^(?:\{[^{}]*\}|\\[a-z]+|.)(?=(?:_.*)?$)", re.S)
+BIG = {"sum": "sum", "prod": "product"}
+
+
+def descend(text: str, notation: Notation, faces: dict[str, set[bool]] | None = None) -> Part:
+    """The parts of one side of a formula. Raises Refusal with the place in the text.
+
+    faces : filled with name -> whether it is written in bold type, for names that stand in no table
+    """
+    noads = list_noads(text)
+    reader = Descent(text, notation, noads, {} if faces is None else faces)
+    part = reader.expression()
+    if reader.place < len(noads):
+        reader.refuse("an operator or the end", "remove it")
+    return part
+
+
+class Descent:
+    """A list of symbols, and the place in it."""
+
+    def __init__(self, text: str, notation: Notation, noads: list[Noad], faces: dict[str, set[bool]]) -> None:
+        self.text, self.notation, self.noads, self.faces = text, notation, noads, faces
+        self.bound: tuple[str, ...] = ()
+        self.place, self.integrals = 0, 0
+        self.bars: list[str] = []
+        spelled = [(name, list_spelling(latex)) for name, latex in notation.spellings]
+        self.spelled = sorted(spelled, key=lambda pair: spelling_rank(pair[1]), reverse=True)
+
+    def start(self, noads: list[Noad]) -> Descent:
+        """A reader of a list of its own: the argument of a command."""
+        reader = copy(self)
+        reader.noads, reader.place, reader.bars, reader.integrals = noads, 0, [], 0
+        return reader
+
+    def inside(self, noads: list[Noad]) -> Part:
+        """The whole of such a list."""
+        reader = self.start(noads)
+        part = reader.expression()
+        if reader.place < len(noads):
+            reader.refuse("an operator or the end", "remove it")
+        return part
+
+    @property
+    def noad(self) -> Noad | None:
+        return self.noads[self.place] if self.place < len(self.noads) else None
+
+    def refuse(self, expected: str, remedy: str) -> Any:
+        """Refuse the symbol at hand."""
+        noad = self.noad
+        at = noad.at if noad else self.noads[-1].end if self.noads else len(self.text)
+        got = self.text[noad.at : noad.end][:40] if noad else "the end"
+        raise Refusal(at, expected, got, remedy)
+
+    def expression(self) -> Part:
+        """Terms with their signs."""
+        terms: list[Part] = []
+        while True:
+            noad, sign = self.noad, ""
+            if noad and noad.is_sign("+", "-") and not noad.has_scripts:
+                sign = noad.value
+                self.place += 1
+            elif terms:
+                break
+            at = noad.at if noad else 0
+            term = self.term()
+            terms.append(Part("-", (term,), at) if sign == "-" else term)
+        return join_terms(terms)
+
+    def ends(self) -> bool:
+        """True where a product ends."""
+        noad = self.noad
+        if noad is None or noad.kind == "close" or noad.is_sign("+", "-", ",", ";"):
+            return True
+        if noad.kind == "bar":
+            return noad.value in self.bars
+        return self.integrals > 0 and self.is_differential()
+
+    def term(self) -> Part:
+        """Factors with the marks between them."""
+        factors: list[Any] = [self.factor()]
+        while not self.ends():
+            mark = self.mark()
+            if mark is None:
+                break
+            factors += [mark, self.factor()]
+        return join_factors(factors)
+
+    def mark(self) -> str | None:
+        r"""The mark of a product, an empty one where nothing is written; None for the cross of ``[v \times]``."""
+        noad = self.noad
+        if noad is None or noad.has_scripts:
+            return ""
+        marks = {"cdot": ".", "times": "x", "otimes": "ox"}
+        mark = marks.get(noad.value, "") if noad.kind == "cmd" else "/" if noad.is_sign("/") else ""
+        if mark == "x" and self.place + 1 < len(self.noads) and self.noads[self.place + 1].kind == "close":
+            return None
+        self.place += bool(mark)
+        return mark
+
+    def factor(self) -> Part:
+        """A symbol with its powers."""
+        noad = self.noad
+        if noad is None:
+            self.refuse("a number, a name or a group", "complete the formula")
+            raise AssertionError
+        named = self.spelling()
+        if named is not None:
+            part, last = named
+            return self.power(part, last)
+        if noad.kind == "open" or (noad.kind == "bar" and noad.value not in self.bars):
+            return self.bracket(noad)
+        if noad.kind == "sym" and (noad.value.isdigit() or noad.value == "."):
+            return self.number()
+        if noad.kind == "env":
+            self.place += 1
+            return self.power(self.matrix(noad), noad)
+        if noad.kind == "arg":
+            return self.command(noad)
+        if noad.kind == "cmd":
+            return self.plain_command(noad)
+        if noad.kind == "word" and noad.value in CALLS and noad.value not in self.notation:
+            return self.call(CALLS[noad.value])
+        return self.name(noad)
+
+    # -- names ----------------------------------------------------------------------------
+
+    def spelling(self) -> tuple[Part, Noad] | None:
+        """A name that stands in ``[latex]``, the longest; a subscript behind it would be another name."""
+        for name, wanted in self.spelled:
+            found = self.noads[self.place : self.place + len(wanted)]
+            if len(found) == len(wanted) and all(
+                is_same(w, f, last=w is wanted[-1]) for w, f in zip(wanted, found, strict=True)
+            ):
+                if name in CALLS and name not in self.notation:
+                    self.place += len(wanted) - 1
+                    return self.call(CALLS[name]), Noad("group", None, 0, 0)
+                self.place += len(wanted)
+                last = found[-1]
+                if not any(w.bold for w in wanted):
+                    self.faces.setdefault(name, set()).add(found[0].bold)
+                rest = Noad(last.kind, last.value, last.at, last.end, sup=None if wanted[-1].sup else last.sup)
+                return Part("name", (name,), found[0].at), rest
+        return None
+
+    def name(self, noad: Noad) -> Part:
+        """A letter, a Greek letter or a word with its subscript; letters side by side may be one name."""
+        word = self.base(noad)
+        if word is None or noad.before != (None, None):
+            return self.unknown(noad)
+        if noad.is_sign("e") and noad.sup and not noad.sub and "e" not in self.notation:
+            self.place += 1
+            return Part("call", ("exp", None, True, self.inside(noad.sup)), noad.at)
+        run = self.run()
+        if len(run) > 1:
+            whole = "".join(str(n.value) for n in run) + self.flat_subscript(run[-1])
+            known = all(self.is_known(place) for place in range(self.place, self.place + len(run)))
+            if known and whole in self.notation:
+                self.refuse("one meaning", f"say in [latex] whether {whole} is a product or a name")
+            if not known:
+                self.place += len(run)
+                head = "name" if whole in self.notation else "unknown"
+                spelled = self.text[noad.at : run[-1].end]
+                part = Part(head, (whole,) if head == "name" else (whole, spelled), noad.at)
+                return self.power(part, run[-1])
+        return self.single(noad, word)
+
+    def single(self, noad: Noad, word: str) -> Part:
+        """One letter with its subscript."""
+        found = self.resolve(noad, word)
+        if found is None:
+            return self.unknown(noad)
+        self.place += 1
+        return self.power(found, noad)
+
+    def base(self, noad: Noad) -> str | None:
+        """The name of a symbol without its scripts."""
+        if noad.kind == "sym" and noad.value.isascii() and noad.value.isalpha():
+            return str(noad.value)
+        if noad.kind == "cmd" and noad.value in GREEK:
+            return str(noad.value)
+        if noad.kind == "word" and re.fullmatch(r"[A-Za-z][A-Za-z0-9]*", noad.value):
+            return str(noad.value)
+        return None
+
+    def resolve(self, noad: Noad, word: str) -> Part | None:
+        """What a symbol with its subscript means; None where nobody declared it."""
+        flat = self.flat_subscript(noad)
+        name = word + flat
+        if (flat or noad.sub is None) and (name in self.notation or name in self.bound):
+            self.faces.setdefault(name, set()).add(noad.bold)
+            return Part("name", (name,), noad.at)
+        if noad.sub and word in self.notation and self.notation.shapes[word]:
+            indices = [self.index(piece) for piece in split_noads(noad.sub, ",")]
+            wanted = 1 if self.notation.is_vector(word) else 2
+            if len(indices) == wanted and all(indices):
+                return Part("index", (word, *indices), noad.at)
+        if word == "I" and noad.bold and noad.sub and "I" not in self.notation:
+            size = self.sizes(noad.sub)
+            if size and size[0] == size[-1]:
+                return Part("eye", (size[0],), noad.at)
+        return None
+
+    def flat_subscript(self, noad: Noad) -> str:
+        """``_eS`` for a subscript of plain symbols, nothing for others."""
+        pieces = [self.base(n) or (n.value if n.is_sign(*"0123456789") else None) for n in noad.sub or ()]
+        if not pieces or None in pieces or any(n.has_scripts for n in noad.sub or ()):
+            return ""
+        return "_" + "".join(map(str, pieces))
+
+    def index(self, noads: list[Noad]) -> str:
+        """An index: digits, or the index of a sum."""
+        text = "".join(str(n.value) for n in noads)
+        plain = all(n.kind == "sym" and not n.has_scripts for n in noads)
+        return text if plain and ((text.isdigit() and text[:1] != "0") or text in self.bound) else ""
+
+    def sizes(self, noads: list[Noad]) -> list[str]:
+        r"""Rows and columns of ``_{3 \times 3}`` or ``_3``."""
+        pieces = split_noads(noads, "times")
+        texts = ["".join(str(n.value) for n in piece) for piece in pieces]
+        return texts if len(texts) <= 2 and all(re.fullmatch("[1-9][0-9]?|[a-z]", t) for t in texts) else []
+
+    def is_known(self, place: int) -> bool:
+        """True when the symbol at a place has a meaning of its own."""
+        kept, self.place = self.place, place
+        try:
+            noad = self.noads[place]
+            if noad.is_sign("e") and noad.sup and "e" not in self.notation:
+                return True
+            return self.spelling() is not None or self.resolve(noad, str(noad.value)) is not None
+        finally:
+            self.place = kept
+
+    def run(self) -> list[Noad]:
+        """Letters side by side, without a space between them."""
+        run: list[Noad] = []
+        for noad in self.noads[self.place :]:
+            letter = noad.kind == "sym" and noad.value.isascii() and noad.value.isalpha()
+            if not letter or (run and (run[-1].has_scripts or run[-1].end != noad.at or run[-1].bold != noad.bold)):
+                break
+            if run and self.integrals and noad.value == "d" and "d" not in self.notation:
+                break
+            run.append(noad)
+        return run
+
+    def unknown(self, noad: Noad) -> Part:
+        """A symbol that nobody declared, with the name that it might have."""
+        if noad.kind in ("sym", "cmd") and self.base(noad) is None:
+            self.refuse("a symbol of the language", "write it otherwise, or as a name in [latex]")
+        if noad.kind == "word" and self.base(noad) is None:
+            self.refuse("a formula without words", "write the words outside")
+        self.place += 1
+        spelled = self.text[noad.at if noad.shown < 0 else noad.shown : noad.end]
+        if noad.sup and is_power(noad.sup):
+            spelled = POWER.sub(r"\1", spelled)
+        spelled = self.balance(spelled, noad)
+        word, flat = self.base(noad), self.flat_subscript(noad)
+        if word and (flat or noad.sub is None) and noad.before == (None, None):
+            return self.power(Part("unknown", (word + flat, spelled), noad.at), noad)
+        return Part("unknown", (suggest_name(spelled), spelled), noad.at)
+
+    def balance(self, spelled: str, noad: Noad) -> str:
+        """The LaTeX of a name with the braces that it needs."""
+        missing = spelled.count("}") - spelled.count("{")
+        start, end = noad.at if noad.shown < 0 else noad.shown, noad.end
+        while missing > 0 and start > 0:
+            start -= 1
+            missing -= (self.text[start] == "{") - (self.text[start] == "}")
+            spelled = self.text[start] + spelled
+        while missing < 0 and end < len(self.text):
+            missing += (self.text[end] == "}") - (self.text[end] == "{")
+            spelled, end = spelled + self.text[end], end + 1
+        return spelled
+
+    # -- powers and brackets --------------------------------------------------------------
+
+    def power(self, base: Part, noad: Noad) -> Part:
+        """The base with the superscript of the symbol: a power, or a mark such as the T of a transpose."""
+        if noad.sup is None:
+            return base
+        if base.head in ("name", "index", "unknown") and self.is_index(noad.sup):
+            spelled = self.text[noad.at if noad.shown < 0 else noad.shown : noad.end]
+            return Part("unknown", (suggest_name(spelled), spelled), base.at)
+        return Part("^", (base, self.exponent(noad.sup)), base.at)
+
+    def exponent(self, sup: list[Noad]) -> Part:
+        """A superscript."""
+        if not sup:
+            raise Refusal(self.noads[self.place - 1].at, "a power", "empty braces", "write it")
+        first, last = sup[0], sup[-1]
+        minus = len(sup) == 2 and first.is_sign("-")
+        mark = transpose_mark(last) if len(sup) == 1 or minus else ""
+        if mark:
+            return Part("mark", ("-" * minus + mark,), first.at)
+        if len(sup) == 1 and (last.is_sign("*") or last.is_command("ast")):
+            return Part("mark", ("*",), first.at)
+        if len(sup) == 1 and last.is_command("times", "wedge"):
+            return Part("mark", ("skew",), first.at)
+        if self.is_index(sup):
+            raise Refusal(first.at, "a power", "an index", "write the name with its index in [latex]")
+        return self.inside(sup)
+
+    def is_index(self, sup: list[Noad]) -> bool:
+        """True for a superscript that can only be part of a name."""
+        if not sup:
+            return False
+        first, last = sup[0], sup[-1]
+        if len(sup) == 1 and (transpose_mark(last) or last.is_sign("*") or last.is_command("ast", "times", "wedge")):
+            return False
+        return (len(sup) == 1 and not self.is_operand(last)) or first.kind == "open" or first.is_command("prime")
+
+    def is_operand(self, noad: Noad) -> bool:
+        """True for what may be a power alone."""
+        return (
+            noad.kind in ("arg", "word", "bar")
+            or noad.is_sign(*"0123456789")
+            or self.base(noad) is not None
+            or (noad.is_command("pi"))
+        )
+
+    def bracket(self, opening: Noad) -> Part:
+        """What stands in brackets or bars, with its powers."""
+        self.place += 1
+        is_bar = opening.kind == "bar" or opening.value in ("|", "||")
+        if is_bar:
+            if opening.kind == "bar" and self.bars:
+                raise Refusal(opening.at, "bars that are not nested", "bars inside bars", r"write \left| and \right|")
+            self.bars.append(opening.value)
+        kept, self.integrals = self.integrals, 0
+        outer, self.bars = self.bars, self.bars if is_bar and opening.kind == "bar" else []
+        inner = self.expression()
+        self.bars, self.integrals = outer, kept
+        if is_bar:
+            self.bars.pop()
+        crossed = self.noad is not None and self.noad.is_command("times")
+        self.place += crossed
+        closing = self.noad
+        if closing is None or closing.kind not in ("close", "bar") or closing.value != PAIRS[opening.value]:
+            self.refuse(f"the bracket that closes {self.text[opening.at : opening.end]}", "close it")
+            raise AssertionError
+        self.place += 1
+        return self.close(opening, inner, closing, crossed)
+
+    def close(self, opening: Noad, inner: Part, closing: Noad, crossed: bool) -> Part:
+        """A group by its bracket and by the subscript of the closing one."""
+        kind = opening.value
+        crossed |= (
+            bool(closing.sub) and len(closing.sub or ()) == 1 and (closing.sub or [closing])[0].is_command("times")
+        )
+        part = Part("()", (kind, inner), opening.at)
+        if crossed and kind in ("[", "(", "floor"):
+            part = Part("skew", (inner,), opening.at)
+        elif closing.sub and kind == "||" and len(closing.sub) == 1 and closing.sub[0].is_sign("2"):
+            part = Part("norm", (inner,), opening.at)
+        elif closing.sub or crossed:
+            raise Refusal(closing.at, "a bracket without subscript", "one", "write it as a name in [latex]")
+        elif kind in ("|", "||", "floor"):
+            part = Part({"|": "abs", "||": "norm", "floor": "floor"}[kind], (inner,), opening.at)
+        return self.power(part, closing)
+
+    def number(self) -> Part:
+        """Digits side by side; a number with a power ends there."""
+        start = noad = self.noads[self.place]
+        text = ""
+        while noad.kind == "sym" and (noad.value.isdigit() or noad.value == "."):
+            text += noad.value
+            self.place += 1
+            following = self.noad
+            if noad.has_scripts or following is None or following.at != noad.end:
+                break
+            noad = following
+        last = self.noads[self.place - 1]
+        if self.noad is not None and self.noad.is_sign("!") and text.isdigit() and not last.has_scripts:
+            if int(text) > 20 or self.noad.has_scripts:
+                self.refuse("a factorial up to 20!", "write the number")
+            text, last = str(factorial(int(text))), self.noad
+            self.place += 1
+        if not re.fullmatch(r"[0-9]*\.?[0-9]+", text) or start.before != (None, None):
+            raise Refusal(start.at, "a number", text, "correct it")
+        if last.sub is not None:
+            size = self.sizes(last.sub)
+            if text == "0" and last.bold and len(size) == 2:
+                return self.power(Part("zeros", tuple(size), start.at), last)
+            raise Refusal(start.at, "a number without subscript", self.text[start.at : last.end], "name it in [latex]")
+        return self.power(Part("num", (text,), start.at), last)
+
+    # -- commands -------------------------------------------------------------------------
+
+    def plain_command(self, noad: Noad) -> Part:
+        """A command without arguments."""
+        name = str(noad.value)
+        if name in COMMANDS:
+            return self.call(CALLS[name])
+        if name == "pi" and noad.sub is None:
+            self.place += 1
+            return self.power(Part("num", ("pi",), noad.at), noad)
+        if name == "infty" and not noad.has_scripts:
+            self.place += 1
+            return Part("num", ("oo",), noad.at)
+        if name in BIG:
+            return self.big(noad, BIG[name])
+        if name == "int":
+            return self.integral(noad)
+        return self.name(noad)
+
+    def call(self, name: str) -> Part:
+        """A function: what is in parentheses behind it, or one factor with a number before it."""
+        noad = self.noads[self.place]
+        self.place += 1
+        power = self.exponent(noad.sup) if noad.sup else None
+        if noad.sub is not None:
+            base = "".join(str(n.value) for n in noad.sub)
+            if name != "log" or base not in ("2", "10") or power:
+                raise Refusal(
+                    noad.at, "a function without subscript", self.text[noad.at : noad.end], "write it otherwise"
+                )
+            name = f"log_{base}"
+        elif noad.is_command("log"):
+            name = "log?"
+        following = self.noad
+        if following is not None and following.kind == "open" and following.value in ("(", "["):
+            return Part("call", (name, power, True, *self.arguments(following)), noad.at)
+        factors: list[Any] = []
+        if following is not None and following.kind == "sym" and following.value.isdigit():
+            factors = [self.number()]
+            noad_behind = self.noad
+            if self.ends() or noad_behind is None or not self.starts_name(noad_behind):
+                return Part("call", (name, power, False, factors[0]), noad.at)
+            factors.append("")
+        if following is None or self.ends():
+            self.refuse(f"what {name} is taken of", "write it in parentheses")
+        factors.append(self.factor())
+        return Part("call", (name, power, False, join_factors(factors)), noad.at)
+
+    def starts_name(self, noad: Noad) -> bool:
+        r"""True for a name, behind the number in ``\sin 2x``."""
+        return (self.base(noad) is not None and noad.value not in CALLS) or noad.is_command("pi") or noad.kind == "arg"
+
+    def arguments(self, opening: Noad) -> list[Part]:
+        """Expressions in parentheses with commas between them."""
+        self.place += 1
+        kept, self.bars, self.integrals = (self.bars, self.integrals), [], 0
+        found = [self.expression()]
+        while self.noad is not None and self.noad.is_sign(","):
+            self.place += 1
+            found.append(self.expression())
+        closing = self.noad
+        self.bars, self.integrals = kept
+        if closing is None or closing.kind != "close" or closing.value != PAIRS[opening.value]:
+            self.refuse(f"the bracket that closes {opening.value}", "close it")
+        elif closing.has_scripts:
+            raise Refusal(closing.at, "a power behind the name of the function", "one behind its argument", "move it")
+        self.place += 1
+        return found
+
+    def command(self, noad: Noad) -> Part:
+        """A command with arguments."""
+        name = str(noad.value)
+        if name == "frac":
+            return self.fraction(noad)
+        if name == "sqrt":
+            self.place += 1
+            inner = [self.inside(arg) for arg in noad.args]
+            return self.power(Part("sqrt", tuple(reversed(inner)), noad.at), noad)
+        if name in DOTS:
+            return self.dotted(noad)
+        return self.unknown(noad)
+
+    def dotted(self, noad: Noad) -> Part:
+        r"""``\dot x``: a time derivative, of a name with its subscript."""
+        (inner,) = noad.args
+        if len(inner) != 1 or (inner[0].has_scripts and noad.sub):
+            raise Refusal(noad.at, "a dot above one name", "more", "write the derivative as a fraction")
+        base = inner[0]
+        joined = Noad(base.kind, base.value, noad.at, noad.end, base.bold, base.args, base.sub or noad.sub, base.sup)
+        named = self.start([joined]).factor()
+        if named.head not in ("name", "unknown"):
+            raise Refusal(noad.at, "a dot above a name", "another part", "write the derivative as a fraction")
+        self.place += 1
+        return self.power(Part("dot", (named, DOTS[noad.value]), noad.at), noad)
+
+    def fraction(self, noad: Noad) -> Part:
+        """A quotient, or a derivative."""
+        above, below = noad.args
+        self.place += 1
+        if not above or not below:
+            raise Refusal(noad.at, "a numerator and a denominator", "an empty one", "write it")
+        letter = self.differential_letter(above[0])
+        if letter and letter == self.differential_letter(below[0]):
+            return self.power(self.derivative(noad, letter), noad)
+        return self.power(Part("frac", (self.inside(above), self.inside(below)), noad.at), noad)
+
+    def differential_letter(self, noad: Noad) -> str:
+        r"""``d`` or ``p`` for what stands before a variable in a derivative."""
+        if noad.is_command("partial") and noad.sub is None:
+            return "p"
+        word = noad.kind == "word" and noad.value == "d"
+        plain = noad.is_sign("d") and "d" not in self.notation
+        return "d" if (word or plain) and noad.sub is None else ""
+
+    def derivative(self, noad: Noad, letter: str) -> Part:
+        """``d^n f / d x^n``, or the operator before what it is applied to."""
+        above, below = noad.args
+        order = self.order(above[0].sup, noad)
+        variable = below[1] if len(below) == 2 else None
+        name = self.base(variable) if variable else None
+        if variable is None or name is None or self.order(variable.sup, noad) != order or below[0].sup:
+            raise Refusal(noad.at, "one variable and one order", "others", "write one derivative after the other")
+        found = self.resolve(variable, name)
+        by = found or self.variable(variable, name)
+        if len(above) > 1:
+            return Part("diff", (self.inside(above[1:]), by, order, letter, True), noad.at)
+        if self.ends():
+            self.refuse("what is differentiated", "write it behind the operator")
+        return Part("diff", (self.factor(), by, order, letter, False), noad.at)
+
+    def variable(self, noad: Noad, name: str) -> Part:
+        """A variable that nobody declared."""
+        spelled = self.balance(self.text[noad.at : noad.end].split("^")[0], noad)
+        return Part("unknown", (name + self.flat_subscript(noad), spelled), noad.at)
+
+    def order(self, sup: list[Noad] | None, noad: Noad) -> int:
+        """The order of a derivative."""
+        if sup is None:
+            return 1
+        if len(sup) == 1 and sup[0].is_sign(*"23456789"):
+            return int(sup[0].value)
+        raise Refusal(noad.at, "an order from 2 to 9", "another one", "write it as digits")
+
+    def big(self, noad: Noad, name: str) -> Part:
+        """A sum or a product over an index: all factors behind it."""
+        pieces = split_noads(noad.sub or [], "=")
+        if len(pieces) != 2 or len(pieces[0]) != 1 or not noad.sup:
+            raise Refusal(noad.at, "an index with both ends, such as k=1 and n", "others", "write both ends")
+        index = self.base(pieces[0][0])
+        if index is None or pieces[0][0].has_scripts:
+            raise Refusal(noad.at, "one letter as the index", "another", "rename it")
+        start, end = self.inside(pieces[1]), self.inside(noad.sup)
+        self.place += 1
+        kept, self.bound = self.bound, (*self.bound, index)
+        body = self.term()
+        self.bound = kept
+        return Part("sum", (name, body, index, start, end), noad.at)
+
+    def integral(self, noad: Noad) -> Part:
+        """An integral with both ends, up to its differential."""
+        if not noad.sub or not noad.sup:
+            raise Refusal(noad.at, "an integral with both ends", "one without", "write both ends")
+        start, end = self.inside(noad.sub), self.inside(noad.sup)
+        self.place += 1
+        self.integrals += 1
+        body = self.expression()
+        if not self.is_differential():
+            self.refuse("the differential of the integral", "write d and its variable at the end")
+        self.integrals -= 1
+        self.place += 1
+        variable = self.noad
+        name = self.base(variable) if variable else None
+        if variable is None or name is None or variable.sup:
+            self.refuse("the variable of the integral", "write one name behind d")
+            raise AssertionError
+        found = self.resolve(variable, name)
+        by = found or self.variable(variable, name)
+        self.place += 1
+        return Part("integral", (body, by, start, end), noad.at)
+
+    def is_differential(self) -> bool:
+        """True before ``d x``."""
+        noad = self.noad
+        behind = self.noads[self.place + 1] if self.place + 1 < len(self.noads) else None
+        if noad is None or behind is None or noad.has_scripts or self.base(behind) is None:
+            return False
+        return self.differential_letter(noad) == "d"
+
+    def matrix(self, noad: Noad) -> Part:
+        """A matrix, row by row."""
+        kind, widths = noad.value
+        if len(set(widths)) != 1 or not all(noad.args):
+            raise Refusal(noad.at, "rows of one length without gaps", "others", "write every entry")
+        if kind not in MATRICES or kind == "Bmatrix" or len(widths) * widths[0] > 400:
+            raise Refusal(noad.at, "a matrix", kind, "write it in brackets")
+        cells = [self.inside(cell) for cell in noad.args]
+        part = Part("matrix", (len(widths), *cells), noad.at)
+        return Part("call", ("det", None, True, part), noad.at) if kind == "vmatrix" else part
+
+
+def transpose_mark(noad: Noad) -> str:
+    """``T`` for the letter, ``top`` for what is nothing but a transpose."""
+    if noad.has_scripts:
+        return ""
+    if noad.is_command("top", "intercal") or (noad.kind == "word" and noad.value == "T"):
+        return "top"
+    if noad.kind == "arg" and noad.value == "mathsf" and [n.value for n in noad.args[0]] == ["T"]:
+        return "top"
+    return "T" if noad.is_sign("T") else ""
+
+
+def is_power(sup: list[Noad]) -> bool:
+    """True for a superscript that is no part of a name: a number, or the mark of a transpose."""
+    rest = sup[1:] if sup[0].is_sign("-") else sup
+    return bool(rest) and (all(n.is_sign(*"0123456789") for n in rest) or transpose_mark(rest[0]) != "")
+
+
+def split_noads(noads: list[Noad], mark: str) -> list[list[Noad]]:
+    """A list cut at a mark."""
+    pieces: list[list[Noad]] = [[]]
+    for noad in noads:
+        if noad.is_sign(mark) or noad.is_command(mark):
+            pieces.append([])
+        else:
+            pieces[-1].append(noad)
+    return pieces
+
+
+def spelling_rank(noads: tuple[Noad, ...]) -> tuple[int, int]:
+    """Longer spellings first, and of the same length those with more scripts and bold type."""
+    return (len(noads), sum(n.bold + (n.sub is not None) + (n.sup is not None) for n in noads))
+
+
+def suggest_name(spelled: str) -> str:
+    """A name for a symbol that is written with more than letters."""
+    words = re.sub(r"\\(mathbf|boldsymbol|bm|mathrm|text|mathcal|left|right)\b", "", spelled)
+    words = words.replace("'", "_prime").replace("+", "p").replace("-", "m").replace("|", "_")
+    name = re.sub(r"[^A-Za-z0-9]+", "_", words).strip("_")[:60]
+    return name if name[:1].isalpha() else f"s_{name}" if name else "symbol"

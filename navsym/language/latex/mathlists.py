@@ -1,0 +1,325 @@
+r"""LaTeX as lists of symbols with their scripts, from the nodes of pylatexenc: what the first reader reads.
+
+Braces around one symbol, spaces, sizes of brackets and the commands of bold type leave no trace but a flag.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from typing import Any
+
+from navsym.core.errors import MissingEngineError
+from navsym.language.latex.notation import ACCENTS, BOLD, DOTS, SETTINGS, SIZES, SPACES, WORDS
+from navsym.language.latex.parts import DEPTH, Refusal
+
+MATRICES = ("matrix", "pmatrix", "bmatrix", "Bmatrix", "vmatrix", "smallmatrix", "array")
+OPENERS = {"lvert": "|", "lVert": "||", "lfloor": "floor", "lbrack": "[", "lparen": "("}
+CLOSERS = {"rvert": "|", "rVert": "||", "rfloor": "floor", "rbrack": "]", "rparen": ")"}
+BRACKETS = {"(": ("open", "("), ")": ("close", ")"), "[": ("open", "["), "]": ("close", "]"), "|": ("bar", "|")}
+
+
+@dataclass(slots=True)
+class Noad:
+    """A symbol with its scripts.
+
+    kind, value : ``sym`` a character, ``word``, ``cmd`` a command without arguments, ``arg`` one with them,
+                  ``group``, ``env``, ``open``, ``close``, ``bar``
+    """
+
+    kind: str
+    value: Any
+    at: int
+    end: int
+    bold: bool = False
+    args: tuple[list[Noad], ...] = ()
+    sub: list[Noad] | None = None
+    sup: list[Noad] | None = None
+    before: tuple[list[Noad] | None, list[Noad] | None] = (None, None)
+    shown: int = -1  # where it begins with the command of bold type before it
+
+    def is_command(self, *names: str) -> bool:
+        """True for one of these commands without arguments."""
+        return self.kind == "cmd" and self.value in names
+
+    def is_sign(self, *signs: str) -> bool:
+        """True for one of these characters."""
+        return self.kind == "sym" and self.value in signs
+
+    @property
+    def has_scripts(self) -> bool:
+        return self.sub is not None or self.sup is not None
+
+
+def is_same(wanted: Noad, found: Noad, last: bool = False) -> bool:
+    """True when a symbol is written as wanted: bold where that is wanted; the last one may have a power behind it."""
+    if (wanted.kind, wanted.value) != (found.kind, found.value) or (wanted.bold and not found.bold):
+        return False
+    pairs = [(wanted.sub, found.sub), *zip(wanted.before, found.before, strict=True)]
+    pairs += [] if last and wanted.sup is None else [(wanted.sup, found.sup)]
+    if len(wanted.args) != len(found.args):
+        return False
+    return all(is_same_list(w, f) for w, f in [*pairs, *zip(wanted.args, found.args, strict=True)])
+
+
+def is_same_list(wanted: list[Noad] | None, found: list[Noad] | None) -> bool:
+    """The same for lists, and for scripts that are not there."""
+    if wanted is None or found is None:
+        return wanted is found
+    return len(wanted) == len(found) and all(map(is_same, wanted, found))
+
+
+@cache
+def load_context() -> Any:
+    """What pylatexenc has to know: the commands with arguments, and no other."""
+    try:
+        from pylatexenc.macrospec import EnvironmentSpec, LatexContextDb, MacroSpec
+    except ImportError:
+        message = "expected the package pylatexenc; got none; install the packages of requirements.lock"
+        raise MissingEngineError(message, where="read") from None
+    context = LatexContextDb()
+    one = (*BOLD, *(WORDS - {"rm"}), *ACCENTS, *DOTS)
+    macros = [MacroSpec(name, "{") for name in one] + [MacroSpec(name, "{{") for name in ("frac", "dfrac", "tfrac")]
+    arrays = [EnvironmentSpec(name, "{" if name == "array" else "") for name in MATRICES]
+    context.add_context_category(
+        "formulas", macros=[*macros, MacroSpec("sqrt", "[{")], environments=arrays, specials=[]
+    )
+    context.set_unknown_macro_spec(MacroSpec(""))
+    context.set_unknown_environment_spec(EnvironmentSpec(""))
+    return context
+
+
+@lru_cache(10_000)
+def list_spelling(latex: str) -> tuple[Noad, ...]:
+    """The symbols of an entry of ``[latex]``; nobody changes them."""
+    return tuple(list_noads(latex))
+
+
+def list_noads(text: str) -> list[Noad]:
+    """The symbols of a formula. Raises Refusal for unbalanced braces and for what is no formula."""
+    from pylatexenc.latexwalker import LatexWalker, LatexWalkerParseError
+
+    bound_depth(text)
+    try:
+        nodes, _, _ = LatexWalker(text, latex_context=load_context(), tolerant_parsing=False).get_latex_nodes()
+    except LatexWalkerParseError as failure:
+        at = min(failure.pos or 0, len(text))
+        raise Refusal(at, "balanced braces and whole commands", "others", "close what is open") from None
+    return Builder(text).build(nodes, False)
+
+
+def bound_depth(text: str) -> None:
+    """Refuse deep nesting before a recursive reader sees it."""
+    depth = 0
+    for at, char in enumerate(text):
+        depth += (char in "{([") - (char in "})]")
+        if depth > DEPTH or at > 20_000:
+            raise Refusal(at, f"at most {DEPTH} levels and 20000 characters", "more", "split the formula")
+
+
+class Builder:
+    """Nodes to symbols with scripts."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+
+    def build(self, nodes: list[Any], bold: bool) -> list[Noad]:
+        """A list: scripts go to the symbol before them, or to the one behind them where there is none."""
+        units = merge_sides([unit for node in nodes for unit in self.list_units(node, bold)])
+        done: list[Noad] = []
+        side = ""
+        for place, unit in enumerate(units):
+            if side:
+                self.attach(done[-1], side, unit, units[place + 1 : place + 2])
+                side = ""
+            elif unit.is_sign("^", "_"):
+                side = "sup" if unit.value == "^" else "sub"
+                if not done or not takes_script(done[-1]):
+                    done.append(Noad("group", None, unit.at, unit.at))
+            elif unit.is_sign("'"):
+                prime = Noad("cmd", "prime", unit.at, unit.end)
+                primed = done and (not done[-1].sup or done[-1].sup[-1].is_command("prime"))
+                if not primed or not takes_script(done[-1]):
+                    raise Refusal(unit.at, "a name before its primes", "'", "write the name in [latex]")
+                done[-1].sup, done[-1].end = [*(done[-1].sup or []), prime], unit.end
+            else:
+                done.append(unit)
+        if side:
+            raise Refusal(len(self.text), "a script behind ^ or _", "nothing", "write it")
+        return self.place_prescripts(done)
+
+    def attach(self, noad: Noad, side: str, unit: Noad, following: list[Noad]) -> None:
+        """A script: one symbol, or a group."""
+        if getattr(noad, side) is not None:
+            raise Refusal(unit.at, "one subscript and one superscript", "two", "put the first part in braces")
+        digit = unit.kind == "sym" and unit.value.isdigit()
+        if digit and following and following[0].is_sign(*"0123456789") and following[0].at == unit.end:
+            raise Refusal(unit.at, "a script in braces", "two digits without", "write ^{12} or a product")
+        if unit.is_sign("^", "_"):
+            raise Refusal(unit.at, "a script behind ^ or _", unit.value, "write it")
+        setattr(noad, side, unit.args[0] if unit.kind == "group" and unit.args else [unit])
+        noad.end = unit.end
+
+    def place_prescripts(self, noads: list[Noad]) -> list[Noad]:
+        """Scripts of nothing go to the symbol behind them; braces around one symbol, or none, fall."""
+        done: list[Noad] = []
+        before: tuple[list[Noad] | None, list[Noad] | None] | None = None
+        start = 0
+        for noad in noads:
+            if noad.kind == "group" and not (noad.args and noad.args[0]):
+                if noad.has_scripts:
+                    before, start = (noad.sub, noad.sup), noad.at
+                continue
+            for inner in self.unwrap(noad):
+                if before is not None:
+                    if not takes_script(inner) or inner.kind in ("close", "bar"):
+                        raise Refusal(start, "a symbol behind its scripts", "another mark", "write the symbol")
+                    inner.before, inner.at, inner.shown, before = before, start, start, None
+                done.append(inner)
+        if before is not None:
+            raise Refusal(start, "a symbol beside its scripts", "none", "write the symbol")
+        return done
+
+    def unwrap(self, noad: Noad) -> list[Noad]:
+        """A group as its symbols; its scripts go to the only one, or to its closing bracket."""
+        if noad.kind != "group":
+            return [noad]
+        inner = noad.args[0]
+        if not noad.has_scripts:
+            if noad.bold and len(inner) == 1:
+                inner[0].end, inner[0].shown = noad.end, noad.at
+            return inner
+        last = inner[-1]
+        if noad.bold:
+            last.end, inner[0].shown = noad.end, noad.at
+        if len(inner) == 1 and any(getattr(noad, side) and getattr(last, side) for side in ("sub", "sup")):
+            closing = Noad("close", "}", noad.end, noad.end, sub=noad.sub, sup=noad.sup)
+            return [Noad("open", "{", noad.at, noad.at + 1), last, closing]
+        closed = len(inner) > 1 and inner[0].kind == "open" and last.kind == "close" and not closes_early(inner)
+        twice = any(getattr(noad, side) and getattr(last, side) for side in ("sub", "sup"))
+        if (len(inner) > 1 and not closed) or twice:
+            raise Refusal(noad.at, "a script on one symbol or on parentheses", "on braces", "write parentheses")
+        last.sub, last.sup, last.end = noad.sub or last.sub, noad.sup or last.sup, noad.end
+        return inner
+
+    def list_units(self, node: Any, bold: bool) -> list[Noad]:
+        """The symbols of a node, without scripts."""
+        kind = type(node).__name__
+        at, end = node.pos, node.pos + node.len
+        if kind == "LatexCharsNode":
+            signs = [(at + place, char) for place, char in enumerate(node.chars) if not char.isspace()]
+            return [self.make_sign(where, char, bold) for where, char in signs]
+        if kind == "LatexGroupNode":
+            return [Noad("group", None, at, end, bold, (self.build(node.nodelist, bold),))]
+        if kind == "LatexEnvironmentNode":
+            return [self.make_environment(node, at, end)]
+        if kind == "LatexMacroNode":
+            return self.list_command(node, at, at + len(node.macroname) + 1, end, bold)
+        raise Refusal(at, "a formula", "a comment or another formula inside", "remove it")
+
+    def make_sign(self, at: int, char: str, bold: bool) -> Noad:
+        """One character; a tie is a space."""
+        if char == "~":
+            return Noad("group", None, at, at + 1, bold, ([],))
+        kind, value = BRACKETS.get(char, ("sym", char))
+        return Noad(kind, value, at, at + 1, bold)
+
+    def list_command(self, node: Any, at: int, name_end: int, end: int, bold: bool) -> list[Noad]:
+        """A command: nothing for spaces, a bracket, or a symbol."""
+        name = node.macroname
+        if name in SETTINGS or name in SIZES:
+            return []
+        if name in SPACES:
+            return [Noad("group", None, at, name_end, bold, ([],))]
+        if name == "empty":
+            return [Noad("group", None, at, end, bold, ([],))]
+        if name in ("left", "right"):
+            return [Noad("side", name, at, name_end)]
+        if name in OPENERS or name in CLOSERS:
+            table, kind = (OPENERS, "open") if name in OPENERS else (CLOSERS, "close")
+            return [Noad(kind, table[name], at, name_end)]
+        if name in ("|", "Vert"):
+            return [Noad("bar", "||", at, name_end)]
+        if name == "vert":
+            return [Noad("bar", "|", at, name_end)]
+        given = [arg for arg in (node.nodeargd.argnlist if node.nodeargd else ()) if arg is not None]
+        if name in WORDS and given:
+            word = self.text[given[0].pos : given[0].pos + given[0].len].strip("{} ")
+            return [Noad("word", word, at, end, bold)]
+        args = tuple(self.build_argument(arg, bold or name in BOLD) for arg in given)
+        if name in BOLD:
+            return [Noad("group", None, at, end, True, args)]
+        return [
+            Noad(
+                "arg" if args else "cmd",
+                name.replace("dfrac", "frac").replace("tfrac", "frac"),
+                at,
+                end if args else name_end,
+                bold,
+                args,
+            )
+        ]
+
+    def build_argument(self, node: Any, bold: bool) -> list[Noad]:
+        """What stands in the braces of an argument, or its one symbol."""
+        grouped = type(node).__name__ == "LatexGroupNode"
+        return self.build(node.nodelist if grouped else [node], bold)
+
+    def make_environment(self, node: Any, at: int, end: int) -> Noad:
+        """A matrix: its entries as lists, and the length of each row as its value."""
+        if node.environmentname not in MATRICES:
+            raise Refusal(at, "a matrix", node.environmentname, "write the cases as formulas of their own")
+        rows: list[list[list[Any]]] = [[[]]]
+        for inner in node.nodelist:
+            kind = type(inner).__name__
+            if kind == "LatexMacroNode" and inner.macroname == "\\":
+                rows.append([[]])
+            elif kind == "LatexMacroNode" and inner.macroname == "hline":
+                continue
+            elif kind == "LatexCharsNode" and "&" in inner.chars:
+                from pylatexenc.latexwalker import LatexCharsNode
+
+                start = inner.pos
+                for place, piece in enumerate(inner.chars.split("&")):
+                    if place:
+                        rows[-1].append([])
+                    rows[-1][-1].append(LatexCharsNode(chars=piece, pos=start, len=len(piece)))
+                    start += len(piece) + 1
+            else:
+                rows[-1][-1].append(inner)
+        built = [[self.build(cell, False) for cell in row] for row in rows]
+        built = built[:-1] if built[-1] == [[]] else built
+        widths = tuple(len(row) for row in built)
+        return Noad("env", (node.environmentname, widths), at, end, False, tuple(c for row in built for c in row))
+
+
+def merge_sides(units: list[Noad]) -> list[Noad]:
+    r"""Brackets behind ``\left`` and ``\right`` as brackets that open and close."""
+    done: list[Noad] = []
+    for unit in units:
+        if done and done[-1].kind == "side":
+            side = done.pop()
+            if unit.kind not in ("open", "close", "bar"):
+                raise Refusal(unit.at, f"a bracket behind \\{side.value}", "another symbol", "write ( ) [ ] or |")
+            unit.kind, unit.at = ("open" if side.value == "left" else "close"), side.at
+        done.append(unit)
+    if done and done[-1].kind == "side":
+        raise Refusal(done[-1].at, f"a bracket behind \\{done[-1].value}", "nothing", "write ( ) [ ] or |")
+    return done
+
+
+def takes_script(noad: Noad) -> bool:
+    """True for what a script behind it may belong to."""
+    if noad.kind in ("open", "side") or noad.is_sign(*"+-=<>/,;*:"):
+        return False
+    return not noad.is_command("cdot", "times", "otimes", "circ", "odot", "div", "pm", "mp")
+
+
+def closes_early(noads: list[Noad]) -> bool:
+    """True when the bracket at the beginning closes before the end."""
+    depth = 0
+    for place, noad in enumerate(noads):
+        depth += (noad.kind == "open") - (noad.kind == "close")
+        if depth == 0 and place + 1 < len(noads):
+            return True
+    return False

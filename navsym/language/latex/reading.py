@@ -1,0 +1,380 @@
+r"""Formulas of a document or of a string of LaTeX, read with declared symbols only."""
+
+from __future__ import annotations
+
+import html
+import os
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import Any
+
+from navsym.core.answers import Answer
+from navsym.core.errors import EmptyError, ExpressionSyntaxError, TooLargeError
+from navsym.language.files import name_file, read_text
+from navsym.language.latex.climbing import climb
+from navsym.language.latex.descent import descend
+from navsym.language.latex.documents import ENDINGS, Block, hide_comments, list_blocks
+from navsym.language.latex.macros import Macro, expand_macros, list_macros
+from navsym.language.latex.meaning import explain, fit_sides
+from navsym.language.latex.notation import Notation, build_notation, read_notation
+from navsym.language.latex.parts import Part, Refusal, list_unknown
+from navsym.language.latex.rows import Relation, Side, split_relations
+from navsym.language.names import NAME, RESERVED, quote
+from navsym.language.tomlfile import toml_text
+
+SIZE = 4_000_000  # bytes of a document
+FORMULAS = 20_000
+#: A string with one of these holds formulas among other text.
+DELIMITED = re.compile(r"(?<!\\)\$|\\\[|\\\(|\\begin\{(?:equation|align|gather|eqnarray|multline|displaymath|flalign)")
+
+
+@dataclass(frozen=True, slots=True)
+class ReadFormula:
+    """One relation of a document.
+
+    line, column : where it begins, from 1
+    source       : as it is printed
+    status, why  : ``READ``, or ``REFUSED`` with the place of the trouble, what was expected and what came
+    left, relation, right : in the language of files; None where it is refused
+    symbols      : declared names in it, in the order of writing
+    latex        : in one line, with the macros of the document expanded
+    trouble      : line and column of the trouble
+    unknown      : name -> LaTeX, of the names that nobody declared
+    """
+
+    file: str
+    line: int
+    column: int
+    source: str
+    status: str
+    why: str | None
+    left: str | None
+    relation: str | None
+    right: str | None
+    symbols: tuple[str, ...]
+    latex: str
+    trouble: tuple[int, int] | None = None
+    unknown: tuple[tuple[str, str], ...] = ()
+
+    def document(self) -> dict[str, Any]:
+        """The formula as plain data."""
+        place = {"file": self.file, "line": self.line, "column": self.column}
+        keys = ("source", "status", "why", "left", "relation", "right")
+        return {
+            "place": place,
+            **{k: getattr(self, k) for k in keys},
+            "symbols": list(self.symbols),
+            "latex": self.latex,
+        }
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Reading(Answer):
+    r"""The formulas of a document.
+
+    formulas : :class:`ReadFormula`, in their order
+    text     : the document
+    notation : the declarations
+
+    >>> import navsym as nav
+    >>> reading = nav.read(r"\sin 2a = 2 \sin a \cos a", symbols={"a": "real"})
+    >>> reading.formulas[0].left, reading.formulas[0].right
+    ('sin(2*a)', '2*sin(a)*cos(a)')
+    """
+
+    formulas: tuple[ReadFormula, ...]
+    text: str
+    notation: Notation
+
+    @property
+    def read(self) -> tuple[ReadFormula, ...]:
+        """The formulas that are read."""
+        return tuple(f for f in self.formulas if f.status == "READ")
+
+    @property
+    def undeclared(self) -> tuple[str, ...]:
+        """The names that nobody declared, each once."""
+        return tuple(dict.fromkeys(name for formula in self.formulas for name, _ in formula.unknown))
+
+    def __repr__(self) -> str:
+        return f"<{len(self.read)} of {len(self.formulas)} formulas read>"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{f.line}</td><td>{f.status}</td><td><code>{html.escape(show_reading(f))}</code></td></tr>"
+            for f in self.formulas
+        )
+        return f"<table><thead><tr><th>line</th><th></th><th>reading</th></tr></thead><tbody>{rows}</tbody></table>"
+
+    def document(self) -> dict[str, Any]:
+        """The answer as plain data: the JSON document of ``navsym read``."""
+        counts = {"read": len(self.read), "refused": len(self.formulas) - len(self.read)}
+        return {"formulas": [f.document() for f in self.formulas], **counts, "undeclared": list(self.undeclared)}
+
+    def claims(self) -> str:
+        """A claim file (TOML) with the formulas that are read: symbols, and each claim with its place and its LaTeX.
+
+        Raises EmptyError when none is read.
+        """
+        if not self.read:
+            raise EmptyError("expected a formula that is read; got none; declare its symbols", where="read: out")
+        used = {name for formula in self.read for name in formula.symbols}
+        used |= {v for name, v in self.notation.functions.items() if name in used}
+        symbols = {name: value for name, value in self.notation.written.items() if name in used}
+        rates = {name: rate for name, rate in self.notation.rates.items() if name in used}
+        blocks: list[dict[str, Any]] = []
+        ids: set[str] = set()
+        for formula in self.read:
+            stem = re.sub(r"[^A-Za-z0-9_.-]", "", PurePath(formula.file).stem)[:40].lstrip("_.-") or "formula"
+            count = sum(name.startswith(f"{stem}:{formula.line}.") for name in ids) + 1
+            ids.add(label := f"{stem}:{formula.line}.{count}")
+            keys = {"left": formula.left, "relation": formula.relation, "right": formula.right}
+            beside = {"printed": formula.latex, "source": f"{formula.file or 'text'}: line {formula.line}"}
+            blocks.append({"id": label, **keys, **beside})
+        return toml_text({"symbols": symbols, **({"rates": rates} if rates else {}), "claim": blocks})
+
+    def declarations(self) -> str:
+        """A skeleton (TOML) of the declarations that are missing, with what is declared already."""
+        symbols, latex = dict(self.notation.written), dict(self.notation.spellings)
+        questions = ""
+        for name, spelled in (pair for formula in self.formulas for pair in formula.unknown):
+            safe = f"{name}_" if name in RESERVED else name
+            safe = f"{safe}1" if safe.endswith("_") else safe
+            if NAME.fullmatch(safe) and safe not in symbols:
+                symbols[safe] = "real"
+                if re.fullmatch("[A-Za-z]{2,}", spelled):
+                    questions += f"# Is {spelled} a product or a name? For a product, declare its letters.\n"
+                if plain_spelling(spelled) != safe:
+                    latex[safe] = spelled
+        rates = dict(self.notation.rates)
+        head = "# Declare each name: real, positive, a range, { vector = 3 }, { matrix = [3, 3] } and so on.\n"
+        tables = {"symbols": symbols, **({"latex": latex} if latex else {}), **({"rates": rates} if rates else {})}
+        return head + questions + toml_text(tables)
+
+
+def read(
+    source: str | os.PathLike[str],
+    /,
+    *,
+    symbols: Mapping[str, Any] | str | os.PathLike[str] | None = None,
+    latex: Mapping[str, str] | None = None,
+    rates: Mapping[str, str] | None = None,
+) -> Reading:
+    r"""The formulas of a document, or of LaTeX as text, in the language of files.
+
+    source  : a path (``.tex``, ``.rst``, ``.md``, ``.dox``), or text: one formula, or a document with formulas between
+              dollars, brackets or ``\begin{equation}``
+    symbols : name -> declaration, as in ``[symbols]``: ``"real"``, a range, ``{"vector": 3}``; or the path of a TOML
+              file with the tables ``[symbols]``, ``[latex]`` and ``[rates]``
+    latex   : name -> how it is printed, where that is not the name itself: ``{"C_bn": "C_b^n"}``
+    rates   : name -> its rate, as in ``[rates]``
+
+    Every formula is read twice, by two grammars that share no rule, and counts as read when both agree, every name is
+    declared and the shapes fit. Anything else is refused with its place and a question.
+
+    Returns a :class:`Reading`. Raises NavsymError for a file that cannot be read, EmptyError, TooLargeError, and
+    ExpressionSyntaxError or ShapeError for a wrong declaration.
+
+    >>> import navsym as nav
+    >>> known = {"L": "real", "v_N": "real", "R_N": "positive", "h": "real"}
+    >>> nav.read(r"\dot L = \frac{v_N}{R_N + h}", symbols=known).formulas[0].right
+    'v_N/(R_N + h)'
+    >>> nav.read("x = y z", symbols={"x": "real", "y": "real"}).undeclared
+    ('z',)
+    """
+    notation = choose_notation(symbols, latex, rates)
+    require_spellings_readable(notation)
+    text, name, form = open_source(source)
+    macros = list_macros(text) if form == "tex" else {}
+    blocks = list_blocks(text, form) if form else [Block(text, 0, True)]
+    lines = [0, *(found.end() for found in re.finditer("\n", text))]
+    found = [formula for block in blocks for formula in read_block(block, macros, notation, Lines(name, text, lines))]
+    if len(found) > FORMULAS:
+        raise TooLargeError(f"expected at most {FORMULAS} formulas; got more; split the document", where=name or "read")
+    return Reading(tuple(found), text, notation)
+
+
+def choose_notation(symbols: Any, latex: Any, rates: Any) -> Notation:
+    """The notation of a file, or of tables; tables beside a file add to it."""
+    if isinstance(symbols, (str, os.PathLike)):
+        notation = read_notation(symbols)
+        if latex is None and rates is None:
+            return notation
+        merged = (dict(notation.spellings) | dict(latex or {}), dict(notation.rates) | dict(rates or {}))
+        return build_notation(notation.written, *merged, "read")
+    return build_notation(symbols or {}, latex or {}, rates or {}, "read")
+
+
+def require_spellings_readable(notation: Notation) -> None:
+    """Refuse an entry of ``[latex]`` that is no formula by itself."""
+    for name, spelling in notation.spellings:
+        try:
+            one = Notation(notation.written, notation.shapes, ((name, spelling),))
+            descend("1", one)
+            climb("1", one)
+        except Refusal as refusal:
+            raise ExpressionSyntaxError(f"{refusal}", where=f"read: latex.{name}") from None
+
+
+def open_source(source: Any) -> tuple[str, str, str]:
+    """Text, name of the file and form of the document; no form for one formula."""
+    if not isinstance(source, (str, os.PathLike)):
+        message = f"expected LaTeX as text, or a path; got {quote(source)}; write a string"
+        raise ExpressionSyntaxError(message, where="read: source")
+    ending = PurePath(source).suffix.lower() if not isinstance(source, str) or len(source) < 1_000 else ""
+    plain = isinstance(source, str) and re.search(r"[\n\\$={]", source)
+    if isinstance(source, os.PathLike) or (ending in ENDINGS and not plain):
+        form = ENDINGS.get(ending, "")
+        if not form:
+            message = f"expected a file that ends in {' '.join(ENDINGS)}; got {quote(ending)}; rename it"
+            raise ExpressionSyntaxError(message, where=name_file(source))
+        text = read_text(source, SIZE).replace("\r", " ")
+        return (hide_comments(text) if form == "tex" else text), name_file(source), form
+    text = str(source)
+    if len(text) > SIZE:
+        raise TooLargeError(f"expected at most {SIZE} characters; got more; split the text", where="read: source")
+    if not text.strip():
+        raise EmptyError("expected a formula; got an empty text; write one", where="read: source")
+    text = hide_comments(text)
+    return text, "", "tex" if DELIMITED.search(text) else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Lines:
+    """A document: its name, its text and where its lines begin."""
+
+    name: str
+    text: str
+    starts: list[int]
+
+    def place(self, at: int) -> tuple[int, int]:
+        """Line and column, from 1."""
+        from bisect import bisect_right
+
+        line = bisect_right(self.starts, at)
+        return line, at - self.starts[line - 1] + 1
+
+
+def read_block(block: Block, macros: Mapping[str, Macro], notation: Notation, lines: Lines) -> Iterator[ReadFormula]:
+    """The relations of one block."""
+    try:
+        text, places = expand_macros(block.text, macros) if macros else (block.text, list(range(len(block.text))))
+        relations = split_relations(text) if len(text) <= 20_000 else refuse_length(text)
+    except Refusal as refusal:
+        text, places = block.text, list(range(len(block.text)))
+        side = Side(text, 0)
+        relations = [Relation(side, "", side, 0, refusal)]
+    for relation in relations:
+        if not block.display and relation.trouble is not None and not relation.sign and "=" not in block.text:
+            continue
+        yield read_relation(
+            relation, [block.start + place for place in [*places, len(block.text)]], notation, lines, block
+        )
+
+
+def refuse_length(text: str) -> list[Relation]:
+    """A block that is too long for a formula."""
+    side = Side(text[:200], 0)
+    trouble = Refusal(0, "a formula of at most 20000 characters", f"{len(text)}", "split it")
+    return [Relation(side, "", side, 0, trouble)]
+
+
+def read_relation(relation: Relation, places: list[int], notation: Notation, lines: Lines, block: Block) -> ReadFormula:
+    """One relation, read or refused."""
+    left, right = relation.left, relation.right
+
+    def join(texts: list[str]) -> str:
+        """Both sides in one line."""
+        return " ".join((texts[0] if left is right else f"{texts[0]} {relation.sign} {texts[1]}").split())[:2_000]
+
+    printed = [lines.text[places[s.start] : places[s.start + len(s.text)]].strip() for s in (left, right)]
+    source, latex = join(printed), join([left.text, right.text])
+    row, column = lines.place(places[relation.at + len(left.text) - len(left.text.lstrip())])
+    unknown: list[Part] = []
+    try:
+        if relation.trouble is not None:
+            raise relation.trouble
+        texts, names = read_sides(relation, notation, unknown)
+        return ReadFormula(
+            lines.name, row, column, source, "READ", None, texts[0], relation.sign, texts[1], names, latex
+        )
+    except Refusal as refusal:
+        spot = lines.place(places[min(max(refusal.at, 0), len(places) - 1)])
+        why = f"line {spot[0]}, column {spot[1]}: {refusal}"
+        pairs = tuple(dict.fromkeys((str(u.args[0]), str(u.args[1])) for u in unknown))
+        return ReadFormula(lines.name, row, column, source, "REFUSED", why, None, None, None, (), latex, spot, pairs)
+
+
+def read_sides(relation: Relation, notation: Notation, unknown: list[Part]) -> tuple[tuple[str, str], tuple[str, ...]]:
+    """The texts of both sides and the declared names in them; ``unknown`` collects the others. Raises Refusal."""
+    faces: dict[str, set[bool]] = {}
+    parts: list[Part] = []
+    for side in (relation.left, relation.right):
+        with shifted(side.start):
+            parts.append(descend(side.text, notation, faces))
+        unknown += list_unknown(parts[-1])
+    if unknown:
+        first = unknown[0]
+        sides = (relation.left, relation.right)
+        side = sides[0] if list_unknown(parts[0]) else sides[1]
+        names = ", ".join(dict.fromkeys(str(u.args[0]) for u in unknown))
+        got = f"{names} undeclared"
+        run = re.fullmatch("[A-Za-z]{2,}", str(first.args[1]))
+        question = f"declare it: is {first.args[0]} a product or a name?" if run else "declare it"
+        raise Refusal(side.start + first.at, "declared names", got, question)
+    both = [name for name, bold in faces.items() if len(bold) > 1]
+    if both:
+        question = f"{both[0]} in bold and plain type: one name or two?"
+        raise Refusal(relation.left.start, "one type for a name", question, r"write \mathbf in [latex]")
+    terms = []
+    for side, part in zip((relation.left, relation.right), parts, strict=True):
+        with shifted(side.start):
+            compare_readings(part, side.text, notation)
+            terms.append(explain(part, notation))
+    first_term, second_term = fit_sides(terms[0], terms[1], relation.right.start)
+    if (first_term.shape or second_term.shape) and relation.sign not in ("=", "!="):
+        raise Refusal(relation.right.start, "scalars on both sides of an order", "vectors", "compare entries")
+    used = dict.fromkeys(name for part in parts for name in list_names(part) if name in notation)
+    return (first_term.text, second_term.text), tuple(used)
+
+
+class shifted:
+    """Refusals inside get the place of the whole block."""
+
+    def __init__(self, start: int) -> None:
+        self.start = start
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
+        if isinstance(error, Refusal):
+            error.at += self.start
+
+
+def compare_readings(part: Part, text: str, notation: Notation) -> None:
+    """Refuse what the second reader takes differently, or not at all."""
+    other = climb(text, notation)
+    if other != part:
+        raise Refusal(part.at, "two readings that agree", "two that differ", "write it in parts, with parentheses")
+
+
+def list_names(part: Part) -> list[str]:
+    """The names in a part, in the order of writing."""
+    if part.head in ("name", "index"):
+        return [str(part.args[0])]
+    return [name for inner in part.args if isinstance(inner, Part) for name in list_names(inner)]
+
+
+def plain_spelling(spelled: str) -> str:
+    """The name that LaTeX means without a table."""
+    return re.sub(r"[\\{}\s]", "", re.sub(r"\\(mathbf|boldsymbol|bm|mathrm|text|operatorname)\b", "", spelled))
+
+
+def show_reading(formula: ReadFormula) -> str:
+    """The reading of a formula, or why there is none."""
+    if formula.status == "READ":
+        return f"{formula.left} {formula.relation} {formula.right}"
+    return formula.why or ""
