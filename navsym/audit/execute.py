@@ -359,7 +359,8 @@ class Machine:
                 exact = constant_of(cell)
                 if exact is None or exact.denominator != 1:
                     raise Unreadable(statement.line, "a real number cut to an integer")
-            cell = Scalar(cell.tree, variable.number if self.unit.rules.integer else cell.number, statement.line)
+            number = variable.number if self.unit.rules.integer else cell.number
+            cell = Scalar(cell.tree, number, statement.line, statement)
         variable.cells[place] = cell
         for view in variable.views:
             view.all_unread = Unread(statement.line, "a view of an array that has changed; write a copy")
@@ -586,7 +587,7 @@ class Machine:
 
     def value(self, part: Part, wants_value: bool = True) -> Value:
         """The value of an expression."""
-        part = self.edits.get(id(part), part)
+        part = self.edits.get(id(part), part)  # a mended one, while a mend is sought
         self.steps += 1
         kind = part.kind
         try:

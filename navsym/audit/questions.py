@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -61,7 +61,8 @@ class Entry:
     place      : row and column, from 1
     code       : a formula, or why it is not read
     conditions : of the case in which both hold
-    source     : whose statement is to be mended, and under which reference
+    source     : of the code
+    again      : the code's formula in another case, for code that is read again with a mend
     """
 
     place: tuple[int, int]
@@ -69,7 +70,7 @@ class Entry:
     expected: Cell
     conditions: tuple[Condition, ...]
     source: Source | None = None
-    reference: str = ""
+    again: Callable[[Case], Cell] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -233,16 +234,31 @@ class Asking:
         if shapes[0] != shapes[1]:
             got = " and ".join(str(list(s)) if s else "a number" for s in shapes)
             raise ShapeError(f"expected two sides of one shape; got {got}; correct one", where=self.place(key))
-        parts = self.split(self.question.keys.get(key), "") if isinstance(self.question.keys.get(key), str) else None
         entries = []
         cells = zip(places_of(shapes[0]), cells_of(code), cells_of(expected), strict=True)
-        for place, is_, should in cells:
+        for number, (place, is_, should) in enumerate(cells):
             if upper and len(place) == 2 and place[0] > place[1] and isinstance(is_, Unread):
                 continue  # the lower half of a symmetric matrix, which the code leaves alone
             row = (place[0] + 1, place[1] + 1) if len(place) == 2 else (place[0] + 1, 1) if place else (1, 1)
-            source, reference = parts or (None, "")
-            entries.append(Entry(row, is_, should, self.conditions, source, reference))
+            source, again = self.repeat(self.question.keys.get(key), number)
+            entries.append(Entry(row, is_, should, self.conditions, source, again))
         return entries
+
+    def repeat(self, reference: Any, number: int) -> tuple[Source | None, Callable[[Case], Cell] | None]:
+        """How to find the same cell again when the code is read with a mend."""
+        listed = flatten(reference)
+        at = 0 if isinstance(reference, str) or len(listed) == 1 else number
+        parts = self.split(listed[at], "") if at < len(listed) else None
+        if parts is None:
+            return next(iter(self.question.sources.values())), None
+        source, name = parts
+
+        def again(case: Case) -> Cell:
+            asking = Asking(self.question, {**self.cases, source.name: case}, ())
+            cells = cells_of(asking.output(source, name, self.question.where))
+            return cells[number if len(listed) == 1 else 0]
+
+        return source, again
 
     def ask_equal(self) -> list[Entry]:
         left = self.resolve(self.question.keys["left"], "left")
@@ -331,6 +347,11 @@ class Asking:
 
     def known(self, text: str, names: Names, key: str) -> Scalar:
         return Scalar(read_tree(names.translate(text, self.place(key)), names.declarations, where=self.place(key)))
+
+
+def flatten(reference: Any) -> list[Any]:
+    """The references in a list of lists."""
+    return [r for item in reference for r in flatten(item)] if isinstance(reference, list) else [reference]
 
 
 def cells_of(value: Value) -> tuple[Cell, ...]:

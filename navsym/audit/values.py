@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import product
 
+from navsym.audit.form import Part
 from navsym.language.tree import (
     NUMBER,
     ONE,
@@ -35,11 +36,17 @@ class Unreadable(Exception):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scalar:
-    """A number as a formula of the inputs; ``number`` is "int" or "real", ``line`` where it was assigned."""
+    """A number as a formula of the inputs.
+
+    number : "int" or "real"
+    line   : where it was assigned, 0 for what was not
+    origin : the statement that assigned it
+    """
 
     tree: Tree
     number: str = "real"
     line: int = 0
+    origin: Part | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
