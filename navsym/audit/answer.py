@@ -265,7 +265,9 @@ def read_blocks(document: Mapping[str, Any], key: str, where: str) -> list[Any]:
 
 def describe_file(file: str, sources: Sequence[Source]) -> AuditedFile:
     """What was read of a file."""
-    met, unread, refused = set(), set(), {}
+    met: set[tuple[int, int]] = set()
+    unread: set[tuple[int, int]] = set()
+    refused: dict[int, str] = {}
     for source in sources:
         reading = source.read()
         met |= reading.met
@@ -291,7 +293,9 @@ def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQue
     return AuditedQuestion(question.name, question.kind, tuple(worst.values()))
 
 
-def answer_entry(question: Question, entry: Entry, relations: tuple[Any, ...], decided: dict[Any, Decision]) -> AuditedEntry:
+def answer_entry(
+    question: Question, entry: Entry, relations: tuple[Any, ...], decided: dict[Any, Decision]
+) -> AuditedEntry:
     """The verdict on one entry in one case."""
     from navsym.audit.decide import decide_entry
     from navsym.audit.values import Unread

@@ -19,12 +19,11 @@ from navsym.audit.syntax import (
     text_of,
 )
 
-RULES = {
-    "c": Rules(integer=True),
-    "cpp": Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})")),
-}
+RULES = {"c": Rules(integer=True), "cpp": Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))}
 REAL = frozenset("float double real_t ftype Scalar scalar_t Real postype_t T float32_t float64_t f32 f64".split())
-WHOLE = re.compile(r"(unsigned |signed )*(int|long|short|char|size_t|(u?int\d+(_t)?)|bool|unsigned|Eigen::Index)( int)?")
+WHOLE = re.compile(
+    r"(unsigned |signed )*(int|long|short|char|size_t|(u?int\d+(_t)?)|bool|unsigned|Eigen::Index)( int)?"
+)
 VECTOR = re.compile(r"(?:\w+::)*(?:Vector([2-9])[fd]?(?:<\w+>)?|Vector<\w+,(\d+)>)")
 MATRIX = re.compile(
     r"(?:\w+::)*(?:Matrix([2-9])[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
@@ -140,7 +139,9 @@ class Reader:
         while node is not None and node.type not in ("identifier", "field_identifier"):
             if node.type == "array_declarator":
                 size = field_of(node, "size")
-                sizes.append(self.expression(size) if size is not None else self.refuse(node, "an array without a size"))
+                sizes.append(
+                    self.expression(size) if size is not None else self.refuse(node, "an array without a size")
+                )
                 shared = True
             shared |= node.type in ("reference_declarator", *POINTER)
             if node.type == "function_declarator":
@@ -294,8 +295,8 @@ class Reader:
             case "call_expression":
                 return self.call(node)
             case "field_expression":
-                base = text_of(field_of(node, "argument"))
-                if not re.fullmatch(r"[\w.:\[\]()>\- ]*", base) or re.search(r"\(\s*[^)\s]|\[[^\]\d]", base):
+                owner = text_of(field_of(node, "argument"))
+                if not re.fullmatch(r"[\w.:\[\]()>\- ]*", owner) or re.search(r"\(\s*[^)\s]|\[[^\]\d]", owner):
                     return self.refuse(node, "a member of an expression")
                 return self.part("name", node, re.sub(r"\s", "", text_of(node)).removeprefix("this->"))
             case "conditional_expression":
@@ -355,7 +356,7 @@ class Reader:
 
 
 def number_of(kind: str) -> str:
-    """ "int" for the integer types, else "real"."""
+    """Whether a type holds integers ("int") or not ("real")."""
     return "int" if WHOLE.fullmatch(re.sub(r"\b(const|static|constexpr)\b", "", kind).strip()) else "real"
 
 

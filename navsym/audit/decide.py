@@ -13,7 +13,7 @@ from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from navsym.audit.execute import Condition
+from navsym.audit.evaluate import Condition
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.errors import DomainError, NavsymError, TooLargeError
 from navsym.language.domains import rational_value

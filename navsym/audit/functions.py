@@ -38,7 +38,9 @@ CONSTANTS: dict[str, Tree] = dict.fromkeys(("M_PI", "math.pi", "np.pi", "numpy.p
 CONSTANTS |= dict.fromkeys(("M_PI_2", "M_PI_2_F"), multiply(build_number(Fraction(1, 2)), PI))
 HARMLESS = frozenset(("printf", "fprintf", "print", "assert", "disp", "static_assert", "puts"))
 PREFIX = re.compile(r"(std::|math\.|np\.|numpy\.|matrix::|Eigen::)")
-MAKERS = frozenset("zeros ones eye identity array asarray copy diag outer cross dot matmul norm transpose linalg.norm".split())
+MAKERS = frozenset(
+    "zeros ones eye identity array asarray copy diag outer cross dot matmul norm transpose linalg.norm".split()
+)
 
 
 def bare_name(name: str) -> str:

@@ -17,17 +17,7 @@ from navsym.audit.values import Scalar
 from navsym.claims.verdict import PROVED
 from navsym.core.errors import NavsymError
 from navsym.language.printer import print_tree
-from navsym.language.tree import (
-    MINUS_ONE,
-    NUMBER,
-    POWER,
-    SYMBOL,
-    Tree,
-    build,
-    build_call,
-    fold_tree,
-    list_names,
-)
+from navsym.language.tree import MINUS_ONE, NUMBER, POWER, SYMBOL, Tree, build, build_call, fold_tree, list_names
 from navsym.prove.rooms.goals import player
 
 SECONDS = 3.0
@@ -52,7 +42,7 @@ def suggest(entry: Entry, scope: Scope, decision: Decision) -> str | None:
     value = right_side(cell.origin, entry.place)
     if value is None or value.span[1] > len(source.unit.source):
         return None
-    text, start = source.unit.text(value), value.span[0]
+    text = source.unit.text(value)
     probes = list_probes(entry, scope)
     candidates = itertools.chain(list_edits(source, value, text), rewrite(source, entry.expected.tree))
     end, tried = time.process_time() + SECONDS, {text}
@@ -83,7 +73,9 @@ def right_side(statement: Part, place: tuple[int, int]) -> Part | None:
     return None if value.kind == "list" else value
 
 
-def is_right(text: str, value: Part, entry: Entry, source: Source, scope: Scope, probes: list[dict[str, float]]) -> bool:
+def is_right(
+    text: str, value: Part, entry: Entry, source: Source, scope: Scope, probes: list[dict[str, float]]
+) -> bool:
     """True when the entry is proved with this text in the place of the right side."""
     part = read_expression(text, source.unit)
     if any(inner.kind == "refused" for inner in walk(part)):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules, Unit
+from navsym.audit.form import Argument, Function, Part, Rules, Unit, names_in
 from navsym.audit.syntax import field_of, identifiers_in, line_of, named, parse_source, read_decimal, span_of, text_of
 
 RULES = Rules(entry=("{}[{}]", "{}[{}, {}]"))
@@ -147,10 +147,6 @@ class Reader:
         elif value.kind == "list" and len(value.parts[0]) == len(targets):
             items = list(value.parts[0])
             names = {text_of(target) for target in targets}
-            if any(inner.kind == "name" and inner.parts[0] in names for item in items[1:] for inner in [item]):
-                return (self.unread(node, "an exchange of names"),)
-            from navsym.audit.form import names_in
-
             if names & names_in(*items):
                 return (self.unread(node, "names assigned from each other at once"),)
         else:
@@ -178,8 +174,8 @@ class Reader:
                 sign = text_of(field_of(node, "operator"))
                 if sign not in SIGNS:
                     return self.refuse(node, f"the operator {sign}")
-                sides = (self.expression(field_of(node, side)) for side in ("left", "right"))
-                return self.part("op", node, sign, *sides)
+                operands = (self.expression(field_of(node, side)) for side in ("left", "right"))
+                return self.part("op", node, sign, *operands)
             case "unary_operator":
                 value_, sign = self.expression(field_of(node, "argument")), text_of(field_of(node, "operator"))
                 if sign == "+":

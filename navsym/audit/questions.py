@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from navsym.audit.decide import differentiate
-from navsym.audit.execute import Case, Condition, spell_entry
+from navsym.audit.evaluate import Case, Condition, spell_entry
 from navsym.audit.names import Names
 from navsym.audit.sources import Source
 from navsym.audit.values import (
@@ -33,7 +33,7 @@ from navsym.audit.values import (
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, ShapeError, UnknownSymbolError
 from navsym.language.expression import read_tree
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
-from navsym.language.schema import Table, as_list, as_table, as_text, as_title, require_key
+from navsym.language.schema import as_list, as_table, as_text, as_title, require_key
 from navsym.language.tree import ONE
 
 MOST_CASES = 64
@@ -379,7 +379,6 @@ def at_place(value: Array, place: Index, where: str) -> Cell:
 
 def read_variable(source: Source, variable: Variable, place: Index, where: str) -> Value:
     """The final value of a variable, or of one of its entries."""
-
     is_written = any(not isinstance(c, Scalar) or c.line for c in variable.cells.values())
 
     def cell(spot: Index) -> Cell:

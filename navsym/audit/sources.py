@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from navsym.audit.execute import Reading, read_function, spell_entry
+from navsym.audit.evaluate import Reading, spell_entry
+from navsym.audit.execute import read_function
 from navsym.audit.form import Function, Part, Unit
 from navsym.audit.names import Names
 from navsym.audit.syntax import SIZE
@@ -70,8 +71,8 @@ class Source:
         argument = next((a for a in self.function.arguments if a.name == key), None)
         shape = self.shapes.get(key)
         if shape is None and argument is not None and argument.shape is not None:
-            sizes = [size.parts[0] if size.kind == "number" else None for size in argument.shape]
-            shape = tuple(int(n) for n in sizes) if None not in sizes else None
+            sizes = [int(size.parts[0]) for size in argument.shape if size.kind == "number"]
+            shape = tuple(sizes) if len(sizes) == len(argument.shape) else None
         if shape:
             return [self.symbol(spell_entry(self.unit, key, place)) for place in places_of(shape)]
         if key not in self.names.symbols:

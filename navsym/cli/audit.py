@@ -56,11 +56,14 @@ def as_text(answer: Audit, every: bool) -> str:
     for question in answer.questions:
         listed = [e for e in question.entries if every or not e.status.holds]
         proved = sum(e.status.holds for e in question.entries)
-        head = f"{question.name} ({question.kind}): {question.status}, {proved} of {len(question.entries)} entries proved"
+        head = (
+            f"{question.name} ({question.kind}): {question.status}, {proved} of {len(question.entries)} entries proved"
+        )
         blocks.append(f"{head}, {question.sense}\n" if question.status.holds else f"{head}\n")
         if listed:
             rows = [
-                (f"{e.entry[0]},{e.entry[1]}", f"{Path(e.file).name}:{e.line}", str(e.status), e.remark()) for e in listed
+                (f"{e.entry[0]},{e.entry[1]}", f"{Path(e.file).name}:{e.line}", str(e.status), e.remark())
+                for e in listed
             ]
             blocks.append(table(("entry", "place", "verdict", "remark"), rows))
     return "\n".join(blocks)
