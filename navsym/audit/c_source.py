@@ -259,6 +259,8 @@ class Reader:
                 one = self.part("number", node, 1, "int")
                 target = self.expression(field_of(node, "argument"))
                 return (self.part("assign", node, target, text_of(field_of(node, "operator"))[0], one),)
+            case "comma_expression" | "binary_expression" if (filled := self.comma_list(node)) is not None:
+                return (filled,)
             case "comma_expression":
                 return tuple(s for child in named(node) for s in self.effect(child))
             case "parenthesized_expression":
@@ -266,6 +268,20 @@ class Reader:
             case "call_expression":
                 return (self.part("do", node, self.expression(node)),)
         return (self.unread(node, "an expression without an assignment"),)
+
+    def comma_list(self, node: Any) -> Part | None:
+        """``M << a, b, c`` of Eigen as an assignment of all cells; None for others."""
+        items: list[Any] = []
+        first = node
+        while first.type == "comma_expression":
+            items.insert(0, field_of(first, "right"))
+            first = field_of(first, "left")
+            if items[0].type == "comma_expression":  # the grammar groups from the right
+                items[:1] = list_commas(items[0])
+        if first.type != "binary_expression" or text_of(field_of(first, "operator")) != "<<":
+            return None
+        cells = tuple(map(self.expression, (field_of(first, "right"), *items)))
+        return self.part("assign", node, self.expression(field_of(first, "left")), "", self.part("list", node, cells))
 
     # -- expressions --
 
@@ -353,6 +369,13 @@ class Reader:
         if function.type in ("identifier", "qualified_identifier", "template_function", "call_expression"):
             return self.part("call", node, name, arguments)
         return self.refuse(node, "a call of an expression")
+
+
+def list_commas(node: Any) -> list[Any]:
+    """The expressions between commas."""
+    if node.type != "comma_expression":
+        return [node]
+    return [*list_commas(field_of(node, "left")), *list_commas(field_of(node, "right"))]
 
 
 def number_of(kind: str) -> str:

@@ -263,7 +263,10 @@ class Evaluator:
             if kind == "method":
                 return self.method(part)
             if kind == "list":
-                return self.stack([self.value(item) for item in part.parts[0]], part.line)
+                items = [self.value(item) for item in part.parts[0]]
+                if self.unit.language == "matlab" and any(isinstance(item, Array) for item in items):
+                    self.require_rows(part)
+                return self.stack(items, part.line)
             if kind == "choose":
                 return self.value(part.parts[1 if self.decide(part.parts[0]) else 2])
             if kind == "cast":
@@ -360,6 +363,13 @@ class Evaluator:
         if not shape:
             return self.read(variable, places[0], part.line)
         return Array(shape, tuple(self.read(variable, place, part.line) for place in places))
+
+    def require_rows(self, part: Part) -> None:
+        """Refuse blocks in the brackets of MATLAB, where only rows of numbers are read."""
+        rows = [item.parts[0] for item in part.parts[0] if item.kind == "list"]
+        cells = [self.value(cell) for row in rows for cell in row]
+        if len(rows) != len(part.parts[0]) or any(isinstance(cell, Array) for cell in cells):
+            raise Unreadable(part.line, "a matrix of blocks")
 
     def stack(self, values: list[Value], line: int) -> Value:
         """Numbers as a vector, vectors as the rows of a matrix."""
