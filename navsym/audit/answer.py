@@ -17,6 +17,7 @@ from navsym.language.tomlfile import read_toml
 
 if TYPE_CHECKING:
     from navsym.audit.decide import Decision, Scope
+    from navsym.audit.mend import Budget
     from navsym.audit.names import Names
     from navsym.audit.questions import Entry, Question
     from navsym.audit.sources import Source
@@ -279,14 +280,16 @@ def describe_file(file: str, sources: Sequence[Source]) -> AuditedFile:
 
 def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQuestion:
     """The verdicts on the entries of a question; of several cases the worst stands for the entry."""
+    from navsym.audit.mend import Budget
     from navsym.audit.questions import list_entries
 
     relations = tuple(relation for source in sources for relation in source.relations)
     worst: dict[tuple[int, int], AuditedEntry] = {}
     decided: dict[Any, Decision] = {}
+    budget = Budget()
     order = (PROVED, CERTIFIED, OPEN, REFUTED)
     for entry in list_entries(question):
-        answer = answer_entry(question, entry, relations, decided)
+        answer = answer_entry(question, entry, relations, decided, budget)
         known = worst.get(entry.place)
         if known is None or order.index(answer.status) > order.index(known.status):
             worst[entry.place] = answer
@@ -294,7 +297,7 @@ def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQue
 
 
 def answer_entry(
-    question: Question, entry: Entry, relations: tuple[Any, ...], decided: dict[Any, Decision]
+    question: Question, entry: Entry, relations: tuple[Any, ...], decided: dict[Any, Decision], budget: Budget
 ) -> AuditedEntry:
     """The verdict on one entry in one case."""
     from navsym.audit.decide import decide_entry
@@ -319,7 +322,9 @@ def answer_entry(
         from navsym.audit.mend import suggest
 
         point = {question.names.spellings.get(n, n): value for n, value in (decision.point or {}).items()}
-        suggestion = suggest(entry, scope, decision)
+        mend = suggest(entry, scope, budget)
+        if mend is not None:
+            line, suggestion = mend.line, mend.text
     why = decision.why or (case if decision.status == REFUTED else "")
     return AuditedEntry(
         entry.place, unit.file, line, decision.status, decision.sense, point, decision.values, suggestion, why,

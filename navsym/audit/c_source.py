@@ -332,6 +332,14 @@ class Reader:
 
     def number(self, node: Any) -> Part:
         text = text_of(node)
+        if text.startswith("-"):  # the grammar takes the sign of some numbers for a part of them
+            value = read_decimal(text[1:].rstrip("fFlL"))
+            kind = "real" if "." in text or "e" in text.lower() else "int"
+            return (
+                self.refuse(node, f"the number {text[:20]}")
+                if value is None
+                else self.part("number", node, -value, kind)
+            )
         if re.fullmatch(r"0\d+", text):
             return self.refuse(node, "an octal number")
         suffix = "" if text.lower().startswith("0x") else text.lstrip("0123456789.eE+-")

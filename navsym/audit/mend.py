@@ -5,11 +5,11 @@ from __future__ import annotations
 import itertools
 import math
 import re
-import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.decide import Decision, Scope, decide_entry, draw_points
+from navsym.audit.decide import Scope, decide_entry, draw_points
 from navsym.audit.form import Part, Unit, walk
 from navsym.audit.questions import Entry
 from navsym.audit.sources import Source, read_expression
@@ -20,7 +20,8 @@ from navsym.language.printer import print_tree
 from navsym.language.tree import MINUS_ONE, NUMBER, POWER, SYMBOL, Tree, build, build_call, fold_tree, list_names
 from navsym.prove.rooms.goals import player
 
-SECONDS = 3.0
+PER_ENTRY = 1000  # changes that are tried
+PER_QUESTION = 3000
 MOST_NAMES = 24
 TOLERANCE = 1e-9
 SWAPS = {"sin": "cos", "cos": "sin", "sinf": "cosf", "cosf": "sinf", "asin": "acos", "acos": "asin"}
@@ -32,29 +33,119 @@ TRANSPOSED = {"cpp": ".transpose()", "python": ".T", "matlab": "'"}
 Edit = tuple[int, int, str]
 
 
-def suggest(entry: Entry, scope: Scope, decision: Decision) -> str | None:
-    """The mended right side of the assignment of an entry, proved; None where none was found in three seconds."""
-    source, cell = entry.source, entry.code
-    if source is None or entry.again is None or not isinstance(cell, Scalar) or cell.origin is None:
+@dataclass(frozen=True, slots=True)
+class Mend:
+    """The line of the assignment that is mended, and its new right side."""
+
+    line: int
+    text: str
+
+
+@dataclass(slots=True)
+class Budget:
+    """How many changes may be tried: of one entry, and of a question; ``known`` ones mended other entries."""
+
+    entry: int = PER_ENTRY
+    question: int = PER_QUESTION
+    known: list[tuple[Part, str]] = field(default_factory=list)
+
+    def start_entry(self) -> None:
+        """A new entry may try its share."""
+        self.entry = min(PER_ENTRY, self.question)
+
+    def spend(self) -> bool:
+        """True when one more change may be tried."""
+        self.entry, self.question = self.entry - 1, self.question - 1
+        return self.entry >= 0
+
+
+def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
+    """The smallest change of one right side with which the entry is proved; None where none is found.
+
+    First the statement that assigns the entry is edited, then the others, also in functions that it calls.
+    """
+    source = entry.source
+    if source is None or entry.again is None or not isinstance(entry.expected, Scalar):
         return None
-    if not isinstance(entry.expected, Scalar):
-        return None
-    value = right_side(cell.origin, entry.place)
-    if value is None or value.span[1] > len(source.unit.source):
-        return None
-    text = source.unit.text(value)
-    probes = list_probes(entry, scope)
-    candidates = itertools.chain(list_edits(source, value, text), rewrite(source, entry.expected.tree))
-    end, tried = time.process_time() + SECONDS, {text}
-    for candidate in candidates:
-        if time.process_time() > end:
-            return None
-        if candidate in tried:
-            continue
-        tried.add(candidate)
-        if is_right(candidate, value, entry, source, scope, probes):
-            return candidate.strip()
+    assert isinstance(entry.code, Scalar)
+    budget.start_entry()
+    search = Search(source, entry, scope, list_probes(entry, scope), budget)
+    own = entry.code.origin
+    value = None if own is None else right_side(own, entry.place)
+    texts = () if value is None else rewrite(source, entry.expected.tree)
+    others = [p for s in list_statements(source) if s is not own for p in right_sides(s)]
+    rounds = itertools.chain(
+        ((part, iter([text])) for part, text in budget.known),
+        ((part, search.list_edits(part, nearby=False)) for part in ([] if value is None else [value]) + others),
+        () if value is None else ((value, search.list_edits(value, nearby=True)), (value, texts)),
+    )
+    for part, changes in rounds:
+        if (mend := search.try_texts(part, changes)) is not None:
+            budget.known.append((part, mend.text))
+            return mend
     return None
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """What a change has to achieve."""
+
+    source: Source
+    entry: Entry
+    scope: Scope
+    probes: list[dict[str, float]]
+    budget: Budget
+
+    def list_edits(self, value: Part, *, nearby: bool) -> Iterator[str]:
+        """The edits of a right side; with names from nearby, or without."""
+        return list_edits(self.source, value, self.source.unit.text(value), nearby=nearby)
+
+    def try_texts(self, value: Part, texts: Iterable[str]) -> Mend | None:
+        """The first text that is right in the place of a right side."""
+        tried = {self.source.unit.text(value)}
+        for text in texts:
+            if text in tried:
+                continue
+            tried.add(text)
+            if not self.budget.spend():
+                return None
+            if is_right(text, value, self.entry, self.source, self.scope, self.probes):
+                return Mend(value.line, text.strip())
+        return None
+
+
+def list_statements(source: Source) -> list[Part]:
+    """The statements of a function, the last one first, and those of the functions that it calls."""
+    functions, at = [source.function], 0
+    while at < len(functions):
+        called = [p.parts[0] for p in walk(*functions[at].body) if p.kind == "call"]
+        fresh = [f for name in called for f in source.unit.functions.get(name, [])]
+        functions += [f for f in dict.fromkeys(fresh) if f not in functions]
+        at += 1
+    kinds = ("assign", "declare", "return", "do")
+    return [
+        p
+        for function in functions
+        for p in sorted((p for p in walk(*function.body) if p.kind in kinds), key=lambda p: -p.line)
+    ]
+
+
+def right_sides(statement: Part) -> list[Part]:
+    """The expressions of a statement that may be wrong: the items of a list one by one."""
+    place = {"assign": 2, "declare": 3, "return": 0, "do": 0}[statement.kind]
+    value = statement.parts[place]
+    if value is None:
+        return []
+    if value.kind == "call" and len(value.parts[1]) == 1 and value.parts[1][0].kind == "list":
+        value = value.parts[1][0]
+    waiting, done = [value], []
+    while waiting:
+        part = waiting.pop(0)
+        if part.kind == "list":
+            waiting += part.parts[0]
+        else:
+            done.append(part)
+    return done
 
 
 def right_side(statement: Part, place: tuple[int, int]) -> Part | None:
@@ -86,10 +177,9 @@ def is_right(
         case = next((c for c in cases if all((x.text, x.holds) in texts for x in c.conditions)), None)
         if case is None or entry.again is None:
             return False
-        cell = entry.again(case)
+        cell, expected = entry.again(case)
     except NavsymError:
         return False
-    expected = entry.expected
     if not isinstance(cell, Scalar) or not isinstance(expected, Scalar):
         return False
     for probe in probes:
@@ -140,14 +230,16 @@ def evaluate(tree: Tree, point: dict[str, float]) -> float | None:
 # Edits of a text
 
 
-def list_edits(source: Source, value: Part, text: str) -> Iterator[str]:
-    """The text with one edit, small ones first."""
+def list_edits(source: Source, value: Part, text: str, nearby: bool) -> Iterator[str]:
+    """The text with one edit, small ones first; with names from nearby only on demand."""
     start = value.span[0]
     parts = [part for part in walk(value) if value.span[0] <= part.span[0] < part.span[1] <= value.span[1]]
-    for edits in (edit_signs, edit_indices, edit_calls, edit_numbers, edit_factors, edit_names, edit_shapes):
+    kinds = [edit_signs, edit_indices, edit_calls, edit_numbers, edit_factors, edit_shapes]
+    for edits in [edit_names] if nearby else kinds:
         for low, high, new in edits(source, parts):
             yield text[: low - start] + new + text[high - start :]
-    yield from wrap(source, value, text)
+    if nearby:
+        yield from wrap(source, value, text)
 
 
 def edit_signs(source: Source, parts: list[Part]) -> Iterator[Edit]:
@@ -257,8 +349,9 @@ def edit_shapes(source: Source, parts: list[Part]) -> Iterator[Edit]:
             yield part.span[1], part.span[1], mark
         if part.kind == "method" and part.parts[1] in ("T", "transpose"):
             yield part.parts[0].span[1], part.span[1], ""
-        if part.kind == "op":
-            _, a, b = part.parts
+        pair = part.parts[1:] if part.kind == "op" else part.parts[1][:2] if part.kind == "call" else ()
+        if len(pair) == 2:
+            a, b = pair
             middle = source.unit.source[a.span[1] : b.span[0]].decode("utf-8", "replace")
             yield a.span[0], b.span[1], f"{source.unit.text(b)}{middle}{source.unit.text(a)}"
 

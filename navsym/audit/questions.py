@@ -62,7 +62,7 @@ class Entry:
     code       : a formula, or why it is not read
     conditions : of the case in which both hold
     source     : of the code
-    again      : the code's formula in another case, for code that is read again with a mend
+    again      : both formulas in another case, for code that is read again with a mend
     """
 
     place: tuple[int, int]
@@ -70,7 +70,7 @@ class Entry:
     expected: Cell
     conditions: tuple[Condition, ...]
     source: Source | None = None
-    again: Callable[[Case], Cell] | None = None
+    again: Callable[[Case], tuple[Cell, Cell]] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,7 +113,10 @@ def list_entries(question: Question) -> list[Entry]:
         if is_contradictory(conditions):
             continue
         asking = Asking(question, {s.name: case for s, case in zip(used, chosen, strict=True)}, conditions)
-        entries += getattr(asking, f"ask_{question.kind}")()
+        asked: list[Entry] = getattr(asking, f"ask_{question.kind}")()
+        if question.kind == "symmetric":
+            asked = [entry for entry in asked if entry.place[0] < entry.place[1]]
+        entries += asked
     return entries
 
 
@@ -228,6 +231,9 @@ class Asking:
 
     def pair(self, code: Value, expected: Value, key: str, *, upper: bool = False) -> list[Entry]:
         """Entries of two values of one shape."""
+        if isinstance(code, Unread) or isinstance(expected, Unread):
+            return [Entry((1, 1), *(v if isinstance(v, Unread) else Scalar(ONE) for v in (code, expected)),
+                          self.conditions)]  # fmt: skip
         shapes = [v.shape if isinstance(v, Array) else () for v in (code, expected)]
         if isinstance(expected, Array) and isinstance(code, Array) and len(code.cells) == len(expected.cells):
             shapes[1] = shapes[0]
@@ -240,23 +246,30 @@ class Asking:
             if upper and len(place) == 2 and place[0] > place[1] and isinstance(is_, Unread):
                 continue  # the lower half of a symmetric matrix, which the code leaves alone
             row = (place[0] + 1, place[1] + 1) if len(place) == 2 else (place[0] + 1, 1) if place else (1, 1)
-            source, again = self.repeat(self.question.keys.get(key), number)
-            entries.append(Entry(row, is_, should, self.conditions, source, again))
+            entries.append(Entry(row, is_, should, self.conditions, *self.repeat(key, number, should)))
         return entries
 
-    def repeat(self, reference: Any, number: int) -> tuple[Source | None, Callable[[Case], Cell] | None]:
-        """How to find the same cell again when the code is read with a mend."""
-        listed = flatten(reference)
-        at = 0 if isinstance(reference, str) or len(listed) == 1 else number
+    def repeat(
+        self, key: str, number: int, expected: Cell
+    ) -> tuple[Source | None, Callable[[Case], tuple[Cell, Cell]] | None]:
+        """How to find the same entry again when the code is read with a mend."""
+        listed = flatten(self.question.keys.get(key))
+        at = number if 1 < len(listed) else 0
         parts = self.split(listed[at], "") if at < len(listed) else None
         if parts is None:
             return next(iter(self.question.sources.values())), None
         source, name = parts
+        is_direct = self.question.kind in ("equal", "jacobian", "covariance", "claim", "model")
 
-        def again(case: Case) -> Cell:
+        def again(case: Case) -> tuple[Cell, Cell]:
             asking = Asking(self.question, {**self.cases, source.name: case}, ())
-            cells = cells_of(asking.output(source, name, self.question.where))
-            return cells[number if len(listed) == 1 else 0]
+            if is_direct:
+                cells = cells_of(asking.output(source, name, self.question.where))
+                spot = number if len(listed) == 1 else 0
+                return (cells[spot] if spot < len(cells) else Unread(0, "another shape")), expected
+            entries: list[Entry] = getattr(asking, f"ask_{self.question.kind}")()
+            entry = entries[number] if number < len(entries) else None
+            return (entry.code, entry.expected) if entry else (Unread(0, "another shape"), expected)
 
         return source, again
 
@@ -299,7 +312,7 @@ class Asking:
 
     def ask_symmetric(self) -> list[Entry]:
         of = self.matrix("of")
-        return [e for e in self.pair(of, transpose(of, True), "of") if e.place[0] < e.place[1]]
+        return self.pair(of, transpose(of, True), "of")
 
     def ask_orthogonal(self) -> list[Entry]:
         of = self.matrix("of")
@@ -386,7 +399,7 @@ def read_variable(source: Source, variable: Variable, place: Index, where: str) 
             return variable.all_unread
         if spot in variable.cells:
             return variable.cells[spot]
-        if variable.is_input and not is_written:
+        if variable.is_input and (variable.name in source.shapes or not is_written):
             return Scalar(source.symbol(spell_entry(source.unit, variable.name, spot)))
         return Unread(source.function.line, f"{source.function.name} does not assign it")
 
