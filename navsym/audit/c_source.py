@@ -166,7 +166,7 @@ class Reader:
             return (self.unread(node, "a syntax error, or a macro that hides one"),)
         match node.type:
             case "compound_statement":
-                return self.block(node)
+                return (self.part("block", node, self.block(node)),)
             case "declaration":
                 return self.declaration(node)
             case "expression_statement":
@@ -326,8 +326,11 @@ class Reader:
                 return self.part("list", node, tuple(map(self.expression, named(node))))
             case "pointer_expression":
                 sign = text_of(field_of(node, "operator"))
+                inner = self.expression(field_of(node, "argument"))
                 if sign == "&":
-                    return self.part("address", node, self.expression(field_of(node, "argument")))
+                    return self.part("address", node, inner)
+                if inner.kind == "name":
+                    return self.part("first", node, inner)
         return self.refuse(node, f"an expression outside the language of audit ({node.type.replace('_', ' ')})")
 
     def number(self, node: Any) -> Part:

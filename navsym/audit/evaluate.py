@@ -180,6 +180,10 @@ class Evaluator:
             variable = self.variable(part.parts[0])
             shape = variable.shape or ()
             return variable, [*places_of(shape)], shape
+        if part.kind == "first":
+            variable = self.variable(part.parts[0].parts[0])
+            is_array = bool(variable.shape) or (variable.shape is None and any(variable.cells))
+            return variable, [(0,) * max(len(variable.shape or ()), 1) if is_array else ()], ()
         if part.kind not in ("index", "call") and not (part.kind == "method" and part.parts[1] == "block"):
             raise Unreadable(part.line, "a target that is no entry")
         indices: list[Part] = []
@@ -256,7 +260,7 @@ class Evaluator:
                 return self.combine(sign, self.value(a), self.value(b), part.line)
             if kind == "minus":
                 return map_cells(minus, self.value(part.parts[0]))
-            if kind == "index":
+            if kind in ("index", "first"):
                 return self.entries(part)
             if kind == "call":
                 return self.call(part, wants_value)

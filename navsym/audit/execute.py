@@ -112,7 +112,8 @@ class Machine(Evaluator):
         if self.steps > STEPS:
             message = f"expected at most {STEPS} steps; got more; ask for a smaller function"
             raise TooLargeError(message, where=f"{self.unit.file}: line {statement.line}")
-        self.reading.met.add(statement.span)
+        if statement.kind != "block":
+            self.reading.met.add(statement.span)
         try:
             getattr(self, f"run_{statement.kind}")(*statement.parts, statement=statement)
         except Unreadable as refusal:
@@ -156,7 +157,7 @@ class Machine(Evaluator):
 
     def root_name(self, target: Part) -> str:
         """The variable of a target."""
-        while target.kind in ("index", "method"):
+        while target.kind in ("index", "method", "first"):
             target = target.parts[0]
         return str(target.parts[0])
 
@@ -266,6 +267,9 @@ class Machine(Evaluator):
         for view in variable.views:
             view.all_unread = Unread(statement.line, "a view of an array that has changed; write a copy")
 
+    def run_block(self, body: tuple[Part, ...], statement: Part) -> None:
+        self.block(body)
+
     def run_if(self, test: Part, then: tuple[Part, ...], other: tuple[Part, ...], statement: Part) -> None:
         self.block(then if self.decide(test) else other)
 
@@ -341,6 +345,8 @@ class Machine(Evaluator):
         sign, left, right = "", None, None
         if test.kind == "compare":
             sign = test.parts[0]
+            if is_finiteness(test):
+                return True  # numbers are real numbers here
             a, b = self.value(test.parts[1]), self.value(test.parts[2])
             if not (isinstance(a, Scalar) and isinstance(b, Scalar)):
                 raise Unreadable(test.line, "a condition on what is not read")
@@ -374,6 +380,13 @@ class Machine(Evaluator):
             Condition(condition.text, condition.line, holds, condition.sign, condition.left, condition.right)
         )
         return holds
+
+
+def is_finiteness(test: Part) -> bool:
+    """True for ``fabs(x) <= DBL_MAX``."""
+    sign, left, right = test.parts
+    is_bound = right.kind == "name" and right.parts[0] in ("DBL_MAX", "FLT_MAX")
+    return sign == "<=" and is_bound and left.kind == "call" and left.parts[0] in ("fabs", "fabsf")
 
 
 def is_integer(cell: Cell) -> bool:

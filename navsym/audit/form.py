@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 #: Kinds of statements, with their parts: declare (name, number, shape, value, shared) · assign (target, sign, value) ·
-#: if (test, then, else) · for (name, start, stop, step, body) · return (value) · do (call) · unread (why, names).
-STATEMENTS = frozenset(("declare", "assign", "if", "for", "return", "do", "unread"))
+#: block (body) · if (test, then, else) · for (name, start, stop, step, body) · return (value) · do (call) · unread (why, names).
+STATEMENTS = frozenset(("declare", "assign", "block", "if", "for", "return", "do", "unread"))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,7 +21,7 @@ class Part:
     kind  : of a statement, see ``STATEMENTS``; of an expression: number (value, kind) · name (text) · index (base,
             indices) · call (name, arguments) · method (base, name, arguments) · op (sign, a, b) · minus (a) ·
             compare (sign, a, b) · both (a, b) · either (a, b) · not (a) · list (items) · choose (test, a, b) ·
-            slice (start, stop) · address (a) · cast (kind, a) · refused (why)
+            slice (start, stop) · first (a), which is ``*a`` · address (a) · cast (kind, a) · refused (why)
     line  : of the source, from 1
     span  : first byte in the source, and the one behind the last
     """

@@ -365,6 +365,12 @@ def wrap(source: Source, value: Part, text: str) -> Iterator[str]:
         yield f"{inside}/{name}"
         yield f"{text} + {name}"
         yield f"{text} - {name}"
+    product = "@" if source.unit.language == "python" else "*"
+    mark = TRANSPOSED.get(source.unit.language)
+    shapes = {name: variable.shape for name, variable in source.read().cases[0].variables.items()}
+    for name in [name for name, shape in shapes.items() if mark and shape and len(shape) == 2]:
+        yield f"{name} {product} ({text})"
+        yield f"{name}{mark} {product} ({text})"
 
 
 def rewrite(source: Source, expected: Tree) -> Iterator[str]:

@@ -254,7 +254,7 @@ class Asking:
     ) -> tuple[Source | None, Callable[[Case], tuple[Cell, Cell]] | None]:
         """How to find the same entry again when the code is read with a mend."""
         listed = flatten(self.question.keys.get(key))
-        at = number if 1 < len(listed) else 0
+        at = number if len(listed) > 1 else 0
         parts = self.split(listed[at], "") if at < len(listed) else None
         if parts is None:
             return next(iter(self.question.sources.values())), None
