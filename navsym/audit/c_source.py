@@ -32,6 +32,18 @@ POINTER = ("pointer_declarator", "abstract_pointer_declarator")
 COMPARISONS = {"<", "<=", ">", ">=", "==", "!="}
 WORDS = {"&&": "both", "||": "either", "and": "both", "or": "either"}
 
+#: Where the order of statements is left.
+JUMPS = (
+    "return_statement",
+    "goto_statement",
+    "break_statement",
+    "continue_statement",
+    "throw_statement",
+    "labeled_statement",
+    "case_statement",
+    "ERROR",
+)
+
 
 def read_c(source: bytes, file: str, language: str) -> Unit:
     """The functions, constants and object-like macros of a source in C (``language`` "c") or C++ ("cpp")."""
@@ -80,8 +92,9 @@ class Reader:
         return self.part("refused", node, why)
 
     def unread(self, node: Any, why: str) -> Part:
-        """A statement that is not read; all names in it may have been written."""
-        return self.part("unread", node, why, identifiers_in(node))
+        """A statement that is not read: all names in it may have been written, or the way may be left there."""
+        kind = "jump" if any(inner.type in JUMPS for inner in descend(node)) else "unread"
+        return self.part(kind, node, why, identifiers_in(node))
 
     # -- the file --
 

@@ -415,7 +415,7 @@ class Evaluator:
         if may_be_entry and arguments and (name in self.frame or all(self.is_constant(a) for a in arguments)):
             base = Part("name", part.line, (name,), part.span)
             return self.entries(Part("index", part.line, (base, arguments), part.span))
-        if not arguments and self.unit.language in ("c", "cpp"):
+        if not arguments and wants_value and self.unit.language in ("c", "cpp"):
             return self.read(self.variable(f"{name}()"), (), part.line)
         raise Unreadable(part.line, f"the function {name}, which this file does not define")
 
@@ -486,7 +486,7 @@ class Evaluator:
     def method(self, part: Part) -> Value:
         """``M.transpose()`` and the like; an accessor without arguments is a name."""
         base, name, arguments = part.parts
-        is_array = base.kind != "name" or bool(self.variable_shape(base.parts[0]))
+        is_array = base.kind != "name" or name == "T" or bool(self.variable_shape(base.parts[0]))
         if name in METHODS and is_array:
             return METHODS[name](self.value(base), [self.value(a) for a in arguments], self.unit)
         if base.kind == "name" and self.unit.language in ("c", "cpp"):

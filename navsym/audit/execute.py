@@ -132,15 +132,35 @@ class Machine(Evaluator):
                 targets.add(part.parts[0])
             elif part.kind == "unread":
                 targets.update(part.parts[1])
-            elif part.kind == "address" or (part.kind in ("call", "method") and not self.is_plain(part)):
+            elif part.kind == "address":
                 targets |= names_in(part)
+            elif part.kind in ("call", "method") and not self.is_plain(part):
+                targets |= {name for name in names_in(part) if not self.is_safe(name)}
+            if part.kind == "jump" or (part.kind == "call" and self.may_jump(part)):
+                self.stop(unread)
             if part.kind == "unread" or (part.kind == "call" and not self.is_plain(part)):
                 self.lose(unread)
         for name in targets:
             if name in self.frame or name not in self.file_names:
                 self.variable(name).all_unread = unread
         if any(part.kind == "return" for part in walk(statement)):
-            raise Returning(unread)
+            self.stop(unread)
+
+    def is_safe(self, name: str) -> bool:
+        """True for a number of C, of which a called function gets a copy."""
+        return self.unit.language == "c" and self.variable_shape(name) == ()
+
+    def may_jump(self, part: Part) -> bool:
+        """True for what is a macro, or looks like one: it may hold a return."""
+        name = part.parts[0]
+        return name in self.unit.macros or (name.isupper() and name not in self.frame and not self.is_plain(part))
+
+    def stop(self, unread: Unread) -> None:
+        """The end of a run whose way nobody knows any more: nothing that it holds is read."""
+        self.lose(unread)
+        for variable in self.frame.values():
+            variable.all_unread = unread
+        raise Returning(unread)
 
     def lose(self, unread: Unread) -> None:
         """What does not belong to the function may have changed too."""
@@ -164,6 +184,9 @@ class Machine(Evaluator):
     def run_unread(self, why: str, names: tuple[str, ...], statement: Part) -> None:
         raise Unreadable(statement.line, why)
 
+    def run_jump(self, why: str, names: tuple[str, ...], statement: Part) -> None:
+        raise Unreadable(statement.line, why)
+
     def run_declare(
         self, name: str, number: str, shape: Any, value: Part | None, is_link: bool, statement: Part
     ) -> None:
@@ -184,7 +207,7 @@ class Machine(Evaluator):
 
     def fill(self, value: Value, shape: Index) -> Value:
         """An initial value in its shape: the rest of a C initializer is zero."""
-        if not isinstance(value, Array) or value.shape == shape or self.unit.rules.matrix:
+        if not isinstance(value, Array) or value.shape == shape:
             return value
         if len(value.shape) == len(shape) and all(a <= b for a, b in zip(value.shape, shape, strict=True)):
             zero = Scalar(build_number(0), "int")

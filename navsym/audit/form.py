@@ -9,16 +9,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-#: Kinds of statements, with their parts: declare (name, number, shape, value, shared) · assign (target, sign, value) ·
-#: block (body) · if (test, then, else) · for (name, start, stop, step, body) · return (value) · do (call) · unread (why, names).
-STATEMENTS = frozenset(("declare", "assign", "block", "if", "for", "return", "do", "unread"))
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
     """A part of an expression or a statement.
 
-    kind  : of a statement, see ``STATEMENTS``; of an expression: number (value, kind) · name (text) · index (base,
+    kind  : of a statement: declare (name, number, shape, value, shared) · assign (target, sign, value) · block (body) ·
+            if (test, then, else) · for (name, start, stop, step, body) · return (value) · do (call) · unread (why,
+            names) · jump (why, names); of an expression: number (value, kind) · name (text) · index (base,
             indices) · call (name, arguments) · method (base, name, arguments) · op (sign, a, b) · minus (a) ·
             compare (sign, a, b) · both (a, b) · either (a, b) · not (a) · list (items) · choose (test, a, b) ·
             slice (start, stop) · first (a), which is ``*a`` · address (a) · cast (kind, a) · refused (why)

@@ -53,15 +53,17 @@ def bare_name(name: str) -> str:
 def is_known(name: str, language: str) -> bool:
     """True for a function that has a meaning of its own in the language."""
     bare = bare_name(name)
-    if bare in PLAIN or bare in ("pow", "power", "atan2", "arctan2", "hypot", "square"):
-        return language != "python" or PREFIX.match(name) is not None or name == "abs"
     if language == "python":
-        return PREFIX.match(name) is not None and bare in MAKERS
+        known = bare in PLAIN or bare in TWO or bare in MAKERS or bare in ("arctan2", "power", "square")
+        return known and (PREFIX.match(name) is not None or name == "abs")
+    if bare in TWO or (bare in PLAIN and not bare.startswith("arc") and bare != "absolute"):
+        return True
     if language == "matlab":
         return bare in MAKERS
     return language == "cpp" and (bare == "cross" or MAKE.search(name) is not None)
 
 
+TWO = ("pow", "atan2", "hypot")
 MAKE = re.compile(r"(\d).*::(Zero|Identity)$")
 
 

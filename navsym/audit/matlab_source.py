@@ -22,6 +22,9 @@ RULES = Rules(first=1, matrix=True, entry=("{}({})", "{}({},{})"))
 SIGNS = {"+": "+", "-": "-", "*": "*", "/": "/", "^": "**", ".*": ".*", "./": "./", ".^": ".^"}
 COMPARISONS = {"<": "<", "<=": "<=", ">": ">", ">=": ">=", "==": "==", "~=": "!=", "!=": "!="}
 
+#: Where the order of statements is left.
+JUMPS = ("return_statement", "break_statement", "continue_statement", "ERROR")
+
 
 def read_matlab(source: bytes, file: str) -> Unit:
     """The functions of a source in MATLAB."""
@@ -58,8 +61,9 @@ class Reader:
         return self.part("refused", node, why)
 
     def unread(self, node: Any, why: str) -> Part:
-        """A statement that is not read; all names in it may have been written."""
-        return self.part("unread", node, why, identifiers_in(node))
+        """A statement that is not read: all names in it may have been written, or the way may be left there."""
+        kind = "jump" if any(inner.type in JUMPS for inner in descend(node)) else "unread"
+        return self.part(kind, node, why, identifiers_in(node))
 
     def read_function(self, node: Any) -> None:
         name = text_of(field_of(node, "name"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -69,9 +69,10 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
         return None
     assert isinstance(entry.code, Scalar)
     budget.start_entry()
-    search = Search(source, entry, scope, list_probes(entry, scope), budget)
     own = entry.code.origin
     value = None if own is None else right_side(own, entry.place)
+    wholes = {id(part): whole_side(s) for s in list_statements(source) for part in right_sides(s)}
+    search = Search(source, entry, scope, list_probes(entry, scope), budget, wholes)
     texts = () if value is None else rewrite(source, entry.expected.tree)
     others = [p for s in list_statements(source) if s is not own for p in right_sides(s)]
     rounds = itertools.chain(
@@ -95,6 +96,7 @@ class Search:
     scope: Scope
     probes: list[dict[str, float]]
     budget: Budget
+    wholes: Mapping[int, Part]
 
     def list_edits(self, value: Part, *, nearby: bool) -> Iterator[str]:
         """The edits of a right side; with names from nearby, or without."""
@@ -110,8 +112,15 @@ class Search:
             if not self.budget.spend():
                 return None
             if is_right(text, value, self.entry, self.source, self.scope, self.probes):
-                return Mend(value.line, text.strip())
+                return Mend(value.line, self.write_whole(value, text))
         return None
+
+    def write_whole(self, value: Part, text: str) -> str:
+        """The whole right side, with the text in the place of the part that is mended."""
+        whole = self.wholes.get(id(value), value)
+        source = self.source.unit.source
+        before, behind = source[whole.span[0] : value.span[0]], source[value.span[1] : whole.span[1]]
+        return " ".join(f"{before.decode('utf-8', 'replace')}{text}{behind.decode('utf-8', 'replace')}".split())
 
 
 def list_statements(source: Source) -> list[Part]:
@@ -130,10 +139,14 @@ def list_statements(source: Source) -> list[Part]:
     ]
 
 
+def whole_side(statement: Part) -> Any:
+    """The right side of a statement, the returned value or the call; None where there is none."""
+    return statement.parts[{"assign": 2, "declare": 3, "return": 0, "do": 0}[statement.kind]]
+
+
 def right_sides(statement: Part) -> list[Part]:
     """The expressions of a statement that may be wrong: the items of a list one by one."""
-    place = {"assign": 2, "declare": 3, "return": 0, "do": 0}[statement.kind]
-    value = statement.parts[place]
+    value = whole_side(statement)
     if value is None:
         return []
     if value.kind == "call" and len(value.parts[1]) == 1 and value.parts[1][0].kind == "list":

@@ -6,10 +6,23 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, Unit, names_in
-from navsym.audit.syntax import field_of, identifiers_in, line_of, named, parse_source, read_decimal, span_of, text_of
+from navsym.audit.syntax import (
+    descend,
+    field_of,
+    identifiers_in,
+    line_of,
+    named,
+    parse_source,
+    read_decimal,
+    span_of,
+    text_of,
+)
 
 RULES = Rules(entry=("{}[{}]", "{}[{}, {}]"))
 SIGNS = {"+", "-", "*", "/", "%", "//", "@", "**"}
+
+#: Where the order of statements is left.
+JUMPS = ("return_statement", "break_statement", "continue_statement", "raise_statement", "yield", "ERROR")
 
 
 def read_python(source: bytes, file: str) -> Unit:
@@ -44,8 +57,9 @@ class Reader:
         return self.part("refused", node, why)
 
     def unread(self, node: Any, why: str) -> Part:
-        """A statement that is not read; all names in it may have been written."""
-        return self.part("unread", node, why, identifiers_in(node))
+        """A statement that is not read: all names in it may have been written, or the way may be left there."""
+        kind = "jump" if any(inner.type in JUMPS for inner in descend(node)) else "unread"
+        return self.part(kind, node, why, identifiers_in(node))
 
     def read_body(self, nodes: list[Any]) -> None:
         """Functions and methods, and names of the module that are assigned once, to numbers."""
