@@ -64,7 +64,7 @@ def final(result, name, *place, case=0):
             "a statement outside the language of audit (goto statement)",
         ),
         ("y = a; change(&y);", "the function change, which this file does not define"),
-        ("y = a; if (mystery(a)) return; y = 0;", "the function mystery, which this file does not define"),
+        ("y = a; if (mystery(a)) return; y = 0;", "a condition outside the language of audit"),
         (
             "y = a; for (int i = 0; i < 2; i++) { if (a > i) break; y = 0; }",
             "a statement outside the language of audit (break statement)",
