@@ -24,6 +24,7 @@ from navsym.language.tree import (
 
 Index = tuple[int, ...]
 LARGEST = 4096  # cells of one array
+TERMS = 2000  # of one sum
 
 
 class Unreadable(Exception):
@@ -111,7 +112,10 @@ def add(a: Tree, b: Tree) -> Tree:
         return b if a is ZERO else a
     if a.head == b.head == NUMBER:
         return build_number(a.args[0] + b.args[0])
-    return build_sum(*(a.args if a.head == "+" else (a,)), *(b.args if b.head == "+" else (b,)))
+    terms = (*(a.args if a.head == "+" else (a,)), *(b.args if b.head == "+" else (b,)))
+    if len(terms) > TERMS:
+        raise Unreadable(0, f"a sum of more than {TERMS} terms")
+    return build_sum(*terms)
 
 
 def minus(a: Tree) -> Tree:
