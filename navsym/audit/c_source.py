@@ -339,11 +339,11 @@ class Reader:
                 return self.part("list", node, tuple(map(self.expression, named(node))))
             case "pointer_expression":
                 sign = text_of(field_of(node, "operator"))
-                inner = self.expression(field_of(node, "argument"))
+                pointed = self.expression(field_of(node, "argument"))
                 if sign == "&":
-                    return self.part("address", node, inner)
-                if inner.kind == "name":
-                    return self.part("first", node, inner)
+                    return self.part("address", node, pointed)
+                if pointed.kind == "name":
+                    return self.part("first", node, pointed)
         return self.refuse(node, f"an expression outside the language of audit ({node.type.replace('_', ' ')})")
 
     def number(self, node: Any) -> Part:

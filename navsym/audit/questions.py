@@ -232,8 +232,8 @@ class Asking:
     def pair(self, code: Value, expected: Value, key: str, *, upper: bool = False) -> list[Entry]:
         """Entries of two values of one shape."""
         if isinstance(code, Unread) or isinstance(expected, Unread):
-            return [Entry((1, 1), *(v if isinstance(v, Unread) else Scalar(ONE) for v in (code, expected)),
-                          self.conditions)]  # fmt: skip
+            is_, should = (v if isinstance(v, Unread) else Scalar(ONE) for v in (code, expected))
+            return [Entry((1, 1), is_, should, self.conditions)]
         shapes = [v.shape if isinstance(v, Array) else () for v in (code, expected)]
         if isinstance(expected, Array) and isinstance(code, Array) and len(code.cells) == len(expected.cells):
             shapes[1] = shapes[0]

@@ -164,10 +164,7 @@ def test_formulas_of_a_function_are_listed_in_the_spelling_of_the_source(tmp_pat
 
 def test_exported_c_reads_back_as_the_claim_from_which_it_was_made(tmp_path):
     """Where the code returns NAVSYM_OK its value is the formula, for all reals of the declared ranges."""
-    for name, text in {
-        "a": "sin(2*a) = 2*sin(a)*cos(a)",
-        "b": "(b - 1)*(b + 1) = b**2 - 1",
-    }.items():
+    for name, text in {"a": "sin(2*a) = 2*sin(a)*cos(a)", "b": "(b - 1)*(b + 1) = b**2 - 1"}.items():
         nav.export(nav.prove(text), to=["c"], out=tmp_path / name)
         left, right = text.split(" = ")
         spec = f'[[code]]\nname = "c"\nfile = "{name}/c/formula.c"\nfunction = "formula"\n'

@@ -1,4 +1,5 @@
 """The mathematics of PythonRobotics pull request 62: a derivative that lacks the speed."""
+
 import numpy as np
 
 

@@ -1,4 +1,5 @@
 """The mathematics of ahrs issue 48: a reference field that is turned the wrong way."""
+
 import numpy as np
 
 

@@ -1,4 +1,5 @@
 """The mathematics of sympy pull request 15349: one sign in the rotation matrix of a quaternion."""
+
 import numpy as np
 
 
