@@ -19,13 +19,14 @@ NODES = 400_000
 def load_parser(grammar: str) -> Any:
     """The parser of a grammar: ``c``, ``cpp``, ``python``, ``matlab``; raises MissingEngineError without the wheel."""
     try:
-        engine = importlib.import_module("tree_sitter")
+        from tree_sitter import Language, Parser
+
         module = importlib.import_module(f"tree_sitter_{grammar}")
     except ImportError:
         wheel = f"tree-sitter-{grammar}"
         message = f"expected the grammar {wheel}; got none on this machine; install tree-sitter and {wheel} with pip"
         raise MissingEngineError(message, where="audit") from None
-    return engine.Parser(engine.Language(module.language()))
+    return Parser(Language(module.language()))
 
 
 def parse_source(source: bytes, grammar: str, where: str) -> Any:
