@@ -280,6 +280,7 @@ class Evaluator:
         raise Unreadable(part.line, part.parts[0] if kind == "refused" else f"a {kind} where a number is needed")
 
     def named_value(self, part: Part) -> Value:
+        """The value of a name: of a variable, a macro or a constant such as pi."""
         name = part.parts[0]
         if name not in self.frame and name in self.unit.macros:
             return self.macro(name, part.line)
