@@ -20,8 +20,8 @@ from navsym.language.printer import print_tree
 from navsym.language.tree import MINUS_ONE, NUMBER, POWER, SYMBOL, Tree, build, build_call, fold_tree, list_names
 from navsym.prove.rooms.goals import player
 
-PER_ENTRY = 600  # changes that are tried
-PER_QUESTION = 1500
+PER_ENTRY = 1000  # changes that are tried
+PER_QUESTION = 2000
 MOST_NAMES = 24
 TOLERANCE = 1e-9
 SWAPS = {"sin": "cos", "cos": "sin", "sinf": "cosf", "cosf": "sinf", "asin": "acos", "acos": "asin"}
