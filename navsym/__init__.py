@@ -46,7 +46,7 @@ __version__ = "0.1.0"
 #: Public name -> module that holds it. A module is imported when its name is first used, and its engines with it.
 _HOMES = {
     "Model": "navsym.models.model",
-    **dict.fromkeys(("Audit", "audit"), "navsym.audit.answer"),
+    "audit": "navsym.audit.answer",
     **dict.fromkeys(("Derivation", "derive"), "navsym.models.derivation"),
     **dict.fromkeys(("Observability", "observe"), "navsym.observability.answer"),
     "Comparison": "navsym.guaranteed.baselines",
@@ -88,7 +88,6 @@ _HOMES = {
 __all__ = ["__version__", *sorted(_HOMES)]
 
 if TYPE_CHECKING:
-    from navsym.audit.answer import Audit as Audit
     from navsym.audit.answer import audit as audit
     from navsym.claims import CERTIFIED as CERTIFIED
     from navsym.claims import CONFIRMED as CONFIRMED

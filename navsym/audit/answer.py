@@ -197,14 +197,14 @@ def audit(path: str | os.PathLike[str], /, function: str | None = None) -> Audit
     as real numbers, arrays that are passed apart as apart from each other. Each entry of a question is PROVED
     with a certificate, REFUTED by an exact point, or OPEN.
 
-    Returns an :class:`Audit`. Raises NavsymError for what is no specification and no source.
+    Returns an Audit: its ``files``, ``questions`` by name, ``formulas``. Raises NavsymError for what is no specification and no source.
 
     >>> import navsym as nav
     >>> report = nav.audit("examples/audit/yaw_jacobian.toml")
     >>> report["transition"].status, report["transition"].entries[2].line
     (<Status.REFUTED: 'REFUTED'>, 11)
     >>> [entry.suggestion for entry in report["transition"].entries if entry.suggestion]
-    ['-v * sin(x[2]) * dt']
+    ['-v * sinf(x[2]) * dt']
     """
     where = Path(os.fspath(path))
     if function is not None:
