@@ -197,7 +197,8 @@ def audit(path: str | os.PathLike[str], /, function: str | None = None) -> Audit
     as real numbers, arrays that are passed apart as apart from each other. Each entry of a question is PROVED
     with a certificate, REFUTED by an exact point, or OPEN.
 
-    Returns an Audit: its ``files``, ``questions`` by name, ``formulas``. Raises NavsymError for what is no specification and no source.
+    Returns an Audit: its ``files``, ``questions`` by name, ``formulas``. Raises NavsymError for what is no
+    specification and no source.
 
     >>> import navsym as nav
     >>> report = nav.audit("examples/audit/yaw_jacobian.toml")

@@ -403,8 +403,12 @@ def list_commas(node: Any) -> list[Any]:
 
 
 def number_of(kind: str) -> str:
-    """Whether a type holds integers ("int") or not ("real")."""
-    return "int" if WHOLE.fullmatch(re.sub(r"\b(const|static|constexpr)\b", "", kind).strip()) else "real"
+    """Whether a type holds integers ("int"), real numbers ("real") or something else ("other")."""
+    kind = re.sub(r"\b(const|static|constexpr|struct)\b", "", kind).strip()
+    if WHOLE.fullmatch(kind):
+        return "int"
+    is_real = kind in REAL or kind in ("auto", "long double", "") or shape_of_type(kind) is not None
+    return "real" if is_real else "other"
 
 
 def is_constant(node: Any) -> bool:

@@ -32,7 +32,6 @@ from navsym.language.tree import (
     build_symbol,
     fold_tree,
     list_names,
-    list_parts,
     negate,
     parts_of,
     replace,
@@ -344,8 +343,3 @@ def differentiate(tree: Tree, symbol: Tree) -> Tree:
     except REFUSALS:
         raise DomainError("expected a formula with a derivative; got one without; ask for its parts") from None
     return read_tree(write_term(term), set(list_names(tree))) if term != player.ZERO else ZERO
-
-
-def has_symbols(tree: Tree) -> bool:
-    """True when the formula depends on anything."""
-    return any(part.head == SYMBOL for part in list_parts(tree))

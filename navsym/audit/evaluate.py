@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from navsym.audit.form import Argument, Function, Part, Unit
+from navsym.audit.form import Argument, Function, Part, Unit, names_in
 from navsym.audit.functions import CONSTANTS, METHODS, call_known, is_known
 from navsym.audit.values import (
     Array,
@@ -111,6 +111,7 @@ class Evaluator:
     expanding: list[str] = field(default_factory=list)
     steps: int = 0
     lost: Unread | None = None
+    lost_heads: dict[str, Unread] = field(default_factory=dict)
 
     @property
     def unit(self) -> Unit:
@@ -138,7 +139,9 @@ class Evaluator:
         if name in self.file_names:
             return self.file_names[name]
         if name not in self.globals:
-            shape = self.shapes.get(name)
+            shape, head = self.shapes.get(name), head_of(name)
+            if head in self.lost_heads:
+                return Variable(name, shape=shape, is_input=True, all_unread=self.lost_heads[head])
             self.globals[name] = Variable(name, shape=shape, is_input=True, all_unread=self.lost)
         return self.globals[name]
 
@@ -289,6 +292,8 @@ class Evaluator:
         variable = self.variable(name)
         if variable.all_unread is not None:
             return variable.all_unread
+        if variable.number == "other" and not variable.shape:
+            raise Unreadable(part.line, f"{name} as a whole, of a type that is no number")
         if not variable.shape:
             if variable.shape is None and variable.cells and () not in variable.cells:
                 raise Unreadable(part.line, f"{name} as a whole, of unknown size")
@@ -436,6 +441,7 @@ class Evaluator:
         if name in self.calls or len(self.calls) >= INLINED:
             raise Unreadable(part.line, f"the recursion of {name}" if name in self.calls else "calls nested too deep")
         function = candidates[0]
+        self.require_no_structure(function, arguments, part.line)
         frame = {a.name: self.bind(a, given) for a, given in zip(function.arguments, arguments, strict=True)}
         for output in function.outputs:
             frame.setdefault(output, Variable(output))
@@ -455,6 +461,15 @@ class Evaluator:
         if returned is None and wants_value:
             raise Unreadable(part.line, f"{name} returns no value")
         return returned if returned is not None else Unread(part.line, "no value")
+
+    def require_no_structure(self, function: Function, arguments: tuple[Part, ...], line: int) -> None:
+        """Refuse a structure under another name: its members would be other names."""
+        heads = {head_of(name) for name in names_in(*function.body) if head_of(name) != name}
+        for argument, given in zip(function.arguments, arguments, strict=True):
+            inner = given.parts[0] if given.kind == "address" else given
+            is_same = inner.kind == "name" and inner is given and inner.parts[0] == argument.name
+            if argument.name in heads and not is_same:
+                raise Unreadable(line, f"a structure that {function.name} knows by another name")
 
     def whole_value(self, variable: Variable) -> Value:
         """A variable as a value."""
@@ -503,6 +518,11 @@ class Evaluator:
         """The shape of a name that is known already."""
         known = self.frame.get(name) or self.file_names.get(name) or self.globals.get(name)
         return known.shape if known else None
+
+
+def head_of(name: str) -> str:
+    """The structure to which a member belongs: ``s`` of ``s->a.b``."""
+    return name.replace("->", ".").split(".")[0]
 
 
 class CellView(dict[Index, Cell]):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from navsym.audit.evaluate import CASES, Case, Condition, Evaluator, Inputs, Reading, Returning
+from navsym.audit.evaluate import CASES, Case, Condition, Evaluator, Inputs, Reading, Returning, head_of
 from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
 from navsym.audit.functions import HARMLESS, METHODS, is_known
 from navsym.audit.values import (
@@ -70,6 +70,9 @@ class Machine(Evaluator):
         """The whole function."""
         for constant in self.unit.constants:
             self.statement(constant)
+        once = [constant.parts[0] for constant in self.unit.constants if constant.kind == "declare"]
+        for name in {name for name in once if once.count(name) > 1}:
+            self.frame[name].all_unread = Unread(function.line, f"{name}, which has several values in this file")
         self.file_names, self.frame = self.frame, {}
         for argument in function.arguments:
             self.frame[argument.name] = self.make_argument(argument)
@@ -143,8 +146,16 @@ class Machine(Evaluator):
         for name in targets:
             if name in self.frame or name not in self.file_names:
                 self.variable(name).all_unread = unread
+                self.lose_members(name, unread)
         if any(part.kind == "return" for part in walk(statement)):
             self.stop(unread)
+
+    def lose_members(self, name: str, unread: Unread) -> None:
+        """The members of a structure that may have been written as a whole."""
+        self.lost_heads[name] = unread
+        for variable in (*self.frame.values(), *self.globals.values()):
+            if variable.name != name and head_of(variable.name) == name:
+                variable.all_unread = unread
 
     def is_safe(self, name: str) -> bool:
         """True for a number of C, of which a called function gets a copy."""

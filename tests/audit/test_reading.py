@@ -96,6 +96,21 @@ def test_an_unknown_call_leaves_unread_what_does_not_belong_to_the_function(tmp_
     assert "mystery" in final(result, "y", 1)
 
 
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("void f(Quatf p, Quatf q, float &y) { y = p*q; }", "p as a whole, of a type that is no number"),
+        ("void f(S s, S t, float &y) { s.a = 1; s = t; y = s.a; }", "t as a whole, of a type that is no number"),
+        ("void g(S *s) { s->a = 2; }\nvoid f(float &y) { S t; t.a = 1; g(&t); y = t.a; }",
+         "a structure that g knows by another name"),
+        ("namespace a { const float k = 1; } namespace b { const float k = 2; }\nvoid f(float &y) { y = k; }",
+         "k, which has several values in this file"),
+    ],
+)  # fmt: skip
+def test_what_is_no_number_is_refused_with_its_members(text, why, tmp_path):
+    assert final(read(tmp_path, text, end=".cpp"), "y") == why
+
+
 def test_every_way_through_branches_is_a_case_and_constants_decide(tmp_path):
     text = "void f(float a, int n, float y[1]) { if (1 < 2) y[0] = a; if (a > 1 && n == 2) y[0] = 3; else y[0] = 2*a; }"
     result = read(tmp_path, text)
