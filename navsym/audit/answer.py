@@ -203,7 +203,7 @@ def audit(path: str | os.PathLike[str], /, function: str | None = None) -> Audit
     >>> import navsym as nav
     >>> report = nav.audit("examples/audit/yaw_jacobian.toml")
     >>> report["transition"].status, report["transition"].entries[2].line
-    (<Status.REFUTED: 'REFUTED'>, 11)
+    (<Status.REFUTED: 'REFUTED'>, 14)
     >>> [entry.suggestion for entry in report["transition"].entries if entry.suggestion]
     ['-v * sinf(x[2]) * dt']
     """
