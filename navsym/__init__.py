@@ -46,6 +46,7 @@ __version__ = "0.1.0"
 #: Public name -> module that holds it. A module is imported when its name is first used, and its engines with it.
 _HOMES = {
     "Model": "navsym.models.model",
+    "audit": "navsym.audit.answer",
     **dict.fromkeys(("Derivation", "derive"), "navsym.models.derivation"),
     **dict.fromkeys(("Observability", "observe"), "navsym.observability.answer"),
     "Comparison": "navsym.guaranteed.baselines",
@@ -91,6 +92,7 @@ _HOMES = {
 __all__ = ["__version__", *sorted(_HOMES)]
 
 if TYPE_CHECKING:
+    from navsym.audit.answer import audit as audit
     from navsym.claims import CERTIFIED as CERTIFIED
     from navsym.claims import CONFIRMED as CONFIRMED
     from navsym.claims import OPEN as OPEN

@@ -24,7 +24,7 @@ UNIMPORTED: dict[str, str] = TABLES["tool"]["navsym"]["unimported"]
 KINDS = {"layers": LayersContract, "forbidden": ForbiddenContract, "protected": ProtectedContract}
 
 #: Distribution -> what is imported, where the two names differ.
-MODULES = {"python-flint": "flint"}
+MODULES = {"python-flint": "flint", "tree-sitter": "tree_sitter"}
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,1 @@
+"""The formulas inside source code, read and decided."""

@@ -1,0 +1,350 @@
+"""The answer of an audit: what was read, and the verdict on each entry of each question."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
+from navsym.core.answers import Answer
+from navsym.core.errors import ExpressionSyntaxError, NavsymError, ShapeError
+from navsym.language.names import expect_keys, join_place, quote
+from navsym.language.schema import as_table, require_distinct, require_key
+from navsym.language.tomlfile import read_toml
+
+if TYPE_CHECKING:
+    from navsym.audit.decide import Decision, Scope
+    from navsym.audit.mend import Budget
+    from navsym.audit.names import Names
+    from navsym.audit.questions import Entry, Question
+    from navsym.audit.sources import Source
+
+MOST = 200  # questions of a file
+SENSES = ("exact", "manifold")
+
+
+@dataclass(frozen=True, slots=True)
+class AuditedFile:
+    """How far a source was read: statements of the functions asked about, and the refused lines with reasons."""
+
+    file: str
+    language: str
+    statements: int
+    refused: tuple[tuple[int, str], ...]
+    unread: int
+
+    def document(self) -> dict[str, Any]:
+        """The file as plain data."""
+        return {
+            "file": self.file,
+            "language": self.language,
+            "statements": self.statements,
+            "read": self.statements - self.unread,
+            "refused": [{"line": line, "why": why} for line, why in self.refused],
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class AuditedEntry:
+    """The verdict on one entry.
+
+    entry          : row and column, from 1
+    file, line     : where the code assigns it
+    counterexample : of REFUTED, spelling of an input -> exact number
+    values         : of REFUTED, the code's value and the expected one there
+    suggestion     : of REFUTED, the mended right side of the assignment; the mended entry is proved
+    why            : of OPEN, the reason; of a case, its conditions
+    """
+
+    entry: tuple[int, int]
+    file: str
+    line: int
+    status: Status
+    sense: str = "exact"
+    counterexample: Mapping[str, str] | None = None
+    values: tuple[str, str] | None = None
+    suggestion: str | None = None
+    why: str = ""
+    certificate: Mapping[str, Any] | None = None
+
+    def document(self) -> dict[str, Any]:
+        """The entry as plain data."""
+        return {
+            "entry": list(self.entry),
+            "file": self.file,
+            "line": self.line,
+            "status": str(self.status),
+            "counterexample": dict(self.counterexample) if self.counterexample is not None else None,
+            "values": list(self.values) if self.values else None,
+            "suggestion": self.suggestion,
+            "why": self.why or None,
+        }
+
+    def remark(self) -> str:
+        """The ground of the verdict in one line."""
+        if self.status == REFUTED and self.values:
+            point = ", ".join(f"{name} = {value}" for name, value in (self.counterexample or {}).items())
+            mend = f"; write {self.suggestion}" if self.suggestion else ""
+            case = f" ({self.why})" if self.why else ""
+            return f"is {self.values[0]}, expected {self.values[1]} at {point or 'any point'}{case}{mend}"
+        return self.why or self.sense
+
+
+@dataclass(frozen=True, slots=True)
+class AuditedQuestion:
+    """A question with the verdicts on its entries; its own is the worst of them."""
+
+    name: str
+    kind: str
+    entries: tuple[AuditedEntry, ...]
+
+    @property
+    def status(self) -> Status:
+        """REFUTED, OPEN, CERTIFIED or PROVED, the first that occurs."""
+        present = {entry.status for entry in self.entries}
+        return next((status for status in (REFUTED, OPEN, CERTIFIED) if status in present), PROVED)
+
+    @property
+    def sense(self) -> str:
+        """The weakest sense that was needed."""
+        return max((entry.sense for entry in self.entries), key=SENSES.index, default="exact")
+
+    def document(self, every: bool = False) -> dict[str, Any]:
+        """The question as plain data; entries that are PROVED only on demand."""
+        entries = [entry.document() for entry in self.entries if every or entry.status != PROVED]
+        return {
+            "name": self.name,
+            "kind": self.kind,
+            "status": str(self.status),
+            "sense": self.sense,
+            "entries": entries,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class OutputFormula:
+    """An output of a function as a formula of its inputs, in the spelling of the source."""
+
+    name: str
+    line: int
+    formula: str
+    case: str
+
+    def document(self) -> dict[str, Any]:
+        """The formula as plain data."""
+        return {"name": self.name, "line": self.line, "formula": self.formula, "case": self.case or None}
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Audit(Answer):
+    """What an audit found.
+
+    files     : what was read of each source
+    questions : the verdicts
+    formulas  : the outputs of a function, where no question was asked
+    """
+
+    files: tuple[AuditedFile, ...]
+    questions: tuple[AuditedQuestion, ...] = ()
+    formulas: tuple[OutputFormula, ...] = ()
+
+    @property
+    def holds(self) -> bool:
+        """True when no question is REFUTED or OPEN."""
+        return all(question.status.holds for question in self.questions)
+
+    def __getitem__(self, name: str) -> AuditedQuestion:
+        return next(question for question in self.questions if question.name == name)
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{q.name}: {q.status}" for q in self.questions)
+        return f"<audit of {', '.join(Path(f.file).name for f in self.files)}; {counts or 'formulas'}>"
+
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """The certificates of all entries that have one."""
+        return [e.certificate for q in self.questions for e in q.entries if e.certificate is not None]
+
+    def annotations(self) -> list[str]:
+        """``file:line: message`` for every entry that is REFUTED or OPEN, and for every refused line."""
+        lines = [
+            f"{e.file}:{e.line}: {q.name}[{e.entry[0]},{e.entry[1]}] {e.status}: {e.remark()}"
+            for q in self.questions
+            for e in q.entries
+            if not e.status.holds
+        ]
+        return lines + [f"{f.file}:{line}: not read: {why}" for f in self.files for line, why in f.refused]
+
+    def document(self, every: bool = False) -> dict[str, Any]:
+        """The JSON document of ``navsym audit``."""
+        document: dict[str, Any] = {
+            "read": {"files": [file.document() for file in self.files]},
+            "questions": [question.document(every) for question in self.questions],
+        }
+        return {**document, "formulas": [f.document() for f in self.formulas]} if self.formulas else document
+
+
+def audit(path: str | os.PathLike[str], /, function: str | None = None) -> Audit:
+    """The formulas of source code, and the verdicts on questions about them.
+
+    path     : a file of questions (TOML); or a source in C, C++, Python or MATLAB
+    function : of a source, whose outputs are wanted as formulas of its inputs
+
+    The source is read by its grammar and run on symbols, case by case. Nothing is compiled or executed. A line outside
+    the language of audit is refused with its reason, and what depends on it is OPEN. Numbers of the source are taken
+    as real numbers, arrays that are passed apart as apart from each other. Each entry of a question is PROVED
+    with a certificate, REFUTED by an exact point, or OPEN.
+
+    Returns an Audit: its ``files``, ``questions`` by name, ``formulas``. Raises NavsymError for what is no
+    specification and no source.
+
+    >>> import navsym as nav
+    >>> report = nav.audit("examples/audit/yaw_jacobian.toml")
+    >>> report["transition"].status, report["transition"].entries[2].line
+    (<Status.REFUTED: 'REFUTED'>, 14)
+    >>> [entry.suggestion for entry in report["transition"].entries if entry.suggestion]
+    ['-v * sinf(x[2]) * dt']
+    """
+    where = Path(os.fspath(path))
+    if function is not None:
+        return audit_function(where, function)
+    if where.suffix != ".toml":
+        message = f"expected a specification (TOML), or a source with the name of a function; got {quote(where.name)}; "
+        raise ExpressionSyntaxError(f"{message}add --function NAME", where="audit")
+    return audit_specification(where)
+
+
+def audit_function(path: Path, function: str) -> Audit:
+    """The outputs of one function as formulas."""
+    from navsym.audit.listing import list_formulas
+    from navsym.audit.names import Names
+    from navsym.audit.sources import Source, find_function, load_unit
+
+    unit = load_unit(path)
+    source = Source("code", unit, find_function(unit, function, "audit: function"), Names(), {}, frozenset(), ())
+    source.read()
+    return Audit((describe_file(source.unit.file, [source]),), (), tuple(list_formulas(source)))
+
+
+def audit_specification(path: Path) -> Audit:
+    """The verdicts on the questions of a file."""
+    from navsym.audit.names import Names
+    from navsym.audit.questions import read_question
+    from navsym.audit.sources import read_source
+    from navsym.language.files import name_file
+
+    document, where = read_toml(path), name_file(path)
+    expect_keys(document, ("code", "question"), where)
+    names = Names()
+    sources: list[Source] = []
+    for i, block in enumerate(read_blocks(document, "code", where)):
+        sources.append(read_source(block, path.parent, names, join_place(join_place(where, "code"), i)))
+    require_distinct((source.name for source in sources), join_place(where, "code"))
+    by_name = {source.name: source for source in sources}
+    blocks = read_blocks(document, "question", where)
+    place = join_place(where, "question")
+    questions = [
+        read_question(block, by_name, names, path.parent, join_place(place, i)) for i, block in enumerate(blocks)
+    ]
+    require_distinct((question.name for question in questions), place)
+    answers = tuple(answer_question(question, sources) for question in questions)
+    files = {source.unit.file: [s for s in sources if s.unit.file == source.unit.file] for source in sources}
+    return Audit(tuple(describe_file(file, group) for file, group in files.items()), answers)
+
+
+def read_blocks(document: Mapping[str, Any], key: str, where: str) -> list[Any]:
+    """The blocks ``[[code]]`` or ``[[question]]``."""
+    blocks = require_key(dict(document), key, where)
+    if not isinstance(blocks, list):
+        message = f"expected [[{key}]] blocks; got a single one; write double brackets"
+        raise ShapeError(message, where=join_place(where, key))
+    if len(blocks) > MOST:
+        raise ShapeError(f"expected at most {MOST} blocks; got {len(blocks)}; split the file", where=where)
+    return [as_table(block, join_place(join_place(where, key), i)) for i, block in enumerate(blocks)]
+
+
+def describe_file(file: str, sources: Sequence[Source]) -> AuditedFile:
+    """What was read of a file."""
+    met: set[tuple[int, int]] = set()
+    unread: set[tuple[int, int]] = set()
+    refused: dict[int, str] = {}
+    for source in sources:
+        reading = source.read()
+        met |= reading.met
+        unread |= reading.refused_spans
+        refused |= reading.refused
+    language = sources[0].unit.language
+    return AuditedFile(file, language, len(met), tuple(sorted(refused.items())), len(unread & met))
+
+
+def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQuestion:
+    """The verdicts on the entries of a question; of several cases the worst stands for the entry."""
+    from navsym.audit.mend import Budget
+    from navsym.audit.questions import list_entries
+
+    relations = tuple(relation for source in sources for relation in source.relations)
+    worst: dict[tuple[int, int], AuditedEntry] = {}
+    decided: dict[Any, Decision] = {}
+    budget = Budget()
+    order = (PROVED, CERTIFIED, OPEN, REFUTED)
+    for entry in list_entries(question):
+        answer = answer_entry(question, entry, relations, decided, budget)
+        known = worst.get(entry.place)
+        if known is None or order.index(answer.status) > order.index(known.status):
+            worst[entry.place] = answer
+    return AuditedQuestion(question.name, question.kind, tuple(worst.values()))
+
+
+def answer_entry(
+    question: Question, entry: Entry, relations: tuple[Any, ...], decided: dict[Any, Decision], budget: Budget
+) -> AuditedEntry:
+    """The verdict on one entry in one case."""
+    from navsym.audit.decide import decide_entry
+    from navsym.audit.values import Unread
+
+    unit = entry.source.unit if entry.source else next(iter(question.sources.values())).unit
+    case = describe_case(entry)
+    for cell in (entry.code, entry.expected):
+        if isinstance(cell, Unread):
+            return AuditedEntry(entry.place, unit.file, cell.line, OPEN, why=f"not read: {cell.why}")
+    assert not isinstance(entry.code, Unread) and not isinstance(entry.expected, Unread)
+    line = entry.code.line or entry.expected.line or (entry.source.function.line if entry.source else 0)
+    scope = make_scope(question.names, entry, relations)
+    key = (entry.code.tree, entry.expected.tree, entry.conditions)
+    try:
+        decision = decided[key] if key in decided else decide_entry(entry.code.tree, entry.expected.tree, scope)
+    except NavsymError as error:
+        return AuditedEntry(entry.place, unit.file, line, OPEN, why=error.message)
+    decided[key] = decision
+    point, suggestion = None, None
+    if decision.status == REFUTED:
+        from navsym.audit.mend import suggest
+
+        point = {question.names.spellings.get(n, n): value for n, value in (decision.point or {}).items()}
+        mend = suggest(entry, scope, budget)
+        if mend is not None:
+            line, suggestion = mend.line, mend.text
+    why = decision.why or (case if decision.status == REFUTED else "")
+    return AuditedEntry(
+        entry.place, unit.file, line, decision.status, decision.sense, point, decision.values, suggestion, why,
+        decision.certificate,
+    )  # fmt: skip
+
+
+def describe_case(entry: Entry) -> str:
+    """The conditions of a case in words."""
+    return " and ".join(c.text if c.holds else f"not {c.text}" for c in entry.conditions)
+
+
+def make_scope(names: Names, entry: Entry, relations: tuple[Any, ...]) -> Scope:
+    """Ranges, relations and conditions under which an entry is decided; relations of other symbols do not count."""
+    from navsym.audit.decide import Scope
+    from navsym.audit.values import Scalar
+    from navsym.language.tree import list_names
+
+    trees = [cell.tree for cell in (entry.code, entry.expected) if isinstance(cell, Scalar)]
+    used = set(list_names(*trees, *(t for c in entry.conditions for t in (c.left, c.right) if t is not None)))
+    near = tuple(relation for relation in relations if used & set(list_names(relation)))
+    return Scope(names.ranges(), near, entry.conditions)

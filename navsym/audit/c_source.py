@@ -1,0 +1,421 @@
+"""C and C++: functions, scalars, arrays, fixed-size matrices ``M(i, j)``; all else is refused with its line."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from navsym.audit.form import Argument, Function, Part, Rules, Unit
+from navsym.audit.syntax import (
+    descend,
+    field_of,
+    identifiers_in,
+    line_of,
+    named,
+    parse_source,
+    read_decimal,
+    span_of,
+    text_of,
+)
+
+RULES = {"c": Rules(integer=True), "cpp": Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))}
+REAL = frozenset("float double real_t ftype Scalar scalar_t Real postype_t T float32_t float64_t f32 f64".split())
+WHOLE = re.compile(
+    r"(unsigned |signed )*(int|long|short|char|size_t|(u?int\d+(_t)?)|bool|unsigned|Eigen::Index)( int)?"
+)
+VECTOR = re.compile(r"(?:\w+::)*(?:Vector([2-9])[fd]?(?:<\w+>)?|Vector<\w+,(\d+)>)")
+MATRIX = re.compile(
+    r"(?:\w+::)*(?:Matrix([2-9])[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
+)
+POINTER = ("pointer_declarator", "abstract_pointer_declarator")
+COMPARISONS = {"<", "<=", ">", ">=", "==", "!="}
+WORDS = {"&&": "both", "||": "either", "and": "both", "or": "either"}
+
+#: Where the order of statements is left.
+JUMPS = (
+    "return_statement",
+    "goto_statement",
+    "break_statement",
+    "continue_statement",
+    "throw_statement",
+    "labeled_statement",
+    "case_statement",
+    "ERROR",
+)
+
+
+def read_c(source: bytes, file: str, language: str) -> Unit:
+    """The functions, constants and object-like macros of a source in C (``language`` "c") or C++ ("cpp")."""
+    unit = Unit(file, language, RULES[language], source)
+    Reader(unit).read_file(parse_source(source, language, file))
+    return unit
+
+
+def read_c_expression(text: str, unit: Unit) -> Part:
+    """One expression; its spans count from its own beginning."""
+    head = "int a_ = "
+    root = parse_source(f"{head}{text};".encode(), unit.language, unit.file)
+    declarations = [node for node in root.children if node.type == "declaration"]
+    value = field_of(field_of(declarations[0], "declarator"), "value") if declarations and not root.has_error else None
+    if value is None or len(root.children) != 1:
+        return Part("refused", 1, ("no expression",))
+    return Reader(unit, -len(head)).expression(value)
+
+
+def shape_of_type(text: str) -> tuple[int, ...] | None:
+    """The sizes of a vector or matrix type; None for others."""
+    text = text.replace(" ", "").replace("const", "")
+    if found := VECTOR.fullmatch(text):
+        return (int(found[1] or found[2]),)
+    if found := MATRIX.fullmatch(text):
+        if found[3]:
+            rows, columns = int(found[3]), int(found[4])
+            return (rows,) if columns == 1 else (rows, columns)
+        side = int(found[1] or found[2] or 3)
+        return side, side
+    return None
+
+
+@dataclass(slots=True, eq=False)
+class Reader:
+    """Walks the syntax tree; ``shift`` moves the spans of a text that was read alone."""
+
+    unit: Unit
+    shift: int = 0
+
+    def part(self, kind: str, node: Any, *parts: Any) -> Part:
+        start, end = span_of(node)
+        return Part(kind, line_of(node), parts, (start + self.shift, end + self.shift))
+
+    def refuse(self, node: Any, why: str) -> Part:
+        return self.part("refused", node, why)
+
+    def unread(self, node: Any, why: str) -> Part:
+        """A statement that is not read: all names in it may have been written, or the way may be left there."""
+        kind = "jump" if any(inner.type in JUMPS for inner in descend(node)) else "unread"
+        return self.part(kind, node, why, identifiers_in(node))
+
+    # -- the file --
+
+    def read_file(self, root: Any) -> None:
+        """Functions, constants and macros, also inside namespaces and classes."""
+        for node in descend(root):
+            if node.type == "function_definition":
+                self.read_function(node)
+            elif node.type == "preproc_def":
+                self.read_macro(node)
+            elif node.type == "preproc_function_def":
+                self.unit.macros[text_of(field_of(node, "name"))] = "a macro with arguments"
+            elif node.type == "declaration" and is_constant(node):
+                self.unit.constants += [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
+        self.unit.constants.sort(key=lambda statement: statement.span)
+
+    def read_macro(self, node: Any) -> None:
+        """An object-like macro; a second definition refuses the name."""
+        name, value = text_of(field_of(node, "name")), field_of(node, "value")
+        body = "" if value is None else re.sub(r"//.*|/\*.*?\*/", "", text_of(value)).strip()
+        meaning: Part | str = "a macro without a value" if not body else read_c_expression(body, self.unit)
+        if isinstance(meaning, Part) and meaning.kind == "refused":
+            meaning = "a macro that is no expression"
+        self.unit.macros[name] = "a macro with two definitions" if name in self.unit.macros else meaning
+
+    def read_function(self, node: Any) -> None:
+        declarator = field_of(node, "declarator")
+        while declarator is not None and declarator.type != "function_declarator":
+            declarator = field_of(declarator, "declarator") or next(iter(named(declarator)), None)
+        body = field_of(node, "body")
+        if declarator is None or body is None:
+            return
+        name = text_of(field_of(declarator, "declarator")).split("::")[-1]
+        parameters = named(field_of(declarator, "parameters"))
+        arguments = tuple(self.argument(p) for p in parameters if text_of(p) != "void")
+        function = Function(name, line_of(node), arguments, self.block(body))
+        self.unit.functions.setdefault(name, []).append(function)
+
+    def argument(self, node: Any) -> Argument:
+        """A parameter with its sizes; pointers, references and arrays are shared with the caller."""
+        kind = text_of(field_of(node, "type")) if field_of(node, "type") else ""
+        name, sizes, shared = self.declared(field_of(node, "declarator"))
+        shape = sizes or self.type_sizes(node, kind)
+        constant = any(text_of(child) == "const" for child in node.children)
+        return Argument(name, number_of(kind), shape, shared and not constant)
+
+    def type_sizes(self, node: Any, kind: str) -> tuple[Part, ...] | None:
+        shape = shape_of_type(kind)
+        return None if shape is None else tuple(self.part("number", node, n, "int") for n in shape)
+
+    def declared(self, node: Any) -> tuple[str, tuple[Part, ...] | None, bool]:
+        """Name, sizes and whether it is shared, of a declarator."""
+        sizes: list[Part] = []
+        shared = False
+        while node is not None and node.type not in ("identifier", "field_identifier"):
+            if node.type == "array_declarator":
+                size = field_of(node, "size")
+                sizes.append(
+                    self.expression(size) if size is not None else self.refuse(node, "an array without a size")
+                )
+                shared = True
+            shared |= node.type in ("reference_declarator", *POINTER)
+            if node.type == "function_declarator":
+                return text_of(node), None, True
+            node = field_of(node, "declarator") or next(iter(named(node)), None)
+        return (text_of(node) if node is not None else ""), tuple(reversed(sizes)) or None, shared
+
+    # -- statements --
+
+    def block(self, node: Any) -> tuple[Part, ...]:
+        """The statements of a body, or the one that stands for it."""
+        if node is None:
+            return ()
+        nodes = named(node) if node.type == "compound_statement" else [node]
+        if node.type == "else_clause":
+            nodes = named(node)
+            return tuple(s for child in nodes for s in self.block(child))
+        return tuple(s for child in nodes for s in self.statement(child))
+
+    def statement(self, node: Any) -> tuple[Part, ...]:
+        if node.has_error and node.type not in ("if_statement", "for_statement", "compound_statement"):
+            return (self.unread(node, "a syntax error, or a macro that hides one"),)
+        match node.type:
+            case "compound_statement":
+                return (self.part("block", node, self.block(node)),)
+            case "declaration":
+                return self.declaration(node)
+            case "expression_statement":
+                return tuple(s for child in named(node) for s in self.effect(child))
+            case "if_statement":
+                return (self.branch(node),)
+            case "for_statement":
+                return (self.loop(node),)
+            case "return_statement":
+                values = named(node)
+                return (self.part("return", node, self.expression(values[0]) if values else None),)
+            case "static_assert_declaration" | "using_declaration" | "empty_statement" | "type_definition":
+                return ()
+        return (self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})"),)
+
+    def branch(self, node: Any) -> Part:
+        test = field_of(node, "condition")
+        value = field_of(test, "value") or next(iter(named(test)), None)
+        if value is None or any(text_of(child) == "constexpr" for child in node.children):
+            return self.unread(node, "a condition outside the language of audit")
+        then, other = self.block(field_of(node, "consequence")), self.block(field_of(node, "alternative"))
+        return self.part("if", node, self.expression(value), then, other)
+
+    def loop(self, node: Any) -> Part:
+        """``for (int i = a; i < b; i++)`` and its like."""
+        start, test, step = (field_of(node, name) for name in ("initializer", "condition", "update"))
+        body = field_of(node, "body")
+        unread = self.unread(node, "a loop that does not count from one constant to another")
+        if start is None or test is None or step is None or test.type != "binary_expression":
+            return unread
+        first = [s for s in self.statement(start) if s.kind in ("declare", "assign")]
+        if start.type == "assignment_expression":
+            first = [s for s in self.effect(start) if s.kind == "assign"]
+        update = [s for s in self.effect(step) if s.kind == "assign"]
+        if len(first) != 1 or len(update) != 1 or update[0].parts[1] not in ("+", "-"):
+            return unread
+        name = first[0].parts[0] if first[0].kind == "declare" else text_of(field_of(start, "left"))
+        value = first[0].parts[3] if first[0].kind == "declare" else first[0].parts[2]
+        sign, left = text_of(field_of(test, "operator")), text_of(field_of(test, "left"))
+        counter = update[0].parts[0]
+        if left != name or counter.kind != "name" or counter.parts[0] != name or sign not in ("<", "<=", ">", ">="):
+            return unread
+        stop = self.expression(field_of(test, "right"))
+        if sign in ("<=", ">="):
+            one = self.part("number", test, 1, "int")
+            stop = self.part("op", test, "+" if sign == "<=" else "-", stop, one)
+        by = update[0].parts[2]
+        if update[0].parts[1] == "-":
+            by = self.part("minus", step, by)
+        if (update[0].parts[1] == "-") != (sign in (">", ">=")):
+            return unread
+        return self.part("for", node, name, value, stop, by, self.block(body))
+
+    def declaration(self, node: Any) -> tuple[Part, ...]:
+        """One statement for each declared name."""
+        kind = text_of(field_of(node, "type")) if field_of(node, "type") else ""
+        done = []
+        for child in node.children_by_field_name("declarator"):
+            value = field_of(child, "value") if child.type == "init_declarator" else None
+            inner = field_of(child, "declarator") if child.type == "init_declarator" else child
+            name, sizes, shared = self.declared(inner)
+            shape = sizes or self.type_sizes(child, kind)
+            if value is not None and value.type == "argument_list":
+                items = tuple(map(self.expression, named(value)))
+                start = self.part("list", value, items) if len(items) > 1 else items[0] if items else None
+            else:
+                start = None if value is None else self.expression(value)
+            if inner.type == "function_declarator":  # Vector3f v(a, b, c), which the grammar takes for a function
+                items = tuple(map(self.expression, named(field_of(inner, "parameters"))))
+                name, start = text_of(field_of(inner, "declarator")), self.part("list", inner, items)
+            is_link = shared and sizes is None
+            done.append(self.part("declare", child, name, number_of(kind), shape, start, is_link))
+        return tuple(done)
+
+    def effect(self, node: Any) -> tuple[Part, ...]:
+        """What an expression that stands alone writes."""
+        match node.type:
+            case "assignment_expression":
+                sign = text_of(field_of(node, "operator"))[:-1]
+                if sign not in ("", "+", "-", "*", "/"):
+                    return (self.unread(node, f"the assignment {sign}="),)
+                right = field_of(node, "right")
+                if right.type == "assignment_expression":  # a = b = c
+                    inner = self.effect(right)
+                    value = self.expression(field_of(right, "left"))
+                    return (*inner, self.part("assign", node, self.expression(field_of(node, "left")), sign, value))
+                left = self.expression(field_of(node, "left"))
+                return (self.part("assign", node, left, sign, self.expression(right)),)
+            case "update_expression":
+                one = self.part("number", node, 1, "int")
+                target = self.expression(field_of(node, "argument"))
+                return (self.part("assign", node, target, text_of(field_of(node, "operator"))[0], one),)
+            case "comma_expression" | "binary_expression" if (filled := self.comma_list(node)) is not None:
+                return (filled,)
+            case "comma_expression":
+                return tuple(s for child in named(node) for s in self.effect(child))
+            case "parenthesized_expression":
+                return tuple(s for child in named(node) for s in self.effect(child))
+            case "call_expression":
+                return (self.part("do", node, self.expression(node)),)
+        return (self.unread(node, "an expression without an assignment"),)
+
+    def comma_list(self, node: Any) -> Part | None:
+        """``M << a, b, c`` of Eigen as an assignment of all cells; None for others."""
+        items: list[Any] = []
+        first = node
+        while first.type == "comma_expression":
+            items.insert(0, field_of(first, "right"))
+            first = field_of(first, "left")
+            if items[0].type == "comma_expression":  # the grammar groups from the right
+                items[:1] = list_commas(items[0])
+        if first.type != "binary_expression" or text_of(field_of(first, "operator")) != "<<":
+            return None
+        cells = tuple(map(self.expression, (field_of(first, "right"), *items)))
+        return self.part("assign", node, self.expression(field_of(first, "left")), "", self.part("list", node, cells))
+
+    # -- expressions --
+
+    def expression(self, node: Any) -> Part:
+        match node.type:
+            case "number_literal":
+                return self.number(node)
+            case "identifier" | "field_identifier" | "qualified_identifier" | "this":
+                return self.part("name", node, text_of(node))
+            case "parenthesized_expression":
+                inner = named(node)
+                return self.expression(inner[0]) if len(inner) == 1 else self.refuse(node, "empty parentheses")
+            case "binary_expression":
+                return self.binary(node)
+            case "unary_expression":
+                value = self.expression(field_of(node, "argument"))
+                sign = text_of(field_of(node, "operator"))
+                if sign == "+":
+                    return value
+                kind = {"-": "minus", "!": "not", "not": "not"}.get(sign)
+                return self.part(kind, node, value) if kind else self.refuse(node, f"the operator {sign}")
+            case "subscript_expression":
+                index = field_of(node, "index") or field_of(node, "indices")
+                places = named(index) if index.type == "subscript_argument_list" else [index]
+                base = self.expression(field_of(node, "argument"))
+                return self.part("index", node, base, tuple(map(self.expression, places)))
+            case "call_expression":
+                return self.call(node)
+            case "field_expression":
+                owner = text_of(field_of(node, "argument"))
+                if not re.fullmatch(r"[\w.:\[\]()>\- ]*", owner) or re.search(r"\(\s*[^)\s]|\[[^\]\d]", owner):
+                    return self.refuse(node, "a member of an expression")
+                return self.part("name", node, re.sub(r"\s", "", text_of(node)).removeprefix("this->"))
+            case "conditional_expression":
+                fields = (field_of(node, name) for name in ("condition", "consequence", "alternative"))
+                return self.part("choose", node, *map(self.expression, fields))
+            case "cast_expression":
+                return self.part(
+                    "cast", node, number_of(text_of(field_of(node, "type"))), self.expression(field_of(node, "value"))
+                )
+            case "initializer_list":
+                return self.part("list", node, tuple(map(self.expression, named(node))))
+            case "pointer_expression":
+                sign = text_of(field_of(node, "operator"))
+                pointed = self.expression(field_of(node, "argument"))
+                if sign == "&":
+                    return self.part("address", node, pointed)
+                if pointed.kind == "name":
+                    return self.part("first", node, pointed)
+        return self.refuse(node, f"an expression outside the language of audit ({node.type.replace('_', ' ')})")
+
+    def number(self, node: Any) -> Part:
+        text = text_of(node)
+        if text.startswith("-"):  # the grammar takes the sign of some numbers for a part of them
+            value = read_decimal(text[1:].rstrip("fFlL"))
+            kind = "real" if "." in text or "e" in text.lower() else "int"
+            return (
+                self.refuse(node, f"the number {text[:20]}")
+                if value is None
+                else self.part("number", node, -value, kind)
+            )
+        if re.fullmatch(r"0\d+", text):
+            return self.refuse(node, "an octal number")
+        suffix = "" if text.lower().startswith("0x") else text.lstrip("0123456789.eE+-")
+        value = read_decimal(text.removesuffix(suffix)) if suffix.lower() in ("", "f", "l", "u", "ul") else None
+        if value is None:
+            return self.refuse(node, f"the number {text[:20]}")
+        is_real = any(char in text.lower() for char in ".ef")
+        return self.part("number", node, value, "real" if is_real else "int")
+
+    def binary(self, node: Any) -> Part:
+        left, right = (self.expression(field_of(node, name)) for name in ("left", "right"))
+        sign = text_of(field_of(node, "operator"))
+        if sign in ("+", "-", "*", "/", "%"):
+            return self.part("op", node, sign, left, right)
+        if sign in COMPARISONS:
+            return self.part("compare", node, sign, left, right)
+        if sign in WORDS:
+            return self.part(WORDS[sign], node, left, right)
+        return self.refuse(node, f"the operator {sign}")
+
+    def call(self, node: Any) -> Part:
+        """A function, a method, an entry ``M(i, j)``, or an accessor without arguments, which is a name."""
+        function = field_of(node, "function")
+        arguments = tuple(map(self.expression, named(field_of(node, "arguments"))))
+        if function.type == "field_expression":
+            base, method = self.expression(field_of(function, "argument")), text_of(field_of(function, "field"))
+            return self.part("method", node, base, method, arguments)
+        name = re.sub(r"\s", "", text_of(function))
+        if function.type == "primitive_type" or (name in REAL and len(arguments) == 1):
+            return self.part("cast", node, number_of(name), arguments[0]) if arguments else self.refuse(node, "a cast")
+        if name in ("static_cast<float>", "static_cast<double>") and arguments:
+            return self.part("cast", node, "real", arguments[0])
+        if shape_of_type(name) is not None:
+            return self.part("list", node, arguments)
+        if function.type in ("identifier", "qualified_identifier", "template_function", "call_expression"):
+            return self.part("call", node, name, arguments)
+        return self.refuse(node, "a call of an expression")
+
+
+def list_commas(node: Any) -> list[Any]:
+    """The expressions between commas."""
+    if node.type != "comma_expression":
+        return [node]
+    return [*list_commas(field_of(node, "left")), *list_commas(field_of(node, "right"))]
+
+
+def number_of(kind: str) -> str:
+    """Whether a type holds integers ("int"), real numbers ("real") or something else ("other")."""
+    kind = re.sub(r"\b(const|static|constexpr|struct)\b", "", kind).strip()
+    if WHOLE.fullmatch(kind):
+        return "int"
+    is_real = kind in REAL or kind in ("auto", "long double", "") or shape_of_type(kind) is not None
+    return "real" if is_real else "other"
+
+
+def is_constant(node: Any) -> bool:
+    """True for a declaration of the file, or of a class, that is const."""
+    parent = node.parent
+    while parent is not None:
+        if parent.type == "function_definition":
+            return False
+        parent = parent.parent
+    return any(text_of(child) in ("const", "constexpr") for child in node.children)

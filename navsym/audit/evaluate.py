@@ -1,0 +1,555 @@
+"""Expressions of the source on symbols: names, entries, blocks, arithmetic and calls."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from navsym.audit.form import Argument, Function, Part, Unit, names_in
+from navsym.audit.functions import CONSTANTS, METHODS, call_known, is_known
+from navsym.audit.values import (
+    Array,
+    Cell,
+    Index,
+    Scalar,
+    Unread,
+    Unreadable,
+    Value,
+    Variable,
+    add,
+    constant_of,
+    divide,
+    map_cells,
+    matrix_product,
+    minus,
+    multiply,
+    places_of,
+    raise_to,
+)
+from navsym.language.tree import Tree, build_number
+
+CASES = 32
+INLINED = 12
+
+#: Source spelling of an input -> its symbol.
+Inputs = Callable[[str], Tree]
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """A comparison of the source, and whether it holds in this case."""
+
+    text: str
+    line: int
+    holds: bool
+    sign: str = ""
+    left: Tree | None = None
+    right: Tree | None = None
+
+
+@dataclass(slots=True, eq=False)
+class Case:
+    """One way through a function.
+
+    variables : what its names hold at the end
+    start     : the same at the beginning, for arrays that it changes
+    returned  : its value, if it has one
+    """
+
+    conditions: tuple[Condition, ...]
+    variables: dict[str, Variable]
+    returned: Value | None
+
+
+@dataclass(slots=True, eq=False)
+class Reading:
+    """A function that has been read.
+
+    cases   : every way through it
+    refused : line -> reason
+    lines   : the statements that were met, by their spans
+    """
+
+    unit: Unit
+    function: Function
+    cases: list[Case] = field(default_factory=list)
+    refused: dict[int, str] = field(default_factory=dict)
+    met: set[tuple[int, int]] = field(default_factory=set)
+    refused_spans: set[tuple[int, int]] = field(default_factory=set)
+
+
+class Returning(Exception):
+    """The end of a function, with its value."""
+
+    def __init__(self, value: Value | None):
+        super().__init__()
+        self.value = value
+
+
+@dataclass(slots=True, eq=False)
+class Evaluator:
+    """The state of one run, and what expressions mean in it; :class:`Machine` runs the statements.
+
+    choices : the ways taken at undecided conditions; None leaves unread what depends on one
+    frame   : the names of the running function
+    shadows : what a block's own names have hidden, one table for each block
+    """
+
+    reading: Reading
+    inputs: Inputs
+    shapes: Mapping[str, Index]
+    edits: Mapping[int, Part]
+    choices: list[bool] | None
+    frame: dict[str, Variable] = field(default_factory=dict)
+    file_names: dict[str, Variable] = field(default_factory=dict)
+    globals: dict[str, Variable] = field(default_factory=dict)
+    conditions: list[Condition] = field(default_factory=list)
+    other_ways: list[list[bool]] = field(default_factory=list)
+    shadows: list[dict[str, Variable | None]] = field(default_factory=list)
+    calls: list[str] = field(default_factory=list)
+    expanding: list[str] = field(default_factory=list)
+    steps: int = 0
+    lost: Unread | None = None
+    lost_heads: dict[str, Unread] = field(default_factory=dict)
+
+    @property
+    def unit(self) -> Unit:
+        """The source."""
+        return self.reading.unit
+
+    def block(self, body: tuple[Part, ...]) -> None:
+        """Run statements."""
+        raise NotImplementedError
+
+    def decide(self, test: Part) -> bool:
+        """Whether a condition holds."""
+        raise NotImplementedError
+
+    def write(self, variable: Variable, value: Value, statement: Part) -> None:
+        """Assign a whole variable."""
+        raise NotImplementedError
+
+    # -- names and places --
+
+    def variable(self, name: str) -> Variable:
+        """What a name stands for; an unknown one is an input."""
+        if name in self.frame:
+            return self.frame[name]
+        if name in self.file_names:
+            return self.file_names[name]
+        if name not in self.globals:
+            shape, head = self.shapes.get(name), head_of(name)
+            if head in self.lost_heads:
+                return Variable(name, shape=shape, is_input=True, all_unread=self.lost_heads[head])
+            self.globals[name] = Variable(name, shape=shape, is_input=True, all_unread=self.lost)
+        return self.globals[name]
+
+    def spell(self, name: str, place: Index) -> str:
+        """An entry as the source writes it."""
+        return spell_entry(self.unit, name, place)
+
+    def read(self, variable: Variable, place: Index, line: int) -> Cell:
+        """One cell."""
+        if place in variable.cells and variable.all_unread is None:
+            return variable.cells[place]
+        if variable.all_unread is not None:
+            return variable.all_unread
+        if variable.is_input:
+            cell = Scalar(self.inputs(self.spell(variable.name, place)), variable.number, 0)
+            if variable.shape is None:  # a number or an array from now on
+                variable.shape = () if not place else None
+                variable.cells[place] = cell
+            return cell
+        return Unread(line, f"{self.spell(variable.name, place)} has no value there")
+
+    def whole(self, part: Part) -> int:
+        """A constant whole number."""
+        exact = constant_of(self.value(part))
+        if exact is None or exact.denominator != 1:
+            raise Unreadable(part.line, "an index or size that is no constant")
+        return int(exact)
+
+    def place(self, part: Part) -> tuple[Variable, Index]:
+        """Variable and place of one entry."""
+        variable, places, _ = self.targets(part)
+        if len(places) != 1:
+            raise Unreadable(part.line, "a block where an entry is needed")
+        return variable, places[0]
+
+    def targets(self, part: Part) -> tuple[Variable, list[Index], Index]:
+        """Variable, places and shape of an entry or a block."""
+        if part.kind == "name":
+            variable = self.variable(part.parts[0])
+            shape = variable.shape or ()
+            return variable, [*places_of(shape)], shape
+        if part.kind == "first":
+            variable = self.variable(part.parts[0].parts[0])
+            is_array = bool(variable.shape) or (variable.shape is None and any(variable.cells))
+            return variable, [(0,) * max(len(variable.shape or ()), 1) if is_array else ()], ()
+        if part.kind not in ("index", "call") and not (part.kind == "method" and part.parts[1] == "block"):
+            raise Unreadable(part.line, "a target that is no entry")
+        indices: list[Part] = []
+        while part.kind == "index":
+            indices = [*part.parts[1], *indices]
+            part = part.parts[0]
+        if part.kind == "call":
+            indices, name = [*part.parts[1], *indices], part.parts[0]
+        elif part.kind == "name":
+            name = part.parts[0]
+        else:
+            raise Unreadable(part.line, "an index of an expression")
+        variable = self.variable(name)
+        return variable, *self.resolve(variable, indices, part.line)
+
+    def resolve(self, variable: Variable, indices: list[Part], line: int) -> tuple[list[Index], Index]:
+        """The places that indices and slices mean, and their shape."""
+        sizes = variable.shape
+        if sizes and len(sizes) == 2 and 1 in sizes and len(indices) == 1 and self.unit.language == "matlab":
+            spot = self.index_range(indices[0], max(sizes), line)
+            return [(0, k) if sizes[0] == 1 else (k, 0) for k in spot[0]], spot[1]
+        if sizes and len(indices) < len(sizes) and self.unit.language != "matlab":
+            indices = [*indices, *(Part("slice", line, (None, None)) for _ in range(len(sizes) - len(indices)))]
+        is_column = sizes is not None and len(indices) == 2 and len(sizes) == 1 and self.unit.rules.matrix
+        if is_column and self.whole(indices[1]) == self.unit.rules.first:  # v(i, 0)
+            indices = indices[:1]
+        if sizes is not None and len(indices) != len(sizes):
+            raise Unreadable(line, f"{len(indices)} indices of an array of {len(sizes)}")
+        rows: list[list[int]] = []
+        shape: list[int] = []
+        for k, index in enumerate(indices):
+            spot = self.index_range(index, sizes[k] if sizes else None, line)
+            rows.append(spot[0])
+            shape += spot[1]
+        places: list[Index] = [()]
+        for row in rows:
+            places = [(*place, i) for place in places for i in row]
+        return places, tuple(shape)
+
+    def index_range(self, index: Part, size: int | None, line: int) -> tuple[list[int], Index]:
+        """The whole numbers that one index means, from 0, and its part of the shape."""
+        first = self.unit.rules.first
+        if index.kind == "slice":
+            if size is None:
+                raise Unreadable(line, "a slice of an array without a known size")
+            start, stop = index.parts
+            low = 0 if start is None else self.whole(start) - first
+            high = size if stop is None else self.whole(stop)
+            low, high = (low + size if low < 0 else low), (high + size if high < 0 else high)
+            if not 0 <= low <= high <= size:
+                raise Unreadable(line, "a slice outside the array")
+            return [*range(low, high)], (high - low,)
+        i = self.whole(index) - first
+        if i < 0 and self.unit.language == "python" and size is not None:
+            i += size
+        if i < 0 or (size is not None and i >= size):
+            raise Unreadable(line, "an index outside the array")
+        return [i], ()
+
+    # -- expressions --
+
+    def value(self, part: Part, wants_value: bool = True) -> Value:
+        """The value of an expression."""
+        part = self.edits.get(id(part), part)  # a mended one, while a mend is sought
+        self.steps += 1
+        kind = part.kind
+        try:
+            if kind == "number":
+                return Scalar(build_number(Fraction(part.parts[0])), part.parts[1])
+            if kind == "name":
+                return self.named_value(part)
+            if kind == "op":
+                sign, a, b = part.parts
+                return self.combine(sign, self.value(a), self.value(b), part.line)
+            if kind == "minus":
+                return map_cells(minus, self.value(part.parts[0]))
+            if kind in ("index", "first"):
+                return self.entries(part)
+            if kind == "call":
+                return self.call(part, wants_value)
+            if kind == "method":
+                return self.method(part)
+            if kind == "list":
+                items = [self.value(item) for item in part.parts[0]]
+                if self.unit.language == "matlab" and any(isinstance(item, Array) for item in items):
+                    self.require_rows(part)
+                return self.stack(items, part.line)
+            if kind == "choose":
+                return self.value(part.parts[1 if self.decide(part.parts[0]) else 2])
+            if kind == "cast":
+                return self.cast(part)
+        except Unreadable as refusal:
+            raise Unreadable(refusal.line or part.line, refusal.why) from None
+        raise Unreadable(part.line, part.parts[0] if kind == "refused" else f"a {kind} where a number is needed")
+
+    def named_value(self, part: Part) -> Value:
+        """The value of a name: of a variable, a macro or a constant such as pi."""
+        name = part.parts[0]
+        if name not in self.frame and name in self.unit.macros:
+            return self.macro(name, part.line)
+        if name not in self.frame and name not in self.file_names and name in CONSTANTS:
+            return Scalar(CONSTANTS[name])
+        variable = self.variable(name)
+        if variable.all_unread is not None:
+            return variable.all_unread
+        if variable.number == "other" and not variable.shape:
+            raise Unreadable(part.line, f"{name} as a whole, of a type that is no number")
+        if not variable.shape:
+            if variable.shape is None and variable.cells and () not in variable.cells:
+                raise Unreadable(part.line, f"{name} as a whole, of unknown size")
+            return self.read(variable, (), part.line)
+        return Array(variable.shape, tuple(self.read(variable, p, part.line) for p in places_of(variable.shape)))
+
+    def macro(self, name: str, line: int) -> Value:
+        """An object-like macro in its place."""
+        meaning = self.unit.macros[name]
+        if isinstance(meaning, str) or name in self.expanding:
+            raise Unreadable(line, f"{name}: {meaning if isinstance(meaning, str) else 'a macro of itself'}")
+        self.expanding.append(name)
+        try:
+            return self.value(meaning)
+        except Unreadable as refusal:
+            raise Unreadable(line, f"{name}: {refusal.why}") from None
+        finally:
+            self.expanding.pop()
+
+    def combine(self, sign: str, a: Value, b: Value, line: int) -> Value:
+        """The arithmetic of the language."""
+        if isinstance(a, Unread) or isinstance(b, Unread):
+            return a if isinstance(a, Unread) else b
+        if sign in ("*", "@"):
+            both = isinstance(a, Array) and isinstance(b, Array)
+            if sign == "@" and not both:
+                raise Unreadable(line, "a product of matrices of unknown size; declare them under [code.symbols]")
+            return (
+                matrix_product(a, b) if both and (sign == "@" or self.unit.rules.matrix) else map_cells(multiply, a, b)
+            )
+        if sign in ("+", "-"):
+            if self.unit.rules.matrix and self.unit.language == "cpp" and isinstance(a, Array) != isinstance(b, Array):
+                raise Unreadable(line, "the sum of a number and a matrix")
+            return map_cells(add if sign == "+" else lambda x, y: add(x, minus(y)), a, b)
+        if sign in (".*", "./", ".^"):
+            return map_cells({".*": multiply, "./": divide, ".^": raise_to}[sign], a, b)
+        if sign in ("/", "%", "//"):
+            return self.quotient(sign, a, b, line)
+        if sign == "**":
+            if isinstance(a, Array) and self.unit.rules.matrix:
+                raise Unreadable(line, "the power of a matrix")
+            return map_cells(raise_to, a, b)
+        raise Unreadable(line, f"the operator {sign}")
+
+    def quotient(self, sign: str, a: Value, b: Value, line: int) -> Value:
+        """A quotient; of integers it is cut in C, which is read for constants only."""
+        if isinstance(b, Array) and self.unit.rules.matrix:
+            raise Unreadable(line, "division by a matrix")
+        whole = [isinstance(v, Scalar) and v.number == "int" for v in (a, b)]
+        if sign == "/" and not (self.unit.rules.integer and all(whole)):
+            result = map_cells(divide, a, b)
+            return Scalar(result.tree) if isinstance(result, Scalar) else result
+        x, y = constant_of(a), constant_of(b)
+        if x is None or y is None or y == 0 or not all(whole) or x < 0 or y < 0:
+            raise Unreadable(line, "a quotient or remainder of integers that are no constants")
+        return Scalar(build_number(x // y if sign != "%" else x % y), "int")
+
+    def cast(self, part: Part) -> Value:
+        value = self.value(part.parts[1])
+        if part.parts[0] == "int":
+            exact = constant_of(value)
+            if exact is None or (exact.denominator != 1 and not (isinstance(value, Scalar) and value.number == "int")):
+                raise Unreadable(part.line, "a real number cut to an integer")
+            return Scalar(build_number(exact), "int")
+        return Scalar(value.tree) if isinstance(value, Scalar) else value
+
+    def entries(self, part: Part) -> Value:
+        """An entry or a block of a variable."""
+        try:
+            variable, places, shape = self.targets(part)
+        except Unreadable:
+            base = self.value(part.parts[0]) if part.parts[0].kind in ("call", "method", "op") else None
+            if not isinstance(base, Array):
+                raise
+            variable = Variable("", shape=base.shape, cells=dict(zip(places_of(base.shape), base.cells, strict=True)))
+            places, shape = self.resolve(variable, [*part.parts[1]], part.line)
+        if not shape:
+            return self.read(variable, places[0], part.line)
+        return Array(shape, tuple(self.read(variable, place, part.line) for place in places))
+
+    def require_rows(self, part: Part) -> None:
+        """Refuse blocks in the brackets of MATLAB, where only rows of numbers are read."""
+        rows = [item.parts[0] for item in part.parts[0] if item.kind == "list"]
+        cells = [self.value(cell) for row in rows for cell in row]
+        if len(rows) != len(part.parts[0]) or any(isinstance(cell, Array) for cell in cells):
+            raise Unreadable(part.line, "a matrix of blocks")
+
+    def stack(self, values: list[Value], line: int) -> Value:
+        """Numbers as a vector, vectors as the rows of a matrix."""
+        shapes = {value.shape if isinstance(value, Array) else () for value in values}
+        if len(shapes) != 1 or not values:
+            raise Unreadable(line, "a list of different shapes")
+        (shape,) = shapes
+        cells = tuple(c for v in values for c in (v.cells if isinstance(v, Array) else (v,)))
+        return Array((len(values), *shape), cells)
+
+    def linked(self, value: Part | None, statement: Part) -> Variable:
+        """The variable to which a reference or pointer is a second name."""
+        while value is not None and value.kind == "address":
+            value = value.parts[0]
+        if value is not None and value.kind == "name":
+            return self.variable(value.parts[0])
+        if value is not None and value.kind in ("index", "call", "method"):
+            base, place = self.place(value)
+            name = self.spell(base.name, place)
+            base.cells.setdefault(place, self.read(base, place, value.line))
+            view = Variable(name, base.number, ())
+            view.cells = CellView(base, place)
+            return view
+        raise Unreadable(statement.line, "a reference or pointer to what is no variable")
+
+    # -- calls --
+
+    def call(self, part: Part, wants_value: bool) -> Value:
+        """A known function, one of the file, or an entry ``M(i, j)``."""
+        name, arguments = part.parts
+        if name in self.unit.macros:
+            why = self.unit.macros[name]
+            raise Unreadable(part.line, f"{name}: {why if isinstance(why, str) else 'a macro that is called'}")
+        if name not in self.frame and name in self.unit.functions:
+            return self.inline(part, wants_value)
+        if name not in self.frame and is_known(name, self.unit.language):
+            return call_known(name, [self.value(a) for a in arguments], self.unit, part.line)
+        may_be_entry = name in self.frame or name in self.globals or self.unit.language in ("cpp", "matlab")
+        if may_be_entry and arguments and (name in self.frame or all(self.is_constant(a) for a in arguments)):
+            base = Part("name", part.line, (name,), part.span)
+            return self.entries(Part("index", part.line, (base, arguments), part.span))
+        if not arguments and wants_value and self.unit.language in ("c", "cpp"):
+            return self.read(self.variable(f"{name}()"), (), part.line)
+        raise Unreadable(part.line, f"the function {name}, which this file does not define")
+
+    def is_constant(self, part: Part) -> bool:
+        """True for an index that is a whole number."""
+        try:
+            return part.kind == "slice" or constant_of(self.value(part)) is not None
+        except Unreadable:
+            return False
+
+    def inline(self, part: Part, wants_value: bool) -> Value:
+        """The body of a function of the file, on its arguments."""
+        name, arguments = part.parts
+        candidates = [f for f in self.unit.functions[name] if len(f.arguments) == len(arguments)]
+        if len(candidates) != 1:
+            raise Unreadable(part.line, f"a call of {name}, which has {len(candidates)} definitions that fit")
+        if name in self.calls or len(self.calls) >= INLINED:
+            raise Unreadable(part.line, f"the recursion of {name}" if name in self.calls else "calls nested too deep")
+        function = candidates[0]
+        self.require_no_structure(function, arguments, part.line)
+        frame = {a.name: self.bind(a, given) for a, given in zip(function.arguments, arguments, strict=True)}
+        for output in function.outputs:
+            frame.setdefault(output, Variable(output))
+        outer, shadows = self.frame, self.shadows
+        self.frame, self.shadows, returned = frame, [], None
+        self.calls.append(name)
+        try:
+            self.block(function.body)
+        except Returning as end:
+            returned = end.value
+        finally:
+            self.frame, self.shadows = outer, shadows
+            self.calls.pop()
+        if function.outputs and returned is None:
+            outputs = [self.whole_value(frame[output]) for output in function.outputs]
+            returned = outputs[0]
+        if returned is None and wants_value:
+            raise Unreadable(part.line, f"{name} returns no value")
+        return returned if returned is not None else Unread(part.line, "no value")
+
+    def require_no_structure(self, function: Function, arguments: tuple[Part, ...], line: int) -> None:
+        """Refuse a structure under another name: its members would be other names."""
+        heads = {head_of(name) for name in names_in(*function.body) if head_of(name) != name}
+        for argument, given in zip(function.arguments, arguments, strict=True):
+            inner = given.parts[0] if given.kind == "address" else given
+            is_same = inner.kind == "name" and inner is given and inner.parts[0] == argument.name
+            if argument.name in heads and not is_same:
+                raise Unreadable(line, f"a structure that {function.name} knows by another name")
+
+    def whole_value(self, variable: Variable) -> Value:
+        """A variable as a value."""
+        if variable.all_unread is not None:
+            return variable.all_unread
+        if not variable.shape:
+            return self.read(variable, (), 0)
+        return Array(variable.shape, tuple(self.read(variable, place, 0) for place in places_of(variable.shape)))
+
+    def bind(self, argument: Argument, given: Part) -> Variable:
+        """A parameter of an inlined function: the caller's own variable, or a copy of a value."""
+        inner = given.parts[0] if given.kind == "address" else given
+        if inner.kind == "name" and (argument.shared or given.kind == "address" or argument.shape is not None):
+            variable = self.variable(inner.parts[0])
+            if argument.shape is not None and variable.shape is None and not variable.cells:
+                variable.shape = tuple(self.whole(size) for size in argument.shape)
+            if argument.shared or variable.shape is None or variable.shape:
+                return variable
+        if given.kind == "address":
+            return self.linked(given, given)
+        value = self.value(given)
+        shape = value.shape if isinstance(value, Array) else ()
+        variable = Variable(argument.name, argument.number, shape)
+        if isinstance(value, Unread):
+            variable.all_unread = value
+            return variable
+        self.write(variable, value, given)
+        return variable
+
+    def method(self, part: Part) -> Value:
+        """``M.transpose()`` and the like; an accessor without arguments is a name."""
+        base, name, arguments = part.parts
+        is_array = base.kind != "name" or name == "T" or bool(self.variable_shape(base.parts[0]))
+        if name in METHODS and is_array:
+            return METHODS[name](self.value(base), [self.value(a) for a in arguments], self.unit)
+        if base.kind == "name" and self.unit.language in ("c", "cpp"):
+            accessor = f"{base.parts[0]}.{name}"
+            if not arguments:
+                return self.read(self.variable(f"{accessor}()"), (), part.line)
+            if all(self.is_constant(a) for a in arguments):
+                index = Part("index", part.line, (Part("name", part.line, (accessor,)), arguments))
+                return self.entries(index)
+        raise Unreadable(part.line, f"the method {name}")
+
+    def variable_shape(self, name: str) -> Index | None:
+        """The shape of a name that is known already."""
+        known = self.frame.get(name) or self.file_names.get(name) or self.globals.get(name)
+        return known.shape if known else None
+
+
+def head_of(name: str) -> str:
+    """The structure to which a member belongs: ``s`` of ``s->a.b``."""
+    return name.replace("->", ".").split(".")[0]
+
+
+class CellView(dict[Index, Cell]):
+    """The one cell of a reference, which lives in another variable."""
+
+    def __init__(self, base: Variable, place: Index):
+        super().__init__()
+        self.base, self.where = base, place
+
+    def __getitem__(self, _: Index) -> Cell:
+        if self.base.all_unread is not None:
+            return self.base.all_unread
+        return self.base.cells[self.where]
+
+    def __setitem__(self, _: Index, cell: Cell) -> None:
+        self.base.cells[self.where] = cell
+
+    def __contains__(self, _: object) -> bool:
+        return True
+
+
+def spell_entry(unit: Unit, name: str, place: Index) -> str:
+    """An entry as the source writes it: ``F[0][1]``, ``F(0, 1)``."""
+    if not place:
+        return name
+    numbers = [i + unit.rules.first for i in place]
+    one, two = unit.rules.entry
+    if len(numbers) < 3:
+        return (one if len(numbers) == 1 else two).format(name, *numbers)
+    return f"{name}[{', '.join(map(str, numbers))}]"

@@ -1,0 +1,438 @@
+"""A function of the source, run on symbols: what its outputs are as formulas of its inputs, case by case."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from navsym.audit.evaluate import CASES, Case, Condition, Evaluator, Inputs, Reading, Returning, head_of
+from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
+from navsym.audit.functions import HARMLESS, METHODS, is_known
+from navsym.audit.values import (
+    Array,
+    Cell,
+    Index,
+    Scalar,
+    Unread,
+    Unreadable,
+    Value,
+    Variable,
+    constant_of,
+    count_cells,
+    make_array,
+    places_of,
+)
+from navsym.core.errors import TooLargeError
+from navsym.language.tree import NUMBER, build_number
+
+STEPS = 60_000
+
+
+def read_function(
+    unit: Unit,
+    function: Function,
+    inputs: Inputs,
+    shapes: Mapping[str, Index] | None = None,
+    edits: Mapping[int, Part] | None = None,
+) -> Reading:
+    """All cases of a function; more than 32 leave unread what its branches write.
+
+    inputs : source spelling of an input -> its symbol
+    shapes : sizes of inputs that the source does not say
+    edits  : expressions in the place of others, by ``id``
+    """
+    reading = Reading(unit, function)
+    given = (reading, inputs, shapes or {}, edits or {})
+    waiting: list[list[bool]] = [[]]
+    while waiting:
+        machine = Machine(*given, waiting.pop())
+        reading.cases.append(machine.run(function))
+        if len(reading.cases) + len(waiting) > CASES:
+            reading.cases, machine = [], Machine(*given, None)
+            reading.cases.append(machine.run(function))
+            return reading
+        waiting += machine.other_ways
+    return reading
+
+
+@dataclass(slots=True, eq=False)
+class Machine(Evaluator):
+    """One run. Undecided conditions take the ways of ``choices``, and then the first of both.
+
+    choices : None leaves unread what depends on an undecided condition
+    frame   : the names of the running function
+    shadows : what a block's own names have hidden, one table for each block
+    """
+
+    def run(self, function: Function) -> Case:
+        """The whole function."""
+        for constant in self.unit.constants:
+            self.statement(constant)
+        once = [constant.parts[0] for constant in self.unit.constants if constant.kind == "declare"]
+        for name in {name for name in once if once.count(name) > 1}:
+            self.frame[name].all_unread = Unread(function.line, f"{name}, which has several values in this file")
+        self.file_names, self.frame = self.frame, {}
+        for argument in function.arguments:
+            self.frame[argument.name] = self.make_argument(argument)
+        for name in function.outputs:
+            self.frame.setdefault(name, Variable(name))
+        returned = None
+        try:
+            self.block(function.body)
+        except Returning as end:
+            returned = end.value
+        return Case(tuple(self.conditions), {**self.globals, **self.frame}, returned)
+
+    def make_argument(self, argument: Argument) -> Variable:
+        """A parameter of the function that is audited: an input."""
+        shape: Index | None = None
+        if argument.shape is not None:
+            try:
+                shape = tuple(self.whole(size) for size in argument.shape)
+            except Unreadable:
+                shape = None
+        shape = self.shapes.get(argument.name, shape)
+        return Variable(argument.name, argument.number, shape, is_input=True)
+
+    # -- statements --
+
+    def block(self, body: tuple[Part, ...]) -> None:
+        """Statements with names of their own."""
+        self.shadows.append({})
+        try:
+            for statement in body:
+                self.statement(statement)
+        finally:
+            for name, hidden in self.shadows.pop().items():
+                if hidden is not None:
+                    self.frame[name] = hidden
+
+    def statement(self, statement: Part) -> None:
+        """One statement; what cannot be read leaves its names unread."""
+        self.steps += 1
+        if self.steps > STEPS:
+            message = f"expected at most {STEPS} steps; got more; ask for a smaller function"
+            raise TooLargeError(message, where=f"{self.unit.file}: line {statement.line}")
+        if statement.kind != "block":
+            self.reading.met.add(statement.span)
+        try:
+            getattr(self, f"run_{statement.kind}")(*statement.parts, statement=statement)
+        except Unreadable as refusal:
+            line = refusal.line or statement.line
+            self.refuse(statement, Unread(line, refusal.why))
+
+    def refuse(self, statement: Part, unread: Unread) -> None:
+        """Leave unread what a statement may write."""
+        self.reading.refused.setdefault(unread.line, unread.why)
+        self.reading.refused_spans.add(statement.span)
+        targets: set[str] = set()
+        for part in walk(statement):
+            if part.kind == "assign":
+                targets.add(self.root_name(part.parts[0]))
+            elif part.kind in ("declare", "for"):
+                targets.add(part.parts[0])
+            elif part.kind == "unread":
+                targets.update(part.parts[1])
+            elif part.kind == "address":
+                targets |= names_in(part)
+            elif part.kind in ("call", "method") and not self.is_plain(part):
+                targets |= {name for name in names_in(part) if not self.is_safe(name)}
+            if part.kind == "jump" or (part.kind == "call" and self.may_jump(part)):
+                self.stop(unread)
+            if part.kind == "unread" or (part.kind == "call" and not self.is_plain(part)):
+                self.lose(unread)
+        for name in targets:
+            if name in self.frame or name not in self.file_names:
+                self.variable(name).all_unread = unread
+                self.lose_members(name, unread)
+        if any(part.kind == "return" for part in walk(statement)):
+            self.stop(unread)
+
+    def lose_members(self, name: str, unread: Unread) -> None:
+        """The members of a structure that may have been written as a whole."""
+        self.lost_heads[name] = unread
+        for variable in (*self.frame.values(), *self.globals.values()):
+            if variable.name != name and head_of(variable.name) == name:
+                variable.all_unread = unread
+
+    def is_safe(self, name: str) -> bool:
+        """True for a number of C, of which a called function gets a copy."""
+        return self.unit.language == "c" and self.variable_shape(name) == ()
+
+    def may_jump(self, part: Part) -> bool:
+        """True for what is a macro, or looks like one: it may hold a return."""
+        name = part.parts[0]
+        return name in self.unit.macros or (name.isupper() and name not in self.frame and not self.is_plain(part))
+
+    def stop(self, unread: Unread) -> None:
+        """The end of a run whose way nobody knows any more: nothing that it holds is read."""
+        self.lose(unread)
+        for variable in self.frame.values():
+            variable.all_unread = unread
+        raise Returning(unread)
+
+    def lose(self, unread: Unread) -> None:
+        """What does not belong to the function may have changed too."""
+        self.lost = self.lost or unread
+        for variable in self.globals.values():
+            variable.all_unread = variable.all_unread or unread
+
+    def is_plain(self, part: Part) -> bool:
+        """True for a call that writes nothing: of a known function or method, or an entry ``M(i, j)``."""
+        if part.kind == "method":
+            return part.parts[1] in METHODS
+        name = part.parts[0]
+        return name in self.frame or name in HARMLESS or is_known(name, self.unit.language)
+
+    def root_name(self, target: Part) -> str:
+        """The variable of a target."""
+        while target.kind in ("index", "method", "first"):
+            target = target.parts[0]
+        return str(target.parts[0])
+
+    def run_unread(self, why: str, names: tuple[str, ...], statement: Part) -> None:
+        raise Unreadable(statement.line, why)
+
+    def run_jump(self, why: str, names: tuple[str, ...], statement: Part) -> None:
+        raise Unreadable(statement.line, why)
+
+    def run_declare(
+        self, name: str, number: str, shape: Any, value: Part | None, is_link: bool, statement: Part
+    ) -> None:
+        """A new name, its value, or a second name of another variable."""
+        if self.shadows and name not in self.shadows[-1]:
+            self.shadows[-1][name] = self.frame.get(name)
+        if is_link:
+            self.frame[name] = self.linked(value, statement)
+            return
+        sizes = () if shape is None else tuple(self.whole(size) for size in shape)
+        result = None if value is None else self.value(value)
+        if shape is None and isinstance(result, Array):
+            sizes = result.shape  # auto
+        variable = Variable(name, number, sizes)
+        self.frame[name] = variable
+        if result is not None:
+            self.write(variable, self.fill(result, sizes), statement)
+
+    def fill(self, value: Value, shape: Index) -> Value:
+        """An initial value in its shape: the rest of a C initializer is zero."""
+        if not isinstance(value, Array) or value.shape == shape:
+            return value
+        if len(value.shape) == len(shape) and all(a <= b for a, b in zip(value.shape, shape, strict=True)):
+            zero = Scalar(build_number(0), "int")
+            inside = {place: value.at(*place) for place in places_of(value.shape)}
+            return make_array(shape, lambda *place: inside.get(place, zero))
+        return value
+
+    def run_assign(self, target: Part, sign: str, value: Part, statement: Part) -> None:
+        """An assignment, also of a whole array, a row or a block."""
+        result = self.value(value)
+        if sign:
+            result = self.combine(sign, self.value(target), result, statement.line)
+        if target.kind == "name":
+            variable = self.variable(target.parts[0])
+            if isinstance(result, Array) and variable.shape in (None, ()) and not variable.is_input:
+                variable.shape = result.shape
+            elif not isinstance(result, Array) and variable.shape is None:
+                variable.shape = ()
+            if self.unit.language in ("python", "matlab") and not (sign and isinstance(result, Array)):
+                self.rename(target.parts[0], value, result, statement)
+                return
+            self.write(variable, result, statement)
+            return
+        variable, places, shape = self.targets(target)
+        if isinstance(result, Array) and count_cells(result.shape) != len(places):
+            raise Unreadable(statement.line, "an assignment between shapes that do not fit")
+        cells = result.cells if isinstance(result, Array) else (result,) * len(places)
+        for place, cell in zip(places, cells, strict=True):
+            self.write_cell(variable, place, cell, statement)
+
+    def rename(self, name: str, value: Part, result: Value, statement: Part) -> None:
+        """An assignment of Python or MATLAB: the name stands for another value from now on.
+
+        In Python two names share one array, and a slice is a view: a later write leaves the other one unread.
+        """
+        is_python = self.unit.language == "python"
+        if is_python and value.kind == "name" and isinstance(result, Array):
+            self.frame[name] = self.variable(value.parts[0])
+            return
+        variable = Variable(name, shape=result.shape if isinstance(result, Array) else ())
+        cells = result.cells if isinstance(result, Array) else ()
+        if is_python and value.kind == "call" and cells and all(is_integer(cell) for cell in cells):
+            variable.number = "int"  # an array of integers cuts what is assigned to its entries
+        self.write(variable, result, statement)
+        self.frame[name] = variable
+        if is_python and cells and value.kind in ("index", "method"):
+            bases = [self.variable(base) for base in names_in(value) if self.variable_shape(base)]
+            for base in bases:
+                base.views.append(variable)
+                variable.views.append(base)
+
+    def write(self, variable: Variable, value: Value, statement: Part) -> None:
+        """A whole variable."""
+        if isinstance(value, Unread):
+            variable.all_unread = value
+            return
+        variable.all_unread = None
+        if isinstance(value, Array):
+            is_other = variable.shape not in (None, value.shape)
+            if is_other and count_cells(variable.shape or ()) != len(value.cells):
+                raise Unreadable(statement.line, "an assignment between shapes that do not fit")
+            variable.shape = variable.shape or value.shape
+            for place, cell in zip(places_of(variable.shape), value.cells, strict=True):
+                self.write_cell(variable, place, cell, statement)
+        else:
+            if variable.shape is not None and variable.shape != ():
+                raise Unreadable(statement.line, "a number assigned to an array")
+            self.write_cell(variable, (), value, statement)
+
+    def write_cell(self, variable: Variable, place: Index, cell: Cell, statement: Part) -> None:
+        """One cell, with the line of the statement."""
+        if isinstance(cell, Scalar):
+            if variable.number == "int" and cell.number != "int":
+                exact = constant_of(cell)
+                if exact is None or exact.denominator != 1:
+                    raise Unreadable(statement.line, "a real number cut to an integer")
+            number = variable.number if self.unit.rules.integer else cell.number
+            cell = Scalar(cell.tree, number, statement.line, statement)
+        variable.cells[place] = cell
+        for view in variable.views:
+            view.all_unread = Unread(statement.line, "a view of an array that has changed; write a copy")
+
+    def run_block(self, body: tuple[Part, ...], statement: Part) -> None:
+        self.block(body)
+
+    def run_if(self, test: Part, then: tuple[Part, ...], other: tuple[Part, ...], statement: Part) -> None:
+        self.block(then if self.decide(test) else other)
+
+    def run_for(self, name: str, start: Part, stop: Part, step: Part, body: Any, statement: Part) -> None:
+        """A loop between constants."""
+        first, end, by = (self.whole(part) for part in (start, stop, step))
+        if by == 0 or len(range(first, end, by)) > STEPS:
+            raise Unreadable(statement.line, "a loop without an end")
+        hidden = self.frame.get(name)
+        for i in range(first, end, by):
+            self.frame[name] = Variable(name, "int", (), {(): Scalar(build_number(i), "int", statement.line)})
+            self.block(body)
+        if hidden is not None and self.unit.language in ("c", "cpp"):
+            self.frame[name] = Variable(name, "int", (), all_unread=Unread(statement.line, "a counter behind its loop"))
+
+    def run_return(self, value: Part | None, statement: Part) -> None:
+        if value is None:
+            raise Returning(None)
+        if self.unit.language == "python" and value.kind == "list":
+            raise Returning(self.returned_tuple(value))
+        raise Returning(self.value(value))
+
+    def returned_tuple(self, value: Part) -> Value:
+        """A tuple: numbers as an array; arrays by their names only."""
+        try:
+            return self.value(value)
+        except Unreadable:
+            return Unread(value.line, "several arrays returned; ask for them by their names")
+
+    def run_do(self, call: Part, statement: Part) -> None:
+        """A call for its effect."""
+        if call.kind == "method":
+            base, name, arguments = call.parts
+            if name in ("setZero", "zero", "setIdentity", "identity", "fill", "setAll"):
+                self.reset(base, name, arguments, statement)
+                return
+        elif call.kind == "call" and call.parts[0] in HARMLESS:
+            return
+        elif call.kind == "call" and call.parts[0] == "memset":
+            self.reset(call.parts[1][0], "memset", call.parts[1][1:2], statement)
+            return
+        self.value(call, wants_value=False)
+
+    def reset(self, base: Part, name: str, arguments: tuple[Part, ...], statement: Part) -> None:
+        """A whole array set to one number, or to ones on the diagonal."""
+        while base.kind == "address":
+            base = base.parts[0]
+        if base.kind != "name":
+            raise Unreadable(statement.line, f"{name} of what is no variable")
+        variable = self.variable(base.parts[0])
+        if not variable.shape:
+            raise Unreadable(statement.line, f"{name} of an array without a known size")
+        number = self.value(arguments[0]) if arguments else Scalar(build_number(0))
+        if name == "memset" and constant_of(number) != 0:
+            raise Unreadable(statement.line, "memset to bytes that are not zero")
+        is_identity = name in ("setIdentity", "identity")
+        one = Scalar(build_number(1))
+        for place in places_of(variable.shape):
+            on_diagonal = is_identity and len(set(place)) == 1
+            self.write_cell(variable, place, one if on_diagonal else number, statement)  # type: ignore[arg-type]
+        variable.all_unread = None
+
+    # -- conditions --
+
+    def decide(self, test: Part) -> bool:
+        """Whether a condition holds in this case."""
+        if test.kind == "both":
+            return self.decide(test.parts[0]) and self.decide(test.parts[1])
+        if test.kind == "either":
+            return self.decide(test.parts[0]) or self.decide(test.parts[1])
+        if test.kind == "not":
+            return not self.decide(test.parts[0])
+        sign, left, right = "", None, None
+        if test.kind == "compare":
+            sign = test.parts[0]
+            if is_finiteness(test):
+                return True  # numbers are real numbers here
+            a, b = self.value(test.parts[1]), self.value(test.parts[2])
+            if not (isinstance(a, Scalar) and isinstance(b, Scalar)):
+                raise Unreadable(test.line, "a condition on what is not read")
+            left, right = a.tree, b.tree
+            if left.head == right.head == NUMBER:
+                return COMPARE[sign](left.args[0], right.args[0])
+        elif test.kind == "name":
+            value = self.value(test)
+            exact = constant_of(value)
+            if exact is not None:
+                return exact != 0
+            if not isinstance(value, Scalar):
+                raise Unreadable(test.line, "a condition on what is not read")
+            sign, left, right = "!=", value.tree, build_number(0)
+        else:
+            raise Unreadable(test.line, "a condition outside the language of audit")
+        return self.choose(Condition(self.unit.text(test), test.line, True, sign, left, right))
+
+    def choose(self, condition: Condition) -> bool:
+        """The way of this run at an undecided condition."""
+        for known in self.conditions:
+            if (known.sign, known.left, known.right) == (condition.sign, condition.left, condition.right):
+                return known.holds
+        if self.choices is None:
+            raise Unreadable(condition.line, f"one of more than {CASES} cases")
+        place = len(self.conditions)
+        holds = self.choices[place] if place < len(self.choices) else True
+        if place >= len(self.choices):
+            self.other_ways.append([*(known.holds for known in self.conditions), False])
+        self.conditions.append(
+            Condition(condition.text, condition.line, holds, condition.sign, condition.left, condition.right)
+        )
+        return holds
+
+
+def is_finiteness(test: Part) -> bool:
+    """True for ``fabs(x) <= DBL_MAX``."""
+    sign, left, right = test.parts
+    is_bound = right.kind == "name" and right.parts[0] in ("DBL_MAX", "FLT_MAX")
+    return sign == "<=" and is_bound and left.kind == "call" and left.parts[0] in ("fabs", "fabsf")
+
+
+def is_integer(cell: Cell) -> bool:
+    """True for a cell that holds an integer of the source."""
+    return isinstance(cell, Scalar) and cell.number == "int"
+
+
+COMPARE: Mapping[str, Callable[[Fraction, Fraction], bool]] = {
+    "<": lambda a, b: a < b,
+    "<=": lambda a, b: a <= b,
+    ">": lambda a, b: a > b,
+    ">=": lambda a, b: a >= b,
+    "==": lambda a, b: a == b,
+    "!=": lambda a, b: a != b,
+}

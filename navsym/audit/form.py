@@ -1,0 +1,111 @@
+"""The one form into which all languages are read: functions of assignments, branches, loops and calls.
+
+A part knows the bytes of the source from which it came. Nothing is evaluated here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """A part of an expression or a statement.
+
+    kind  : of a statement: declare (name, number, shape, value, shared) · assign (target, sign, value) · block (body) ·
+            if (test, then, else) · for (name, start, stop, step, body) · return (value) · do (call) · unread (why,
+            names) · jump (why, names); of an expression: number (value, kind) · name (text) · index (base,
+            indices) · call (name, arguments) · method (base, name, arguments) · op (sign, a, b) · minus (a) ·
+            compare (sign, a, b) · both (a, b) · either (a, b) · not (a) · list (items) · choose (test, a, b) ·
+            slice (start, stop) · first (a), which is ``*a`` · address (a) · cast (kind, a) · refused (why)
+    line  : of the source, from 1
+    span  : first byte in the source, and the one behind the last
+    """
+
+    kind: str
+    line: int
+    parts: tuple[Any, ...]
+    span: tuple[int, int] = (0, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """A parameter of a function.
+
+    number : "int" or "real"
+    shape  : its sizes, None where the source does not say
+    shared : True when the caller sees what is written to it
+    """
+
+    name: str
+    number: str = "real"
+    shape: tuple[Part, ...] | None = None
+    shared: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Function:
+    """A function as it is written; ``outputs`` are the names that MATLAB returns."""
+
+    name: str
+    line: int
+    arguments: tuple[Argument, ...]
+    body: tuple[Part, ...]
+    outputs: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Rules:
+    """What a sign means in one language and not in the next.
+
+    first    : the first index, 0 or 1
+    integer  : True where the quotient of two integers is cut
+    matrix   : True where ``*`` is the product of matrices
+    entry    : how entries are written, with one index and with two
+    """
+
+    first: int = 0
+    integer: bool = False
+    matrix: bool = False
+    entry: tuple[str, str] = ("{}[{}]", "{}[{}][{}]")
+
+
+@dataclass(slots=True, eq=False)
+class Unit:
+    """A source file in this form.
+
+    functions : by name; several of one name are overloads
+    constants : declarations of the file that never change, in their order
+    macros    : name -> what an object-like macro stands for; a text says why it is refused
+    """
+
+    file: str
+    language: str
+    rules: Rules
+    source: bytes
+    functions: dict[str, list[Function]] = field(default_factory=dict)
+    constants: list[Part] = field(default_factory=list)
+    macros: dict[str, Part | str] = field(default_factory=dict)
+
+    def text(self, part: Part) -> str:
+        """The source of a part."""
+        return self.source[part.span[0] : part.span[1]].decode("utf-8", "replace")
+
+
+def walk(*parts: Any) -> Iterator[Part]:
+    """The parts, and all that is in them."""
+    waiting = list(parts)
+    while waiting:
+        current = waiting.pop()
+        if isinstance(current, Part):
+            yield current
+            waiting.extend(current.parts)
+        elif isinstance(current, tuple):
+            waiting.extend(current)
+
+
+def names_in(*parts: Any) -> set[str]:
+    """The names that parts read or write."""
+    return {inner.parts[0] for inner in walk(*parts) if inner.kind == "name"}

@@ -1,0 +1,213 @@
+"""The functions of numbers and arrays that estimator code calls, by their names in each language."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+
+from navsym.audit.form import Unit
+from navsym.audit.values import (
+    Array,
+    Scalar,
+    Unread,
+    Unreadable,
+    Value,
+    constant_of,
+    count_cells,
+    cross_product,
+    divide,
+    identity_array,
+    make_array,
+    map_cells,
+    matrix_product,
+    multiply,
+    raise_to,
+    root,
+    square_sum,
+    transpose,
+)
+from navsym.language.tree import PI, Tree, build_call, build_number
+
+#: Functions of one number, by their names without prefix and suffix.
+PLAIN = {
+    **{name: name for name in "sin cos tan exp log sqrt asin acos atan sinh cosh tanh".split()},
+    **{"fabs": "abs", "abs": "abs", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "absolute": "abs"},
+}
+CONSTANTS: dict[str, Tree] = dict.fromkeys(("M_PI", "math.pi", "np.pi", "numpy.pi", "pi", "M_PI_F", "PI"), PI)
+CONSTANTS |= dict.fromkeys(("M_PI_2", "M_PI_2_F"), multiply(build_number(Fraction(1, 2)), PI))
+HARMLESS = frozenset(("printf", "fprintf", "print", "assert", "disp", "static_assert", "puts"))
+PREFIX = re.compile(r"(std::|math\.|np\.|numpy\.|matrix::|Eigen::)")
+MAKERS = frozenset(
+    "zeros ones eye identity array asarray copy diag outer cross dot matmul norm transpose linalg.norm".split()
+)
+
+
+def bare_name(name: str) -> str:
+    """A name of a function without namespace, module and the suffix f of C."""
+    bare = PREFIX.sub("", name, count=1)
+    is_float = bare.endswith("f") and bare[:-1] in (*PLAIN, "pow", "atan2", "hypot")
+    return bare[:-1] if is_float else bare
+
+
+def is_known(name: str, language: str) -> bool:
+    """True for a function that has a meaning of its own in the language."""
+    bare = bare_name(name)
+    if language == "python":
+        known = bare in PLAIN or bare in TWO or bare in MAKERS or bare in ("arctan2", "power", "square")
+        return known and (PREFIX.match(name) is not None or name == "abs")
+    if bare in TWO or (bare in PLAIN and not bare.startswith("arc") and bare != "absolute"):
+        return True
+    if language == "matlab":
+        return bare in MAKERS
+    return language == "cpp" and (bare == "cross" or MAKE.search(name) is not None)
+
+
+TWO = ("pow", "atan2", "hypot")
+MAKE = re.compile(r"(\d).*::(Zero|Identity)$")
+
+
+def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Value:
+    """The value of a known function."""
+    unread = next((value for value in values if isinstance(value, Unread)), None)
+    if unread is not None:
+        return unread
+    bare = bare_name(name)
+    if bare in PLAIN and len(values) == 1:
+        if bare == "abs" and unit.language in ("c",):
+            raise Unreadable(line, "abs, which cuts to an integer in C; fabs does not")
+        result = map_cells(lambda x: build_call(PLAIN[bare], x), values[0])
+        return Scalar(result.tree) if isinstance(result, Scalar) else result
+    if bare in ("pow", "power") and len(values) == 2:
+        return as_real(map_cells(raise_to, *values))
+    if bare in ("atan2", "arctan2") and len(values) == 2:
+        return as_real(map_cells(lambda y, x: build_call("atan2", y, x), *values))
+    if bare == "hypot" and len(values) == 2:
+        return map_cells(root, square_sum(Array((2,), tuple(values))))  # type: ignore[arg-type]
+    if bare == "square" and len(values) == 1:
+        return map_cells(lambda x: raise_to(x, build_number(2)), values[0])
+    if bare in ARRAYS and len(values) in (1, 2):
+        return ARRAYS[bare](values, unit)
+    if found := MAKE.search(name):
+        side = int(found[1])
+        return identity_array(side, side) if found[2] == "Identity" else filled((side, side), 0)
+    raise Unreadable(line, f"the function {name} with {len(values)} arguments")
+
+
+def as_real(value: Value) -> Value:
+    """Not an integer any more."""
+    return Scalar(value.tree) if isinstance(value, Scalar) else value
+
+
+def filled(shape: tuple[int, ...], number: int) -> Array:
+    """An array of one number."""
+    return make_array(shape, lambda *_: Scalar(build_number(number)))
+
+
+def sizes_of(values: Sequence[Value], unit: Unit) -> tuple[int, ...]:
+    """The shape that arguments give: numbers, or a tuple of them."""
+    cells = [c for v in values for c in (v.cells if isinstance(v, Array) else (v,))]
+    numbers = [constant_of(cell) for cell in cells]
+    if any(n is None or n.denominator != 1 for n in numbers):
+        raise Unreadable(0, "a size that is no constant")
+    sizes = tuple(int(n) for n in numbers if n is not None)
+    return sizes * 2 if unit.language == "matlab" and len(sizes) == 1 else sizes
+
+
+def make_zeros(values: Sequence[Value], unit: Unit) -> Value:
+    return filled(sizes_of(values, unit), 0)
+
+
+def make_ones(values: Sequence[Value], unit: Unit) -> Value:
+    return filled(sizes_of(values, unit), 1)
+
+
+def make_eye(values: Sequence[Value], unit: Unit) -> Value:
+    sizes = sizes_of(values, unit)
+    return identity_array(sizes[0], sizes[-1])
+
+
+def make_copy(values: Sequence[Value], unit: Unit) -> Value:
+    """An array of the same cells; one of integers would cut what is assigned to it."""
+    value = values[0]
+    if isinstance(value, Array) and unit.language == "python":
+        return Array(value.shape, tuple(value.cells))
+    return value
+
+
+def make_diagonal(values: Sequence[Value], unit: Unit) -> Value:
+    (value,) = values
+    if not isinstance(value, Array) or len(value.shape) != 1:
+        raise Unreadable(0, "diag of what is no vector")
+    zero = Scalar(build_number(0))
+    return make_array(value.shape * 2, lambda i, j: value.cells[i] if i == j else zero)
+
+
+def make_outer(values: Sequence[Value], unit: Unit) -> Value:
+    a, b = values
+    if not (isinstance(a, Array) and isinstance(b, Array)):
+        raise Unreadable(0, "outer of what are no vectors")
+    cells = [map_cells(multiply, x, y) for x in a.cells for y in b.cells]
+    return Array((len(a.cells), len(b.cells)), tuple(cells))  # type: ignore[arg-type]
+
+
+def norm_of(values: Sequence[Value], unit: Unit) -> Value:
+    (value,) = values
+    if isinstance(value, Array) and len(value.shape) == 2 and 1 not in value.shape:
+        raise Unreadable(0, "the norm of a matrix")
+    return map_cells(root, square_sum(value))
+
+
+def multiply_arrays(values: Sequence[Value], unit: Unit) -> Value:
+    if len(values) != 2:
+        raise Unreadable(0, "a product of other than two")
+    return matrix_product(values[0], values[1])
+
+
+def cross_of(values: Sequence[Value], unit: Unit) -> Value:
+    return cross_product(values[0], values[1])
+
+
+def transpose_of(values: Sequence[Value], unit: Unit) -> Value:
+    return transpose(values[0], unit.rules.matrix)
+
+
+def dot_of(values: Sequence[Value], unit: Unit) -> Value:
+    """The product of two vectors; of numpy's matrices, their product."""
+    a, b = values
+    if not (isinstance(a, Array) and isinstance(b, Array)) or unit.language == "python":
+        return matrix_product(a, b)
+    if count_cells(a.shape) != count_cells(b.shape):
+        raise Unreadable(0, "a dot product of different sizes")
+    flat = (len(a.cells),)
+    return matrix_product(Array(flat, a.cells), Array(flat, b.cells))
+
+
+ARRAYS: dict[str, Callable[[Sequence[Value], Unit], Value]] = {
+    "zeros": make_zeros, "ones": make_ones, "eye": make_eye, "identity": make_eye, "array": make_copy,
+    "asarray": make_copy, "copy": make_copy, "diag": make_diagonal, "outer": make_outer, "cross": cross_of,
+    "dot": dot_of, "matmul": multiply_arrays, "norm": norm_of, "linalg.norm": norm_of, "transpose": transpose_of,
+}  # fmt: skip
+
+Method = Callable[[Value, Sequence[Value], Unit], Value]
+
+
+def normalize(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+    """A vector over its length."""
+    length = map_cells(root, square_sum(value))
+    return map_cells(divide, value, length)
+
+
+METHODS: dict[str, Method] = {
+    "transpose": lambda value, _, unit: transpose(value, unit.rules.matrix),
+    "T": lambda value, _, unit: transpose(value, unit.rules.matrix),
+    "copy": lambda value, _, unit: value,
+    "eval": lambda value, _, unit: value,
+    "dot": lambda value, others, unit: dot_of([value, *others], unit),
+    "cross": lambda value, others, unit: cross_of([value, *others], unit),
+    "norm": lambda value, _, unit: norm_of([value], unit),
+    "squaredNorm": lambda value, _, unit: square_sum(value),
+    "norm_squared": lambda value, _, unit: square_sum(value),
+    "normalized": normalize,
+    "unit": normalize,
+}

@@ -1,0 +1,275 @@
+"""Python with numpy: functions of numbers, lists and arrays; all else is refused with its line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from navsym.audit.form import Argument, Function, Part, Rules, Unit, names_in
+from navsym.audit.syntax import (
+    descend,
+    field_of,
+    identifiers_in,
+    line_of,
+    named,
+    parse_source,
+    read_decimal,
+    span_of,
+    text_of,
+)
+
+RULES = Rules(entry=("{}[{}]", "{}[{}, {}]"))
+SIGNS = {"+", "-", "*", "/", "%", "//", "@", "**"}
+
+#: Where the order of statements is left.
+JUMPS = ("return_statement", "break_statement", "continue_statement", "raise_statement", "yield", "ERROR")
+
+
+def read_python(source: bytes, file: str) -> Unit:
+    """The functions and constants of a source in Python."""
+    unit = Unit(file, "python", RULES, source)
+    reader = Reader(unit)
+    reader.read_body(named(parse_source(source, "python", file)))
+    return unit
+
+
+def read_python_expression(text: str, unit: Unit) -> Part:
+    """One expression; its spans count from its own beginning."""
+    root = parse_source(f"({text})".encode(), "python", unit.file)
+    nodes = named(root)
+    if root.has_error or len(nodes) != 1 or nodes[0].type != "expression_statement":
+        return Part("refused", 1, ("no expression",))
+    return Reader(unit, -1).expression(named(nodes[0])[0])
+
+
+@dataclass(slots=True, eq=False)
+class Reader:
+    """Walks the syntax tree; ``shift`` moves the spans of a text that was read alone."""
+
+    unit: Unit
+    shift: int = 0
+
+    def part(self, kind: str, node: Any, *parts: Any) -> Part:
+        start, end = span_of(node)
+        return Part(kind, line_of(node), parts, (start + self.shift, end + self.shift))
+
+    def refuse(self, node: Any, why: str) -> Part:
+        return self.part("refused", node, why)
+
+    def unread(self, node: Any, why: str) -> Part:
+        """A statement that is not read: all names in it may have been written, or the way may be left there."""
+        kind = "jump" if any(inner.type in JUMPS for inner in descend(node)) else "unread"
+        return self.part(kind, node, why, identifiers_in(node))
+
+    def read_body(self, nodes: list[Any]) -> None:
+        """Functions and methods, and names of the module that are assigned once, to numbers."""
+        assigned: dict[str, list[Part]] = {}
+        for node in nodes:
+            if node.type == "decorated_definition":
+                node = field_of(node, "definition")
+            if node.type == "class_definition":
+                self.read_body(named(field_of(node, "body")))
+            elif node.type == "function_definition":
+                self.read_function(node)
+            elif node.type == "expression_statement":
+                for statement in self.statement(node):
+                    if statement.kind == "assign" and statement.parts[0].kind == "name":
+                        assigned.setdefault(statement.parts[0].parts[0], []).append(statement)
+        self.unit.constants += [many[0] for many in assigned.values() if len(many) == 1 and not many[0].parts[1]]
+
+    def read_function(self, node: Any) -> None:
+        name = text_of(field_of(node, "name"))
+        arguments = []
+        for child in named(field_of(node, "parameters")):
+            label = child if child.type == "identifier" else field_of(child, "name") or next(iter(named(child)), child)
+            arguments.append(Argument(text_of(label), shared=True))
+        body = tuple(s for child in named(field_of(node, "body")) for s in self.statement(child))
+        if arguments and arguments[0].name == "self":
+            arguments = arguments[1:]
+        self.unit.functions.setdefault(name, []).append(Function(name, line_of(node), tuple(arguments), body))
+
+    # -- statements --
+
+    def block(self, node: Any) -> tuple[Part, ...]:
+        return () if node is None else tuple(s for child in named(node) for s in self.statement(child))
+
+    def statement(self, node: Any) -> tuple[Part, ...]:
+        if node.has_error and node.type not in ("if_statement", "for_statement"):
+            return (self.unread(node, "a syntax error"),)
+        match node.type:
+            case "expression_statement":
+                return tuple(s for child in named(node) for s in self.effect(child))
+            case "return_statement":
+                values = named(node)
+                return (self.part("return", node, self.expression(values[0]) if values else None),)
+            case "if_statement":
+                return (self.branch(node, [*node.children_by_field_name("alternative")]),)
+            case "for_statement":
+                return (self.loop(node),)
+            case "pass_statement" | "assert_statement" | "import_statement" | "import_from_statement":
+                return ()
+        return (self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})"),)
+
+    def branch(self, node: Any, others: list[Any]) -> Part:
+        """``if``, with ``elif`` as a branch of the other way."""
+        test, then = self.expression(field_of(node, "condition")), self.block(field_of(node, "consequence"))
+        if not others:
+            return self.part("if", node, test, then, ())
+        if others[0].type == "elif_clause":
+            return self.part("if", node, test, then, (self.branch(others[0], others[1:]),))
+        return self.part("if", node, test, then, self.block(field_of(others[0], "body")))
+
+    def loop(self, node: Any) -> Part:
+        """``for i in range(...)``."""
+        name, source = field_of(node, "left"), self.expression(field_of(node, "right"))
+        is_range = source.kind == "call" and source.parts[0] == "range" and 1 <= len(source.parts[1]) <= 3
+        if name.type != "identifier" or not is_range:
+            return self.unread(node, "a loop over something else than a range")
+        given = list(source.parts[1])
+        zero, one = self.part("number", node, 0, "int"), self.part("number", node, 1, "int")
+        start, stop, step = [[zero, *given, one], [*given, one], given][len(given) - 1]
+        return self.part("for", node, text_of(name), start, stop, step, self.block(field_of(node, "body")))
+
+    def effect(self, node: Any) -> tuple[Part, ...]:
+        """What an expression that stands alone writes."""
+        match node.type:
+            case "assignment":
+                return self.assignment(node)
+            case "augmented_assignment":
+                sign = text_of(field_of(node, "operator"))[:-1]
+                left, right = (self.expression(field_of(node, side)) for side in ("left", "right"))
+                return (self.part("assign", node, left, sign, right),)
+            case "call":
+                return (self.part("do", node, self.expression(node)),)
+            case "string" | "ellipsis":
+                return ()
+        return (self.unread(node, "an expression without an assignment"),)
+
+    def assignment(self, node: Any) -> tuple[Part, ...]:
+        left, right = field_of(node, "left"), field_of(node, "right")
+        if right is None:
+            return ()
+        if right.type == "assignment":
+            return (self.unread(node, "an assignment of an assignment"),)
+        targets = named(left) if left.type in ("pattern_list", "tuple_pattern") else [left]
+        value = self.expression(right)
+        if len(targets) == 1:
+            return (self.part("assign", node, self.expression(targets[0]), "", value),)
+        if value.kind == "name":  # a, b = x
+            items = [Part("index", value.line, (value, (self.part("number", node, k, "int"),)), value.span)
+                     for k in range(len(targets))]  # fmt: skip
+        elif value.kind == "list" and len(value.parts[0]) == len(targets):
+            items = list(value.parts[0])
+            names = {text_of(target) for target in targets}
+            if names & names_in(*items):
+                return (self.unread(node, "names assigned from each other at once"),)
+        else:
+            return (self.unread(node, "several names assigned at once"),)
+        return tuple(self.part("assign", node, self.expression(t), "", v) for t, v in zip(targets, items, strict=True))
+
+    # -- expressions --
+
+    def expression(self, node: Any) -> Part:
+        match node.type:
+            case "integer" | "float":
+                text = text_of(node)
+                value = read_decimal(text)
+                if value is None:
+                    return self.refuse(node, f"the number {text[:20]}")
+                return self.part("number", node, value, "int" if node.type == "integer" else "real")
+            case "true" | "false":
+                return self.part("number", node, int(node.type == "true"), "int")
+            case "identifier":
+                return self.part("name", node, text_of(node))
+            case "parenthesized_expression":
+                inner = named(node)
+                return self.expression(inner[0]) if len(inner) == 1 else self.refuse(node, "parentheses")
+            case "binary_operator":
+                sign = text_of(field_of(node, "operator"))
+                if sign not in SIGNS:
+                    return self.refuse(node, f"the operator {sign}")
+                operands = (self.expression(field_of(node, side)) for side in ("left", "right"))
+                return self.part("op", node, sign, *operands)
+            case "unary_operator":
+                value_, sign = self.expression(field_of(node, "argument")), text_of(field_of(node, "operator"))
+                if sign == "+":
+                    return value_
+                return self.part("minus", node, value_) if sign == "-" else self.refuse(node, f"the operator {sign}")
+            case "not_operator":
+                return self.part("not", node, self.expression(field_of(node, "argument")))
+            case "boolean_operator":
+                kind = "both" if text_of(field_of(node, "operator")) == "and" else "either"
+                return self.part(kind, node, *(self.expression(field_of(node, side)) for side in ("left", "right")))
+            case "comparison_operator":
+                signs, sides = [c for c in node.children if not c.is_named], named(node)
+                if len(sides) != 2 or text_of(signs[0]) not in ("<", "<=", ">", ">=", "==", "!="):
+                    return self.refuse(node, "a chain of comparisons")
+                return self.part("compare", node, text_of(signs[0]), *map(self.expression, sides))
+            case "conditional_expression":
+                then, test, other = named(node)
+                return self.part("choose", node, *map(self.expression, (test, then, other)))
+            case "list" | "tuple" | "expression_list":
+                return self.part("list", node, tuple(map(self.expression, named(node))))
+            case "subscript":
+                base = self.expression(field_of(node, "value"))
+                places = tuple(self.expression(child) for child in node.children_by_field_name("subscript"))
+                if len(places) == 1 and places[0].kind == "list":
+                    places = places[0].parts[0]
+                return self.part("index", node, base, places)
+            case "slice":
+                return self.slice(node)
+            case "attribute":
+                return self.attribute(node)
+            case "call":
+                return self.call(node)
+        return self.refuse(node, f"an expression outside the language of audit ({node.type.replace('_', ' ')})")
+
+    def slice(self, node: Any) -> Part:
+        ends: list[Part | None] = [None]
+        for child in node.children:
+            if child.type == ":":
+                ends.append(None)
+            else:
+                ends[-1] = self.expression(child)
+        if len(ends) != 2:
+            return self.refuse(node, "a slice with a step")
+        return self.part("slice", node, *ends)
+
+    def attribute(self, node: Any) -> Part:
+        """``R.T``, or a member as a name."""
+        name = text_of(field_of(node, "attribute"))
+        if name == "T":
+            return self.part("method", node, self.expression(field_of(node, "object")), "T", ())
+        inner = node
+        while inner.type == "attribute":
+            inner = field_of(inner, "object")
+        if inner.type != "identifier":
+            return self.refuse(node, "a member of an expression")
+        return self.part("name", node, "".join(text_of(node).split()))
+
+    def call(self, node: Any) -> Part:
+        """A function or a method; keywords other than dtype=float are refused."""
+        function, given = field_of(node, "function"), field_of(node, "arguments")
+        arguments = []
+        for child in named(given):
+            if child.type == "keyword_argument":
+                if text_of(field_of(child, "name")) == "dtype" and text_of(field_of(child, "value")) in (
+                    "float", "np.float64", "np.float32",
+                ):  # fmt: skip
+                    continue
+                return self.refuse(node, "an argument by keyword")
+            arguments.append(self.expression(child))
+        name = "".join(text_of(function).split())
+        if function.type == "identifier" and name == "float" and len(arguments) == 1:
+            return self.part("cast", node, "real", arguments[0])
+        if function.type == "attribute":
+            base = text_of(field_of(function, "object"))
+            if base in ("np", "numpy", "math", "np.linalg", "numpy.linalg"):
+                return self.part("call", node, name, tuple(arguments))
+            if base == "self":
+                return self.part("call", node, name.removeprefix("self."), tuple(arguments))
+            method = text_of(field_of(function, "attribute"))
+            return self.part("method", node, self.expression(field_of(function, "object")), method, tuple(arguments))
+        if function.type == "identifier":
+            return self.part("call", node, name, tuple(arguments))
+        return self.refuse(node, "a call of an expression")

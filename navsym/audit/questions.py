@@ -1,0 +1,416 @@
+"""Questions about code: each becomes entries, what the code computes beside what it should be."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from navsym.audit.decide import differentiate
+from navsym.audit.evaluate import Case, Condition, spell_entry
+from navsym.audit.names import Names
+from navsym.audit.sources import Source
+from navsym.audit.values import (
+    Array,
+    Cell,
+    Index,
+    Scalar,
+    Unread,
+    Value,
+    Variable,
+    add,
+    identity_array,
+    make_array,
+    map_cells,
+    matrix_product,
+    places_of,
+    square_sum,
+    transpose,
+)
+from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, ShapeError, UnknownSymbolError
+from navsym.language.expression import read_tree
+from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
+from navsym.language.schema import as_list, as_table, as_text, as_title, require_key
+from navsym.language.tree import ONE
+
+MOST_CASES = 64
+INDEX = re.compile(r"(.*?)((?:\s*[\[(][\d\s,]+[\])])*)", re.DOTALL)
+MATRIX_KEYS = ("F", "G", "H", "Q", "R")
+
+#: The keys of each kind of question.
+KINDS = {
+    "jacobian": ("of", "by", "is"),
+    "equal": ("left", "right"),
+    "covariance": ("P", "F", "Q", "is"),
+    "symmetric": ("of",),
+    "orthogonal": ("of",),
+    "unit": ("of",),
+    "inverse": ("of", "is"),
+    "claim": ("of", "claim"),
+    "model": ("file", *MATRIX_KEYS),
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Entry:
+    """What the code computes at one place, and what it should be.
+
+    place      : row and column, from 1
+    code       : a formula, or why it is not read
+    conditions : of the case in which both hold
+    source     : of the code
+    again      : both formulas in another case, for code that is read again with a mend
+    """
+
+    place: tuple[int, int]
+    code: Cell
+    expected: Cell
+    conditions: tuple[Condition, ...]
+    source: Source | None = None
+    again: Callable[[Case], tuple[Cell, Cell]] | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Question:
+    """A question of the file, with what it needs to be asked."""
+
+    name: str
+    kind: str
+    keys: Mapping[str, Any]
+    where: str
+    sources: Mapping[str, Source]
+    names: Names
+    folder: Path
+
+
+def read_question(block: Any, sources: Mapping[str, Source], names: Names, folder: Path, where: str) -> Question:
+    """One ``[[question]]`` block."""
+    table = as_table(block, where)
+    kind = as_text(require_key(table, "kind", where), join_place(where, "kind"), "a kind")
+    if kind not in KINDS:
+        message = f"expected one of {' '.join(KINDS)}; got {quote(kind)}; correct it: {suggest_nearest(kind, KINDS)}"
+        raise ExpressionSyntaxError(message, where=join_place(where, "kind"))
+    expect_keys(table, ("name", "kind", *KINDS[kind]), where)
+    for key in KINDS[kind] if kind != "model" else ("file",):
+        require_key(table, key, where)
+    name = as_title(table.get("name", kind), join_place(where, "name"))
+    return Question(name, kind, table, where, sources, names, folder)
+
+
+def list_entries(question: Question) -> list[Entry]:
+    """The entries of a question, in every case of the code that it is about."""
+    used = [s for s in question.sources.values() if is_used(s.name, question.keys)]
+    cases = [[*source.read().cases] for source in used]
+    entries: list[Entry] = []
+    for count, chosen in enumerate(product(*cases)):
+        if count == MOST_CASES:
+            message = f"expected at most {MOST_CASES} cases; got more; ask about one function at a time"
+            raise DomainError(message, where=question.where)
+        conditions = tuple(c for case in chosen for c in case.conditions)
+        if is_contradictory(conditions):
+            continue
+        asking = Asking(question, {s.name: case for s, case in zip(used, chosen, strict=True)}, conditions)
+        asked: list[Entry] = getattr(asking, f"ask_{question.kind}")()
+        if question.kind == "symmetric":
+            asked = [entry for entry in asked if entry.place[0] < entry.place[1]]
+        entries += asked
+    return entries
+
+
+def is_used(name: str, keys: Any) -> bool:
+    """True when a reference to a code stands somewhere in a question."""
+    if isinstance(keys, Mapping):
+        return any(is_used(name, value) for value in keys.values())
+    if isinstance(keys, list):
+        return any(is_used(name, value) for value in keys)
+    return isinstance(keys, str) and keys.startswith(f"{name}:")
+
+
+def is_contradictory(conditions: Sequence[Condition]) -> bool:
+    """True for two sources of which one needs what the other excludes."""
+    known: dict[Any, bool] = {}
+    for condition in conditions:
+        key = (condition.sign, condition.left, condition.right)
+        if known.setdefault(key, condition.holds) != condition.holds:
+            return True
+    return False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Asking:
+    """A question in one case of each source."""
+
+    question: Question
+    cases: Mapping[str, Case]
+    conditions: tuple[Condition, ...]
+
+    def place(self, key: str) -> str:
+        return join_place(self.question.where, key)
+
+    # -- references --
+
+    def split(self, reference: Any, where: str) -> tuple[Source, str] | None:
+        """Source and name of ``code:name``; None for another text."""
+        if isinstance(reference, str) and ":" in reference:
+            head, _, tail = reference.partition(":")
+            if head in self.question.sources:
+                return self.question.sources[head], tail.strip()
+            if not tail.startswith(":"):
+                known = self.question.sources
+                message = (
+                    f"expected the name of a code before the colon; got {quote(head)}; "
+                    f"correct it: {suggest_nearest(head, known)}"
+                )
+                raise UnknownSymbolError(message, where=where)
+        return None
+
+    def resolve(self, reference: Any, key: str) -> Value:
+        """The value of a reference, of an expression, or of a list of these."""
+        where = self.place(key)
+        if isinstance(reference, list):
+            values = [self.resolve(item, key) for item in as_list(reference, where)]
+            shapes = {value.shape if isinstance(value, Array) else () for value in values}
+            if len(shapes) != 1:
+                raise ShapeError("expected rows of one length; got a ragged list; correct it", where=where)
+            cells = tuple(c for v in values for c in (v.cells if isinstance(v, Array) else (v,)))
+            return Array((len(values), *next(iter(shapes))), cells)
+        if (parts := self.split(reference, where)) is not None:
+            return self.output(*parts, where)
+        if not isinstance(reference, (str, int)) or isinstance(reference, bool):
+            message = f'expected a reference such as "model:F" or an expression; got {quote(reference)}; quote it'
+            raise ExpressionSyntaxError(message, where=where)
+        names = self.question.names
+        return Scalar(read_tree(names.translate(str(reference), where), names.declarations, where=where))
+
+    def output(self, source: Source, name: str, where: str) -> Value:
+        """What the code assigns to a name, or returns."""
+        case = self.cases[source.name]
+        found = INDEX.fullmatch(name)
+        base, indices = (found[1].strip(), found[2]) if found else (name, "")
+        numbers = [int(n) - source.unit.rules.first for n in re.findall(r"\d+", indices)]
+        if base == "return":
+            value = case.returned
+            if value is None:
+                raise UnknownSymbolError(f"expected a returned value; got none in {source.function.name}; "
+                                         "name a variable", where=where)  # fmt: skip
+            if numbers and isinstance(value, Array):
+                return at_place(value, tuple(numbers), where)
+            return value
+        variable = case.variables.get(base)
+        if variable is None:
+            message = (
+                f"expected a name that {source.function.name} assigns; got {quote(base)}; "
+                f"correct it: {suggest_nearest(base, case.variables)}"
+            )
+            raise UnknownSymbolError(message, where=where)
+        return read_variable(source, variable, tuple(numbers), where)
+
+    def inputs(self, reference: Any, key: str) -> list[Any]:
+        """The symbols of inputs."""
+        where = self.place(key)
+        if isinstance(reference, list):
+            return [symbol for item in reference for symbol in self.inputs(item, key)]
+        parts = self.split(reference, where)
+        if parts is None:
+            message = f'expected inputs of a code, such as "model:x[0]"; got {quote(reference)}; name them so'
+            raise ExpressionSyntaxError(message, where=where)
+        return parts[0].inputs(parts[1], where)
+
+    def matrix(self, key: str) -> Array:
+        """A reference that must be a matrix; a vector is a column."""
+        value = self.resolve(self.question.keys[key], key)
+        if not isinstance(value, Array):
+            why = value.why if isinstance(value, Unread) else "a number"
+            raise ShapeError(f"expected a matrix; got {why}; declare its size", where=self.place(key))
+        return value if len(value.shape) == 2 else Array((*value.shape, 1), value.cells)
+
+    # -- entries --
+
+    def pair(self, code: Value, expected: Value, key: str, *, upper: bool = False) -> list[Entry]:
+        """Entries of two values of one shape."""
+        if isinstance(code, Unread) or isinstance(expected, Unread):
+            is_, should = (v if isinstance(v, Unread) else Scalar(ONE) for v in (code, expected))
+            return [Entry((1, 1), is_, should, self.conditions)]
+        shapes = [v.shape if isinstance(v, Array) else () for v in (code, expected)]
+        if isinstance(expected, Array) and isinstance(code, Array) and len(code.cells) == len(expected.cells):
+            shapes[1] = shapes[0]
+        if shapes[0] != shapes[1]:
+            got = " and ".join(str(list(s)) if s else "a number" for s in shapes)
+            raise ShapeError(f"expected two sides of one shape; got {got}; correct one", where=self.place(key))
+        entries = []
+        cells = zip(places_of(shapes[0]), cells_of(code), cells_of(expected), strict=True)
+        for number, (place, is_, should) in enumerate(cells):
+            if upper and len(place) == 2 and place[0] > place[1] and isinstance(is_, Unread):
+                continue  # the lower half of a symmetric matrix, which the code leaves alone
+            row = (place[0] + 1, place[1] + 1) if len(place) == 2 else (place[0] + 1, 1) if place else (1, 1)
+            entries.append(Entry(row, is_, should, self.conditions, *self.repeat(key, number, should)))
+        return entries
+
+    def repeat(
+        self, key: str, number: int, expected: Cell
+    ) -> tuple[Source | None, Callable[[Case], tuple[Cell, Cell]] | None]:
+        """How to find the same entry again when the code is read with a mend."""
+        listed = flatten(self.question.keys.get(key))
+        at = number if len(listed) > 1 else 0
+        parts = self.split(listed[at], "") if at < len(listed) else None
+        if parts is None:
+            return next(iter(self.question.sources.values())), None
+        source, name = parts
+        is_direct = self.question.kind in ("equal", "jacobian", "covariance", "claim", "model")
+
+        def again(case: Case) -> tuple[Cell, Cell]:
+            asking = Asking(self.question, {**self.cases, source.name: case}, ())
+            if is_direct:
+                cells = cells_of(asking.output(source, name, self.question.where))
+                spot = number if len(listed) == 1 else 0
+                return (cells[spot] if spot < len(cells) else Unread(0, "another shape")), expected
+            entries: list[Entry] = getattr(asking, f"ask_{self.question.kind}")()
+            entry = entries[number] if number < len(entries) else None
+            return (entry.code, entry.expected) if entry else (Unread(0, "another shape"), expected)
+
+        return source, again
+
+    def ask_equal(self) -> list[Entry]:
+        left = self.resolve(self.question.keys["left"], "left")
+        right = self.resolve(self.question.keys["right"], "right")
+        return self.pair(left, right, "left")
+
+    def ask_jacobian(self) -> list[Entry]:
+        of = cells_of(self.resolve(self.question.keys["of"], "of"))
+        by = self.inputs(self.question.keys["by"], "by")
+        given = self.resolve(self.question.keys["is"], "is")
+        shape = (len(of), len(by))
+        if isinstance(given, Array) and len(given.cells) != len(of) * len(by):
+            message = f"expected {len(of)} rows and {len(by)} columns; got {list(given.shape)}; correct of or by"
+            raise ShapeError(message, where=self.place("is"))
+        expected = make_array(shape, lambda i, j: derivative(of[i], by[j]))
+        if not isinstance(given, Array):
+            given = Array((1, 1), (given,))
+        return self.pair(Array(shape, given.cells), expected, "is")
+
+    def ask_covariance(self) -> list[Entry]:
+        F, Q, new = (self.matrix(key) for key in ("F", "Q", "is"))
+        P = self.start_of("P", F.shape)
+        expected = map_cells(add, matrix_product(matrix_product(F, P), transpose(F, True)), Q)
+        return self.pair(new, expected, "is", upper=True)
+
+    def start_of(self, key: str, shape: Index) -> Array:
+        """A matrix of the code before the code has changed it."""
+        reference = self.question.keys[key]
+        parts = self.split(reference, self.place(key))
+        if parts is None:
+            return self.matrix(key)
+        source, name = parts
+        variable = self.cases[source.name].variables.get(name)
+        if variable is None or not variable.is_input:
+            return self.matrix(key)
+        size = variable.shape or (shape[1], shape[1])
+        return make_array(size, lambda *p: Scalar(source.symbol(spell_entry(source.unit, name, p))))
+
+    def ask_symmetric(self) -> list[Entry]:
+        of = self.matrix("of")
+        return self.pair(of, transpose(of, True), "of")
+
+    def ask_orthogonal(self) -> list[Entry]:
+        of = self.matrix("of")
+        square = matrix_product(of, transpose(of, True))
+        return self.pair(square, identity_array(of.shape[0], of.shape[0]), "of")
+
+    def ask_unit(self) -> list[Entry]:
+        of = self.resolve(self.question.keys["of"], "of")
+        return self.pair(square_sum(of) if not isinstance(of, Unread) else of, Scalar(ONE), "of")
+
+    def ask_inverse(self) -> list[Entry]:
+        of, given = self.matrix("of"), self.matrix("is")
+        whole = matrix_product(of, given)
+        return self.pair(whole, identity_array(of.shape[0], given.shape[1]), "is")
+
+    def ask_claim(self) -> list[Entry]:
+        from navsym.audit.outside import read_claim_side
+
+        side = read_claim_side(self.question.keys["claim"], self.question.folder, self.place("claim"))
+        return self.pair(self.resolve(self.question.keys["of"], "of"), self.outside(side, "claim"), "of")
+
+    def ask_model(self) -> list[Entry]:
+        from navsym.audit.outside import read_model_matrices
+
+        path = as_text(self.question.keys["file"], self.place("file"), "a model file")
+        matrices = read_model_matrices(self.question.folder / path)
+        asked = [key for key in MATRIX_KEYS if key in self.question.keys]
+        if not asked:
+            raise ShapeError("expected F, G, H, Q or R of the code; got none; name one", where=self.question.where)
+        entries: list[Entry] = []
+        for key in asked:
+            if key not in matrices:
+                message = f"expected a model with {key}; got one with {', '.join(matrices)}; remove the question"
+                raise UnknownSymbolError(message, where=self.place(key))
+            entries += self.pair(self.matrix(key), self.outside(matrices[key], key), key)
+        return entries
+
+    def outside(self, rows: list[list[str]], key: str) -> Value:
+        """Formulas of another file in the symbols of the code."""
+        names = self.question.names
+        cells = [[self.known(text, names, key) for text in row] for row in rows]
+        if len(cells) == 1 and len(cells[0]) == 1:
+            return cells[0][0]
+        return Array((len(cells), len(cells[0])), tuple(cell for row in cells for cell in row))
+
+    def known(self, text: str, names: Names, key: str) -> Scalar:
+        return Scalar(read_tree(names.translate(text, self.place(key)), names.declarations, where=self.place(key)))
+
+
+def flatten(reference: Any) -> list[Any]:
+    """The references in a list of lists."""
+    return [r for item in reference for r in flatten(item)] if isinstance(reference, list) else [reference]
+
+
+def cells_of(value: Value) -> tuple[Cell, ...]:
+    """The cells of a value."""
+    return value.cells if isinstance(value, Array) else (value,)
+
+
+def derivative(cell: Cell, symbol: Any) -> Cell:
+    """The derivative of a formula."""
+    if isinstance(cell, Unread):
+        return cell
+    try:
+        return Scalar(differentiate(cell.tree, symbol))
+    except NavsymError as error:
+        return Unread(cell.line, error.message)
+
+
+def at_place(value: Array, place: Index, where: str) -> Cell:
+    """A cell of an array; raises ShapeError outside it."""
+    if len(place) != len(value.shape) or any(not 0 <= i < n for i, n in zip(place, value.shape, strict=True)):
+        message = f"expected a place inside {list(value.shape)}; got {list(place)}; correct it"
+        raise ShapeError(message, where=where)
+    return value.at(*place)
+
+
+def read_variable(source: Source, variable: Variable, place: Index, where: str) -> Value:
+    """The final value of a variable, or of one of its entries."""
+    is_written = any(not isinstance(c, Scalar) or c.line for c in variable.cells.values())
+
+    def cell(spot: Index) -> Cell:
+        if variable.all_unread is not None:
+            return variable.all_unread
+        if spot in variable.cells:
+            return variable.cells[spot]
+        if variable.is_input and (variable.name in source.shapes or not is_written):
+            return Scalar(source.symbol(spell_entry(source.unit, variable.name, spot)))
+        return Unread(source.function.line, f"{source.function.name} does not assign it")
+
+    shape = variable.shape
+    if shape is None and variable.cells:
+        spots = [spot for spot in variable.cells if spot]
+        if spots:
+            shape = tuple(max(spot[k] for spot in spots) + 1 for k in range(len(spots[0])))
+    if place:
+        if shape is not None and (len(shape) != len(place) or any(i >= n for i, n in zip(place, shape, strict=True))):
+            message = f"expected a place inside {list(shape)}; got {list(place)}; correct it"
+            raise ShapeError(message, where=where)
+        return cell(place)
+    return Array(shape, tuple(map(cell, places_of(shape)))) if shape else cell(())

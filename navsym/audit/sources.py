@@ -1,0 +1,193 @@
+"""The code that questions are about: a file, a function, and what its inputs are."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from navsym.audit.evaluate import Reading, spell_entry
+from navsym.audit.execute import read_function
+from navsym.audit.form import Function, Part, Unit
+from navsym.audit.names import Names
+from navsym.audit.syntax import SIZE
+from navsym.audit.values import Index, places_of
+from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
+from navsym.language.expression import read_tree
+from navsym.language.files import decode, name_file, read_bytes
+from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
+from navsym.language.schema import Table, as_list, as_table, as_text, require_key
+from navsym.language.tree import Tree, build_sum, negate
+
+LANGUAGES = {
+    **dict.fromkeys((".c", ".h"), "c"),
+    **dict.fromkeys((".cpp", ".cc", ".cxx", ".hpp", ".hh", ".ino"), "cpp"),
+    ".py": "python",
+    ".m": "matlab",
+}
+LARGEST_SIDE = 64
+
+
+@dataclass(slots=True, eq=False)
+class Source:
+    """A function of a file with the declarations of its inputs.
+
+    shapes    : sizes of inputs that are arrays
+    symmetric : names of matrices whose lower half is the upper one
+    relations : polynomials of the inputs that are zero
+    """
+
+    name: str
+    unit: Unit
+    function: Function
+    names: Names
+    shapes: Mapping[str, Index]
+    symmetric: frozenset[str]
+    relations: tuple[Tree, ...]
+    reading: Reading | None = None
+
+    def symbol(self, spelling: str) -> Tree:
+        """The symbol of an input; of a symmetric matrix that of the upper half."""
+        for name in self.symmetric:
+            rows, _ = self.shapes[name]
+            for place in places_of((rows, rows)):
+                if place[0] > place[1] and spelling == spell_entry(self.unit, name, place):
+                    spelling = spell_entry(self.unit, name, (place[1], place[0]))
+        return self.names.symbol(spelling)
+
+    def read(self, edits: Mapping[int, Part] | None = None) -> Reading:
+        """The function, read once; with edits it is read again."""
+        if edits:
+            return read_function(self.unit, self.function, self.symbol, self.shapes, edits)
+        if self.reading is None:
+            self.reading = read_function(self.unit, self.function, self.symbol, self.shapes)
+        return self.reading
+
+    def inputs(self, reference: str, where: str) -> list[Tree]:
+        """The symbols that a reference to an input means: one, or all of an array."""
+        key = "".join(reference.split())
+        argument = next((a for a in self.function.arguments if a.name == key), None)
+        shape = self.shapes.get(key)
+        if shape is None and argument is not None and argument.shape is not None:
+            sizes = [int(size.parts[0]) for size in argument.shape if size.kind == "number"]
+            shape = tuple(sizes) if len(sizes) == len(argument.shape) else None
+        if shape:
+            return [self.symbol(spell_entry(self.unit, key, place)) for place in places_of(shape)]
+        if key not in self.names.symbols:
+            listed = [*self.names.symbols]
+            message = (
+                f"expected an input that {self.function.name} reads; got {quote(reference)}; "
+                f"correct it: {suggest_nearest(reference, listed)}"
+            )
+            raise UnknownSymbolError(message, where=where)
+        return [self.names.symbol(reference)]
+
+
+def load_unit(path: str | os.PathLike[str]) -> Unit:
+    """A source file in the one form; its language follows from the end of its name.
+
+    Raises NavsymError of kind ``missing-file``, ``syntax``, ``too-large`` or ``missing`` (no grammar on this machine).
+    """
+    where, language = name_file(path), LANGUAGES.get(Path(path).suffix.lower())
+    if language is None:
+        expected = f"a source that ends in {' '.join(LANGUAGES)}"
+        raise ExpressionSyntaxError(f"expected {expected}; got {quote(Path(path).name)}; rename it", where=where)
+    data = read_bytes(path, SIZE).removeprefix(b"\xef\xbb\xbf")
+    decode(data, where)
+    if language == "python":
+        from navsym.audit.python_source import read_python
+
+        return read_python(data, where)
+    if language == "matlab":
+        from navsym.audit.matlab_source import read_matlab
+
+        return read_matlab(data, where)
+    from navsym.audit.c_source import read_c
+
+    return read_c(data, where, language)
+
+
+def read_expression(text: str, unit: Unit) -> Part:
+    """One expression in the language of a source."""
+    if unit.language == "python":
+        from navsym.audit.python_source import read_python_expression
+
+        return read_python_expression(text, unit)
+    if unit.language == "matlab":
+        from navsym.audit.matlab_source import read_matlab_expression
+
+        return read_matlab_expression(text, unit)
+    from navsym.audit.c_source import read_c_expression
+
+    return read_c_expression(text, unit)
+
+
+def find_function(unit: Unit, name: str, where: str) -> Function:
+    """The function of a name; raises UnknownSymbolError, or DomainError for several."""
+    candidates = unit.functions.get(name, [])
+    if not candidates:
+        known = ", ".join([*unit.functions][:12]) or "none"
+        message = f"expected a function of {Path(unit.file).name} ({known}); got {quote(name)}; correct the name"
+        raise UnknownSymbolError(message, where=where)
+    if len(candidates) > 1:
+        lines = ", ".join(str(f.line) for f in candidates)
+        message = f"expected one function {name}; got several, at lines {lines}; rename the one that is asked for"
+        raise DomainError(message, where=where)
+    return candidates[0]
+
+
+def read_source(block: Any, folder: Path, names: Names, where: str) -> Source:
+    """One ``[[code]]`` block."""
+    table = as_table(block, where)
+    expect_keys(table, ("name", "file", "function", "relations", "symbols"), where)
+    texts = {
+        key: as_text(require_key(table, key, where), join_place(where, key), "a name")
+        for key in ("name", "file", "function")
+    }
+    unit = load_unit(folder / texts["file"])
+    function = find_function(unit, texts["function"], join_place(where, "function"))
+    place = join_place(where, "symbols")
+    shapes, symmetric = read_symbols(as_table(table.get("symbols", {}), place), names, place)
+    source = Source(texts["name"], unit, function, names, shapes, symmetric, ())
+    source.read()
+    listed = as_list(table["relations"], join_place(where, "relations")) if "relations" in table else []
+    source.relations = tuple(
+        read_relation(text, names, join_place(join_place(where, "relations"), i)) for i, text in enumerate(listed)
+    )
+    return source
+
+
+def read_symbols(table: Table, names: Names, where: str) -> tuple[dict[str, Index], frozenset[str]]:
+    """Declared inputs: numbers go to the table of names, sizes of arrays come back."""
+    shapes, symmetric = {}, set()
+    for spelling, declaration in table.items():
+        place = join_place(where, spelling)
+        sizes = declaration.get("matrix", declaration.get("vector")) if isinstance(declaration, dict) else None
+        if sizes is None:
+            if isinstance(declaration, dict):
+                expect_keys(declaration, ("name", "range", "sign"), place)
+            names.declare(spelling, declaration, place)
+            continue
+        expect_keys(declaration, ("matrix", "vector", "symmetric"), place)
+        given = sizes if isinstance(sizes, list) else [sizes]
+        if not all(isinstance(n, int) and not isinstance(n, bool) and 0 < n <= LARGEST_SIDE for n in given):
+            message = f"expected sizes from 1 to {LARGEST_SIDE}, such as [3, 3]; got {quote(sizes)}; correct them"
+            raise ShapeError(message, where=place)
+        shapes[spelling] = tuple(given)
+        if declaration.get("symmetric") is True:
+            if len(given) != 2 or given[0] != given[1]:
+                message = f"expected a square matrix; got {quote(sizes)}; remove symmetric"
+                raise ShapeError(message, where=place)
+            symmetric.add(spelling)
+    return shapes, frozenset(symmetric)
+
+
+def read_relation(text: Any, names: Names, where: str) -> Tree:
+    """``left = right`` as the polynomial left - right."""
+    sides = as_text(text, where, "a relation").split("=")
+    if len(sides) != 2:
+        raise ExpressionSyntaxError(f"expected one = in a relation; got {quote(text)}; correct it", where=where)
+    left, right = (read_tree(names.translate(side, where), names.declarations, where=where) for side in sides)
+    return build_sum(left, negate(right))

@@ -1,0 +1,267 @@
+"""Values of the source: formulas of the inputs, arrays of them, and what could not be read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import product
+
+from navsym.audit.form import Part
+from navsym.language.tree import (
+    NUMBER,
+    ONE,
+    ZERO,
+    Tree,
+    build_call,
+    build_inverse,
+    build_number,
+    build_power,
+    build_product,
+    build_sum,
+    negate,
+)
+
+Index = tuple[int, ...]
+LARGEST = 4096  # cells of one array
+TERMS = 2000  # of one sum
+
+
+class Unreadable(Exception):
+    """A part of the source that is not read: the line and the reason."""
+
+    def __init__(self, line: int, why: str):
+        super().__init__(why)
+        self.line, self.why = line, why
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scalar:
+    """A number as a formula of the inputs.
+
+    number : "int" or "real"
+    line   : where it was assigned, 0 for what was not
+    origin : the statement that assigned it
+    """
+
+    tree: Tree
+    number: str = "real"
+    line: int = 0
+    origin: Part | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Unread:
+    """A value that depends on a refused line."""
+
+    line: int
+    why: str
+
+
+Cell = Scalar | Unread
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Array:
+    """Cells row by row; a vector has one size, and so has a column of Eigen."""
+
+    shape: Index
+    cells: tuple[Cell, ...]
+
+    def at(self, *place: int) -> Cell:
+        """The cell at a place, from 0."""
+        where = 0
+        for size, i in zip(self.shape, place, strict=True):
+            where = where * size + i
+        return self.cells[where]
+
+
+Value = Scalar | Array | Unread
+
+
+@dataclass(slots=True, eq=False)
+class Variable:
+    """What a name holds.
+
+    shape    : None while the source does not say; () for a number
+    cells    : what has been assigned, by place from 0
+    is_input : True when the caller gives what has not been assigned
+    views    : other names of a part of it
+    """
+
+    name: str
+    number: str = "real"
+    shape: Index | None = None
+    cells: dict[Index, Cell] = field(default_factory=dict)
+    is_input: bool = False
+    all_unread: Unread | None = None
+    views: list[Variable] = field(default_factory=list)
+
+
+def places_of(shape: Index) -> Iterator[Index]:
+    """All places of a shape, row by row."""
+    return product(*map(range, shape))
+
+
+# Arithmetic: zeros and ones of loops over constant matrices disappear, numbers are joined
+
+
+def add(a: Tree, b: Tree) -> Tree:
+    """a + b."""
+    if a is ZERO or b is ZERO:
+        return b if a is ZERO else a
+    if a.head == b.head == NUMBER:
+        return build_number(a.args[0] + b.args[0])
+    terms = (*(a.args if a.head == "+" else (a,)), *(b.args if b.head == "+" else (b,)))
+    if len(terms) > TERMS:
+        raise Unreadable(0, f"a sum of more than {TERMS} terms")
+    return build_sum(*terms)
+
+
+def minus(a: Tree) -> Tree:
+    """-a."""
+    return build_number(-a.args[0]) if a.head == NUMBER else negate(a)
+
+
+def multiply(a: Tree, b: Tree) -> Tree:
+    """a b."""
+    if a is ZERO or b is ZERO:
+        return ZERO
+    if a is ONE or b is ONE:
+        return b if a is ONE else a
+    if a.head == b.head == NUMBER:
+        return build_number(a.args[0] * b.args[0])
+    return build_product(a, b)
+
+
+def divide(a: Tree, b: Tree) -> Tree:
+    """a / b; also where b is zero, which has no value."""
+    if b.head == NUMBER and b is not ZERO:
+        return multiply(build_number(1 / b.args[0]), a) if a.head != NUMBER else build_number(a.args[0] / b.args[0])
+    return multiply(a, build_inverse(b)) if b is not ONE else a
+
+
+def raise_to(a: Tree, b: Tree) -> Tree:
+    """a**b; a product for small whole powers of numbers."""
+    if a.head == b.head == NUMBER and b.args[0].denominator == 1 and 0 < b.args[0] <= 8:
+        return build_number(a.args[0] ** int(b.args[0]))
+    return a if b is ONE else build_power(a, b)
+
+
+def root(a: Tree) -> Tree:
+    """The square root."""
+    return build_call("sqrt", a)
+
+
+def total(trees: list[Tree]) -> Tree:
+    """The sum of trees."""
+    result = ZERO
+    for tree in trees:
+        result = add(result, tree)
+    return result
+
+
+# Arrays
+
+
+def map_cells(step: Callable[..., Tree], *values: Value) -> Value:
+    """A function of the trees of numbers or arrays of one shape, cell by cell; numbers go with every cell."""
+    shapes = {value.shape for value in values if isinstance(value, Array)}
+    if len(shapes) > 1:
+        raise Unreadable(0, "arrays of different shapes")
+    if not shapes:
+        return map_cell(step, *values)  # type: ignore[arg-type]
+    (shape,) = shapes
+    rows = [v.cells if isinstance(v, Array) else (v,) * count_cells(shape) for v in values]
+    return Array(shape, tuple(map_cell(step, *cells) for cells in zip(*rows, strict=True)))
+
+
+def map_cell(step: Callable[..., Tree], *cells: Cell) -> Cell:
+    """The same for single cells; what is unread stays so."""
+    trees = []
+    for cell in cells:
+        if isinstance(cell, Unread):
+            return cell
+        trees.append(cell.tree)
+    number = "int" if all(isinstance(c, Scalar) and c.number == "int" for c in cells) else "real"
+    return Scalar(step(*trees), number)
+
+
+def count_cells(shape: Index) -> int:
+    """How many cells a shape has."""
+    number = 1
+    for size in shape:
+        number *= size
+    return number
+
+
+def make_array(shape: Index, cell: Callable[..., Cell]) -> Array:
+    """An array by places."""
+    if count_cells(shape) > LARGEST or any(size < 0 for size in shape):
+        raise Unreadable(0, f"an array of more than {LARGEST} cells")
+    return Array(shape, tuple(cell(*place) for place in places_of(shape)))
+
+
+def transpose(value: Value, column: bool) -> Value:
+    """The transpose; of a vector the row, where the language has columns (``column``), else itself."""
+    if not isinstance(value, Array):
+        raise Unreadable(0, "the transpose of what has no known size; declare it under [code.symbols]")
+    if len(value.shape) == 1:
+        return Array((1, *value.shape), value.cells) if column else value
+    m, n = value.shape
+    return make_array((n, m), lambda i, j: value.at(j, i))
+
+
+def matrix_product(a: Value, b: Value) -> Value:
+    """The product of matrices, rows and columns; a number goes with every cell."""
+    if not (isinstance(a, Array) and isinstance(b, Array)):
+        return map_cells(multiply, a, b)
+    left = a.shape if len(a.shape) == 2 else (1, *a.shape)
+    if len(a.shape) == 1 and len(b.shape) == 2 and b.shape[0] == 1:
+        left = (*a.shape, 1)  # a column and a row
+    right = b.shape if len(b.shape) == 2 else (*b.shape, 1)
+    if left[1] != right[0]:
+        raise Unreadable(0, "a product of matrices that do not fit")
+
+    def cell(i: int, j: int) -> Cell:
+        row = [a.cells[i * left[1] + k] for k in range(left[1])]
+        column = [b.cells[k * right[1] + j] for k in range(left[1])]
+        return map_cell(lambda *t: total([multiply(t[k], t[k + left[1]]) for k in range(left[1])]), *row, *column)
+
+    whole = make_array((left[0], right[1]), cell)
+    if left[0] == right[1] == 1 and (len(a.shape), len(b.shape)) != (2, 2):
+        return whole.cells[0]
+    if len(b.shape) == 1:
+        return Array((left[0],), whole.cells)
+    return Array((right[1],), whole.cells) if len(a.shape) == 1 and left[0] == 1 else whole
+
+
+def cross_product(a: Value, b: Value) -> Value:
+    """The cross product of two vectors of three."""
+    if not (isinstance(a, Array) and isinstance(b, Array) and len(a.cells) == len(b.cells) == 3):
+        raise Unreadable(0, "a cross product of what are no three-vectors")
+
+    def cell(i: int) -> Cell:
+        j, k = (i + 1) % 3, (i + 2) % 3
+        parts = (a.cells[j], b.cells[k], a.cells[k], b.cells[j])
+        return map_cell(lambda p, q, r, s: add(multiply(p, q), minus(multiply(r, s))), *parts)
+
+    return make_array((3,), cell)
+
+
+def square_sum(value: Value) -> Cell:
+    """The sum of the squares of all cells."""
+    cells = value.cells if isinstance(value, Array) else (value,)
+    return map_cell(lambda *trees: total([raise_to(t, build_number(2)) for t in trees]), *cells)
+
+
+def identity_array(m: int, n: int) -> Array:
+    """Ones on the diagonal."""
+    return make_array((m, n), lambda i, j: Scalar(ONE if i == j else ZERO))
+
+
+def constant_of(value: Value) -> Fraction | None:
+    """The number that a value is, or None."""
+    if isinstance(value, Scalar) and value.tree.head == NUMBER:
+        return Fraction(value.tree.args[0])
+    return None
