@@ -60,6 +60,7 @@ _HOMES = {
     **dict.fromkeys(
         ("Verdict", "Verdicts", "Status", "PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"), "navsym.claims"
     ),
+    **dict.fromkeys(("Workspace", "init"), "navsym.claims.workspace"),
     "prove": "navsym.prove.formulas",
     "new_paper": "navsym.prove.drafts",
     "Bank": "navsym.multimodel.bank",
@@ -95,6 +96,8 @@ if TYPE_CHECKING:
     from navsym.claims import Status as Status
     from navsym.claims import Verdict as Verdict
     from navsym.claims import Verdicts as Verdicts
+    from navsym.claims.workspace import Workspace as Workspace
+    from navsym.claims.workspace import init as init
     from navsym.core.datasets import data as data
     from navsym.core.errors import NavsymError as NavsymError
     from navsym.core.machine import doctor as doctor

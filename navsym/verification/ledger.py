@@ -21,6 +21,7 @@ import msgspec
 from navsym.claims import Paper, Record, equation_of
 from navsym.claims.display import mark_verdict, write_card, write_table
 from navsym.claims.paper import papers_folder
+from navsym.claims.workspace import find_workspace
 from navsym.core.answers import Answer
 from navsym.core.errors import ShapeError, UnknownSymbolError
 from navsym.language.files import write_text
@@ -140,6 +141,7 @@ class Ledger(Answer):
     def write(self) -> None:
         """Update ``verdicts.json``, ``certificates.json`` and ``README.md`` beside the papers.
 
+        In a workspace these are ``ledger.json`` and ``certificates.json`` of its folder, and no page for people.
         Papers that were not run keep their verdicts; several processes may write, one after the other.
         Raises NavsymError where verdicts of papers that were not run cannot be read, or nothing can be written.
 
@@ -151,7 +153,8 @@ class Ledger(Answer):
             whole = replace(self.merge(self.read_others(set(cards))), cards=cards)
             write_text(certificates_file(), certificates_text(collect_certificates(whole.claims)))
             write_text(path, ledger_text(whole))
-            write_text(path.with_name("README.md"), people_text(whole))
+            if find_workspace() is None:
+                write_text(path.with_name("README.md"), people_text(whole))
 
     def read_others(self, known: set[str]) -> Ledger:
         """What the files say of the papers that were not run; without any, the files need not be readable."""
@@ -231,8 +234,9 @@ def read_ledger(path: str | os.PathLike[str]) -> Ledger:
 
 
 def ledger_file() -> Path:
-    """The file of all verdicts as they were last written: ``verdicts.json`` beside the papers."""
-    return papers_folder() / "verdicts.json"
+    """The file of all verdicts as they were last written: ``ledger.json`` of the workspace, or that of the papers."""
+    workspace = find_workspace()
+    return papers_folder() / "verdicts.json" if workspace is None else workspace.ledger
 
 
 def stored_ledger() -> Ledger:
