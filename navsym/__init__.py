@@ -159,6 +159,13 @@ def __getattr__(name: str) -> Any:
     return value
 
 
+def load_ipython_extension(shell: Any) -> None:
+    """``%load_ext navsym`` in a notebook: ``%prove`` decides a formula, ``%%claims`` a cell of them."""
+    from navsym.cli._magics import register_magics
+
+    register_magics(shell)
+
+
 def __dir__() -> list[str]:
     return list(__all__)
 

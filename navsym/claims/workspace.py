@@ -59,12 +59,12 @@ class Workspace(Answer):
         return {"root": str(self.root), "files": {kind: self.list_files(kind) for kind in ENDINGS}}
 
     @property
-    def ledger(self) -> Path:
+    def ledger_file(self) -> Path:
         """The file of its verdicts."""
         return self.root / "ledger.json"
 
     @property
-    def certificates(self) -> Path:
+    def certificates_file(self) -> Path:
         """The file of their certificates."""
         return self.root / "certificates.json"
 

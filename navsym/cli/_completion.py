@@ -78,7 +78,7 @@ def claims() -> list[str]:
     """Ids of all claims, from the ledger."""
     try:
         workspace = find_workspace()
-        ledger = papers_folder() / "verdicts.json" if workspace is None else workspace.ledger
+        ledger = papers_folder() / "verdicts.json" if workspace is None else workspace.ledger_file
         document = json.loads(ledger.read_text(encoding="utf-8"))
         return [str(record["id"]) for record in document["claims"]]
     except (OSError, ValueError, LookupError, TypeError, NavsymError):  # a damaged ledger completes nothing

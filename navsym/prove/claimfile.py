@@ -101,7 +101,7 @@ class FileClaim:
     divisors: tuple[Expr, ...] = ()
     radicands: tuple[Expr, ...] = ()
     arguments: tuple[Expr, ...] = ()
-    notes: Mapping[str, str] = field(default_factory=dict)
+    notes: Mapping[str, str] = field(default_factory=dict, kw_only=True)
 
     @property
     def id(self) -> str:
@@ -196,9 +196,8 @@ def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim:
         for name in ("divisors", "radicands", "arguments")
     ]
     notes = {name: NOTES[name](table[name], join_place(where, name)) for name in NOTES if name in table}
-    return FileClaim(
-        symbols.formula(table), left, right, relation, box, tolerance, tuple(known.values()), *noted, notes
-    )
+    names = tuple(known.values())
+    return FileClaim(symbols.formula(table), left, right, relation, box, tolerance, names, *noted, notes=notes)
 
 
 def read_status(value: Any, where: str) -> str:

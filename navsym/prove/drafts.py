@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from navsym.claims.paper import equation_of, papers_folder
-from navsym.claims.workspace import find_workspace
 from navsym.claims.verdict import Verdict
+from navsym.claims.workspace import find_workspace
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, DuplicateError
 from navsym.language.files import write_text

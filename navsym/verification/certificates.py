@@ -35,7 +35,7 @@ REMEDY = "restore the file, or make it again with navsym verify --write"
 def certificates_file() -> Path:
     """The file of certificates: ``certificates.json`` of the workspace, or beside the papers."""
     workspace = find_workspace()
-    return papers_folder() / "certificates.json" if workspace is None else workspace.certificates
+    return papers_folder() / "certificates.json" if workspace is None else workspace.certificates_file
 
 
 def read_certificates() -> dict[str, Any]:

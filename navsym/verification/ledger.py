@@ -236,7 +236,7 @@ def read_ledger(path: str | os.PathLike[str]) -> Ledger:
 def ledger_file() -> Path:
     """The file of all verdicts as they were last written: ``ledger.json`` of the workspace, or that of the papers."""
     workspace = find_workspace()
-    return papers_folder() / "verdicts.json" if workspace is None else workspace.ledger
+    return papers_folder() / "verdicts.json" if workspace is None else workspace.ledger_file
 
 
 def stored_ledger() -> Ledger:

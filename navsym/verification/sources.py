@@ -102,11 +102,10 @@ def middle_values(parameters: Mapping[str, Parameter]) -> dict[str, str]:
         lower, upper = parameter.lower, parameter.upper
         if lower is not None and upper is not None:
             values[name] = expression_text((lower + upper) / 2)
-        elif lower is not None or upper is not None:
-            end = lower + 1 if lower is not None else upper - 1
-            values[name] = expression_text(end)
+        elif lower is not None:
+            values[name] = expression_text(lower + 1)
         else:
-            values[name] = "1"
+            values[name] = "1" if upper is None else expression_text(upper - 1)
     return values
 
 
