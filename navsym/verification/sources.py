@@ -55,7 +55,7 @@ def claim_of_block(name: str, path: Path, claim: FileClaim) -> Claim:
         partial(statement_of, claim),
         Status(notes.get("expect", "PROVED")),
         notes.get("corrects"),
-        None,
+        "paper" if notes.get("expect") == "REFUTED" else None,
         notes.get("reason", ""),
         place_of_line(name, path, rf"\s*id\s*=\s*{label}"),
         partial(complete_verdict, claim),

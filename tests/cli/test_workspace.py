@@ -225,14 +225,15 @@ def test_a_workspace_is_not_made_over_another_one(folder, capsys):
         ('[workspace]\nclaims = ["claims/none.toml"]\n', "missing-file", "take it off the list"),
         ('[workspace]\nclaims = ["claims/*.toml"]\nmodels = ["claims/*.toml"]\n', "duplicate", "list it once"),
         ('[workspace]\nclaims = ["nothing/*.toml"]\n', "empty", "correct the patterns"),
-        ('[workspace]\nclaims = ["claims/link.toml"]\n', "domain", "copy the file"),
+        ('[workspace]\nclaims = ["links/*.toml"]\n', "domain", "copy the file"),
         ("[workspace\n", "syntax", "correct it"),
     ],
 )
 def test_a_bad_list_is_refused_with_its_place(tmp_path, monkeypatch, capsys, text, kind, hint):
     root = nav.init(tmp_path / "w").root
     (tmp_path / "outside.toml").write_text(CLAIMS)
-    (root / "claims" / "link.toml").symlink_to(tmp_path / "outside.toml")
+    (root / "links").mkdir()
+    (root / "links" / "link.toml").symlink_to(tmp_path / "outside.toml")
     (root / "navsym.toml").write_text(text)
     monkeypatch.chdir(root)
     status, answer = document(capsys, "verify")
