@@ -78,6 +78,7 @@ _HOMES = {
     "cite": "navsym.report.citation",
     "claims": "navsym.report.listing",
     "diff": "navsym.export.differences",
+    **dict.fromkeys(("FunctionComparison", "compare"), "navsym.export.compare"),
     "doctor": "navsym.core.machine",
     "explain": "navsym.report.explain",
     "export": "navsym.export.driver",
@@ -103,6 +104,8 @@ if TYPE_CHECKING:
     from navsym.core.machine import doctor as doctor
     from navsym.core.numbers import Number as Number
     from navsym.export.acceptance import check as check
+    from navsym.export.compare import FunctionComparison as FunctionComparison
+    from navsym.export.compare import compare as compare
     from navsym.export.differences import diff as diff
     from navsym.export.driver import export as export
     from navsym.guaranteed.baselines import Comparison as Comparison

@@ -128,7 +128,11 @@ def cache_file() -> Path:
 
 def is_private(path: Path) -> bool:
     """True for what a pattern does not mean: the list itself, hidden files, and helpers such as ``_model.py``."""
-    return path.name == FILE or any(part.startswith(".") for part in path.parts) or (path.suffix == ".py" and path.name.startswith("_"))
+    return (
+        path.name == FILE
+        or any(part.startswith(".") for part in path.parts)
+        or (path.suffix == ".py" and path.name.startswith("_"))
+    )
 
 
 def find_workspace(start: str | os.PathLike[str] | None = None) -> Workspace | None:
