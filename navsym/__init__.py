@@ -164,9 +164,9 @@ def __getattr__(name: str) -> Any:
 
 def load_ipython_extension(shell: Any) -> None:
     """``%load_ext navsym`` in a notebook: ``%prove`` decides a formula, ``%%claims`` a cell of them."""
-    from navsym.cli._magics import register_magics
+    from importlib import import_module
 
-    register_magics(shell)
+    import_module("navsym.cli._magics").register_magics(shell)
 
 
 def __dir__() -> list[str]:

@@ -32,7 +32,7 @@ BITS = 192
 POINTS = 400
 BOXES = 600
 ULPS = 4  # of a library function: the widest of what C libraries and numpy state
-ROUND = 40  # boxes after which the bound has to have fallen
+ROUND = 120  # boxes after which the bound has to have fallen
 CLOSE = 1.05  # a bound this near to what was seen, or to that of the round before, is not divided further
 ARITHMETIC = with_library(DOUBLE, ULPS)
 ROUNDED = f"each operation rounded once, library functions within {ULPS} ulps"
@@ -109,8 +109,7 @@ def compare(
         message = f'expected a range for each name; got none of {name}; write {name}=("0", "1")'
         raise UnknownSymbolError(message, where="compare")
     sides = Sides(function, term, names, takes_names(function, names))
-    seen = [sides.measure(point) for point in sample_points(box, points)]
-    seen = [sample for sample in seen if sample is not None]
+    seen = [sample for point in sample_points(box, points) if (sample := sides.measure(point)) is not None]
     if not seen:
         raise EmptyError("expected a formula with values in the ranges; got none; correct them", where="compare")
     worst = max(seen, key=lambda sample: sample.difference)

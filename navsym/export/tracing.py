@@ -12,7 +12,7 @@ import types
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from numbers import Integral, Real
+from numbers import Integral
 from typing import Any
 
 import sympy as sp
@@ -88,7 +88,7 @@ class Notes:
 
     def apply(self, op: str, args: Sequence[Any]) -> Traced:
         """One operation on numbers of which one at least is traced; raises UntraceableError for what is none."""
-        if op == "pow" and isinstance(args[1], Real) and float(args[1]).is_integer():
+        if op == "pow" and isinstance(args[1], (float, int)) and float(args[1]).is_integer():
             return self.power(self.wrap(args[0]), int(args[1]))
         if len(args) != (1 if op in UNARY else 2) or op not in UNARY | BINARY:
             raise UntraceableError(f"the function {op} of {len(args)} arguments")
@@ -266,9 +266,11 @@ def noted_value(value: Any) -> Any:
     if not isinstance(value, types.BuiltinFunctionType) or getattr(math, name, None) is not value:
         return value
 
+    plain: Any = value
+
     def noted(*args: Any) -> Any:
         traced = next((a for a in args if isinstance(a, Traced)), None)
-        return value(*args) if traced is None else traced.notes.apply(UFUNCS.get(name, name), args)
+        return plain(*args) if traced is None else traced.notes.apply(UFUNCS.get(name, name), args)
 
     return noted
 
