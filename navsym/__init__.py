@@ -41,7 +41,7 @@ import sys
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 #: Public name -> module that holds it. A module is imported when its name is first used, and its engines with it.
 _HOMES = {

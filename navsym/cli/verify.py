@@ -82,6 +82,8 @@ def compare_line(ledger: Ledger) -> str:
     from navsym.core.errors import NavsymError
     from navsym.verification.ledger import ledger_file
 
+    if not ledger.is_kept:
+        return "the verdicts of files are kept in a workspace; navsym init makes one"
     try:
         changed = ledger.changed
     except NavsymError as error:
