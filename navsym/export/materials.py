@@ -21,12 +21,11 @@ from navsym.guaranteed.phases.answer import Phases, Regime
 from navsym.guaranteed.phases.driver import phases
 from navsym.guaranteed.solver import Estimator, solve
 from navsym.language.names import quote
-from navsym.language.tomlfile import read_toml
 from navsym.models.derivation import Derivation, derive
 from navsym.models.model import Model, contents_of
 from navsym.prove.claimfile import claims_from, decide_claim, read_claims, statement_of
 from navsym.prove.ladder import decide_within, leave_open
-from navsym.verification.papers import file_of_source, load_papers, split_id
+from navsym.verification.papers import file_of_source, is_model, load_papers, split_id
 
 SECONDS = 90.0
 MEGABYTES = 4096
@@ -150,11 +149,6 @@ def material_from_file(name: str, wanted: str, allow_confirmed: bool) -> Materia
         correction=next((f"{name}:{c.id}" for c in claims.values() if c.notes.get("corrects") == wanted), None),
         allow_confirmed=allow_confirmed,
     )
-
-
-def is_model(path: Path) -> bool:
-    """True for a file of a model, whose ids name targets."""
-    return not {"model", "basis"}.isdisjoint(read_toml(path))
 
 
 def functions_of_target(path: Path, target: str, real: str, units: Mapping[str, str]) -> list[ExportedFunction]:

@@ -15,6 +15,7 @@ from navsym.claims.workspace import FILE, find_workspace
 from navsym.core.choice import one_of
 from navsym.core.errors import DomainError, EmptyError
 from navsym.core.store import key_of
+from navsym.language.tomlfile import read_toml
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,6 +88,11 @@ def file_of_source(name: str) -> Path:
     workspace = find_workspace()
     listed: Mapping[str, Path] = {} if workspace is None else workspace.names()
     return listed.get(name_source(name, listed), Path(name))
+
+
+def is_model(path: Path) -> bool:
+    """True for a file of a model, whose ids name targets."""
+    return not {"model", "basis"}.isdisjoint(read_toml(path))
 
 
 def load_source(name: str, listed: Mapping[str, Path | None]) -> PaperModule:

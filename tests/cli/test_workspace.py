@@ -164,6 +164,26 @@ def test_report_writes_its_pages_and_the_erratum_of_a_claim_file_into_the_worksp
     assert "the double product is missing" in (site.out / sheet).read_text().lower()
 
 
+def test_diff_takes_ids_of_claims_and_two_ledgers(inside, capsys, tmp_path):
+    status, answer = document(capsys, "diff", "claims/baro.toml:square", "claims/baro.toml:sum")
+    assert status == 0 and answer["differences"][0]["status"] == "EQUAL"
+    status, answer = document(capsys, "diff", "pendulum:2", "g*l*A**2/3")
+    assert status == 1 and answer["differences"][0]["status"] == "DIFFERENT"
+    status, answer = document(capsys, "diff", "models/alignment.toml:drift", "1")
+    assert status == 2 and answer["error"]["kind"] == "shape"
+    ledger = json.loads((inside / "ledger.json").read_text())
+    first, second, *_ = ledger["claims"]
+    first["status"], second["statement"] = "OPEN", "another"
+    del ledger["claims"][-1]
+    (tmp_path / "old.json").write_text(json.dumps(ledger))
+    status, answer = document(capsys, "diff", str(tmp_path / "old.json"), str(inside / "ledger.json"))
+    found = {d["name"]: (d["status"], d["why"]) for d in answer["differences"]}
+    assert status == 1 and [kind for kind, _ in found.values()].count("EQUAL") == len(found) - 3
+    assert found[first["id"]] == ("DIFFERENT", "PROVED, it was OPEN") and "another statement" in found[second["id"]][1]
+    assert found["pendulum:2"][0] == "ONLY-NEW"
+    assert document(capsys, "diff", "../ledger.json", "../ledger.json")[0] == 0
+
+
 def test_a_paper_of_the_library_is_known_by_name_and_not_among_what_is_listed(inside):
     (record,) = nav.show("alpha_beta_filter:12.stable")
     assert record.status == "PROVED"
