@@ -60,7 +60,7 @@ _HOMES = {
     **dict.fromkeys(
         ("Verdict", "Verdicts", "Status", "PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"), "navsym.claims"
     ),
-    **dict.fromkeys(("Workspace", "init"), "navsym.claims.workspace"),
+    "init": "navsym.claims.workspace",
     "prove": "navsym.prove.formulas",
     "new_paper": "navsym.prove.drafts",
     "Bank": "navsym.multimodel.bank",
@@ -78,7 +78,7 @@ _HOMES = {
     "cite": "navsym.report.citation",
     "claims": "navsym.report.listing",
     "diff": "navsym.export.differences",
-    **dict.fromkeys(("FunctionComparison", "compare"), "navsym.export.compare"),
+    "compare": "navsym.export.compare",
     "doctor": "navsym.core.machine",
     "explain": "navsym.report.explain",
     "export": "navsym.export.driver",
@@ -97,14 +97,12 @@ if TYPE_CHECKING:
     from navsym.claims import Status as Status
     from navsym.claims import Verdict as Verdict
     from navsym.claims import Verdicts as Verdicts
-    from navsym.claims.workspace import Workspace as Workspace
     from navsym.claims.workspace import init as init
     from navsym.core.datasets import data as data
     from navsym.core.errors import NavsymError as NavsymError
     from navsym.core.machine import doctor as doctor
     from navsym.core.numbers import Number as Number
     from navsym.export.acceptance import check as check
-    from navsym.export.compare import FunctionComparison as FunctionComparison
     from navsym.export.compare import compare as compare
     from navsym.export.differences import diff as diff
     from navsym.export.driver import export as export
