@@ -16,9 +16,11 @@ if TYPE_CHECKING:
 
 def command(
     paths: Annotated[list[Path], typer.Argument(help="certificates (JSON), or folders of them or of exported code")],
+    kernel: Annotated[str | None, typer.Option(help="have a proof kernel prove each statement, too: coq")] = None,
+    out: Annotated[Path | None, typer.Option(help="folder of the kernel's theories; default: beside each file")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
-    """Accept or reject every certificate; status 1 when one is rejected.
+    """Accept or reject every certificate; status 1 when one is rejected, or not proved by the kernel.
 
     Example: navsym check report/certificates
     """
@@ -26,7 +28,7 @@ def command(
 
     try:
         with Progress("parts", resume="those checked follow; name the other paths for the rest") as bar:
-            checks = nav.check(*paths, progress=bar.follow)
+            checks = nav.check(*paths, kernel=kernel, out=out, progress=bar.follow)
     except KeyboardInterrupt as error:
         so_far: Checks | None = getattr(error, "checks", None)
         if so_far is not None:
@@ -38,4 +40,4 @@ def command(
 
 def as_text(checks: Checks) -> str:
     """A table, one line for each certificate."""
-    return table(("path", "kind", "status", "why"), [(c.path, c.kind or "", c.status, c.why) for c in checks])
+    return table(("path", "kind", "status", "why"), [c.words() for c in checks])

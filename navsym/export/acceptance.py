@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ from navsym import checker
 from navsym.claims.display import write_card, write_table
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, EmptyError, NavsymError
+from navsym.export.coq.replay import Replay, replay, require_kernel
 from navsym.export.roundtrip import check_export
 from navsym.language.files import decode
 from navsym.language.names import quote
@@ -34,6 +35,26 @@ class Check:
     kind: str | None
     status: str
     why: str
+    kernel: Replay | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether it is accepted, and proved by the kernel where one was asked."""
+        return self.status == "ACCEPTED" and (self.kernel is None or self.kernel.status == "PROVED")
+
+    def words(self) -> tuple[str, str, str, str]:
+        """Place, kind, status and reason for people."""
+        if self.kernel is None:
+            return self.path, self.kind or "", self.status, self.why
+        axioms = f"{len(self.kernel.axioms)} axioms" if self.kernel.status == "PROVED" else self.kernel.why
+        return self.path, self.kind or "", f"{self.status}, {self.kernel.name}: {self.kernel.status}", axioms
+
+    def document(self) -> dict[str, Any]:
+        """Its part of the JSON document; ``kernel`` where one was asked."""
+        fields = asdict(self)
+        if self.kernel is None:
+            del fields["kernel"]
+        return fields
 
 
 @dataclass(frozen=True, slots=True, repr=False, eq=False)
@@ -49,8 +70,8 @@ class Checks(Answer):
 
     @property
     def accepted(self) -> bool:
-        """True when everything was accepted."""
-        return all(row.status == "ACCEPTED" for row in self.checked)
+        """True when everything was accepted, and proved by the kernel where one was asked."""
+        return all(row.holds for row in self.checked)
 
     def __len__(self) -> int:
         return len(self.checked)
@@ -66,15 +87,15 @@ class Checks(Answer):
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym check``."""
-        rows = {"checked": [asdict(row) for row in self.checked]}
+        rows = {"checked": [row.document() for row in self.checked]}
         return {**rows, "interrupted": True} if self.interrupted else rows
 
     def __repr__(self) -> str:
-        rejected = sum(row.status != "ACCEPTED" for row in self.checked)
+        rejected = sum(not row.holds for row in self.checked)
         return f"<{len(self)} checked, {f'{rejected} REJECTED' if rejected else 'all ACCEPTED'}>"
 
     def _repr_html_(self) -> str:
-        rows = [(row.path, row.kind or "", row.status, row.why) for row in self.checked]
+        rows = [row.words() for row in self.checked]
         return write_card(
             [write_table(("path", "kind", "status", "why"), rows)], "PROVED" if self.accepted else "REFUTED"
         )
@@ -84,14 +105,23 @@ class Checks(Answer):
 Part = tuple[str, Callable[[], list[Check]]]
 
 
-def check(*items: Any, progress: Callable[[int, int, str], None] = lambda done, of, doing: None) -> Checks:
+def check(
+    *items: Any,
+    kernel: str | None = None,
+    out: str | os.PathLike[str] | None = None,
+    progress: Callable[[int, int, str], None] = lambda done, of, doing: None,
+) -> Checks:
     """Replay certificates in the independent checker, and run exported code on its own vectors.
 
     items    : paths of certificates (JSON), of exported folders or of folders of either; certificates as plain data;
                answers, of which every certificate is replayed
+    kernel   : ``"coq"`` has Coq prove the statement of every accepted certificate as well, from a theory in ``out``;
+               UNWRITTEN and FAILED say that no theory, or no proof, is found, and count as not confirmed
+    out      : folder of the theories; default: beside the certificate's file, build/coq for answers
     progress : called with (done, all, name) after each
 
-    Raises EmptyError where there is nothing to check, NavsymError for a path that does not exist.
+    Raises EmptyError where there is nothing to check, NavsymError for a path that does not exist, MissingEngineError
+    where the kernel is not on this machine.
 
     >>> import navsym as nav
     >>> drift = nav.solve("examples/schuler-velocity.toml", "drift", T="pi/2")
@@ -101,7 +131,10 @@ def check(*items: Any, progress: Callable[[int, int, str], None] = lambda done, 
     >>> nav.check(forged)[0].status
     'REJECTED'
     """
-    parts = [part for item in items for part in parts_of(item)]
+    if kernel is not None:
+        require_kernel(kernel)
+    asked = Asked(kernel, None if out is None else Path(out))
+    parts = [part for item in items for part in parts_of(item, asked)]
     rows: list[Check] = []
     try:
         for done, (name, run) in enumerate(parts, start=1):
@@ -116,13 +149,29 @@ def check(*items: Any, progress: Callable[[int, int, str], None] = lambda done, 
     return Checks(tuple(rows))
 
 
-def parts_of(item: Any) -> list[Part]:
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """The kernel that was asked for, and the folder of its theories."""
+
+    kernel: str | None
+    out: Path | None
+
+    def confirm(self, row: Check, certificate: Mapping[str, Any], beside: Path) -> Check:
+        """The row with the kernel's word on an accepted certificate."""
+        if self.kernel is None or row.status != "ACCEPTED":
+            return row
+        folder = beside.parent if self.out is None else self.out
+        folder.mkdir(parents=True, exist_ok=True)
+        return replace(row, kernel=replay(certificate, folder / f"{beside.stem}.v", self.kernel))
+
+
+def parts_of(item: Any, asked: Asked) -> list[Part]:
     """The work that an item brings: its files, the exported code of a folder, its certificates."""
     if isinstance(item, Answer):
         written = getattr(item, "out", None)
-        return parts_of(written) if isinstance(written, Path) else certificate_parts(item.certificates())
+        return parts_of(written, asked) if isinstance(written, Path) else certificate_parts(item.certificates(), asked)
     if isinstance(item, Mapping):
-        return certificate_parts([item])
+        return certificate_parts([item], asked)
     if not isinstance(item, (str, os.PathLike)):
         message = f"expected a path, an answer or a certificate; got {quote(item)}; name one of these"
         raise DomainError(message, where="check")
@@ -131,52 +180,54 @@ def parts_of(item: Any) -> list[Part]:
         message = "expected a file or folder that exists; got none of this name; correct it"
         raise NavsymError(message, where=str(path), kind="missing-file")
     if not path.is_dir():
-        return [(path.name, lambda: [check_file(path)])]
-    files = [(file.name, partial(check_in_folder, file)) for file in sorted(path.rglob("*.json"))]
+        return [(path.name, lambda: [check_file(path, asked)])]
+    files = [(file.name, partial(check_in_folder, file, asked)) for file in sorted(path.rglob("*.json"))]
     return [(path.name, lambda: [Check(**row) for row in check_export(path)]), *files]
 
 
-def certificate_parts(certificates: list[Mapping[str, Any]]) -> list[Part]:
+def certificate_parts(certificates: list[Mapping[str, Any]], asked: Asked) -> list[Part]:
     """One part for each certificate of an answer."""
     names = [f"certificate {place}" for place in range(1, len(certificates) + 1)]
-    return [(n, partial(check_plain, n, c)) for n, c in zip(names, certificates, strict=True)]
+    return [(n, partial(check_plain, n, c, asked)) for n, c in zip(names, certificates, strict=True)]
 
 
-def check_plain(name: str, certificate: Mapping[str, Any]) -> list[Check]:
+def check_plain(name: str, certificate: Mapping[str, Any], asked: Asked) -> list[Check]:
     """A certificate as plain data, through the text that a file would hold; the parts of one that joins several."""
     kind = certificate.get("kind")
     if kind == "all" and isinstance(certificate.get("of"), list):
         parts = enumerate(certificate["of"], start=1)
-        return [row for place, part in parts for row in check_plain(f"{name}.{place}", part)]
+        return [row for place, part in parts for row in check_plain(f"{name}.{place}", part, asked)]
     try:
-        return [Check(name, checker.check(checker.load(json.dumps(certificate))), "ACCEPTED", "")]
+        row = Check(name, checker.check(checker.load(json.dumps(certificate))), "ACCEPTED", "")
     except (checker.Refused, TypeError, ValueError) as error:
         return [Check(name, kind if isinstance(kind, str) else None, "REJECTED", str(error))]
+    return [asked.confirm(row, certificate, Path("build", "coq", f"{name.replace(' ', '-').replace('.', '-')}.json"))]
 
 
-def check_in_folder(file: Path) -> list[Check]:
+def check_in_folder(file: Path, asked: Asked) -> list[Check]:
     """A JSON file in a folder counts when it is a certificate; vectors and manifests do not."""
     try:
         document = json.loads(file.read_text("utf-8"))
     except (OSError, ValueError):
-        return [check_file(file)]
+        return [check_file(file, asked)]
     certificate = isinstance(document, dict) and bool(document) and ("kind" in document or document.keys() <= KEYS)
-    return [check_file(file)] if certificate else []
+    return [check_file(file, asked)] if certificate else []
 
 
-def check_file(path: Path) -> Check:
+def check_file(path: Path, asked: Asked) -> Check:
     """A certificate in a file."""
     try:
         if path.stat().st_size > LARGEST:
             raise checker.Refused("longer than 50 MB")
-        kind = checker.check(checker.load(decode(path.read_bytes(), str(path))))
+        certificate = checker.load(decode(path.read_bytes(), str(path)))
+        kind = checker.check(certificate)
     except OSError as error:
         return Check(str(path), None, "REJECTED", f"cannot be read: {error.strerror}")
     except NavsymError as error:
         return Check(str(path), None, "REJECTED", error.message)
     except checker.Refused as error:
         return Check(str(path), kind_of(path), "REJECTED", str(error))
-    return Check(str(path), kind, "ACCEPTED", "")
+    return asked.confirm(Check(str(path), kind, "ACCEPTED", ""), certificate, path)
 
 
 def kind_of(path: Path) -> str | None:

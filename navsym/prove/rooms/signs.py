@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
-import scipy.optimize
 import sympy as sp
 from flint import arb, fmpq, fmpq_mpoly
 
@@ -60,10 +58,12 @@ def find_weights(goal: Any) -> list[str] | None:
     """Weights >= 0 of the hypotheses that may add up to the term: least squares over the coefficients."""
     if not goal.given:
         return None
+    from scipy.optimize import nnls  # a half of what starting takes otherwise
+
     forms = [sp.expand(to_sympy(t)).as_coefficients_dict() for t in (goal.term, *goal.given)]
     monomials = list(dict.fromkeys(m for form in forms for m in form))
     rows = [[float(form.get(m, 0)) for m in monomials] for form in forms]
-    weights, rest = scipy.optimize.nnls(np.transpose(rows[1:]), np.array(rows[0]))
+    weights, rest = nnls([list(column) for column in zip(*rows[1:], strict=True)], rows[0])
     return [str(Fraction(w).limit_denominator(1000)) for w in weights] if rest < 1e-9 else None
 
 

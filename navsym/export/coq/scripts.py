@@ -1,0 +1,255 @@
+"""Scripts of Coq: an identity by ``field`` modulo ``s^2 = 1 - c^2`` and ``r r = e``, a bound by ``interval``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from math import isqrt, lcm
+
+from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+
+from navsym import checker
+from navsym.checker import Term
+from navsym.export.coq.terms import Unwritten, subterms, write_term
+
+#: Fractions of pi whose sine and cosine are rules of the library, by the denominator.
+OF_PI = {k: (f"sin_PI{k if k > 1 else ''}", f"cos_PI{k if k > 1 else ''}") for k in (1, 2, 3, 4, 6)}
+#: Multiples of one angle that a script is written for.
+MOST_TURNS = 24
+#: Precision in bits and depth that ``interval`` is given, and seconds for one try.
+BITS, DEPTH, PATIENCE = 60, 20, 20
+
+
+@dataclass
+class Script:
+    """Lines of a proof; what subterms have become in the goal; rules that ``field`` may use."""
+
+    names: Mapping[str, str]
+    lines: list[str] = field(default_factory=list)
+    now: dict[Term, str] = field(default_factory=dict)
+    rules: list[str] = field(default_factory=list)
+
+    def write(self, term: Term) -> str:
+        """The term as the goal has it now."""
+        return write_term(term, self.names, self.now)
+
+    def rewrite(self, term: Term, new: str, proof: str) -> None:
+        """Prove that a part of the goal is equal to a new text, and put that in its place."""
+        old = self.write(term)
+        if old != new:
+            self.replace(old, new, proof)
+            self.now[term] = new
+
+    def replace(self, old: str, new: str, proof: str) -> None:
+        """Prove that two texts are equal, and put the new one in the place of the old one."""
+        name = f"E{len(self.lines)}"
+        self.lines.append(f"assert ({name} : {old} = {new}) by ({proof}).")
+        self.lines.append(f"try rewrite {name} in *; clear {name}.")
+
+    def know(self, fact: str, proof: str) -> None:
+        """Prove a rule for ``field``."""
+        name = f"F{len(self.rules)}"
+        self.lines.append(f"assert ({name} : {fact}) by ({proof}).")
+        self.rules.append(name)
+
+
+def prove_equality(terms: Iterable[Term], names: Mapping[str, str]) -> list[str]:
+    """Functions of sums become those of single angles, logarithms and roots; ``field`` does the rest."""
+    script = Script(names)
+    parts = [*dict.fromkeys(part for term in terms for part in subterms(term))]
+    for part in parts:
+        if part[0] == "tan":
+            inside = script.write(part[1])
+            script.rewrite(part, f"sin ({inside}) / cos ({inside})", "reflexivity")
+        elif part[0] in ("sinh", "cosh", "tanh"):
+            raise Unwritten("hyperbolic functions in an equality")
+    write_angles([p for p in parts if p[0] in ("sin", "cos", "tan", "cot", "sec", "csc")], script)
+    write_exponentials([p for p in parts if p[0] == "exp"], script)
+    write_roots([p for p in parts if is_square_root(p)], script)
+    write_absolutes([p for p in parts if p[0] == "abs"], script)
+    rules = f" [{' '.join(script.rules)}]" if script.rules else ""
+    last = (
+        f"first [ solve [ring{rules}] | solve [field{rules}; nonzero] ]."
+        if rules
+        else "first [ solve [ring] | field; nonzero ]."
+    )
+    return [*script.lines, last]
+
+
+def is_square_root(part: Term) -> bool:
+    """A square root, or a power of one."""
+    if part[0] == "sqrt":
+        return True
+    q = checker.constant_of(part[2]) if part[0] == "^" else None
+    return q is not None and q.q == 2
+
+
+Angle = dict[tuple[str, bool], fmpq]
+
+
+def split_angle(term: Term, script: Script) -> Angle:
+    """An argument as a sum of rational multiples of texts; pi is marked."""
+    generators = [*dict.fromkeys(checker.list_generators(term))]
+    ring = fmpq_mpoly_ctx.get([f"x{k}" for k in range(len(generators))] or ["x0"])
+    top, bottom = checker.to_quotient(term, dict(zip(generators, ring.gens(), strict=False)), ring)
+    if bottom == 0:
+        raise Unwritten("a division by zero")
+    common = top.gcd(bottom) if top != 0 else bottom
+    top, bottom = top / common, bottom / common
+    scale = bottom.leading_coefficient()
+    top, bottom = top / scale, bottom / scale
+    texts = [script.write(g) for g in generators]
+    below = "" if bottom == 1 else f" / ({write_polynomial(bottom, texts)})"
+    found: Angle = {}
+    for exponents, coefficient in top.terms():
+        monomial = write_monomial(exponents, texts)
+        found[monomial + below, monomial + below == "PI"] = coefficient
+    return found
+
+
+def write_monomial(exponents: Iterable[int], texts: list[str]) -> str:
+    """A product of powers."""
+    powers = [
+        (f"({t})" if not t.isalnum() else t) + (f" ^ {e}" if e > 1 else "")
+        for t, e in zip(texts, map(int, exponents), strict=False)
+        if e
+    ]
+    return " * ".join(powers) or "1"
+
+
+def write_polynomial(polynomial: fmpq_mpoly, texts: list[str]) -> str:
+    """A polynomial in given texts."""
+    parts = []
+    for exponents, q in polynomial.terms():
+        coefficient = write_term(("number", q), {})
+        parts.append(f"({coefficient}) * {write_monomial(exponents, texts)}")
+    return " + ".join(parts) or "0"
+
+
+def find_bases(angles: Iterable[Angle]) -> dict[tuple[str, bool], int]:
+    """For each text the denominator of its multiples."""
+    found: dict[tuple[str, bool], int] = {}
+    for angle in angles:
+        for key, q in angle.items():
+            found[key] = lcm(found.get(key, 1), int(q.q))
+    return found
+
+
+def write_angles(parts: list[Term], script: Script) -> None:
+    """Sines and cosines as polynomials in those of single angles, by the theorems of addition."""
+    angles = {part[1]: split_angle(part[1], script) for part in parts}
+    bases = find_bases(angles.values())
+    keys = [*bases]
+    ring = fmpq_mpoly_ctx.get([f"x{k}" for k in range(2 * len(keys))] or ["x0"])
+    units = [write_unit(key, bases[key]) for key in keys]
+    texts = [t for unit in units for t in (f"cos ({unit})", f"sin ({unit})")]
+    used = set()
+    for argument, angle in angles.items():
+        turns = {keys.index(key): int(q * bases[key]) for key, q in angle.items()}
+        if sum(map(abs, turns.values())) > MOST_TURNS:
+            raise Unwritten("a large multiple of an angle")
+        used |= set(turns)
+        cosine, sine = ring.constant(1), ring.constant(0)
+        for k, turn in turns.items():
+            c, s = ring.gens()[2 * k], ring.gens()[2 * k + 1] * (1 if turn > 0 else -1)
+            for _ in range(abs(turn)):
+                cosine, sine = cosine * c - sine * s, sine * c + cosine * s
+        total = write_sum({units[k]: turn for k, turn in turns.items()})
+        for name, value in (("sin", sine), ("cos", cosine)):
+            old, new = f"{name} ({script.write(argument)})", write_polynomial(value, texts)
+            if total != f"({script.write(argument)})":
+                proof = f"transitivity ({name} ({total})); [ f_equal; field; nonzero | by_addition ]"
+                script.replace(old, new, proof)
+                script.now[name, argument] = new
+    for k in sorted(used):
+        if keys[k][1] and bases[keys[k]] in OF_PI:
+            script.lines += [f"try rewrite {rule} in *." for rule in OF_PI[bases[keys[k]]]]
+        elif keys[k][1]:
+            raise Unwritten("a fraction of pi without a rule")
+        else:
+            fact = f"sin ({units[k]}) ^ 2 = 1 - cos ({units[k]}) ^ 2"
+            script.know(fact, f"generalize (sin2_cos2 ({units[k]})); unfold Rsqr; intro; nra")
+
+
+def write_unit(key: tuple[str, bool], denominator: int) -> str:
+    """The angle of which others are multiples, as the rules about pi have it."""
+    text = key[0]
+    return text if denominator == 1 else f"{text} / {denominator}"
+
+
+def write_sum(turns: Mapping[str, int]) -> str:
+    """A sum of texts, each repeated or subtracted."""
+    pieces = [f"({u})" if n > 0 else f"- ({u})" for u, n in turns.items() for _ in range(abs(n))]
+    return " + ".join(pieces) or "0"
+
+
+def write_exponentials(parts: list[Term], script: Script) -> None:
+    """Exponentials as products of powers of single ones."""
+    arguments = {part: split_angle(part[1], script) for part in parts}
+    bases = find_bases(arguments.values())
+    for part, argument in arguments.items():
+        turns = {key: int(q * bases[key]) for key, q in argument.items()}
+        if sum(map(abs, turns.values())) > MOST_TURNS:
+            raise Unwritten("a large multiple of an exponent")
+        units = {write_unit(key, bases[key]): turn for key, turn in turns.items()}
+        powers = [f"exp ({u}) ^ {n}" if n > 0 else f"/ (exp ({u}) ^ {-n})" for u, n in units.items()]
+        new = " * ".join(powers) or "1"
+        proof = f"transitivity (exp ({write_sum(units)})); [ f_equal; field; nonzero | by_multiplication ]"
+        script.rewrite(part, new, proof)
+
+
+def write_roots(parts: list[Term], script: Script) -> None:
+    """Each square root with its square, and square roots of numbers by that of a number without squares."""
+    known = set()
+    for part in parts:
+        base = part[1]
+        text = script.write(base)
+        if text in known:
+            continue
+        known.add(text)
+        q = checker.constant_of(base)
+        if q is not None and q > 0 and (free := square_free(q)) != q:
+            factor = fmpq(isqrt(int((q / free).p)), isqrt(int((q / free).q)))
+            times, rest = (write_term(("number", value), {}) for value in (factor, free))
+            script.replace(f"sqrt ({text})", f"{times} * sqrt ({rest})", f"root_of ({rest})")
+            text = rest
+        script.know(f"sqrt ({text}) ^ 2 = {text}", "square_of_root")
+
+
+def write_absolutes(parts: list[Term], script: Script) -> None:
+    """Absolute values of numbers, and the squares of others."""
+    for part in parts:
+        text, q = script.write(part[1]), checker.constant_of(part[1])
+        if q is None:
+            script.know(f"Rabs ({text}) ^ 2 = ({text}) ^ 2", "apply pow2_abs")
+        else:
+            script.rewrite(part, write_term(("number", abs(q)), {}), "unfold Rabs; destruct Rcase_abs; lra")
+
+
+def square_free(q: fmpq) -> fmpq:
+    """The rational number without squares that q is times the square of another: an integer."""
+    n = int(q.p) * int(q.q)
+    free, d = n, 2
+    while d * d <= min(free, 10**6):
+        while free % (d * d) == 0:
+            free //= d * d
+        d += 1
+    return fmpq(free)
+
+
+# -- Inequalities and counterexamples ----------------------------------
+
+
+def prove_bound(names: Mapping[str, str]) -> list[str]:
+    """A bound on a box by bisection and Taylor models."""
+    cut = "".join(f", i_bisect {name}" for name in names.values())
+    tries = [f"i_prec {BITS}, i_depth {DEPTH}{cut}"]
+    tries += [f"i_prec {BITS}, i_depth {DEPTH}, i_taylor {name}{cut}" for name in names.values()][:2]
+    balls = " | ".join(f"timeout {PATIENCE} by_difference ltac:(interval with ({options}))" for options in tries)
+    return [f"first [ lra | {balls} | timeout {PATIENCE} nra ]."]
+
+
+def refute(point: Mapping[str, str], names: Mapping[str, str]) -> list[str]:
+    """The statement at the point: its conditions hold, and its relation does not."""
+    place = " ".join(f"({write_term(checker.parse(point[name]), names)})" for name in names)
+    return ["intro H.", *([f"specialize (H {place})."] if place else []), "discharge H.", "contradict H."]

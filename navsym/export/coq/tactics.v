@@ -1,0 +1,65 @@
+Lemma exp_not_0 : forall x, exp x <> 0.
+Proof. intro x. assert (H := exp_pos x). lra. Qed.
+
+(* Products, powers and exponentials that are not 0, by hypotheses up to form, sign and a number. *)
+Ltac nonzero :=
+  repeat match goal with |- _ /\ _ => split end;
+  repeat first
+    [ assumption | lra | apply exp_not_0 | apply Rmult_integral_contrapositive_currified | apply pow_nonzero
+    | apply Rinv_neq_0_compat
+    | match goal with H : ?d <> 0 |- ?e <> 0 =>
+        let Z := fresh in intro Z; apply H;
+        first [ lra | solve [ ring [Z] ] | solve [ rewrite Z; ring ]
+              | solve [ replace d with e by field; lra ] | solve [ replace d with (- e) by field; lra ] ]
+      end
+    | match goal with H : 0 < ?d |- ?e <> 0 =>
+        first [ solve [ replace e with d by field; lra ] | solve [ replace e with (- d) by field; lra ] ]
+      end
+    | timeout 10 nra ].
+
+(* Sines and cosines of sums. *)
+Ltac by_addition :=
+  repeat first
+    [ rewrite sin_plus | rewrite cos_plus | rewrite sin_neg | rewrite cos_neg | rewrite sin_0 | rewrite cos_0 ];
+  ring.
+
+Ltac by_multiplication := rewrite ?exp_plus, ?exp_Ropp, ?exp_0; field; nonzero.
+
+(* sqrt (f f r) = f * sqrt r, and sqrt x ^ 2 = x. *)
+Ltac root_of r :=
+  apply sqrt_lem_1;
+  [ lra | apply Rmult_le_pos; [ lra | apply sqrt_pos ]
+  | let S := fresh in assert (S := sqrt_sqrt r ltac:(lra)); first [ field [S] | nra ] ].
+Ltac square_of_root := apply pow2_sqrt; first [ assumption | lra | timeout 10 nra | many_digits ].
+
+(* An inequality by that of the difference with 0. *)
+Ltac by_difference prove :=
+  match goal with
+  | |- _ <= _ => apply Rminus_le; prove
+  | |- _ < _ => apply Rminus_lt; prove
+  | |- _ >= _ => apply Rle_ge, Rminus_le; prove
+  | |- _ > _ => apply Rminus_lt; prove
+  end.
+
+(* A relation of numbers. *)
+Ltac numbers :=
+  match goal with
+  | |- _ <> _ =>
+      first [ intro; lra | apply Rminus_not_eq; first [ apply Rgt_not_eq; few_digits | apply Rlt_not_eq; few_digits ] ]
+  | |- _ => first [ lra | by_difference ltac:(few_digits) | by_difference ltac:(many_digits) ]
+  end.
+
+(* The conditions of H hold; then H itself is false. *)
+Ltac discharge H :=
+  repeat match type of H with ?A -> ?B =>
+    let N := fresh in assert (N : A) by (clear H; numbers); specialize (H N); clear N
+  end.
+Ltac contradict H :=
+  match type of H with
+  | ?x = ?y => let D := fresh in assert (D : x <> y) by (clear H; numbers); exact (D H)
+  | ?x <> ?y => apply H; field
+  | ?x <= ?y => let D := fresh in assert (D : y < x) by (clear H; numbers); exact (Rlt_not_le _ _ D H)
+  | ?x >= ?y => let D := fresh in assert (D : x < y) by (clear H; numbers); exact (Rlt_not_ge _ _ D H)
+  | ?x < ?y => let D := fresh in assert (D : y <= x) by (clear H; numbers); exact (Rle_not_lt _ _ D H)
+  | ?x > ?y => let D := fresh in assert (D : x <= y) by (clear H; numbers); exact (Rle_not_gt _ _ D H)
+  end.

@@ -1,0 +1,108 @@
+"""Statements for Coq: the theorem says what the statement says, and Coq proves true ones and no false one."""
+
+from __future__ import annotations
+
+import json
+import shutil
+
+import pytest
+
+import navsym as nav
+from navsym.core.errors import DomainError, MissingEngineError
+from navsym.export.coq import replay
+from navsym.export.coq.theory import write_theory
+
+needs_coq = pytest.mark.skipif(shutil.which("coqc") is None, reason="no coqc on this machine")
+
+
+def certificate(left, relation, right, symbols=None, kind="proof", **more):
+    """A certificate with this statement; its proof does not matter here."""
+    statement = {"left": left, "relation": relation, "right": right, "symbols": symbols or {}, "exists": []}
+    statement["tolerance"] = more.pop("tolerance", None)
+    return {"kind": kind, "statement": statement, **more}
+
+
+def theorem(*args, **keys):
+    """The theorem of a statement, without its script."""
+    text = write_theory(certificate(*args, **keys))
+    return next(line for line in text.splitlines() if line.startswith("Theorem"))[len("Theorem statement_1 : ") :]
+
+
+REAL = [None, None, []]
+
+
+def test_ranges_and_what_has_to_be_defined_are_conditions():
+    said = theorem("sqrt(x)/y", "<=", "1", {"x": ["0", "2", ["open-high"]], "y": [None, None, ["nonzero"]]})
+    assert said == "forall (x y : R), 0 <= x -> x < 2 -> y <> 0 -> x >= 0 -> y <> 0 -> sqrt (x) / y <= 1."
+
+
+def test_a_counterexample_denies_the_whole_statement():
+    said = theorem("x", "=", "1", {"x": REAL}, kind="counterexample", point={"x": "2"})
+    assert said == "~ (forall (x : R), x = 1)."
+
+
+def test_a_tolerance_is_two_bounds():
+    assert (
+        theorem("pi", "=", "3.14", tolerance="0.005")
+        == "PI + ((- 157) / 50) <= 1 / 200 /\\ (157 / 50) + (- 1) * PI <= 1 / 200."
+    )
+
+
+def test_names_that_mean_something_in_coq_get_another():
+    said = theorem("PI*R*match", "=", "R_", {name: REAL for name in ("PI", "R", "R_", "match")})
+    assert said == "forall (PI_ R__ R_ match_ : R), PI_ * R__ * match_ = R_."
+
+
+@pytest.mark.parametrize(
+    ("text", "why"), [("x**(1/3)", "no square root"), ("atan2(x, 1)", "atan2"), ("x**2000", "beyond 1000")]
+)
+def test_what_has_no_counterpart_is_not_written(text, why):
+    with pytest.raises(DomainError, match=why):
+        write_theory(certificate(text, "=", "x", {"x": ["1", "2", []]}))
+    with pytest.raises(DomainError, match="one of kind gap"):
+        write_theory({"kind": "gap"})
+
+
+def test_a_machine_without_coq_says_how_to_get_it(monkeypatch, tmp_path):
+    file = tmp_path / "c.json"
+    file.write_text(json.dumps(nav.prove("x = x").certificate))
+    monkeypatch.setattr(replay, "coq_version", lambda: None)
+    with pytest.raises(MissingEngineError, match="libcoq-interval"):
+        nav.check(file, kernel="coq")
+    with pytest.raises(DomainError, match="expected one of coq"):
+        nav.check(file, kernel="lean")
+    assert "kernel" not in nav.check(file).document()["checked"][0]
+
+
+@needs_coq
+@pytest.mark.long
+def test_coq_proves_what_the_checker_accepts(tmp_path):
+    answers = [
+        nav.prove("sin(3*a)/sin(a) = 4*cos(a)**2 - 1"),
+        nav.prove("sqrt(8)*x/(x**2 - x) = 2*sqrt(2)/(x - 1)"),
+        nav.prove("exp(2*x + y)/exp(x) = exp(x)*exp(y)", y=("0", "1")),
+        nav.prove("sin(x)*exp(x) <= 23/10", x=("0", "1")),
+        nav.prove("sin(x) = x*cos(x)"),
+    ]
+    for place, answer in enumerate(answers):
+        (row,) = nav.check(answer, kernel="coq", out=tmp_path / str(place))
+        assert row.kernel is not None and row.kernel.status == "PROVED", (answer, row)
+        assert any("sig_forall_dec" in axiom for axiom in row.kernel.axioms)
+        assert "Theorem statement_1" in (tmp_path / str(place) / "certificate-1.v").read_text()
+
+
+@needs_coq
+@pytest.mark.long
+def test_coq_proves_no_false_statement(tmp_path):
+    """Statements that the checker would refuse, written for Coq all the same."""
+    box = {"x": ["0", "1", []]}
+    false = [
+        certificate("sin(2*x)", "=", "2*sin(x)", box),
+        certificate("x/x", "=", "x", {"x": REAL}),
+        certificate("sqrt(x**2)", "=", "x", {"x": REAL}),
+        certificate("x**2", ">=", "x", box),
+        certificate("x", ">=", "0", box, kind="counterexample", point={"x": "1/2"}),
+        certificate("x", "<=", "0", box, kind="counterexample", point={"x": "2"}),
+    ]
+    for place, forged in enumerate(false):
+        assert replay.replay(forged, tmp_path / f"{place}.v").status == "FAILED", forged
