@@ -41,7 +41,7 @@ import sys
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 #: Public name -> module that holds it. A module is imported when its name is first used, and its engines with it.
 _HOMES = {
@@ -63,6 +63,7 @@ _HOMES = {
     **dict.fromkeys(
         ("Verdict", "Verdicts", "Status", "PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"), "navsym.claims"
     ),
+    "init": "navsym.claims.workspace",
     "prove": "navsym.prove.formulas",
     **dict.fromkeys(("Reading", "read"), "navsym.language.latex.reading"),
     "new_paper": "navsym.prove.drafts",
@@ -82,6 +83,7 @@ _HOMES = {
     "cite": "navsym.report.citation",
     "claims": "navsym.report.listing",
     "diff": "navsym.export.differences",
+    "compare": "navsym.export.compare",
     "doctor": "navsym.core.machine",
     "explain": "navsym.report.explain",
     "export": "navsym.export.driver",
@@ -101,6 +103,7 @@ if TYPE_CHECKING:
     from navsym.claims import Status as Status
     from navsym.claims import Verdict as Verdict
     from navsym.claims import Verdicts as Verdicts
+    from navsym.claims.workspace import init as init
     from navsym.conventions.answer import Conventions as Conventions
     from navsym.conventions.answer import conventions as conventions
     from navsym.core.datasets import data as data
@@ -108,6 +111,7 @@ if TYPE_CHECKING:
     from navsym.core.machine import doctor as doctor
     from navsym.core.numbers import Number as Number
     from navsym.export.acceptance import check as check
+    from navsym.export.compare import compare as compare
     from navsym.export.differences import diff as diff
     from navsym.export.driver import export as export
     from navsym.guaranteed.baselines import Comparison as Comparison
@@ -166,6 +170,13 @@ def __getattr__(name: str) -> Any:
     value = getattr(import_module(_HOMES[name]), name)
     setattr(sys.modules[__name__], name, value)
     return value
+
+
+def load_ipython_extension(shell: Any) -> None:
+    """``%load_ext navsym`` in a notebook: ``%prove`` decides a formula, ``%%claims`` a cell of them."""
+    from importlib import import_module
+
+    import_module("navsym.cli._magics").register_magics(shell)
 
 
 def __dir__() -> list[str]:

@@ -12,7 +12,7 @@ from navsym.language.printer import to_text
 
 def read_claim_side(reference: Any, folder: Path, where: str) -> list[list[str]]:
     """The right side of a claim of a claim file, ``"formulas.toml:half-angle"``, as rows of texts."""
-    from navsym.prove.claimfile import read_claims
+    from navsym.prove.claimfile import read_claims, require_numbers
 
     if not isinstance(reference, str) or ".toml:" not in reference:
         message = f'expected a claim such as "claims.toml:name"; got {quote(reference)}; write file and id'
@@ -22,9 +22,10 @@ def read_claim_side(reference: Any, folder: Path, where: str) -> list[list[str]]
     if name not in claims:
         message = f"expected a claim of {file} ({', '.join([*claims][:12])}); got {quote(name)}; correct the id"
         raise UnknownSymbolError(message, where=where)
-    if claims[name].relation != "=" or claims[name].tolerance is not None:
+    claim = require_numbers(claims[name])
+    if claim.relation != "=" or claim.tolerance is not None:
         raise DomainError("expected an equation; got another claim; choose one with =", where=where)
-    right = claims[name].formula.right
+    right = claim.formula.right
     rows = right if isinstance(right, list) else [right]
     return [[str(cell) for cell in row] if isinstance(row, list) else [str(row)] for row in rows]
 

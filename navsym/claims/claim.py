@@ -10,7 +10,7 @@ from typing import Literal
 
 from navsym.claims.display import mark_verdict, write_card
 from navsym.claims.statement import Statement
-from navsym.claims.verdict import PROVED, Status
+from navsym.claims.verdict import PROVED, Status, Verdict
 from navsym.core.errors import MissingEngineError
 
 Slip = Literal["paper", "scan"]
@@ -31,6 +31,9 @@ class Claim:
     corrects : number of the refuted claim that this one replaces
     slip     : where the printed side went wrong, ``"paper"`` or ``"scan"``
     reason   : one sentence: what is wrong and how one can tell
+    place    : file and line of a claim that no Python states; empty for others
+    complete : what is added to a verdict, such as the conditions that only the text shows
+    either   : True when ``expect`` only says that it holds: PROVED and CERTIFIED are both as declared
     """
 
     module: str
@@ -41,6 +44,9 @@ class Claim:
     corrects: str | None = None
     slip: Slip | None = None
     reason: str = ""
+    place: str = ""
+    complete: Callable[[Verdict], Verdict] | None = None
+    either: bool = False
 
     @property
     def id(self) -> str:

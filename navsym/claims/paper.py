@@ -10,6 +10,7 @@ from pathlib import Path
 from types import ModuleType
 
 from navsym.claims.claim import PAPERS, Claim
+from navsym.core.errors import DuplicateError
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,7 +95,8 @@ def claims_of(module: ModuleType) -> tuple[Claim, ...]:
             for claim in claims_in(value):
                 known = found.setdefault(claim.id, claim)
                 if known is not claim:
-                    raise ValueError(f"{claim.id}: two claims have this id")
+                    message = f"expected distinct ids of claims; got {claim.id} twice; rename one of them"
+                    raise DuplicateError(message, where=str(module.__file__))
     return tuple(found.values())
 
 

@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from navsym.claims.paper import experiment_names, paper_names, papers_folder
+from navsym.claims.workspace import find_workspace
+from navsym.core.errors import NavsymError
 
 SHELLS = ("bash", "zsh", "fish")
 STATUSES = ("PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN")
@@ -75,9 +77,20 @@ def option_call(annotation: ast.expr | None) -> ast.Call | None:
 def claims() -> list[str]:
     """Ids of all claims, from the ledger."""
     try:
-        document = json.loads((papers_folder() / "verdicts.json").read_text(encoding="utf-8"))
+        workspace = find_workspace()
+        ledger = papers_folder() / "verdicts.json" if workspace is None else workspace.ledger_file
+        document = json.loads(ledger.read_text(encoding="utf-8"))
         return [str(record["id"]) for record in document["claims"]]
-    except (OSError, ValueError, LookupError, TypeError):  # a damaged ledger completes nothing
+    except (OSError, ValueError, LookupError, TypeError, NavsymError):  # a damaged ledger completes nothing
+        return []
+
+
+def sources() -> list[str]:
+    """Files and papers of the workspace, or the papers that come with navsym."""
+    try:
+        workspace = find_workspace()
+        return paper_names() if workspace is None else [*workspace.names()]
+    except NavsymError:
         return []
 
 
@@ -93,8 +106,8 @@ POSITIONAL: dict[str, Callable[[], Iterable[str]]] = {
     "explain": claims,
     "cite": claims,
     "export": claims,
-    "verify": paper_names,
-    "report": paper_names,
+    "verify": sources,
+    "report": sources,
     "new-claim": paper_names,
     "simulate": experiment_names,
     "campaign": lambda: ("mutants", "engines", "parser", "fuzz", "certificates", "identities", *paper_names()),
@@ -102,7 +115,7 @@ POSITIONAL: dict[str, Callable[[], Iterable[str]]] = {
     "completion": lambda: SHELLS,
 }
 VALUES: dict[str, Callable[[], Iterable[str]]] = {
-    "--paper": paper_names,
+    "--paper": sources,
     "--status": lambda: STATUSES,
     "--slip": lambda: ("paper", "scan", "any"),
     "--real": lambda: ("double", "float"),

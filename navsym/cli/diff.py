@@ -1,4 +1,4 @@
-"""Compare two formulas, claim files, models or exports: proved equal, or the worst point shown."""
+"""Compare two formulas, claim files, models, exports or ledgers: proved equal, or the worst point shown."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
 
 def command(
-    old: Annotated[str, typer.Argument(help="a formula, a claim or model file (TOML), or an exported folder")],
+    old: Annotated[
+        str, typer.Argument(help="a formula, the id of a claim, a claim or model file, a ledger, or an exported folder")
+    ],
     new: Annotated[str, typer.Argument(help="another one of the same kind")],
     box: Annotated[
         list[str] | None, typer.Option("--range", help='range of a symbol, such as "T=0,2*pi"; may be repeated')

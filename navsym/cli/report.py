@@ -14,7 +14,9 @@ from navsym.cli.verify import unexpected_lines
 
 def command(
     modules: Annotated[list[str] | None, typer.Argument(help="derivation modules; default: all")] = None,
-    out: Annotated[Path, typer.Option(help="folder for the pages; made when it is not there")] = Path("report"),
+    out: Annotated[
+        Path | None, typer.Option(help="folder for the pages, made when it is not there; default: report")
+    ] = None,
     source: Annotated[
         Path | None, typer.Option("--from", help="take verdicts from a document of navsym verify --json, or a ledger")
     ] = None,
@@ -31,7 +33,7 @@ def command(
     """
     import navsym as nav
 
-    resume = f"verdicts and finished pages are kept, the index of {out} is not; the same command goes on from there"
+    resume = "verdicts and finished pages are kept, their index is not; the same command goes on from there"
     with Progress("claims", resume=resume) as bar:
         site = nav.report(
             *(modules or []),
@@ -44,6 +46,6 @@ def command(
             remark=remark,
         )
     wrong = site.ledger.unexpected
-    told = "\n".join([f"{len(site.files)} files; open {out / 'index.html'}", *unexpected_lines(wrong)])
+    told = "\n".join([f"{len(site.files)} files; open {site.out / 'index.html'}", *unexpected_lines(wrong)])
     emit(site.document(), as_json=json_, text=told)
     return 1 if wrong else 0

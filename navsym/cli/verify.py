@@ -22,9 +22,9 @@ RESUME = "the certificates so far are kept: the same command (without --fresh) g
 
 
 def command(
-    modules: Annotated[list[str] | None, typer.Argument(help="derivation modules; default: all")] = None,
+    modules: Annotated[list[str] | None, typer.Argument(help="papers, or claim and model files; default: all")] = None,
     write: Annotated[
-        bool, typer.Option("--write", help="write the verdicts to the ledger derivations/verdicts.json")
+        bool, typer.Option("--write", help="write the verdicts to the ledger, ledger.json in a workspace")
     ] = False,
     jobs: Annotated[int | None, typer.Option(help="claims decided at the same time; default: one per core")] = None,
     seconds: Annotated[
@@ -67,10 +67,9 @@ def as_text(ledger: Ledger, seconds: float) -> str:
     rows = [(r.number, str(r.status), r.title, remark_of(r)) for _, records in papers for r in records]
     blocks = [table(("claim", "verdict", "what it says", "remark"), rows)]
     for paper, records in papers:
-        blocks.append(
-            f"{paper.module}: {paper.equations} numbered equations, {paper.claimed} claimed, "
-            f"{paper.definitions} definitions, missing: {', '.join(paper.missing) or 'none'}"
-        )
+        counted = f"{paper.equations} numbered equations, {paper.claimed} claimed, {paper.definitions} definitions"
+        missing = f", missing: {', '.join(paper.missing) or 'none'}"
+        blocks.append(f"{paper.module}: {counted + missing if paper.equations else f'{len(records)} claims'}")
         blocks += refuted_lines(records)
     counted = ", ".join(f"{count} {status}" for status, count in ledger.counts.items() if count)
     blocks.append(f"{len(ledger)} claims in {seconds:.1f} s: {counted}")
@@ -81,14 +80,17 @@ def as_text(ledger: Ledger, seconds: float) -> str:
 def compare_line(ledger: Ledger) -> str:
     """How the ledger as it was last written compares with these verdicts."""
     from navsym.core.errors import NavsymError
+    from navsym.verification.ledger import ledger_file
 
+    if not ledger.is_kept:
+        return "the verdicts of files are kept in a workspace; navsym init makes one"
     try:
         changed = ledger.changed
     except NavsymError as error:
         return f"the ledger cannot be compared: {error}"
     if changed:
         return f"the ledger differs in {len(changed)} claims, {changed[0]} first; --write updates it"
-    return "the ledger verdicts.json agrees"
+    return f"the ledger {ledger_file().name} agrees"
 
 
 def refuted_lines(records: Sequence[Record]) -> list[str]:

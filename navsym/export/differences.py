@@ -15,7 +15,7 @@ from typing import Any
 import sympy as sp
 from flint import arb
 
-from navsym.claims import REFUTED
+from navsym.claims import REFUTED, Bound, Equation, Record
 from navsym.claims.display import write_table
 from navsym.claims.formula import Formula as Statement
 from navsym.core.answers import Answer
@@ -31,6 +31,7 @@ from navsym.prove.claimfile import (
     FileClaim,
     claims_from,
     existing_parts,
+    read_claims,
     require_numbers,
     statement_of,
     text_conditions,
@@ -38,8 +39,11 @@ from navsym.prove.claimfile import (
 from navsym.prove.ladder import decide
 from navsym.prove.sampling.points import range_of
 from navsym.prove.wording import decimal_ends, expression_text
+from navsym.verification.ledger import Ledger, read_ledger
+from navsym.verification.papers import file_of_source, find_claim, is_model, split_id
 
 POINTS = 400
+LEDGER = "a ledger"
 LIMIT = 20_000_000
 
 
@@ -122,9 +126,10 @@ class Differences(Answer):
 
 
 def diff(old: Any, new: Any, *, box: Mapping[str, Any] | None = None, **ranges: Any) -> Differences:
-    """Two formulas, claim files, models or exported folders compared exactly, formula by formula.
+    """Two formulas, claim files, models, exported folders or ledgers compared exactly, formula by formula.
 
-    old, new : formulas (text or sympy), paths of claim or model files (TOML), or exported folders; both of one kind
+    old, new : formulas (text, sympy, or the id of a claim for what it prints), paths of claim or model files (TOML)
+               or of ledgers (JSON), or exported folders; both of one kind
     box      : ranges of symbols, ``{"T": ("0", "2*pi")}``; the same as ``T=("0", "2*pi")``. Others are real
 
     Raises ShapeError for two kinds, DomainError for a file or folder of another kind, EmptyError without formulas.
@@ -141,6 +146,8 @@ def diff(old: Any, new: Any, *, box: Mapping[str, Any] | None = None, **ranges: 
     if kinds[0] != kinds[1]:
         message = f"expected two things of one kind; got {kinds[0]} and {kinds[1]}; compare each with its own kind"
         raise ShapeError(message, where=str(sides[1])[:200])
+    if kinds[0] == LEDGER:
+        return compare_ledgers(*map(read_ledger, sides))
     known = {name: exact_range(name, ends) for name, ends in {**(box or {}), **ranges}.items()}
     return compare_formulas(formulas_of(sides[0], known), formulas_of(sides[1], known))
 
@@ -158,10 +165,31 @@ def kind_of_text(text: str) -> str:
         return "a claim file" if "claim" in read_toml(Path(text)) else "a model file"
     if Path(text).is_dir():
         return "a folder"
+    if text.endswith(".json"):
+        return LEDGER
     if Path(text).exists():
-        message = "expected a formula, a file named *.toml or an exported folder; got another file; name one of these"
+        expected = "a formula, a file named *.toml, an exported folder or a ledger"
+        message = f"expected {expected}; got another file; name one of these"
         raise DomainError(message, where=text)
     return "a formula"
+
+
+def compare_ledgers(old: Ledger, new: Ledger) -> Differences:
+    """What has become of every claim: EQUAL where statement and verdict are the same."""
+    before, now = ({record.id: record for record in ledger} for ledger in (old, new))
+    return Differences(tuple(compare_records(name, before.get(name), now.get(name)) for name in {**before, **now}))
+
+
+def compare_records(name: str, old: Record | None, new: Record | None) -> Difference:
+    """What has become of one claim."""
+    if old is None or new is None:
+        words = f"new, {new.status}" if new else f"gone, it was {old.status if old else 'unknown'}"
+        return Difference(name, "ONLY-NEW" if old is None else "ONLY-OLD", words)
+    if old.status != new.status:
+        return Difference(name, "DIFFERENT", f"{new.status}, it was {old.status}", worst=new.counterexample)
+    if old.statement != new.statement:
+        return Difference(name, "DIFFERENT", f"another statement, {new.status} as before")
+    return Difference(name, "EQUAL", f"the same statement, {new.status}")
 
 
 def exact_range(name: str, ends: Any) -> tuple[sp.Expr, sp.Expr]:
@@ -306,7 +334,21 @@ def formulas_of(text: str, ranges: Mapping[str, tuple[Any, Any]]) -> dict[str, F
         return of_export(path)
     if text.endswith(".toml"):
         return of_file(path)
-    return {"formula": of_text(text, ranges)}
+    return {"formula": of_claim(text) if ":" in text else of_text(text, ranges)}
+
+
+def of_claim(wanted: str) -> Formula:
+    """What a claim prints, by its id; raises ShapeError for a claim that prints no single expression."""
+    module, _, label = split_id(wanted)
+    _, claim = find_claim(wanted)
+    if module.endswith(".toml") and not is_model(path := file_of_source(module)):
+        found = next(require_numbers(c) for c in read_claims(path).claims if c.id == label)
+        return Formula("formula", found.left, found.box, noted=noted_in(found))
+    statement = claim.derive()
+    printed = getattr(statement, "printed", None)
+    if not isinstance(printed, sp.Expr) or not isinstance(statement, (Equation, Bound)):
+        raise ShapeError(f"expected a claim of one expression; got another one; see navsym show {wanted}", where=wanted)
+    return Formula("formula", printed, statement.box)
 
 
 def of_text(text: str, ranges: Mapping[str, tuple[Any, Any]], where: str = "") -> Formula:

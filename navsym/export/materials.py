@@ -18,13 +18,14 @@ from navsym.export.languages.names import function_name
 from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source
 from navsym.export.ready import ALGORITHMS, READY, UNITS, algorithm
 from navsym.guaranteed.phases.answer import Phases, Regime
-from navsym.guaranteed.solver import Estimator
+from navsym.guaranteed.phases.driver import phases
+from navsym.guaranteed.solver import Estimator, solve
 from navsym.language.names import quote
 from navsym.models.derivation import Derivation, derive
-from navsym.models.model import Model
+from navsym.models.model import Model, contents_of
 from navsym.prove.claimfile import claims_from, decide_claim, read_claims, statement_of
 from navsym.prove.ladder import decide_within, leave_open
-from navsym.verification.papers import load_papers
+from navsym.verification.papers import file_of_source, is_model, load_papers, split_id
 
 SECONDS = 90.0
 MEGABYTES = 4096
@@ -79,6 +80,9 @@ def functions_of_claim(
     if text in ALGORITHMS:
         return algorithm(text, lambda claim: material_of_claim(claim, allow_confirmed), real)
     name, _, claims = text.rpartition("=") if "=" in text else ("", "", text)
+    module, _, target = split_id(claims)
+    if module.endswith(".toml") and is_model(file := file_of_source(module)):
+        return functions_of_target(file, target, real, units or {})
     parts = [material_of_claim(part, allow_confirmed) for part in split_regimes(claims)]
     known = {**UNITS.get(claims.partition(":")[0], {}), **(units or {})}
     return [function_of(parts, real=real, name=function_name(name) if name else None, layout=Layout(units=known))]
@@ -89,20 +93,19 @@ def split_regimes(text: str) -> list[str]:
     found: list[str] = []
     for part in re.split(r"\+(?=[^+:]+:)", text):
         path, _, start = found[-1].partition(".toml:") if found else ("", "", "")
-        whole = start and f"{start}+{part}" in {claim.id for claim in read_claims(Path(f"{path}.toml")).claims}
+        whole = start and f"{start}+{part}" in {claim.number for claim in load_papers([f"{path}.toml"])[0].claims}
         found[-1:] = [f"{found[-1]}+{part}"] if whole else [*found[-1:], part]
     return found
 
 
 def material_of_claim(text: str, allow_confirmed: bool) -> Material:
     """A claim of a paper or of a file, decided."""
-    file, ending, label = text.partition(".toml:")
-    module, colon, number = (f"{file}.toml", ":", label) if ending else text.rpartition(":")
+    module, colon, number = split_id(text) if ".toml:" in text else text.rpartition(":")
     if not colon or not module or not number:
         message = f"expected MODULE:NUMBER or FILE.toml:ID; got {text[:80]!r}; correct it"
         raise DomainError(message, where="claim")
     if module.endswith(".toml"):
-        return material_from_file(Path(module), number, allow_confirmed)
+        return material_from_file(module, number, allow_confirmed)
     return material_from_paper(module, number, allow_confirmed)
 
 
@@ -128,8 +131,9 @@ def material_from_paper(module: str, number: str, allow_confirmed: bool) -> Mate
     )
 
 
-def material_from_file(path: Path, wanted: str, allow_confirmed: bool) -> Material:
+def material_from_file(name: str, wanted: str, allow_confirmed: bool) -> Material:
     """A claim of a claim file, decided now."""
+    path = file_of_source(name)
     claims = {claim.id: claim for claim in read_claims(path).claims}
     if wanted not in claims:
         raise unknown_claim(wanted, list(claims), path.name)
@@ -139,11 +143,22 @@ def material_from_file(path: Path, wanted: str, allow_confirmed: bool) -> Materi
         f"{path.stem}:{wanted}",
         statement_of(claim),
         leave_open(outcome) if isinstance(outcome, Exhausted) else outcome,
-        title=f"Claim {wanted} of a claim file",
+        title=claim.notes.get("title", f"Claim {wanted} of a claim file"),
         equation=f"claim {wanted}",
         paper=path.name,
+        correction=next((f"{name}:{c.id}" for c in claims.values() if c.notes.get("corrects") == wanted), None),
         allow_confirmed=allow_confirmed,
     )
+
+
+def functions_of_target(path: Path, target: str, real: str, units: Mapping[str, str]) -> list[ExportedFunction]:
+    """The estimator of a target of a model file; of its one parameter with a range, the regimes."""
+    free = [*contents_of(path, None, {}, "export").parameters]
+    if len(free) > 1:
+        message = f"expected a model of at most one parameter; got {', '.join(free)}; write values for the others"
+        raise DomainError(message, where=str(path))
+    answer = phases(path, target, parameter=free[0]) if free else solve(path, target)
+    return functions_from(answer, real=real, units=units)
 
 
 def unknown_claim(name: str, known: list[str], where: str) -> NavsymError:

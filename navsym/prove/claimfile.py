@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
 import sympy as sp
 
-from navsym.claims import OPEN, REFUTED, Bound, Equation, Statement, Verdict, Verdicts
+from navsym.claims import OPEN, REFUTED, Bound, Equation, Statement, Status, Verdict, Verdicts
 from navsym.claims.formula import Formula, Side, names_of
 from navsym.claims.statement import Written
+from navsym.core.choice import one_of
 from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, ShapeError, TooLargeError
 from navsym.core.sandbox import Exhausted, Failed, run_many
 from navsym.language.advice import advise_on_relation
@@ -27,6 +28,7 @@ from navsym.language.schema import (
     as_list,
     as_table,
     as_text,
+    as_title,
     expect_keys,
     join_place,
     read_entry,
@@ -46,7 +48,6 @@ from navsym.prove.wording import expression_text, scope_of
 
 RELATIONS = ("=", "!=", "<", "<=", ">", ">=")
 CLAIMS = 2_000
-NOTES = ("printed", "source")  # LaTeX and place in a document, as `read` writes them
 
 Box = dict[Symbol, tuple[Expr, Expr]]
 
@@ -114,6 +115,7 @@ class FileClaim:
     divisors    : what the text divides by, also where the algebra has cancelled it since
     radicands   : what the text takes roots of, to be nonnegative, likewise
     arguments   : what the text takes logarithms and symbolic powers of, to be positive, likewise
+    notes       : what is said about the claim: expect, title, corrects, reason
     """
 
     formula: Formula
@@ -126,6 +128,7 @@ class FileClaim:
     divisors: tuple[Expr, ...] = ()
     radicands: tuple[Expr, ...] = ()
     arguments: tuple[Expr, ...] = ()
+    notes: Mapping[str, str] = field(default_factory=dict, kw_only=True)
 
     @property
     def id(self) -> str:
@@ -200,12 +203,12 @@ def read_claim_or_error(block: Any, symbols: Symbols, where: str, place: int) ->
 def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim | TextClaim:
     """One [[claim]] block."""
     table = dict(as_table(block, where))
-    for note in NOTES:
-        as_text(table.pop(note, ""), join_place(where, note), "a text")
+    notes = {name: NOTES[name](table.pop(name), join_place(where, name)) for name in NOTES if name in table}
     if is_text_claim(table, symbols.written):
         as_label(require_key(table, "id", where), join_place(where, "id"))
         read_tolerance(table.get("tolerance"), table.get("relation", "="), join_place(where, "tolerance"))
-        return read_text_claim(table, symbols.shapes, symbols.rates, symbols.formula, symbols.limit, where)
+        claim = read_text_claim(table, symbols.shapes, symbols.rates, symbols.formula, symbols.limit, where)
+        return replace(claim, notes=notes)
     expect_keys(table, ("id", "left", "right", "relation", "box", "tolerance", "exists"), where)
     as_label(require_key(table, "id", where), join_place(where, "id"))
     relation = as_text(table.get("relation", "="), join_place(where, "relation"), "a relation")
@@ -224,7 +227,24 @@ def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim | TextClai
         tuple(dict.fromkeys(part for cell in cells for part in getattr(cell, name)))
         for name in ("divisors", "radicands", "arguments")
     ]
-    return FileClaim(symbols.formula(table), left, right, relation, box, tolerance, tuple(known.values()), *noted)
+    names = tuple(known.values())
+    return FileClaim(symbols.formula(table), left, right, relation, box, tolerance, names, *noted, notes=notes)
+
+
+def read_status(value: Any, where: str) -> str:
+    """The word of a verdict."""
+    return one_of(as_text(value, where, "a verdict"), tuple(Status), where)
+
+
+#: What a claim may say about itself beside its formula; ``printed`` and ``source`` as ``read`` writes them.
+NOTES: Mapping[str, Callable[[Any, str], str]] = {
+    "expect": read_status,
+    "title": as_title,
+    "corrects": as_label,
+    "reason": as_title,
+    "printed": partial(as_text, what="a text"),
+    "source": partial(as_text, what="a text"),
+}
 
 
 def read_existing(value: Any, known: Mapping[str, Symbol], where: str) -> list[Parsed]:
@@ -334,7 +354,11 @@ def decide_claim(claim: FileClaim | TextClaim, seconds: float = SECONDS / 2) -> 
     """Verdict of one claim, with what its text divides by and takes roots of among the assumptions."""
     if isinstance(claim, TextClaim):
         return decide_text(claim, seconds)
-    verdict = decide(statement_of(claim), seconds=seconds)
+    return complete_verdict(claim, decide(statement_of(claim), seconds=seconds))
+
+
+def complete_verdict(claim: FileClaim, verdict: Verdict) -> Verdict:
+    """The verdict with the scope of the text and its conditions, which the algebra may have cancelled."""
     if verdict.status == REFUTED:
         return verdict
     assumptions = dict.fromkeys((*verdict.assumptions, *text_conditions(claim)))

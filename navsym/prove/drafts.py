@@ -9,6 +9,7 @@ from typing import Any
 
 from navsym.claims.paper import equation_of, papers_folder
 from navsym.claims.verdict import Verdict
+from navsym.claims.workspace import find_workspace
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, DuplicateError
 from navsym.language.files import write_text
@@ -70,7 +71,7 @@ def new_paper(
 
     name      : module name, small letters, digits and underscores
     equations : every number printed, such as ``"1-6"`` or ``"1.1-1.9, 2.1"``
-    folder    : where to write it; by default the folder of derivations
+    folder    : where to write it; by default the workspace's folder of papers, or that of navsym's own
 
     Raises NavsymError: kind ``syntax`` for a name or number that cannot be, ``duplicate`` for a module that exists.
 
@@ -81,7 +82,7 @@ def new_paper(
     """
     from navsym.language.scaffold import check_module_name, module_source, split_numbers
 
-    path = Path(folder or papers_folder()) / f"{check_module_name(name)}.py"
+    path = own_folder(folder) / f"{check_module_name(name)}.py"
     if path.exists() or path.with_suffix("").exists():
         message = f"expected a new module; got {name}, which exists; choose another name"
         raise DuplicateError(message, where=str(path))
@@ -122,7 +123,7 @@ def new_claim(
     """
     from navsym.language.scaffold import NewClaim, append_claim, check_module_name, read_equation_numbers
 
-    path = Path(folder or papers_folder()) / f"{check_module_name(module)}.py"
+    path = own_folder(folder) / f"{check_module_name(module)}.py"
     if not path.is_file():
         message = f"expected a module in one file; got {module}; make it with navsym new-paper"
         raise DomainError(message, where=str(path))
@@ -136,6 +137,12 @@ def new_claim(
     verdict = decide_draft(text, draft)
     write_text(path, append_claim(text, declare_verdict(draft, verdict, slip)))
     return DraftedClaim(path, f"{module}:{number}", verdict, equation_of(number, read_equation_numbers(text)))
+
+
+def own_folder(folder: str | Path | None) -> Path:
+    """The given folder; else that of the workspace's papers, or of navsym's own."""
+    workspace = None if folder else find_workspace()
+    return Path(folder or (papers_folder() if workspace is None else workspace.papers_folder))
 
 
 def decide_draft(source: str, draft: Any) -> Verdict:

@@ -78,6 +78,11 @@ class Erratum:
     entries: tuple[Entry, ...]
 
     @property
+    def is_of_file(self) -> bool:
+        """True for a claim file, whose corrections are decided and not derived."""
+        return self.paper.module.endswith(".toml")
+
+    @property
     def of_paper(self) -> tuple[Entry, ...]:
         """Slips of the paper itself."""
         return tuple(entry for entry in self.entries if entry.slip == "paper")

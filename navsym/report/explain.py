@@ -8,7 +8,7 @@ from __future__ import annotations
 import html
 import inspect
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
@@ -17,6 +17,7 @@ from typing import Any
 from navsym.claims import Claim, Record
 from navsym.claims.display import mark_verdict, write_card
 from navsym.claims.paper import papers_folder
+from navsym.claims.workspace import find_workspace
 from navsym.core.answers import Answer
 from navsym.core.balls import enclose, tape
 from navsym.core.errors import NavsymError
@@ -108,14 +109,18 @@ def explain(claim: str, *, seconds: float = SECONDS) -> Explanation:
     _, record = decide_claim_of(wanted.id, seconds)
     better = correction_of(wanted.id)
     correction = None if better is None else Correction(better.id, better.title, formula_of(better))
-    return Explanation(record, module.paper.title, place_of(wanted.derive), tuple(steps(record)), correction)
+    return Explanation(record, module.paper.title, place_of(wanted), tuple(steps(record)), correction)
 
 
-def place_of(derive: Callable[..., Any]) -> str:
-    """File and line of a derivation, from the folder of the papers on."""
-    code = inspect.unwrap(derive).__code__
-    file = Path(code.co_filename).relative_to(papers_folder().parent)
-    return f"{file.as_posix()}:{code.co_firstlineno}"
+def place_of(claim: Claim) -> str:
+    """File and line of a claim, from the workspace or the folder of the papers on."""
+    if claim.place:
+        return claim.place
+    code, workspace = inspect.unwrap(claim.derive).__code__, find_workspace()
+    file = Path(code.co_filename)
+    roots = (papers_folder().parent, *([] if workspace is None else [workspace.root]))
+    root = next((root for root in roots if file.is_relative_to(root)), file.parent)
+    return f"{file.relative_to(root).as_posix()}:{code.co_firstlineno}"
 
 
 def formula_of(claim: Claim) -> str | None:
@@ -254,10 +259,7 @@ def steps(record: Record) -> list[Step]:
     Raises ValueError for a record that is no document of a claim.
     """
     found = [
-        Step("What is printed", record.title, record.printed),
-        Step("What follows from the model", "Derived without looking at the printed side:", record.derived)
-        if record.derived
-        else Step("What follows from the model", "The statement itself was derived and then examined."),
+        *side_steps(record),
         Step("What was asked", question(record)),
         Step("How it was decided", decision(record)),
     ]
@@ -274,6 +276,16 @@ def steps(record: Record) -> list[Step]:
     if record.certificate:
         found.append(Step("Do not take our word", replay(record)))
     return found
+
+
+def side_steps(record: Record) -> list[Step]:
+    """Both sides; "derived" is said only of a side that a derivation has made."""
+    if record.paper.endswith(".toml"):
+        right = [Step("What it is compared with", "The other side, as the file states it:", record.derived)]
+        return [Step("What the file states", record.title, record.printed), *(right if record.derived else [])]
+    derived = Step("What follows from the model", "Derived without looking at the printed side:", record.derived)
+    whole = Step("What follows from the model", "The statement itself was derived and then examined.")
+    return [Step("What is printed", record.title, record.printed), derived if record.derived else whole]
 
 
 def question(record: Record) -> str:

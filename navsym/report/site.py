@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from navsym.claims.paper import papers_folder
+from navsym.claims.workspace import find_workspace
 from navsym.core.answers import Answer
 from navsym.core.errors import OutputError
 from navsym.language.files import read_text, write_text
@@ -46,7 +47,7 @@ class Site(Answer):
 
 def report(
     *papers: str,
-    out: str | os.PathLike[str] = "report",
+    out: str | os.PathLike[str] | None = None,
     source: str | os.PathLike[str] | Ledger | None = None,
     jobs: int | None = None,
     seconds: float = SECONDS,
@@ -59,7 +60,7 @@ def report(
     The pages need neither a network nor a script. Every certificate is a file that ``navsym check`` replays.
 
     papers   : names of derivation modules; all when none is given
-    out      : the folder; made when it is not there
+    out      : the folder, by default ``report``, in the workspace if there is one; made when it is not there
     source   : a ledger, or the path of a document of ``navsym verify --json``; by default the claims are decided, and
                so are those of a ledger whose paper has changed since
     jobs, seconds, fresh : as in :func:`navsym.verify`
@@ -73,7 +74,7 @@ def report(
     >>> "index.html" in site.files, site.ledger.counts["REFUTED"]
     (True, 1)
     """
-    folder, chosen = Path(out), load_papers(papers)
+    folder, chosen = report_folder() if out is None else Path(out), load_papers(papers)
     cards = {module.name: module.paper for module in chosen}
     ledger = source if isinstance(source, Ledger) else None
     if source is not None and not isinstance(source, Ledger):
@@ -88,6 +89,12 @@ def report(
         remark(f"the text of {', '.join(changed)} has changed since its verdicts were written: decided now")
         ledger = run(*changed).merge(ledger)
     return write_pages(folder, Ledger(ledger.claims, ledger.papers, ledger.unsaved, cards), progress)
+
+
+def report_folder() -> Path:
+    """The folder ``report``, of the workspace where there is one."""
+    workspace = find_workspace()
+    return Path("report") if workspace is None else workspace.root / "report"
 
 
 def make_folder(out: Path) -> None:
@@ -109,7 +116,9 @@ def write_pages(out: Path, ledger: Ledger, progress: Callable[[int, int, str], N
         done += 1
         progress(done, len(ledger), claim)
 
-    files = sorted((papers_folder() / "errata").glob("*.toml"))  # wording of the erratum sheets, by module
+    workspace = find_workspace()
+    home = papers_folder() if workspace is None else workspace.root
+    files = sorted((home / "errata").glob("*.toml"))  # wording of the erratum sheets, by module
     wordings = {path.stem: read_wording(read_text(path, LARGEST), path.name) for path in files}
     for name, text in pages(ledger, wordings, progress=step):
         write_text(out / name, text, durable=False)

@@ -18,9 +18,10 @@ from typing import Any
 import msgspec
 
 from navsym.claims.display import write_table
+from navsym.claims.workspace import cache_file
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, MissingEngineError, NavsymError
-from navsym.core.store import code_digest, default_path, key_of
+from navsym.core.store import code_digest, key_of
 from navsym.language.files import name_file
 from navsym.language.jsonfile import read_json
 from navsym.language.names import quote
@@ -188,7 +189,7 @@ def sweep(
     if not patience > 0:
         raise DomainError(f"patience: expected seconds above 0; got {patience}; correct it")
     study = key_of("sweep", fingerprint(plan), code_digest())
-    shards = Shards(folder or default_path().parent / "sweeps" / study[:32], study)
+    shards = Shards(folder or cache_file().parent / "sweeps" / study[:32], study)
     parts = cut(plan.jobs, size)
     known = {} if fresh else {part: rows for part in parts if (rows := shards.read(part)) is not None}
     missing = [part for part in parts if part not in known]

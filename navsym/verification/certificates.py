@@ -18,6 +18,7 @@ import msgspec
 from navsym.checker import Refused
 from navsym.claims import REFUTED, Record, Verdict
 from navsym.claims.paper import papers_folder
+from navsym.claims.workspace import cache_file, find_workspace
 from navsym.core.errors import NavsymError, ShapeError
 from navsym.core.numbers import Number
 from navsym.core.store import Store, StoreError, key_of, open_store
@@ -32,8 +33,9 @@ REMEDY = "restore the file, or make it again with navsym verify --write"
 
 
 def certificates_file() -> Path:
-    """The file of the papers' certificates: ``certificates.json`` beside the papers."""
-    return papers_folder() / "certificates.json"
+    """The file of certificates: ``certificates.json`` of the workspace, or beside the papers."""
+    workspace = find_workspace()
+    return papers_folder() / "certificates.json" if workspace is None else workspace.certificates_file
 
 
 def read_certificates() -> dict[str, Any]:
@@ -138,7 +140,7 @@ class Certificates:
         except NavsymError as error:
             remark(f"certificates are searched again: {error}")
         try:
-            self.store = Store()
+            self.store = Store(cache_file())
         except StoreError as error:
             remark(f"verdicts are not kept: {error}")
 

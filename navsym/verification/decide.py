@@ -179,8 +179,11 @@ def record_of(
     elif kept is not None and texts is not None:
         entries = (grant_entry(texts, entry, seconds / SHARE) for entry in kept.list_entries(key))
         verdict = next(filter(None, entries), None)
-    record = make_record(paper, claim, statement, verdict or decide(statement, seconds=SEARCH))
-    return replace(record, statement=key), verdict is not None
+    is_known = verdict is not None
+    if verdict is None:
+        verdict = decide(statement, seconds=SEARCH)
+        verdict = claim.complete(verdict) if claim.complete else verdict
+    return replace(make_record(paper, claim, statement, verdict), statement=key), is_known
 
 
 def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict: Verdict) -> Record:
@@ -195,7 +198,7 @@ def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict
         number=claim.number,
         title=claim.title,
         status=verdict.status,
-        expect=claim.expect,
+        expect=verdict.status if claim.either and verdict.status.holds else claim.expect,
         method=verdict.method,
         scope=verdict.scope,
         assumptions=tuple(verdict.assumptions),

@@ -21,8 +21,9 @@ import msgspec
 from navsym.claims import Paper, Record, equation_of
 from navsym.claims.display import mark_verdict, write_card, write_table
 from navsym.claims.paper import papers_folder
+from navsym.claims.workspace import find_workspace
 from navsym.core.answers import Answer
-from navsym.core.errors import ShapeError, UnknownSymbolError
+from navsym.core.errors import DomainError, ShapeError, UnknownSymbolError
 from navsym.language.files import write_text
 from navsym.language.jsonfile import read_json
 from navsym.prove.grant import UNCHECKED
@@ -137,21 +138,32 @@ class Ledger(Answer):
         """The certificates of all verdicts that have one."""
         return [record.certificate for record in self.claims if record.certificate is not None]
 
+    @property
+    def is_kept(self) -> bool:
+        """True where a ledger exists for these verdicts: those of single files need a workspace."""
+        return find_workspace() is not None or not any(paper.module.endswith(".toml") for paper in self.papers)
+
     def write(self) -> None:
         """Update ``verdicts.json``, ``certificates.json`` and ``README.md`` beside the papers.
 
+        In a workspace these are ``ledger.json`` and ``certificates.json`` of its folder, and no page for people.
         Papers that were not run keep their verdicts; several processes may write, one after the other.
-        Raises NavsymError where verdicts of papers that were not run cannot be read, or nothing can be written.
+        Raises DomainError for verdicts of files outside a workspace, NavsymError where verdicts of papers that were not
+        run cannot be read, or nothing can be written.
 
         >>> import navsym as nav
         >>> nav.verify("alpha_beta_filter").write()                                              # doctest: +SKIP
         """
+        if not self.is_kept:
+            message = "expected a workspace for the verdicts of files; got none; make one with navsym init"
+            raise DomainError(message, where="verify --write")
         path, cards = ledger_file(), {module.name: module.paper for module in load_papers()}
         with lock_folder(path.parent):
             whole = replace(self.merge(self.read_others(set(cards))), cards=cards)
             write_text(certificates_file(), certificates_text(collect_certificates(whole.claims)))
             write_text(path, ledger_text(whole))
-            write_text(path.with_name("README.md"), people_text(whole))
+            if find_workspace() is None:
+                write_text(path.with_name("README.md"), people_text(whole))
 
     def read_others(self, known: set[str]) -> Ledger:
         """What the files say of the papers that were not run; without any, the files need not be readable."""
@@ -231,8 +243,9 @@ def read_ledger(path: str | os.PathLike[str]) -> Ledger:
 
 
 def ledger_file() -> Path:
-    """The file of all verdicts as they were last written: ``verdicts.json`` beside the papers."""
-    return papers_folder() / "verdicts.json"
+    """The file of all verdicts as they were last written: ``ledger.json`` of the workspace, or that of the papers."""
+    workspace = find_workspace()
+    return papers_folder() / "verdicts.json" if workspace is None else workspace.ledger_file
 
 
 def stored_ledger() -> Ledger:

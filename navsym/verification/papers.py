@@ -1,19 +1,21 @@
-"""Papers with their claims; a claim is found by its id."""
+"""Where claims come from: what a workspace lists, or else the papers; a claim is found by its id."""
 
 from __future__ import annotations
 
 import difflib
 import functools
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
 from navsym.claims import Claim, Paper, claims_of, compare_equations, equation_of
-from navsym.claims.paper import import_paper, paper_names, papers_folder
+from navsym.claims.paper import import_paper, paper_names
+from navsym.claims.workspace import FILE, find_workspace
 from navsym.core.choice import one_of
-from navsym.core.errors import DomainError
+from navsym.core.errors import DomainError, EmptyError
 from navsym.core.store import key_of
+from navsym.language.tomlfile import read_toml
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,11 +60,54 @@ def text_digest(module: ModuleType) -> str:
 
 
 def load_papers(names: Iterable[str] = ()) -> list[PaperModule]:
-    """The papers of these names, in this order, or all; raises DomainError for a name that is none."""
-    known, wanted = paper_names(), list(dict.fromkeys(names))
-    for name in wanted:
-        one_of(name, known, "paper")
-    return [paper_module(import_paper(name)) for name in wanted or known]
+    """The papers and files of these names, in this order, or all; raises DomainError for a name that is none.
+
+    Inside a workspace all are what it lists; outside, the papers that come with navsym. By name, these and any claim or
+    model file are known everywhere.
+    """
+    workspace = find_workspace()
+    listed: dict[str, Path | None] = dict.fromkeys(paper_names()) if workspace is None else {**workspace.names()}
+    if workspace is not None and not listed:
+        message = "expected files that a pattern names; got none; write one, or correct the patterns"
+        raise EmptyError(message, where=str(workspace.root / FILE))
+    wanted = [name_source(str(name), listed) for name in names] or [*listed]
+    return [load_source(name, listed) for name in dict.fromkeys(wanted)]
+
+
+def name_source(name: str, listed: Mapping[str, Path] | Mapping[str, Path | None]) -> str:
+    """The name under which a file is listed, where it is; a name of anything else as it stands."""
+    if name in listed or not name.endswith(".toml"):
+        return name
+    path = Path(name)
+    same = (known for known, file in listed.items() if file is not None and path.exists() and file.samefile(path))
+    return next(same, name)
+
+
+def file_of_source(name: str) -> Path:
+    """The claim or model file of a name: one that the workspace lists, or another one below the current folder."""
+    workspace = find_workspace()
+    listed: Mapping[str, Path] = {} if workspace is None else workspace.names()
+    return listed.get(name_source(name, listed), Path(name))
+
+
+def is_model(path: Path) -> bool:
+    """True for a file of a model, whose ids name targets."""
+    return not {"model", "basis"}.isdisjoint(read_toml(path))
+
+
+def load_source(name: str, listed: Mapping[str, Path | None]) -> PaperModule:
+    """The claims of a name: a file of the workspace or another one, or a paper that comes with navsym."""
+    path = listed.get(name) or (Path(name) if name.endswith(".toml") else None)
+    if path is None:
+        one_of(name, dict.fromkeys([*listed, *paper_names()]), "paper")
+        return paper_module(import_paper(name))
+
+    from navsym.verification.sources import claims_of_file, file_card, own_module
+
+    if path.suffix == ".py":
+        return paper_module(own_module(path))
+    claims = claims_of_file(name, path)
+    return PaperModule(name, file_card(name), claims, key_of(path.read_bytes().hex()))
 
 
 def summarise_paper(module: PaperModule) -> PaperSummary:
@@ -72,21 +117,22 @@ def summarise_paper(module: PaperModule) -> PaperSummary:
     return PaperSummary(module.name, module.paper.title, *counts, tuple(covered.missing), module.source)
 
 
-def ledger_file() -> Path:
-    """The file of all verdicts as they were last written: ``verdicts.json`` beside the papers."""
-    return papers_folder() / "verdicts.json"
-
-
 def list_changed(summaries: Iterable[PaperSummary], papers: Iterable[PaperModule]) -> list[str]:
     """Papers whose text is not the one from which these verdicts come; of verdicts without a digest nobody knows."""
     known = {paper.module: paper.source for paper in summaries}
     return [paper.name for paper in papers if known.get(paper.name, "") not in ("", paper.source)]
 
 
+def split_id(wanted: str) -> tuple[str, str, str]:
+    """Module or file, colon and number of an id: ``claims/baro.toml:ratio``, ``guaranteed_velocity:4.3.u2``."""
+    file, ending, label = wanted.partition(".toml:")
+    return (f"{file}.toml", ":", label) if ending else wanted.partition(":")
+
+
 def find_claim(wanted: str) -> tuple[PaperModule, Claim]:
     """Paper and claim of an id ``module:number``; raises DomainError that lists the ids that begin so."""
     wanted = str(wanted)
-    module, colon, number = wanted.partition(":")
+    module, colon, number = split_id(wanted)
     if not colon and (known := papers_with(wanted)):
         whole = " or ".join(f"{name}:{wanted}" for name in known)
         message = f"expected the id of a claim, MODULE:NUMBER; got {wanted[:80]}; take {whole}"
@@ -112,7 +158,7 @@ def papers_with(number: str) -> list[str]:
 def claim_ids(wanted: str) -> list[str]:
     """Ids of all claims about a numbered equation, ``module:4.16``; of anything else, the id itself."""
     wanted = str(wanted)
-    module, colon, number = wanted.partition(":")
+    module, colon, number = split_id(wanted)
     if not colon:
         return [wanted]
     (paper,) = load_papers([module])
@@ -124,5 +170,5 @@ def claim_ids(wanted: str) -> list[str]:
 
 def correction_of(wanted: str) -> Claim | None:
     """The claim that corrects this one, or None."""
-    (paper,) = load_papers([wanted.partition(":")[0]])
+    (paper,) = load_papers([split_id(wanted)[0]])
     return next((claim for claim in paper.claims if claim.corrects_id == wanted), None)

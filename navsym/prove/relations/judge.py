@@ -35,6 +35,7 @@ class TextClaim:
     kinds     : name -> what it is and the names of its entries
     shown     : name of an entry -> how it is shown, ``v_1`` as ``v[1]``
     scope     : the quantifier in words
+    notes     : what is said about the claim, as in a claim between numbers
     """
 
     formula: Formula
@@ -42,6 +43,7 @@ class TextClaim:
     kinds: Mapping[str, tuple[str, Rows]] = field(default_factory=dict)
     shown: Mapping[str, str] = field(default_factory=dict)
     scope: str = ""
+    notes: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def id(self) -> str:

@@ -1,22 +1,7 @@
-"""For a user's own tests: hypothesis strategies, and an assertion that decides a formula.
-
-``assert_claim`` puts a formula through the same door as the claims of the papers and fails with
-the counterexample::
-
-    import sympy as sp
-    from navsym.testing import assert_claim
-
-    def test_triple_angle():
-        a = sp.Symbol("a", real=True)
-        assert_claim(sp.sin(3 * a), 3 * sp.sin(a) - 4 * sp.sin(a) ** 3)
-
-Strategies draw exact models, intervals and angles for the symbolic side, and covariances and
-transition matrices as arrays for the numerical side. They need the package ``hypothesis``.
-"""
+"""Hypothesis strategies: exact models, intervals and angles, covariances and transition matrices."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
@@ -24,58 +9,9 @@ import numpy as np
 import sympy as sp
 from hypothesis import strategies as st
 
-from navsym.claims import CONFIRMED, Bound, Equation, Verdict
 from navsym.models.linear import LinearModel
-from navsym.prove.ladder import decide_within
 
 Strategy = st.SearchStrategy[Any]
-
-
-class ClaimFailedError(AssertionError):
-    """A formula that was not proved; ``verdict`` has the counterexample or what was tried."""
-
-    def __init__(self, message: str, verdict: Verdict):
-        super().__init__(message)
-        self.verdict = verdict
-
-
-def assert_claim(
-    left: Any,
-    right: Any,
-    *,
-    relation: str = "=",
-    box: Mapping[Any, tuple[Any, Any]] | None = None,
-    tolerance: Any = None,
-    sampled: bool = False,
-    seconds: float = 20.0,
-) -> Verdict:
-    """Decide ``left relation right`` on the box and fail unless it is PROVED or CERTIFIED.
-
-    left, right : sympy expressions, matrices of one shape, or sequences; no floats, write Rational
-    relation    : one of = != < <= > >=
-    box         : symbol -> (lower, upper), exact numbers, None for an end at infinity
-    tolerance   : for a printed numeral, half a unit of its last digit
-    sampled     : accept CONFIRMED as well, which is evidence and no proof
-    seconds     : limit; above it the verdict is OPEN and the assertion fails
-
-    Returns the verdict: its scope and its assumptions belong to what was proved. Raises ClaimFailedError, an
-    AssertionError, with the counterexample or with what was tried.
-    """
-    if relation == "=":
-        verdict = decide_within(Equation(left, right, box or {}, tolerance), seconds)
-    else:
-        verdict = decide_within(Bound(left, relation, right, box or {}), seconds)
-    if verdict.status.holds or (sampled and verdict.status == CONFIRMED):
-        return verdict
-    raise ClaimFailedError(failure(left, relation, right, verdict), verdict)
-
-
-def failure(left: Any, relation: str, right: Any, verdict: Verdict) -> str:
-    """The message of a failed claim, the counterexample in its first line."""
-    point = ", ".join(f"{name} = {value}" for name, value in (verdict.counterexample or {}).items())
-    where = f" at {point}" if point else ""
-    difference = f"; left - right = {verdict.difference.lower}" if verdict.difference else ""
-    return f"{verdict.status}{where}{difference}\n  {left} {relation} {right}\n  {verdict.evidence}"
 
 
 # -- exact values ----------------------------------------------------------------------------

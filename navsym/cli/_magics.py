@@ -1,0 +1,56 @@
+"""Commands of notebooks, after ``%load_ext navsym``: ``%prove`` one formula, ``%%claims`` a cell of them."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+from navsym.cli.diff import read_range
+from navsym.core.errors import NavsymError
+
+if TYPE_CHECKING:
+    from navsym.claims import Verdict, Verdicts
+
+RANGE = re.compile(r"\s+--range\s+")
+
+
+def register_magics(shell: Any) -> None:
+    """Add the commands to a shell of IPython."""
+    from IPython.core.error import UsageError
+
+    def prove(line: str) -> Verdict:
+        """Decide one formula: ``%prove sin(T) <= T --range T=0,pi``; names without a range are real."""
+        try:
+            return prove_line(line)
+        except NavsymError as error:
+            raise UsageError(f"{error.kind}: {error}") from None
+
+    def claims(line: str, cell: str) -> Verdicts:
+        """Decide a cell of TOML, [symbols] and [[claim]] blocks; ``%%claims name`` keeps the verdicts by a name."""
+        try:
+            verdicts = prove_cell(cell)
+        except NavsymError as error:
+            raise UsageError(f"{error.kind}: {error}") from None
+        if line.strip():
+            shell.push({line.strip(): verdicts})
+        return verdicts
+
+    shell.register_magic_function(prove, "line", "prove")
+    shell.register_magic_function(claims, "cell", "claims")
+
+
+def prove_line(line: str) -> Verdict:
+    """The verdict of a formula with its ranges; raises NavsymError for what is none."""
+    import navsym as nav
+
+    formula, *texts = RANGE.split(line.strip())
+    ranges: dict[str, Any] = dict(map(read_range, texts))
+    return nav.prove(formula, **ranges)
+
+
+def prove_cell(text: str) -> Verdicts:
+    """The verdicts of a claim file in memory; raises NavsymError for what is none."""
+    from navsym.language.tomlfile import parse_toml
+    from navsym.prove.claimfile import claims_from, decide_claims
+
+    return decide_claims(claims_from(parse_toml(text, "cell"), "cell", go_on=True))

@@ -1,0 +1,34 @@
+"""Make a workspace: navsym.toml, and folders for claims, models, audits and papers with a small example each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from navsym.cli.output import emit
+
+if TYPE_CHECKING:
+    from navsym.claims.workspace import Workspace
+
+
+def command(
+    folder: Annotated[Path, typer.Argument(help="the folder; made when it is not there")] = Path("."),
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> None:
+    """Make a workspace. Inside it, or below, every verb knows what navsym.toml lists.
+
+    Example: navsym init drive
+    """
+    import navsym as nav
+
+    workspace = nav.init(folder)
+    emit(workspace.document(), as_json=json_, text=lambda: as_text(workspace, folder))
+
+
+def as_text(workspace: Workspace, folder: Path) -> str:
+    """The files, and the next step."""
+    files = [name for kind in workspace.patterns for name in workspace.list_files(kind)]
+    step = "navsym verify" if folder == Path(".") else f"cd {folder}; navsym verify"
+    return "\n".join(["navsym.toml", *files, f"next: {step}"])

@@ -1,0 +1,86 @@
+"""An assertion that decides a formula, and fails with the counterexample."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextvars import ContextVar
+from typing import Any
+
+from navsym.claims import CONFIRMED, Bound, Equation, Verdict
+from navsym.prove.formulas import RELATION, prove
+from navsym.prove.ladder import decide_within
+from navsym.verification.certificates import verdict_of
+from navsym.verification.decide import decide_claim_of
+
+#: Seconds of processor time for one claim; ``--navsym-budget`` sets it for a run of pytest.
+BUDGET: ContextVar[float] = ContextVar("BUDGET", default=20.0)
+
+
+class ClaimFailedError(AssertionError):
+    """A formula that was not proved; ``verdict`` has the counterexample or what was tried."""
+
+    def __init__(self, message: str, verdict: Verdict):
+        super().__init__(message)
+        self.verdict = verdict
+
+
+def assert_claim(
+    left: Any,
+    right: Any = None,
+    *,
+    relation: str = "=",
+    box: Mapping[Any, tuple[Any, Any]] | None = None,
+    tolerance: Any = None,
+    sampled: bool = False,
+    seconds: float | None = None,
+    **symbols: Any,
+) -> Verdict:
+    """Decide ``left relation right`` on the box and fail unless it is PROVED or CERTIFIED.
+
+    left, right : sympy expressions, matrices of one shape, or sequences; no floats, write Rational. Or a formula as
+                  text alone, ``"sin(T) <= T"``; or the id of a claim, which fails unless it is as declared
+    relation    : one of = != < <= > >=
+    box         : symbol -> (lower, upper), exact numbers, None for an end at infinity
+    tolerance   : for a printed numeral, half a unit of its last digit
+    sampled     : accept CONFIRMED as well, which is evidence and no proof
+    seconds     : limit; above it the verdict is OPEN and the assertion fails; by default ``--navsym-budget``
+    symbols     : declarations of names in a text, ``T=("0", "pi")``, as in :func:`navsym.prove`
+
+    Returns the verdict: its scope and its assumptions belong to what was proved. Raises ClaimFailedError, an
+    AssertionError, with the counterexample or with what was tried, and NavsymError for what is no formula or id.
+    """
+    limit = BUDGET.get() if seconds is None else seconds
+    if right is None and isinstance(left, str):
+        return assert_text(left, limit, sampled, {"box": box, "tolerance": tolerance, **symbols})
+    if relation == "=":
+        verdict = decide_within(Equation(left, right, box or {}, tolerance), limit)
+    else:
+        verdict = decide_within(Bound(left, relation, right, box or {}), limit)
+    return require_holds(verdict, f"{left} {relation} {right}", sampled)
+
+
+def assert_text(text: str, seconds: float, sampled: bool, options: Mapping[str, Any]) -> Verdict:
+    """The verdict of a formula as text, or of a claim by its id."""
+    if ":" not in text or RELATION.search(text):
+        return require_holds(prove(text, seconds=seconds, **options), text, sampled)
+    record = decide_claim_of(text, seconds)[1]
+    verdict = verdict_of(record)
+    if record.is_expected:
+        return verdict
+    message = describe_failure(f"{text}, declared {record.expect}", verdict)
+    raise ClaimFailedError(message, verdict)
+
+
+def require_holds(verdict: Verdict, statement: str, sampled: bool = False) -> Verdict:
+    """The verdict when it is PROVED or CERTIFIED; raises ClaimFailedError for another one."""
+    if verdict.status.holds or (sampled and verdict.status == CONFIRMED):
+        return verdict
+    raise ClaimFailedError(describe_failure(statement, verdict), verdict)
+
+
+def describe_failure(statement: str, verdict: Verdict) -> str:
+    """The message of a failed claim, the counterexample in its first line."""
+    point = ", ".join(f"{name} = {value}" for name, value in (verdict.counterexample or {}).items())
+    where = f" at {point}" if point else ""
+    difference = f"; left - right = {verdict.difference.lower}" if verdict.difference else ""
+    return f"{verdict.status}{where}{difference}\n  {statement}\n  {verdict.evidence}"

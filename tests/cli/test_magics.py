@@ -1,0 +1,70 @@
+"""Commands of notebooks: formulas and cells of claims are decided, and a wrong line is one line of error."""
+
+from __future__ import annotations
+
+import nbformat
+import pytest
+from IPython.core.error import UsageError
+from IPython.core.interactiveshell import InteractiveShell
+from nbclient import NotebookClient
+
+from navsym.cli._magics import prove_cell
+
+CELL = """[symbols]
+a = "real"
+[[claim]]
+id = "double"
+left = "sin(2*a)"
+right = "2*sin(a)*cos(a)"
+[[claim]]
+id = "wrong"
+left = "sin(2*a)"
+right = "2*sin(a)"
+"""
+
+
+@pytest.fixture
+def shell(tmp_path, monkeypatch):
+    monkeypatch.setenv("IPYTHONDIR", str(tmp_path))
+    InteractiveShell.clear_instance()
+    shell = InteractiveShell.instance(history_length=0)
+    shell.history_manager.enabled = False
+    shell.extension_manager.load_extension("navsym")
+    yield shell
+    shell.history_manager.end_session()
+    InteractiveShell.clear_instance()
+
+
+def test_a_formula_on_a_line_is_decided_on_its_ranges(shell):
+    assert shell.run_line_magic("prove", "sin(T) <= T --range T=0,pi").status == "PROVED"
+    assert shell.run_line_magic("prove", "sin(2*a) = 2*sin(a)").status == "REFUTED"
+
+
+def test_a_cell_of_claims_is_decided_and_kept_by_its_name(shell):
+    verdicts = shell.run_cell_magic("claims", "mine", CELL)
+    assert [str(v.status) for v in verdicts] == ["PROVED", "REFUTED"] and shell.user_ns["mine"] is verdicts
+    assert prove_cell(CELL).document() == verdicts.document()
+
+
+@pytest.mark.parametrize(
+    ("line", "hint"), [("", "expected a relation"), ("x = x --range x", "LOWER,UPPER"), ("x", "relation")]
+)
+def test_a_wrong_line_is_an_error_without_a_traceback(shell, line, hint):
+    with pytest.raises(UsageError, match=hint):
+        shell.run_line_magic("prove", line)
+
+
+def test_a_wrong_cell_names_its_line(shell):
+    with pytest.raises(UsageError, match="cell: line 1"):
+        shell.run_cell_magic("claims", "", "[[claim]\n")
+
+
+@pytest.mark.long
+def test_a_notebook_runs_and_shows_rich_answers(tmp_path):
+    cells = ["%load_ext navsym", "%prove sin(T) <= T --range T=0,pi", "%%claims mine\n" + CELL, "mine.holds"]
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(text) for text in cells])
+    NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    shown = [output for cell in notebook.cells for output in cell.outputs]
+    assert all(output.output_type == "execute_result" for output in shown) and len(shown) == 3
+    assert "PROVED" in shown[0].data["text/html"] and "REFUTED" in shown[1].data["text/html"]
+    assert shown[2].data["text/plain"] == "False"

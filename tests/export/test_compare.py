@@ -1,0 +1,179 @@
+"""A function of doubles beside a formula: a certified bound holds at every double tried, and errors are seen."""
+
+from __future__ import annotations
+
+import ctypes
+import ctypes.util
+import math
+from math import cos
+
+import casadi as ca
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import mp, mpf
+
+import navsym as nav
+
+
+def sine_over_argument(x):
+    return np.sin(x) / x
+
+
+def gravity(latitude):
+    """Somigliana's formula, with its constants as they are printed."""
+    s = math.sin(latitude) ** 2
+    return 9.7803253359 * (1 + 0.00193185265241 * s) / math.sqrt(1 - 0.00669437999014 * s)
+
+
+def helper(x):
+    return cos(x)
+
+
+def product(y, x):
+    return helper(x) * y + 0.1
+
+
+GRAVITY = "9.7803253359*(1 + 0.00193185265241*sin(L)**2)/sqrt(1 - 0.00669437999014*sin(L)**2)"
+CASES = {
+    "numpy": (sine_over_argument, "sin(x)/x", {"x": ("1/1000", "3")}, lambda x: mp.sin(x) / x, 3e-15),
+    "constants": (
+        gravity,
+        GRAVITY,
+        {"L": ("-pi/2", "pi/2")},
+        lambda L: (
+            mpf("9.7803253359")
+            * (1 + mpf("0.00193185265241") * mp.sin(L) ** 2)
+            / mp.sqrt(1 - mpf("0.00669437999014") * mp.sin(L) ** 2)
+        ),
+        2e-14,
+    ),
+    "series": (lambda x: 1 - x**2 / 2 + x**4 / 24, "cos(x)", {"x": ("-1/2", "1/2")}, lambda x: mp.cos(x), 2.3e-5),
+    "two names": (
+        product,
+        "cos(x)*y + 1/10",
+        {"x": ("0", "1"), "y": ("-2", "2")},
+        lambda x, y: mp.cos(x) * y + mpf(1) / 10,
+        3e-15,
+    ),
+    "degrees": (
+        lambda a: math.sin(a * (math.pi / 180)),
+        "sin(a*pi/180)",
+        {"a": ("0", "90")},
+        lambda a: mp.sin(a * mp.pi / 180),
+        3e-15,
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def found():
+    return {name: nav.compare(f, text, **ranges) for name, (f, text, ranges, _, _) in CASES.items()}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_what_can_be_followed_is_certified_with_a_useful_bound(found, name):
+    answer, expected = found[name], CASES[name][4]
+    assert answer.how == "certified" and float(answer.bound) <= expected, answer
+    assert 0 < float(answer.deviation) <= float(answer.bound)
+
+
+@pytest.mark.parametrize("name", CASES)
+@settings(max_examples=60)
+@given(data=st.data())
+def test_a_certified_bound_holds_at_every_double(found, name, data):
+    function, _, ranges, reference, _ = CASES[name]
+    with mp.workdps(50):
+        ends = {n: [float(mp.mpf(1) * eval_end(end)) for end in pair] for n, pair in ranges.items()}
+        point = {n: data.draw(st.floats(*pair)) for n, pair in ends.items()}
+        values = list(point.values())
+        value = function(**point) if name == "two names" else function(*values)
+        exact = reference(**{n: mpf(x) for n, x in point.items()}) if name == "two names" else reference(mpf(values[0]))
+        assert abs(mpf(float(value)) - exact) <= mpf(found[name].bound)
+
+
+def eval_end(text):
+    """An end of a range of these cases."""
+    return {"pi/2": mp.pi / 2, "-pi/2": -mp.pi / 2, "1/2": mpf(0.5), "-1/2": mpf(-0.5), "1/1000": mpf(1) / 1000}.get(
+        text
+    ) or mpf(text)
+
+
+def test_a_wrong_formula_has_a_bound_as_large_as_its_error_and_the_point_that_shows_it():
+    answer = nav.compare(product, "cos(x)*y + 1/8", x=("0", "1"), y=("-2", "2"))
+    assert answer.how == "certified" and 0.025 <= float(answer.deviation) <= float(answer.bound) < 0.04
+    swapped = nav.compare(lambda a, b: a - b, "b - a", b=("0", "1"), a=("0", "2"))
+    assert float(swapped.bound) >= 3.99 and set(swapped.worst) == {"a", "b"}
+
+
+def test_a_function_of_casadi_is_followed_by_its_own_list():
+    x = ca.SX.sym("x")
+    answer = nav.compare(ca.Function("f", [x], [x**2 * ca.sin(x) / (2 * x)]), "x*sin(x)/2", x=("1/10", "2"))
+    assert answer.how == "certified" and float(answer.bound) < 1e-14
+    two = ca.Function("g", [x], [ca.if_else(x > 1, x, 1)])
+    assert nav.compare(two, "x", x=("0", "2")).how == "sampled"
+
+
+def test_a_compiled_function_is_sampled_and_says_so():
+    library = ctypes.util.find_library("m")
+    if library is None:
+        pytest.skip("no library of mathematics is found on this machine")
+    sine = ctypes.CDLL(library).sin
+    sine.restype, sine.argtypes = ctypes.c_double, [ctypes.c_double]
+    answer = nav.compare(sine, "sin(x)", x=("0", "3"))
+    assert answer.how == "sampled" and answer.evidence.startswith("not certified: ") and answer.points > 100
+    assert float(answer.bound) < 3e-16
+
+
+def other_when_traced(x):
+    """Says one thing to a double and another to anything else."""
+    return x * 2 if type(x) is float else x * 3
+
+
+@pytest.mark.parametrize(
+    ("function", "formula", "why"),
+    [
+        (lambda x: x if x > 1 else 1.0, "x", "a comparison"),
+        (lambda x: float(x), "x", "a conversion"),
+        (lambda x: np.float32(2) * x, "2*x", "no double: float32"),
+        (lambda x: np.interp(x, [0.0, 2.0], [0.0, 2.0]), "x", "not certified"),
+        (other_when_traced, "2*x", "something else"),
+        (lambda x: math.gamma(x + 1), "x", "the function gamma"),
+    ],
+)
+def test_what_cannot_be_followed_is_sampled_with_the_reason(function, formula, why):
+    answer = nav.compare(function, formula, x=("0", "2"), points=60)
+    assert answer.how == "sampled" and why in answer.evidence, answer.evidence
+
+
+def test_a_point_at_which_only_the_function_has_no_value_is_the_worst_one():
+    answer = nav.compare(lambda x: x / x, "1 + 0*x", x=("0", "1"))
+    assert answer.how == "sampled" and answer.bound is None and dict(answer.worst) == {"x": "0.0"}
+    pole = nav.compare(lambda x: math.sin(x) / x, "sin(x)/x", x=("0", "1"))  # the formula has no value there either
+    assert pole.how == "sampled" and float(pole.bound) < 1e-15 and "no finite bound" in pole.evidence
+
+
+@pytest.mark.parametrize(
+    ("formula", "ranges", "kind"),
+    [
+        ("sin(x)/x", {}, "empty"),
+        ("sin(x)/x", {"x": "0"}, "shape"),
+        ("sin(x)/x", {"x": ("0", "oo")}, None),
+        ("sin(x)/x", {"x": ("1", "0")}, "domain"),
+        ("sin(x)/y", {"x": ("0", "1")}, "unknown-symbol"),
+        ("sin(x)", {"x": ("0", "1"), "y": ("0", "1")}, "unknown-symbol"),
+        ("sin(x", {"x": ("0", "1")}, "syntax"),
+        ("sqrt(-1 - x)", {"x": ("0", "1")}, None),
+        ("sin(x)", {"x": (0.5, 1)}, "domain"),
+    ],
+)
+def test_bad_input_is_refused(formula, ranges, kind):
+    with pytest.raises(nav.NavsymError, match=r"expected .*; got .*; ") as caught:
+        nav.compare(math.sin, formula, **ranges)
+    assert kind is None or caught.value.kind == kind
+
+
+def test_the_answer_is_plain_data():
+    document = nav.compare(sine_over_argument, "sin(x)/x", x=("1", "2"), points=10).document()
+    assert set(document) == {"how", "bound", "worst", "deviation", "evidence", "points"} and document["points"] == 10
