@@ -214,6 +214,7 @@ def rational_power(x: Any, p: int, q: int) -> Any:
 
 
 def general_power(base: Any, exponent: Any) -> Any:
+    """``exp(exponent log base)`` for a base > 0; undefined for others."""
     return (base.log() * exponent).exp() if constant_term(base) > 0 else undefined_like(base)
 
 

@@ -45,7 +45,7 @@ class Atoms:
         Raises DomainError for other functions, and for roots that depend on each other.
         """
         rows = [list(matrix[k, :]) for matrix in (model.H, *others) for k in range(matrix.rows)]
-        given = {model.time: sp.Integer(1)} | {s: sp.sympify(rate) for s, rate in model.rates.items()}
+        given = {model.time: sp.Integer(1)} | {s: sp.sympify(rate, strict=True) for s, rate in model.rates.items()}
         entries = [*model.F, *(entry for row in rows for entry in row), *given.values()]
         names = Names(given, shortest_exponents(entries))
         atoms = cls(model.F.applyfunc(names.read), [[names.read(entry) for entry in row] for row in rows])

@@ -70,7 +70,8 @@ class Flow:
             balls = [[tape(p).run({}) for p in self.functional]]
             self.row_of_target = arb_mat(balls)
             self.systems = [
-                arb_mat([[tape(sp.sympify(e)).run({}) for e in row] for row in piece.F.tolist()]) for piece in self.F
+                arb_mat([[tape(sp.sympify(e, strict=True)).run({}) for e in row] for row in piece.F.tolist()])
+                for piece in self.F
             ]
         self.programs: list[list[Tape]] = [[tape(e) for e in row] for row in self.h]
         self.constant = [not any(e.has(self.time) for e in row) for row in self.h]
@@ -89,7 +90,7 @@ class Flow:
             bool(self.F)
             and self.is_steady
             and all(self.constant)
-            and not any(sp.sympify(s).has(self.time) for s in self.sigmas)
+            and not any(sp.sympify(s, strict=True).has(self.time) for s in self.sigmas)
         )
 
     @cached_property
@@ -108,8 +109,8 @@ class Flow:
             message = "expected F constant or in pieces; got F(t); give it piece by piece with [[piece]]"
             raise DomainError(message, where=f"{where}: model")
         entries = [e for row in self.h for e in row] + [e for p in self.F for e in p.F] + [*self.functional]
-        free = {x.name for e in entries for x in sp.sympify(e).free_symbols - {self.time}}
-        free |= {x.name for e in self.sigmas for x in sp.sympify(e).free_symbols - {self.time}}
+        free = {x.name for e in entries for x in sp.sympify(e, strict=True).free_symbols - {self.time}}
+        free |= {x.name for e in self.sigmas for x in sp.sympify(e, strict=True).free_symbols - {self.time}}
         if free:
             name = min(free)
             got = f"none for {', '.join(sorted(free))}"
@@ -123,7 +124,7 @@ class Flow:
     def is_rational(self) -> bool:
         """Whether F, h and the functional are rational numbers, so that spaces are known exactly."""
         entries = [*(e for row in self.h for e in row), *(e for p in self.F for e in p.F), *self.functional]
-        return bool(self.F) and self.is_steady and all(sp.sympify(e).is_Rational for e in entries)
+        return bool(self.F) and self.is_steady and all(sp.sympify(e, strict=True).is_Rational for e in entries)
 
     def choose_unknowns(self, kinds: frozenset[int]) -> bool:
         """Keep the unknowns in which some measurements are unbiased; False where they never show the target.
@@ -218,7 +219,7 @@ class Flow:
         if known is not None:
             return known
         text = to_text(self.sigmas[j])
-        value = arb(tape(sp.sympify(self.sigmas[j])).run({self.time: arb(t)}))
+        value = arb(tape(sp.sympify(self.sigmas[j], strict=True)).run({self.time: arb(t)}))
         if not value > 0:
             message = f"expected a positive noise bound; got {quote(text)} of {quote(self.names[j])}; correct sigma"
             raise DomainError(message, where=f"t = {write_rational(t)}")
