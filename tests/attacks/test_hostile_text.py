@@ -209,7 +209,8 @@ def table():
     for name, (text, kind) in EXPRESSIONS.items():
         cases[f"F: {name}"] = (read_model, filled(MODEL, HONEST, "EXPRESSION", text), kind)
         claim = text.replace("w", "a").replace("ne" + "a", "new")
-        cases[f"claim: {name}"] = (read_claims, filled(CLAIMS, HONEST_CLAIM, "LEFT", claim), kind)
+        of_claim = "shape" if name in ("subscript", "matrix product") else kind  # of numbers: claims have vectors
+        cases[f"claim: {name}"] = (read_claims, filled(CLAIMS, HONEST_CLAIM, "LEFT", claim), of_claim)
     for name, (text, kind) in NAMES.items():
         cases[f"state: {name}"] = (read_model, filled(MODEL, HONEST, "NAME", text), kind)
     for name, (text, kind) in LABELS.items():
