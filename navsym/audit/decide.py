@@ -124,7 +124,8 @@ def write_document(code: Tree, expected: Tree, scope: Scope) -> Document:
 
 def prove_document(document: Document) -> Document | None:
     """The certificate of an identity that the checker has granted; None where it has not."""
-    goals, terms, box = player.read_statement(document)
+    (case,), box = player.read_statement(document)
+    goals, terms = case.goals, case.terms
     witness = find_witness(terms, box)
     if witness is None or not player.is_identity(goals[0].term):
         return None
@@ -134,7 +135,8 @@ def prove_document(document: Document) -> Document | None:
 
 def search_proof(document: Document, seconds: float) -> Decision:
     """What the search for a proof tree makes of the statement."""
-    goals, terms, box = player.read_statement(document)
+    (case,), box = player.read_statement(document)
+    goals, terms = case.goals, case.terms
     witness = find_witness(terms, box)
     if witness is None:
         return Decision(OPEN, why="no point was found at which both sides have a value")
@@ -226,7 +228,8 @@ def is_count(exponent: Tree) -> bool:
 
 def refute(document: Document, code: Tree, expected: Tree, scope: Scope) -> Decision | None:
     """REFUTED by a point of the scope, with both values; None where none is found."""
-    goals, terms, box = player.read_statement(document)
+    (case,), box = player.read_statement(document)
+    goals, terms = case.goals, case.terms
     others = list_names(*scope.relations, *(t for c in scope.conditions for t in (c.left, c.right) if t is not None))
     whole = {**box, **{n: player.read_range(scope.ranges[n]) for n in others if n not in box}}
     for point in draw_points(whole, scope):
