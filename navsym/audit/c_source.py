@@ -235,6 +235,9 @@ class Reader:
 
     def declaration(self, node: Any) -> tuple[Part, ...]:
         """One statement for each declared name."""
+        words = {text_of(child) for child in named(node) if child.type in ("storage_class_specifier", "type_qualifier")}
+        if words & {"static", "thread_local", "extern", "volatile"} and not words & {"const", "constexpr"}:
+            return (self.unread(node, "a variable that keeps its value between calls, or is changed elsewhere"),)
         kind = text_of(field_of(node, "type")) if field_of(node, "type") else ""
         done = []
         for child in node.children_by_field_name("declarator"):

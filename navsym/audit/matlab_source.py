@@ -19,6 +19,7 @@ from navsym.audit.syntax import (
 )
 
 RULES = Rules(first=1, matrix=True, entry=("{}({})", "{}({},{})"))
+POWERS = ("^", ".^")
 SIGNS = {"+": "+", "-": "-", "*": "*", "/": "/", "^": "**", ".*": ".*", "./": "./", ".^": ".^"}
 COMPARISONS = {"<": "<", "<=": "<=", ">": ">", ">=": ">=", "==": "==", "~=": "!=", "!=": "!="}
 
@@ -141,9 +142,11 @@ class Reader:
             case "parenthesis":
                 inner = named(node)
                 return self.expression(inner[0]) if len(inner) == 1 else self.refuse(node, "parentheses")
+            case "binary_operator" if sign_of(node) in POWERS:
+                return self.power(node)
             case "binary_operator":
                 sides = [self.expression(field_of(node, side)) for side in ("left", "right")]
-                sign = next(text_of(child) for child in node.children if not child.is_named)
+                sign = sign_of(node)
                 if sign not in SIGNS:
                     return self.refuse(node, f"the operator {sign}")
                 return self.part("op", node, SIGNS[sign], *sides)
@@ -175,6 +178,21 @@ class Reader:
                 return self.part("name", node, name)
         return self.refuse(node, f"an expression outside the language of audit ({node.type.replace('_', ' ')})")
 
+    def power(self, node: Any) -> Part:
+        """Powers from left to right, before a sign in front: the grammar groups ``-x^2`` and ``a^b^c`` otherwise."""
+        signs: list[str] = []
+        operands = list_powers(node, signs)
+        first, negative = operands[0], False
+        while first.type == "unary_operator":
+            negative ^= text_of(first).startswith("-")
+            first = field_of(first, "operand")
+        if any(x.type in ("unary_operator", "not_operator") for x in operands[1:-1]) or first.type == "not_operator":
+            return self.refuse(node, "a sign inside a tower of powers, which MATLAB and Octave read differently")
+        value = self.expression(first)
+        for sign, operand in zip(signs, operands[1:], strict=True):
+            value = self.part("op", node, SIGNS[sign], value, self.expression(operand))
+        return self.part("minus", node, value) if negative else value
+
     def row(self, node: Any) -> Part:
         return self.part("list", node, tuple(map(self.expression, named(node))))
 
@@ -195,3 +213,17 @@ class Reader:
             ends = [self.expression(child) for child in named(node)]
             return self.part("slice", node, *ends) if len(ends) == 2 else self.refuse(node, "a range with a step")
         return self.expression(node)
+
+
+def sign_of(node: Any) -> str:
+    """The operator between two operands."""
+    return next(text_of(child) for child in node.children if not child.is_named)
+
+
+def list_powers(node: Any, signs: list[str]) -> list[Any]:
+    """The operands of a tower of powers as they stand in the text, and the operators between them into ``signs``."""
+    if node.type != "binary_operator" or sign_of(node) not in POWERS:
+        return [node]
+    left = list_powers(field_of(node, "left"), signs)
+    signs.append(sign_of(node))
+    return [*left, *list_powers(field_of(node, "right"), signs)]

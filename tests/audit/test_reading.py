@@ -72,6 +72,11 @@ def final(result, name, *place, case=0):
         ("y = a; RETURN_IF(a); y = 0;", "the function RETURN_IF, which this file does not define"),
         ("y = a; switch (1) { case 1: y = 0; }", "a statement outside the language of audit (switch statement)"),
         ("y = a;\n#if 1\n y = 0;\n#endif\n", "a statement outside the language of audit (preproc if)"),
+        (
+            "static float s = 1; s = 2*s; y = s;",
+            "a variable that keeps its value between calls, or is changed elsewhere",
+        ),
+        ("static const float s = 3; y = s*a;", "3*a"),
         ("y = a; while (y > 0) { y -= 1; }", "a statement outside the language of audit (while statement)"),
     ],
 )
@@ -155,6 +160,10 @@ def test_a_line_of_python_means_what_numpy_does_or_is_refused(tmp_path, body, ex
         ("M = [1 2; 3 4]; y = M(2,1);", "3"),
         ("M = zeros(2); M(1,:) = v; y = M(1,2);", "v(2)"),
         ("y = 0; for i = 1:2\n y = y + v(i)^2;\nend", "v(1)**2 + v(2)**2"),
+        ("y = -v(1)^2;", "-v(1)**2"),
+        ("y = 2^3^2;", "64"),
+        ("y = 3*-v(1)^2;", "3*(-v(1)**2)"),
+        ("y = 2^-v(1)^2;", "a sign inside a tower of powers, which MATLAB and Octave read differently"),
         ("M = [v v]; y = M(1,2);", "a matrix of blocks"),
         ("y = w' * 2;", "the transpose of what has no known size; declare it under [code.symbols]"),
         ("y = v \\ v;", "the operator \\"),
