@@ -82,7 +82,7 @@ def test_error_dynamics_are_the_linearisation_along_a_flight(frame):
     assert worst_difference(reference.Flight(card, 1)) < 1e-9, card
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_error_dynamics_are_the_linearisation_along_a_hundred_flights():
     pick = random.Random(7)
     for seed in range(100):

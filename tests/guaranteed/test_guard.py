@@ -66,7 +66,7 @@ def test_the_radius_is_the_optimum_of_an_independent_linear_programme(seed):
     assert stream and seen
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_the_radius_lies_in_the_enclosure_for_many_problems():
     worst, count = 0.0, 0
     for seed in range(1000, 1300):
@@ -232,7 +232,7 @@ def test_a_certificate_asked_for_later_is_that_of_its_epoch():
     assert len(early.certificate["panels"]) == 6 and nav.check(early)[0].status == "ACCEPTED"
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_thousands_of_spoiled_certificates_are_refused():
     rng = np.random.default_rng(80)
     refused = 0
@@ -543,7 +543,7 @@ def test_a_system_that_varies_and_a_parameter_without_a_value_are_refused():
     assert nav.Guard(free, "v", values={"w": "2"}).step(1, t=0).radius is None
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_hundred_thousand_epochs_need_constant_memory():
     import resource
 
