@@ -88,9 +88,9 @@ def assert_audited(spec: str | os.PathLike[str]) -> Audit:
     ...     print([entry.line for entry in failure.audit["transition"].entries if not entry.status.holds])
     [14]
     """
-    import navsym as nav
+    from navsym.audit.answer import audit as decide_audit
 
-    audit = nav.audit(spec)
+    audit = decide_audit(spec)
     if not audit.questions:
         raise EmptyError("expected [[question]] blocks; got none; ask a question", where=str(spec))
     if audit.holds:
