@@ -167,15 +167,18 @@ class Audit(Answer):
         """The certificates of all entries that have one."""
         return [e.certificate for q in self.questions for e in q.entries if e.certificate is not None]
 
-    def annotations(self) -> list[str]:
-        """``file:line: message`` for every entry that is REFUTED or OPEN, and for every refused line."""
-        lines = [
+    def list_failures(self) -> list[str]:
+        """``file:line: message`` for every entry that is REFUTED or OPEN."""
+        return [
             f"{e.file}:{e.line}: {q.name}[{e.entry[0]},{e.entry[1]}] {e.status}: {e.remark()}"
             for q in self.questions
             for e in q.entries
             if not e.status.holds
         ]
-        return lines + [f"{f.file}:{line}: not read: {why}" for f in self.files for line, why in f.refused]
+
+    def annotations(self) -> list[str]:
+        """The failures, and ``file:line: message`` for every refused line."""
+        return [*self.list_failures(), *(f"{f.file}:{n}: not read: {why}" for f in self.files for n, why in f.refused)]
 
     def document(self, every: bool = False) -> dict[str, Any]:
         """The JSON document of ``navsym audit``."""

@@ -294,7 +294,9 @@ class Asking:
     def ask_covariance(self) -> list[Entry]:
         F, Q, new = (self.matrix(key) for key in ("F", "Q", "is"))
         P = self.start_of("P", F.shape)
-        expected = map_cells(add, matrix_product(matrix_product(F, P), transpose(F, True)), Q)
+        expected = whole = map_cells(add, matrix_product(matrix_product(F, P), transpose(F, True)), Q)
+        if isinstance(whole, Array) and is_symmetric(P) and is_symmetric(Q):  # then F P F' + Q: one formula for both
+            expected = make_array(whole.shape, lambda i, j: whole.at(min(i, j), max(i, j)))
         return self.pair(new, expected, "is", upper=True)
 
     def start_of(self, key: str, shape: Index) -> Array:
@@ -360,6 +362,13 @@ class Asking:
 
     def known(self, text: str, names: Names, key: str) -> Scalar:
         return Scalar(read_tree(names.translate(text, self.place(key)), names.declarations, where=self.place(key)))
+
+
+def is_symmetric(matrix: Array) -> bool:
+    """True for a matrix that reads the same across its diagonal, formula by formula."""
+    m, n = matrix.shape
+    trees = [cell.tree if isinstance(cell, Scalar) else None for cell in matrix.cells]
+    return m == n and all(trees[i * n + j] is trees[j * n + i] is not None for i in range(n) for j in range(i + 1))
 
 
 def flatten(reference: Any) -> list[Any]:

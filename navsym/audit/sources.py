@@ -47,15 +47,18 @@ class Source:
     symmetric: frozenset[str]
     relations: tuple[Tree, ...]
     reading: Reading | None = None
+    mirrored: dict[str, str] | None = None
 
     def symbol(self, spelling: str) -> Tree:
         """The symbol of an input; of a symmetric matrix that of the upper half."""
-        for name in self.symmetric:
-            rows, _ = self.shapes[name]
-            for place in places_of((rows, rows)):
-                if place[0] > place[1] and spelling == spell_entry(self.unit, name, place):
-                    spelling = spell_entry(self.unit, name, (place[1], place[0]))
-        return self.names.symbol(spelling)
+        if self.mirrored is None:
+            self.mirrored = {
+                spell_entry(self.unit, name, (i, j)): spell_entry(self.unit, name, (j, i))
+                for name in self.symmetric
+                for i, j in places_of(self.shapes[name])
+                if i > j
+            }
+        return self.names.symbol(self.mirrored.get(spelling, spelling))
 
     def read(self, edits: Mapping[int, Part] | None = None) -> Reading:
         """The function, read once; with edits it is read again."""

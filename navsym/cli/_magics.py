@@ -1,4 +1,4 @@
-"""Commands of notebooks, after ``%load_ext navsym``: ``%prove`` one formula, ``%%claims`` a cell of them."""
+"""Commands of notebooks, after ``%load_ext navsym``: ``%prove``, ``%%claims`` for a cell, ``%audit`` for code."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from navsym.cli.diff import read_range
-from navsym.core.errors import NavsymError
+from navsym.core.errors import ExpressionSyntaxError, NavsymError
 
 if TYPE_CHECKING:
+    from navsym.audit.answer import Audit
     from navsym.claims import Verdict, Verdicts
 
+FUNCTION = re.compile(r"\s+--function\s+")
 RANGE = re.compile(r"\s+--range\s+")
 
 
@@ -35,6 +37,14 @@ def register_magics(shell: Any) -> None:
             shell.push({line.strip(): verdicts})
         return verdicts
 
+    def audit(line: str) -> Audit:
+        """Decide the questions of a file: ``%audit spec.toml``; ``%audit ekf.c --function NAME`` lists formulas."""
+        try:
+            return audit_line(line)
+        except NavsymError as error:
+            raise UsageError(f"{error.kind}: {error}") from None
+
+    shell.register_magic_function(audit, "line", "audit")
     shell.register_magic_function(prove, "line", "prove")
     shell.register_magic_function(claims, "cell", "claims")
 
@@ -46,6 +56,17 @@ def prove_line(line: str) -> Verdict:
     formula, *texts = RANGE.split(line.strip())
     ranges: dict[str, Any] = dict(map(read_range, texts))
     return nav.prove(formula, **ranges)
+
+
+def audit_line(line: str) -> Audit:
+    """The verdicts on a specification, or the formulas of a function; raises NavsymError for what is neither."""
+    import navsym as nav
+
+    file, *names = FUNCTION.split(line.strip())
+    if len(names) > 1:
+        message = f"expected one function; got {len(names)}; ask for one at a time"
+        raise ExpressionSyntaxError(message, where="%audit")
+    return nav.audit(file.strip("\"'"), function=names[0].strip() if names else None)
 
 
 def prove_cell(text: str) -> Verdicts:

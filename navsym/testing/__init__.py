@@ -1,4 +1,4 @@
-"""For a user's own tests: an assertion that decides a formula, a pytest plugin, and hypothesis strategies.
+"""For a user's own tests: assertions that decide formulas, a pytest plugin, and hypothesis strategies.
 
 ``assert_claim`` puts a formula through the same door as the claims of the papers and fails with the counterexample::
 
@@ -6,6 +6,8 @@
 
     def test_triple_angle():
         assert_claim("sin(3*a) = 3*sin(a) - 4*sin(a)**3")
+
+``assert_audited`` does the same for the questions of a specification about source code, with file and line.
 
 The plugin makes one test of each claim in files named ``*.claims.toml``. Strategies draw exact models, intervals and
 angles for the symbolic side, and covariances and transition matrices as arrays for the numerical side; only they need
@@ -18,7 +20,9 @@ from typing import Any
 
 _STRATEGIES = "angles covariances intervals matrices mode_transitions model_of models rationals".split()
 _HOMES = {
-    **dict.fromkeys(("ClaimFailedError", "assert_claim"), "navsym.testing.assertions"),
+    **dict.fromkeys(
+        ("AuditFailedError", "ClaimFailedError", "assert_audited", "assert_claim"), "navsym.testing.assertions"
+    ),
     **dict.fromkeys(_STRATEGIES, "navsym.testing.strategies"),
 }
 

@@ -1,16 +1,21 @@
-"""An assertion that decides a formula, and fails with the counterexample."""
+"""Assertions that decide a formula, or questions about source code, and fail with the counterexample."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from contextvars import ContextVar
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from navsym.claims import CONFIRMED, Bound, Equation, Verdict
+from navsym.core.errors import EmptyError
 from navsym.prove.formulas import RELATION, prove
 from navsym.prove.ladder import decide_within
 from navsym.verification.certificates import verdict_of
 from navsym.verification.decide import decide_claim_of
+
+if TYPE_CHECKING:
+    from navsym.audit.answer import Audit
 
 #: Seconds of processor time for one claim; ``--navsym-budget`` sets it for a run of pytest.
 BUDGET: ContextVar[float] = ContextVar("BUDGET", default=20.0)
@@ -57,6 +62,40 @@ def assert_claim(
     else:
         verdict = decide_within(Bound(left, relation, right, box or {}), limit)
     return require_holds(verdict, f"{left} {relation} {right}", sampled)
+
+
+class AuditFailedError(AssertionError):
+    """Source code in which an entry was not proved; ``audit`` has all verdicts."""
+
+    def __init__(self, message: str, audit: Audit):
+        super().__init__(message)
+        self.audit = audit
+
+
+def assert_audited(spec: str | os.PathLike[str]) -> Audit:
+    """Decide the questions of a specification and fail unless every entry is PROVED or CERTIFIED.
+
+    spec : a file of questions about source code (TOML), as for :func:`navsym.audit`
+
+    Returns the audit. Raises AuditFailedError, an AssertionError, with one line for each entry that is REFUTED or OPEN:
+    ``file:line``, question and entry, and the counterexample with the mended right side or the reason. Raises
+    NavsymError for what is no specification, and for one without questions.
+
+    >>> from navsym.testing import AuditFailedError, assert_audited
+    >>> try:
+    ...     assert_audited("examples/audit/yaw_jacobian.toml")
+    ... except AuditFailedError as failure:
+    ...     print([entry.line for entry in failure.audit["transition"].entries if not entry.status.holds])
+    [14]
+    """
+    from navsym.audit.answer import audit as decide_audit
+
+    audit = decide_audit(spec)
+    if not audit.questions:
+        raise EmptyError("expected [[question]] blocks; got none; ask a question", where=str(spec))
+    if audit.holds:
+        return audit
+    raise AuditFailedError("\n".join(audit.list_failures()), audit)
 
 
 def assert_text(text: str, seconds: float, sampled: bool, options: Mapping[str, Any]) -> Verdict:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import nbformat
 import pytest
 from IPython.core.error import UsageError
@@ -10,6 +12,7 @@ from nbclient import NotebookClient
 
 from navsym.cli._magics import prove_cell
 
+YAW = Path(__file__).parents[2] / "examples" / "audit" / "yaw_jacobian"
 CELL = """[symbols]
 a = "real"
 [[claim]]
@@ -52,6 +55,18 @@ def test_a_cell_of_claims_is_decided_and_kept_by_its_name(shell):
 def test_a_wrong_line_is_an_error_without_a_traceback(shell, line, hint):
     with pytest.raises(UsageError, match=hint):
         shell.run_line_magic("prove", line)
+
+
+def test_questions_about_source_code_are_decided_on_a_line(shell):
+    audit = shell.run_line_magic("audit", f"{YAW}.toml")
+    assert audit["transition"].status == "REFUTED"
+    assert shell.run_line_magic("audit", f"{YAW}.c --function predict").formulas
+
+
+@pytest.mark.parametrize("line", ["", "nothing.toml", f"{YAW}.c", f"{YAW}.c --function a --function b"])
+def test_a_wrong_line_of_audit_is_an_error_without_a_traceback(shell, line):
+    with pytest.raises(UsageError, match="expected"):
+        shell.run_line_magic("audit", line)
 
 
 def test_a_wrong_cell_names_its_line(shell):

@@ -181,8 +181,8 @@ def inner_point(limit: Any, k: int, i: int) -> arb:
 def simple_point(limit: Any, k: int) -> fmpq:
     """A simple rational number in a range, if it is wide."""
     numbers = [fmpq(n, d) for d in (1, 2, 4, 10) for n in (0, 1, -1, 3, -3, 7)][k:]
-    inside = [n for n in numbers if player.is_inside(player.number(n), limit)]
-    return inside[0] if inside else to_fmpq(inner_point(limit, k, 0).mid())
+    inside = next((n for n in numbers if player.is_inside(player.number(n), limit)), None)
+    return inside if inside is not None else to_fmpq(inner_point(limit, k, 0).mid())
 
 
 def draw_points(box: Any, count: int) -> Iterator[dict[str, fmpq]]:
