@@ -1,7 +1,7 @@
 """Entries of the book: TOML files by chapter, read into frozen objects and decided as claim files are.
 
-``statuses.json`` beside the chapters keeps what was granted, under the hash of the statement: entry -> status and hash of
-its certificate. A statement that has changed since is decided when it is shown; :meth:`Entry.prove` always decides.
+``statuses.json`` beside the chapters keeps what was granted, under the hash of the statement: entry -> status and hash
+of its certificate. A statement that has changed since is decided when it is shown; :meth:`Entry.prove` always decides.
 """
 
 from __future__ import annotations
