@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from navsym.cli.output import emit, table
+from navsym.cli.output import emit
+
+if TYPE_CHECKING:
+    from navsym.book.entries import Entry
 
 
 def command(
@@ -20,7 +23,12 @@ def command(
     import navsym as nav
 
     entries = nav.book.search(search)
-    rows = [(entry.id, entry.status, entry.title, entry.statement) for entry in entries]
     shown = {"entries": [entry.record() for entry in entries]}
-    emit(shown, as_json=json_, text=lambda: table(("entry", "verdict", "title", "statement"), rows))
+    emit(shown, as_json=json_, text=lambda: as_text(entries))
     return 0 if entries else 1
+
+
+def as_text(entries: list[Entry]) -> str:
+    """Each entry with its verdict, its statement and its source."""
+    lines = [f"{entry.id}  {entry.status}  {entry.title}\n  {entry.statement}\n  {entry.source}\n" for entry in entries]
+    return "\n".join([*lines, f"{len(entries)} entries"])
