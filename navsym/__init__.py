@@ -47,6 +47,7 @@ __version__ = "0.2.0"
 _HOMES = {
     "Model": "navsym.models.model",
     "audit": "navsym.audit.answer",
+    "book": "navsym.book.entries",
     **dict.fromkeys(("Derivation", "derive"), "navsym.models.derivation"),
     **dict.fromkeys(("Observability", "observe"), "navsym.observability.answer"),
     "Comparison": "navsym.guaranteed.baselines",
@@ -95,6 +96,7 @@ __all__ = ["__version__", *sorted(_HOMES)]
 
 if TYPE_CHECKING:
     from navsym.audit.answer import audit as audit
+    from navsym.book.entries import book as book
     from navsym.claims import CERTIFIED as CERTIFIED
     from navsym.claims import CONFIRMED as CONFIRMED
     from navsym.claims import OPEN as OPEN

@@ -1,0 +1,1 @@
+"""The book: standard formulas of navigation and estimation, each with its verdict."""

@@ -1,0 +1,188 @@
+"""Entries of the book: TOML files by chapter, read into frozen objects and decided as claim files are.
+
+``statuses.json`` beside the chapters keeps what was granted, under the hash of the statement: entry -> status and hash
+of its certificate. A statement that has changed since is decided when it is shown; :meth:`Entry.prove` always decides.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from navsym.claims import OPEN, Status, Verdict
+from navsym.core.errors import DuplicateError, UnknownSymbolError
+from navsym.language.names import quote
+from navsym.language.schema import Table, expect_keys, join_place, require_key
+from navsym.language.tomlfile import read_toml
+
+FOLDER = Path(__file__).with_name("chapters")
+KEPT = Path(__file__).with_name("statuses.json")
+STATEMENT = ("left", "relation", "right", "chain", "given", "box")
+SECONDS = 20.0  # of processor time for one entry, as in ``navsym prove``
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One formula of the book.
+
+    id, chapter, title : what it is called and where it stands
+    latex    : as it is printed, in our own writing
+    source   : the textbook or paper that has the formula
+    note     : a remark, or an empty text
+    document : the claim file of this one statement, with the declarations of its chapter
+
+    >>> import navsym as nav
+    >>> entry = nav.book["skew-is-cross"]
+    >>> entry
+    <PROVED: skew-is-cross; skew(u) @ v = cross(u, v)>
+    >>> entry.prove().holds
+    True
+    """
+
+    id: str
+    chapter: str
+    title: str
+    latex: str
+    source: str
+    note: str = ""
+    document: Mapping[str, Any] = field(default_factory=dict, repr=False, hash=False)
+
+    @property
+    def statement(self) -> str:
+        """The formula in the language of claim files."""
+        block = self.document["claim"][0]
+        text = block.get("chain") or f"{block['left']} {block.get('relation', '=')} {block['right']}"
+        return text + "".join(f", {given}" for given in block.get("given", ()))
+
+    @property
+    def status(self) -> Status:
+        """The verdict that was granted for this statement; it is decided now when the statement has changed since."""
+        kept = book.kept.get(self.id, {})
+        return Status(kept["status"]) if kept.get("statement") == digest(self.document) else self.prove().status
+
+    def prove(self, seconds: float = SECONDS) -> Verdict:
+        """The verdict, searched and granted now; OPEN after ``seconds``."""
+        from navsym.prove.claimfile import claims_from, decide_claims
+
+        return decide_claims(claims_from(dict(self.document), self.id), seconds=seconds)[0]
+
+    def record(self) -> dict[str, Any]:
+        """One entry of the JSON document of ``navsym book``."""
+        names = ("id", "chapter", "title", "latex")
+        shown = {name: getattr(self, name) for name in names}
+        return {**shown, "status": str(self.status), "source": self.source, "misprints": []}
+
+    def __repr__(self) -> str:
+        return f"<{self.status}: {self.id}; {self.statement}>"
+
+
+class Book(Mapping[str, Entry]):
+    """All entries by id, in the order of the chapters.
+
+    >>> import navsym as nav
+    >>> nav.book["transport-rate"].chapter
+    'Strapdown mechanisation, coning and sculling'
+    >>> [entry.id for entry in nav.book.search("melbourne")]
+    ['melbourne-wubbena']
+    """
+
+    @cached_property
+    def entries(self) -> dict[str, Entry]:
+        """The entries of all chapters; raises DuplicateError when two have one id."""
+        found: dict[str, Entry] = {}
+        for path in sorted(FOLDER.glob("*.toml")):
+            for entry in read_chapter(path):
+                if entry.id in found:
+                    got = f"{quote(entry.id)} also in {quote(found[entry.id].chapter)}"
+                    raise DuplicateError(f"expected an id once; got {got}; rename one", where=path.name)
+                found[entry.id] = entry
+        return found
+
+    @cached_property
+    def kept(self) -> dict[str, dict[str, str]]:
+        """What was granted: entry -> hash of its statement, status, hash of its certificate."""
+        return dict(json.loads(KEPT.read_text(encoding="utf-8")))
+
+    def __getitem__(self, name: str) -> Entry:
+        if name not in self.entries:
+            near = get_close_matches(str(name), self.entries, n=1)
+            remedy = f"did you mean {near[0]}?" if near else "search with nav.book.search"
+            raise UnknownSymbolError(f"expected the id of an entry; got {quote(str(name))}; {remedy}", where="book")
+        return self.entries[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.entries
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.entries)
+
+    def __len__(self) -> int:
+        return len(self.entries)
+
+    def __repr__(self) -> str:
+        return f"<book: {len(self)} entries>"
+
+    def search(self, words: str = "") -> list[Entry]:
+        """Entries in which every word occurs, in id, chapter, title, LaTeX, statement or source."""
+        wanted = words.lower().split()
+        return [entry for entry in self.values() if all(word in text_of(entry) for word in wanted)]
+
+
+def text_of(entry: Entry) -> str:
+    """What a search looks through."""
+    parts = (entry.id, entry.chapter, entry.title, entry.latex, entry.statement, entry.source)
+    return "\n".join(parts).lower()
+
+
+def read_chapter(path: Path) -> list[Entry]:
+    """The entries of one file; raises a NavsymError that names the file and the key."""
+    document = read_toml(path)
+    expect_keys(document, ("chapter", "symbols", "rates", "entry"), path.name)
+    chapter = require_key(document, "chapter", path.name)
+    return [
+        read_book_entry(block, chapter, document, join_place(path.name, place))
+        for place, block in enumerate(require_key(document, "entry", path.name))
+    ]
+
+
+def read_book_entry(block: Table, chapter: Table, document: Table, where: str) -> Entry:
+    """One [[entry]] block; the source of the chapter holds unless the entry names its own."""
+    expect_keys(block, ("id", "title", "latex", "source", "note", *STATEMENT), where)
+    notes = [require_key(block, key, where) for key in ("id", "title", "latex")]
+    claim = {"id": notes[0], **{key: block[key] for key in STATEMENT if key in block}}
+    statement = {"symbols": document.get("symbols", {}), "claim": [claim]}
+    if any("dot_(" in claim.get(side, "") for side in ("left", "right", "chain")):
+        statement["rates"] = document.get("rates", {})
+    source = block.get("source", chapter["source"])
+    return Entry(notes[0], chapter["title"], notes[1], notes[2], source, block.get("note", ""), statement)
+
+
+def digest(data: Any) -> str:
+    """A hash of plain data."""
+    return hashlib.sha256(json.dumps(data, sort_keys=True, default=str).encode()).hexdigest()[:32]
+
+
+def keep_statuses() -> list[Entry]:
+    """Decide every entry and write ``statuses.json``; the entries that are OPEN. Two minutes or so."""
+    rows = {}
+    for entry in book.values():
+        verdict = entry.prove()
+        certificate = "" if verdict.certificate is None else digest(verdict.certificate)
+        rows[entry.id] = {
+            "certificate": certificate,
+            "statement": digest(entry.document),
+            "status": str(verdict.status),
+        }
+    lines = [f"{json.dumps(name)}: {json.dumps(row)}" for name, row in sorted(rows.items())]
+    KEPT.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
+    return [book[name] for name, row in rows.items() if row["status"] == OPEN]
+
+
+#: The book of this package.
+book = Book()

@@ -1,0 +1,34 @@
+"""Standard formulas of navigation and estimation, with their verdicts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from navsym.cli.output import emit
+
+if TYPE_CHECKING:
+    from navsym.book.entries import Entry
+
+
+def command(
+    search: Annotated[str, typer.Argument(help="words that all occur in id, title, formula or source")] = "",
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> int:
+    """Search the formulas of the book. Status 1 when no entry has all words.
+
+    Example: navsym book "transport rate"
+    """
+    import navsym as nav
+
+    entries = nav.book.search(search)
+    shown = {"entries": [entry.record() for entry in entries]}
+    emit(shown, as_json=json_, text=lambda: as_text(entries))
+    return 0 if entries else 1
+
+
+def as_text(entries: list[Entry]) -> str:
+    """Each entry with its verdict, its statement and its source."""
+    lines = [f"{entry.id}  {entry.status}  {entry.title}\n  {entry.statement}\n  {entry.source}\n" for entry in entries]
+    return "\n".join([*lines, f"{len(entries)} entries"])

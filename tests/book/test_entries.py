@@ -1,0 +1,118 @@
+"""The book: every entry is read, a sample of them decided; all of them, and their false variants, in the long tests."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections import Counter
+from dataclasses import replace
+
+import pytest
+
+import navsym as nav
+from navsym.book.entries import KEPT, Entry, digest, read_chapter
+from navsym.cli.main import run
+from navsym.prove.claimfile import claims_from, decide_claim
+
+SAMPLE = list(nav.book)[::18]
+FLIPPED = {"=": "!=", "<=": ">", ">=": "<", "<": ">=", ">": "<="}
+
+
+def spoiled(entry: Entry) -> Entry:
+    """The entry with a sign flipped: minus the right side, or the converse of an inequality and of a side that is 0."""
+    document = copy.deepcopy(dict(entry.document))
+    block = document["claim"][0]
+    if block.get("relation", "=") == "=" and block["right"] not in ("0", "zeros(3, 3)"):
+        block["right"] = f"-({block['right']})"
+    else:
+        block["relation"] = FLIPPED[block.get("relation", "=")]
+    return replace(entry, document=document)
+
+
+def verdict_of(entry: Entry) -> nav.Verdict:
+    """The verdict in this process."""
+    return decide_claim(claims_from(dict(entry.document)).claims[0], seconds=10)
+
+
+def test_every_entry_is_complete_and_readable():
+    for entry in nav.book.values():
+        claims = claims_from(dict(entry.document)).claims
+        assert [claim.id for claim in claims] == [entry.id]
+        assert all((entry.chapter, entry.title, entry.latex, entry.source))
+        assert Counter(entry.latex)["{"] == Counter(entry.latex)["}"], entry.id
+    assert len(nav.book) >= 250
+
+
+def test_the_kept_statuses_are_those_of_the_statements():
+    kept = json.loads(KEPT.read_text(encoding="utf-8"))
+    assert {name: row["statement"] for name, row in kept.items()} == {
+        name: digest(entry.document) for name, entry in nav.book.items()
+    }
+    assert all(bool(row["certificate"]) == (row["status"] != "OPEN") for row in kept.values())
+    assert Counter(row["status"] for row in kept.values())["REFUTED"] == 0
+
+
+@pytest.mark.parametrize("name", SAMPLE)
+def test_a_sample_is_proved_again_and_its_false_variants_are_not(name):
+    entry = nav.book[name]
+    verdict = verdict_of(entry)
+    assert verdict.status == entry.status and verdict.holds and verdict.check().accepted
+    assert not verdict_of(spoiled(entry)).holds
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", nav.book)
+def test_every_entry_has_the_status_that_is_kept_and_its_false_variant_is_not_proved(name):
+    entry = nav.book[name]
+    assert str(verdict_of(entry).status) == nav.book.kept[name]["status"]
+    assert not verdict_of(spoiled(entry)).holds
+
+
+def test_a_statement_that_has_changed_is_decided_and_not_believed():
+    entry = nav.book["bac-cab"]
+    assert spoiled(entry).status == nav.REFUTED and entry.status == nav.PROVED
+
+
+def test_an_entry_shows_what_it_states():
+    entry = nav.book["rodrigues-trace"]
+    assert entry.statement.endswith("= 1 + 2*cos(a), dot(u, u) = 1")
+    assert repr(entry).startswith("<PROVED: rodrigues-trace; ")
+
+
+def test_search_wants_all_words_in_any_order():
+    found = {entry.id for entry in nav.book.search("RATE transport")}
+    assert "transport-rate" in found and "bac-cab" not in found
+    assert len(nav.book.search()) == len(nav.book)
+
+
+def test_an_unknown_id_names_a_near_one():
+    with pytest.raises(nav.NavsymError, match="did you mean transport-rate"):
+        nav.book["transport-rat"]
+    assert "transport-rat" not in nav.book
+
+
+def test_the_verb_prints_one_document(capsys):
+    assert run(["book", "transport-rate", "--json"]) == 0
+    (entry,) = [e for e in json.loads(capsys.readouterr().out)["entries"] if e["id"] == "transport-rate"]
+    assert set(entry) == {"id", "chapter", "title", "latex", "status", "source", "misprints"}
+    assert entry["status"] == "PROVED" and entry["misprints"] == []
+
+
+def test_a_search_without_entries_ends_with_status_one(capsys):
+    assert run(["book", "zzz", "--json"]) == 1
+    assert json.loads(capsys.readouterr().out) == {"entries": []}
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ('[chapter]\ntitle = "x"\nsource = "y"\n[[entry]]\nid = "a"\ntitle = "b"\n', "latex"),
+        ('[chapter]\ntitle = "x"\nsource = "y"\n[[entry]]\nid = "a"\ntitel = "b"\n', "titel"),
+        ("[symbols]\n", "chapter"),
+    ],
+)
+def test_a_chapter_that_lacks_something_is_refused(tmp_path, text, what):
+    path = tmp_path / "x.toml"
+    path.write_text(text)
+    with pytest.raises(nav.NavsymError, match=what):
+        read_chapter(path)
