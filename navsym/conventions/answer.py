@@ -76,6 +76,11 @@ class Conventions(Answer):
     alternatives : other sets of as few blocks
     excluded     : the neighbours of the cards, with what excludes them; ``examined`` counts all cards
     unused       : tables of the file that say nothing about the error dynamics
+
+    >>> import navsym as nav
+    >>> found = nav.conventions("examples/conventions.toml")
+    >>> [card.error for card in found.cards], found.complete
+    (['estimate - truth', 'truth - estimate'], True)
     """
 
     name: str

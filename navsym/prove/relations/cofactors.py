@@ -64,10 +64,12 @@ def by_sums_of_hypotheses(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """A sum of hypotheses >= 0; what is so with both signs is 0."""
     if not 0 < len(goal.given) <= MOST_GIVEN:
         return
-    if goal.relation == "=":
+    if goal.relation == "=" and len(goal.given) > 1:
         yield {"rule": "between", "proofs": Holes()}
     for chosen in product((0, 1), repeat=len(goal.given)) if goal.relation == ">=" else ():
-        yield {"rule": "given", "weights": [*map(str, chosen)]}
+        total = player.add_terms(h for h, weight in zip(goal.given, chosen, strict=True) if weight)
+        if player.is_identity(player.subtract(goal.term, total)):  # a try is dear: only what the rule accepts
+            yield {"rule": "given", "weights": [*map(str, chosen)]}
 
 
 def list_values(zero: Term) -> Iterator[tuple[Term, Term, int]]:
