@@ -7,17 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, Unit
-from navsym.audit.syntax import (
-    descend,
-    field_of,
-    identifiers_in,
-    line_of,
-    named,
-    parse_source,
-    read_decimal,
-    span_of,
-    text_of,
-)
+from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, parse_source, read_decimal, text_of
 
 RULES = {"c": Rules(integer=True), "cpp": Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))}
 REAL = frozenset("float double real_t ftype Scalar scalar_t Real postype_t T float32_t float64_t f32 f64".split())
@@ -31,18 +21,6 @@ MATRIX = re.compile(
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
 COMPARISONS = {"<", "<=", ">", ">=", "==", "!="}
 WORDS = {"&&": "both", "||": "either", "and": "both", "or": "either"}
-
-#: Where the order of statements is left.
-JUMPS = (
-    "return_statement",
-    "goto_statement",
-    "break_statement",
-    "continue_statement",
-    "throw_statement",
-    "labeled_statement",
-    "case_statement",
-    "ERROR",
-)
 
 
 def read_c(source: bytes, file: str, language: str) -> Unit:
@@ -78,23 +56,8 @@ def shape_of_type(text: str) -> tuple[int, ...] | None:
 
 
 @dataclass(slots=True, eq=False)
-class Reader:
-    """Walks the syntax tree; ``shift`` moves the spans of a text that was read alone."""
-
-    unit: Unit
-    shift: int = 0
-
-    def part(self, kind: str, node: Any, *parts: Any) -> Part:
-        start, end = span_of(node)
-        return Part(kind, line_of(node), parts, (start + self.shift, end + self.shift))
-
-    def refuse(self, node: Any, why: str) -> Part:
-        return self.part("refused", node, why)
-
-    def unread(self, node: Any, why: str) -> Part:
-        """A statement that is not read: all names in it may have been written, or the way may be left there."""
-        kind = "jump" if any(inner.type in JUMPS for inner in descend(node)) else "unread"
-        return self.part(kind, node, why, identifiers_in(node))
+class Reader(SourceReader):
+    """Walks the syntax tree of C and C++."""
 
     # -- the file --
 

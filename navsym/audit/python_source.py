@@ -6,23 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, Unit, names_in
-from navsym.audit.syntax import (
-    descend,
-    field_of,
-    identifiers_in,
-    line_of,
-    named,
-    parse_source,
-    read_decimal,
-    span_of,
-    text_of,
-)
+from navsym.audit.syntax import SourceReader, field_of, line_of, named, parse_source, read_decimal, text_of
 
 RULES = Rules(entry=("{}[{}]", "{}[{}, {}]"))
 SIGNS = {"+", "-", "*", "/", "%", "//", "@", "**"}
-
-#: Where the order of statements is left.
-JUMPS = ("return_statement", "break_statement", "continue_statement", "raise_statement", "yield", "ERROR")
 
 
 def read_python(source: bytes, file: str) -> Unit:
@@ -43,23 +30,8 @@ def read_python_expression(text: str, unit: Unit) -> Part:
 
 
 @dataclass(slots=True, eq=False)
-class Reader:
-    """Walks the syntax tree; ``shift`` moves the spans of a text that was read alone."""
-
-    unit: Unit
-    shift: int = 0
-
-    def part(self, kind: str, node: Any, *parts: Any) -> Part:
-        start, end = span_of(node)
-        return Part(kind, line_of(node), parts, (start + self.shift, end + self.shift))
-
-    def refuse(self, node: Any, why: str) -> Part:
-        return self.part("refused", node, why)
-
-    def unread(self, node: Any, why: str) -> Part:
-        """A statement that is not read: all names in it may have been written, or the way may be left there."""
-        kind = "jump" if any(inner.type in JUMPS for inner in descend(node)) else "unread"
-        return self.part(kind, node, why, identifiers_in(node))
+class Reader(SourceReader):
+    """Walks the syntax tree of Python."""
 
     def read_body(self, nodes: list[Any]) -> None:
         """Functions and methods, and names of the module that are assigned once, to numbers."""

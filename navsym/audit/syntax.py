@@ -5,9 +5,11 @@ from __future__ import annotations
 import functools
 import importlib
 from collections.abc import Iterator
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from navsym.audit.form import Part, Unit
 from navsym.core.errors import MissingEngineError, TooLargeError
 
 DEPTH = 200
@@ -68,11 +70,6 @@ def line_of(node: Any) -> int:
     return int(node.start_point[0]) + 1
 
 
-def span_of(node: Any) -> tuple[int, int]:
-    """The bytes of a node."""
-    return node.start_byte, node.end_byte
-
-
 def named(node: Any) -> list[Any]:
     """The children that are more than signs; comments left out."""
     return [child for child in node.named_children if child.type not in ("comment", "line_continuation")]
@@ -108,3 +105,32 @@ def read_decimal(text: str) -> Fraction | None:
     if ("e" in text.lower()) != bool(power) or (power and not (power.isascii() and power.isdigit() and len(power) < 4)):
         return None
     return Fraction(text)
+
+
+#: Where the order of statements is left, in any of the grammars.
+JUMPS = frozenset(
+    "return_statement goto_statement break_statement continue_statement throw_statement raise_statement yield "
+    "labeled_statement case_statement ERROR".split()
+)
+
+
+@dataclass(slots=True, eq=False)
+class SourceReader:
+    """Walks the syntax tree of one language; ``shift`` moves the spans of a text that was read alone."""
+
+    unit: Unit
+    shift: int = 0
+
+    def part(self, kind: str, node: Any, *parts: Any) -> Part:
+        """A part with its line and span."""
+        start, end = node.start_byte + self.shift, node.end_byte + self.shift
+        return Part(kind, line_of(node), parts, (start, end))
+
+    def refuse(self, node: Any, why: str) -> Part:
+        """An expression that is not read."""
+        return self.part("refused", node, why)
+
+    def unread(self, node: Any, why: str) -> Part:
+        """A statement that is not read: all names in it may have been written, or the way may be left there."""
+        kind = "jump" if any(inner.type in JUMPS for inner in descend(node)) else "unread"
+        return self.part(kind, node, why, identifiers_in(node))
