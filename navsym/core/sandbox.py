@@ -64,12 +64,21 @@ class Limits:
 
     def apply(self) -> None:
         """Bound memory and, should nobody watch any more, processor time; no core files."""
-        size, cpu = self.megabytes * 2**20, int(self.seconds + 1) * (os.cpu_count() or 1) + 10
+        size, cpu = address_space() + self.megabytes * 2**20, int(self.seconds + 1) * (os.cpu_count() or 1) + 10
         resource.setrlimit(resource.RLIMIT_AS, (size, size))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         _, most = resource.getrlimit(resource.RLIMIT_CPU)
         if most == resource.RLIM_INFINITY or cpu < most:
             resource.setrlimit(resource.RLIMIT_CPU, (cpu, most))
+
+
+def address_space() -> int:
+    """Bytes that this process has mapped. A child is born with all of them: the limit is on what it adds."""
+    try:
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[0]) * resource.getpagesize()
+    except OSError:  # no Linux: the limit is on the whole
+        return 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -165,7 +174,7 @@ def work_in_child(sender: Connection, function: Callable[[Any], Any], item: Any,
     except NavsymError as error:
         sender.send(("error", strip_causes(error)))
     except MemoryError:
-        sender.send(("stopped", f"memory above {limits.megabytes} MB"))
+        sender.send(("stopped", f"more than {limits.megabytes} MB of memory"))
     except RecursionError:
         sender.send(("stopped", "an expression nested too deeply"))
     except Exception as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import mmap
 import os
 import subprocess
 import sys
@@ -102,3 +103,10 @@ def shout(_):
 def test_what_a_child_writes_does_not_reach_standard_output(capfd):
     assert run_limited(shout, (0,)) is None
     assert capfd.readouterr() == ("", "no memory")
+
+
+def test_a_child_has_its_memory_whatever_its_parent_holds() -> None:
+    held = mmap.mmap(-1, 3 * 2**30)
+    assert run_limited(lambda size: len(bytes(size)), (2**28,), 60.0, 2048) == 2**28
+    assert isinstance(run_limited(lambda size: len(bytes(size)), (2**31,), 60.0, 1024), Exhausted)
+    held.close()
