@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -200,6 +200,32 @@ def condition_by_polynomial(rows: Rows, *, digits: int, equilibrate: bool = Fals
     largest = largest_root(polynomial, digits + 3)
     reciprocal = largest_root(flint.fmpq_poly(polynomial.coeffs()[::-1]), digits + 3)
     return square_root(largest.lower * reciprocal.lower, largest.upper * reciprocal.upper, digits + 3)
+
+
+def state_condition(rows: Rows, lower: Fraction, upper: Fraction, *, equilibrate: bool = False) -> dict[str, Any]:
+    """ "The condition number lies in [lower, upper]" as the checker reads it."""
+    matrix = [[str(Fraction(x)) for x in row] for row in rows]
+    return {"matrix": matrix, "unit": int(equilibrate), "lower": str(lower), "upper": str(upper)}
+
+
+def certify_condition(statement: dict[str, Any], digits: int = 12) -> dict[str, Any]:
+    """The certificate that the statement holds, or else that it fails: brackets of the extreme squared singular values.
+
+    statement : by :func:`state_condition`
+    digits    : of the brackets, more than the ends of the statement have
+    """
+    rows = [[Fraction(x) for x in row] for row in statement["matrix"]]
+    polynomial = squared_singular_polynomial(rows, equilibrate=bool(statement["unit"]))
+    largest, reciprocal = (
+        largest_root(flint.fmpq_poly(coefficients), digits)
+        for coefficients in (polynomial.coeffs(), polynomial.coeffs()[::-1])
+    )
+    brackets = [largest.lower, largest.upper, 1 / reciprocal.upper, 1 / reciprocal.lower]
+    outside = (
+        largest.upper * reciprocal.upper < Fraction(statement["lower"]) ** 2
+        or largest.lower * reciprocal.lower > Fraction(statement["upper"]) ** 2
+    )
+    return {"kind": "condition", "statement": statement, "outside": int(outside), "brackets": [*map(str, brackets)]}
 
 
 # Singular values of a matrix whose signs are known: Collatz and Wielandt's bounds in ball arithmetic.
@@ -561,6 +587,17 @@ class Conditions(Answer):
         """The JSON document of ``navsym condition``."""
         head = {"n": self.n, "rho": str(self.rho), "tau": str(self.tau), "digits": self.digits}
         return {**head, **{c.name: c.document() for c in self}, "warnings": list(self.warnings)}
+
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """That each of the four condition numbers lies between its ends, for the checker."""
+        measured, powers = observability_rows(self.n, self.rho, self.tau), power_rows(self.n)
+        matrices = {"N_p": measured, "N_pN": measured, "N_f": powers, "N_s": powers}
+        found = []
+        for part in self:
+            ends = (Fraction(part.value.lower), Fraction(part.value.upper))
+            statement = state_condition(matrices[part.name], *ends, equilibrate=part.name in ("N_pN", "N_s"))
+            found.append(certify_condition(statement, self.digits + 10))
+        return found
 
     def __repr__(self) -> str:
         values = ", ".join(f"{c.name} {float(c.value):.6g}" for c in self)
