@@ -636,24 +636,28 @@ def check_rank(item: Any) -> None:
 
 
 def check_condition(item: Any) -> None:
-    """The condition number of a matrix N, or of N with unit columns, lies between two numbers; or outside of them.
+    """The condition number of a matrix N, or of N with columns of unit length, lies between two numbers; or outside.
 
-    It is the quotient of the largest and the smallest singular value, whose squares are the roots of the characteristic
-    polynomial of N'N, or of N'N D^-2 with the diagonal D^2 of N'N. Theorem: all are real (both are similar to symmetric
-    matrices), and then p(x + q) has as many roots above 0 as its coefficients change signs (Descartes' rule).
+    It is the quotient of the largest and the smallest singular value. Their squares are the numbers q for which
+    N'N - q D is singular, where D is the unit matrix or the diagonal of N'N. Theorem: as many of them lie above q as
+    this matrix has positive pivots, when none is 0 (Sylvester's law of inertia).
     """
-    _, statement, outside, brackets = read_fields(item, "kind statement outside brackets")
+    _, statement, outside, brackets, bits = read_fields(item, "kind statement outside brackets bits")
     rows, unit, lower, upper = read_fields(statement, "matrix unit lower upper")
     (low, high), (a, b, c, d) = map(read_number, (lower, upper)), read_list(brackets, read_number, 4)
-    n = read_integer(len(read_list(rows, len)) and len(rows[0]), 1, 200)
+    n, ctx.prec = read_integer(len(read_list(rows, len)) and len(rows[0]), 1, 200), read_integer(bits, 53, 20000)
     N = fmpq_mat(len(rows), n, [x for row in rows for x in read_list(row, read_number, n)])
     gram = N.transpose() * N
-    scale = [gram[j, j] if read_integer(unit, 0, 1) else 1 for j in range(n)]
-    p = fmpq_mat(n, n, [gram[i, j] / scale[j] for i, j in product(range(n), repeat=2)]).charpoly()
+    scale = [gram[j, j] if read_integer(unit, 0, 1) else fmpq(1) for j in range(n)]
 
     def count_above(q: fmpq) -> int:
-        signs = [x > 0 for x in p(fmpq_poly([q, 1])).coeffs() if x != 0]
-        return sum(x != y for x, y in pairwise(signs))
+        rest, above = [[arb(gram[i, j] - q * scale[j] * (i == j)) for j in range(n)] for i in range(n)], 0
+        while rest:
+            (pivot, *row), *below = rest
+            require(pivot > 0 or pivot < 0, "a pivot that may be 0")
+            above += bool(pivot > 0)
+            rest = [[x - first / pivot * y for x, y in zip(other, row, strict=True)] for first, *other in below]
+        return above
 
     require(count_above(a) > 0 and count_above(b) == 0, "the largest singular value is not enclosed")
     require(c > 0 and count_above(c) == n > count_above(d), "the smallest singular value is not enclosed")

@@ -326,6 +326,7 @@ CONDITION = {
     "statement": {"matrix": [["1", "0"], ["0", "3"], ["0", "4"]], "unit": 0, "lower": "4.9", "upper": "5.1"},
     "outside": 0,
     "brackets": ["24.9", "25.1", "0.999", "1.001"],
+    "bits": 64,
 }
 SCALED = CONDITION | {
     "statement": CONDITION["statement"] | {"unit": 1, "lower": "4.9", "upper": "5.1"},
