@@ -156,8 +156,8 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
         raise UnknownSymbolError(message, where=f"prove: {name}")
     table, narrowed = merge_declarations(words, declared, "prove")
     narrowed |= {name: write_declaration(ends, f"prove: box.{name}") for name, ends in beside["box"].items()}
-    block = {"chain": left} if sides.chain else {"left": left, "relation": sides.relation, "right": right}
-    block |= {"id": "formula", "box": narrowed}
+    block: dict[str, Any] = {"id": "formula", "box": narrowed}
+    block |= {"chain": left} if sides.chain else {"left": left, "relation": sides.relation, "right": right}
     block |= {"exists": exists} if exists else {}
     block |= {"given": hypotheses} if hypotheses else {}
     if beside["tolerance"] is not None:
