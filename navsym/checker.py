@@ -2690,13 +2690,13 @@ def integrate_piece(piece: Any, q: Question, goal: Goal, c: Term, d: Term) -> Te
     w = ("^", x, MINUS_ONE)
     if is_infinite(d):
         require(d == INFINITY, "a range that ends at -oo")
-        path, limit, ways = ("+", c, x), Range(ZERO, None, is_open[0]), (("+", c, w), x)
+        path, limit, ways = add_terms((c, x)), Range(ZERO, None, is_open[0]), (("+", c, w), x)
     elif is_infinite(c):
         require(c == negate(INFINITY), "a range that begins at oo")
         path, limit, ways = subtract(d, x), Range(ZERO, None, is_open[1]), (negate(x), subtract(d, w))
     else:
-        across = subtract(d, c)
-        path, limit = ("+", c, ("*", across, x)), Range(ZERO, ONE, *is_open)
+        across = take_off(d, c)
+        path, limit = add_terms((c, ("*", across, x))), Range(ZERO, ONE, *is_open)
         ways = (("+", c, ("*", across, w)), subtract(d, ("*", across, w)))
     whole = goal._replace(box=goal.box | {name: limit})
     inside = goal._replace(box=goal.box | {name: limit._replace(open_low=True, open_high=True)})
@@ -2722,7 +2722,7 @@ def answer_sum(entry: Any, q: Question, goal: Goal) -> Term:
     text, defined, equal, start, count, signs = read_fields(entry, "telescoper defined equal start count signs")
     G, name, k = parse(text), q.variable, ("symbol", q.variable)
     require(is_integral(q.low, goal.box), "expected whole ends")
-    path, following = ("+", q.low, k), substitute(G, {name: ("+", k, ONE)})
+    path, following = add_terms((q.low, k)), substitute(G, {name: ("+", k, ONE)})
     inside = goal._replace(box=goal.box | {name: Range(ZERO, None, integer=True)})
     first = substitute(G, {name: q.low})
     if not is_infinite(q.high):
@@ -2754,32 +2754,42 @@ def is_integral(term: Term, box: dict[str, Range]) -> bool:
 
 
 def answer_limit(entry: Any, q: Question, goal: Goal) -> Term:
-    """At oo by growth; at a number a the limit of N/D is N^(n)(a)/D^(n)(a).
+    """At oo by growth; at a number a the limit of N/D is N^(n)(a)/D^(n)(a); at oo that of N/D in 1/x at 0.
 
     Theorem (Taylor): N, D are analytic at a, where the derivatives of order below n vanish, and that of D does not.
     """
-    a, name = q.low, q.variable
-    if is_infinite(a):
-        (signs,) = read_fields(entry, "signs")
-        way = ("symbol", name) if a == INFINITY else negate(("symbol", name))
-        terms = [substitute(t, {name: way}) for t in (q.term, *q.needs)]
-        value, *_ = [find_limit(t, name, signs, goal) for t in terms]
+    name, far, signs = q.variable, is_infinite(q.low), entry["signs"]
+    y, a = ("symbol", name), ZERO if far else q.low
+    way = y if not far or q.low == INFINITY else negate(y)
+    typed = [substitute(t, {name: way}) for t in (q.term, *q.needs)]
+    places = [(r, t) for r, t in set_union(map(conditions, typed)) if name in symbols_of(t)]
+    if far:
+        for r, t in places:
+            c = grow(t, name, lambda c: ask_sign(c, signs, goal))[1]
+            require(c is not None and (ask_sign(c, signs, goal) == 1 or r == "!="), "it may have no value")
+    if set(entry) == {"signs"}:
+        require(far, "expected oo")
+        value = find_limit(typed[0], name, signs, goal)
         require(signs == [], "a sign too many")
         return value
-    top, bottom, order, defined, zeros, pole, around = read_fields(entry, "top bottom order defined zeros pole around")
+    top, bottom, order, defined, zeros, pole, around, _ = read_fields(
+        entry, "top bottom order defined zeros pole around signs"
+    )
+    require(signs == [], "a sign too many")
     N, D, n = parse(top), parse(bottom), read_integer(order, 0, 8)
-    require(is_identity(subtract(q.term, ("*", N, ("^", D, MINUS_ONE)))), "the quotient is another one")
+    f = substitute(typed[0], {name: ("^", y, MINUS_ONE)}) if far else typed[0]
+    require(is_identity(subtract(f, ("*", N, ("^", D, MINUS_ONE)))), "the quotient is another one")
 
     def derive(term: Term, times: int) -> Term:
         return substitute(reduce(lambda t, _: differentiate(t, name), range(times), term), {name: a})
 
-    around_a = [pair for pair in set_union(map(conditions, (q.term, *q.needs))) if name in symbols_of(pair[1])]
-    orders = read_list(around, lambda k: read_integer(k, 0, 8), len(around_a))
+    places = [] if far else places
+    orders = read_list(around, lambda k: read_integer(k, 0, 8), len(places))
+    require(all(r == "!=" or k == 0 for (r, _), k in zip(places, orders, strict=True)), "a sign on both sides")
     # What is != 0 or > 0 at a is so near a; what has a derivative that is != 0 there vanishes at no other point near a.
-    near = [(r if r == "!=" else ">", derive(t, k)) for (r, t), k in zip(around_a, orders, strict=True)]
-    require(all(r == "!=" or k == 0 for (r, _), k in zip(around_a, orders, strict=True)), "a sign on both sides")
+    near = [(r if r == "!=" else ">", derive(t, k)) for (r, t), k in zip(places, orders, strict=True)]
     value, divisor = derive(N, n), derive(D, n)
-    analytic = (*(derive(t, 0) for t in (N, D, *(t for _, t in around_a))), *(t for _, t in near), value, divisor)
+    analytic = (*(derive(t, 0) for t in (N, D, *(t for _, t in places))), *(t for _, t in near), value, divisor)
     prove_defined(defined, goal, *analytic, level=2)
     prove_all(pole, [goal._replace(term=t, relation=r) for r, t in (*near, ("!=", divisor))])
     prove_all(zeros, [goal._replace(term=derive(t, k), relation="=") for k in range(n) for t in (N, D)])

@@ -42,6 +42,7 @@ from navsym.prove.rooms.signs import (
     by_logarithms,
     by_many_balls,
     by_number,
+    by_positive_radicand,
     by_product,
     by_quadratic,
     by_range,
@@ -62,7 +63,7 @@ EQUATIONS: tuple[tuple[Room, ...], ...] = (
 )  # fmt: skip
 SIGNS: tuple[tuple[Room, ...], ...] = (
     (
-        by_number, by_identity, by_elimination, by_sums_of_hypotheses, by_range, by_roots, by_bounds, by_corners,
+        by_number, by_positive_radicand, by_identity, by_elimination, by_sums_of_hypotheses, by_range, by_roots, by_bounds, by_corners,
         by_product, by_sum, by_few_balls, by_values, by_side, by_squares, by_cones, by_forms,
     ),
     (

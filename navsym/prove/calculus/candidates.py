@@ -312,7 +312,9 @@ def telescope(f: Any, k: Any) -> Any:
     if waves:
         return telescope_wave(f, waves, k)
     ratio = gosper_term(f, k)
-    return None if ratio is None else sp.factor(sp.simplify(ratio)) * f
+    if ratio is None:
+        return None
+    return sp.factor(sp.cancel(ratio * f)) if f.is_rational_function(k) else sp.factor(sp.simplify(ratio)) * f
 
 
 def telescope_wave(f: Any, waves: list[Any], k: Any) -> Any:
@@ -346,7 +348,7 @@ def list_products(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
             return
         roots[1].remove(partner)
         steps = int(sp.simplify(root - partner))
-        factors = [k - root + j for j in range(steps)] if steps > 0 else [1 / (k - partner + j) for j in range(-steps)]
+        factors = [1 / (k - root + j) for j in range(steps)] if steps > 0 else [k - partner + j for j in range(-steps)]
         form *= sp.prod(factors)
     if roots[1] or share.has(k):
         return
@@ -359,22 +361,22 @@ def list_products(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
 
 
 def list_limits(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
-    """Growth at infinity, Taylor quotients of rising order at a number."""
-    if player.is_infinite(question.low):
+    """Growth at infinity, Taylor quotients of rising order at a number, or in 1/x at infinity."""
+    x, f, far = to_sympy(("symbol", question.variable)), to_sympy(question.term), player.is_infinite(question.low)
+    if far:
         yield lambda: {"signs": Signs()}
-        return
-    x = to_sympy(("symbol", question.variable))
-    top, bottom = sp.fraction(sp.together(to_sympy(question.term)))
-    a = to_sympy(question.low)
+        f = f.subs(x, 1 / x if question.low == player.INFINITY else -1 / x)
+    top, bottom = sp.fraction(sp.together(f))
+    a = sp.Integer(0) if far else to_sympy(question.low)
     around = [
         t for _, t in player.set_union(map(player.conditions, (question.term, *question.needs)))
-        if question.variable in player.symbols_of(t)
+        if question.variable in player.symbols_of(t) and not far
     ]  # fmt: skip
     orders = [order_of_zero(to_sympy(t), x, a) for t in around]
     order = order_of_zero(bottom, x, a)
     yield lambda: {
         "top": to_text(top), "bottom": to_text(bottom), "order": order, "defined": Holes(), "zeros": Holes(),
-        "pole": Holes(), "around": orders,
+        "pole": Holes(), "around": orders, "signs": Signs(),
     }  # fmt: skip
 
 
