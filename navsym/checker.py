@@ -2904,6 +2904,7 @@ def expand_goals(reader: Reader, goals: Parts, small: Any, box: dict[str, Range]
             term = differentiate(term, name)
     return found
 
+
 RULES: dict[str, Callable[[Any, Goal], None]] = {
     rule.__name__.removeprefix("prove_"): rule
     for rule in (

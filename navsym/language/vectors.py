@@ -374,6 +374,23 @@ def count_of(tree: Tree) -> int:
     return int(tree.args[0])
 
 
+def list_free_names(tree: Tree) -> frozenset[str]:
+    """The names in a tree, without the variables of integrals, sums, products and limits inside these.
+
+    >>> sorted(list_free_names(read_value("integral(a*x, x, 0, b)", {"a": None, "b": None}).tree))
+    ['a', 'b']
+    """
+
+    def collect(part: Tree, inner: list[frozenset[str]]) -> frozenset[str]:
+        if part.head == SYMBOL:
+            return frozenset(part.args) - {INFINITE}
+        if part.head in BINDERS:
+            return (inner[0] - inner[1]).union(*inner[2:])
+        return frozenset().union(*inner)
+
+    return fold_tree(tree, collect)
+
+
 @dataclass(frozen=True, slots=True)
 class Value:
     """A text that was read: its tree, and rows and columns, None for a number."""
@@ -484,8 +501,8 @@ class ValueWriter(LatexWriter):
     @staticmethod
     def spell_bound(head: str, texts: list[str], inside: str) -> Text:
         """A function with a variable of its own."""
-        variable, low, high = texts[1], *(r"\infty" if t == INFINITE else t for t in (texts[2], texts[-1]))
-        low, high = (re.sub(rf"\b{INFINITE}\b", r"\\infty", end) for end in (low, high))
+        variable = texts[1]
+        low, high = (re.sub(rf"\b{INFINITE}\b", r"\\infty", text) for text in (texts[2], texts[-1]))
         if head == "integral":
             return Text(rf"\int_{{{low}}}^{{{high}}} {inside} \, d{variable}", LOOSE)
         if head == "limit":

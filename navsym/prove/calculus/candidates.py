@@ -1,10 +1,10 @@
-"""Candidates of antiderivatives, telescopers and Taylor quotients: sympy and a few tables propose, nothing is believed."""
+"""Candidates of antiderivatives, telescopers and Taylor quotients, from sympy and a few tables; nothing is believed."""
 
 from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Iterator
-from itertools import product
+from itertools import pairwise, product
 from typing import Any
 
 import sympy as sp
@@ -14,7 +14,7 @@ from sympy.simplify.fu import TR8
 
 from navsym.core.errors import NavsymError
 from navsym.language.printer import to_text
-from navsym.prove.rooms.goals import SHARES, Hole, Holes, player, to_sympy
+from navsym.prove.rooms.goals import SHARES, Hole, Holes, inner_point, player, subterms, to_sympy, write_term
 
 Entry = dict[str, Any]
 MOST_ORDER = 6
@@ -47,9 +47,10 @@ def list_integrals(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
     """Antiderivatives with the ways to take them at the ends, without a cut and with one."""
     for cuts in list_cuts(question, goal):
         places = [question.low, *cuts, question.high]
-        pairs = [*zip(places, places[1:], strict=False)]
+        pairs = [*pairwise(places)]
         signs = [[sign_at_middle(part, question, goal, pair) for part in list_bends(question)] for pair in pairs]
-        for forms in zip_forms([list_antiderivatives(question, goal, pair, s) for pair, s in zip(pairs, signs, strict=True)]):
+        columns = [list_antiderivatives(question, goal, *row) for row in zip(pairs, signs, strict=True)]
+        for forms in zip(*columns, strict=False):
             for ways in list_ways(pairs):
                 for plain in (True, False):
                     yield functools.partial(make_integral, cuts, forms, ways, plain)
@@ -57,8 +58,6 @@ def list_integrals(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
 
 def make_integral(cuts: list[Any], forms: tuple[str, ...], ways: Any, plain: bool) -> Entry:
     """The entry of a rule, with holes."""
-    from navsym.prove.rooms.goals import write_term
-
     pieces = [
         {
             "antiderivative": form, "limits": list(way), "continuous": Holes(), "smooth": Holes(),
@@ -67,11 +66,6 @@ def make_integral(cuts: list[Any], forms: tuple[str, ...], ways: Any, plain: boo
         for form, way in zip(forms, ways, strict=True)
     ]  # fmt: skip
     return {"cuts": [write_term(cut) for cut in cuts], "pieces": pieces}
-
-
-def zip_forms(columns: list[Iterator[str]]) -> Iterator[tuple[str, ...]]:
-    """The first forms of all pieces, then the second ones, and so on."""
-    return zip(*columns, strict=False)
 
 
 def list_ways(pairs: list[Any]) -> Iterator[list[tuple[int, int]]]:
@@ -86,14 +80,7 @@ def list_ways(pairs: list[Any]) -> Iterator[list[tuple[int, int]]]:
 
 def list_bends(question: Any) -> list[Any]:
     """What absolute values are taken of."""
-    return [*dict.fromkeys(part[1] for part in walk(question.term) if part[0] == "abs")]
-
-
-def walk(term: Any) -> Iterator[Any]:
-    yield term
-    for part in term[1:]:
-        if isinstance(part, tuple):
-            yield from walk(part)
+    return [*dict.fromkeys(part[1] for part in subterms(question.term) if part[0] == "abs")]
 
 
 def list_cuts(question: Any, goal: Any) -> Iterator[list[Any]]:
@@ -125,15 +112,9 @@ def lies_between(zero: Any, question: Any) -> bool:
 
 def sign_at_middle(part: Any, question: Any, goal: Any, pair: Any) -> int:
     """The sign of a term at a point between two ends and inside the box."""
-    values = {name: player.Jet(inner(limit)) for name, limit in goal.box.items()}
+    values = {name: player.Jet(inner_point(limit, 1, 0)) for name, limit in goal.box.items()}
     values[question.variable] = player.Jet(middle_of(pair, values))
     return -1 if player.value_of(part, values) < 0 else 1
-
-
-def inner(limit: Any) -> Any:
-    from navsym.prove.rooms.goals import inner_point
-
-    return inner_point(limit, 1, 0)
 
 
 def middle_of(pair: Any, values: Any) -> Any:
@@ -207,9 +188,7 @@ def linearise(f: Any, x: Any) -> Any:
     """Products of sines and cosines as sums, with exponents multiplied out."""
     f = sp.expand(f, power_exp=False)
     f = sp.expand(TR8(f)) if f.has(sp.sin, sp.cos) else f
-    return f.replace(
-        lambda e: isinstance(e, (sp.exp, sp.sin, sp.cos)), lambda e: e.func(sp.expand(e.args[0]))
-    )
+    return f.replace(lambda e: isinstance(e, (sp.exp, sp.sin, sp.cos)), lambda e: e.func(sp.expand(e.args[0])))
 
 
 def integrate_wave(term: Any, x: Any) -> Any:

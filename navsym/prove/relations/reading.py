@@ -18,13 +18,22 @@ from navsym.language.printer import to_text
 from navsym.language.schema import Table, as_list, as_table, as_text, join_place, require_key
 from navsym.language.shapes import RANGES, Shape, read_shape
 from navsym.language.tree import Tree, list_names, list_parts
-from navsym.language.vectors import RELATIONS, Size, describe_size, is_wide, read_hypothesis, read_value
+from navsym.language.vectors import (
+    RELATIONS,
+    Size,
+    describe_size,
+    is_wide,
+    list_free_names,
+    read_hypothesis,
+    read_value,
+)
 from navsym.prove.grant import Document, write_numerals
 from navsym.prove.relations.judge import TextClaim
 
 #: Two sides of a chain at each of its relations, outside of parentheses and brackets.
 SIGN = re.compile(r"[<>!]=|[<>=]")
 MOST_LINKS, MOST_ORDER = 16, 8
+KEYS = ("id", "left", "right", "relation", "chain", "given", "box", "tolerance", "exists", "order")
 TIME = "t"
 
 
@@ -75,7 +84,7 @@ def read_text_claim(
     make_formula : the claim as it is written
     limit        : name, ends and place of a range of the claim itself -> the range in the words of the checker
     """
-    expect_keys(block, ("id", "left", "right", "relation", "chain", "given", "box", "tolerance", "exists", "order"), where)
+    expect_keys(block, KEYS, where)
     sizes = {name: shape.size for name, shape in shapes.items()}
     links = read_links(block, where)
     trees = [read_link(link, sizes, where) for link in links]
@@ -85,7 +94,8 @@ def read_text_claim(
     for i, text in enumerate(exists):
         trees.append(read_value(text, sizes, where=join_place(join_place(where, "exists"), i)).tree)
     order = read_order(block, shapes, join_place(where, "order"))
-    used, slopes = collect_names([*texts, *exists, *given, *order], shapes, rates, sizes)
+    free = set(order).union(*map(list_free_names, trees))
+    used, slopes = collect_names([*texts, *exists], free, [*given], shapes, rates, sizes)
     require_rates(trees, slopes, where)
     relations = [text for name in used for text in shapes[name].relations]
     ranges = {entry: span for name in used for entry, span in shapes[name].ranges.items()}
@@ -190,11 +200,17 @@ def read_texts(value: Any, where: str) -> list[str]:
 
 
 def collect_names(
-    texts: Iterable[str], shapes: Mapping[str, Shape], rates: Table, sizes: Mapping[str, Size]
+    texts: Iterable[str],
+    free: set[str],
+    given: Sequence[str],
+    shapes: Mapping[str, Shape],
+    rates: Table,
+    sizes: Mapping[str, Size],
 ) -> tuple[list[str], dict[str, str | None]]:
-    """The names in texts and in the rates of these, in the order of declaration; and the rates."""
-    derived = any(re.search(r"\b(diff|dot_)\s*\(", text) for text in texts)
-    waiting, used, slopes = [*set().union(*map(names_of, texts)) & set(shapes)], set[str](), dict[str, str | None]()
+    """The free names of texts, those of hypotheses and rates, in the order of declaration; and the rates."""
+    derived = any(re.search(r"\b(diff|dot_)\s*\(", text) for text in (*texts, *given))
+    waiting = [*free.union(*map(names_of, given)) & set(shapes)]
+    used, slopes = set[str](), dict[str, str | None]()
     while waiting:
         name = waiting.pop()
         if name in used:
