@@ -13,7 +13,8 @@ The sections stand in the order of trust: each rests on those before it, and eve
 3. Functions of a parameter, and 4. expressions, both in balls. 5. Exact algebra, which decides that numbers are equal.
 6. The kinds identity, exponential and rank, by exact algebra. 7. The kinds positivity, by balls, and all.
 8. The optimum of guaranteed estimation: the kinds gap and sliver, touch and range. 9. The kinds proof and
-   counterexample: statements and the rules of their proofs. 10. The entry: check.
+   counterexample: statements, the rules of their proofs, answers for integrals, sums, products and limits. 10. The
+   entry: check.
 """
 
 from __future__ import annotations
@@ -2940,7 +2941,7 @@ def check_proof(item: Any) -> None:
     more = " answers" if "answers" in item else ""
     _, statement, bits, witness, proofs, *rest = read_fields(item, f"kind statement bits witness proofs{more}")
     ctx.prec = read_integer(bits, 53, 20000)
-    cases, box = read_statement(statement, Answers(*rest or [[]]))
+    cases, box = read_statement(statement, Answers(rest[0] if rest else []))
     place = read_point(witness, box)
     require(any(lies_in(case, place) for case in cases), "the statement may have no value at the witness")
     prove_all(proofs, [goal for case in cases for goal in case.goals])
@@ -2961,7 +2962,7 @@ def check_counterexample(item: Any) -> None:
     ctx.prec = read_integer(bits, 53, 200000)
     require(isinstance(point, dict), "expected numbers by symbol")
     there = {name: parse(text) for name, text in point.items()}
-    cases, box = read_statement(statement, Answers(*rest or [[]], there))
+    cases, box = read_statement(statement, Answers(rest[0] if rest else [], there))
     place = read_point(point, box)
     goals = [goal for case in cases if lies_in(case, place) for goal in case.goals]
     require(goals, "the statement may have no value at the point")

@@ -464,6 +464,8 @@ class ValueWriter(LatexWriter):
     def spell(self, part: Tree, inner: list[Text]) -> Text:
         """A part from the texts of its own parts."""
         texts = [text.text for text in inner]
+        if part.head == SYMBOL and part.args[0] == INFINITE:
+            return Text(r"\infty", WHOLE)
         if part.head == "@":
             return Text(rf"{self.enclose(inner[0], TIGHT)} \, {self.enclose(inner[1], RAISED)}", TIGHT)
         if part.head in ("T", "transpose", "inv", "conj"):
@@ -501,8 +503,7 @@ class ValueWriter(LatexWriter):
     @staticmethod
     def spell_bound(head: str, texts: list[str], inside: str) -> Text:
         """A function with a variable of its own."""
-        variable = texts[1]
-        low, high = (re.sub(rf"\b{INFINITE}\b", r"\\infty", text) for text in (texts[2], texts[-1]))
+        variable, low, high = texts[1], texts[2], texts[-1]
         if head == "integral":
             return Text(rf"\int_{{{low}}}^{{{high}}} {inside} \, d{variable}", LOOSE)
         if head == "limit":

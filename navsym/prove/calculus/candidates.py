@@ -120,9 +120,9 @@ def sign_at_middle(part: Any, question: Any, goal: Any, pair: Any) -> int:
 def middle_of(pair: Any, values: Any) -> Any:
     """A point between two ends."""
     low, high = (None if player.is_infinite(e) else player.value_of(e, values) for e in pair)
-    if low is None:
-        return high - SHARES[1]
-    return low + SHARES[1] if high is None else low + (high - low) * SHARES[4]
+    if low is None or high is None:
+        return high - SHARES[1] if high is not None else 0 if low is None else low + SHARES[1]
+    return low + (high - low) * SHARES[4]
 
 
 def list_antiderivatives(question: Any, goal: Any, pair: Any, signs: list[int]) -> Iterator[str]:
