@@ -2691,14 +2691,14 @@ def integrate_piece(piece: Any, q: Question, goal: Goal, c: Term, d: Term) -> Te
     w = ("^", x, MINUS_ONE)
     if is_infinite(d):
         require(d == INFINITY, "a range that ends at -oo")
-        path, limit, ways = add_terms((c, x)), Range(ZERO, None, is_open[0]), (("+", c, w), x)
+        path, limit, ways = add_terms((c, x)), Range(ZERO, None, is_open[0]), (add_terms((c, w)), x)
     elif is_infinite(c):
         require(c == negate(INFINITY), "a range that begins at oo")
-        path, limit, ways = subtract(d, x), Range(ZERO, None, is_open[1]), (negate(x), subtract(d, w))
+        path, limit, ways = subtract(d, x), Range(ZERO, None, is_open[1]), (negate(x), take_off(d, w))
     else:
         across = take_off(d, c)
         path, limit = add_terms((c, ("*", across, x))), Range(ZERO, ONE, *is_open)
-        ways = (("+", c, ("*", across, w)), subtract(d, ("*", across, w)))
+        ways = (add_terms((c, ("*", across, w))), take_off(d, ("*", across, w)))
     whole = goal._replace(box=goal.box | {name: limit})
     inside = goal._replace(box=goal.box | {name: limit._replace(open_low=True, open_high=True)})
     slope = differentiate(F, name)
@@ -2834,7 +2834,7 @@ def grow(term: Term, w: str, sign: Callable[[Term], int]) -> tuple[fmpq, Term | 
         case ("symbol", _):
             return fmpq(1), ONE
         case ("+", *terms):
-            parts = [grow(t, w, sign) for t in terms]
+            parts = [grow(t, w, sign) for t in terms if t != ZERO]
             top = max(d for d, _ in parts)
             first = [c for d, c in parts if d == top]
             return top, None if None in first else add_terms(first)  # type: ignore[arg-type]
