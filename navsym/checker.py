@@ -13,7 +13,8 @@ The sections stand in the order of trust: each rests on those before it, and eve
 3. Functions of a parameter, and 4. expressions, both in balls. 5. Exact algebra, which decides that numbers are equal.
 6. The kinds identity, exponential and rank, by exact algebra. 7. The kinds positivity, by balls, and all.
 8. The optimum of guaranteed estimation: the kinds gap and sliver, touch and range. 9. The kinds proof and
-   counterexample: statements and the rules of their proofs. 10. The entry: check.
+   counterexample: statements, the rules of their proofs, answers for integrals, sums, products and limits. 10. The
+   entry: check.
 """
 
 from __future__ import annotations
@@ -947,16 +948,19 @@ SIGNS = {"=": (1, "="), "!=": (1, "!="), ">": (1, ">"), ">=": (1, ">="), "<": (-
 MOST_CASES = 128
 
 
-def read_statement(item: Any) -> tuple[list[Case], dict[str, Range]]:
+def read_statement(item: Any, answers: Answers | None = None) -> tuple[list[Case], dict[str, Range]]:
     """The cases of a statement, which cover all its points, and its box.
 
     ``shapes`` has names in the place of the entries of vectors and matrices, ``given`` hypotheses, and ``rates`` the
     derivatives by time. One condition after the other is taken to hold, then to fail; each case has goals of its own.
+    ``answers`` say what integrals, sums, products and limits are; ``order`` is that of an equation up to small terms.
     """
     more = " shapes given rates" if isinstance(item, dict) and "given" in item else ""
+    more += " order" if isinstance(item, dict) and "order" in item else ""
     left, relation, right, symbols, exists, tolerance, *rest = read_fields(
         item, f"left relation right symbols exists tolerance{more}"
     )
+    small = rest.pop() if "order" in more else None
     require(isinstance(symbols, dict), "expected ranges by symbol")
     box = {name: read_range(symbols[name]) for name in read_symbols([*symbols])}
     shapes, given, rates = rest or ({}, [], {})
@@ -973,8 +977,11 @@ def read_statement(item: Any) -> tuple[list[Case], dict[str, Range]]:
         for text in read_list(exists, str):
             reader.need(*list_entries(reader.read(text)))
         goals = state_goals(reader.read(left), relation, reader.read(right), limit)
+        goals = settle_questions(reader, goals, box, answers or Answers([]))
+        goals = goals if small is None else expand_goals(reader, goals, small, box)
         cases.append(reader.make_case(goals, box))
         choices = next_choices(reader.choices)
+    require(answers is None or not answers.entries, "an answer without a question")
     return cases, box
 
 
@@ -1187,6 +1194,7 @@ class Reader:
         self.slopes: dict[str, Term | None] = {}
         self.dead = self.conditions = 0
         self.exists, self.given, self.zeros = (dict[Term, None]() for _ in range(3))
+        self.questions: list[Question] = []
 
     def read(self, text: Any) -> Value:
         """The value of a text."""
@@ -1270,6 +1278,7 @@ class Reader:
 
     def differentiate(self, x: Value, name: str) -> Value:
         """The derivative by a symbol, where there is one; by time t it is that of all that has a rate."""
+        require(not any(map(is_asked, list_entries(x))), "a derivative of an integral, sum, product or limit")
         self.need(*(t for entry in list_entries(x) for t in (entry, *smoothness(entry))))
         if name == "t" and "t" in self.rates:
             return change_entries(self.differentiate_by_time, x)
@@ -1277,6 +1286,7 @@ class Reader:
 
     def differentiate_by_time(self, term: Term) -> Term:
         """The chain rule: the sum of df/ds ds/dt over the symbols that have a rate; the others are constant."""
+        require(not is_asked(term), "a derivative of an integral, sum, product or limit")
         slopes = self.slopes = self.slopes or self.list_rates()
         rows = [(name, slopes[name]) for name in sorted(symbols_of(term)) if name in slopes]
         require(all(rate is not None for _, rate in rows), "no rate is known")
@@ -1305,12 +1315,7 @@ def take_off(x: Term, y: Term) -> Term:
 
 def smoothness(term: Term) -> list[Term]:
     """Terms with a value only where a term is differentiable."""
-    made: dict[str, Callable[[Term], Term]] = {
-        ">": lambda t: ("log", t),
-        ">=": lambda t: ("sqrt", t),
-        "!=": lambda t: ("^", t, MINUS_ONE),
-    }
-    return [made[relation](t) for relation, t in conditions(term, 2)]
+    return [EXISTING[relation](t) for relation, t in conditions(term, 2)]
 
 
 def next_choices(choices: list[bool]) -> list[bool] | None:
@@ -1440,6 +1445,8 @@ class Formula(Parser):
         """A function of values; where, min, max and sign are cases, diff and dot_ derivatives."""
         if name == "where":
             return self.read_where()
+        if name in QUESTIONS:
+            return self.read_question(name)
         before, arguments = self.reader.conditions, [self.read_sum()]
         while self.take(","):
             arguments.append(self.read_sum())
@@ -1477,6 +1484,51 @@ class Formula(Parser):
         require(self.take(")"), "not an expression: no )")
         require(shape_of(values[0]) == shape_of(values[1]), "branches of different shapes")
         return values[0] if taken else values[1]
+
+    def read_question(self, kind: str) -> Term:
+        """integral(f, x, a, b), sum and product the same, limit(f, x, a): a symbol in its place, or all terms."""
+        reader = self.reader
+        before, first, outside = reader.conditions, len(reader.questions), reader.exists
+        reader.exists = {}
+        term, needs, reader.exists = to_number(self.read_sum()), [*reader.exists], outside
+        require(self.take(","), f"expected a variable in {kind}")
+        name, ends = self.words.pop(), []
+        plain = matches("[A-Za-z][A-Za-z0-9_]*", name) and name not in ("pi", "oo", *reader.names, *reader.rates)
+        require(plain, f"expected the name of a number in {kind}")
+        while self.take(","):
+            ends.append(to_number(self.read_sum()))
+        require(self.take(")") and len(ends) == 2 - (kind == "limit"), f"expected the ends of {kind}, and )")
+        require(before == reader.conditions, f"{kind} of cases")
+        if reader.dead:
+            return ZERO
+        reader.need(*(t for t in needs if name not in symbols_of(t)))
+        needs = [t for t in needs if name in symbols_of(t)]
+        own = f"{name}__{len(reader.questions) + 1}"
+        seen = set().union(*map(symbols_of, (term, *ends, *needs)))
+        require(own not in seen, "a name that is in use")
+        if kind in ("sum", "product") and all(constant_of(end) is not None for end in ends):
+            require(len(reader.questions) == first, f"{kind} of an open question")
+            return self.write_out(kind, name, term, needs, ends)
+        bound = {name: ("symbol", own)}
+        inner = [q.change(lambda t: substitute(t, bound)) for q in reader.questions[first:]]
+        question = Question(
+            kind, f"value {len(reader.questions) + 1}", own, substitute(term, bound), ends[0], ends[-1],
+            tuple(substitute(t, bound) for t in needs), (),
+        )  # fmt: skip
+        reader.questions[first:] = [q._replace(within=(*q.within, question)) for q in inner]
+        reader.questions.append(question)
+        return ("symbol", question.value)
+
+    def write_out(self, kind: str, name: str, term: Term, needs: list[Term], ends: list[Term]) -> Term:
+        """A sum or product with numbers as ends; one of no terms is 0 or 1."""
+        low, high = map(constant_of, ends)
+        require(low is not None and high is not None and low.q == high.q == 1, "expected whole ends")
+        require(high - low < MOST_TERMS, "too many terms")  # type: ignore[operator]
+        values = [{name: number(k)} for k in range(int(low), int(high) + 1)]  # type: ignore[arg-type]
+        self.reader.need(*(substitute(t, value) for t in (term, *needs) for value in values))
+        terms = [substitute(term, value) for value in values]
+        unit = ZERO if kind == "sum" else ONE
+        return ("+" if kind == "sum" else "*", unit, *terms) if terms else unit
 
     def pick(self, name: str, x: Term, y: Term) -> Term:
         """The smaller or the larger of two numbers, which both need a value."""
@@ -2497,6 +2549,364 @@ def to_fraction(term: Term) -> tuple[fmpq_poly, fmpq_poly]:
     raise Refused("no rational function")
 
 
+# Integrals, sums, products and limits. The reader puts a symbol in the place of each and keeps the question what it is.
+# An answer is a term with a proof that this is its value, at all points of the case where all else that was typed has
+# values; it takes the place of the symbol.
+
+QUESTIONS = ("integral", "sum", "product", "limit")
+INFINITY: Term = ("symbol", "oo")
+MOST_TERMS, TINY, SLOW = 400, fmpq(-(10**9)), fmpq(1, 1000)
+
+
+class Question(NamedTuple):
+    """The integral, sum or product of a term over a variable from low to high, or its limit at low = high.
+
+    ``needs`` have to have a value wherever the term has to, and the question may stand ``within`` others.
+    """
+
+    kind: str
+    value: str
+    variable: str
+    term: Term
+    low: Term
+    high: Term
+    needs: tuple[Term, ...]
+    within: tuple[Question, ...]
+
+    def change(self, f: Callable[[Term], Term]) -> Question:
+        needs, within = tuple(map(f, self.needs)), tuple(q.change(f) for q in self.within)
+        return self._replace(term=f(self.term), low=f(self.low), high=f(self.high), needs=needs, within=within)
+
+    def list_terms(self) -> tuple[Term, ...]:
+        return (self.term, *self.needs, self.low, self.high)
+
+
+class Answers:
+    """The answers of a certificate, in the order of the questions; at a point, or for all of the box."""
+
+    def __init__(self, entries: Any, point: dict[str, Term] | None = None):
+        self.entries, self.point = read_list(entries, lambda entry: entry), point
+
+    def settle(self, question: Question, goal: Goal) -> Term:
+        """The value of a question at all points of a goal."""
+        require(self.entries, f"{question.kind} without an answer")
+        return ANSWERS[question.kind](self.entries.pop(0), question, goal)
+
+
+def is_asked(term: Term) -> bool:
+    """Whether the symbol of a question stands in a term."""
+    return any(" " in name for name in symbols_of(term))
+
+
+def at_point(term: Term, point: dict[str, Term]) -> Term:
+    """The term at a point; an exponent that was no number stays none."""
+    for exponent in list_exponents(term):
+        keep_power(exponent, substitute(exponent, point))
+    return substitute(term, point)
+
+
+Parts = list[tuple[Term, str, tuple[Term, ...]]]
+
+
+def settle_questions(reader: Reader, goals: Parts, box: dict[str, Range], answers: Answers) -> Parts:
+    """The goals with the values of all questions, which hold where all else that was typed has values."""
+    if not reader.questions:
+        return goals
+    bound = {q.variable for q in reader.questions}
+    require(not bound & set(box) and "oo" not in box, "a name that is in use")
+    typed = [*(t for goal in goals for t in goal[2]), *reader.exists]
+    typed += [t for q in reader.questions for t in q.list_terms()]
+    pairs = [(r, t) for r, t in set_union(map(conditions, typed)) if not is_asked(t) and not bound & symbols_of(t)]
+    reader.need(*(EXISTING[r](t) for r, t in pairs))
+    known = [tuple(t for t in part if not is_asked(t)) for part in (reader.given, reader.zeros)]
+    point, values = answers.point, dict[str, Term]()
+    for question in reader.questions:
+        q, goal = question.change(lambda t: substitute(t, values)), Goal(ZERO, "=", box, (), *known)
+        goal = goal._replace(exists=tuple(EXISTING[r](t) for r, t in pairs))
+        if point is not None:
+            q, goal = q.change(lambda t: at_point(t, point)), Goal(ZERO, "=", {})
+        for outer in q.within:
+            goal = bind(outer, goal)
+        values[q.value] = answers.settle(q, goal)
+    for part in (reader.exists, reader.given, reader.zeros):
+        rows = dict.fromkeys(substitute(t, values) for t in part)
+        part.clear()
+        part |= rows
+    return [(substitute(t, values), r, tuple(substitute(p, values) for p in parts)) for t, r, parts in goals]
+
+
+EXISTING: dict[str, Callable[[Term], Term]] = {
+    ">": lambda t: ("log", t),
+    ">=": lambda t: ("sqrt", t),
+    "!=": lambda t: ("^", t, MINUS_ONE),
+}
+
+
+def bind(outer: Question, goal: Goal) -> Goal:
+    """The goal for all values of the variable of a question; for all numbers where its ends are no numbers."""
+    ends = [None if is_infinite(end) or symbols_of(end) else end for end in (outer.low, outer.high)]
+    if None not in ends and not value_of(ends[1], {}) > value_of(ends[0], {}):  # type: ignore[arg-type]
+        ends = [None, None]
+    limit = Range(ends[0], ends[1], integer=outer.kind in ("sum", "product"))
+    limit = Range(None, None) if outer.kind == "limit" else limit
+    return goal._replace(box=goal.box | {outer.variable: limit})
+
+
+def is_infinite(end: Term) -> bool:
+    """Whether an end is oo or -oo."""
+    require(end in (INFINITY, negate(INFINITY)) or "oo" not in symbols_of(end), "a sum or product with oo")
+    return "oo" in symbols_of(end)
+
+
+def prove_vanishing(proof: Any, goal: Goal, plain: Term, term: Term) -> None:
+    """A term is 0 by exact algebra, as it is without a proof, or at all points of the goal."""
+    if proof is None:
+        require(is_identity(plain), "the terms differ")
+    else:
+        prove(proof, goal._replace(term=term, relation="="))
+
+
+def answer_integral(entry: Any, q: Question, goal: Goal) -> Term:
+    """Over a range in pieces: sum F(d) - F(c) for antiderivatives F on the pieces from c to d.
+
+    Theorem: a function f that is continuous between c and d, where F' = f, has the integral F(d-) - F(c+), improper or
+    not, where F has these limits: the integral from c + h to d - h is F(d - h) - F(c + h).
+    """
+    cuts, pieces = read_fields(entry, "cuts pieces")
+    places = [q.low, *read_list(cuts, parse), q.high]
+    require(not any(q.variable in symbols_of(place) for place in places), "the variable in a cut")
+    rows = zip(read_list(pieces, lambda piece: piece, len(places) - 1), pairwise(places), strict=True)
+    return ("+", ZERO, *(integrate_piece(row, q, goal, *ends) for row, ends in rows))
+
+
+def integrate_piece(piece: Any, q: Question, goal: Goal, c: Term, d: Term) -> Term:
+    """F(d) - F(c) by values, for a continuous F, or by limits; x runs from c to d as the parameter does from 0."""
+    text, by_limit, continuous, smooth, equal, signs = read_fields(
+        piece, "antiderivative limits continuous smooth equal signs"
+    )
+    F, name, x = parse(text), q.variable, ("symbol", q.variable)
+    require(not (is_infinite(c) and is_infinite(d)), "expected a cut between -oo and oo")
+    is_open = [bool(read_integer(k, 0, 1)) for k in read_list(by_limit, lambda k: k, 2)]
+    require(all(o or not is_infinite(end) for o, end in zip(is_open, (c, d), strict=True)), "expected a limit at oo")
+    w = ("^", x, MINUS_ONE)
+    if is_infinite(d):
+        require(d == INFINITY, "a range that ends at -oo")
+        path, limit, ways = add_terms((c, x)), Range(ZERO, None, is_open[0]), (add_terms((c, w)), x)
+    elif is_infinite(c):
+        require(c == negate(INFINITY), "a range that begins at oo")
+        path, limit, ways = subtract(d, x), Range(ZERO, None, is_open[1]), (negate(x), take_off(d, w))
+    else:
+        across = take_off(d, c)
+        path, limit = add_terms((c, ("*", across, x))), Range(ZERO, ONE, *is_open)
+        ways = (add_terms((c, ("*", across, w))), take_off(d, ("*", across, w)))
+    whole = goal._replace(box=goal.box | {name: limit})
+    inside = goal._replace(box=goal.box | {name: limit._replace(open_low=True, open_high=True)})
+    slope = differentiate(F, name)
+    prove_defined(continuous, whole, substitute(F, {name: path}), level=1)
+    inner = [substitute(t, {name: path}) for t in (F, slope, q.term, *q.needs)]
+    prove_defined(smooth, inside, *inner, level=2)
+    difference = subtract(slope, q.term)
+    prove_vanishing(equal, inside, difference, substitute(difference, {name: path}))
+    ends = [
+        find_limit(substitute(F, {name: way}), name, signs, goal) if o else substitute(F, {name: end})
+        for o, way, end in zip(is_open, ways, (c, d), strict=True)
+    ]
+    require(signs == [], "a sign too many")
+    return subtract(ends[1], ends[0])
+
+
+def answer_sum(entry: Any, q: Question, goal: Goal) -> Term:
+    """G(high + 1) - G(low) where G(k + 1) - G(k) = f(k); of a product their quotient where G(k + 1) = f(k) G(k).
+
+    Theorem: induction over whole high >= low - 1, where there are no terms; to oo by the limit.
+    """
+    text, defined, equal, start, count, signs = read_fields(entry, "telescoper defined equal start count signs")
+    G, name, k = parse(text), q.variable, ("symbol", q.variable)
+    require(is_integral(q.low, goal.box), "expected whole ends")
+    path, following = add_terms((q.low, k)), substitute(G, {name: ("+", k, ONE)})
+    inside = goal._replace(box=goal.box | {name: Range(ZERO, None, integer=True)})
+    first = substitute(G, {name: q.low})
+    if not is_infinite(q.high):
+        require(is_integral(q.high, goal.box), "expected whole ends")
+        inside = inside._replace(given=(*goal.given, subtract(subtract(q.high, q.low), k)))
+        prove(count, goal._replace(term=("+", subtract(q.high, q.low), ONE), relation=">="))
+        last = substitute(G, {name: ("+", q.high, ONE)})
+    else:
+        require(q.high == INFINITY and count is None, "a sum to -oo")
+        last = find_limit(G, name, signs, goal)
+    require(signs == [], "a sign too many")
+    prove_defined(defined, inside, *(substitute(t, {name: path}) for t in (G, following, q.term, *q.needs)))
+    step = ("+", G, q.term) if q.kind == "sum" else ("*", G, q.term)
+    difference = subtract(following, step)
+    prove_vanishing(equal, inside, difference, substitute(difference, {name: path}))
+    needed = first if q.kind == "sum" else ("^", first, MINUS_ONE)
+    prove_defined(start, goal, needed)
+    return subtract(last, first) if q.kind == "sum" else ("*", last, needed)
+
+
+def is_integral(term: Term, box: dict[str, Range]) -> bool:
+    """Whether a term is seen to be whole: sums and products of whole numbers and whole symbols."""
+    match term:
+        case ("symbol", name):
+            return name in box and box[name].integer
+        case ("+" | "*", *parts):
+            return all(is_integral(part, box) for part in parts)
+    return term[0] == "number" and term[1].q == 1
+
+
+def answer_limit(entry: Any, q: Question, goal: Goal) -> Term:
+    """At oo by growth; at a number a the limit of N/D is N^(n)(a)/D^(n)(a); at oo that of N/D in 1/x at 0.
+
+    Theorem (Taylor): N, D are analytic at a, where the derivatives of order below n vanish, and that of D does not.
+    """
+    name, far, signs = q.variable, is_infinite(q.low), entry["signs"]
+    y, a = ("symbol", name), ZERO if far else q.low
+    way = y if not far or q.low == INFINITY else negate(y)
+    typed = [substitute(t, {name: way}) for t in (q.term, *q.needs)]
+    places = [(r, t) for r, t in set_union(map(conditions, typed)) if name in symbols_of(t)]
+    if far:
+        for r, t in places:
+            c = grow(t, name, lambda c: ask_sign(c, signs, goal))[1]
+            require(c is not None and (ask_sign(c, signs, goal) == 1 or r == "!="), "it may have no value")
+    if set(entry) == {"signs"}:
+        require(far, "expected oo")
+        value = find_limit(typed[0], name, signs, goal)
+        require(signs == [], "a sign too many")
+        return value
+    top, bottom, order, defined, zeros, pole, around, _ = read_fields(
+        entry, "top bottom order defined zeros pole around signs"
+    )
+    require(signs == [], "a sign too many")
+    N, D, n = parse(top), parse(bottom), read_integer(order, 0, 8)
+    f = substitute(typed[0], {name: ("^", y, MINUS_ONE)}) if far else typed[0]
+    require(is_identity(subtract(f, ("*", N, ("^", D, MINUS_ONE)))), "the quotient is another one")
+
+    def derive(term: Term, times: int) -> Term:
+        return substitute(reduce(lambda t, _: differentiate(t, name), range(times), term), {name: a})
+
+    places = [] if far else places
+    orders = read_list(around, lambda k: read_integer(k, 0, 8), len(places))
+    require(all(r == "!=" or k == 0 for (r, _), k in zip(places, orders, strict=True)), "a sign on both sides")
+    # What is != 0 or > 0 at a is so near a; what has a derivative that is != 0 there vanishes at no other point near a.
+    near = [(r if r == "!=" else ">", derive(t, k)) for (r, t), k in zip(places, orders, strict=True)]
+    value, divisor = derive(N, n), derive(D, n)
+    analytic = (*(derive(t, 0) for t in (N, D, *(t for _, t in places))), *(t for _, t in near), value, divisor)
+    prove_defined(defined, goal, *analytic, level=2)
+    prove_all(pole, [goal._replace(term=t, relation=r) for r, t in (*near, ("!=", divisor))])
+    prove_all(zeros, [goal._replace(term=derive(t, k), relation="=") for k in range(n) for t in (N, D)])
+    return ("*", value, ("^", divisor, MINUS_ONE))
+
+
+ANSWERS: dict[str, Callable[[Any, Question, Goal], Term]] = {
+    "integral": answer_integral, "sum": answer_sum, "product": answer_sum, "limit": answer_limit,
+}  # fmt: skip
+
+
+def ask_sign(c: Term, signs: Any, goal: Goal) -> int:
+    """The sign of a number that is not 0, from its ball, or by the next proof of a certificate."""
+    ball = value_of(c, {}) if not symbols_of(c) else arb.nan()
+    if ball > 0 or ball < 0:
+        return 1 if ball > 0 else -1
+    require(isinstance(signs, list) and signs, "expected a sign with its proof")
+    sign, proof = read_list(signs.pop(0), lambda entry: entry, 2)
+    s = read_integer(sign, -1, 1)
+    require(s != 0, "expected a sign")
+    prove(proof, goal._replace(term=c if s == 1 else negate(c), relation=">"))
+    return s
+
+
+def find_limit(term: Term, w: str, signs: Any, goal: Goal) -> Term:
+    """The limit of a term for w to +oo."""
+    degree, c = grow(term, w, lambda t: ask_sign(t, signs, goal))
+    require(degree < 0 or (degree == 0 and c is not None), "no limit is known")
+    return c if degree == 0 and c is not None else ZERO
+
+
+def grow(term: Term, w: str, sign: Callable[[Term], int]) -> tuple[fmpq, Term | None]:
+    """(d, c) with term/w**d -> c for w to +oo; (d, None) where it is only bounded for large w, by which it is defined.
+
+    Sums and products of limits; powers and functions of them where these are continuous; exp(-c w**d) falls faster than
+    any power, log grows slower than any, and sin u/u and atan u/u -> 1 for u -> 0.
+    """
+    if w not in symbols_of(term):
+        return fmpq(0), term
+    match term:
+        case ("symbol", _):
+            return fmpq(1), ONE
+        case ("+", *terms):
+            parts = [grow(t, w, sign) for t in terms if t != ZERO]
+            require(parts, "an empty sum")
+            top = max(d for d, _ in parts)
+            first = [c for d, c in parts if d == top]
+            return top, None if None in first else add_terms(first)  # type: ignore[arg-type]
+        case ("*", *factors):
+            parts = [grow(f, w, sign) for f in factors]
+            known = [c for _, c in parts if c is not None]
+            return sum((d for d, _ in parts), fmpq(0)), multiply_terms(*known) if len(known) == len(parts) else None
+        case ("^", base, exponent):
+            q = constant_of(exponent)
+            if q is None:
+                return grow(("exp", ("*", exponent, ("log", base))), w, sign)
+            d, c = grow(base, w, sign)
+            if q.q > 1 or q <= 0:
+                require(c is not None and (sign(c) == 1 or q.q == 1), "a power that may have no value")
+            return d * q, None if c is None else ("^", c, number(q))
+        case ("sqrt", u):
+            return grow(("^", u, number(HALF)), w, sign)
+        case (name, u) if name in DEFINITIONS and name not in ("abs", "tanh"):
+            return grow(replace(parse(DEFINITIONS[name]), ("symbol", "x"), u), w, sign)
+        case (name, u):
+            return grow_function(name, *grow(u, w, sign), sign)
+    raise Refused("no growth is known")
+
+
+def grow_function(name: str, d: fmpq, c: Term | None, sign: Callable[[Term], int]) -> tuple[fmpq, Term | None]:
+    """The growth of a function of u from that of u."""
+    zero = fmpq(0)
+    if name == "abs":
+        return d, None if c is None else ("abs", c)
+    if name == "log":
+        require(c is not None and sign(c) == 1, "a logarithm that may have no value")
+        return (SLOW, None) if d != 0 else (zero, ("log", c))
+    require(name in ("exp", "sin", "cos", "atan", "tanh"), "no growth is known")
+    if d < 0:
+        return (zero, ONE) if name in ("exp", "cos") else (d, c)
+    if d == 0:
+        return zero, None if c is None else (name, c)
+    if name in ("sin", "cos"):
+        return zero, None
+    require(c is not None, "no growth is known")
+    if name == "exp":
+        require(sign(c) == -1, "an exponential that may grow")  # type: ignore[arg-type]
+        return TINY, None
+    return zero, multiply_terms(number(sign(c)), HALF_TURN if name == "atan" else ONE)  # type: ignore[arg-type]
+
+
+# Equations up to small terms
+
+
+def expand_goals(reader: Reader, goals: Parts, small: Any, box: dict[str, Range]) -> Parts:
+    """left - right = O(s**n) for s to 0: all that was typed is analytic at s = 0, where derivatives below n vanish."""
+    require(isinstance(small, dict) and len(small) == 1, "expected the order in one symbol")
+    ((name, n),) = small.items()
+    require(name in box and read_integer(n, 1, 8), "an order in no symbol")
+    limit = box[name]
+    near = not limit.integer and is_inside(ZERO, Range(limit.low, limit.high)) and not is_narrow(limit)
+    require(near, "0 is no limit of the symbol")
+    require(not any(name in symbols_of(t) for t in (*reader.given, *reader.zeros)), "a hypothesis on a small symbol")
+    zero, found = {name: ZERO}, []
+    typed = [t for goal in goals for t in goal[2]] + [*reader.exists]
+    analytic = [substitute(t, zero) for part in typed for t in (part, *smoothness(part))]
+    reader.exists.clear()
+    reader.need(*analytic)
+    for term, relation, _ in goals:
+        require(relation == "=", "an order of what is no equation")
+        for _ in range(n):
+            found.append((substitute(term, zero), "=", (*analytic, substitute(term, zero))))
+            term = differentiate(term, name)
+    return found
+
+
 RULES: dict[str, Callable[[Any, Goal], None]] = {
     rule.__name__.removeprefix("prove_"): rule
     for rule in (
@@ -2529,9 +2939,10 @@ def lies_in(case: Case, place: dict[str, Term]) -> bool:
 
 def check_proof(item: Any) -> None:
     """A statement holds wherever all of it is defined and its hypotheses hold; the witness is such a point."""
-    _, statement, bits, witness, proofs = read_fields(item, "kind statement bits witness proofs")
+    more = " answers" if "answers" in item else ""
+    _, statement, bits, witness, proofs, *rest = read_fields(item, f"kind statement bits witness proofs{more}")
     ctx.prec = read_integer(bits, 53, 20000)
-    cases, box = read_statement(statement)
+    cases, box = read_statement(statement, Answers(rest[0] if rest else []))
     place = read_point(witness, box)
     require(any(lies_in(case, place) for case in cases), "the statement may have no value at the witness")
     prove_all(proofs, [goal for case in cases for goal in case.goals])
@@ -2547,9 +2958,12 @@ FAILURES: dict[str, Callable[[arb], Any]] = {
 
 def check_counterexample(item: Any) -> None:
     """At a point where all of it is defined a statement fails: by balls, or because a term is exactly 0 there."""
-    _, statement, bits, point, zero = read_fields(item, "kind statement bits point zero")
+    more = " answers" if "answers" in item else ""
+    _, statement, bits, point, zero, *rest = read_fields(item, f"kind statement bits point zero{more}")
     ctx.prec = read_integer(bits, 53, 200000)
-    cases, box = read_statement(statement)
+    require(isinstance(point, dict), "expected numbers by symbol")
+    there = {name: parse(text) for name, text in point.items()}
+    cases, box = read_statement(statement, Answers(rest[0] if rest else [], there))
     place = read_point(point, box)
     goals = [goal for case in cases if lies_in(case, place) for goal in case.goals]
     require(goals, "the statement may have no value at the point")

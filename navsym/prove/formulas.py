@@ -41,6 +41,7 @@ def prove(
     exists: Any = ...,
     given: Any = ...,
     rates: Mapping[str, Any] | None = ...,
+    order: Mapping[str, int] | None = ...,
     seconds: float = ...,
     **symbols: Any,
 ) -> Verdict: ...
@@ -57,6 +58,7 @@ def prove(
     exists: Any = (),
     given: Any = (),
     rates: Mapping[str, Any] | None = None,
+    order: Mapping[str, int] | None = None,
     seconds: float = SECONDS,
     jobs: int = 1,
     progress: Progress | None = None,
@@ -75,6 +77,7 @@ def prove(
     exists    : expression, or list of them, that must have a value: points where one has none do not count
     given     : hypothesis, or list of them, each a relation: ``"dot(u, u) = 1"``
     rates     : name -> derivative by time, for ``dot_(x)``
+    order     : name -> whole number: ``{"eps": 2}`` for equality up to terms of order eps**2
     seconds   : limit for one formula, seconds of processor time; above it the verdict is OPEN
     jobs, progress : claims of a file decided at the same time; called with each verdict and their number
 
@@ -100,6 +103,7 @@ def prove(
     """
     require_options(box, seconds, jobs)
     beside = {"box": box or {}, "tolerance": tolerance, "exists": exists, "given": given, "rates": rates or {}}
+    beside |= {"order": order}
     if relation is None and is_file(statement):
         if given := symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())}:
             raise misplaced_declarations(given)
@@ -160,6 +164,7 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
     block |= {"chain": left} if sides.chain else {"left": left, "relation": sides.relation, "right": right}
     block |= {"exists": exists} if exists else {}
     block |= {"given": hypotheses} if hypotheses else {}
+    block |= {"order": beside["order"]} if beside["order"] else {}
     if beside["tolerance"] is not None:
         block["tolerance"] = write_value(beside["tolerance"], "prove: tolerance")
     symbols = Symbols.read(table, "prove", slopes)
@@ -245,8 +250,8 @@ def symbols_in(sides: Iterable[Any], given: Mapping[str, Any]) -> set[str]:
     ``e`` and ``ln`` count where the caller declares them; the reader says of the others what to write instead.
     """
     from navsym.language.advice import FOREIGN
-    from navsym.language.vectors import TAKES, UNDECIDED
+    from navsym.language.vectors import BINDERS, INFINITE, TAKES, UNDECIDED
 
     called = {name for side in sides for name in re.findall(r"([A-Za-z]\w*)\s*\(", side_text(side))}
-    functions = called & {*TAKES, *UNDECIDED}
+    functions = called & {*TAKES, *BINDERS, *UNDECIDED} | ({INFINITE} if called & set(BINDERS) else set())
     return set().union(*map(names_of, sides)) - RESERVED - ((FOREIGN.keys() | functions) - given.keys())

@@ -217,14 +217,16 @@ def grant_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict
 def refute_document(documents: Sequence[Document], document: Document, point: Mapping[str, str]) -> Document:
     """The certificate of a counterexample; raises Refused."""
     refusal = checker.Refused("no counterexample")
+    more = answer_at_point(document, point)
     for bits in BITS:
         certificate: Document = {"kind": "counterexample", "statement": document, "bits": bits, "point": dict(point)}
+        certificate |= more
         try:
             grant(documents, certificate | {"zero": None})
             return certificate | {"zero": None}
         except REFUSALS as error:
             refusal = error
-    if document["relation"] in ("<", ">", "!="):
+    if document["relation"] in ("<", ">", "!=") and not more:
         term = player.read_statement(document)[0][0].goals[0].term
         for name, value in point.items():
             term = player.replace(term, ("symbol", name), player.parse(value))
@@ -234,6 +236,18 @@ def refute_document(documents: Sequence[Document], document: Document, point: Ma
             grant(documents, certificate | {"zero": zero})
             return certificate | {"zero": zero}
     raise refusal
+
+
+def answer_at_point(document: Document, point: Mapping[str, str]) -> Document:
+    """What integrals, sums, products and limits of a statement are at a point, for its certificate."""
+    from navsym.language.vectors import BINDERS
+    from navsym.prove.calculus.answers import read_with_answers
+
+    if not any(f"{name}(" in json.dumps(document) for name in BINDERS):
+        return {}
+    place = {name: player.parse(text) for name, text in point.items()}
+    answers = read_with_answers(document, point=place)[2]
+    return {"answers": answers} if answers else {}
 
 
 def simple_value(limits: Any) -> str:

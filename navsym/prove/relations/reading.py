@@ -18,13 +18,22 @@ from navsym.language.printer import to_text
 from navsym.language.schema import Table, as_list, as_table, as_text, join_place, require_key
 from navsym.language.shapes import RANGES, Shape, read_shape
 from navsym.language.tree import Tree, list_names, list_parts
-from navsym.language.vectors import RELATIONS, Size, describe_size, is_wide, read_hypothesis, read_value
+from navsym.language.vectors import (
+    RELATIONS,
+    Size,
+    describe_size,
+    is_wide,
+    list_free_names,
+    read_hypothesis,
+    read_value,
+)
 from navsym.prove.grant import Document, write_numerals
 from navsym.prove.relations.judge import TextClaim
 
 #: Two sides of a chain at each of its relations, outside of parentheses and brackets.
 SIGN = re.compile(r"[<>!]=|[<>=]")
-MOST_LINKS = 16
+MOST_LINKS, MOST_ORDER = 16, 8
+KEYS = ("id", "left", "right", "relation", "chain", "given", "box", "tolerance", "exists", "order")
 TIME = "t"
 
 
@@ -49,7 +58,7 @@ def read_shapes(table: Table, rates: Table, where: str) -> dict[str, Shape]:
 
 def is_text_claim(block: Table, symbols: Table) -> bool:
     """True for a claim that the grammar of numbers alone does not have."""
-    if {"given", "chain"} & set(block):
+    if {"given", "chain", "order"} & set(block):
         return True
     texts = [text for key in ("left", "right") for text in list_cells(block.get(key))]
     texts += [str(text) for text in block.get("exists", ()) if isinstance(block.get("exists"), list)]
@@ -75,7 +84,7 @@ def read_text_claim(
     make_formula : the claim as it is written
     limit        : name, ends and place of a range of the claim itself -> the range in the words of the checker
     """
-    expect_keys(block, ("id", "left", "right", "relation", "chain", "given", "box", "tolerance", "exists"), where)
+    expect_keys(block, KEYS, where)
     sizes = {name: shape.size for name, shape in shapes.items()}
     links = read_links(block, where)
     trees = [read_link(link, sizes, where) for link in links]
@@ -84,7 +93,9 @@ def read_text_claim(
     exists = read_texts(block.get("exists", []), join_place(where, "exists"))
     for i, text in enumerate(exists):
         trees.append(read_value(text, sizes, where=join_place(join_place(where, "exists"), i)).tree)
-    used, slopes = collect_names([*texts, *exists, *given], shapes, rates, sizes)
+    order = read_order(block, shapes, join_place(where, "order"))
+    free = set(order).union(*map(list_free_names, trees))
+    used, slopes = collect_names([*texts, *exists], free, [*given], shapes, rates, sizes)
     require_rates(trees, slopes, where)
     relations = [text for name in used for text in shapes[name].relations]
     ranges = {entry: span for name in used for entry, span in shapes[name].ranges.items()}
@@ -97,6 +108,7 @@ def read_text_claim(
     common: Document = {"symbols": ranges, "exists": [*map(clean, exists)], "tolerance": formula.tolerance}
     common |= {"shapes": {n: [[*row] for row in shapes[n].rows] for n in used if shapes[n].size}}
     common |= {"given": [*map(clean, (*given, *relations))], "rates": slopes}
+    common |= {"order": order} if order else {}
     documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | common for x, sign, y in links]
     kinds = {name: (shapes[name].kind, shapes[name].rows) for name in used if shapes[name].size}
     shown = {entry: text for name in used for entry, text in shapes[name].shown().items()}
@@ -153,6 +165,26 @@ def read_link(link: tuple[str, str, str], sizes: Mapping[str, Size], where: str)
     return build(link[1], (left.tree, right.tree))
 
 
+def read_order(block: Table, shapes: Mapping[str, Shape], where: str) -> dict[str, int]:
+    """The small number and the order of the terms that do not count; none of a chain or an inequality."""
+    if "order" not in block:
+        return {}
+    table = as_table(block["order"], where)
+    if len(table) != 1 or "chain" in block or block.get("relation", "=") != "=":
+        message = "expected the order in one number, beside one equation; got another claim; write order = { eps = 2 }"
+        raise ExpressionSyntaxError(message, where=where)
+    ((name, order),) = table.items()
+    if name not in shapes or shapes[name].size is not None:
+        raise UnknownSymbolError(
+            f"expected the name of a number; got {quote(name)}; declare it: {suggest_nearest(name, shapes)}",
+            where=where,
+        )
+    if not isinstance(order, int) or isinstance(order, bool) or not 1 <= order <= MOST_ORDER:
+        message = f"expected a whole number from 1 to {MOST_ORDER}; got {quote(order)}; correct it"
+        raise DomainError(message, where=where)
+    return {name: order}
+
+
 def read_given(value: Any, sizes: Mapping[str, Size], where: str) -> list[str]:
     """The hypotheses, each a relation."""
     texts = read_texts(value, where)
@@ -168,11 +200,17 @@ def read_texts(value: Any, where: str) -> list[str]:
 
 
 def collect_names(
-    texts: Iterable[str], shapes: Mapping[str, Shape], rates: Table, sizes: Mapping[str, Size]
+    texts: Iterable[str],
+    free: set[str],
+    given: Sequence[str],
+    shapes: Mapping[str, Shape],
+    rates: Table,
+    sizes: Mapping[str, Size],
 ) -> tuple[list[str], dict[str, str | None]]:
-    """The names in texts and in the rates of these, in the order of declaration; and the rates."""
-    derived = any(re.search(r"\b(diff|dot_)\s*\(", text) for text in texts)
-    waiting, used, slopes = [*set().union(*map(names_of, texts)) & set(shapes)], set[str](), dict[str, str | None]()
+    """The free names of texts, those of hypotheses and rates, in the order of declaration; and the rates."""
+    derived = any(re.search(r"\b(diff|dot_)\s*\(", text) for text in (*texts, *given))
+    waiting = [*free.union(*map(names_of, given)) & set(shapes)]
+    used, slopes = set[str](), dict[str, str | None]()
     while waiting:
         name = waiting.pop()
         if name in used:
