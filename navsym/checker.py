@@ -2699,11 +2699,10 @@ class Algebra:
         minus = self.scale(MINUS_ONE, y) if isinstance(y, Typed) else negate(y)
         return self.add(x, minus)
 
-    def state(self) -> tuple[str, Any]:
-        """The relation between both sides, and their difference, after the declarations and the hypotheses."""
-        left, relation, right, _, _, _, given = self.statement
+    def suppose(self) -> None:
+        """The declarations and the hypotheses; S = X is as definite as X."""
         self.declare_all()
-        for text in read_list(given, str):
+        for text in read_list(self.statement[6], str):
             formula = self.start(text)
             name, x = formula.words[-1], formula.read_sum()
             require(formula.take("="), "expected a hypothesis with =")
@@ -2712,6 +2711,11 @@ class Algebra:
             self.relate(self.subtract(x, y))
             if x is self.names.get(name) and isinstance(y, Typed) and not x.known:
                 self.names[name] = x._replace(known=y.known)
+
+    def state(self) -> tuple[str, Any]:
+        """The relation between both sides, and their difference, after the declarations and the hypotheses."""
+        left, relation, right = self.statement[:3]
+        self.suppose()
         require(relation in SIGNS, "an unknown relation")
         x, y = self.read(left), self.read(right)
         require(not isinstance(x, Typed) or relation in ("=", "!="), "matrices have no order")

@@ -98,7 +98,7 @@ IDENTITIES = [
     ("inverse-difference", "inv(A) - inv(B)", "inv(A) @ (B - A) @ inv(B)", "inv(A) @ (A - B) @ inv(B)", []),
     ("inverse-product", "inv(A @ B @ L)", "inv(L) @ inv(B) @ inv(A)", "inv(A) @ inv(B) @ inv(L)", []),
     ("inverse-transpose", "inv(A.T)", "inv(A).T", "inv(A)", []),
-    ("transpose-product", "(A @ K @ H).T", "H.T @ K.T @ A.T", "A.T @ K.T @ H.T", []),
+    ("transpose-product", "(A @ K @ H).T", "H.T @ K.T @ A.T", "H.T @ K.T @ A", []),
     ("hat-idempotent", f"{HAT} @ {HAT}", HAT, "eye(m)", []),
     ("hat-residual", f"(eye(m) - {HAT}) @ H", "zeros(m, n)", "H", []),
     ("normal-equations", f"H.T @ W @ (z - H @ {BLUE} @ z)", "zeros(n, 1)", "H.T @ W @ z", []),

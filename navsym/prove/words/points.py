@@ -81,7 +81,7 @@ def draw_point(
     for k, text in enumerate(document["given"]):
         names = [name for name in re.findall(r"[A-Za-z]\w*", text) if name in matrices]
         try:
-            if any(Probe(document, point).state() and probe_left(document, point)[k]):
+            if any(probe_left(document, point)[k]):
                 for name in dict.fromkeys(names):
                     if name not in fixed and solve_linear(document, point, k, name, generator):
                         break
@@ -94,7 +94,7 @@ def draw_point(
 def probe_left(document: Document, point: Document) -> list[list[fmpq]]:
     """What each hypothesis leaves, entry by entry."""
     probe = Probe(document, point)
-    probe.state()
+    probe.suppose()
     return probe.left
 
 

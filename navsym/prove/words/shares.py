@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx
 
 from navsym.core.rational_functions import Quotient, add_fractions, cancel_fraction, multiply_fractions
 from navsym.prove.relations.cofactors import read_terms, write_polynomial
@@ -18,6 +18,7 @@ from navsym.prove.words.completion import Completion, complete
 
 Word = tuple[tuple[str, bool], ...]
 Share = dict[str, Any]
+MOST_TRACES = 60
 MOST_DEGREE = 4  # of a number in a symbol that is replaced
 
 
@@ -61,14 +62,14 @@ class Ratio:
 class Letters:
     """Words of the checker as texts of one character for each letter, and their numbers."""
 
-    def __init__(self, algebra: Any):
+    def __init__(self, algebra: Any, numbers: Sequence[Term]):
         self.algebra = algebra
         letters = [(name, turned) for name in algebra.sizes for turned in (False, True)]
         letters = [pair for pair in letters if not (pair[1] and pair[0] in algebra.symmetric)]
         letters.sort(key=lambda pair: rank_letter(pair[0]))
         self.letters = letters
         self.signs = {pair: chr(0x100 + k) for k, pair in enumerate(letters)}
-        numbers = [c for r in algebra.relations for c in r.body.values()]
+        numbers = [*numbers, *(c for r in algebra.relations for c in r.body.values())]
         self.parts = [*dict.fromkeys(g for c in numbers for g in player.list_generators(c))]
         self.ring = fmpq_mpoly_ctx.get([f"x{k}" for k in range(len(self.parts))], Ordering.degrevlex)
         self.generators = dict(zip(self.parts, self.ring.gens(), strict=True))
@@ -105,11 +106,13 @@ def find_shares(document: Any, end: float) -> list[Share] | None:
     algebra = player.Words(document)
     _, x = algebra.state()
     x = x if isinstance(x, player.Typed) else player.Typed(1, 1, {(): x})
-    letters = Letters(algebra)
-    places = [k for k, r in enumerate(algebra.relations) if set(r[:2]) != {1}]
-    given = [
-        {letters.write(word): letters.to_field(c) for word, c in algebra.relations[k].body.items()} for k in places
-    ]
+    scalars = find_scalars(algebra, x.body)
+    letters = Letters(algebra, [symbol for symbol, _ in scalars])
+    places: list[int | None] = [k for k, r in enumerate(algebra.relations) if set(r[:2]) != {1}]
+    sums = [algebra.relations[k].body for k in places]
+    sums += [{word: player.ONE, own: player.negate(c)} for c, part in scalars for word, own in list_scaled(algebra, part)]
+    places += [None] * (len(sums) - len(places))
+    given = [{letters.write(word): letters.to_field(c) for word, c in terms.items()} for terms in sums]
     tried = -1
     for completion in complete(given, end):
         if len(completion.rules) < 3 * tried // 2:
@@ -121,10 +124,53 @@ def find_shares(document: Any, end: float) -> list[Share] | None:
     return Settlement(letters, x, completion, places).settle() if len(completion.rules) != tried else None
 
 
+def read_linear(term: Term) -> dict[str, fmpq] | None:
+    """The numbers before the symbols of a term, and the one without by no name; None where it is not linear."""
+    parts = [*dict.fromkeys(player.list_generators(term))]
+    ring = fmpq_mpoly_ctx.get([f"x{k}" for k in range(len(parts))], Ordering.degrevlex)
+    top, bottom = player.to_quotient(term, dict(zip(parts, ring.gens(), strict=True)), ring)
+    terms = read_terms(top)
+    if bottom != 1 or any(sum(powers) > 1 for powers in terms) or any(part[0] != "symbol" for part in parts):
+        return None
+    return {"".join(p[1] for p, e in zip(parts, powers, strict=True) if e): c for powers, c in terms.items()}
+
+
+def find_scalars(algebra: Any, body: dict[Word, Term]) -> list[tuple[Term, Word]]:
+    """The numbers among the symbols of a difference that are words with one row and one column."""
+    names = sorted(set().union(*map(player.symbols_of, body.values())))
+    words = ((name, next(list_rotations(algebra, name))) for name in names if name.startswith("trace__"))
+    found = []
+    for name, word in words:
+        cut = next((k for k, letter in enumerate(word) if algebra.rows_of(letter) == 1), None)
+        if cut is not None:
+            found.append((("symbol", name), word[cut:] + word[:cut]))
+    return found
+
+
+def list_scaled(algebra: Any, part: Word) -> Iterator[tuple[Word, Word]]:
+    """Words with a number among them, and what stands beside it: they differ by the number, in no words at all."""
+    for own in (part, algebra.turn(part)):
+        for name, (rows, columns) in algebra.sizes.items():
+            if 1 in (rows, columns):
+                column, row = ((name, rows == 1),), ((name, columns == 1),)
+                yield column + own, column
+                yield own + row, row
+
+
+def list_rotations(algebra: Any, name: str) -> Iterator[Word]:
+    """The words of which a symbol is the trace."""
+    order = [*algebra.sizes]
+    marks = name.removeprefix("trace__").split("_")
+    word = tuple((order[int(mark.removesuffix("t"))], mark.endswith("t")) for mark in marks)
+    for own in (word, algebra.turn(word)):
+        for k in range(len(own)):
+            yield own[k:] + own[:k]
+
+
 class Settlement:
     """One try with the rules of a completion; ``shares`` is what was taken off the difference so far."""
 
-    def __init__(self, letters: Letters, x: Any, completion: Completion, places: Sequence[int]):
+    def __init__(self, letters: Letters, x: Any, completion: Completion, places: Sequence[int | None]):
         self.letters, self.algebra, self.x = letters, letters.algebra, x
         self.completion, self.places = completion, places
         self.body: dict[Word, Term] = dict(x.body)
@@ -137,7 +183,7 @@ class Settlement:
             self.reduce_words()
             self.reduce_traces()
             self.use_numbers()
-            if self.is_settled():
+            if self.is_settled() or self.solve_traces():
                 return self.shares
             if self.body == before:
                 return None
@@ -152,8 +198,9 @@ class Settlement:
         if not steps:
             return None
         parts = [(self.letters.read(text), self.letters.to_term(c)) for text, c in rest.items()]
-        taken = self.completion.trace_back(steps)
-        return parts, [(self.letters.to_term(c), left, k, right) for (left, k, right), c in taken.items()]
+        taken = self.completion.trace_back(steps).items()
+        own = [(c, left, self.places[k], right) for (left, k, right), c in taken]
+        return parts, [(self.letters.to_term(c), left, k, right) for c, left, k, right in own if k is not None]
 
     def share(self, c: Term, left: str, k: int, right: str, word: Word | None) -> None:
         spell = self.letters.spell
@@ -171,7 +218,7 @@ class Settlement:
                 continue
             pairs += [(own, player.multiply_numbers(c, d)) for own, d in found[0]]
             for d, left, k, right in found[1]:
-                self.share(player.multiply_numbers(c, d), left, self.places[k], right, None)
+                self.share(player.multiply_numbers(c, d), left, k, right, None)
         self.body = self.algebra.gather(pairs)
 
     def reduce_traces(self) -> None:
@@ -179,18 +226,10 @@ class Settlement:
         for name in sorted(set().union(*map(player.symbols_of, self.body.values()))):
             if not name.startswith("trace__"):
                 continue
-            ways = [way for way in map(self.normalise_trace, self.list_rotations(name)) if way is not None]
+            ways = [way for way in map(self.normalise_trace, list_rotations(self.algebra, name)) if way is not None]
             if ways:
                 value, taken = min(ways, key=lambda way: len(write_term(way[0])))
-                self.replace(name, value, [(c, left, self.places[k], right) for c, left, k, right in taken])
-
-    def list_rotations(self, name: str) -> Iterator[Word]:
-        order = [*self.algebra.sizes]
-        marks = name.removeprefix("trace__").split("_")
-        word = tuple((order[int(mark.removesuffix("t"))], mark.endswith("t")) for mark in marks)
-        for own in (word, self.algebra.turn(word)):
-            for k in range(len(own)):
-                yield own[k:] + own[:k]
+                self.replace(name, value, taken)
 
     def normalise_trace(self, word: Word) -> tuple[Term, list[tuple[Term, str, int, str]]] | None:
         found = self.normalise(word)
@@ -198,6 +237,34 @@ class Settlement:
             return None
         rows = self.algebra.rows_of(word[0])
         return self.algebra.trace(self.algebra.gather(found[0]), rows), found[1]
+
+    def solve_traces(self) -> bool:
+        """A number that is linear in traces, by linear algebra: every rotation of a word gives an equation."""
+        wanted = read_linear(self.body.get((), player.ZERO)) if {*self.body} == {()} else None
+        if wanted is None or self.letters.parts:
+            return False
+        waiting, known = sorted(wanted), set[str]()
+        equations: list[tuple[dict[str, fmpq], list[tuple[Term, str, int, str]]]] = []
+        while waiting and len(known) < MOST_TRACES:
+            name = waiting.pop(0)
+            if name in known or not name.startswith("trace__"):
+                continue
+            known.add(name)
+            for way in map(self.normalise_trace, list_rotations(self.algebra, name)):
+                value = None if way is None else read_linear(player.subtract(("symbol", name), way[0]))
+                if way is not None and value:
+                    equations.append((value, way[1]))
+                    waiting += sorted(value)
+        names = [*dict.fromkeys(name for row in (wanted, *(row for row, _ in equations)) for name in row)]
+        columns = [row for row, _ in (*equations, (wanted, []))]
+        reduced, rank = fmpq_mat([[row.get(name, fmpq(0)) for row in columns] for name in names]).rref()
+        pivots = [next(j for j in range(len(columns)) if reduced[i, j] != 0) for i in range(rank)]
+        if len(equations) in pivots:
+            return False
+        for i, pivot in enumerate(pivots):
+            for c, left, k, right in equations[pivot][1]:
+                self.share(player.multiply_numbers(player.number(reduced[i, len(equations)]), c), left, k, right, ())
+        return True
 
     def use_numbers(self) -> None:
         """Hypotheses between numbers give one of their symbols by the others."""
