@@ -2573,7 +2573,7 @@ def check_counterexample(item: Any) -> None:
 # of operator identities by a single formal computation, 2021).
 Letter = tuple[str, bool]  # a name, and whether it is transposed
 Word = tuple[Letter, ...]
-PROPERTIES = ("symmetric", "positive", "nonnegative", "invertible", "orthogonal", "diagonal")
+PROPERTIES = ("symmetric", "positive", "nonnegative", "invertible", "orthogonal", "skew", "diagonal")
 REGULAR = ("positive", "invertible")
 MOST_WORDS, MOST_SIZE = 20000, 8
 
@@ -2589,7 +2589,20 @@ class Typed(NamedTuple):
 
 
 class Algebra:
-    """Matrices by their dimensions; what is positive definite, nonnegative or invertible; inverses taken to exist."""
+    """Matrices by their dimensions; what is positive definite, nonnegative or invertible; inverses taken to exist.
+
+    What a value is and how it is computed is said by :class:`Words` and :class:`Sized`.
+    """
+
+    make_letter: Callable[..., Any]
+    declare: Callable[..., None]
+    relate: Callable[[Any], None]
+    to_number: Callable[[Any], Term]
+    add_bodies: Callable[[Any, Any], Any]
+    scale_body: Callable[[Term, Any], Any]
+    multiply_bodies: Callable[[Any, Any], Any]
+    transpose_body: Callable[[Any], Any]
+    invert_body: Callable[[Any, Any], Any]
 
     def __init__(self, item: Any):
         self.statement = read_fields(item, "left relation right symbols matrices dimensions given")
@@ -2632,13 +2645,13 @@ class Algebra:
         known = {x.known for x in values}
         word = "positive" if "positive" in known else "nonnegative"
         body = reduce(self.add_bodies, (x.body for x in values))
-        return Typed(*values[0][:2], body, word if known <= {"positive", "nonnegative"} else "")
+        return Typed(values[0].rows, values[0].columns, body, word if known <= {"positive", "nonnegative"} else "")
 
     def scale(self, factor: Term, x: Typed) -> Typed:
         sign = self.sign_of(factor)
         known = x.known if sign == ">" else "invertible" * (sign == "!=" and x.known in REGULAR)
         self.terms[factor] = None
-        return Typed(*x[:2], self.scale_body(factor, x.body), known)
+        return Typed(x.rows, x.columns, self.scale_body(factor, x.body), known)
 
     def sign_of(self, term: Term) -> str:
         """``>`` for products of what is declared to be positive, ``!=`` where it is not 0, else nothing."""
@@ -2660,7 +2673,7 @@ class Algebra:
         return self.make(x.rows, y.columns, self.multiply_bodies(x.body, y.body), known, factors)
 
     def judge_product(self, factors: tuple[Typed, ...]) -> str:
-        """M N M' is nonnegative where N is, and positive definite for regular M; a product of regular ones is regular."""
+        """M N M' is nonnegative where N is, positive definite for regular M too; products of regular ones are regular."""
         k = 0
         while 2 * k + 1 < len(factors) and self.transpose(factors[k]).body == factors[-1 - k].body:
             k += 1
@@ -2676,11 +2689,13 @@ class Algebra:
         return Typed(x.columns, x.rows, self.transpose_body(x.body), x.known, factors)
 
     def invert(self, x: Any, text: str) -> Typed:
-        """The inverse, which is taken to exist unless it is known to."""
+        """The inverse, which is taken to exist unless it is known to; ``text`` is how the matrix is written."""
         require(isinstance(x, Typed) and x.rows == x.columns, "expected a square matrix")
         if x.known not in REGULAR:
-            self.assumed[text] = None
-        return Typed(*x[:2], self.invert_body(x.body, x.rows), "positive" if x.known == "positive" else "invertible")
+            self.assumed[f"{text} invertible"] = None
+        return Typed(
+            x.rows, x.rows, self.invert_body(x.body, x.rows), "positive" if x.known == "positive" else "invertible"
+        )
 
     def read(self, text: Any) -> Any:
         """The value of a text."""
@@ -2709,8 +2724,9 @@ class Algebra:
             y = formula.read_sum()
             require(formula.words == [""], "not a hypothesis: more than one")
             self.relate(self.subtract(x, y))
-            if x is self.names.get(name) and isinstance(y, Typed) and not x.known:
-                self.names[name] = x._replace(known=y.known)
+            own = self.names.get(name)
+            if isinstance(own, Typed) and own is x and isinstance(y, Typed) and not own.known:
+                self.names[name] = own._replace(known=y.known)
 
     def state(self) -> tuple[str, Any]:
         """The relation between both sides, and their difference, after the declarations and the hypotheses."""
@@ -2744,7 +2760,9 @@ class WordFormula(Formula):
     def read_product(self) -> Any:
         factors = [self.read_signed()]
         while mark := self.take("*", "/", "@"):
-            value = self.read_signed()
+            before, value = len(self.words), self.read_signed()
+            if mark == "/" and has_trace(value):
+                self.reader.assumed[f"{write_words(self.every[len(self.words) : before])} != 0"] = None
             if mark == "@":
                 factors = [self.reader.multiply(self.scale(factors), value)]
                 continue
@@ -2770,6 +2788,8 @@ class WordFormula(Formula):
             return base
         exponent = self.read_signed()
         require(not isinstance(base, Typed) and not isinstance(exponent, Typed), "a power of a matrix")
+        whole = is_whole(exponent) and constant_of(exponent) > 0  # type: ignore[operator]
+        require(whole or not has_trace(base), "a root or inverse power of a trace; write a quotient")
         return ("^", base, exponent)
 
     def read_entry(self) -> Any:
@@ -2814,11 +2834,17 @@ class WordFormula(Formula):
             require(not isinstance(product, Typed), "expected two vectors")
             return product
         require(name in (*DEFINITIONS, *DERIVATIVES) and not isinstance(x, Typed), f"unknown function {name}")
+        require(not has_trace(x), "a function of a trace")
         return (name, x)
 
     def read_dimension(self) -> Any:
         word = self.words.pop()
         return self.reader.read_dimension(int(word) if word.isdigit() else word)
+
+
+def has_trace(x: Any) -> bool:
+    """Whether a number has traces, or products of one row and one column."""
+    return not isinstance(x, Typed) and any(name.startswith("trace__") for name in symbols_of(x))
 
 
 def write_words(words: list[str]) -> str:
@@ -2849,13 +2875,15 @@ class Words(Algebra):
         return {((name, False),): ONE}
 
     def declare(self, x: Typed, words: list[str]) -> None:
-        """What holds of a declared matrix: U' U = U U' = 1, and diagonal matrices of one size commute."""
+        """What holds of a declared matrix: U' U = U U' = 1, S + S' = 0, and diagonal matrices of one size commute."""
         ((name, _),) = next(iter(x.body))
         if x.known in REGULAR:
             self.find_inverse(name)
         if "orthogonal" in words:
             for product in (self.multiply(x, self.transpose(x)), self.multiply(self.transpose(x), x)):
                 self.relate(self.subtract(product, self.make_unit(x.rows)))
+        if "skew" in words:
+            self.relate(self.add(x, self.transpose(x)))
         others = self.statement[4].items() if "diagonal" in words else ()
         for other in (n for n, own in others if n in self.names and n != name and "diagonal" in own["is"]):
             y = self.names[other]
@@ -2970,14 +2998,16 @@ class Words(Algebra):
         x = x if isinstance(x, Typed) else Typed(1, 1, {(): x})
         if any(r.body in (x.body, self.transpose_body(x.body)) for r in self.relations):
             return
-        self.relations.append(Typed(*x[:3]))
+        self.relations.append(x._replace(known="", factors=()))
         if self.transpose_body(x.body) != x.body:
-            self.relations.append(Typed(*self.transpose(x)[:3]))
+            self.relations.append(Typed(x.columns, x.rows, self.transpose_body(x.body)))
         word = max(x.body, key=len, default=())
         if x.rows == x.columns and len(x.body) == 2 and x.body.get((), None) == negate(x.body[word]):
             for k in range(1, len(word)):
                 if self.side_of(word, k) == x.rows != 1 and x.body[word] in (ONE, MINUS_ONE):
-                    self.relate(self.subtract(Typed(*x[:2], {word[k:] + word[:k]: ONE}), self.make_unit(x.rows)))
+                    self.relate(
+                        self.subtract(Typed(x.rows, x.rows, {word[k:] + word[:k]: ONE}), self.make_unit(x.rows))
+                    )
 
     def read_word(self, text: Any) -> Word:
         """A word as it is written in a certificate: ``H.T inv__R``."""
@@ -3099,6 +3129,10 @@ class Sized(Algebra):
         return bool({"=": value == 0, "!=": value != 0, ">": value > 0, ">=": value >= 0}[own])
 
 
+def make_unit(n: int) -> fmpq_mat:
+    return fmpq_mat(n, n, [int(i == j) for i in range(n) for j in range(n)])
+
+
 def list_minors(x: fmpq_mat, sets: Iterable[Sequence[int]]) -> Iterator[fmpq]:
     """Determinants of rows and columns of the same numbers."""
     for places in sets:
@@ -3124,10 +3158,8 @@ HAS_PROPERTY: dict[str, Callable[[fmpq_mat], bool]] = {
     "positive": is_definite,
     "nonnegative": is_nonnegative,
     "invertible": lambda x: x.det() != 0,
-    "orthogonal": lambda x: (
-        x.transpose() * x
-        == fmpq_mat(x.nrows(), x.nrows(), [int(i == j) for i in range(x.nrows()) for j in range(x.nrows())])
-    ),
+    "orthogonal": lambda x: x.transpose() * x == make_unit(x.nrows()),
+    "skew": lambda x: x.transpose() == -1 * x,
     "diagonal": lambda x: all(x[i, j] == 0 for i in range(x.nrows()) for j in range(x.nrows()) if i != j),
 }
 

@@ -1,8 +1,8 @@
 """Symbols declared by tables: vectors, matrices, rotations, quaternions, functions of time, integers, ranges.
 
 A vector or matrix has one symbol for each entry: ``v`` has ``v_1, v_2, v_3``, shown as ``v[1]``. A symmetric matrix has
-one symbol in two places. A rotation and a unit quaternion have relations, which every claim about them may use. A matrix
-of any size, ``["m", "n"]``, has names of dimensions and no symbols of entries.
+one symbol in two places. A rotation and a unit quaternion have relations, which every claim about them may use.
+A matrix of any size, ``["m", "n"]``, has names of dimensions and no symbols of entries.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from navsym.language.schema import SIDE, as_list, as_text, describe_value, join_
 #: What a table may say; ``unit`` and ``frame`` are notes for people.
 KINDS = ("vector", "matrix", "rotation", "quaternion", "integer")
 #: What a square matrix may be; positive is positive definite, nonnegative is positive semidefinite.
-PROPERTIES = ("symmetric", "positive", "nonnegative", "invertible", "orthogonal", "diagonal")
+PROPERTIES = ("symmetric", "positive", "nonnegative", "invertible", "orthogonal", "skew", "diagonal")
 KEYS = (*KINDS, *PROPERTIES, "function", "range", "sign", "unit", "frame")
 ORDERS = 3  # derivatives of a function of time that have symbols of their own
 RANGES: dict[str, list[Any]] = {
@@ -112,7 +112,7 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
             raise ShapeError(message, where=where)
         return [Shape(name, (), kind, {}, sizes=size, properties=properties)]
     even = bool({"symmetric", "positive", "nonnegative"} & {*properties})
-    rows = name_entries(name, size, even, taken)  # type: ignore[arg-type]
+    rows = name_entries(name, size, even, taken)
     limits = read_limits(kind, value, where)
     shape = Shape(
         name,
@@ -169,9 +169,7 @@ def read_size(kind: str, value: Mapping[str, Any], where: str) -> tuple[int | st
     return (sizes[0], 1) if kind == "vector" else (sizes[0], sizes[1])
 
 
-def name_entries(
-    name: str, size: tuple[int, int] | None, symmetric: bool, taken: Collection[str]
-) -> tuple[tuple[str, ...], ...]:
+def name_entries(name: str, size: Any, symmetric: bool, taken: Collection[str]) -> tuple[tuple[str, ...], ...]:
     """Names of the entries that nobody has declared: ``v_1``, or ``v__1`` where ``v_1`` is taken."""
     if size is None:
         return ((name,),)
@@ -253,6 +251,7 @@ def relations_of_properties(name: str, n: int, properties: tuple[str, ...]) -> t
         "nonnegative": lambda: [f"{minor(c)} >= 0" for c in every],
         "invertible": lambda: [f"{minor(range(1, n + 1))} != 0"],
         "orthogonal": lambda: [f"{name}.T @ {name} = eye({n})", f"{name} @ {name}.T = eye({n})"],
+        "skew": lambda: [f"{name}.T = -{name}"],
         "diagonal": lambda: [f"{name}[{i},{j}] = 0" for i in range(1, n + 1) for j in range(1, n + 1) if i != j],
     }
     return tuple(text for word in properties for text in stated[word]())

@@ -121,7 +121,7 @@ class ValueReader(Reader):
             "norm": (vector, lambda: None),
             "skew": (first == (3, 1), lambda: (3, 3)),
             "det": (square and self.is_small(first, MOST_DETERMINANT), lambda: None),
-            "inv": (square and (self.dimensions or self.is_small(first, MOST_INVERSE)), lambda: first),
+            "inv": (square and (bool(self.dimensions) or self.is_small(first, MOST_INVERSE)), lambda: first),
             "trace": (square, lambda: None),
             "transpose": (first is not None, lambda: (first[1], first[0])),  # type: ignore[index]
             "eye": (self.is_size(part.args[0]), lambda: (size_of(part.args[0]),) * 2),  # type: ignore[return-value]

@@ -103,9 +103,8 @@ def read_text_claim(
         plain = {"exists": exists, "tolerance": formula.tolerance, "rates": slopes, "box": block.get("box")}
         require_plain(plain, where)
         declared, scope = declare_any_size(shapes, used, trees, ranges, where)
+        declared["given"] = [*map(clean, given)]
         documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | declared for x, sign, y in links]
-        for document in documents:
-            document["given"] = [*map(clean, given)]
         return TextClaim(formula, tuple(documents), scope=scope)
     common: Document = {"symbols": ranges, "exists": [*map(clean, exists)], "tolerance": formula.tolerance}
     common |= {"shapes": {n: [[*row] for row in shapes[n].rows] for n in used if shapes[n].size}}
@@ -164,7 +163,7 @@ def declare_any_size(
         require_dimension(shapes[name], where)
     scope = describe_scope([*numbers, *(shapes[name] for name in matrices)], ranges)
     symbols = {shape.name: ranges[shape.name] for shape in numbers}
-    return {"symbols": symbols, "matrices": matrices, "dimensions": [*sides], "given": []}, scope
+    return {"symbols": symbols, "matrices": matrices, "dimensions": [*sides]}, scope
 
 
 def require_dimension(shape: Shape, where: str) -> None:

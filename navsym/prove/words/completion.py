@@ -1,8 +1,8 @@
 """Sums of words modulo relations: a noncommutative Groebner basis of bounded degree, with cofactors.
 
-A word is a text of one character for each letter. Words are compared by their length, then as texts. Two relations whose
-leading words overlap give a new one (Buchberger 1965; Mora, An introduction to commutative and noncommutative Groebner
-bases, 1994); the process need not end, so that time and the length of overlaps are bounded. Every relation remembers of
+A word is a text of one character for each letter. Words are compared by their length, then as texts. Two relations
+whose leading words overlap give a new one (Mora, An introduction to commutative and noncommutative Groebner bases,
+1994); the process need not end, so that time and the length of overlaps are bounded. Every relation remembers of
 which others it was made: a sum that reduces to 0 is a sum of ``c left relation right``.
 """
 
@@ -28,7 +28,7 @@ def order(word: str) -> tuple[int, str]:
 
 @dataclass(slots=True)
 class Rule:
-    """A relation with leading number 1; of which others it is the sum. Given relations are numbered before all rules."""
+    """A relation with leading number 1, and the steps of which it is the sum."""
 
     lead: str
     terms: Sum
@@ -80,7 +80,7 @@ class Completion:
             return False
         _, _, terms, steps = heapq.heappop(self.waiting)
         rest, taken = self.reduce(terms)
-        if rest and len(rest) <= MOST_TERMS and "" != max(rest, key=order):
+        if rest and len(rest) <= MOST_TERMS and max(rest, key=order) != "":
             self.note(rest, [*steps, *((-c, left, k, right) for c, left, k, right in taken)])
         return True
 
@@ -140,7 +140,9 @@ def add_to(total: dict[Any, Any], key: Any, c: Any) -> None:
         total[key] = value
 
 
-def add_multiple(total: Sum, c: Any, left: str, terms: Mapping[str, Any], right: str, besides: str | None = None) -> None:
+def add_multiple(
+    total: Sum, c: Any, left: str, terms: Mapping[str, Any], right: str, besides: str | None = None
+) -> None:
     """Add c left terms right, but for one word of the terms."""
     for word, d in terms.items():
         if word != besides:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -11,11 +11,13 @@ from flint import arb
 
 from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
 from navsym.prove.grant import REFUSALS, Document, grant, withdraw
-from navsym.prove.rooms.goals import player
+from navsym.prove.rooms.goals import player, to_sympy
+from navsym.prove.search import find_proof
+from navsym.prove.wording import decimal_ends, expression_text
 from navsym.prove.words.points import draw_sized_points, list_numbers, show_point
 from navsym.prove.words.shares import find_shares
-from navsym.prove.wording import decimal_ends
 
+QUICK = 0.4  # seconds for a condition that need not be listed
 FEW = 8  # points that are enough evidence before a proof is sought
 
 
@@ -43,7 +45,7 @@ def decide_words(documents: Sequence[Document], scope: str, seconds: float) -> V
             return Verdict(OPEN, "words", scope, evidence=words)
         witness = min(points, key=lambda point: len(str(point)))
         certificates.append({"kind": "words", "statement": document, "witness": witness, "shares": shares})
-        assumed |= dict.fromkeys(f"{text} invertible" for text in algebra.assumed)
+        assumed |= dict.fromkeys((*algebra.assumed, *list_conditions(algebra)))
         count += len(shares)
     whole = certificates[0] if len(certificates) == 1 else {"kind": "all", "of": certificates}
     evidence = f"the difference is a sum of {count} multiples of relations between the letters"
@@ -53,6 +55,15 @@ def decide_words(documents: Sequence[Document], scope: str, seconds: float) -> V
     except REFUSALS as refusal:
         return withdraw(replace(verdict, certificate=None), str(refusal))
     return verdict
+
+
+def list_conditions(algebra: Any) -> Iterator[str]:
+    """What the numbers of a text need to have a value, where their ranges do not say so; traces have been noted."""
+    for relation, term in player.set_union(map(player.conditions, algebra.terms)):
+        if player.has_trace(term) or not player.symbols_of(term) or algebra.sign_of(term) in (">", relation):
+            continue
+        if find_proof(player.Goal(term, relation, algebra.box), QUICK, ((6, 60, 2),)) is None:
+            yield f"{expression_text(to_sympy(term))} {relation} 0"
 
 
 def refute(documents: Sequence[Document], document: Document, point: Mapping[str, Any]) -> Verdict:
@@ -73,5 +84,3 @@ def difference_at(document: Document, point: Mapping[str, Any]) -> Any:
     _, x = sized.state()
     numbers = list_numbers(x.body) if isinstance(x, player.Typed) else [sized.value_of(x)]
     return decimal_ends(arb(max(numbers, key=abs)))
-
-

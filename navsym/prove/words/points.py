@@ -73,7 +73,7 @@ def draw_point(
     }
     shapes = {name: [sizes.get(d, d) for d in item["size"]] for name, item in document["matrices"].items()}
     matrices = {
-        name: draw_matrix(*shape, document["matrices"][name]["is"], generator, special)
+        name: draw_matrix(shape[0], shape[1], document["matrices"][name]["is"], generator, special)
         for name, shape in shapes.items()
     }
     point = {"sizes": dict(sizes), "matrices": matrices, "numbers": numbers}
@@ -114,8 +114,9 @@ def draw_matrix(m: int, n: int, words: Sequence[str], generator: random.Random, 
     if "nonnegative" in words:
         half = fmpq_mat(m, 1, [generator.randint(-2, 3) for _ in range(m)])
         return half * half.transpose()
-    if "symmetric" in words:
-        x = x + x.transpose()
+    if "symmetric" in words or "skew" in words:
+        x = x + x.transpose() if "symmetric" in words else x - x.transpose()
+        return x + unit if "invertible" in words and x.det() == 0 else x
     if kind < 3:
         scale = (1, -1, 0)[kind] if "invertible" not in words else 1
         return unit * scale
@@ -181,5 +182,3 @@ def show_point(point: Document) -> dict[str, str]:
     """A point for people: dimensions, numbers, and matrices by their rows."""
     rows = {name: f"[{', '.join('[' + ', '.join(row) + ']' for row in x)}]" for name, x in point["matrices"].items()}
     return {**{name: str(size) for name, size in point["sizes"].items()}, **point["numbers"], **rows}
-
-

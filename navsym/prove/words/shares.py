@@ -1,4 +1,4 @@
-"""An equation between matrices of any size as a sum of relations with words on both sides: what the rule ``words`` takes.
+"""An equation between matrices of any size as a sum of relations with words on both sides, for the rule ``words``.
 
 Words, and words inside traces in every rotation, are reduced by a completion of the relations. What is left is 0 by the
 algebra of numbers, or by hypotheses between numbers.
@@ -6,6 +6,7 @@ algebra of numbers, or by hypotheses between numbers.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -107,21 +108,45 @@ def find_shares(document: Any, end: float) -> list[Share] | None:
     _, x = algebra.state()
     x = x if isinstance(x, player.Typed) else player.Typed(1, 1, {(): x})
     scalars = find_scalars(algebra, x.body)
+    if not scalars:
+        return search_shares(algebra, x, (), end)
+    for some, share in (((), 0.15), (scalars, 0.5), ((), 1.0)):
+        now = time.process_time()
+        shares = search_shares(algebra, x, some, now + (end - now) * share)
+        if shares is not None:
+            return shares
+    return None
+
+
+def search_shares(algebra: Any, x: Any, scalars: Sequence[tuple[Term, Word]], end: float) -> list[Share] | None:
+    """The same with rules that take some numbers out of words; their steps are none of the certificate."""
     letters = Letters(algebra, [symbol for symbol, _ in scalars])
     places: list[int | None] = [k for k, r in enumerate(algebra.relations) if set(r[:2]) != {1}]
     sums = [algebra.relations[k].body for k in places]
-    sums += [{word: player.ONE, own: player.negate(c)} for c, part in scalars for word, own in list_scaled(algebra, part)]
+    sums += [
+        {word: player.ONE, own: player.negate(c)} for c, part in scalars for word, own in list_scaled(algebra, part)
+    ]
     places += [None] * (len(sums) - len(places))
     given = [{letters.write(word): letters.to_field(c) for word, c in terms.items()} for terms in sums]
-    tried = -1
+    tried, completion = 0, Completion(())
     for completion in complete(given, end):
-        if len(completion.rules) < 3 * tried // 2:
-            continue
-        tried = len(completion.rules)
-        shares = Settlement(letters, x, completion, places).settle()
-        if shares is not None:
-            return shares
-    return Settlement(letters, x, completion, places).settle() if len(completion.rules) != tried else None
+        if 2 * len(completion.rules) >= 3 * tried:
+            tried = len(completion.rules)
+            shares = Settlement(letters, x, completion, places).settle()
+            if shares is not None and is_defined(algebra, shares):
+                return shares
+    shares = Settlement(letters, x, completion, places).settle()
+    return shares if shares is not None and is_defined(algebra, shares) else None
+
+
+def is_defined(algebra: Any, shares: Sequence[Share]) -> bool:
+    """Whether the numbers of all shares exist wherever the statement has a value."""
+    try:
+        for text in {share["coefficient"] for share in shares}:
+            algebra.check_coefficient(player.parse(text))
+    except player.Refused:
+        return False
+    return True
 
 
 def read_linear(term: Term) -> dict[str, fmpq] | None:
