@@ -2673,7 +2673,7 @@ class Algebra:
         return self.make(x.rows, y.columns, self.multiply_bodies(x.body, y.body), known, factors)
 
     def judge_product(self, factors: tuple[Typed, ...]) -> str:
-        """M N M' is nonnegative where N is, positive definite for regular M too; products of regular ones are regular."""
+        """M N M' is nonnegative where N is, positive definite if M is regular; products of regular ones are regular."""
         k = 0
         while 2 * k + 1 < len(factors) and self.transpose(factors[k]).body == factors[-1 - k].body:
             k += 1
