@@ -1,9 +1,9 @@
 """Forty identities of Kalman filtering, smoothing and least squares for matrices of any size, with false variants.
 
 Written before the code that decides them. Each is: label, left side, true right side, false right side, hypotheses.
-Sources: Maybeck, Stochastic Models, Estimation and Control (1979, 1982); Simon, Optimal State Estimation (2006); Bar-Shalom,
-Li, Kirubarajan, Estimation with Applications to Tracking and Navigation (2001); Petersen, Pedersen, The Matrix Cookbook
-(2012).
+Sources: Maybeck, Stochastic Models, Estimation and Control (1979, 1982); Simon, Optimal State Estimation (2006);
+Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation (2001); Petersen, Pedersen, The
+Matrix Cookbook (2012). One false variant was written anew, because its product had shapes that do not fit.
 """
 
 SYMBOLS = {
@@ -80,7 +80,13 @@ IDENTITIES = [
     ("posterior-residual", "H @ M @ H.T", f"R - R @ inv({S}) @ R", f"R + R @ inv({S}) @ R", [POSTERIOR]),
     ("residual-factor", "eye(m) - H @ K", f"R @ inv({S})", f"inv({S}) @ R", [GAIN]),
     ("information-update", "inv(M)", "inv(P) + H.T @ inv(R) @ H", "inv(P) - H.T @ inv(R) @ H", [POSTERIOR]),
-    ("smoother-covariance", "P - G @ (F @ P @ F.T + Q) @ G.T", "(eye(n) - G @ F) @ P", "(eye(n) - F @ G) @ P", [SMOOTHER]),
+    (
+        "smoother-covariance",
+        "P - G @ (F @ P @ F.T + Q) @ G.T",
+        "(eye(n) - G @ F) @ P",
+        "(eye(n) - F @ G) @ P",
+        [SMOOTHER],
+    ),
     (
         "smoother-joseph",
         "P + G @ (N - (F @ P @ F.T + Q)) @ G.T",
@@ -88,13 +94,7 @@ IDENTITIES = [
         "(eye(n) - G @ F) @ P @ (eye(n) - G @ F).T + G @ (N - Q) @ G.T",
         [SMOOTHER],
     ),
-    (
-        "smoother-information",
-        "inv(inv(P) + F.T @ inv(Q) @ F)",
-        "P - G @ F @ P",
-        "P - G @ P @ F",
-        [SMOOTHER],
-    ),
+    ("smoother-information", "inv(inv(P) + F.T @ inv(Q) @ F)", "P - G @ F @ P", "P - G @ P @ F", [SMOOTHER]),
     ("inverse-difference", "inv(A) - inv(B)", "inv(A) @ (B - A) @ inv(B)", "inv(A) @ (A - B) @ inv(B)", []),
     ("inverse-product", "inv(A @ B @ L)", "inv(L) @ inv(B) @ inv(A)", "inv(A) @ inv(B) @ inv(L)", []),
     ("inverse-transpose", "inv(A.T)", "inv(A).T", "inv(A)", []),
@@ -120,7 +120,13 @@ IDENTITIES = [
         [UPDATE],
     ),
     ("trace-cyclic", "trace(A @ K @ H)", "trace(H @ A @ K)", "trace(A @ H.T @ K.T)", []),
-    ("trace-posterior", f"trace(P - K @ {S} @ K.T)", "trace(P) - trace(K @ H @ P)", "trace(P) - 2*trace(K @ H @ P)", [GAIN]),
+    (
+        "trace-posterior",
+        f"trace(P - K @ {S} @ K.T)",
+        "trace(P) - trace(K @ H @ P)",
+        "trace(P) - 2*trace(K @ H @ P)",
+        [GAIN],
+    ),
     ("trace-hat", f"trace({HAT})", "n", "m", []),
     ("mean-innovation-squared", f"trace(inv({S}) @ (H @ P @ H.T)) + trace(inv({S}) @ R)", "m", "n", []),
     ("similarity", "inv(T) @ A @ T @ inv(T) @ B @ T", "inv(T) @ A @ B @ T", "inv(T) @ B @ A @ T", []),
@@ -148,13 +154,7 @@ IDENTITIES = [
         "-inv(P) @ F - F.T @ inv(P) - inv(P) @ Q @ inv(P) - H.T @ inv(R) @ H",
         ["D = F @ P + P @ F.T + Q - P @ H.T @ inv(R) @ H @ P"],
     ),
-    (
-        "fused-covariance",
-        "inv(inv(P) + inv(M))",
-        "P @ inv(P + M) @ M",
-        "P @ inv(P + M) @ P",
-        [],
-    ),
+    ("fused-covariance", "inv(inv(P) + inv(M))", "P @ inv(P + M) @ M", "P @ inv(P + M) @ P", []),
     (
         "rank-one-update",
         "inv(A + u @ v.T)",

@@ -110,10 +110,15 @@ def read_text_claim(
     common |= {"shapes": {n: [[*row] for row in shapes[n].rows] for n in used if shapes[n].size}}
     common |= {"given": [*map(clean, (*given, *relations))], "rates": slopes}
     documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | common for x, sign, y in links]
-    kinds = {name: (shapes[name].kind, shapes[name].rows) for name in used if shapes[name].size}
+    kinds = {name: (kind_of(shapes[name]), shapes[name].rows) for name in used if shapes[name].size}
     shown = {entry: text for name in used for entry, text in shapes[name].shown().items()}
     scope = describe_scope([shapes[n] for n in used if not shapes[n].label], ranges)
     return TextClaim(formula, tuple(documents), kinds, shown, scope)
+
+
+def kind_of(shape: Shape) -> str:
+    """How points of it are drawn."""
+    return next((word for word in ("orthogonal", "positive") if word in shape.properties), shape.kind)
 
 
 def is_of_any_size(shapes: Sequence[Shape], trees: Sequence[Tree]) -> bool:
