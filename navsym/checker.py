@@ -2616,6 +2616,7 @@ class Algebra:
         self.names: dict[str, Any] = {name: ("symbol", name) for name in self.box}
         self.terms: dict[Term, None] = {}
         self.assumed: dict[str, None] = {}
+        self.above: set[Term] = set()  # numbers x' M x with nonnegative M
 
     def declare_all(self) -> None:
         """The declared matrices, each a letter with its properties; all but products of any shape are square."""
@@ -2635,7 +2636,11 @@ class Algebra:
 
     def make(self, rows: Any, columns: Any, body: Any, known: str = "", factors: tuple[Any, ...] = ()) -> Any:
         """A matrix, or the number where it has one row and one column whatever the dimensions are."""
-        return self.to_number(body) if rows == columns == 1 else Typed(rows, columns, body, known, factors)
+        if not rows == columns == 1:
+            return Typed(rows, columns, body, known, factors)
+        if known in ("positive", "nonnegative"):
+            self.above.add(self.to_number(body))
+        return self.to_number(body)
 
     def add(self, *values: Any) -> Any:
         """A sum; of nonnegative matrices it is nonnegative, and positive definite where one is."""
@@ -2655,6 +2660,9 @@ class Algebra:
 
     def sign_of(self, term: Term) -> str:
         """``>`` for products of what is declared to be positive, ``!=`` where it is not 0, else nothing."""
+        if term[0] == "+":
+            some = [part for part in term[1:] if part not in self.above]
+            return ">" * bool(some and all(self.sign_of(part) == ">" for part in some))
         signs = set()
         for factor in list_factors(term):
             base = factor[1] if factor[0] == "^" and factor[2][0] == "number" else factor
@@ -2761,7 +2769,7 @@ class WordFormula(Formula):
         factors = [self.read_signed()]
         while mark := self.take("*", "/", "@"):
             before, value = len(self.words), self.read_signed()
-            if mark == "/" and has_trace(value):
+            if mark == "/" and has_trace(value) and not self.reader.sign_of(value):
                 self.reader.assumed[f"{write_words(self.every[len(self.words) : before])} != 0"] = None
             if mark == "@":
                 factors = [self.reader.multiply(self.scale(factors), value)]

@@ -43,7 +43,9 @@ def draw_special_points(
             entries = [name for row in rows for name in row]
             values = draw_entries(kind, place, len(entries), frame, k, generator)
             point.update(zip(entries, values, strict=True)) if values else None
-            fixed.update(entries if kind in ("rotation", "quaternion", "orthogonal", "positive") or (values and k % 3) else ())
+            fixed.update(
+                entries if kind in ("rotation", "quaternion", "orthogonal", "positive") or (values and k % 3) else ()
+            )
         for zero in zeros:
             solve_for_one(zero, point, fixed)
         yield point

@@ -32,7 +32,9 @@ class Ratio:
         self.quotient = quotient
 
     def __add__(self, other: Any) -> Ratio:
-        return self if other == 0 else Ratio(add_fractions(self.quotient, other.quotient))
+        if not isinstance(other, Ratio):
+            other = Ratio(Quotient(self.quotient.top * 0 + other, self.quotient.bottom * 0 + 1))
+        return Ratio(add_fractions(self.quotient, other.quotient))
 
     __radd__ = __add__
 
