@@ -21,7 +21,7 @@ from navsym.language.printer import LOOSE, RAISED, TIGHT, WHOLE, LatexWriter, Te
 from navsym.language.tokens import Source, split_tokens
 from navsym.language.tree import MINUS_ONE, NUMBER, POWER, PRODUCT, SUM, SYMBOL, Tree, build, fold_tree
 
-Size = tuple[int, int] | None  # rows and columns; None for a number
+Size = tuple[Any, Any] | None  # rows and columns, whole numbers or names of dimensions; None for a number
 
 RELATIONS = ("=", "!=", "<", "<=", ">", ">=")
 MOST_INVERSE, MOST_DETERMINANT, MOST_ORDER = 4, 5, 8
@@ -128,12 +128,12 @@ class ValueReader(Reader):
             "dot": (vector and first == second, lambda: None),
             "norm": (vector, lambda: None),
             "skew": (first == (3, 1), lambda: (3, 3)),
-            "det": (square and first[0] <= MOST_DETERMINANT, lambda: None),  # type: ignore[index]
-            "inv": (square and first[0] <= MOST_INVERSE, lambda: first),  # type: ignore[index]
+            "det": (square and self.is_small(first, MOST_DETERMINANT), lambda: None),
+            "inv": (square and (bool(self.dimensions) or self.is_small(first, MOST_INVERSE)), lambda: first),
             "trace": (square, lambda: None),
             "transpose": (first is not None, lambda: (first[1], first[0])),  # type: ignore[index]
-            "eye": (is_count(part.args[0]), lambda: (count_of(part.args[0]),) * 2),  # type: ignore[return-value]
-            "zeros": (all(map(is_count, part.args)), lambda: (count_of(part.args[0]), count_of(part.args[-1]))),
+            "eye": (self.is_size(part.args[0]), lambda: (size_of(part.args[0]),) * 2),  # type: ignore[return-value]
+            "zeros": (all(map(self.is_size, part.args)), lambda: (size_of(part.args[0]), size_of(part.args[-1]))),
             "diag": (not any(sizes) or (vector and len(sizes) == 1), lambda: (first[0] if first else len(sizes),) * 2),  # type: ignore[return-value]
             "qmul": (first == second == (4, 1), lambda: (4, 1)),
             "conj": (first == (4, 1), lambda: (4, 1)),
@@ -146,6 +146,19 @@ class ValueReader(Reader):
         if not good:
             self.refuse_shapes(at, f"{name} of {TAKES[name][0]}", sizes, "correct the call")
         return result()
+
+    @property
+    def dimensions(self) -> set[str]:
+        """The names of dimensions."""
+        return {side for size in self.arrays.values() if size for side in size if isinstance(side, str)}
+
+    def is_size(self, part: Tree) -> bool:
+        """Whether a part is a whole number, or the name of a dimension."""
+        return is_count(part) or (part.head == SYMBOL and part.args[0] in self.dimensions)
+
+    @staticmethod
+    def is_small(size: Size, most: int) -> bool:
+        return size is not None and isinstance(size[0], int) and size[0] <= most
 
     def refuse_shapes(self, at: int, expected: str, sizes: list[Size], remedy: str) -> NoReturn:
         """Refuse values by their shapes."""
@@ -201,6 +214,9 @@ class ValueReader(Reader):
             self.unexpected("] behind the index")
         self.position += 1
         ends = size if len(places) == 2 else size[:1]
+        if not all(isinstance(side, int) for side in size):
+            remedy = "state the claim by whole matrices, or give the dimensions as numbers"
+            self.fail(at, "a matrix of fixed size before an index", describe_size(size), remedy, ShapeError)
         if len(places) == 1 and size[1] != 1:
             self.refuse_shapes(at, "two indices, as in A[1,2]", [size], "give row and column")
         if any(p > end for p, end in zip(places, ends, strict=True)):
@@ -370,8 +386,9 @@ def is_count(tree: Tree, most: int = 64) -> bool:
     return tree.head == NUMBER and tree.args[0].denominator == 1 and 1 <= tree.args[0] <= most
 
 
-def count_of(tree: Tree) -> int:
-    return int(tree.args[0])
+def size_of(tree: Tree) -> int | str:
+    """A whole number, or the name of a dimension."""
+    return str(tree.args[0]) if tree.head == SYMBOL else int(tree.args[0])
 
 
 def list_free_names(tree: Tree) -> frozenset[str]:
@@ -442,6 +459,8 @@ def start_reading(text: Any, arrays: Mapping[str, Size], where: str) -> ValueRea
     if not text.strip():
         raise EmptyError('expected an expression; got an empty text; write one, such as "0"', where=where)
     source = Source(text, where, wide=True)
+    sides = {side for size in arrays.values() if size for side in size if isinstance(side, str)}
+    arrays = {**dict.fromkeys(sides), **arrays}  # a dimension is a number
     names: Collection[str] = arrays.keys()
     return ValueReader(source, split_tokens(source, LENGTH), names, arrays=arrays)
 

@@ -94,6 +94,8 @@ def prove(
     <Status.PROVED: 'PROVED'>
     >>> nav.prove("cross(u, cross(v, u)) = v - u*dot(u, v)", given="dot(u, u) = 1", u={"vector": 3}, v={"vector": 3})
     <PROVED: cross(u, cross(v, u)) = v - u*dot(u, v); proof tree; all u in R^3, v in R^3>
+    >>> nav.prove("inv(A @ B) = inv(B) @ inv(A)", A={"matrix": ["n", "n"]}, B={"matrix": ["n", "n"]}).assumptions
+    ('A @ B invertible', 'B invertible', 'A invertible')
     >>> import sympy
     >>> nav.prove(sympy.Symbol("x") ** 2, ">=", 0).holds
     True
@@ -150,7 +152,8 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
     hypotheses = list(beside["given"]) if isinstance(beside["given"], (list, tuple)) else [beside["given"]]
     slopes = {name: write_entries(rate, f"prove: rates.{name}") for name, rate in dict(beside["rates"]).items()}
     texts = (left, right, exists, *map(str, hypotheses), *slopes.values())
-    words = dict.fromkeys(sorted(symbols_in(texts, given) | slopes.keys()), "real")
+    dimensions = {side for value in given.values() for side in list_dimensions(value)} - given.keys()
+    words = dict.fromkeys(sorted((symbols_in(texts, given) - dimensions) | slopes.keys()), "real")
     words |= read_assumptions((sides.left, sides.right, *existing), "prove")
     declared = {name: write_declaration(value, f"prove: {name}") for name, value in given.items()}
     for name in declared.keys() - words.keys():
@@ -170,6 +173,13 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
     symbols = Symbols.read(table, "prove", slopes)
     claim = read_claim(block, symbols, "prove")
     return decide_claims(ClaimFile(symbols.parameters, (claim,)), seconds=seconds)[0]
+
+
+def list_dimensions(value: Any) -> list[str]:
+    """The names of dimensions in a declaration such as ``{"matrix": ["n", "n"]}``."""
+    sizes = (value.get("matrix"), value.get("vector")) if isinstance(value, Mapping) else ()
+    sides = [side for size in sizes for side in (size if isinstance(size, (list, tuple)) else [size])]
+    return [side for side in sides if isinstance(side, str)]
 
 
 def require_options(box: Any, seconds: Any, jobs: Any) -> None:

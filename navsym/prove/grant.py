@@ -33,6 +33,8 @@ UNCHECKED = "unchecked: no certificate of this statement"
 BITS = (128, 1024, 8192)
 POINTS = 18
 SHARE = "share"
+#: Kinds of certificates that give a statement its verdict.
+GRANTS = ("proof", "counterexample", "condition", "words", "sized")
 NUMERAL = re.compile(r"(?<![\w.])\d+(?:\.\d+)?[eE][+-]?\d+", re.ASCII)
 IDENTITY = {"rule": "identity"}
 #: The checker and its player are two modules, and each has its own class.
@@ -156,7 +158,7 @@ def is_granted(verdict: Verdict) -> bool:
     """True when the certificate is one of the statement's own, which the checker has accepted."""
     certificate = verdict.certificate or {}
     parts = certificate["of"] if certificate.get("kind") == "all" else [certificate]
-    return bool(parts) and all(part.get("kind") in ("proof", "counterexample", "condition") for part in parts)
+    return bool(parts) and all(part.get("kind") in GRANTS for part in parts)
 
 
 def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECONDS) -> Verdict:

@@ -115,7 +115,7 @@ def test_what_does_not_fit_is_said_in_concepts(text, kind, words):
     [
         ({"vector": 0}, "shape"),
         ({"vector": "3"}, "shape"),
-        ({"matrix": ["n", "n"]}, "shape"),
+        ({"matrix": ["n", "2*n"]}, "shape"),
         ({"matrix": [2]}, "shape"),
         ({"matrix": [2, 3], "symmetric": True}, "shape"),
         ({"vector": 3, "rotation": "b to n"}, "shape"),

@@ -24,6 +24,7 @@ from navsym.prove.relations.points import Rows, draw_special_points
 from navsym.prove.rooms.goals import player, to_sympy, write_term
 from navsym.prove.search import find_proof, rules_of
 from navsym.prove.wording import decimal_ends, expression_text
+from navsym.prove.words.judge import decide_words
 
 POINTS = 16
 QUICK = 0.4  # seconds for a condition that need not be listed
@@ -59,6 +60,8 @@ class TextClaim:
 
 def decide_text(claim: TextClaim, seconds: float) -> Verdict:
     """Verdict of the claim: every link, entry and case of it."""
+    if "matrices" in claim.documents[0]:
+        return decide_words(claim.documents, claim.scope, seconds)
     end = time.process_time() + seconds
     certificates, assumptions, rules = [], dict[str, None](), set[str]()
     for document in claim.documents:
