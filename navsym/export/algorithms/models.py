@@ -39,6 +39,7 @@ class Plant:
     F, H, Phi : matrices (n, n), (p, n), (n, n); Phi in the parameters and ``dt``
     variances : of the measurement errors, sigma squared
     ranges    : name of a parameter or of ``dt`` -> exact ends, what the code accepts
+    least     : the smallest step from which vectors are drawn
     sizes     : largest magnitude of each state
     """
 
@@ -51,12 +52,18 @@ class Plant:
     dt: sp.Symbol
     variances: tuple[sp.Expr, ...]
     ranges: Mapping[str, tuple[Any, Any]]
+    least: float
     sizes: tuple[float, ...]
 
     @property
     def n(self) -> int:
         """Number of states."""
         return len(self.states)
+
+    @property
+    def steps(self) -> dict[str, Range]:
+        """The steps from which vectors are drawn, by their name."""
+        return {STEP: (self.least, float(self.ranges[STEP][1]))}
 
     @property
     def box(self) -> dict[sp.Symbol, tuple[Any, Any]]:
@@ -88,7 +95,7 @@ def plant_of(found: ModelFile) -> Plant:
     used |= {s.name for s in linear.F.free_symbols}
     declared = {p.name: (p.lower, p.upper) for p in found.parameters.values() if p.kind == "range"} | dict(found.ranges)
     require_ranges([*found.states, STEP, *sorted(used)], declared)
-    dt = sp.Symbol(STEP, positive=True)
+    dt = sp.Symbol(STEP, real=True)  # zero is accepted: forms that keep their digits there are chosen
     return Plant(
         name=re.sub(r"\W+", "_", found.name).strip("_") or "model",
         states=found.states,
@@ -98,7 +105,8 @@ def plant_of(found: ModelFile) -> Plant:
         Phi=transition_matrix(linear.F, dt).matrix,
         dt=dt,
         variances=tuple(m.sigma**2 for m in found.measurements),
-        ranges={name: declared[name] for name in (STEP, *sorted(used))},
+        ranges={name: declared[name] for name in sorted(used)} | {STEP: (sp.S.Zero, declared[STEP][1])},
+        least=float(declared[STEP][0]),
         sizes=tuple(max(abs(float(end)) for end in declared[name]) for name in found.states),
     )
 
@@ -161,7 +169,7 @@ def matrix_function(
     part = material(label, statement, verdict, title=f"{title}; states {', '.join(plant.states)}")
     q = free_letter(plant, "q")
     entries = tuple(f"{q}{k}" for k in range(plant.n))
-    layout = Layout({q: entries} if name == "Qd" else {}, (STEP, q), {q: (0.0, 1.0)}, units)
+    layout = Layout({q: entries} if name == "Qd" else {}, (STEP, q), plant.steps | {q: (0.0, 1.0)}, units)
     (output, flat), *_ = part.results
     out = Output(name, output.shape)
     part = Material(part.claim, [(out, flat)], plant.box, part.source)
@@ -234,7 +242,7 @@ def chain_of(
     order = (*arrays, steps.letter("z"), STEP)
     title = f"{title}; states {', '.join(plant.states)}"
     named = steps.results(outputs)
-    return Chain(title, tuple(steps.links), named, Layout(arrays, order, tests, units), plant.ranges)
+    return Chain(title, tuple(steps.links), named, Layout(arrays, order, plant.steps | dict(tests), units), plant.ranges)
 
 
 def state_of(plant: Plant, steps: Steps) -> tuple[list[sp.Symbol], dict[str, tuple[str, ...]], dict[str, Range]]:
