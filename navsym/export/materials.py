@@ -13,8 +13,8 @@ import sympy as sp
 from navsym.claims import CERTIFIED, PROVED, Claim, Equation, Record, Verdict, Verdicts, equation_of
 from navsym.core.errors import DomainError, NavsymError
 from navsym.core.sandbox import Exhausted, run_limited
-from navsym.export.algorithms.models import functions_of_model
-from navsym.export.functions import RefusedError, formula_lines, function_of, material, require_exportable
+from navsym.export.algorithms.models import functions_of_model, matrix_function, plain_name
+from navsym.export.functions import RefusedError, formula_lines, function_of, material
 from navsym.export.languages.names import function_name
 from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source
 from navsym.export.ready import ALGORITHMS, READY, UNITS, algorithm
@@ -41,7 +41,7 @@ def functions_from(
     """The functions of whatever can be exported; raises RefusedError for what does not hold, DomainError for the rest.
 
     item : claim id ``MODULE:NUMBER`` or ``FILE.toml:ID``, regimes ``A+B+C``, ``NAME=A``, a ready-made name; a record or
-           claim; a verdict with its formula; an estimator, phases, derivation or model
+           claim; a verdict with its formula; an estimator, phases, derivation or model; the path of a model file
     """
     units = units or {}
     if isinstance(item, (list, tuple, Verdicts)):
@@ -292,16 +292,9 @@ def functions_of_derivation(found: Derivation, real: str, units: Mapping[str, st
         raise RefusedError(f"expected a model with one matrix F; got {came}; export what nav.solve or nav.phases gives")
     F, Phi, rows = found.system[0], found.transition[0].matrix, found.pieces[0].rows
     time = next(iter(Phi.free_symbols - F.free_symbols), sp.Symbol("t", real=True))
-    label = re.sub(r"\W+", "_", found.name).strip("_") or "model"
-    pairs = (
-        ("Phi", Phi, Equation(Phi.diff(time), F * Phi), "Transition matrix, Phi' = F Phi"),
-        ("H", rows, Equation(rows.diff(found.time), rows * F), "Regressors of the state at the end, H' = H F"),
-    )
-    made = []
-    for name, matrix, statement, title in pairs:
-        verdict = decide_within(statement, SECONDS)
-        require_exportable(f"{label}:{name}", verdict, None, False)
-        part = material(f"{label}:{name}", Equation(matrix, matrix), verdict, title=title)
-        part = Material(part.claim, [(Output(name, out.shape), flat) for out, flat in part.results], {}, part.source)
-        made.append(function_of([part], real=real, name=function_name(f"{label}_{name}"), layout=Layout(units=units)))
-    return made
+    label, layout = plain_name(found.name), Layout(units=units)
+    phi_law, h_law = Equation(Phi.diff(time), F * Phi), Equation(rows.diff(found.time), rows * F)
+    return [
+        matrix_function(f"{label}:Phi", Phi, phi_law, "Transition matrix, Phi' = F Phi", real, layout),
+        matrix_function(f"{label}:H", rows, h_law, "Regressors of the state at the end, H' = H F", real, layout),
+    ]

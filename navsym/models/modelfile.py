@@ -381,7 +381,9 @@ def read_ranges(document: Table, names: tuple[str, ...], where: str) -> dict[str
         here = join_place(place, name)
         if name not in names:
             hint = suggest_nearest(name, names)
-            raise UnknownSymbolError(f"expected a state, a parameter or dt; got {quote(name)}; correct it: {hint}", where=here)
+            raise UnknownSymbolError(
+                f"expected a state, a parameter or dt; got {quote(name)}; correct it: {hint}", where=here
+            )
         low, high = read_vector(value, {}, here, 2, "the ends of a range")
         require_order(low, high, here)
         if name == STEP:

@@ -30,6 +30,7 @@ from navsym.models.transition.integral import noise_integral
 from navsym.prove.ladder import decide_within
 
 Range = tuple[float, float]
+MOST_UD = 8  # states of a prediction in UD form: its code without loops grows as their cube
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +80,12 @@ def functions_of_model(found: ModelFile, real: str, units: Mapping[str, str]) ->
     ``_ud`` are chains whose links are proved. Raises DomainError that lists every range that is not declared.
     """
     plant = plant_of(found)
-    for name, matrix, statement, title in matrices_of(plant):
-        yield matrix_function(plant, name, matrix, statement, title, real, units)
+    q = free_letter(plant, "q")
+    for name, matrix, law, title in matrices_of(plant):
+        arrays = {q: tuple(f"{q}{k}" for k in range(plant.n))} if name == "Qd" else {}
+        layout = Layout(arrays, (STEP, q), plant.steps | {q: (0.0, 1.0)}, units)
+        title = f"{title}; states {', '.join(plant.states)}"
+        yield matrix_function(f"{plant.name}:{name}", matrix, law, title, real, layout, plant.box)
     for name, chain in chains_of(plant, units):
         yield chain.function(function_name(f"{plant.name}_{name}"), undecided, real)
 
@@ -93,11 +98,11 @@ def plant_of(found: ModelFile) -> Plant:
         raise DuplicateError(f"expected {STEP} for the step alone; got a parameter of this name; rename it")
     used = {s.name for m in found.measurements for e in (*m.h, m.sigma) for s in e.free_symbols}
     used |= {s.name for s in linear.F.free_symbols}
-    declared = {p.name: (p.lower, p.upper) for p in found.parameters.values() if p.kind == "range"} | dict(found.ranges)
+    declared: dict[str, tuple[Any, Any]] = {s.name: ends for s, ends in found.box.items()} | dict(found.ranges)
     require_ranges([*found.states, STEP, *sorted(used)], declared)
     dt = sp.Symbol(STEP, real=True)  # zero is accepted: forms that keep their digits there are chosen
     return Plant(
-        name=re.sub(r"\W+", "_", found.name).strip("_") or "model",
+        name=plain_name(found.name),
         states=found.states,
         measurements=tuple(m.name for m in found.measurements),
         F=linear.F,
@@ -109,6 +114,11 @@ def plant_of(found: ModelFile) -> Plant:
         least=float(declared[STEP][0]),
         sizes=tuple(max(abs(float(end)) for end in declared[name]) for name in found.states),
     )
+
+
+def plain_name(title: str) -> str:
+    """The title of a model as the beginning of a name in code."""
+    return re.sub(r"\W+", "_", title).strip("_") or "model"
 
 
 def require_ranges(names: Sequence[str], declared: Mapping[str, Any]) -> None:
@@ -146,34 +156,35 @@ def matrices_of(plant: Plant) -> Iterator[tuple[str, sp.MatrixBase | list[sp.Exp
         printed=[Qd[i, j].diff(dt) for i, j in upper] + [Qd[i, j].subs(dt, 0) for i, j in upper],
         derived=[rate[i, j] for i, j in upper] + [sp.S.Zero] * len(upper),
     )
-    title = "Covariance of white noise of the intensities q over dt, upper triangle: Qd' = F Qd + Qd F' + diag(q), Qd(0) = 0"
+    title = (
+        "Covariance of white noise of intensities q over dt, upper triangle: Qd' = F Qd + Qd F' + diag(q), Qd(0) = 0"
+    )
     yield "Qd", [Qd[i, j] for i, j in upper], law, title
 
 
 def transition_law(plant: Plant) -> Equation:
     """``Phi' = F Phi`` and ``Phi(0) = 1``."""
     F, Phi, dt = plant.F, plant.Phi, plant.dt
-    return Equation(
-        printed=[*Phi.diff(dt), *Phi.subs(dt, 0)], derived=[*(F * Phi), *sp.eye(plant.n)]
-    )
+    return Equation(printed=[*Phi.diff(dt), *Phi.subs(dt, 0)], derived=[*(F * Phi), *sp.eye(plant.n)])
 
 
 def matrix_function(
-    plant: Plant, name: str, matrix: Any, law: Statement | None, title: str, real: str, units: Mapping[str, str]
+    label: str,
+    matrix: Any,
+    law: Statement | None,
+    title: str,
+    real: str,
+    layout: Layout,
+    box: Mapping[sp.Symbol, tuple[Any, Any]] | None = None,
 ) -> ExportedFunction:
-    """One matrix of a model as a function of what it depends on."""
-    label = f"{plant.name}:{name}"
+    """A matrix ``MODEL:NAME`` as a function of what it depends on; raises RefusedError when its law does not hold."""
     statement = Equation(matrix, matrix)
     verdict = decide_within(law or statement, SECONDS)
     require_exportable(label, verdict, None, False)
-    part = material(label, statement, verdict, title=f"{title}; states {', '.join(plant.states)}")
-    q = free_letter(plant, "q")
-    entries = tuple(f"{q}{k}" for k in range(plant.n))
-    layout = Layout({q: entries} if name == "Qd" else {}, (STEP, q), plant.steps | {q: (0.0, 1.0)}, units)
-    (output, flat), *_ = part.results
-    out = Output(name, output.shape)
-    part = Material(part.claim, [(out, flat)], plant.box, part.source)
-    return function_of([part], real=real, name=function_name(f"{plant.name}_{name}"), layout=layout)
+    part = material(label, statement, verdict, title=title)
+    ((out, flat),) = part.results
+    part = Material(label, [(Output(label.rpartition(":")[2], out.shape), flat)], box or {}, part.source)
+    return function_of([part], real=real, name=function_name(label.replace(":", "_")), layout=layout)
 
 
 def free_letter(plant: Plant, letter: str) -> str:
@@ -228,21 +239,28 @@ def chains_of(plant: Plant, units: Mapping[str, str]) -> Iterator[tuple[str, Cha
     yield "predict", predict(plant, units)
     for k, name in enumerate(plant.measurements):
         yield f"update_{name}", update(plant, k, units)
-    yield "predict_ud", predict_ud(plant, units)
+    if plant.n <= MOST_UD:
+        yield "predict_ud", predict_ud(plant, units)
     for k, name in enumerate(plant.measurements):
         yield f"update_{name}_ud", update_ud(plant, k, units)
 
 
 def chain_of(
-    steps: Steps, title: str, arrays: Mapping[str, tuple[str, ...]], outputs: Mapping[str, Sequence[sp.Expr]],
-    tests: Mapping[str, Range], units: Mapping[str, str],
+    steps: Steps,
+    title: str,
+    arrays: Mapping[str, tuple[str, ...]],
+    outputs: Mapping[str, Sequence[sp.Expr]],
+    tests: Mapping[str, Range],
+    units: Mapping[str, str],
 ) -> Chain:
     """The chain of the steps with the arguments in the order of the arrays, then ``z`` and ``dt``, then parameters."""
     plant = steps.plant
     order = (*arrays, steps.letter("z"), STEP)
     title = f"{title}; states {', '.join(plant.states)}"
     named = steps.results(outputs)
-    return Chain(title, tuple(steps.links), named, Layout(arrays, order, plant.steps | dict(tests), units), plant.ranges)
+    return Chain(
+        title, tuple(steps.links), named, Layout(arrays, order, plant.steps | dict(tests), units), plant.ranges
+    )
 
 
 def state_of(plant: Plant, steps: Steps) -> tuple[list[sp.Symbol], dict[str, tuple[str, ...]], dict[str, Range]]:
@@ -253,7 +271,9 @@ def state_of(plant: Plant, steps: Steps) -> tuple[list[sp.Symbol], dict[str, tup
     return [real(name) for name in names], {x: names}, tests
 
 
-def covariance_of(plant: Plant, steps: Steps, letter: str) -> tuple[sp.Matrix, dict[str, tuple[str, ...]], dict[str, Range]]:
+def covariance_of(
+    plant: Plant, steps: Steps, letter: str
+) -> tuple[sp.Matrix, dict[str, tuple[str, ...]], dict[str, Range]]:
     """A covariance, its argument, and ranges in which it is positive definite: its scaled diagonal dominates."""
     name, n, sizes = steps.letter(letter), plant.n, plant.sizes
     names = triangle(name, n)
@@ -282,6 +302,7 @@ def row_of(plant: Plant, k: int, steps: Steps) -> tuple[list[sp.Expr], sp.Expr]:
 
 def measured_range(plant: Plant, k: int) -> float:
     """Largest magnitude of a measurement: that of h x and three times its standard deviation."""
+
     def largest(e: sp.Expr) -> float:
         ends = {s: plant.ranges[s.name] for s in e.free_symbols}
         ball = {s: enclose(low, {}, 64).union(enclose(high, {}, 64)) for s, (low, high) in ends.items()}
@@ -343,7 +364,14 @@ def update(plant: Plant, k: int, units: Mapping[str, str]) -> Chain:
     K = steps.put([f"{letter('K')}{i}" for i in range(n)], [e / s for e in g], information)
     y = steps.put([f"{letter('y')}{i}" for i in range(n)], [a + b * v for a, b in zip(x, K, strict=True)])
     m = letter("m")
-    M = sp.Matrix(n, n, steps.put([f"{m}{i}_{j}" for i in range(n) for j in range(n)], [P[i, j] - K[i] * g[j] for i in range(n) for j in range(n)]))
+    M = sp.Matrix(
+        n,
+        n,
+        steps.put(
+            [f"{m}{i}_{j}" for i in range(n) for j in range(n)],
+            [P[i, j] - K[i] * g[j] for i in range(n) for j in range(n)],
+        ),
+    )
     w = steps.put([f"{letter('w')}{i}" for i in range(n)], list(M * sp.Matrix(h)))
     upper = list(pairs(range(n), 2))
     N = steps.put(
@@ -373,7 +401,9 @@ def joseph(P: sp.Matrix, h: Sequence[sp.Expr], r: sp.Expr, K: Sequence[sp.Expr])
 # -- UD form ---------------------------------------
 
 
-def factors_of(plant: Plant, steps: Steps, tail: str = "") -> tuple[sp.Matrix, list[sp.Symbol], dict[str, tuple[str, ...]], dict[str, Range]]:
+def factors_of(
+    plant: Plant, steps: Steps, tail: str = ""
+) -> tuple[sp.Matrix, list[sp.Symbol], dict[str, tuple[str, ...]], dict[str, Range]]:
     """Unit upper triangular U and diagonal D, their arguments and ranges."""
     n, sizes = plant.n, plant.sizes
     u, d = steps.letter(f"U{tail}"), steps.letter(f"D{tail}")
@@ -402,14 +432,14 @@ def predict_ud(plant: Plant, units: Mapping[str, str]) -> Chain:
     y = steps.put([f"{steps.letter('y')}{i}" for i in range(n)], list(Phi * sp.Matrix(x)))
     w, p, weights = steps.letter("w"), steps.letter("p"), [*D, *E]
     moved = Phi * U
-    W = [
-        [*steps.put([f"{w}{n}_{i}_{k}" for k in range(n)], list(moved.row(i))), *V.row(i)] for i in range(n)
-    ]
+    W = [[*steps.put([f"{w}{n}_{i}_{k}" for k in range(n)], list(moved.row(i))), *V.row(i)] for i in range(n)]
     new: dict[tuple[int, int], sp.Expr] = {}
     diagonal: list[sp.Expr] = [sp.S.Zero] * n
     for j in reversed(range(n)):
         weighted = steps.put([f"{p}{j}_{k}" for k in range(2 * n)], [a * b for a, b in zip(W[j], weights, strict=True)])
-        (diagonal[j],) = steps.put([f"{steps.letter('d')}{j}"], [sum(a * b for a, b in zip(W[j], weighted, strict=True))])
+        (diagonal[j],) = steps.put(
+            [f"{steps.letter('d')}{j}"], [sum(a * b for a, b in zip(W[j], weighted, strict=True))]
+        )
         above = [sum(a * b for a, b in zip(W[i], weighted, strict=True)) / diagonal[j] for i in range(j)]
         made = steps.put([f"{steps.letter('u')}{i}_{j}" for i in range(j)], above, orthogonal_rest)
         for i in range(j):
@@ -471,7 +501,7 @@ def telescoped() -> Equation:
     """One column of Bierman's update, for every number of states.
 
     With s_j = s_(j-1) + f_j^2 D_j, w the sum of U_k g_k over the columns before and w+ = w + u g: the new column gives
-    d (u_i - w_i f/s)(u_l - w_l f/s) with d = D s/(s + f^2 D), and that is D u_i u_l + w_i w_l/s - w+_i w+_l/(s + f^2 D).
+    d (u_i - w_i f/s)(u_l - w_l f/s) with d = D s/(s + f^2 D). That is D u_i u_l + w_i w_l/s - w+_i w+_l/(s + f^2 D).
     The sum over all columns telescopes to U D U' - w w'/(h P h' + r) with w = P h'.
     """
     ui, ul, wi, wl, f = (real(name) for name in ("u_i", "u_l", "w_i", "w_l", "f"))

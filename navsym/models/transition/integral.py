@@ -53,7 +53,10 @@ def integral_from_zero(formula: sp.Expr, t: sp.Symbol) -> sp.Expr:
 
 
 def antiderivative(term: sp.Expr, t: sp.Symbol) -> sp.Expr:
-    """``int t^m exp(a t) cos(b t + c)``: the real or imaginary part of ``exp(l t) sum (-1)^k m!/(m-k)! t^(m-k)/l^(k+1)``."""
+    """``int t^m exp(a t) cos(b t + c) dt``, or with a sine, or without either; the same for any constant factor.
+
+    With l = a + i b it is the real or imaginary part of ``exp(l t + i c) sum_k (-1)^k m!/(m-k)! t^(m-k)/l^(k+1)``.
+    """
     constant, rest = term.as_independent(t, as_Add=False)
     power, rate, turn = 0, sp.S.Zero, None
     for factor in sp.Mul.make_args(rest):
