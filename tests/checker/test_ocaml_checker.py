@@ -1,0 +1,269 @@
+"""A second checker of certificates, in OCaml, written from docs/certificates.md alone, agrees with the first."""
+
+from __future__ import annotations
+
+import copy
+import json
+import re
+import shutil
+import subprocess
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import flint
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+SOURCES = Path(__file__).parent / "ocaml"
+#: In the order in which they need each other.
+MODULES = ("text", "tree", "ball", "value", "algebra", "rules", "checker")
+
+
+def find_zarith() -> bool:
+    """True where the compiler and its library of large integers are installed."""
+    finder = shutil.which("ocamlfind")
+    if finder is None or shutil.which("ocamlopt") is None:
+        return False
+    return subprocess.run([finder, "query", "zarith"], capture_output=True, check=False, timeout=60).returncode == 0
+
+
+pytestmark = pytest.mark.skipif(
+    not find_zarith(), reason="no OCaml with zarith here: apt-get install ocaml-nox ocaml-findlib libzarith-ocaml-dev"
+)
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The program, built in a folder of its own."""
+    folder = tmp_path_factory.mktemp("ocaml")
+    for name in MODULES:
+        shutil.copy(SOURCES / f"{name}.ml", folder)
+    command = ["ocamlfind", "ocamlopt", "-w", "+a-4-9-40-41-42-44-45-70", "-package", "zarith", "-linkpkg"]
+    done = subprocess.run(
+        [*command, *(f"{name}.ml" for name in MODULES), "-o", "checker"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=600,
+    )
+    assert done.returncode == 0, done.stderr
+    assert not done.stderr, done.stderr
+    return folder / "checker"
+
+
+def judge(program: Path, texts: Iterable[str]) -> list[str]:
+    """Its answer to each text: `accepted`, `refused: why`, or `outside: what`."""
+    lines = [f"{i}\t{text}" for i, text in enumerate(texts)]
+    done = subprocess.run(
+        [program], input="\n".join(lines) + "\n", capture_output=True, text=True, check=True, timeout=850
+    )
+    answers = [line.split("\t", 1) for line in done.stdout.splitlines()]
+    assert [i for i, _ in answers] == [str(i) for i in range(len(lines))]
+    return [answer for _, answer in answers]
+
+
+def put(document: Any, place: str, value: Any) -> Any:
+    """The document with another value at a JSON pointer."""
+    forged = copy.deepcopy(document)
+    *way, last = place.strip("/").split("/")
+    part = forged
+    for step in way:
+        part = part[int(step)] if isinstance(part, list) else part[step]
+    part[int(last) if isinstance(part, list) else last] = value
+    return forged
+
+
+def read_page() -> tuple[list[Any], list[Any]]:
+    """The certificates of the page that are true, and those that are forged."""
+    true: list[Any] = []
+    forged: list[Any] = []
+    page = (ROOT / "docs/certificates.md").read_text(encoding="utf-8")
+    for block in re.findall(r"```json\n(.*?)```", page, re.DOTALL):
+        content = json.loads(block)
+        if isinstance(content, dict):
+            true.append(content)
+        else:
+            forged += [put(true[-1], change["at"], change["put"]) for change in content]
+    return true, forged
+
+
+def read_ledger() -> list[dict[str, Any]]:
+    """Every certificate of the ledger, with those inside the kind `all` one by one."""
+    found: list[dict[str, Any]] = []
+
+    def add(certificate: dict[str, Any]) -> None:
+        if certificate["kind"] == "all":
+            for part in certificate["of"]:
+                add(part)
+        else:
+            found.append(certificate)
+
+    ledger = json.loads((ROOT / "derivations/certificates.json").read_text(encoding="utf-8"))
+    for entry in ledger.values():
+        if entry["certificate"] is not None:
+            add(entry["certificate"])
+    return found
+
+
+def statement(left: str, relation: str, right: str, symbols: dict[str, Any] | None = None) -> dict[str, Any]:
+    return {
+        "left": left,
+        "relation": relation,
+        "right": right,
+        "symbols": symbols or {},
+        "exists": [],
+        "tolerance": None,
+    }
+
+
+def proof_by(rule: dict[str, Any], claim: dict[str, Any], witness: dict[str, str] | None = None) -> str:
+    return json.dumps({"kind": "proof", "bits": 128, "witness": witness or {}, "proofs": [rule], "statement": claim})
+
+
+def test_no_certificate_of_the_page_is_refused_and_no_forgery_accepted(program: Path) -> None:
+    true, forged = read_page()
+    answers = judge(program, [json.dumps(c) for c in true])
+    assert not [a for a in answers if a.startswith("refused")]
+    assert answers.count("accepted") >= 25
+    answers = judge(program, [json.dumps(c) for c in forged])
+    assert "accepted" not in answers
+    assert sum(a.startswith("refused") for a in answers) >= 92
+
+
+@pytest.mark.long
+def test_no_certificate_of_the_ledger_is_refused(program: Path) -> None:
+    ledger = read_ledger()
+    answers = judge(program, [json.dumps(c) for c in ledger])
+    counts = Counter((c["kind"], a.partition(": ")[0]) for c, a in zip(ledger, answers, strict=True))
+    refused = [(c, a) for c, a in zip(ledger, answers, strict=True) if a.startswith("refused")]
+    assert not refused, refused[:3]
+    accepted = sum(n for (_, word), n in counts.items() if word == "accepted")
+    assert accepted >= 0.97 * len(ledger), counts
+
+
+def test_changed_statements_of_the_ledger_are_not_accepted(program: Path) -> None:
+    """An equation with 1 more on one side is false where both sides have a value."""
+    equations = [c for c in read_ledger() if c["kind"] == "proof" and c["statement"]["relation"] == "="]
+    sample = [c for c in equations if c["statement"]["tolerance"] is None and len(json.dumps(c)) < 2000][::40]
+    assert len(sample) > 30
+    texts = [json.dumps(put(c, "/statement/right", f"1 + {c['statement']['right']}")) for c in sample]
+    answers = judge(program, texts)
+    assert "accepted" not in answers
+    assert sum(a.startswith("refused") for a in answers) >= 0.9 * len(sample)
+
+
+def test_the_balls_hold_the_values_of_the_functions(program: Path) -> None:
+    """A bound 10^-25 below the value that arb gives is proved by a ball; one as far above is not."""
+    inner = ["1/3", "-2/7", "9/10", "-99/100", "1/1000000"]
+    wide = [*inner, "3", "-17/4", "22/7", "40", "-1000/3"]
+    positive = ["1/3", "1/1000000", "999/1000", "2", "1000001/1000000", "123456789/10"]
+    points = {
+        **dict.fromkeys(["sin", "cos", "tan", "sec", "cot", "csc", "atan", "tanh", "exp", "sinh", "cosh"], wide),
+        **dict.fromkeys(["asin", "acos"], inner),
+        **dict.fromkeys(["log", "sqrt"], positive),
+    }
+    flint.ctx.prec = 400
+    below, above = [], []
+    for name, numbers in points.items():
+        for number in numbers:
+            x = flint.arb(flint.fmpq(*map(int, number.split("/"))))
+            value = getattr(x, name)()
+            gap = flint.arb(10) ** -25 * (1 + abs(value))
+            for texts, bound in ((below, value - gap), (above, value + gap)):
+                numerator = int((bound.mid() * flint.arb(2) ** 300).floor().unique_fmpz())
+                claim = statement(f"{name}({number})", ">", f"({numerator})/{2**300}")
+                texts.append(proof_by({"rule": "balls", "bits": 128, "cells": 0}, claim))
+    flint.ctx.prec = 53
+    answers = judge(program, below + above)
+    assert answers[: len(below)] == ["accepted"] * len(below)
+    assert all(a.startswith("refused") for a in answers[len(below) :])
+
+
+@pytest.mark.parametrize(
+    ("left", "relation", "box", "answer"),
+    [
+        ("sin(x) + 1", ">=", ["0", "10", []], "accepted"),
+        ("sin(x) + 999999/1000000", ">=", ["0", "10", []], "refused"),
+        ("cos(x) + 1 + 10**(-9)", ">", ["3", "4", []], "accepted"),
+        ("sqrt(x) + 1", ">", ["-1", "4", []], "accepted"),  # only the part inside the domain counts
+        ("1 - sqrt(x)", ">=", ["-1", "4", []], "refused"),
+        ("1 + x**2", ">", [None, None, []], "accepted"),
+        ("1 + x**3", ">", [None, None, []], "refused"),
+        ("1/x", "!=", ["-1", "1", []], "refused"),
+        ("x - x**2 + 1/10000", ">", ["0", "1", []], "accepted"),
+        ("x - x**2 - 1/10000", ">", ["0", "1", []], "refused"),
+        ("exp(x) - 1 - x + 1/1000", ">", ["-1", "1", []], "accepted"),
+        ("exp(x) - 1 - x - 1/1000", ">", ["-1", "1", []], "refused"),
+        ("tan(x)", ">=", ["1", "2", []], "refused"),
+        ("atan2(x, -1)", "!=", ["-1", "1", []], "refused"),
+    ],
+)
+def test_a_sign_on_a_box_is_seen_where_it_holds(
+    program: Path, left: str, relation: str, box: object, answer: str
+) -> None:
+    claim = statement(left, relation, "0", {"x": box})
+    text = proof_by({"rule": "balls", "bits": 80, "cells": 200}, claim, {"x": "3/2" if "tan" in left else "1"})
+    if box == ["0", "10", []] or box == ["3", "4", []]:
+        text = text.replace('"witness": {"x": "1"}', '"witness": {"x": "3"}')
+    assert judge(program, [text])[0].startswith(answer)
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "answer"),
+    [
+        ("sqrt(2)*sqrt(3)", "sqrt(6)", "accepted"),
+        ("sqrt(2)*sqrt(3)", "sqrt(5)", "refused"),
+        ("cos(pi/5)", "(1 + sqrt(5))/4", "accepted"),
+        ("cos(pi/5)", "(1 - sqrt(5))/4", "refused"),
+        ("cos(pi/7) - cos(2*pi/7) + cos(3*pi/7)", "1/2", "accepted"),
+        ("cos(pi/7) + cos(2*pi/7) + cos(3*pi/7)", "1/2", "refused"),
+        ("sqrt(x**2)", "abs(x)", "accepted"),
+        ("sqrt(x**2)", "x", "refused"),
+        ("sin(atan(x))", "x/sqrt(1 + x**2)", "accepted"),
+        ("sin(atan(x))", "x/(1 + x**2)", "refused"),
+        ("sin(2*asin(x))", "2*x*sqrt(1 - x**2)", "accepted"),
+        ("exp(2*log(x))", "x**2", "accepted"),
+        ("tan(x + y)", "(tan(x) + tan(y))/(1 - tan(x)*tan(y))", "accepted"),
+        ("tan(x + y)", "(tan(x) + tan(y))/(1 + tan(x)*tan(y))", "refused"),
+        ("cosh(x)**2 - sinh(x)**2", "1", "accepted"),
+        ("x*exp_1(x) + 1", "exp(x)", "accepted"),
+        ("x*exp_2(x) + 1", "exp(x)", "refused"),
+        ("x/x", "1", "accepted"),  # nothing is said of x = 0
+        ("0**(-1)", "0**(-1)", "refused"),  # a value nowhere
+        ("0**(-1)", "1", "refused"),
+        ("x**999999999999", "x", "refused"),
+    ],
+)
+def test_an_identity_is_seen_where_it_holds(program: Path, left: str, right: str, answer: str) -> None:
+    text = json.dumps({"kind": "identity", "left": left, "right": right, "symbols": ["x", "y"]})
+    assert judge(program, [text])[0].startswith(answer)
+
+
+def test_texts_that_are_no_certificates_are_refused(program: Path) -> None:
+    true = '{"kind": "identity", "left": "x + x", "right": "2*x", "symbols": ["x"]}'
+    bad = [
+        true.replace('"left"', '"right": "2*x", "left"'),
+        true.replace('["x"]', '["x", "x"]'),
+        true.replace('["x"]', "[1.0]"),
+        true.replace('["x"]', "[NaN]"),
+        true.replace('["x"]', "[]"),
+        true.replace("2*x", "2x"),
+        true.replace("2*x", "2*x\\u0000"),
+        true.replace("2*x", "2.*x"),
+        true.replace("2*x", "1e0*2*x"),
+        true.replace("2*x", "__import__(2)*x"),
+        true.replace("2*x", "(" * 100_000 + "2*x" + ")" * 100_000),
+        true.replace('"2*x"', '"2*x\\ud800"'),
+        true + "1",
+        true[:-1],
+        "",
+        "null",
+        "[" * 1_000_000,
+        '{"kind": "all", "of": []}',
+    ]
+    assert judge(program, [true]) == ["accepted"]
+    assert not [(t[:80], a) for t, a in zip(bad, judge(program, bad), strict=True) if not a.startswith("refused")]
+    assert judge(program, ['{"kind": "miracle"}'])[0].startswith("outside")
