@@ -35,29 +35,11 @@ def three_parts_fill_the_run():
     return Property(printed=(0, 3600, True), derived=Finding(found, "ends of the parts"))
 
 
-def heading_jump(argument: sp.Expr) -> sp.Expr:
-    """Heading just after the start of the yawing part minus heading before it, degrees."""
-    return 5 * sp.cos(argument)
-
-
-@claim(
-    "experiment.heading",
-    expect=REFUTED,
-    slip="paper",
-    reason="2 pi 1000/360 is not an odd multiple of pi/2: the heading jumps by 0.87 degrees when yawing starts and "
-    "ends, the northern speed by 1.1 m/s, which no ship and no polynomial does; by hand: 1000/360 turns are 280 "
-    "degrees more than two, and 5 cos(280 degrees) = 0.87",
-)
-def heading_printed():
-    """The printed heading, 45 + 5 cos(2 pi t/T) degrees, starts from the straight course at 1000 s."""
-    return Equation(printed=45 + heading_jump(2 * sp.pi * 1000 / 360), derived=sp.Integer(45))
-
-
-@claim("experiment.heading*", corrects="experiment.heading")
+@claim("experiment.heading")
 def heading():
-    """The heading 45 + 5 sin(2 pi (t - 1000)/T) degrees is 45 degrees at both ends of the yawing part."""
-    ends = [45 + 5 * sp.sin(2 * sp.pi * (t - 1000) / 360) for t in (1000, 2080)]
-    return Equation(printed=ends, derived=[sp.Integer(45)] * 2)
+    """The printed heading leaves the straight course by a jump of 0.87 degrees at 1000 and at 2080 s: three periods."""
+    jumps = [5 * sp.cos(2 * sp.pi * sp.Integer(t) / 360) for t in (1000, 2080)]
+    return Equation(printed=[5 * sp.cos(14 * sp.pi / 9)] * 2 + [3], derived=[*jumps, sp.Rational(2080 - 1000, 360)])
 
 
 @claim("experiment.stop")

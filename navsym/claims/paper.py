@@ -6,10 +6,15 @@ import importlib
 import pkgutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from pathlib import Path
 from types import ModuleType
+from typing import Literal
 
 from navsym.claims.claim import PAPERS, Claim
+
+#: A printed formula; a printed sentence beside one; a remark of ours; a result beyond the paper.
+Kind = Literal["printed", "beside", "remark", "beyond"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -19,6 +24,14 @@ class Paper:
     module      : derivation module
     equations   : every number printed in the paper, in order
     definitions : number -> why nothing can be checked there (notation, a given model)
+    beside      : claims on printed sentences, which say nothing about the numbered formula beside them
+    remarks     : claims in our own words on what is printed
+    beyond      : claims on what the paper does not treat
+    causes      : refuted claim -> the claim whose slip it only repeats
+    left_out    : printed statement -> why no claim judges it
+
+    Claims are named by number or pattern (``"range.*"``), a correction by the claim that it corrects. All others are on
+    printed formulas. Only what is printed can be a slip.
     """
 
     module: str
@@ -30,6 +43,21 @@ class Paper:
     equations: tuple[str, ...]
     definitions: Mapping[str, str] = field(default_factory=dict)
     doi: str = ""
+    beside: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+    beyond: tuple[str, ...] = ()
+    causes: Mapping[str, str] = field(default_factory=dict)
+    left_out: Mapping[str, str] = field(default_factory=dict)
+
+    def kind_of(self, number: str) -> Kind:
+        """Whether a claim is on a printed formula, on a printed sentence, a remark of ours, or beyond the paper."""
+        kinds: tuple[tuple[Kind, tuple[str, ...]], ...] = (
+            ("remark", self.remarks),
+            ("beyond", self.beyond),
+            ("beside", self.beside),
+        )
+        name = number.rstrip("*")
+        return next((kind for kind, names in kinds if any(fnmatchcase(name, one) for one in names)), "printed")
 
 
 @dataclass(frozen=True, slots=True)

@@ -104,7 +104,7 @@ POSITIONAL: dict[str, Callable[[], Iterable[str]]] = {
 VALUES: dict[str, Callable[[], Iterable[str]]] = {
     "--paper": paper_names,
     "--status": lambda: STATUSES,
-    "--slip": lambda: ("paper", "scan", "any"),
+    "--slip": lambda: ("paper", "scan", "undecidable", "any"),
     "--real": lambda: ("double", "float"),
     "--policy": lambda: ("strict", "repair"),
 }

@@ -208,4 +208,6 @@ def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict
         counterexample=verdict.counterexample,
         difference=verdict.difference,
         certificate=verdict.certificate,
+        kind=paper.kind_of(claim.number),
+        cause=f"{paper.module}:{cause}" if (cause := paper.causes.get(claim.number)) else None,
     )
