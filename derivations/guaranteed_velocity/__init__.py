@@ -44,7 +44,7 @@ PAPER = Paper(
     causes={"4.4": "4.3.u2"},
     left_out={
         "after (1.1): all y_i are of one order": "no figures of the errors are given",
-        "section 3: position correction has l = m, hence unique algorithms": "a result of [9], for a model that is not printed",
+        "section 3: position correction has l = m, hence unique algorithms": "a result of [9], model not printed",
         "section 4.1: S0 satisfies the lemma of [9]": "the lemma is not printed; 4.4* proves the optimum without it",
         "section 3: steps 1 to 4 of the algorithm": "taken step by step by 4.1 to 4.13; for any system by no claim",
         "(2.5): the part Phi_H of the weight": "2.5, 2.6 and 2.D treat impulses only",

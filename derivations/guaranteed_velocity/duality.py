@@ -234,7 +234,7 @@ def sums_of_weights(weights_: tuple) -> tuple:
     "3.2.theorem",
     expect=REFUTED,
     slip="paper",
-    reason="with a solution of (3.2) for y3 at T = 2 pi, X0 = (1, 0, 1), contacts 0, pi, 2 pi: sum |Phi_j| is 10, not X0.P = 1; "
+    reason="a solution of (3.2) for y3 at T = 2 pi, X0 = (1, 0, 1), contacts 0, pi, 2 pi has sum |Phi_j| = 10, not 1; "
     "the signs of the weights have to be those of X0.H(tau_j)",
 )
 def any_solution_is_optimal():

@@ -149,7 +149,9 @@ OPTIMAL_ERRORS: tuple[Claim, ...] = tuple(
     for s in range(3)
 )
 LATERAL_ERRORS: tuple[Claim, ...] = tuple(
-    claim(f"4.13.y{s + 1}.sigma", title=f"d_opt(y{s + 1}) = sigma1 times the sum of the moduli of its weights.")(error_with_sigma(s, sigma1))
+    claim(f"4.13.y{s + 1}.sigma", title=f"d_opt(y{s + 1}) = sigma1 times the sum of the moduli of its weights.")(
+        error_with_sigma(s, sigma1)
+    )
     for s in range(3)
 )
 LONGITUDINAL_ERRORS: tuple[Claim, ...] = tuple(

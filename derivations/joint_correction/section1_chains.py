@@ -13,13 +13,14 @@ from navsym_papers.joint_correction.section1_systems import (
     System,
     coefficients_of_polynomial,
     coordinates,
+    direct_sum,
     flat,
     free,
     k,
     systems,
 )
 
-SIZES = "the symbolic systems (n, m) = (2, 1), (3, 2), (4, 2), (5, 3), all parameters"
+SIZES = "systems with (n, m) = (2, 1), (3, 2), (4, 2), (5, 3), one family of C_1 and C_2, not every size"
 
 
 @claim("1.dimensions")
@@ -27,7 +28,7 @@ def dimensions():
     """m <= n, l <= n and m + l >= n for an observable pair."""
     found = all(
         first.dimension <= s.n and second.dimension <= s.n and first.dimension + second.dimension >= s.n
-        for s in systems()
+        for s in (*systems(), direct_sum())
         for first, second in [s.found.measurements]
     )
     return Property(True, Finding(found, "exact dimensions of the chains", scope=SIZES))

@@ -255,7 +255,7 @@ def characteristic_polynomial():
 
 @claim("1.14.higher_derivatives")
 def higher_derivatives_take_longer():
-    """The variance of the r-th derivative estimated over [0, T] falls as T^-(2r+1).
+    """Degree 3, white noise: the variance of derivative r falls as T^-(2r+1), with 16, 1200, 25920, 100800 over it.
 
     So the higher derivatives are the slower ones at first. Polynomial of degree 3 in white noise of unit
     intensity; information matrix with the entries T^(i+j+1)/((i+j+1) i! j!).
@@ -265,8 +265,7 @@ def higher_derivatives_take_longer():
         4, 4, lambda i, j: T ** (i + j + 1) / (sp.Integer(i + j + 1) * sp.factorial(i) * sp.factorial(j))
     )
     covariance = exact_inverse("information", sp.ImmutableMatrix(information))
-    at_one = covariance.subs(T, 1)
-    printed = [at_one[r, r] * T ** (-(2 * r + 1)) for r in range(4)]
+    printed = [constant / T ** (2 * r + 1) for r, constant in enumerate((16, 1200, 25920, 100800))]
     return Equation(printed, [covariance[r, r] for r in range(4)])
 
 

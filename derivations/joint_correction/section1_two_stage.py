@@ -11,6 +11,7 @@ from navsym_papers.joint_correction.section1_systems import (
     System,
     coefficients_of_polynomial,
     coordinates,
+    direct_sum,
     flat,
     free,
     g,
@@ -29,8 +30,8 @@ def phi_of(s: System) -> list[sp.Expr]:
 @claim("1.7.count")
 def enough_vectors():
     """n - m <= l: the second chain is long enough to complete the basis."""
-    found = tuple(s.found.measurements[1].dimension >= s.rest for s in systems())
-    return Property((True,) * 4, Finding(found, "exact dimensions of the chains", scope=SIZES))
+    found = tuple(s.found.measurements[1].dimension >= s.rest for s in (*systems(), direct_sum()))
+    return Property((True,) * 5, Finding(found, "exact dimensions of the chains", scope=SIZES))
 
 
 @claim("1.8.basis")
@@ -281,7 +282,7 @@ def characteristic_polynomial_factors():
 
 @claim("1.12.xi")
 def estimate_of_the_state():
-    """xi - xi° = L^-1 (x - x°, z - z°), and xi° has the error matrix L^-1 A L."""
+    """xi - xi° = L^-1 (x - x°, z - z°)."""
     printed, derived = [], []
     for s in systems()[:3]:
         L, back = coordinates(s, sp.eye(s.m), sp.eye(s.rest))
@@ -336,7 +337,7 @@ def influence_is_proportional():
 
 @claim("1.two_stage.dimension")
 def fewer_variables_settle_sooner():
-    """A stage of k equal poles has the slowest transient exp(-s) sum s^i/i!, i < k: each variable more adds to it.
+    """f_k = exp(-s) sum s^i/i!, i < k, is a transient of k equal poles; one pole more adds exp(-s) s^k/k! (k to 7).
 
     s = lam t. The difference of k + 1 and k variables is exp(-s) s^k/k! > 0; the sum solves
     (d/ds + 1) f_k = f_{k-1}, f_0 = 0, as a chain of k equal poles does.

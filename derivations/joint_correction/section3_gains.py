@@ -268,7 +268,9 @@ def link_removed_by_the_split():
     free = F - K * H.subs(kappa, 0)
     repaired = L * (F - to_lowest_terms(back * L_0 * K) * H) * back
     return Equation(
-        [(p + lam) ** 6, *(L_0 * free * back_0)], [polynomial_of(free), *to_lowest_terms(sp.Matrix(repaired))]
+        [(p + lam) ** 6, *(L_0 * free * back_0)],
+        [polynomial_of(free), *to_lowest_terms(sp.Matrix(repaired))],
+        nonzero=(1 - kappa**2,),
     )
 
 

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from functools import cache
 from itertools import combinations
 
+import flint
 import sympy as sp
 
 from navsym.claims import Finding, Property, claim
-from navsym.models.inertial import full_model, joint_model
+from navsym.models.inertial import EARTH, MU, OMEGA, full_model, joint_model
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import prove_rank
 from navsym.observability.sensors import Restoration, restore_observability
@@ -87,6 +88,55 @@ def position_needs_exactly_two_variables():
 
 @claim("sensors.full")
 def complete_model_needs_five():
-    """With all constant errors kept, five more measurements are needed, whatever they are, and five states will do."""
+    """With all constant errors kept and u frozen, five more measurements are needed, and five states will do."""
     answer = restore_observability(full_model())
     return Property(printed=(5, 5), derived=found(answer, (answer.needed, answer.fewest)))
+
+
+PRIME = 2**61 - 1
+TURNS = 8  # derivatives of the measurements that are taken
+
+
+def rank_while_turning() -> int:
+    """Rank, modulo a prime, of the measurements and their derivatives while the Earth's rotation turns in the frame.
+
+    u' = -mu omega x u makes the model time-varying: a row h is followed by h F + h'. Entries are Taylor coefficients
+    at one point, omega constant. A rank modulo a prime is at most the rank itself.
+    """
+    model = full_model()
+    values = dict(zip((MU, *OMEGA), (2, 3, 5, 7), strict=True))
+    turn = (-MU * OMEGA.cross(EARTH)).subs(values).jacobian(EARTH)
+    series = [sp.Matrix([11, 13, 17])]
+    for order in range(TURNS):
+        series.append(turn * series[-1] / (order + 1))
+    time = sp.Symbol("time")
+    path = {**values, **{u: sum(c[k] * time**n for n, c in enumerate(series)) for k, u in enumerate(EARTH)}}
+
+    def expand(entry: sp.Expr) -> list[int]:
+        poly = sp.Poly(entry.subs(path), time)
+        found = [sp.Rational(poly.coeff_monomial(time**n)) for n in range(TURNS + 1)]
+        return [int(c.p) * pow(int(c.q), -1, PRIME) % PRIME for c in found]
+
+    F = {place: expand(entry) for place, entry in model.F.todok().items()}
+    rows = [[expand(entry) for entry in model.H.row(k)] for k in range(model.H.rows)]
+    start = [[entry[0] for entry in row] for row in rows]
+    for step in range(TURNS):
+        length = TURNS - step
+        after = []
+        for row in rows:
+            new = [[(n + 1) * entry[n + 1] % PRIME for n in range(length)] for entry in row]
+            for (i, j), coefficients in F.items():
+                for n in range(length):
+                    new[j][n] = (new[j][n] + sum(row[i][m] * coefficients[n - m] for m in range(n + 1))) % PRIME
+            after.append(new)
+        rows = after
+        start += [[entry[0] for entry in row] for row in rows]
+    return flint.nmod_mat(len(start), model.size, [x for row in start for x in row], PRIME).rank()
+
+
+@claim("sensors.full.turning")
+def complete_model_while_turning():
+    """With u' = -mu omega x u at least 14 of the 16 combinations are observable, for almost all values (frozen: 11)."""
+    scope = "omega constant; measurements with eight derivatives, rank at one point modulo a prime"
+    frozen = prove_rank(full_model()).rank
+    return Property(printed=(14, 11), derived=Finding((rank_while_turning(), frozen), METHOD, scope=scope))

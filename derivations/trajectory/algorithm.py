@@ -64,8 +64,8 @@ def estimator_form(row: sp.Matrix) -> Equation:
     "algorithm.C",
     expect=REFUTED,
     slip="scan",
-    reason="H^0 is defined nowhere: the minus over H of equation 5 came out as a nought; by hand: n = 1, C = 1 - K H^0 is "
-    "1 - K only for H^0 = 1",
+    reason="H^0 is defined nowhere: the minus over H of equation 5 came out as a nought; by hand: n = 1, C = 1 - K H^0 "
+    "is 1 - K only for H^0 = 1",
 )
 def estimator_form_printed():
     """C = Phi^- - K H^0 for any row H^0, as it came out of the scan; n = 3."""
@@ -149,8 +149,8 @@ def matrix_after(gain: sp.Matrix) -> sp.Matrix:
     "algorithm.P",
     expect=REFUTED,
     slip="paper",
-    reason="with the row H^- of equation 5 and its gain; by hand: n = 2, P^- = E, R = 1, K = (1/3, 1/3): the print has 2/3, "
-    "-1/3, 2/3 where the errors have 5/9, -1/9, 11/9",
+    reason="with the row H^- of equation 5 and its gain; by hand: n = 2, P^- = E, R = 1, K = (1/3, 1/3): the print has "
+    "2/3, -1/3, 2/3 where the errors have 5/9, -1/9, 11/9",
 )
 def corrected_matrix_printed():
     """P = (E - K H^-) P^-, with the printed gain, is the matrix of the corrected error; n = 3."""
@@ -244,7 +244,7 @@ def first_term_of_the_criterion():
 
 @claim("algorithm.J.still")
 def criterion_prefers_standing_still():
-    """At constant estimated speed J is (rho tau x_2 + nu)^2 + nu^2 (K_2^2 tau + K_3^2 tau^2): least for the least gains.
+    """At constant estimated speed J = (rho tau x_2 + nu)^2 + nu^2 (K_2^2 tau + K_3^2 tau^2): the least gains win.
 
     nu is the innovation, the same for all candidates. The minimum over a field of Q thus falls on the candidate that
     corrects speed and acceleration least, step after step, however well or badly it fits.

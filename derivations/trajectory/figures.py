@@ -75,13 +75,13 @@ def hundredths(value: flint.arb) -> str:
 
 @claim("experiment.sigma_v.2", expect=CERTIFIED)
 def speed_errors_at_two_metres():
-    """|V| = 2 m/s: a stable gain gives 0.06 m/s straight, 0.07 m/s yawing, and a position error of 0.83 m, not 0.1 m."""
+    """|V| = 2 m/s: a stable gain gives 0.06 m/s straight, 0.07 m/s yawing, but a position error of 0.83, not 0.1 m."""
     return Property(printed=("0.06", "0.07", "0.83"), derived=two_figures(2))
 
 
 @claim("experiment.sigma_v.300", expect=CERTIFIED)
 def speed_errors_at_three_hundred_metres():
-    """|V| = 300 m/s: a stable gain gives 0.08 m/s straight, 0.09 m/s yawing, and a position error of 0.47 m, not 0.1 m."""
+    """|V| = 300 m/s: a stable gain gives 0.08 m/s straight, 0.09 yawing, but a position error of 0.47, not 0.1 m."""
     return Property(printed=("0.08", "0.09", "0.47"), derived=two_figures(300))
 
 
@@ -138,7 +138,7 @@ def yawing_speed_error_in_full():
 
 @claim("experiment.together", expect=OPEN)
 def figures_of_one_sentence():
-    """For 2, 100 and 300 m/s some stable constant gain gives all three errors of a sentence: position, straight, yawing."""
+    """For 2, 100 and 300 m/s some stable gain gives all three errors of a sentence: position, straight, yawing."""
     why = "searches found no such gain, and no proof excludes one"
     return Property(printed=True, derived=Finding("not determined", "search", OPEN, evidence=why))
 

@@ -41,8 +41,8 @@ def stability(scale: list[flint.arb]) -> Finding:
     expect=REFUTED,
     slip="undecidable",
     reason="in the normalised variables, in which y is said to live, a root of modulus 1.0006 makes the "
-    "estimate grow without bound; the same digits are stable in D_p variables (metres, m/s, ...), where the printed errors "
-    "do not come out, and K_5 = 3.2e-9 would be stable here: variables or an exponent, the copy cannot tell",
+    "estimate grow without bound; the same digits are stable in D_p variables (metres, m/s, ...), where the printed "
+    "errors do not come out, and K_5 = 3.2e-9 would be stable here: variables or an exponent, the copy cannot tell",
 )
 def constant_gain_in_normalised_variables():
     """With the printed constant gain in the variables x^q the algorithm goes on working (is stable)."""

@@ -268,8 +268,8 @@ def improves(n: int, longer: sp.Rational, shorter: sp.Rational) -> bool:
     "4.hadamard",
     expect=REFUTED,
     slip="paper",
-    reason="not inevitably: at n = 20 the smaller step 0.94 s is better conditioned than 1 s (6.05e16 against 8.09e16), and "
-    "at n = 10 the best step is 2.56 s",
+    reason="not inevitably: at n = 20 the smaller step 0.94 s is better conditioned than 1 s (6.05e16 against 8.09e16), "
+    "and at n = 10 the best step is 2.56 s",
 )
 def smaller_steps_always_worsen():
     """A smaller step inevitably worsens the condition number (n = 20, 1 s against 0.94 s)."""

@@ -126,7 +126,7 @@ def normalisation_improves_small_orders_much():
 
 @claim("experiment.physical", expect=CONFIRMED)
 def variables_do_not_change_the_filter():
-    """Carried over with P, Q, R, a change of variables by powers of two next to D changed no bit in a run of 2000 steps."""
+    """With P, Q, R carried over, variables changed by powers of two next to D changed no bit in a run of 2000 steps."""
     return Property(
         printed=False,
         derived=Finding(
@@ -134,7 +134,7 @@ def variables_do_not_change_the_filter():
             "run in both variables and compared bit by bit",
             CONFIRMED,
             scope="seed 1, sums and products in one order, no underflow; n = 5, tau = 0.2 s, 2000 steps",
-            evidence="2000 estimates times D agree in every bit; the condition number of N_p D^-1 is then within a factor "
-            "of two of that of N_pN, since D is rounded by less than sqrt(2) each way",
+            evidence="2000 estimates times D agree in every bit; the condition number of N_p D^-1 is then within a "
+            "factor of two of that of N_pN, since D is rounded by less than sqrt(2) each way",
         ),
     )

@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import cache
 from itertools import pairwise
 
-from navsym.claims import CERTIFIED, REFUTED, Finding, Property, claim
+from navsym.claims import CERTIFIED, Finding, Property, claim
 from navsym.trajectory.conditioning import Enclosure
 from navsym_papers.trajectory.table import COLUMNS, ORDERS, PRINTED, STEPS, true_value
 

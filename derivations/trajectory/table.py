@@ -100,8 +100,8 @@ def entry_claim(n: int, step: str, column: str, printed: str, corrects: bool, wr
         expect=REFUTED if wrong else CERTIFIED,
         corrects=number if corrects else None,
         slip="paper" if wrong else None,
-        reason="the paper itself calls them distorted: the ratio exceeds what doubles resolve, the smallest singular value is "
-        "noise, and entries that must be equal differ; by hand: N_f has no tau in it, yet the rows of 0.2 s and 1 s "
+        reason="the paper itself calls them distorted: the ratio exceeds what doubles resolve, the smallest singular value "
+        "is noise, and entries that must be equal differ; by hand: N_f has no tau in it, yet the rows of 0.2 s and 1 s "
         "differ"
         if wrong
         else "",

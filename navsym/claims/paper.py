@@ -28,6 +28,7 @@ class Paper:
     remarks     : claims in our own words on what is printed
     beyond      : claims on what the paper does not treat
     causes      : refuted claim -> the claim whose slip it only repeats
+    scopes      : claims -> the sizes or values they are examined for, unless their statements name them; the first fits
     left_out    : printed statement -> why no claim judges it
 
     Claims are named by number or pattern (``"range.*"``), a correction by the claim that it corrects. All others are on
@@ -47,6 +48,7 @@ class Paper:
     remarks: tuple[str, ...] = ()
     beyond: tuple[str, ...] = ()
     causes: Mapping[str, str] = field(default_factory=dict)
+    scopes: Mapping[str, str] = field(default_factory=dict)
     left_out: Mapping[str, str] = field(default_factory=dict)
 
     def kind_of(self, number: str) -> Kind:
@@ -58,6 +60,11 @@ class Paper:
         )
         name = number.rstrip("*")
         return next((kind for kind, names in kinds if any(fnmatchcase(name, one) for one in names)), "printed")
+
+    def scope_of(self, number: str, scope: str) -> str:
+        """The scope of a verdict, with the sizes or values that the card names for the claim."""
+        more = next((words for name, words in self.scopes.items() if fnmatchcase(number.rstrip("*"), name)), "")
+        return scope if scope.endswith(more) else f"{scope}; {more}".removeprefix("; ")
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,7 +95,12 @@ def truth_words(text: str) -> str:
 
 TEMPLATES = Path(__file__).parent / "templates"
 #: What stands over the first side of a claim, and before its reason.
-KINDS = {"printed": "printed", "beside": "printed, in words", "remark": "a remark of ours", "beyond": "beyond the paper"}
+KINDS = {
+    "printed": "printed",
+    "beside": "printed, in words",
+    "remark": "a remark of ours",
+    "beyond": "beyond the paper",
+}
 WHOSE = {"paper": "Slip of the paper", "scan": "Slip of the scan", "undecidable": "Slip of the paper or of the scan"}
 MARKS = {"PROVED": "✓", "CERTIFIED": "◎", "CONFIRMED": "≈", "REFUTED": "✗", "OPEN": "?"}
 MEANINGS = {

@@ -197,7 +197,7 @@ def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict
         status=verdict.status,
         expect=claim.expect,
         method=verdict.method,
-        scope=verdict.scope,
+        scope=paper.scope_of(claim.number, verdict.scope),
         assumptions=tuple(verdict.assumptions),
         printed=printed,
         derived=derived,
