@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import Bound, Equation, Finding, Property, claim
+from navsym.claims import PROVED, Bound, Equation, Finding, Property, claim
 from navsym.observability.chains import numerators
 from navsym.observability.linear import linear_relation, pivot_rows
 from navsym.observability.ring import Ring
@@ -31,7 +31,7 @@ def dimensions():
         for s in (*systems(), direct_sum())
         for first, second in [s.found.measurements]
     )
-    return Property(True, Finding(found, "exact dimensions of the chains", scope=SIZES))
+    return Property(True, Finding(found, "exact dimensions of the chains", PROVED, scope=SIZES))
 
 
 @claim("1.3.basis")
@@ -41,7 +41,7 @@ def chain_is_a_basis():
     longer = tuple(rank_of(s.chain(1, 2 * s.n)) for s in systems())
     return Property(
         tuple(s.m for s in systems()),
-        Finding(counts if counts == longer else None, "exact ranks of m and of 2 n vectors", scope=SIZES),
+        Finding(counts if counts == longer else None, "exact ranks of m and of 2 n vectors", PROVED, scope=SIZES),
     )
 
 
@@ -183,6 +183,7 @@ def gain_is_unique():
         Finding(
             found,
             "the coefficients are affine in K_x with an invertible matrix",
+            PROVED,
             scope="m = 1, 2, 3, all theta and C_1",
             assumptions=("det C_1 != 0",),
         ),

@@ -6,7 +6,7 @@ from functools import cache
 
 import sympy as sp
 
-from navsym.claims import Equation, Finding, Property, claim
+from navsym.claims import PROVED, Equation, Finding, Property, claim
 from navsym.observability.splits import companion, corner, exact_inverse, last_row, shift, to_lowest_terms, unit_row
 from navsym_papers.joint_correction.section1_chains import coefficients, theta_of
 from navsym_papers.joint_correction.section1_systems import System, flat, free, k, overlapping, polynomial_of
@@ -279,7 +279,8 @@ def choice_of_i():
 
     best = best_split(overlapping().found)
     return Property(
-        (2, 2), Finding((best.i, best.j), "all determinants of a_1 ... a_i, b_1 ... b_j", scope="n = 4, m = 3, l = 4")
+        (2, 2),
+        Finding((best.i, best.j), "all determinants of a_1 ... a_i, b_1 ... b_j", PROVED, scope="n = 4, m = 3, l = 4"),
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import REFUTED, Equation, Finding, Property, claim
+from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
 from navsym.observability.splits import companion, exact_inverse, last_row, unit_row
 from navsym_papers.joint_correction.section1_chains import SIZES, coefficients, rank_of
 from navsym_papers.joint_correction.section1_systems import (
@@ -31,7 +31,7 @@ def phi_of(s: System) -> list[sp.Expr]:
 def enough_vectors():
     """n - m <= l: the second chain is long enough to complete the basis."""
     found = tuple(s.found.measurements[1].dimension >= s.rest for s in (*systems(), direct_sum()))
-    return Property((True,) * 5, Finding(found, "exact dimensions of the chains", scope=SIZES))
+    return Property((True,) * 5, Finding(found, "exact dimensions of the chains", PROVED, scope=SIZES))
 
 
 @claim("1.8.basis")
@@ -55,6 +55,7 @@ def chains_complete_each_other():
         Finding(
             all(identities) and all(full),
             "Cayley-Hamilton in the quotient by the first chain",
+            PROVED,
             scope="n - m = 1, 2, 3 with all entries symbolic, every m",
         ),
     )
@@ -151,7 +152,7 @@ def output_row_of_z_printed():
     size = 2
     column = unit_row(size).T
     defined = column.cols == free("z", size).rows
-    return Property(True, Finding(defined, "shapes of the factors, n - m = 2", scope="n - m = 2"))
+    return Property(True, Finding(defined, "shapes of the factors, n - m = 2", PROVED, scope="n - m = 2"))
 
 
 @claim("1.10.gz*", corrects="1.10.gz")
@@ -261,6 +262,7 @@ def second_gain_is_unique():
         Finding(
             found,
             "the coefficients are affine in K_z with an invertible matrix",
+            PROVED,
             scope="n - m = 1, 2, 3, all phi and C_2",
             assumptions=("det C_2 != 0",),
         ),
@@ -303,7 +305,7 @@ def first_stage_ignores_the_second():
         found = found and not rows[:, m:].free_symbols and not any(rows.has(s) for s in b["Kz"])
         found = found and all(value == 0 for value in rows[:, m:])
     return Property(
-        True, Finding(found, "entries of the closed loop", scope=f"(m, n - m) in {PAIRS}, all coefficients")
+        True, Finding(found, "entries of the closed loop", PROVED, scope=f"(m, n - m) in {PAIRS}, all coefficients")
     )
 
 

@@ -11,7 +11,7 @@ from functools import cache
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, Finding, Property, claim
+from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property, claim
 from navsym.models.inertial import PHYSICAL_ORDERS, truncate
 from navsym.models.kinematics import (
     ALPHA,
@@ -94,6 +94,7 @@ def climb_is_negligible():
         Finding(
             orders,
             "orders of all added terms, climb/(a omega_0) counted as mu^2",
+            PROVED,
             scope="linear in the errors, alpha_3 up to rho/mu",
         ),
     )
@@ -223,14 +224,14 @@ def stationarity_units_printed():
 
     Both sides have one unit.
     """
-    return Property(degree(RATE**2), Finding(degree(RATE), "powers of 1/s on the right and on the left side"))
+    return Property(degree(RATE**2), Finding(degree(RATE), "powers of 1/s on the right and on the left side", PROVED))
 
 
 @claim("2.assumption1.units*", corrects="2.assumption1.units")
 def stationarity_units():
     """|d/dt (omega_x1^2 + omega_x2^2)^(1/2)| < max(omega_x1^2 + omega_x2^2): both sides in 1/s^2."""
     rate = sum(sp.diff(RATE, w) * dw for w, dw in zip((w1, w2), OMEGA_X_RATE[:2], strict=True))
-    return Property(degree(RATE**2), Finding(degree(rate), "powers of 1/s on the right and on the left side"))
+    return Property(degree(RATE**2), Finding(degree(rate), "powers of 1/s on the right and on the left side", PROVED))
 
 
 def stationarity(speed: sp.Expr, course: sp.Expr, place: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
@@ -267,7 +268,10 @@ def where_great_circles_are_not_stationary():
     return Property(
         False,
         Finding(
-            bool(left < right), "exact values at one flight", scope="speed 0.9 Omega R = 419 m/s, course constant -0.99"
+            bool(left < right),
+            "exact values at one flight",
+            PROVED,
+            scope="speed 0.9 Omega R = 419 m/s, course constant -0.99",
         ),
     )
 

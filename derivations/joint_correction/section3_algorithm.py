@@ -6,7 +6,7 @@ from functools import cache
 
 import sympy as sp
 
-from navsym.claims import REFUTED, Equation, Finding, Property, claim
+from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
 from navsym.models.inertial import FULL, joint_model
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
@@ -50,7 +50,10 @@ def overlap():
     return Property(
         4,
         Finding(
-            shared, "exact ranks of the functionals and of their union", scope="16 error variables, all omega, u, mu"
+            shared,
+            "exact ranks of the functionals and of their union",
+            PROVED,
+            scope="16 error variables, all omega, u, mu",
         ),
     )
 
@@ -68,6 +71,7 @@ def remaining_variables():
         Finding(
             (sum(found.staircase[:2]), sum(found.staircase[2:])),
             "fraction-free staircase: velocity first, then position",
+            PROVED,
             scope="joint model (2.8), (2.9)",
         ),
     )

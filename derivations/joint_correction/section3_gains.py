@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, Equation, Finding, Property, claim
+from navsym.claims import CERTIFIED, PROVED, Equation, Finding, Property, claim
 from navsym.models.inertial import EARTH, MU
 from navsym.observability.splits import exact_inverse, to_lowest_terms
 from navsym_papers.joint_correction.section1_systems import coefficients_of_polynomial, p, polynomial_of
@@ -187,6 +187,7 @@ def coupled_system_is_stable_inside():
         Finding(
             found,
             "no crossing of the axis, Routh's table at one point of every region",
+            PROVED,
             scope="all lambda_c > 0, all real kappa",
             evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}",
         ),

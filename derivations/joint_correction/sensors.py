@@ -9,7 +9,7 @@ from itertools import combinations
 import flint
 import sympy as sp
 
-from navsym.claims import Finding, Property, claim
+from navsym.claims import PROVED, Finding, Property, claim
 from navsym.models.inertial import EARTH, MU, OMEGA, full_model, joint_model
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import prove_rank
@@ -49,7 +49,7 @@ def others(names: Sequence[str]) -> dict[str, list[sp.Expr]]:
 def found(answer: Restoration, value: object) -> Finding:
     """A value read off an answer whose minimality is proved."""
     assert answer.proved, "a smaller set was not excluded"
-    return Finding(value, METHOD, scope=GENERIC)
+    return Finding(value, METHOD, PROVED, scope=GENERIC)
 
 
 @claim("sensors.one_coordinate")
@@ -67,7 +67,7 @@ def three_of_four_with_both_velocities():
     """Both velocities and one coordinate observe all ten variables; no other three of the four measurements do."""
     names = joint().measurements
     complete = tuple(triple for triple in combinations(names, 3) if not hidden(triple))
-    finding = Finding(complete, METHOD, scope=GENERIC)
+    finding = Finding(complete, METHOD, PROVED, scope=GENERIC)
     velocities = ("sigma_c1", "sigma_c2")
     return Property(printed=((*velocities, "sigma_M1"), (*velocities, "sigma_M2")), derived=finding)
 
@@ -76,7 +76,7 @@ def three_of_four_with_both_velocities():
 def no_two_are_enough():
     """No two of the four measurements observe all ten variables: the pairs hide from one to four."""
     counts = tuple(hidden(pair) for pair in combinations(joint().measurements, 2))
-    return Property(printed=(4, 1, 1, 1, 1, 2), derived=Finding(counts, METHOD, scope=GENERIC))
+    return Property(printed=(4, 1, 1, 1, 1, 2), derived=Finding(counts, METHOD, PROVED, scope=GENERIC))
 
 
 @claim("sensors.position")
@@ -139,4 +139,4 @@ def complete_model_while_turning():
     """With u' = -mu omega x u at least 14 of the 16 combinations are observable, for almost all values (frozen: 11)."""
     scope = "omega constant; measurements with eight derivatives, rank at one point modulo a prime"
     frozen = prove_rank(full_model()).rank
-    return Property(printed=(14, 11), derived=Finding((rank_while_turning(), frozen), METHOD, scope=scope))
+    return Property(printed=(14, 11), derived=Finding((rank_while_turning(), frozen), METHOD, PROVED, scope=scope))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import REFUTED, Bound, Equation, Finding, Property, claim
+from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Property, claim
 from navsym_papers.multistructure import model
 
 RECKONING = model.dead_reckoning()
@@ -28,6 +28,7 @@ def nonlinear():
         derived=Finding(
             bool(curvature != 0),
             "second derivative at an exact point",
+            PROVED,
             scope="course and log on a sphere",
             evidence=f"d2S/dK2 = {curvature} at the equator, heading north at unit speed",
         ),
@@ -41,7 +42,10 @@ def arguments_corrected():
     return Property(
         printed=True,
         derived=Finding(
-            S.free_symbols <= known, "free symbols of the derived right side", scope="course and log on a sphere"
+            S.free_symbols <= known,
+            "free symbols of the derived right side",
+            PROVED,
+            scope="course and log on a sphere",
         ),
     )
 
@@ -101,6 +105,7 @@ def unsteady():
         derived=Finding(
             all(bool(slope != 0) for slope in slopes),
             "derivative by latitude at an exact point",
+            PROVED,
             scope="course and log on a sphere",
             evidence=f"dS1/dphi = {slopes[0]}, dS2/dphi = {slopes[1]} at 45 degrees, heading east",
         ),
@@ -182,6 +187,7 @@ def inertial_is_nonlinear():
         derived=Finding(
             (int(rate.subs(at_rest)), bool(curvature != 0)),
             "value, second derivative at a point",
+            PROVED,
             scope="one horizontal axis, a tilted platform",
             evidence=f"d2S/dbeta2 = {curvature} at f = 1",
         ),
@@ -207,11 +213,11 @@ def latitude_rates(heading):
     "2.growth.every",
     expect=REFUTED,
     slip="paper",
-    reason="true on straight courses; on a circle the rate turns with the course, its mean is zero, and the error comes "
+    reason="true on straight courses; on a circle the rate turns with the course, its mean is zero, the error comes "
     "back; by hand: the integral of cos over a whole turn is 0",
 )
 def every_sensor_error_grows_on_every_course():
-    """Below (2), for every course: after a full turn at constant rate a constant sensor error is left in the latitude."""
+    """Below (2), for every course: after a turn at constant rate a constant sensor error is left in the latitude."""
     # cos and sin of the course, from the rates due north and due east; their integrals over a turn
     over_turn = [
         north * (sp.sin(2 * sp.pi) - sp.sin(0)) - east * (sp.cos(2 * sp.pi) - sp.cos(0))

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from navsym.claims import REFUTED, Equation, Finding, Property, claim
+from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
 from navsym.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
 from navsym.multimodel.schemes import scheme
 from navsym_papers.multistructure import finite
@@ -150,7 +150,7 @@ def living_sequences():
     alive = tuple(sum(1 for leaf in step.leaves if sum(leaf.weights) > 0) for step in exact)
     return Property(
         printed=(3, 3, 3),
-        derived=Finding(alive, "leaves of positive weight counted", scope="one model, I = 3, k = 1..3"),
+        derived=Finding(alive, "leaves of positive weight counted", PROVED, scope="one model, I = 3, k = 1..3"),
     )
 
 
@@ -164,7 +164,9 @@ def optimal():
         equal = equal and sorted(map(gaussian, ours.leaves)) == sorted(map(gaussian, living))
     return Property(
         printed=True,
-        derived=Finding(equal, "Gaussians of both compared as rationals", scope="one model, I = 3, three steps"),
+        derived=Finding(
+            equal, "Gaussians of both compared as rationals", PROVED, scope="one model, I = 3, three steps"
+        ),
     )
 
 
@@ -181,6 +183,7 @@ def prior():
         derived=Finding(
             tuple(len(different_gaussians(L)) for L in (1, 2, 3)),
             "different Gaussians of the exact tree counted",
+            PROVED,
             scope="two modes, L = 1..3, one step",
         ),
     )

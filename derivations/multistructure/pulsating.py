@@ -111,6 +111,7 @@ def number_of_sequences():
         derived=Finding(
             tuple(leaves_by_tree(modes, steps, modes) for modes, steps in GRID),
             "sequences enumerated",
+            PROVED,
             scope="I = 1..4, k = 0..5; every step multiplies by I, so for all by induction",
         ),
     )
@@ -195,6 +196,7 @@ def near_optimal():
         derived=Finding(
             all(b < a for a, b in pairwise(values)),
             "exact excess kurtosis",
+            PROVED,
             scope="g = 1 - 10^-k, unit Gaussians 10^(k/2) apart, k = 1..6",
             evidence=f"excess kurtosis grows from {float(values[0]):.3g} to {float(values[-1]):.3g}",
         ),
@@ -219,7 +221,7 @@ def near_optimal_corrected():
 
 @claim("near.spread")
 def small_modes_may_be_wide():
-    """Equal means, weights 1 - e and e, variances 1 and P: excess 3 e (1 - e) (P - 1)^2/variance^2, so e P^2 matters."""
+    """Equal means, weights 1 - e and e, variances 1 and P: excess 3 e (1 - e) (P - 1)^2/variance^2: e P^2 matters."""
     e, wide = sp.symbols("e P", positive=True)
     variance, fourth = (1 - e) + e * wide, 3 * (1 - e) + 3 * e * wide**2
     printed = 3 * e * (1 - e) * (wide - 1) ** 2 / variance**2
@@ -270,7 +272,9 @@ def memory_printed():
     """Pulsating needs more memory than Kalman only for the I probabilities of (17)."""
     return Property(
         printed=tuple(modes for modes, _ in CASES),
-        derived=Finding(memory(CASES), "arrays of the one-pass filter counted", scope="I = 2, 3, 8; n = 1, 2, 6"),
+        derived=Finding(
+            memory(CASES), "arrays of the one-pass filter counted", PROVED, scope="I = 2, 3, 8; n = 1, 2, 6"
+        ),
     )
 
 
@@ -279,5 +283,7 @@ def memory_corrected():
     """Our program keeps beyond Kalman: I probabilities, a sum of weights, two means, two covariances; I = 2, 3, 8."""
     return Property(
         printed=tuple(modes + 1 + 2 * (n + n * n) for modes, n in CASES),
-        derived=Finding(memory(CASES), "arrays of the one-pass filter counted", scope="I = 2, 3, 8; n = 1, 2, 6"),
+        derived=Finding(
+            memory(CASES), "arrays of the one-pass filter counted", PROVED, scope="I = 2, 3, 8; n = 1, 2, 6"
+        ),
     )

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from navsym.claims import OPEN, PROVED, REFUTED, Bound, Equation, Finding, Property, claim
+from navsym.claims import OPEN, PROVED, REFUTED, UNDECIDED, Bound, Equation, Finding, Property, claim
 from navsym_papers.terrain_search.directions import quotient
 from navsym_papers.terrain_search.model import beta_x, beta_y, crossing_time, inverse, moment, slopes, symmetric
 
@@ -240,7 +240,7 @@ def middle_is_half_the_trace():
 def width_in_the_figure():
     """In the experiment of figure 4 the interval [t_min, t_max] is at most a tenth of the track."""
     why = "neither figure 4 nor the terrain of figure 3 is in the text, so that the interval cannot be computed again"
-    return Property(True, Finding("not determined", "reading", OPEN, evidence=why))
+    return Property(True, Finding(UNDECIDED, "reading", OPEN, evidence=why))
 
 
 @claim(

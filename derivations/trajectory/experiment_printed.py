@@ -8,7 +8,7 @@ from itertools import pairwise
 import flint
 import sympy as sp
 
-from navsym.claims import CERTIFIED, REFUTED, Claim, Equation, Finding, Property, claim
+from navsym.claims import CERTIFIED, PROVED, REFUTED, Claim, Equation, Finding, Property, claim
 
 RADIUS = Fraction(6371000)
 TAU = Fraction(1, 5)
@@ -32,7 +32,7 @@ def three_parts_fill_the_run():
     parts = ((0, True, 1000, False), (1000, True, 2080, True), (2080, False, 3600, True))
     meets = all(left[2] == right[0] and left[3] != right[1] for left, right in pairwise(parts))
     found = (parts[0][0], parts[-1][2], meets)
-    return Property(printed=(0, 3600, True), derived=Finding(found, "ends of the parts"))
+    return Property(printed=(0, 3600, True), derived=Finding(found, "ends of the parts", PROVED))
 
 
 @claim("experiment.heading")
@@ -46,7 +46,9 @@ def heading():
 def tuning_stops_at_a_step():
     """Tuning stops at 168.8 s, a whole number of steps of 0.2 s."""
     steps = Fraction("168.8") / TAU
-    return Property(printed=True, derived=Finding(steps.denominator == 1, "exact division", evidence=f"{steps} steps"))
+    return Property(
+        printed=True, derived=Finding(steps.denominator == 1, "exact division", PROVED, evidence=f"{steps} steps")
+    )
 
 
 # -- printed errors of position ------------------------------------------------------------------------
@@ -117,7 +119,7 @@ UNITS = {"m": (1, 0), "m/s": (1, -1), "m/s^2": (1, -2)}
 
 def rate(unit: tuple[int, int]) -> Finding:
     """Unit of the time derivative of a quantity."""
-    return Finding((unit[0], unit[1] - 1), "unit of a time derivative, exponents of metre and second")
+    return Finding((unit[0], unit[1] - 1), "unit of a time derivative, exponents of metre and second", PROVED)
 
 
 @claim(

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 import flint
 
-from navsym.claims import CERTIFIED, OPEN, Finding, Property, claim
+from navsym.claims import CERTIFIED, OPEN, UNDECIDED, Finding, Property, claim
 from navsym.models.earth import pascal_rows
 from navsym_papers.trajectory.experiment.stability import gain_stability, harmonic_lag, stationary_covariance
 from navsym_papers.trajectory.experiment_printed import TAU, ball
@@ -140,11 +140,11 @@ def yawing_speed_error_in_full():
 def figures_of_one_sentence():
     """For 2, 100 and 300 m/s some stable gain gives all three errors of a sentence: position, straight, yawing."""
     why = "searches found no such gain, and no proof excludes one"
-    return Property(printed=True, derived=Finding("not determined", "search", OPEN, evidence=why))
+    return Property(printed=True, derived=Finding(UNDECIDED, "search", OPEN, evidence=why))
 
 
 @claim("experiment.figures", expect=OPEN)
 def figures_look_alike():
     """The curves for 2 and 300 m/s look like those of figures 1 to 4."""
     why = "the curves are not published as numbers; tuning, first values and noise are not given"
-    return Property(printed=True, derived=Finding("not determined", "reading", OPEN, evidence=why))
+    return Property(printed=True, derived=Finding(UNDECIDED, "reading", OPEN, evidence=why))

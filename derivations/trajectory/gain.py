@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import flint
 
-from navsym.claims import CERTIFIED, REFUTED, Finding, Property, claim
+from navsym.claims import CERTIFIED, REFUTED, UNDECIDED, Finding, Property, claim
 from navsym_papers.trajectory.experiment.stability import (
     gain_stability,
     harmonic_lag,
@@ -28,7 +28,7 @@ ROUNDING = tuple(map(Fraction, ("5e-5", "5e-6", "5e-7", "5e-9", "5e-10")))
 def stability(scale: list[flint.arb]) -> Finding:
     found = gain_stability(GAIN, ROUNDING, scale)
     return Finding(
-        found.stable if found.stable is not None else "undecided",
+        found.stable if found.stable is not None else UNDECIDED,
         "Routh's column in balls over the rounding box of the gain",
         CERTIFIED,
         scope="n = 5, tau = 0.2 s, every gain that rounds to the printed digits",

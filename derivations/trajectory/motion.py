@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, Finding, Property, claim
+from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property, claim
 from navsym.models import earth as motion
 from navsym.trajectory.conditioning import condition_number
 from navsym_papers.trajectory import model
@@ -51,7 +51,7 @@ def degree_of_the_speed():
         return int(sp.Poly(speed, t).degree())
 
     orders = range(2, ORDER + 1)
-    found = Finding(tuple(map(degree, orders)), "degree of the exact solution", scope=f"n = 2..{ORDER}")
+    found = Finding(tuple(map(degree, orders)), "degree of the exact solution", PROVED, scope=f"n = 2..{ORDER}")
     return Property(printed=tuple(n - 2 for n in orders), derived=found)
 
 
@@ -145,6 +145,7 @@ def nilpotency():
     found = Finding(
         tuple(map(nilpotency_index, ORDERS)),
         "exact powers",
+        PROVED,
         scope="n = 2..12; for every n the power k moves the diagonal k places up",
         assumptions=("rho != 0",),
     )
@@ -158,7 +159,7 @@ def nonzero_elements():
     def count(n: int) -> int:
         return sum(x != 0 for x in model.dynamics(n, rho))
 
-    found = Finding(tuple(map(count, ORDERS)), "count", scope="n = 2..12", assumptions=("rho != 0",))
+    found = Finding(tuple(map(count, ORDERS)), "count", PROVED, scope="n = 2..12", assumptions=("rho != 0",))
     return Property(printed=tuple(n - 1 for n in ORDERS), derived=found)
 
 
@@ -268,7 +269,7 @@ def improves(n: int, longer: sp.Rational, shorter: sp.Rational) -> bool:
     "4.hadamard",
     expect=REFUTED,
     slip="paper",
-    reason="not inevitably: at n = 20 the smaller step 0.94 s is better conditioned than 1 s (6.05e16 against 8.09e16), "
+    reason="not inevitably: at n = 20 the smaller step 0.94 s is better than 1 s (6.05e16 against 8.09e16), "
     "and at n = 10 the best step is 2.56 s",
 )
 def smaller_steps_always_worsen():

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, CONFIRMED, REFUTED, Equation, Finding, Property, claim
+from navsym.claims import CERTIFIED, CONFIRMED, PROVED, REFUTED, UNDECIDED, Equation, Finding, Property, claim
 from navsym.models.earth import observability_rows
 from navsym.trajectory.conditioning import condition_number
 from navsym_papers.trajectory.experiment.courses import scaling_changes_rounding
@@ -34,14 +34,14 @@ def independent_orders(column: int) -> tuple[int, ...]:
 def independence_is_violated_from_19():
     """In the printed table independence of tau holds up to n = 10 and is violated for n = 19 and 20."""
     found = tuple(independent_orders(COLUMNS.index(c)) for c in ("NpN", "Nf", "Ns"))
-    return Property(printed=((2, 3, 4, 5, 10),) * 3, derived=Finding(found, "comparison of the printed digits"))
+    return Property(printed=((2, 3, 4, 5, 10),) * 3, derived=Finding(found, "comparison of the printed digits", PROVED))
 
 
 @claim("experiment.violated.equality")
 def equality_is_violated_from_19():
     """In the printed table mu(N_pN) = mu(N_s) holds up to n = 10 and is violated for n = 19 and 20."""
     found = tuple(n for n in ORDERS if all(printed_equal((s, 1), (s, 3), n) for s in STEPS))
-    return Property(printed=(2, 3, 4, 5, 10), derived=Finding(found, "comparison of the printed digits"))
+    return Property(printed=(2, 3, 4, 5, 10), derived=Finding(found, "comparison of the printed digits", PROVED))
 
 
 @claim("experiment.distortion", expect=CERTIFIED)
@@ -73,7 +73,7 @@ def gains_at_least(factor: Fraction, cases) -> Finding:
     worst = min(ratios, key=lambda case: ratios[case][0])
     n, rho, tau = worst
     return Finding(
-        not undecided and ratios[worst][0] >= factor,
+        UNDECIDED if undecided else ratios[worst][0] >= factor,
         "certified condition numbers",
         CERTIFIED,
         scope=f"{len(ratios)} cases",

@@ -31,8 +31,8 @@ class Paper:
     scopes      : claims -> the sizes or values they are examined for, unless their statements name them; the first fits
     left_out    : printed statement -> why no claim judges it
 
-    Claims are named by number or pattern (``"range.*"``), a correction by the claim that it corrects. All others are on
-    printed formulas. Only what is printed can be a slip.
+    Claims are named by number or pattern, with blanks between (``"1.3.spectrum range.*"``), a correction by the claim
+    that it corrects. All others are on printed formulas. Only what is printed can be a slip.
     """
 
     module: str
@@ -44,22 +44,22 @@ class Paper:
     equations: tuple[str, ...]
     definitions: Mapping[str, str] = field(default_factory=dict)
     doi: str = ""
-    beside: tuple[str, ...] = ()
-    remarks: tuple[str, ...] = ()
-    beyond: tuple[str, ...] = ()
+    beside: str = ""
+    remarks: str = ""
+    beyond: str = ""
     causes: Mapping[str, str] = field(default_factory=dict)
     scopes: Mapping[str, str] = field(default_factory=dict)
     left_out: Mapping[str, str] = field(default_factory=dict)
 
     def kind_of(self, number: str) -> Kind:
         """Whether a claim is on a printed formula, on a printed sentence, a remark of ours, or beyond the paper."""
-        kinds: tuple[tuple[Kind, tuple[str, ...]], ...] = (
+        kinds: tuple[tuple[Kind, str], ...] = (
             ("remark", self.remarks),
             ("beyond", self.beyond),
             ("beside", self.beside),
         )
         name = number.rstrip("*")
-        return next((kind for kind, names in kinds if any(fnmatchcase(name, one) for one in names)), "printed")
+        return next((kind for kind, names in kinds if any(fnmatchcase(name, one) for one in names.split())), "printed")
 
     def scope_of(self, number: str, scope: str) -> str:
         """The scope of a verdict, with the sizes or values that the card names for the claim."""

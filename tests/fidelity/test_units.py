@@ -22,9 +22,6 @@ NARROWER = {
     "terrain_search:10.equal.sum": A_NUMBER,
     "joint_correction:1.13.model": CANCELLED,
     "joint_correction:3.bias.velocity": CANCELLED,
-    "multistructure:8.every": CANCELLED,
-    "multistructure:10.every": CANCELLED,
-    "multistructure:17.every": CANCELLED,
 }
 
 
