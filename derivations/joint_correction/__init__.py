@@ -23,6 +23,7 @@ PAPER = Paper(
     definitions={
         "1.1": "the given linear system and its measurements",
         "1.2": "definition of the two chains of vectors",
+        "2.5": "defines the position information by gamma of (2.3)",
     },
     beside=(
         "1.dimensions 1.14.choice 1.14.higher_derivatives 1.14.one_to_one 2.8.neglected 2.[67].span "
@@ -38,8 +39,10 @@ PAPER = Paper(
     beyond="3.coupled.* 3.bias.* 3.noise.* 3.choice.* sensors.*",
     causes={"2.9.inhomogeneous_printed": "2.9.y2"},
     scopes={
+        "1.two_stage.small": "m = 2, Theta = 0",
+        "1.two_stage.linear": "m = n - m = 1",
+        "1.two_stage.*": "",
         "1.13.preferable": "",
-        "1.two_stage.dimension": "",
         "1.14.higher_derivatives": "",
         "1.14*": "n - m and m of the systems named in the file, not every size",
         "1.13*": "sizes (m, n - m) of the systems named in the file, one family of C_1 and C_2, not every size",
@@ -47,6 +50,7 @@ PAPER = Paper(
         "3.1.remaining": "mu u_3 not 1 or -1",
     },
     left_out={
+        "q_x = L_x q, q_z = L_z q, q_u, q_v, q_w, r_x = r_1, r_z = r_2": "names of the noises in new variables",
         "below (1.13): in general less preferable than (1.11)": "a judgement; 1.13.preferable shows both sides",
         "section 2, condition 1: far below the first cosmic speed": "no figure; 2.scale.mu has mu <= 0.1",
         "section 2, list of dimensionless quantities: nu_i for omega_i, no w_i^c and r_i^c": "names of symbols",

@@ -132,19 +132,6 @@ def output_of_x():
     return Equation(printed, derived)
 
 
-@claim("1.5.qx")
-def noise_of_x():
-    """q_x = L_x q: the noise that drives x."""
-    printed, derived = [], []
-    for s in systems():
-        q = sp.Matrix(sp.symbols(f"q1:{s.n + 1}", real=True))
-        state = sp.Matrix(sp.symbols(f"xi1:{s.n + 1}", real=True))
-        L_x = free("x", s.m) * s.chain(1, s.m)
-        printed += list(L_x * q)
-        derived += list(L_x * (s.G * state + q) - L_x * s.G * state)
-    return Equation(printed, derived)
-
-
 def observer(size: int) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
     """(G_x, K, g_x) of a general scalar observer of the given order in coordinates with C_1 = free."""
     theta = sp.symbols(f"theta1:{size + 1}", real=True)

@@ -125,18 +125,6 @@ def block_w2():
     return block_of("w", "u", "w", 2)
 
 
-@claim("1.14.noise")
-def noises():
-    """q_u = L_u q, q_v = L_v q, q_w = L_w q."""
-    printed, derived = [], []
-    s, _, rows = parts(2, 2)
-    q, state = (sp.Matrix(sp.symbols(f"{name}1:5", real=True)) for name in ("q", "xi"))
-    for name in "uvw":
-        printed += list(rows[name] * q)
-        derived += list(rows[name] * (s.G * state + q) - rows[name] * s.G * state)
-    return Equation(printed, derived)
-
-
 @claim("1.14.matrices")
 def constant_matrices():
     """F, F°, Theta_u, Theta_v, D_u, D_w as printed, solved from the chains (i = 2, j = 2, m = 3)."""

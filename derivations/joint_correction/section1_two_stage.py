@@ -126,19 +126,6 @@ def matrix_of_z():
     return Equation(printed, derived)
 
 
-@claim("1.10.qz")
-def noise_of_z():
-    """q_z = L_z q: the noise that drives z."""
-    printed, derived = [], []
-    for s in systems():
-        q = sp.Matrix(sp.symbols(f"q1:{s.n + 1}", real=True))
-        state = sp.Matrix(sp.symbols(f"xi1:{s.n + 1}", real=True))
-        L_z = free("z", s.rest) * s.chain(2, s.rest)
-        printed += list(L_z * q)
-        derived += list(L_z * (s.G * state + q) - L_z * s.G * state)
-    return Equation(printed, derived)
-
-
 @claim(
     "1.10.gz",
     expect=REFUTED,
@@ -353,19 +340,3 @@ def fewer_variables_settle_sooner():
     printed = [sp.exp(-s) * s**k / sp.factorial(k) for k in sizes] + [transient(k - 1) for k in sizes]
     derived = [transient(k + 1) - transient(k) for k in sizes]
     return Equation(printed, derived + [transient(k).diff(s) + transient(k) for k in sizes])
-
-
-@claim("1.9.noise")
-def noises_of_the_measurements():
-    """r_x = r_1 and r_z = r_2: the change of variables leaves the noise of the measurements alone."""
-    printed, derived = [], []
-    r1, r2 = sp.symbols("r_1 r_2", real=True)
-    for s in systems()[:3]:
-        state = sp.Matrix(sp.symbols(f"xi1:{s.n + 1}", real=True))
-        x, z = s.chain(1, s.m) * state, s.chain(2, s.rest) * state
-        printed += [r1, r2]
-        derived += [
-            (s.h(1).T * state)[0] + r1 - (unit_row(s.m) * x)[0],
-            (s.h(2).T * state)[0] + r2 - (unit_row(s.rest) * z)[0],
-        ]
-    return Equation(printed, derived)

@@ -25,7 +25,6 @@ from navsym.models.kinematics import (
     OMEGA_X_RATE,
     SCHULER,
     W_C,
-    W_M,
     ErrorEquations,
     error_equations,
 )
@@ -171,26 +170,6 @@ def velocity_information_1():
 def velocity_information_2():
     """sigma_x2^c = dp_2 - u_x3 alpha_1 + u_x3 beta_1 - u_x1 beta_3 + w_x2^c."""
     return Equation(p2 - u3 * a1 + u3 * b1 - u1 * b3 + W_C[1], equations().velocity[1])
-
-
-@claim("2.5.sigma1")
-def position_information_1():
-    """sigma_1^M = gamma_1 + w_1^M: the error of the computed vertical, axis 1."""
-    return Equation(a1 - b1 + W_M[0], computed_vertical()[0] + W_M[0])
-
-
-@claim("2.5.sigma2")
-def position_information_2():
-    """sigma_2^M = gamma_2 + w_2^M: the error of the computed vertical, axis 2."""
-    return Equation(a2 - b2 + W_M[1], computed_vertical()[1] + W_M[1])
-
-
-def computed_vertical() -> tuple[sp.Expr, sp.Expr]:
-    """Turn gamma recovered from the third axis of Mu seen in Mx: e3 = e3 + gamma x e3."""
-    from navsym.models.kinematics import skew
-
-    tilt = skew(ALPHA - BETA) * sp.Matrix([0, 0, 1])  # (gamma_2, -gamma_1, 0)
-    return -tilt[1], tilt[0]
 
 
 # Assumptions of the section, with numbers

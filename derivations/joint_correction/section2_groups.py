@@ -27,6 +27,7 @@ from navsym.models.inertial import (
     Group,
     X,
     Y,
+    dimensionless,
     full_model,
     lowest_order,
     position_group,
@@ -157,7 +158,17 @@ output_c2 = row(
 
 # (2.9): the position group
 
-POSITION_ROWS = {1: y2, 3: y4, 4: -y3 - mu * w2 * v3, 5: y6, 7: y8, 8: -y7 + mu * w1 * v3}
+POSITION_ROWS = {3: y4, 4: -y3 - mu * w2 * v3, 7: y8, 8: -y7 + mu * w1 * v3}
+#: y_2 and y_6 are the derivatives of y_1 and y_5: (2.7) says what they are, the kinematics what they have to be.
+derivatives_y = tuple(
+    row(
+        f"2.9.y{k}",
+        f"Derivative of y_{k}: y_{k + 1} as (2.7) prints it is the rate of alpha_{axis} - beta_{axis}.",
+        POSITION_MEANING[k],
+        lambda angle=angle, turn=turn: sp.expand(dimensionless().rates[angle] - dimensionless().rates[turn]),
+    )
+    for k, axis, angle, turn in ((1, 1, a1, b1), (5, 2, a2, b2))
+)
 rows_y = tuple(
     row(
         f"2.9.y{k}", f"Derivative of y_{k} up to terms of order mu^2 rho.", printed, lambda k=k: position().rates[k - 1]

@@ -377,7 +377,7 @@ def position_only_block(gains: tuple[sp.Expr, ...]) -> sp.Matrix:
 
 @claim("3.situations.position_only")
 def position_only():
-    """Only position: four gains in closed form give (p + lambda_h)^4 on y_1, y_2, x_1, x_2.
+    """Only position, mu^2 left out: four gains in closed form give (p + lambda_h)^4 on y_1, y_2, x_1, x_2.
 
     They are 4 l, 6 l^2 - 1, 4 l - 4 l^3, 6 l^2 - l^4 - 1 with l = lambda_h.
     """

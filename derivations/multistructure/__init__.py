@@ -41,6 +41,7 @@ PAPER = Paper(
     ),
     beyond="10.forgets* 10.error* 17.error* K.fold K.longer",
     left_out={
+        "(18), exponent: v^T/(2D) v": "a division by a matrix, read as the inverse",
         "unlike existing methods": "a comparison without a method named",
         "(8) to (21) for any number of modes and values": "claimed for the numbers that each title names",
         "below (4): W(k)": "its covariance is not printed",
