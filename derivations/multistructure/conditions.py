@@ -73,7 +73,7 @@ def covariance_of_the_step():
 
 @claim("17.same")
 def equal_models_are_one():
-    """If all models are the same the pulsating filter is the Kalman filter, whatever p^ij is (two steps, two modes)."""
+    """If all models are the same the pulsating filter is the Kalman filter, whatever p^ij is (2 steps, 2 modes)."""
     leave, back = sp.symbols("p21 p12", positive=True)
     chain = [[1 - leave, leave], [back, 1 - back]]
     one = examples.scalar(1, 2, 1, 3)

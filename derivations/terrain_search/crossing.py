@@ -236,7 +236,7 @@ def uniqueness():
 
 @claim("10.flat")
 def flat_across():
-    """On ground flat across the track the criterion is zero at every t: (10) is 0/0 and names no instant."""
+    """On ground flat across the track (3 points) the criterion is zero at each t: (10) is 0/0 and names no instant."""
     flat = [(0, 0)] * 3
     numerator, denominator = (sum(m**power * q**2 for m, (_, q) in enumerate(flat)) for power in (1, 0))
     return Equation(
