@@ -58,11 +58,11 @@ class Record:
     evidence: str
     counterexample: Mapping[str, str] | None
     difference: Number | None
+    kind: Kind = "printed"
+    cause: str | None = None
     certificate: Mapping[str, Any] | None = None
     seconds: float = 0.0
     statement: str = ""
-    kind: Kind = "printed"
-    cause: str | None = None
 
     @property
     def is_expected(self) -> bool:
