@@ -1,8 +1,8 @@
-"""What the paper does not have: uniqueness proved, and the solution for every T up to 2 pi.
+"""What the paper does not have: uniqueness proved for T <= pi/2, and the solution for every T.
 
 The paper states its formulas for T <= pi/2. They hold further, each to its own bound, which is
 where a weight changes sign: y1 for every T, y2 up to 4 pi/3, y3 up to 2 pi/3. Beyond these
-bounds two instants are enough, one of them the end of the interval, and then the value is one.
+bounds two instants are enough; from 3 pi/2 (y2) and pi (y3) on they are half a period apart, and the value is one.
 """
 
 from __future__ import annotations
@@ -11,16 +11,15 @@ from collections.abc import Callable
 
 import sympy as sp
 
-from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, Statement, claim
+from navsym.claims import CERTIFIED, REFUTED, Bound, Claim, Equation, Optimum, Statement, claim
 from navsym_papers.guaranteed_velocity.model import INSTANTS, H, T, alternating, tau, weights
 
-FULL = 2 * sp.pi
 UNITS = {"y1": (1, 0, 0), "y2": (0, 1, 0), "y3": (0, 0, 1)}
 ALTERNATING_ERROR = {"y2": 2 * sp.cot(T / 4), "y3": sp.cos(T / 2) / sp.sin(T / 4) ** 2}
 
 
 def solution(
-    state: str, dual: tuple, support: tuple, weights_: tuple, value: sp.Expr, lower: sp.Expr, upper: sp.Expr
+    state: str, dual: tuple, support: tuple, weights_: tuple, value: sp.Expr, lower: sp.Expr, upper: sp.Expr | None
 ) -> Optimum:
     return Optimum(
         regressors=tuple(H()),
@@ -47,8 +46,8 @@ def three_instants(state: str, upper: sp.Expr) -> Optimum:
 
 @claim("range.y1")
 def velocity_for_every_interval():
-    """y1: the last measurement alone is optimal for every T up to 2 pi (and for any T at all)."""
-    return solution("y1", (1, 0, 0), (T,), (sp.Integer(1),), sp.Integer(1), sp.Integer(0), FULL)
+    """y1: the last measurement alone is optimal for every T."""
+    return solution("y1", (1, 0, 0), (T,), (sp.Integer(1),), sp.Integer(1), sp.Integer(0), None)
 
 
 @claim("range.y2")
@@ -89,7 +88,7 @@ def tilt_with_two_instants():
 
 @claim("range.y2.last")
 def tilt_with_two_inner_instants():
-    """y2, 3 pi/2 <= T <= 2 pi: half the difference of two measurements half a period apart, error 1."""
+    """y2, every T >= 3 pi/2: half the difference of two measurements half a period apart, error 1."""
     return solution(
         "y2",
         (0, 1, 0),
@@ -97,7 +96,7 @@ def tilt_with_two_inner_instants():
         (sp.Rational(1, 2), -sp.Rational(1, 2)),
         sp.Integer(1),
         3 * sp.pi / 2,
-        FULL,
+        None,
     )
 
 
@@ -127,9 +126,9 @@ def drift_with_two_instants():
 
 @claim("range.y3.last")
 def drift_with_half_a_period():
-    """y3, pi <= T <= 2 pi: half the difference of two measurements half a period apart, error 1."""
+    """y3, every T >= pi: half the difference of two measurements half a period apart, error 1."""
     return solution(
-        "y3", (1, 0, 1), (T, T - sp.pi), (sp.Rational(1, 2), -sp.Rational(1, 2)), sp.Integer(1), sp.pi, FULL
+        "y3", (1, 0, 1), (T, T - sp.pi), (sp.Rational(1, 2), -sp.Rational(1, 2)), sp.Integer(1), sp.pi, None
     )
 
 
@@ -169,19 +168,19 @@ def dual_polynomial(at: sp.Expr) -> sp.Expr:
 
 @claim("unique.upper-bound")
 def upper_bound_touched_once():
-    """1 - x.H > 0 at distance v T/2 on either side of T/2: the bound +1 is touched at T/2 only."""
+    """1 - x.H > 0 at T/2 - v T/2, 0 < v <= 1, T <= pi/2: with unique.symmetric the bound +1 is touched at T/2 only."""
     return Bound(1 - dual_polynomial(T / 2 - v * T / 2), ">", 0, UNIQUE_BOX)
 
 
 @claim("unique.symmetric")
 def polynomial_is_symmetric():
-    """x.H is symmetric about T/2, so that one half decides for both."""
+    """x.H is symmetric about T/2 (T <= pi/2), so that one half decides for both."""
     return Equation(printed=dual_polynomial(T - tau), derived=dual_polynomial(tau), box={T: (0, sp.pi / 2)})
 
 
 @claim("unique.lower-bound")
 def lower_bound_touched_at_the_ends():
-    """1 + x.H > 0 for instants v T/2 with 0 < v <= 1: the bound -1 is touched at 0 and T only.
+    """1 + x.H > 0 at v T/2, 0 < v <= 1, T <= pi/2: with unique.symmetric the bound -1 is touched at 0 and T only.
 
     Every optimal weight function lives on the contacts of an optimal dual; with three contacts
     and det N != 0 there is one such function for y2 and y3. This is the argument that the paper
@@ -190,20 +189,19 @@ def lower_bound_touched_at_the_ends():
     return Bound(1 + dual_polynomial(v * T / 2), ">", 0, UNIQUE_BOX)
 
 
-@claim("unique.y1")
+@claim("unique.y1", expect=CERTIFIED)
 def velocity_estimate_is_unique():
-    """y1: the dual (1, -1, 0) is optimal too and touches only at T, so that the estimate is unique.
+    """y1, T <= pi/2: the optimal dual (1, -1, 0) keeps (x.H)^2 < 1 before T: the estimate is unique.
 
     For y1 the argument from (4.11) does not apply, since X = (1, 0, 0) touches everywhere.
-    1 - x.H = sin(T - tau) > 0 before the end, and 1 + x.H > 0.
     """
-    inside = 1 - (H(T - v * T)[0] - H(T - v * T)[1])
-    return Bound(inside, ">", 0, UNIQUE_BOX)
+    inside = H(T - v * T)[0] - H(T - v * T)[1]
+    return Bound(1 - inside**2, ">", 0, UNIQUE_BOX)
 
 
 @claim("unique.y1.feasible")
 def other_dual_of_velocity():
-    """y1: the dual (1, -1, 0) is feasible and has the value 1."""
+    """y1, T <= pi/2: the dual (1, -1, 0) is feasible and has the value 1."""
     return Optimum(
         regressors=tuple(H()),
         functional=UNITS["y1"],

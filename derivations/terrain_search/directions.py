@@ -69,7 +69,7 @@ def direction():
 
 @claim("11.several")
 def crossing_depends_on_the_direction():
-    """A single t_G for all directions does not exist in general: here it is 0 in one and 1 in the other."""
+    """A single t_G for all directions need not exist: with slopes (1, 0), (0, 1) it is 0 in one and 1 in the other."""
     points = [(1, 0), (0, 1)]
     found = tuple(crossing_time(points, way) for way in ((1, 0), (0, 1)))
     return Property(True, Finding(found[0] != found[1], "exact example", PROVED, evidence=f"t_G = {found}"))
