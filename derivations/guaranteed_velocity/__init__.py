@@ -38,7 +38,7 @@ PAPER = Paper(
     beside="2.7.name 3.2.contacts 3.2.theorem 4.2.identity-of-channels 4.6.same-instants",
     remarks=(
         "1.3.spectrum 1.9.root-cause 1.observable 1.quarter-period.minute 3.1.terms 3.2.consistent 4.1.order "
-        "4.3.unique 4.4.closed-form 4.6.weights 4.8.signs 4.14.y2.bias unique.*"
+        "4.3.unique 4.4.closed-form 4.5.positive 4.6.stationary 4.6.weights 4.8.signs 4.14.y2.bias unique.*"
     ),
     beyond="4.11.nonzero-beyond range.*",
     causes={"4.4": "4.3.u2"},

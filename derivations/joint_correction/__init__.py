@@ -26,15 +26,17 @@ PAPER = Paper(
         "2.5": "defines the position information by gamma of (2.3)",
     },
     beside=(
-        "1.dimensions 1.14.choice 1.14.higher_derivatives 1.14.one_to_one 2.8.neglected 2.[67].span "
-        "2.8.inhomogeneous 2.9.inhomogeneous_printed 2.[89].observable 2.[89].accuracy* 3.1.remaining 3.1.fast "
-        "3.1.slow 3.2.gains 3.3.gains 3.3.only_velocity"
+        "1.dimensions 1.6.gain_unique 1.6.kalman_unique 1.11.gain_unique 1.13.free_of_gain 1.13.weight "
+        "1.13.separate 1.14.dimension 1.14.choice 1.14.higher_derivatives 1.14.one_to_one 1.two_stage.* 2.1.climb "
+        "2.8.neglected 2.[67].span 2.8.inhomogeneous 2.9.inhomogeneous_printed 2.[89].observable 3.1.overlap "
+        "3.1.remaining 3.1.fast 3.1.slow 3.2.gains 3.3.gains 3.3.only_velocity"
     ),
     remarks=(
-        "1.6.gain_unique.determinant 1.6.kalman_unique.stabilising 1.13.preferable 1.13.equivalent "
-        "1.14.exists.alone 1.14.next 1.two_stage.small 1.two_stage.transition 1.two_stage.dimension 2.1.dropped "
-        "2.8.solution 2.assumption1.orthodrome.limit 2.scale.earth 2.scale.mu_u3 3.2.gains_unique "
-        "3.3.gains_unique 3.3.triangular"
+        "1.6.gain_unique.determinant 1.6.initial 1.6.kalman_unique.stabilising 1.11.characteristic 1.13.preferable "
+        "1.13.equivalent 1.14.characteristic 1.14.exists* 1.14.gains_unique 1.14.next 1.two_stage.transition "
+        "1.two_stage.dimension 2.1.dropped 2.8.solution 2.[89].accuracy* 2.assumption1.orthodrome.limit "
+        "2.scale.earth 2.scale.mu_u3 3.2.gains_unique 3.3.gains_unique 3.3.triangular 3.preestimation.* "
+        "3.situations.*"
     ),
     beyond="3.coupled.* 3.bias.* 3.noise.* 3.choice.* sensors.*",
     causes={"2.9.inhomogeneous_printed": "2.9.y2"},

@@ -31,15 +31,16 @@ PAPER = Paper(
         "6": "the switching measurement model itself; it defines H, V and R",
     },
     beside=(
-        "2.growth* 4.type 8.predict 8.correct 8.definition 10.definition 11.form 13.sequences 14.follows 17.cost "
-        "17.memory 17.suboptimal 18.next 19.count 20.rho 21.optimal 21.mixture"
+        "1.inertial 1.nonlinear 2.drift.polar 2.growth* 3.time 4.type 6.markov 8.correct 8.definition 8.posterior "
+        "8.predict 10.definition 11.form 12.optimal 13.sequences 14.follows 15.gaussian 17.cost 17.memory "
+        "17.suboptimal 18.next 19.count 20.rho 21.mixture 21.optimal"
     ),
     remarks=(
-        "1.arguments 1.nonlinear 1.inertial 2.form 2.drift* 3.inertial 3.time 5.prediction 6.* 7.chain 8.joseph "
-        "8.posterior 11.parts 12.optimal 12.selection 13.densities 17.first 17.same 21.prior 21.start K.second "
-        "K.series near.* accumulate*"
+        "1.arguments 2.form 2.drift.across 2.drift.equation 3.inertial 5.prediction 6.gaussian 8.joseph 11.parts "
+        "12.selection 13.densities 13.every 17.first 17.fold 17.same 21.prior 21.start K.second K.series near.* "
+        "accumulate.all"
     ),
-    beyond="10.forgets* 10.error* 17.error* K.fold K.longer",
+    beyond="10.forgets* 10.error* 17.error* K.exact K.fold K.longer",
     left_out={
         "(18), exponent: v^T/(2D) v": "a division by a matrix, read as the inverse",
         "unlike existing methods": "a comparison without a method named",

@@ -99,7 +99,6 @@ FIGURES = [  # claim, the figure as the sheet has it, and what it is
     ("multistructure:13.index", "1.526", 2 * spread((0.3, 0.7), (0, 1))[1]),
     ("multistructure:20.integral", "0.74", 0.9 * 0.8 + 0.1 * 0.2),
     ("multistructure:4.type", "5.4", 1e7 * math.tan(math.radians(60)) / (6.37e6 * math.cos(math.radians(60)))),
-    ("terrain_search:table.percent", "1.049", 2.15 / 2.05),
     ("terrain_search:gain", "17.8", 40.05 / 2.25),
     ("trajectory:experiment.sigma_phi.100", "0.076", 1.2e-8 * EARTH),
     ("trajectory:experiment.sigma_phi.100", "0.0013", math.radians(1.2e-8) * EARTH),
