@@ -70,9 +70,23 @@ class Reader(SourceReader):
                 self.read_macro(node)
             elif node.type == "preproc_function_def":
                 self.unit.macros[text_of(field_of(node, "name"))] = "a macro with arguments"
+            elif node.type == "enumerator_list":
+                self.read_enumerators(node)
             elif node.type == "declaration" and is_constant(node):
                 self.unit.constants += [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
         self.unit.constants.sort(key=lambda statement: statement.span)
+
+    def read_enumerators(self, node: Any) -> None:
+        """The names of an enumeration, each one more than the one before."""
+        previous: Part = self.part("number", node, -1, "int")
+        one = self.part("number", node, 1, "int")
+        for child in named(node):
+            if child.type != "enumerator":
+                return
+            given = field_of(child, "value")
+            previous = self.expression(given) if given is not None else self.part("op", child, "+", previous, one)
+            name = text_of(field_of(child, "name"))
+            self.unit.constants.append(self.part("declare", child, name, "int", (), previous, False))
 
     def read_macro(self, node: Any) -> None:
         """An object-like macro; a second definition refuses the name."""
@@ -310,6 +324,8 @@ class Reader(SourceReader):
                     return self.part("address", node, pointed)
                 if pointed.kind == "name":
                     return self.part("first", node, pointed)
+                if pointed.kind == "op" and pointed.parts[0] == "+" and pointed.parts[1].kind == "name":  # *(p + k)
+                    return self.part("index", node, pointed.parts[1], (pointed.parts[2],))
         return self.refuse(node, f"an expression outside the language of audit ({node.type.replace('_', ' ')})")
 
     def number(self, node: Any) -> Part:
@@ -348,6 +364,8 @@ class Reader(SourceReader):
         arguments = tuple(map(self.expression, named(field_of(node, "arguments"))))
         if function.type == "field_expression":
             base, method = self.expression(field_of(function, "argument")), text_of(field_of(function, "field"))
+            if (block := self.block_of(node, base, method, arguments)) is not None:
+                return block
             return self.part("method", node, base, method, arguments)
         name = re.sub(r"\s", "", text_of(function))
         if function.type == "primitive_type" or (name in REAL and len(arguments) == 1):
@@ -356,9 +374,29 @@ class Reader(SourceReader):
             return self.part("cast", node, "real", arguments[0])
         if shape_of_type(name) is not None:
             return self.part("list", node, arguments)
-        if function.type in ("identifier", "qualified_identifier", "template_function", "call_expression"):
+        if found := re.fullmatch(r"\(\*(\w+)\)", name):  # (*M)(i, j)
+            name = found[1]
+        if found or function.type in ("identifier", "qualified_identifier", "template_function", "call_expression"):
             return self.part("call", node, name, arguments)
         return self.refuse(node, "a call of an expression")
+
+
+    def block_of(self, node: Any, base: Part, method: str, arguments: tuple[Part, ...]) -> Part | None:
+        """``M.block<p, q>(i, j)``, ``M.block(i, j, p, q)`` and the like of vectors as slices; None for others."""
+        found = re.fullmatch(r"(block|segment|head|tail)(?:<([\d,]+)>)?", method.replace(" ", "").replace("template", ""))
+        if found is None or found[1] == "tail":
+            return None
+        sizes = [self.part("number", node, int(n), "int") for n in (found[2] or "").split(",") if n]
+        starts = [*arguments]
+        if not sizes:
+            starts, sizes = starts[: len(starts) // 2], starts[len(starts) // 2 :]
+        if found[1] == "head":
+            starts, sizes = [self.part("number", node, 0, "int")], sizes
+        if not starts or len(starts) != len(sizes):
+            return None
+        ends = [self.part("op", node, "+", a, n) for a, n in zip(starts, sizes, strict=True)]
+        slices = tuple(self.part("slice", node, a, b) for a, b in zip(starts, ends, strict=True))
+        return self.part("index", node, base, slices)
 
 
 def list_commas(node: Any) -> list[Any]:

@@ -505,6 +505,8 @@ class Evaluator:
         is_array = base.kind != "name" or name == "T" or bool(self.variable_shape(base.parts[0]))
         if name in METHODS and is_array:
             return METHODS[name](self.value(base), [self.value(a) for a in arguments], self.unit)
+        if base.kind == "name" and self.variable_shape(base.parts[0]):
+            return self.component(part)
         if base.kind == "name" and self.unit.language in ("c", "cpp"):
             accessor = f"{base.parts[0]}.{name}"
             if not arguments:
@@ -512,6 +514,15 @@ class Evaluator:
             if all(self.is_constant(a) for a in arguments):
                 index = Part("index", part.line, (Part("name", part.line, (accessor,)), arguments))
                 return self.entries(index)
+        raise Unreadable(part.line, f"the method {name}")
+
+    def component(self, part: Part) -> Value:
+        """``v.x()`` of a vector of two or three, and ``M(i, j)`` in the long spellings."""
+        base, name, arguments = part.parts
+        shape = self.variable_shape(base.parts[0]) or ()
+        if name in ("x", "y", "z") and not arguments and shape in ((2,), (3,)) and "xyz".index(name) < shape[0]:
+            place = Part("number", part.line, ("xyz".index(name), "int"))
+            return self.entries(Part("index", part.line, (base, (place,)), part.span))
         raise Unreadable(part.line, f"the method {name}")
 
     def variable_shape(self, name: str) -> Index | None:

@@ -10,11 +10,12 @@ from typing import Any
 
 from navsym.audit.evaluate import Reading, spell_entry
 from navsym.audit.execute import read_function
-from navsym.audit.form import Function, Part, Unit
+from navsym.audit.form import Argument, Function, Part, Unit
+from navsym.audit.fragment import take_lines
 from navsym.audit.names import Names
-from navsym.audit.syntax import SIZE
+from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import Index, places_of
-from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
+from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
 from navsym.language.expression import read_tree
 from navsym.language.files import decode, name_file, read_bytes
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
@@ -144,13 +145,17 @@ def find_function(unit: Unit, name: str, where: str) -> Function:
 def read_source(block: Any, folder: Path, names: Names, where: str) -> Source:
     """One ``[[code]]`` block."""
     table = as_table(block, where)
-    expect_keys(table, ("name", "file", "function", "relations", "symbols"), where)
+    expect_keys(table, ("name", "file", "function", "lines", "relations", "symbols", "constants", "functions"), where)
     texts = {
         key: as_text(require_key(table, key, where), join_place(where, key), "a name")
         for key in ("name", "file", "function")
     }
     unit = load_unit(folder / texts["file"])
+    declare_constants(unit, as_table(table.get("constants", {}), join_place(where, "constants")), where)
+    declare_functions(unit, as_table(table.get("functions", {}), join_place(where, "functions")), where)
     function = find_function(unit, texts["function"], join_place(where, "function"))
+    if "lines" in table:
+        function = take_lines(unit, function, *read_lines(table["lines"], join_place(where, "lines")))
     place = join_place(where, "symbols")
     shapes, symmetric = read_symbols(as_table(table.get("symbols", {}), place), names, place)
     source = Source(texts["name"], unit, function, names, shapes, symmetric, ())
@@ -160,6 +165,42 @@ def read_source(block: Any, folder: Path, names: Names, where: str) -> Source:
         read_relation(text, names, join_place(join_place(where, "relations"), i)) for i, text in enumerate(listed)
     )
     return source
+
+
+def read_lines(value: Any, where: str) -> tuple[int, int, str]:
+    """The first and the last line, and where they stand."""
+    is_pair = isinstance(value, list) and len(value) == 2 and all(type(n) is int for n in value)
+    if not is_pair or not 0 < value[0] <= value[1]:
+        raise ShapeError(f"expected the first and the last line, [12, 30]; got {quote(value)}; correct them", where=where)
+    return value[0], value[1], where
+
+
+def declare_constants(unit: Unit, table: Table, where: str) -> None:
+    """Names whose values stand in files that are not read, such as headers."""
+    for name, value in table.items():
+        place = join_place(join_place(where, "constants"), name)
+        exact = read_decimal(str(value).removeprefix("-")) if not isinstance(value, bool) else None
+        if exact is None:
+            raise ExpressionSyntaxError(f"expected a number; got {quote(value)}; correct it", where=place)
+        kind = "int" if isinstance(value, int) else "real"
+        number = Part("number", 0, (-exact if str(value).startswith("-") else exact, kind))
+        unit.constants.append(Part("declare", 0, (name, kind, (), number, False)))
+
+
+def declare_functions(unit: Unit, table: Table, where: str) -> None:
+    """Functions that stand in other files, each as ``{ of = ["x"], is = "x*x" }`` in the language of the source."""
+    for name, value in table.items():
+        place = join_place(join_place(where, "functions"), name)
+        entry = as_table(value, place)
+        expect_keys(entry, ("of", "is"), place)
+        if name in unit.functions:
+            raise DuplicateError(f"expected a function of another file; got {name} of this one; remove it", where=place)
+        names = [as_text(n, place, "a name") for n in as_list(require_key(entry, "of", place), place)]
+        meaning = read_expression(as_text(require_key(entry, "is", place), place, "an expression"), unit)
+        if meaning.kind == "refused":
+            raise ExpressionSyntaxError(f"expected an expression; got {quote(entry['is'])}; correct it", where=place)
+        body = (Part("return", 0, (meaning,)),)
+        unit.functions[name] = [Function(name, 0, tuple(Argument(n, "real") for n in names), body)]
 
 
 def read_symbols(table: Table, names: Names, where: str) -> tuple[dict[str, Index], frozenset[str]]:
