@@ -95,6 +95,8 @@ class Reader(SourceReader):
         meaning: Part | str = "a macro without a value" if not body else read_c_expression(body, self.unit)
         if isinstance(meaning, Part) and meaning.kind == "refused":
             meaning = "a macro that is no expression"
+        if isinstance(meaning, Part) and meaning.kind not in ("number", "name", "call", "minus") and body[0] != "(":
+            meaning = "a macro whose operators have no parentheses around them"
         self.unit.macros[name] = "a macro with two definitions" if name in self.unit.macros else meaning
 
     def read_function(self, node: Any) -> None:
@@ -225,12 +227,17 @@ class Reader(SourceReader):
             if value is not None and value.type == "argument_list":
                 items = tuple(map(self.expression, named(value)))
                 start = self.part("list", value, items) if len(items) > 1 else items[0] if items else None
+            elif value is not None and value.type == "initializer_list" and sizes is None and len(named(value)) == 1:
+                start = self.expression(named(value)[0])  # Vector3f v{a + b}
             else:
                 start = None if value is None else self.expression(value)
             if inner.type == "function_declarator":  # Vector3f v(a, b, c), which the grammar takes for a function
                 items = tuple(map(self.expression, named(field_of(inner, "parameters"))))
                 name, start = text_of(field_of(inner, "declarator")), self.part("list", inner, items)
-            is_link = shared and sizes is None
+                if shape is None:  # MatrixXd K(n, m), or the declaration of a function
+                    done.append(self.unread(child, "a declaration with parentheses of a type without known sizes"))
+                    continue
+            is_link = shared and sizes is None and inner.type != "function_declarator"
             done.append(self.part("declare", child, name, number_of(kind), shape, start, is_link))
         return tuple(done)
 
@@ -364,6 +371,8 @@ class Reader(SourceReader):
         arguments = tuple(map(self.expression, named(field_of(node, "arguments"))))
         if function.type == "field_expression":
             base, method = self.expression(field_of(function, "argument")), text_of(field_of(function, "field"))
+            if method in ("noalias", "eval") and not arguments:  # say how Eigen computes, not what
+                return base
             if (block := self.block_of(node, base, method, arguments)) is not None:
                 return block
             return self.part("method", node, base, method, arguments)

@@ -231,6 +231,8 @@ class Machine(Evaluator):
         result = self.value(value)
         if sign:
             result = self.combine(sign, self.value(target), result, statement.line)
+        if target.kind == "name" and self.member_of_array(target) is not None:
+            raise Unreadable(statement.line, "a member of an array as a target")
         if target.kind == "name":
             variable = self.variable(target.parts[0])
             if isinstance(result, Array) and variable.shape in (None, ()) and not variable.is_input:
@@ -324,7 +326,15 @@ class Machine(Evaluator):
             raise Returning(None)
         if self.unit.language == "python" and value.kind == "list":
             raise Returning(self.returned_tuple(value))
-        raise Returning(self.value(value))
+        try:
+            raise Returning(self.value(value))
+        except Unreadable as refusal:
+            if any(part.kind in ("call", "method") and not self.is_plain(part) for part in walk(value)):
+                raise
+            unread = Unread(refusal.line or statement.line, refusal.why)  # the end is known, the value is not
+            self.reading.refused.setdefault(unread.line, unread.why)
+            self.reading.refused_spans.add(statement.span)
+            raise Returning(unread) from None
 
     def returned_tuple(self, value: Part) -> Value:
         """A tuple: numbers as an array; arrays by their names only."""
@@ -340,7 +350,7 @@ class Machine(Evaluator):
             if name in ("setZero", "zero", "setIdentity", "identity", "fill", "setAll"):
                 self.reset(base, name, arguments, statement)
                 return
-        elif call.kind == "call" and call.parts[0] in HARMLESS:
+        elif call.kind == "call" and (call.parts[0] in HARMLESS or call.parts[0] in self.unit.ignored):
             return
         elif call.kind == "call" and call.parts[0] == "memset":
             self.reset(call.parts[1][0], "memset", call.parts[1][1:2], statement)

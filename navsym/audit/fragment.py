@@ -42,8 +42,9 @@ def take_lines(unit: Unit, function: Function, first: int, last: int, where: str
 
 
 def last_line(unit: Unit, statement: Part) -> int:
-    """The line in which a statement ends."""
-    return 1 + unit.source.count(b"\n", 0, max(statement.span[1] - 1, 0))
+    """The line in which a statement ends; ``elif`` ends before its ``else``."""
+    end = max(part.span[1] for part in walk(statement))
+    return 1 + unit.source.count(b"\n", 0, max(end - 1, 0))
 
 
 def bodies_of(statement: Part) -> list[Body]:
