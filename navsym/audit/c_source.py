@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, Unit
+from navsym.audit.functions import METHODS
 from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, parse_source, read_decimal, text_of
 
 RULES = {"c": Rules(integer=True), "cpp": Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))}
@@ -232,7 +233,7 @@ class Reader(SourceReader):
             else:
                 start = None if value is None else self.expression(value)
             if inner.type == "function_declarator":  # Vector3f v(a, b, c), which the grammar takes for a function
-                items = tuple(map(self.expression, named(field_of(inner, "parameters"))))
+                items = tuple(map(self.taken_for_parameter, named(field_of(inner, "parameters"))))
                 name, start = text_of(field_of(inner, "declarator")), self.part("list", inner, items)
                 if shape is None:  # MatrixXd K(n, m), or the declaration of a function
                     done.append(self.unread(child, "a declaration with parentheses of a type without known sizes"))
@@ -240,6 +241,12 @@ class Reader(SourceReader):
             is_link = shared and sizes is None and inner.type != "function_declarator"
             done.append(self.part("declare", child, name, number_of(kind), shape, start, is_link))
         return tuple(done)
+
+    def taken_for_parameter(self, node: Any) -> Part:
+        """An expression in parentheses behind a declared name: a name alone looks like the type of a parameter."""
+        kind = field_of(node, "type") if node.type == "parameter_declaration" else None
+        is_name = kind is not None and kind.type == "type_identifier" and text_of(kind) == text_of(node)
+        return self.part("name", node, text_of(node)) if is_name else self.expression(node)
 
     def effect(self, node: Any) -> tuple[Part, ...]:
         """What an expression that stands alone writes."""
@@ -385,14 +392,30 @@ class Reader(SourceReader):
             return self.part("list", node, arguments)
         if found := re.fullmatch(r"\(\*(\w+)\)", name):  # (*M)(i, j)
             name = found[1]
-        if found or function.type in ("identifier", "qualified_identifier", "template_function", "call_expression"):
+        if (
+            function.type == "call_expression"
+        ):  # s.q()(0) is an entry of an accessor, M.transpose()(0, 1) one of a value
+            owner = self.expression(function)
+            if owner.kind == "name":
+                return self.part("call", node, owner.parts[0], arguments)
+            if not re.fullmatch(r"[\w.:>-]+\(\)", name) or name.removesuffix("()").split(".")[-1] in METHODS:
+                return self.part("index", node, owner, arguments)
+            return self.part("call", node, name, arguments)
+        if found or function.type in ("identifier", "qualified_identifier", "template_function"):
             return self.part("call", node, name, arguments)
         return self.refuse(node, "a call of an expression")
 
+    def entry_of_call(self, node: Any, name: str, owner: Part, arguments: tuple[Part, ...]) -> Part:
+        """``s.q()(0)`` is an entry of an accessor, ``M.transpose()(0, 1)`` one of a value."""
+        if owner.kind == "name":
+            return self.part("call", node, owner.parts[0], arguments)
+        is_accessor = re.fullmatch(r"[\w.:>-]+\(\)", name) and name.removesuffix("()").split(".")[-1] not in METHODS
+        return self.part("call", node, name, arguments) if is_accessor else self.part("index", node, owner, arguments)
 
     def block_of(self, node: Any, base: Part, method: str, arguments: tuple[Part, ...]) -> Part | None:
         """``M.block<p, q>(i, j)``, ``M.block(i, j, p, q)`` and the like of vectors as slices; None for others."""
-        found = re.fullmatch(r"(block|segment|head|tail)(?:<([\d,]+)>)?", method.replace(" ", "").replace("template", ""))
+        bare = method.replace(" ", "").replace("template", "")
+        found = re.fullmatch(r"(block|segment|head|tail)(?:<([\d,]+)>)?", bare)
         if found is None or found[1] == "tail":
             return None
         sizes = [self.part("number", node, int(n), "int") for n in (found[2] or "").split(",") if n]

@@ -196,6 +196,8 @@ class Evaluator:
             raise Unreadable(part.line, "a target that is no entry")
         indices: list[Part] = []
         while part.kind == "index":
+            if indices and any(index.kind == "slice" for index in part.parts[1]):
+                raise Unreadable(part.line, "an index of a block")
             indices = [*part.parts[1], *indices]
             part = part.parts[0]
         if part.kind == "call":
@@ -372,7 +374,7 @@ class Evaluator:
         try:
             variable, places, shape = self.targets(part)
         except Unreadable:
-            base = self.value(part.parts[0]) if part.parts[0].kind in ("call", "method", "op") else None
+            base = self.value(part.parts[0]) if part.parts[0].kind in ("call", "method", "op", "index") else None
             if not isinstance(base, Array):
                 raise
             variable = Variable("", shape=base.shape, cells=dict(zip(places_of(base.shape), base.cells, strict=True)))

@@ -129,7 +129,7 @@ class Machine(Evaluator):
         self.reading.refused_spans.add(statement.span)
         targets: set[str] = set()
         for part in walk(statement):
-            if part.kind == "assign":
+            if part.kind == "assign" and not (part is statement and self.lose_entries(part, unread)):
                 targets.add(self.root_name(part.parts[0]))
             elif part.kind in ("declare", "for"):
                 targets.add(part.parts[0])
@@ -149,6 +149,18 @@ class Machine(Evaluator):
                 self.lose_members(name, unread)
         if any(part.kind == "return" for part in walk(statement)):
             self.stop(unread)
+
+    def lose_entries(self, statement: Part, unread: Unread) -> bool:
+        """True where an assignment that is not read can only write known entries, which are unread now."""
+        try:
+            variable, places, _ = self.targets(statement.parts[0])
+        except Unreadable:
+            return False
+        if statement.parts[0].kind == "name" or variable.all_unread is not None:
+            return False
+        for place in places:
+            self.write_cell(variable, place, unread, statement)
+        return True
 
     def lose_members(self, name: str, unread: Unread) -> None:
         """The members of a structure that may have been written as a whole."""

@@ -64,7 +64,7 @@ def is_known(name: str, language: str) -> bool:
 
 
 TWO = ("pow", "atan2", "hypot")
-MAKE = re.compile(r"Matrix\w*::(Zero|Identity)$|(\d).*::(Zero|Identity)$")
+MAKE = re.compile(r"(?:^|::)Mat(?:rix)?(?:(\d)[fd]?|<\w+,(\d+),(\d+)>|X[fd]?)::(Zero|Identity)$")
 
 
 def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Value:
@@ -89,9 +89,11 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
     if bare in ARRAYS and len(values) in (1, 2):
         return ARRAYS[bare](values, unit)
     if found := MAKE.search(name):
-        sides = sizes_of(values, unit) if values else (int(found[2]),) * 2 if found[2] else ()
+        sides = sizes_of(values, unit) or tuple(
+            int(side) for side in (found[1] or found[2], found[1] or found[3]) if side
+        )
         if len(sides) == 2:
-            return identity_array(*sides) if "Identity" in name else filled(sides, 0)
+            return identity_array(*sides) if found[4] == "Identity" else filled(sides, 0)
     raise Unreadable(line, f"the function {name} with {len(values)} arguments")
 
 

@@ -62,8 +62,9 @@ class Reader(SourceReader):
                 self.read_function(node)
             elif node.type == "expression_statement":
                 for statement in self.statement(node):
-                    is_none = statement.kind == "assign" and self.unit.text(statement.parts[2]) == "None"  # set elsewhere
-                    if statement.kind == "assign" and statement.parts[0].kind == "name" and not is_none:
+                    if statement.kind != "assign" or self.unit.text(statement.parts[2]) == "None":  # set elsewhere
+                        continue
+                    if statement.parts[0].kind == "name":
                         assigned.setdefault(statement.parts[0].parts[0], []).append(statement)
         self.unit.constants += [many[0] for many in assigned.values() if len(many) == 1 and not many[0].parts[1]]
 
@@ -145,7 +146,8 @@ class Reader(SourceReader):
         value = self.expression(right)
         if len(targets) == 1:
             return (self.part("assign", node, self.expression(targets[0]), "", value),)
-        if value.kind in ("op", "call", "method", "minus") and {text_of(target) for target in targets} & names_in(value):
+        is_computed = value.kind in ("op", "call", "method", "minus")
+        if is_computed and {text_of(target) for target in targets} & names_in(value):
             return (self.unread(node, "names assigned from each other at once"),)
         if value.kind in ("name", "op"):  # a, b = x
             items = [Part("index", value.line, (value, (self.part("number", node, k, "int"),)), value.span)

@@ -15,11 +15,11 @@ from navsym.audit.fragment import take_lines
 from navsym.audit.names import Names
 from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import Index, places_of
+from navsym.core.choice import one_of
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
 from navsym.language.expression import read_tree
 from navsym.language.files import decode, name_file, read_bytes
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
-from navsym.core.choice import one_of
 from navsym.language.schema import Table, as_list, as_table, as_text, require_key
 from navsym.language.tree import ONE, ZERO, Tree, build_sum, negate
 
@@ -30,6 +30,8 @@ LANGUAGES = {
     ".m": "matlab",
 }
 LARGEST_SIDE = 64
+#: The keys of a block ``[[code]]``.
+KEYS = ("name", "file", "function", "lines", "relations", "symbols", "constants", "functions", "ignored", "language")
 
 
 @dataclass(slots=True, eq=False)
@@ -150,7 +152,18 @@ def find_function(unit: Unit, name: str, where: str, line: int | None = None) ->
 def read_source(block: Any, folder: Path, names: Names, where: str) -> Source:
     """One ``[[code]]`` block."""
     table = as_table(block, where)
-    keys = ("name", "file", "function", "lines", "relations", "symbols", "constants", "functions", "ignored", "language")
+    keys = (
+        "name",
+        "file",
+        "function",
+        "lines",
+        "relations",
+        "symbols",
+        "constants",
+        "functions",
+        "ignored",
+        "language",
+    )
     expect_keys(table, keys, where)
     texts = {
         key: as_text(require_key(table, key, where), join_place(where, key), "a name")
@@ -202,7 +215,9 @@ def read_lines(value: Any, where: str) -> tuple[int, int]:
     """The first and the last line."""
     is_pair = isinstance(value, list) and len(value) == 2 and all(type(n) is int for n in value)
     if not is_pair or not 0 < value[0] <= value[1]:
-        raise ShapeError(f"expected the first and the last line, [12, 30]; got {quote(value)}; correct them", where=where)
+        raise ShapeError(
+            f"expected the first and the last line, [12, 30]; got {quote(value)}; correct them", where=where
+        )
     return value[0], value[1]
 
 

@@ -1,4 +1,4 @@
-"""Public bug fixes, read before and after: each mapping here is our own text, and the files lie where NAVSYM_CORPORA says.
+"""Public bug fixes, read before and after: the mappings are our own text, the files lie where NAVSYM_CORPORA says.
 
 ``python -m tests.audit.fixes FOLDER`` writes the table of docs/audit_fixes.md; FOLDER/NAME is a clone of OWNER/NAME.
 """
@@ -42,8 +42,10 @@ class Fix:
 
 
 def read_fix(path: Path) -> Fix:
-    """One mapping: ``[fix]``, an empty line, and the questions with SOURCE in the place of the file;
-    WHOLE where only the other code is restricted to lines."""
+    """One mapping: ``[fix]``, an empty line, and the questions with SOURCE in the place of the file.
+
+    WHOLE stands there where only the other code is restricted to lines.
+    """
     document = read_toml(path)
     head = document["fix"]
     kinds = dict.fromkeys(block["kind"] for block in document["question"])
