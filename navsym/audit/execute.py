@@ -409,7 +409,7 @@ class Machine(Evaluator):
             left, right = a.tree, b.tree
             if left.head == right.head == NUMBER:
                 return COMPARE[sign](left.args[0], right.args[0])
-        elif test.kind == "name":
+        elif test.kind in ("name", "index"):
             value = self.value(test)
             exact = constant_of(value)
             if exact is not None:

@@ -27,6 +27,7 @@ class Fix:
     commit     : the correction; the wrong version is its first parent
     path       : of the source
     before     : for each code the lines in the wrong version, where only some lines are read; after : in the right one
+    fault      : what was wrong: a sign, an index, a name for another, a factor, a power, ...
     entries    : the entries that the correction changed, which must be the refuted ones
     """
 
@@ -34,6 +35,7 @@ class Fix:
     repository: str
     commit: str
     path: str
+    fault: str
     entries: tuple[tuple[int, int], ...]
     before: tuple[int, ...] | None
     after: tuple[int, ...] | None
@@ -51,8 +53,8 @@ def read_fix(path: Path) -> Fix:
     kinds = dict.fromkeys(block["kind"] for block in document["question"])
     entries = tuple((int(i), int(j)) for i, j in head["entries"])
     lines = [tuple(head[key]) if key in head else None for key in ("before", "after")]
-    return Fix(path.stem, head["repository"], head["commit"], head["path"], entries, *lines, ", ".join(kinds),
-               path.read_text().partition("\n\n")[2])  # fmt: skip
+    texts = (head[key] for key in ("repository", "commit", "path", "fault"))
+    return Fix(path.stem, *texts, entries, *lines, ", ".join(kinds), path.read_text().partition("\n\n")[2])
 
 
 FIXES = [read_fix(path) for path in sorted(HERE.glob("*.toml"))]
@@ -120,10 +122,13 @@ ORDER = ("PROVED", "CERTIFIED", "OPEN", "REFUTED")
 def write_row(row: Row) -> str:
     """A line of the table."""
     fix = row.fix
-    entries = " ".join(f"{i},{j}" for i, j in fix.entries)
-    language = {".py": "Python", ".m": "MATLAB", ".c": "C"}.get(Path(fix.path).suffix, "C++")
-    cells = (fix.repository, fix.commit, fix.path, language, fix.kind, row.before, entries if row.located else "",
-             row.line, "yes" if row.mended else "", row.after, f"{row.seconds:.1f}")  # fmt: skip
+    entries = " ".join(f"{i},{j}" for i, j in fix.entries) if len(fix.entries) < 9 else f"all {len(fix.entries)}"
+    languages = {".py": "Python", ".m": "MATLAB", ".c": "C", ".h": "C"}
+    language = "C++" if 'language = "cpp"' in fix.spec else languages.get(Path(fix.path).suffix, "C++")
+    where = (entries, row.line) if row.located else ("", row.line)
+    mend, seconds = "yes" if row.mended else "", f"{row.seconds:.1f}"
+    named = (fix.repository, fix.commit, fix.path, language, fix.kind, fix.fault)
+    cells = (*named, row.before, *where, mend, row.after, seconds)
     return "| " + " | ".join(cells) + " |"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import pytest
 
@@ -19,6 +20,17 @@ OPEN = {
 def test_every_fix_stands_for_a_commit_of_its_own():
     assert len({(fix.repository, fix.commit) for fix in FIXES}) == len(FIXES) >= 40
     assert all(fix.entries and 'file = "' in fix.spec for fix in FIXES)
+
+
+def test_the_table_shows_every_fix_and_what_is_open():
+    table = (Path(__file__).parents[2] / "docs" / "audit_fixes.md").read_text()
+    rows = [line.split(" | ") for line in table.splitlines() if line.startswith("| ") and line.count(" | ") == 11]
+    shown = {(cells[0].removeprefix("| "), cells[1]): cells for cells in rows[2:]}
+    assert {*shown} == {(fix.repository, fix.commit) for fix in FIXES}
+    for fix in FIXES:
+        before, after = shown[fix.repository, fix.commit][6], shown[fix.repository, fix.commit][10]
+        assert ((before, after) != ("REFUTED", "PROVED")) == (fix.name in OPEN)
+        assert fix.fault == shown[fix.repository, fix.commit][5]
 
 
 @pytest.mark.slow
