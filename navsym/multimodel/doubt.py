@@ -50,10 +50,10 @@ def settle(estimate: Estimates, rerun: Rerun, rule: Scheme, models: Bank, z: Arr
     if work <= WORK:
         from navsym.multimodel.digits import run_in_digits
 
-        note = f"step {first}: double precision does not suffice from here on; filtered with a hundred digits"
+        note = f"step {first}: double precision does not suffice from here on; filtered with a hundred digits instead of any form"
         return replace(run_in_digits(rule, models, z, estimate.filters_run), notes=(note,))
     reason = f"two runs differ by {np.max(doubt):.1g}" if doubtful.size else "an innovation covariance is singular"
-    note = f"step {first}: double precision does not suffice from here on: {reason}; filter fewer steps"
+    note = f"step {first}: double precision does not suffice from here on: {reason}; ask for a form that keeps twice the digits (qr, ud), or filter fewer steps"
     return replace(estimate, notes=(note,))
 
 

@@ -185,7 +185,7 @@ def describe_motion(read: TrackFile, positions: Positions, settings: Settings) -
         settings.order,
         window_in_use(positions, noise, settings),
         noise,
-        np.sqrt(noise.scale * np.median(positions.variance, axis=0)),
+        np.sqrt(np.median(noise.total(positions), axis=0)),
         memory(noise, positions.variance, settings.order),
         certificate(positions, found, noise, settings),
         (*read.warnings, *remarks(positions, found, noise, settings, read.lines)),
