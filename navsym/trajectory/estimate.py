@@ -400,6 +400,7 @@ class FilterRun:
     gains: Array
     innovations: Array
     variances: Array
+    jumps: Array
     flags: Rows
 
 
@@ -412,12 +413,13 @@ def filtered(track: Positions, noise: Noise, settings: Settings, use: Rows) -> F
         gains=np.empty((3, N, n + 1)),
         innovations=np.empty((3, N)),
         variances=np.empty((3, N)),
+        jumps=np.empty((3, N)),
         flags=np.empty((N, 3), dtype=np.int64),
     )
     spread = first_spread(track, n)
     for c in range(3):
         z, r, b = track.position[:, c].copy(), noise.white(track, c), noise.coloured(track, c)
-        out = (run.states[c], run.roots[c], run.gains[c], run.innovations[c], run.variances[c])
+        out = (run.states[c], run.roots[c], run.gains[c], run.innovations[c], run.variances[c], run.jumps[c])
         flags = np.empty(N, dtype=np.int64)
         forward(track.t, z, r, b, use, noise.model(c), spread, settings.gate, *out, flags)
         run.flags[:, c] = flags
@@ -427,7 +429,7 @@ def filtered(track: Positions, noise: Noise, settings: Settings, use: Rows) -> F
 def smoothed(track: Positions, noise: Noise, run: FilterRun) -> None:
     """Replace the filtered states and roots of a run by the smoothed ones."""
     for c in range(3):
-        backward(track.t, noise.coloured(track, c), run.states[c], run.roots[c], noise.model(c))
+        backward(track.t, noise.coloured(track, c), run.jumps[c], run.states[c], run.roots[c], noise.model(c))
 
 
 def variance(run: FilterRun, i: int) -> Array:

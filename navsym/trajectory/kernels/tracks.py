@@ -12,7 +12,8 @@ position + b, the last one is b: the loops then correct by the first state alone
 
 Forward filter with bounded influence; Rauch, Tung and Striebel's smoother backwards (Maybeck, vol. 2, ch. 8).
 An innovation beyond ``gate`` standard deviations is not cut off but believed less: its variance is raised until it
-is exactly at the gate. A wild measurement then does little harm, and a manoeuvre is followed after a few steps.
+is exactly at the gate. A wild measurement then does little harm, and a manoeuvre is followed after a few steps. Where
+errors are coloured, the excess is a jump of the coloured error, which stays: a receiver that changes its satellites.
 
 Covariances are kept as upper triangular roots U, P = U^T U. The first spread of the speed may be 1e9 times the
 noise of a position; with P itself such a track loses all digits, variances of the smoother came out negative and
@@ -38,8 +39,10 @@ USED, LEFT_OUT, DOUBTED = 0, 1, 2
 
 #: Nodes and weights of Gauss and Legendre on [0, 1]: exact for the products of g at a = 0 up to six states.
 NODES, WEIGHTS = (np.polynomial.legendre.leggauss(6)[0] + 1.0) / 2.0, np.polynomial.legendre.leggauss(6)[1] / 2.0
-#: Ends of the pieces of a step, in times of forgetting: exp(-2 * 8) of the last piece is dropped.
-PIECES = np.array([2.0, 8.0, np.inf])
+#: Ends of the pieces of a step, in times of forgetting; each piece has six nodes.
+PIECES = np.array([1.5, 4.0, 8.0, np.inf])
+#: Rows that hold all nodes.
+ROWS = 24
 
 
 @njit()
@@ -80,13 +83,13 @@ def transition(dt: float, rate: float, Phi: Array, g: Array) -> None:
 
 @njit()
 def noise_root(dt: float, rate: float, rows: Array, g: Array) -> None:
-    """Write a triangular root of Q at q = 1 into the first rows of ``rows`` (18, n); g (n,) is scratch.
+    """Write a triangular root of Q at q = 1 into the first rows of ``rows`` (ROWS, n); g (n,) is scratch.
 
     Each row is a value of g by the root of its weight, so that the sum of squares loses no digits.
     """
     n, start = g.shape[0], 0.0
     rows[:] = 0.0
-    for piece in range(3):
+    for piece in range(4):
         end = min(dt, PIECES[piece] / rate) if rate > 0.0 else dt
         if end <= start:
             continue
@@ -172,7 +175,7 @@ def step_of(
 ) -> None:
     """Write Phi and root (n+1, n+1) of a step of length dt after one of length ``last``, whose motion may stay.
 
-    model : (q, rate, tau); rows (18, n) keeps the root at q = 1 from step to step, g (n,) is scratch
+    model : (q, rate, tau); rows (ROWS, n) keeps the root at q = 1 from step to step, g (n,) is scratch
     """
     n = g.shape[0]
     if dt != last:
@@ -234,6 +237,19 @@ def believed(innovation: float, S: float, gate: float) -> float:
 
 
 @njit()
+def leap(U: Array, excess: float, W: Array) -> None:
+    """U after a jump of the coloured error with variance ``excess``: the root of P + excess d d^T, d = (1, 0, ..., 1)."""
+    m = U.shape[0]
+    W[: m + 1, :m] = 0.0
+    W[:m, :m] = U
+    W[m, 0], W[m, m - 1] = np.sqrt(excess), np.sqrt(excess)
+    triangularise(W[: m + 1, :m], m)
+    for i in range(m):
+        for j in range(i, m):
+            U[i, j] = W[i, j]
+
+
+@njit()
 def forward(
     t: Array,
     z: Array,
@@ -248,6 +264,7 @@ def forward(
     gains: Array,
     innovations: Array,
     variances: Array,
+    jumps: Array,
     flags: Flags,
 ) -> None:
     """Filter one channel.
@@ -255,10 +272,11 @@ def forward(
     t, z, r, c (N,): times, measurements, variances of white and deviations of coloured errors; use (N,): zero leaves
     the measurement out; model : (q, rate, tau) ; spread (n,) : standard deviations of the first state
     gate : largest |innovation| in sigmas, 0 for none
-    states, gains (N, n+1); roots (N, n+1, n+1) of the covariances; innovations, variances, flags (N,) are filled
+    states, gains (N, n+1); roots (N, n+1, n+1) of the covariances; innovations, variances, flags (N,) are filled, and
+    jumps (N,): variances of jumps of the coloured error, to which wild innovations are put down where there is one
     """
     N, m = states.shape
-    Phi, root, W, rows = np.zeros((m, m)), np.zeros((m, m)), np.empty((2 * m, m)), np.empty((18, m - 1))
+    Phi, root, W, rows = np.zeros((m, m)), np.zeros((m, m)), np.empty((2 * m, m)), np.empty((ROWS, m - 1))
     y, U, gain, g = np.empty(m), np.empty((m, m)), np.empty(m), np.empty(m - 1)
     begin(z[0], spread, c[0], y, U)
     last = -1.0
@@ -271,11 +289,16 @@ def forward(
         before = U[0, 0] * U[0, 0]
         innovation = z[k] - y[0]
         innovations[k], variances[k], flags[k] = innovation, before + r[k], LEFT_OUT
-        gain[:] = 0.0
+        gain[:], jumps[k] = 0.0, 0.0
         if use[k]:
             S = believed(innovation, variances[k], gate)
             flags[k] = DOUBTED if variances[k] < S else USED
-            correct(y, U, gain, innovation, S, r[k] if flags[k] == USED else S - before)
+            if flags[k] == DOUBTED and c[k] > 0.0 and k > 0:
+                jumps[k] = S - variances[k]
+                leap(U, jumps[k], W)
+                correct(y, U, gain, innovation, S, r[k])
+            else:
+                correct(y, U, gain, innovation, S, r[k] if flags[k] == USED else S - before)
         gains[k], states[k], roots[k] = gain, y, U
 
 
@@ -293,7 +316,7 @@ def gain_and_rest(W: Array, back: Array) -> None:
 
 
 @njit()
-def backward(t: Array, c: Array, states: Array, roots: Array, model: Array) -> None:
+def backward(t: Array, c: Array, jumps: Array, states: Array, roots: Array, model: Array) -> None:
     """Smooth in place: states (N, n+1) and roots (N, n+1, n+1) of the filter become those given all data.
 
     Turning [[U Phi^T, U], [root of Q, 0]] into [[A, B], [0, D]] gives the gain C^T = A^-1 B, and D is a root of
@@ -302,11 +325,14 @@ def backward(t: Array, c: Array, states: Array, roots: Array, model: Array) -> N
     N, n = states.shape
     Phi, root, back = np.zeros((n, n)), np.zeros((n, n)), np.empty((n, n))
     W, V, ahead = np.empty((2 * n, 2 * n)), np.empty((2 * n, n)), np.empty(n)
-    rows, g, last = np.empty((18, n - 1)), np.empty(n - 1), -1.0
+    rows, g, last = np.empty((ROWS, n - 1)), np.empty(n - 1), -1.0
     for k in range(N - 2, -1, -1):
         dt = t[k + 1] - t[k]
         step_of(dt, last, model, c[k], c[k + 1], Phi, root, rows, g)
         last = dt
+        if jumps[k + 1] > 0.0:
+            fresh = np.sqrt(root[n - 1, 0] ** 2 + jumps[k + 1])
+            root[n - 1, 0], root[n - 1, n - 1] = fresh, fresh
         stack(roots[k], Phi, root, W)
         W[:n, n:] = roots[k]
         W[n:, n:] = 0.0
@@ -337,7 +363,7 @@ def misfit(
     """
     n = spread.shape[0]
     m = n + 1
-    Phi, root, W, rows = np.zeros((m, m)), np.zeros((m, m)), np.empty((2 * m, m)), np.empty((18, n))
+    Phi, root, W, rows = np.zeros((m, m)), np.zeros((m, m)), np.empty((2 * m, m)), np.empty((ROWS, n))
     y, U, gain, g = np.empty(m), np.empty((m, m)), np.empty(m), np.empty(n)
     begin(z[0], spread, c[0], y, U)
     logs, squares, count, seen, last = 0.0, 0.0, 0, 0, -1.0
@@ -357,5 +383,9 @@ def misfit(
             squares += innovation * innovation / S
             count += 1
         seen += 1
-        correct(y, U, gain, innovation, S, r[k] if before + r[k] == S else S - before)
+        if S > before + r[k] and c[k] > 0.0 and k > 0:
+            leap(U, S - before - r[k], W)
+            correct(y, U, gain, innovation, S, r[k])
+        else:
+            correct(y, U, gain, innovation, S, r[k] if before + r[k] == S else S - before)
     return logs, squares, count
