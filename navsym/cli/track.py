@@ -48,14 +48,7 @@ def command(
 
     with called_options("track"):
         found = nav.track(
-            file,
-            window=window,
-            order=order,
-            method=method,
-            sigma=sigma,
-            gate=gate,
-            policy=policy,
-            reference=reference,
+            file, window=window, order=order, method=method, sigma=sigma, gate=gate, policy=policy, reference=reference
         )
     if out is not None:
         found.save(out)

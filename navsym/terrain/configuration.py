@@ -140,7 +140,9 @@ def track_of(table: Mapping[str, Any], folder: Path, place: OnEarth | None) -> P
 def on_map(latitude: Array, longitude: Array, place: OnEarth | None) -> tuple[Array, Array]:
     """x and y of latitudes and longitudes in degrees; DomainError for a map that does not lie on the Earth."""
     if place is None:
-        raise DomainError("expected x and y for a map in metres; got lat and lon; use a tile in degrees, or give x and y")
+        raise DomainError(
+            "expected x and y for a map in metres; got lat and lon; use a tile in degrees, or give x and y"
+        )
     if np.abs(latitude).max(initial=0.0) > 90.0 or np.abs(longitude).max(initial=0.0) > 360.0:
         raise DomainError("expected lat within 90 and lon within 360 degrees; got larger numbers; give degrees")
     return (longitude - place.lon0) * place.per_degree[0], (latitude - place.lat0) * place.per_degree[1]

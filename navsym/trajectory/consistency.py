@@ -12,7 +12,7 @@ import csv
 import io
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,12 @@ from navsym.language.files import name_file, read_text
 LARGEST_FILE = 256 * 1024 * 1024
 #: Quantile of the normal distribution at 97.5 %.
 Z975 = 1.959963984540054
-COLUMNS = ("t", "ve", "vn", "vu")
+#: Columns of a reference; the deviations may be left out.
+COLUMNS, DEVIATIONS = ("t", "ve", "vn", "vu"), ("sd_ve", "sd_vn", "sd_vu")
+#: Shifts of the reference's clock that are tried, s.
+LAGS = np.arange(-40, 41) * 0.05
+#: A shift is named when the mean falls by this factor; interpolation between noisy rows alone may halve it.
+CLEARLY = 0.4
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +37,8 @@ class Consistency:
     """A mean of squares that is one where standard deviations hold.
 
     mean : over rows and axes; parts: of East, North, Up; band : where 95 % of such means lie, for ``worth``
-    independent squares; rows : that were compared
+    independent squares; rows : that were compared; lag : shift of the reference's clock, s, at which it fits far
+    better, and the mean there; None without one
     """
 
     mean: float
@@ -40,6 +46,7 @@ class Consistency:
     band: tuple[float, float]
     rows: int
     worth: float
+    lag: tuple[float, float] | None = None
 
     @property
     def holds(self) -> bool:
@@ -48,7 +55,11 @@ class Consistency:
 
     def document(self) -> dict[str, Any]:
         """As part of a JSON document."""
-        return {"mean": self.mean, "parts": list(self.parts), "band": list(self.band), "rows": self.rows}
+        found: dict[str, Any] = {"mean": self.mean, "parts": list(self.parts)}
+        found |= {"band": list(self.band), "rows": self.rows}
+        if self.lag is not None:
+            found["lag"] = {"seconds": self.lag[0], "mean": self.lag[1]}
+        return found
 
 
 def consistency_of(normalised: Array) -> Consistency | None:
@@ -87,26 +98,37 @@ def band(count: float) -> tuple[float, float]:
 def compare(t: Array, velocity: Array, deviation: Array, reference: str | os.PathLike[str] | Any) -> Consistency:
     """NEES of velocities (N, 3) with deviations (N, 3) at times t (N,) against a reference, interpolated linearly.
 
-    reference : file with the columns t, ve, vn, vu, or an array (M, 4) of them: seconds and m/s, increasing times
+    reference : file with the columns t, ve, vn, vu, or an array (M, 4) of them: seconds and m/s, increasing times;
+                three columns more, sd_ve, sd_vn, sd_vu, are the reference's own standard deviations
     Raises EmptyError where no row of the track lies within the times of the reference.
     """
     table, place = reference_table(reference)
-    if table.ndim != 2 or table.shape[1] != 4 or len(table) < 2:
+    if table.ndim != 2 or table.shape[1] not in (4, 7) or len(table) < 2:
         message = f"expected rows of t, ve, vn, vu; got shape {table.shape}; give two rows or more"
         raise ShapeError(message, where=place)
     if not np.isfinite(table).all() or not (np.diff(table[:, 0]) > 0).all():
         raise NotFiniteError("expected finite numbers at increasing times; got others; mend the reference", where=place)
-    inside = (t >= table[0, 0]) & (t <= table[-1, 0])
-    expected = np.stack([np.interp(t[inside], table[:, 0], table[:, c]) for c in (1, 2, 3)], axis=1)
-    found = consistency_of((velocity[inside] - expected) / deviation[inside])
+    found = consistency_of(normalised_at(0.0, t, velocity, deviation, table))
     if found is None:
         message = f"expected times from {t[0]:g} to {t[-1]:g}; got {table[0, 0]:g} to {table[-1, 0]:g}; use one clock"
         raise EmptyError(message, where=place)
-    return found
+    shifted = [normalised_at(float(lag), t, velocity, deviation, table) for lag in LAGS]
+    means = [float((errors**2).mean()) if len(errors) else math.inf for errors in shifted]
+    best = int(np.argmin(means))
+    return replace(found, lag=(float(LAGS[best]), means[best])) if means[best] < CLEARLY * found.mean else found
+
+
+def normalised_at(lag: float, t: Array, velocity: Array, deviation: Array, table: Array) -> Array:
+    """Errors over their deviations (K, 3) of the rows within the times of a reference that is ``lag`` late."""
+    inside = (t + lag >= table[0, 0]) & (t + lag <= table[-1, 0])
+    columns = [np.interp(t[inside] + lag, table[:, 0], column) for column in table[:, 1:].T]
+    own = np.stack(columns[3:], axis=1) if len(columns) > 3 else 0.0
+    error = velocity[inside] - np.stack(columns[:3], axis=1)
+    return np.asarray(error / np.sqrt(deviation[inside] ** 2 + np.square(own)))
 
 
 def reference_table(reference: Any) -> tuple[Array, str]:
-    """The numbers of a reference (M, 4), and its place in errors."""
+    """The numbers of a reference (M, 4), or (M, 7) with its deviations, and its place in errors."""
     if not isinstance(reference, str | os.PathLike):
         try:
             return np.array(reference, dtype=float), "track: reference"
@@ -118,7 +140,8 @@ def reference_table(reference: Any) -> tuple[Array, str]:
     if any(head.count(name) != 1 for name in COLUMNS):
         message = f"expected the columns {', '.join(COLUMNS)} once each; got {', '.join(head)[:99]}; name them"
         raise ShapeError(message, where=place)
+    names = (*COLUMNS, *DEVIATIONS) if all(head.count(name) == 1 for name in DEVIATIONS) else COLUMNS
     try:
-        return np.array([[float(row[head.index(name)]) for name in COLUMNS] for row in rows[1:]]), place
+        return np.array([[float(row[head.index(name)]) for name in names] for row in rows[1:]]), place
     except (ValueError, IndexError):
         raise DomainError("expected numbers in the columns t, ve, vn, vu; got others; mend them", where=place) from None

@@ -161,9 +161,7 @@ def noise_points(
         for sign in (-1.0, 1.0):
             moves = [10.0 ** (sign * np.sqrt(REACH) * root[:, axis]) for root in roots]
             factors = np.array([moves[0], moves[0], moves[1]]).T
-            moved = replace(
-                noise, scale=freeze(noise.scale * factors[0]), density=freeze(noise.density * factors[1])
-            )
+            moved = replace(noise, scale=freeze(noise.scale * factors[0]), density=freeze(noise.density * factors[1]))
             points.append(NoisePoint(1.0 / (2.0 * REACH), moved))
     return points
 
@@ -390,7 +388,7 @@ def word(used: int, flags: Rows) -> str:
 
 @dataclass(slots=True, eq=False)
 class FilterRun:
-    """Arrays of a run, channel first: states, gains (3, N, n+1), roots of covariances (3, N, n+1, n+1), flags (N, 3), ...
+    """Arrays of a run, channel first: states, gains (3, N, n+1), roots of covariances (3, N, n+1, n+1), flags (N, 3).
 
     The last state is the coloured error of the position; the first is the position with it.
     """

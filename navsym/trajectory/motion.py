@@ -150,8 +150,8 @@ def track(
     sigma  : standard deviation of positions, m; default: the file's, else that found in the track
     gate   : an innovation beyond so many standard deviations has less weight; 0 switches this off
     policy : ``strict`` refuses bad rows; ``repair`` mends or leaves them out, and lists them
-    reference : velocities to compare with, a CSV file with columns t, ve, vn, vu or an array (M, 4), s and m/s; the
-             answer then has their NEES
+    reference : velocities to compare with, a CSV file with columns t, ve, vn, vu (and sd_ve, sd_vn, sd_vu) or an array
+             (M, 4 or 7), s and m/s; the answer then has their NEES
 
     Positions go to axes fixed to the Earth. The noise of positions, white and coloured, and of a motion that may
     forget its last derivative are found by maximum likelihood; the smoother is that of Rauch, Tung and Striebel.
@@ -176,9 +176,19 @@ def track(
         found = describe_motion(read, positions, settings)
         if reference is None:
             return found
-        return replace(found, nees=compare(found.t, found.velocity, found.velocity_sd, reference))
+        return with_reference(found, reference)
     except NavsymError as error:
         raise error.at(place) from None
+
+
+def with_reference(found: Track, reference: Any) -> Track:
+    """The answer with its NEES, and a remark where the clocks seem to differ."""
+    nees = compare(found.t, found.velocity, found.velocity_sd, reference)
+    if nees.lag is None:
+        return replace(found, nees=nees)
+    side = "late" if nees.lag[0] > 0 else "early"
+    line = f"the reference fits best {abs(nees.lag[0]):.2g} s {side}, NEES {nees.lag[1]:.3g} there: check both clocks"
+    return replace(found, nees=nees, warnings=(*found.warnings, line))
 
 
 def settings_of(method: str | None, window: float | None, order: int, gate: float, sigma: float | None) -> Settings:
@@ -262,9 +272,7 @@ def remarks(track: Positions, found: TrackEstimate, noise: Noise, settings: Sett
     return out + doubts(track, found, noise, settings)
 
 
-def innovation_squares(
-    track: Positions, found: TrackEstimate, noise: Noise, settings: Settings
-) -> Consistency | None:
+def innovation_squares(track: Positions, found: TrackEstimate, noise: Noise, settings: Settings) -> Consistency | None:
     """NIS of the rows in use, of the filter without a gate that has the noise of the track."""
     use = np.array([flag != "outlier" for flag in found.flags], dtype=np.int64)
     run = filtered(track, noise, Settings("filter", settings.order, gate=0.0), use)

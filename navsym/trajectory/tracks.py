@@ -401,39 +401,71 @@ def middle_rows(track: Positions, use: Rows) -> tuple[Positions, Rows]:
 
 def search_shape(fit: Fit, scale: float, density: float) -> dict[str, float] | None:
     """The likeliest noise with a shape, or None where the plain one does."""
-    from scipy.optimize import minimize
+    region = region_of(fit, np.log10(scale), np.log10(density))
+    plain, count = fit.cost(np.log10(scale), np.log10(density)), fit.sums(scale, density, fit.gate)[2]
+    needed = region.free[2:].sum() * np.log(max(count, 2))
+    short = [region.descend(fit, simplex, ROUNDS[0]) for simplex in region.simplices]
+    best, simplex = min(short, key=lambda result: result[0])
+    if not plain - best > needed / 4:
+        return None
+    best, simplex = region.descend(fit, simplex, ROUNDS[1])
+    if not plain - best > needed:
+        return None
+    at = region.whole(simplex[0])
+    return {"scale": 10.0 ** at[0], "density": 10.0 ** at[1]} | vars_of(shape_at(at))
 
+
+#: Evaluations of the likelihood: first from each guess, then from the better end.
+ROUNDS = (150, 500)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Region:
+    """Where a shape is sought: logarithms of scale, density, colour, tau, rate, and the exponent.
+
+    free : (6,) which of them vary ; still : (6,) values of the others ; low, high : (6,) bounds
+    simplices : where the search starts, (k+1, k) each for k free ones
+    """
+
+    free: Mask
+    still: Array
+    low: Array
+    high: Array
+    simplices: list[Array]
+
+    def whole(self, point: Array) -> Array:
+        """All six of a point of the free ones, within the bounds."""
+        at = self.still.copy()
+        at[self.free] = np.clip(point, self.low[self.free], self.high[self.free])
+        return at
+
+    def descend(self, fit: Fit, simplex: Array, rounds: int) -> tuple[float, Array]:
+        """The lowest cost that a simplex finds (Nelder and Mead 1965), and the last simplex, best point first."""
+        from scipy.optimize import minimize
+
+        def cost(point: Array) -> float:
+            at = self.whole(point)
+            return cost_of_shape(fit, at) + 1e3 * float(np.abs(point - at[self.free]).sum())
+
+        options = {"xatol": 0.02, "fatol": 0.05, "maxfev": rounds, "initial_simplex": simplex}
+        found = minimize(cost, simplex[0], method="Nelder-Mead", options=options)
+        return float(found.fun), np.asarray(found.final_simplex[0])
+
+
+def region_of(fit: Fit, x: float, y: float) -> Region:
+    """Where to seek a shape when the plain noise has the logarithms x of the scale and y of the density."""
+    step, found = usual_step(fit.track.t), not fit.fixed_scale
     varied = not (fit.track.variance == fit.track.variance[:1]).all()
-    free = np.array([not fit.fixed_scale, True, not fit.fixed_scale, not fit.fixed_scale, True, varied])
-    free[5] &= not fit.fixed_scale
-    x, y, step = np.log10(scale), np.log10(density), usual_step(fit.track.t)
+    # With two states the last one is the speed, which no body forgets.
+    free = np.array([found, True, found, found, fit.order > 2, found and varied])
     low = np.array([np.log10(SMALLEST_SCALE), y - 6, COLOURS[0], np.log10(step), RATES[0], EXPONENTS[0]])
     high = np.array([max(x + 2, 4.0), y + 6, COLOURS[1], max(LONGEST_TAU, np.log10(3 * step)), RATES[1], EXPONENTS[1]])
-
-    def cost(point: Array, start: Array) -> float:
-        whole = start.copy()
-        whole[free] = point
-        outside = float((np.maximum(low - whole, 0) + np.maximum(whole - high, 0)).sum())
-        return cost_of_shape(fit, np.clip(whole, low, high)) + 1e3 * outside
-
-    results = []
+    simplices = []
     for lift, tau, rate in GUESSES:
-        start = np.array([x - lift / 3, y, x + lift / 6, np.log10(tau * step), np.log10(rate), 1.0 + lift / 10])
-        start = np.clip(start, low, high)
-        if fit.fixed_scale:
-            start[[0, 2, 5]] = x, -np.inf, 1.0
-            low[2] = -np.inf
-        simplex = np.vstack([start[free], start[free] + np.diag(np.array(FIRST_STEPS)[free])])
-        options = {"xatol": 0.02, "fatol": 0.05, "maxfev": 700, "initial_simplex": simplex}
-        found = minimize(cost, start[free], args=(start,), method="Nelder-Mead", options=options)
-        whole = start.copy()
-        whole[free] = found.x
-        results.append((float(found.fun), np.clip(whole, low, high)))
-    best, at = min(results, key=lambda result: result[0])
-    plain, count = fit.cost(float(x), float(y)), fit.sums(scale, density, fit.gate)[2]
-    if not plain - best > (free.sum() - 2 + fit.fixed_scale) * np.log(max(count, 2)):
-        return None
-    return {"scale": 10.0 ** at[0], "density": 10.0 ** at[1]} | vars_of(shape_at(at))
+        guess = np.array([x - lift / 3, y, x + lift / 6, np.log10(tau * step), np.log10(rate), 1.0 + lift / 10])
+        start = np.clip(guess, low, high)[free]
+        simplices.append(np.vstack([start, start + np.diag(np.array(FIRST_STEPS)[free])]))
+    return Region(free, np.array([x, y, -np.inf, 0.0, -np.inf, 1.0]), low, high, simplices)
 
 
 def cost_of_shape(fit: Fit, at: Array) -> float:

@@ -49,9 +49,7 @@ def test_a_gap_of_time_stamps_is_steps_without_measurements() -> None:
     for name in ("mean", "covariance", "probabilities", "log_likelihood"):
         np.testing.assert_array_equal(getattr(stamped, name), getattr(filled, name)[[0, 1, 4]])
     said = stamped.document()
-    assert said["times"] == [10, 10.5, 12] and said["remarks"] == [
-        "gap after time 10.5: 2 steps without a measurement"
-    ]
+    assert said["times"] == [10, 10.5, 12] and said["remarks"] == ["gap after time 10.5: 2 steps without a measurement"]
     closed = nav.filter({**document, "measurements": [[0.1], [3.0], [1.0]]})
     assert abs(closed.covariance[2] - stamped.covariance[2]).max() > 1e-3
 

@@ -106,10 +106,13 @@ def made_search(slope_y: float = 1.0, noise: float = 0.5, seed: int = 3) -> tupl
     x, y, error = 700 + 20 * t, 900 + 13 * t + 90 * np.sin(t / 9), np.array([60.0, -40.0, 0.5, -0.4])
     true_x, true_y = x + error[0] + error[2] * t, y + error[1] + error[3] * t
     h = bilinear(heights, true_x / 50, true_y / 50)[0] + noise * rng.normal(size=60)
-    steps = {"position": {"step": [20, 20], "half_count": [4, 4]}, "velocity": {"step": [0.5, 0.5], "half_count": [1, 1]}}
+    steps = {
+        "position": {"step": [20, 20], "half_count": [4, 4]},
+        "velocity": {"step": [0.5, 0.5], "half_count": [1, 1]},
+    }
     track = {"t": t, "x": x, "y": y, "h": h}
     place = {"heights": heights, "x0": 0, "y0": 0, "dx": 50, "dy": 50}
-    return {"map": place, "track": track, **steps}, error + [59 * error[2], 59 * error[3], 0, 0]
+    return {"map": place, "track": track, **steps}, np.add(error, [59 * error[2], 59 * error[3], 0, 0])
 
 
 def test_the_covariance_of_a_refined_fix_is_that_of_its_errors() -> None:
@@ -157,4 +160,10 @@ def edges(degrees: dict[str, float], n: int) -> dict[str, float]:
     """The outer edges of a tile of n by n cells, as matplotlib's sample has them."""
     half, size = degrees["dx"] / 2, n * degrees["dx"]
     corner = {"xmin": degrees["x0"] - half, "ymin": degrees["y0"] - half}
-    return {**corner, "xmax": corner["xmin"] + size, "ymax": corner["ymin"] + size, "dx": degrees["dx"], "dy": degrees["dy"]}
+    return {
+        **corner,
+        "xmax": corner["xmin"] + size,
+        "ymax": corner["ymin"] + size,
+        "dx": degrees["dx"],
+        "dy": degrees["dy"],
+    }

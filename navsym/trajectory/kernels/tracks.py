@@ -1,4 +1,4 @@
-"""Compiled loops for tracks: one channel, uneven times, polynomial motion with a noisy last derivative, coloured errors.
+"""Compiled loops for tracks: one channel, uneven times, a motion with a noisy last derivative, coloured errors.
 
 The motion (position, speed, acceleration, ...) has n entries. Its last one u is driven by white noise of density q and
 forgets at a rate a >= 0, du = -a u dt + dw; the others integrate it (Singer 1970; a = 0: a polynomial motion):
@@ -40,9 +40,9 @@ USED, LEFT_OUT, DOUBTED = 0, 1, 2
 #: Nodes and weights of Gauss and Legendre on [0, 1]: exact for the products of g at a = 0 up to six states.
 NODES, WEIGHTS = (np.polynomial.legendre.leggauss(6)[0] + 1.0) / 2.0, np.polynomial.legendre.leggauss(6)[1] / 2.0
 #: Ends of the pieces of a step, in times of forgetting; each piece has six nodes.
-PIECES = np.array([1.5, 4.0, 8.0, np.inf])
+PIECES = np.array([1.5, 4.0, 8.0, 16.0, np.inf])
 #: Rows that hold all nodes.
-ROWS = 24
+ROWS = 30
 
 
 @njit()
@@ -61,6 +61,8 @@ def respond(s: float, rate: float, g: Array) -> None:
         for k in range(1, 40):
             total += term
             term *= -x / (k + j)
+            if abs(term) < 1e-18 * abs(total):
+                break
         g[n - 1 - j] = total
         power *= s / (j + 1)
 
@@ -87,9 +89,8 @@ def noise_root(dt: float, rate: float, rows: Array, g: Array) -> None:
 
     Each row is a value of g by the root of its weight, so that the sum of squares loses no digits.
     """
-    n, start = g.shape[0], 0.0
-    rows[:] = 0.0
-    for piece in range(4):
+    n, start, used = g.shape[0], 0.0, 0
+    for piece in range(5):
         end = min(dt, PIECES[piece] / rate) if rate > 0.0 else dt
         if end <= start:
             continue
@@ -97,9 +98,10 @@ def noise_root(dt: float, rate: float, rows: Array, g: Array) -> None:
             respond(start + (end - start) * NODES[k], rate, g)
             weight = np.sqrt((end - start) * WEIGHTS[k])
             for i in range(n):
-                rows[6 * piece + k, i] = weight * g[i]
+                rows[used, i] = weight * g[i]
+            used += 1
         start = end
-    triangularise(rows, n)
+    triangularise(rows[:used], n)
     for i in range(n):
         rows[i, :i] = 0.0
 
@@ -238,7 +240,7 @@ def believed(innovation: float, S: float, gate: float) -> float:
 
 @njit()
 def leap(U: Array, excess: float, W: Array) -> None:
-    """U after a jump of the coloured error with variance ``excess``: the root of P + excess d d^T, d = (1, 0, ..., 1)."""
+    """U after a jump of the coloured error of variance ``excess``: a root of P + excess d d^T, d = (1, 0, ..., 1)."""
     m = U.shape[0]
     W[: m + 1, :m] = 0.0
     W[:m, :m] = U
@@ -383,7 +385,7 @@ def misfit(
             squares += innovation * innovation / S
             count += 1
         seen += 1
-        if S > before + r[k] and c[k] > 0.0 and k > 0:
+        if before + r[k] < S and c[k] > 0.0 and k > 0:
             leap(U, S - before - r[k], W)
             correct(y, U, gain, innovation, S, r[k])
         else:
