@@ -107,7 +107,7 @@ def run_with_gaps(run: Callable[..., Estimates], given: BankFile, said: dict[str
     gaps = [f"gap after time {given.times[k]:g}: {empty[k]} steps without a measurement" for k in np.flatnonzero(empty)]
     if len(gaps) > MOST_SENTENCES:
         gaps = [f"{len(gaps)} gaps, {empty.sum()} steps of {step:g} s without a measurement; the first {gaps[0]}"]
-    series = {name: arrays.freeze(getattr(found, name)[places]) for name in SERIES}
+    series: dict[str, Any] = {name: arrays.freeze(getattr(found, name)[places]) for name in SERIES}
     times = arrays.freeze(np.array(given.times, dtype=float))
     return replace(found, **series, times=times, notes=(*gaps, *found.notes))
 
