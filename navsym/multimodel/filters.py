@@ -91,7 +91,7 @@ def filter(
         else:
             document = read_json(bank) if isinstance(bank, str | os.PathLike) else bank
             given = read_bank(document, z)
-        said = {"memoryless": memoryless or given.memoryless, "missing": missing or given.missing}
+        said: dict[str, Any] = {"memoryless": memoryless or given.memoryless, "missing": missing or given.missing}
         run = functools.partial(run_filter, given.bank, method=method, depth=depth, form=form, engine=engine)
         return run(given.measurements, **said) if given.times is None else run_with_gaps(run, given, said)
     except NavsymError as error:
