@@ -35,6 +35,7 @@ def document_of_observability(answer: Observability) -> dict[str, Any]:
         "pieces": [dict(piece) for piece in answer.pieces],
         "rank_drops": [drop_data(drop) for drop in answer.rank_drops if drop.lasting],
         "rank_drops_complete": dict(answer.rank_drops_complete),
+        "rank_drops_open": {name: list(systems) for name, systems in answer.rank_drops_open.items() if systems},
         "assumptions": [f"{to_text(a)} != 0" for a in answer.joint.assumptions],
         "splits": [{"i": s.i, "j": s.j, "det_L": to_text(s.determinant)} for s in answer.splits],
         "best_split": [answer.best_split.i, answer.best_split.j] if answer.best_split else None,
@@ -92,6 +93,10 @@ def drop_data(drop: RankDrop) -> dict[str, Any]:
         "zeros": zeros,
         "complete": drop.complete,
         "excluded_by_declaration": drop.excluded,
+        "rank": drop.rank,
+        "lost_basis": text_rows(drop.directions),
+        "inside": [drop_data(inner) for inner in drop.inside],
+        "inside_complete": drop.whole,
     }
 
 
