@@ -25,7 +25,7 @@ from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
 from navsym.observability.reduction import System, components, irredundant, krylov_remainder, lies_in_ideal
 from navsym.observability.ring import Poly, Ring, is_odd
-from navsym.observability.tree import Leaf, is_covered, leaf_on, lost_columns, search_drops
+from navsym.observability.tree import SPLIT_TERMS, Leaf, is_covered, leaf_on, lost_columns, search_drops
 from navsym.prove.assumptions import is_nonzero
 
 # Determinants of chains by values at integer points.
@@ -267,7 +267,8 @@ class View:
             zeros = conditions_on(system, ring)
             if not zeros:
                 continue
-            leaf = leaf_on(system, self.rows, ring, self.motion)
+            short = sum(map(len, system)) <= SPLIT_TERMS
+            leaf = leaf_on(system, self.rows, ring, self.motion) if short else None
             if leaf is None:
                 listed.append(self.make_drop(zeros))
                 continue
@@ -381,6 +382,9 @@ def locus_of(chains: Chains, part: tuple[Chain, ...], rank: int) -> Locus:
         return Locus([], complete=False)
     systems, whole = written_drops(part, rank, motion)
     lasting, ended = kept_parts(systems, motion) if whole else ([], False)
+    listed = None if ended or motion.rates else written_by_values(chains, part, rank)
+    if listed is not None:
+        return Locus(irredundant(listed))
     left: list[System] = []
     if not ended:
         found = search_drops([chain.vectors[0] for chain in part], rank, ring, motion)
@@ -388,7 +392,7 @@ def locus_of(chains: Chains, part: tuple[Chain, ...], rank: int) -> Locus:
     if motion.rates:
         passing = [system for system in systems if not is_covered(system, lasting)]
         return Locus(lasting, passing, left, whole and not left)
-    for write in (written_by_values, written_by_minors, written_by_elimination) if left else ():
+    for write in (written_by_minors, written_by_elimination) if left else ():
         listed = write(chains, part, rank)
         if listed is not None:
             return Locus(irredundant(listed))
