@@ -19,10 +19,10 @@ from navsym.language.expression import parse, symbol
 from navsym.language.names import RESERVED, join_place, quote
 from navsym.language.values import write_entries, write_value
 from navsym.models.along import model_along_motion
-from navsym.models.certificates import rank_certificate
-from navsym.models.linear import LinearModel, linear_row, observability_matrix
+from navsym.models.linear import LinearModel, linear_row
 from navsym.models.model import Model, contents_of, file_in_errors
 from navsym.models.modelfile import ModelFile
+from navsym.observability.certificates import Certifier, list_nested
 from navsym.observability.chains import (
     JointObservability,
     MeasurementObservability,
@@ -136,11 +136,12 @@ class Observability(Answer):
         return document_of_observability(self)
 
     def certificates(self) -> list[Mapping[str, Any]]:
-        """The generic rank of the observability matrix, where a point of a few attains it."""
-        if self.kind in ("nonlinear", "pieces"):
+        """The generic rank and every rank that is left on a drop, as far as the checker grants them."""
+        if self.kind == "pieces":
             return []
-        proof = rank_certificate(observability_matrix(self.model))
-        return [] if proof is None else [proof]
+        certifier = Certifier.of(self.model)
+        listed = [certifier.certify_rank(self.joint), *map(certifier.certify_drop, list_nested(self.rank_drops))]
+        return [item for item in listed if item is not None]
 
     def latex(self) -> str:
         """The decomposition as a fragment of LaTeX, one display for each formula."""

@@ -24,7 +24,7 @@ from navsym.observability.chains import Chain, Chains, JointObservability
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
 from navsym.observability.reduction import System, components, irredundant, krylov_remainder, lies_in_ideal
-from navsym.observability.ring import Poly, Ring, is_odd
+from navsym.observability.ring import Poly, Ring, irreducible_factors, is_odd
 from navsym.observability.tree import SPLIT_TERMS, Leaf, is_covered, leaf_on, lost_columns, search_drops
 from navsym.prove.assumptions import is_nonzero
 
@@ -172,6 +172,7 @@ class RankDrop:
     directions : rows (k, n) of the directions that are shown elsewhere and lost here; none where they are long
     inside     : drops within this one, where the rank is smaller still; of the joint subspace
     whole      : True when ``inside`` is proved to hold all of them
+    leaves     : system, rank and unseen columns of its parts as polynomials, from which its certificate is made
     """
 
     subspace: str
@@ -183,6 +184,7 @@ class RankDrop:
     directions: sp.ImmutableMatrix = field(default_factory=lambda: sp.ImmutableMatrix(0, 0, []))
     inside: tuple[RankDrop, ...] = ()
     whole: bool = False
+    leaves: tuple[Leaf, ...] = ()
 
     @property
     def condition(self) -> str:
@@ -267,25 +269,36 @@ class View:
             zeros = conditions_on(system, ring)
             if not zeros:
                 continue
-            short = sum(map(len, system)) <= SPLIT_TERMS
-            leaf = leaf_on(system, self.rows, ring, self.motion) if short else None
-            if leaf is None:
+            leaves = self.leaves_on(system)
+            if not leaves:
                 listed.append(self.make_drop(zeros))
                 continue
-            lost = lost_columns(leaf, self.generic.unseen, ring) if self.generic is not None else []
-            short = lost if sum(len(entry) for column in lost for entry in column) <= DIRECTION_TERMS else []
+            lost = [
+                lost_columns(leaf, self.generic.unseen, ring) if self.generic is not None else [] for leaf in leaves
+            ]
+            sizes = [sum(len(entry) for column in columns for entry in column) for columns in lost]
+            short = lost[0] if all(columns == lost[0] for columns in lost) and sizes[0] <= DIRECTION_TERMS else []
             entries = [ring.expression(entry) for column in short for entry in column]
-            inner = search_drops(self.rows, leaf.rank, ring, self.motion, system) if depth else None
+            inner = search_drops(self.rows, leaves[0].rank, ring, self.motion, system) if depth else None
             listed.append(
                 self.make_drop(
                     zeros,
-                    rank=leaf.rank,
+                    rank=leaves[0].rank,
                     directions=sp.ImmutableMatrix(len(short), self.motion.size, entries),
                     inside=tuple(self.list_drops([x.system for x in inner.drops], depth - 1)) if inner else (),
                     whole=inner is not None and not inner.open,
+                    leaves=leaves,
                 )
             )
         return listed
+
+    def leaves_on(self, system: System) -> tuple[Leaf, ...]:
+        """What is shown on a system, on both of its parts where it joins half angles; none where it was not found."""
+        ring, long = self.motion.ring, sum(map(len, system)) > SPLIT_TERMS
+        parts = [[f] for f in irreducible_factors(system[0])] if len(system) == 1 and not long else [system]
+        found = [leaf_on(part, self.rows, ring, self.motion) for part in ([] if long else parts)]
+        leaves = tuple(leaf for leaf in found if leaf is not None)
+        return leaves if len(leaves) == len(parts) and len({leaf.rank for leaf in leaves}) == 1 else ()
 
 
 def conditions_on(system: System, ring: Ring) -> tuple[sp.Expr, ...]:

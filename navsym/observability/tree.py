@@ -19,6 +19,7 @@ import heapq
 import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from flint import Ordering, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
@@ -324,7 +325,7 @@ def saturate(system: System, unit: Poly, ring: Ring) -> System:
     def lift(f: Poly, power: int = 0) -> Poly:
         return wider.from_dict({(power, *map(int, powers)): int(c) for powers, c in f.to_dict().items()})
 
-    generators = fmpz_mpoly_vec([*map(lift, system), wider.constant(1) - lift(unit, 1)], wider)
+    generators: Any = fmpz_mpoly_vec([*map(lift, system), wider.constant(1) - lift(unit, 1)], wider)
     basis, done = generators.buchberger_naive(limits=SATURATION)
     if not done:
         raise TooLargeError("expected systems that can be written; got too many terms; fix some parameters")
