@@ -658,7 +658,7 @@ def check_observability(item: Any) -> None:
     )
     left = list_remainders(A, rows, N, z, places)
     factors = read_matrix(shares, len(z), names, Exact) if z else [[]] * len(left)
-    require(len(A) == n and len(factors) == len(left), "expected a square matrix, and factors for every remainder")
+    require(len(factors) == len(left), "expected factors for every remainder")
     for value, row in zip(left, factors, strict=True):
         rest = sum((q.parts[0] * x * -1 for q, (x, _) in zip(row, z, strict=True)), value)
         require(rest.is_zero(), "a direction that is seen, or zeros that do not stay")

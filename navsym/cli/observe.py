@@ -109,13 +109,10 @@ def pieces_text(pieces: Sequence[Mapping[str, Any]], n: int) -> list[str]:
 
 def drops_text(data: Mapping[str, Any]) -> str:
     """Where a dimension drops, and for which subspaces the list of such places is proved complete."""
+    heads = ["rank drops of", "where", "to", "list complete", "checker"]
     blocks = ["no rank drops found\n"]
     if data["rank_drops"]:
-        blocks = [
-            table(
-                ["rank drops of", "where", "to", "list complete", "checker"], [drop_row(d) for d in data["rank_drops"]]
-            )
-        ]
+        blocks = [table(heads, [drop_row(d) for d in data["rank_drops"]])]
     instant = data["instant"]
     if instant and instant["rank_drops"]:
         blocks.append(table([f"at an instant, {heads[0]}", *heads[1:]], [drop_row(d) for d in instant["rank_drops"]]))
