@@ -40,6 +40,8 @@ MOST_CASES = 64
 INDEX = re.compile(r"(.*?)((?:\s*[\[(][\d\s,]+[\])])*)", re.DOTALL)
 MATRIX_KEYS = ("F", "G", "H", "Q", "R")
 
+#: What is said about a question in a workspace, as about a claim.
+NOTES = ("title", "expect", "corrects", "reason")
 #: The keys of each kind of question.
 KINDS = {
     "jacobian": ("of", "by", "is"),
@@ -93,7 +95,7 @@ def read_question(block: Any, sources: Mapping[str, Source], names: Names, folde
     if kind not in KINDS:
         message = f"expected one of {' '.join(KINDS)}; got {quote(kind)}; correct it: {suggest_nearest(kind, KINDS)}"
         raise ExpressionSyntaxError(message, where=join_place(where, "kind"))
-    expect_keys(table, ("name", "kind", *KINDS[kind]), where)
+    expect_keys(table, ("name", "kind", *NOTES, *KINDS[kind]), where)
     for key in KINDS[kind] if kind != "model" else ("file",):
         require_key(table, key, where)
     name = as_title(table.get("name", kind), join_place(where, "name"))

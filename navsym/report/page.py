@@ -94,6 +94,14 @@ def truth_words(text: str) -> str:
 
 
 TEMPLATES = Path(__file__).parent / "templates"
+#: What stands over the first side of a claim, and before its reason.
+KINDS = {
+    "printed": "printed",
+    "beside": "printed, in words",
+    "remark": "a remark of ours",
+    "beyond": "beyond the paper",
+}
+WHOSE = {"paper": "Slip of the paper", "scan": "Slip of the scan", "undecidable": "Slip of the paper or of the scan"}
 MARKS = {"PROVED": "✓", "CERTIFIED": "◎", "CONFIRMED": "≈", "REFUTED": "✗", "OPEN": "?"}
 MEANINGS = {
     "PROVED": "exact algebra decides it on the whole stated scope",
@@ -174,7 +182,7 @@ def pages(
     ``.tex``, ``index.html``.
     """
     words, env, papers = words or {}, environment(), []
-    shared = {"marks": MARKS, "meanings": MEANINGS, "copy_mark": COPY_MARK}
+    shared = {"marks": MARKS, "meanings": MEANINGS, "copy_mark": COPY_MARK, "kinds": KINDS, "whose": WHOSE}
     yield from certificate_files(ledger.claims).items()
     yield "verdicts.json", json.dumps(ledger.document(), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
     for summary in ledger.papers:
@@ -248,8 +256,10 @@ def equation_cell(card: Paper, equation: str, records: Sequence[Record]) -> Cell
     """The worst verdict on an equation; ``copy`` for damage of the copy, ``definition`` or ``missing`` without any."""
     found = records_about(equation, card.equations, records)
     if not found:
-        kind = "definition" if equation in card.definitions else "missing"
-        words = card.definitions.get(equation, "neither claimed nor listed as a definition")
+        beside = any(equation_of(record.number, card.equations) == equation for record in records)
+        kind = "definition" if equation in card.definitions or beside else "missing"
+        other = "only sentences beside it are claimed" if beside else "neither claimed nor listed as a definition"
+        words = card.definitions.get(equation, other)
         return Cell(equation, kind, "·" if kind == "definition" else "!", f"{kind}: {words}", "")
     worst = found[0]
     many = f"{len(found)} claims, the worst " if len(found) > 1 else ""
