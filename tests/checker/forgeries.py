@@ -194,7 +194,7 @@ FORGERIES = [
     (SIGNED, ["kind"], "touch", "wrong sign"),
     (TOUCH, ["parameter"], "", "expected names"),
     (STILL, ["shares", 4], ["0"], "a direction that is seen"),
-    (STILL, ["shares", 4], ["1/r"], "division by zero"),
+    (STILL, ["shares", 4], ["r/r"], "division by zero"),
     (STILL, ["shares"], [["0"], ["0"], ["0"], ["0"]], "factors for every"),
     (STILL, ["point", "r"], "1", "zeros do not vanish"),
     (STILL, ["point"], {"r": "0"}, "point of all symbols"),
