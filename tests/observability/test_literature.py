@@ -60,8 +60,16 @@ EXAMPLES = [
     # Holmberg 1982: Monod's growth; without the substrate its unit is free
     ("Monod, both", "x s m K d Y", "m*x*s/(K + s) - d*x; -m*x*s/(Y*(K + s)); 0; 0; 0; 0", "x; s", 6, {}),
     ("Monod, biomass", "x s m K d Y", "m*x*s/(K + s) - d*x; -m*x*s/(Y*(K + s)); 0; 0; 0; 0", "x", 5, {}),
-    # Bergman et al. 1979: the minimal model of glucose, with insulin known
-    ("minimal model", "G X p q r B", "-(p + X)*G + p*B; -q*X + r*u; 0; 0; 0; 0", "G", 6, {"u": "nonzero"}),
+    # Bergman et al. 1979: the minimal model of glucose, with insulin known; at a steady level p + X is all that is seen
+    (
+        "minimal model",
+        "G X p q r B",
+        "-(p + X)*G + p*B; -q*X + r*u; 0; 0; 0; 0",
+        "G",
+        6,
+        {"u": "nonzero", "k": "positive", "rates": {"u": "-k*u"}},
+    ),
+    ("minimal model, steady", "G X p q r B", "-(p + X)*G + p*B; -q*X + r*u; 0; 0; 0; 0", "G", 5, {"u": "nonzero"}),
     # Godfrey 1983: a constant supply into an unknown volume
     ("supply and volume", "x a k V", "a - k*x; 0; 0; 0", "x/V", 3, {}),
     # Ljung and Glad 1994: a pendulum shows gravity over length only
