@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import re
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +15,8 @@ from navsym import checker
 PAGE = (Path(__file__).parents[2] / "docs" / "certificates.md").read_text(encoding="utf-8")
 BLOCKS = [checker.load(body) for body in re.findall(r"^```json\n(.*?)^```$", PAGE, re.M | re.S)]
 HONEST = [block for block in BLOCKS if isinstance(block, dict)]
-FORGED: list[tuple[Any, dict[str, str]]] = []
-for block in BLOCKS:
-    honest = block if isinstance(block, dict) else honest
-    FORGED += [(honest, row) for row in block if isinstance(block, list)]
+OWNERS = accumulate(BLOCKS, lambda before, block: block if isinstance(block, dict) else before)
+FORGED = [(item, row) for item, block in zip(OWNERS, BLOCKS, strict=True) if isinstance(block, list) for row in block]
 
 
 def put(item: Any, pointer: str, value: Any) -> Any:
