@@ -51,3 +51,11 @@ def test_a_forgery_of_the_page_is_refused_for_its_reason(item, row):
     assert set(row) == {"at", "put", "refused"}
     said = answer(put(item, row["at"], row["put"]))
     assert said.startswith("refused: ") and re.search(row["refused"], said), said
+
+
+def test_every_kind_and_every_rule_has_an_example_and_a_forgery():
+    shown = " ".join(map(str, HONEST))
+    assert [kind for kind in checker.KINDS if f"'kind': '{kind}'" not in shown] == []
+    assert [rule for rule in checker.RULES if f"'rule': '{rule}'" not in shown] == []
+    assert [key for key in (*checker.KINDS, *checker.RULES) if f"`{key}`" not in PAGE] == []
+    assert [item["kind"] for item in HONEST if not any(own is item for own, _ in FORGED)] == []
