@@ -3691,7 +3691,8 @@ def grant(statement: Any, item: Any) -> str:
     require(isinstance(parts, list) and all(isinstance(part, dict) for part in parts), "expected certificates")
     own = [part.get("statement") for part in parts]
     refuting = [part for part in parts if part.get("kind") in ("counterexample", "sized") or part.get("outside") == 1]
-    known = all(part.get("kind") in ("proof", "counterexample", "condition", "words", "sized") for part in parts)
+    kinds = ("proof", "counterexample", "condition", "observability", "words", "sized")
+    known = all(part.get("kind") in kinds for part in parts)
     require(known and own == ([own[0]] if refuting else statements), "the certificate of another statement")
     require(all(text in statements for text in own), "the certificate of another statement")
     check(item)
