@@ -636,6 +636,78 @@ def check_rank(item: Any) -> None:
         require(dot(row, v).parts[0].is_zero(), "M v does not vanish")
 
 
+def check_observability(item: Any) -> None:
+    """The rows H, D H, D D H, ... have rank r at the point, and at most r where the zeros vanish around it.
+
+    D a = a' + a F, where ' is the derivative along the motion: symbols have rates, and zeros stay zero. Theorem
+    (Hermann and Krener, 1977): let N have n - r columns with H N = 0 and F N - N' = N M where the zeros vanish. Then
+    a N = 0 gives (D a) N = (a N)' + a (F N - N') = 0, so that no row sees N. What is a sum of zeros with factors
+    vanishes with them, around a point where all that is typed has a value and is smooth.
+    """
+    _, statement, *parts = read_fields(item, "kind statement point order free null shares bits")
+    F, H, rates, zeros, r = read_fields(statement, "F H rates zeros rank")
+    point, order, free, null, shares, bits = parts
+    n, names = read_integer(len(F), 1, 100), make_symbols([*point])
+    places = read_list(free, lambda k: read_integer(k, 0, n - 1), n - read_integer(r, 0, n))
+    require(set(rates) <= set(names) and len(null) == len(places), "expected a point of all symbols, n - r vectors")
+    slopes = {x: evaluate(parse(rate), names, Exact).parts[0] for x, rate in rates.items()}
+    moving = names | {x: Jet(*names[x].parts, slope) for x, slope in slopes.items()}
+    A, rows, N, (z,) = (
+        [[(Exact(e.parts[0]), Exact([*e.parts, 0][1])) for e in row] for row in read_matrix(part, size, moving, Exact)]
+        for part, size in ((F, n), (H, n), (null, n), ([zeros], len(zeros)))
+    )
+    left = list_remainders(A, rows, N, z, places)
+    factors = read_matrix(shares, len(z), names, Exact) if z else [[]] * len(left)
+    require(len(factors) == len(left), "expected factors for every remainder")
+    for value, row in zip(left, factors, strict=True):
+        rest = sum((q.parts[0] * x * -1 for q, (x, _) in zip(row, z, strict=True)), value)
+        require(rest.is_zero(), "a direction that is seen, or zeros that do not stay")
+    here = {x: evaluate(parse(text), {}, Exact) for x, text in point.items()}
+    require(all(e.parts[0].is_zero() for e in read_matrix([zeros], len(z), here, Exact)[0]), "the zeros do not vanish")
+    ctx.prec, ctx.cap = read_integer(bits, 53, 20000), read_integer(order, 1, 100) + 1
+    series = follow_motion(point, rates, order)
+    read_series([zeros, *(shares if z else [])], len(z), series)
+    V, a, G = read_series(null, n, series), read_series(H, n, series), read_series(F, n, series)
+    require(not any(v[k][0].contains(0) for v, k in zip(V, places, strict=True)), "a pivot that may be zero")
+    columns, seen = [*zip(*G, strict=True)], [*a]
+    for _ in range(order - 1):
+        a = [[x.derivative() + sum(map(mul, row, g)) for x, g in zip(row, columns, strict=True)] for row in a]
+        seen += a
+    whole = arb_mat([[x[0] for x in row] for row in (*seen, *V)])
+    require((whole.transpose() * whole).det() > 0, "the rank may be smaller at the point")
+
+
+def list_remainders(A: Any, rows: Any, N: Any, z: Any, places: list[int]) -> list[Exact]:
+    """z', H N and F N - N' - N M of numbers (value, slope), which have to vanish with the zeros.
+
+    N is diagonal in its places, where F N - N' = N M therefore gives M.
+    """
+    left = [slope for _, slope in z]
+    left += [sum((a * b for (a, _), (b, _) in zip(h, v, strict=True)), Exact(0)) for h, v in product(rows, N)]
+    for v in N:
+        flow = [sum((a * b for (a, _), (b, _) in zip(row, v, strict=True)), Exact(0)) for row in A]
+        flow = [x + slope * -1 for x, (_, slope) in zip(flow, v, strict=True)]
+        shares = [flow[k] * u[k][0] ** fmpq(-1) for k, u in zip(places, N, strict=True)]
+        left += [sum((m * u[i][0] * -1 for m, u in zip(shares, N, strict=True)), flow[i]) for i in range(len(flow))]
+    for (j, v), (k, _) in product(enumerate(N), enumerate(places)):
+        require(j == k or not v[places[k]][0].terms, "the vectors are not diagonal in the free places")
+    return left
+
+
+def follow_motion(point: dict[str, Any], rates: dict[str, Any], order: int) -> dict[str, Jet]:
+    """The symbols along the motion from a point, as series of the time, by Picard's iteration."""
+    start = {x: arb_series([*evaluate(parse(text), {}, arb).parts]) for x, text in point.items()}
+    series = {x: Jet(value) for x, value in start.items()}
+    for _ in range(order if rates else 0):
+        values = {x: arb_series(evaluate(parse(rate), series, arb).parts[0]) for x, rate in rates.items()}
+        series |= {x: Jet(start[x] + value.integral()) for x, value in values.items()}
+    return series
+
+
+def read_series(rows: Any, columns: int, series: dict[str, Jet]) -> list[list[arb_series]]:
+    return [[arb_series(e.parts[0]) for e in row] for row in read_matrix(rows, columns, series, arb)]
+
+
 def check_condition(item: Any) -> None:
     """The condition number of a matrix N, or of N with columns of unit length, lies between two numbers; or outside.
 
@@ -3628,8 +3700,8 @@ def grant(statement: Any, item: Any) -> str:
 
 # -- 11. The entry -----------------------------------------------------------------------------------------------------
 EVERY_CHECK: tuple[Callable[[Any], None], ...] = (
-    check_identity, check_exponential, check_rank, check_condition, check_positivity, check_all, check_gap, check_touch,
-    check_proof, check_counterexample, check_words, check_sized,
+    check_identity, check_exponential, check_rank, check_observability, check_condition, check_positivity, check_all,
+    check_gap, check_touch, check_proof, check_counterexample, check_words, check_sized,
 )  # fmt: skip
 KINDS = {check.__name__.removeprefix("check_"): check for check in EVERY_CHECK}
 KINDS |= {"sliver": check_gap, "range": check_touch}

@@ -129,7 +129,7 @@ class Machine(Evaluator):
         self.reading.refused_spans.add(statement.span)
         targets: set[str] = set()
         for part in walk(statement):
-            if part.kind == "assign":
+            if part.kind == "assign" and not (part is statement and self.lose_entries(part, unread)):
                 targets.add(self.root_name(part.parts[0]))
             elif part.kind in ("declare", "for"):
                 targets.add(part.parts[0])
@@ -149,6 +149,18 @@ class Machine(Evaluator):
                 self.lose_members(name, unread)
         if any(part.kind == "return" for part in walk(statement)):
             self.stop(unread)
+
+    def lose_entries(self, statement: Part, unread: Unread) -> bool:
+        """True where an assignment that is not read can only write known entries, which are unread now."""
+        try:
+            variable, places, _ = self.targets(statement.parts[0])
+        except Unreadable:
+            return False
+        if statement.parts[0].kind == "name" or variable.all_unread is not None:
+            return False
+        for place in places:
+            self.write_cell(variable, place, unread, statement)
+        return True
 
     def lose_members(self, name: str, unread: Unread) -> None:
         """The members of a structure that may have been written as a whole."""
@@ -231,6 +243,8 @@ class Machine(Evaluator):
         result = self.value(value)
         if sign:
             result = self.combine(sign, self.value(target), result, statement.line)
+        if target.kind == "name" and self.member_of_array(target) is not None:
+            raise Unreadable(statement.line, "a member of an array as a target")
         if target.kind == "name":
             variable = self.variable(target.parts[0])
             if isinstance(result, Array) and variable.shape in (None, ()) and not variable.is_input:
@@ -324,7 +338,15 @@ class Machine(Evaluator):
             raise Returning(None)
         if self.unit.language == "python" and value.kind == "list":
             raise Returning(self.returned_tuple(value))
-        raise Returning(self.value(value))
+        try:
+            raise Returning(self.value(value))
+        except Unreadable as refusal:
+            if any(part.kind in ("call", "method") and not self.is_plain(part) for part in walk(value)):
+                raise
+            unread = Unread(refusal.line or statement.line, refusal.why)  # the end is known, the value is not
+            self.reading.refused.setdefault(unread.line, unread.why)
+            self.reading.refused_spans.add(statement.span)
+            raise Returning(unread) from None
 
     def returned_tuple(self, value: Part) -> Value:
         """A tuple: numbers as an array; arrays by their names only."""
@@ -340,7 +362,7 @@ class Machine(Evaluator):
             if name in ("setZero", "zero", "setIdentity", "identity", "fill", "setAll"):
                 self.reset(base, name, arguments, statement)
                 return
-        elif call.kind == "call" and call.parts[0] in HARMLESS:
+        elif call.kind == "call" and (call.parts[0] in HARMLESS or call.parts[0] in self.unit.ignored):
             return
         elif call.kind == "call" and call.parts[0] == "memset":
             self.reset(call.parts[1][0], "memset", call.parts[1][1:2], statement)
@@ -387,7 +409,7 @@ class Machine(Evaluator):
             left, right = a.tree, b.tree
             if left.head == right.head == NUMBER:
                 return COMPARE[sign](left.args[0], right.args[0])
-        elif test.kind == "name":
+        elif test.kind in ("name", "index"):
             value = self.value(test)
             exact = constant_of(value)
             if exact is not None:
