@@ -115,7 +115,8 @@ PROPERTIES = [
     )
 ]  # fmt: skip
 POWERS = sized(
-    state("abs(x)*x**y*A", "2*x*x**y*A", symbols={"x": REAL, "y": REAL}, A=SQUARE), at(A=A, numbers={"x": "2", "y": "3"})
+    state("abs(x)*x**y*A", "2*x*x**y*A", symbols={"x": REAL, "y": REAL}, A=SQUARE),
+    at(A=A, numbers={"x": "2", "y": "3"}),
 )
 TRUE = [
     POWERS, DIFFERENCE, TRACE, TRACED, LINE, SCALED, DIVIDED, ORTHOGONAL, PUSHED, ONE_SIDED, NUMBER, UNITS, RANK_ONE,
