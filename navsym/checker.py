@@ -1618,7 +1618,8 @@ class Formula(Parser):
             require(by is None, "expected dot_ of 1 argument")
             self.reader.need(*(t for entry in list_entries(x) for t in (entry, *smoothness(entry))))
             return change_entries(self.reader.differentiate_by_time, x)
-        require(by is not None and not isinstance(by, Matrix) and by[0] == "symbol", "expected a symbol behind diff")
+        is_symbol = by is not None and not isinstance(by, Matrix) and by[0] == "symbol" and not is_asked(by)
+        require(is_symbol, "expected a symbol behind diff")
         require(read_size(times) <= 8, "a derivative of a high order")
         return reduce(lambda y, _: self.reader.differentiate(y, by[1]), range(read_size(times)), x)  # type: ignore[index]
 
@@ -2863,6 +2864,8 @@ def answer_limit(entry: Any, q: Question, goal: Goal) -> Term:
     near = [(r if r == "!=" else ">", derive(t, k)) for (r, t), k in zip(places, orders, strict=True)]
     value, divisor = derive(N, n), derive(D, n)
     analytic = (*(derive(t, 0) for t in (N, D, *(t for _, t in places))), *(t for _, t in near), value, divisor)
+    # An exponent may become rational at a, and b**q exists for b <= 0, too; N and D exist near a where b > 0.
+    analytic += tuple(substitute(t, {name: a}) for t in (*smoothness(N), *smoothness(D)))
     prove_defined(defined, goal, *analytic, level=2)
     prove_all(pole, [goal._replace(term=t, relation=r) for r, t in (*near, ("!=", divisor))])
     prove_all(zeros, [goal._replace(term=derive(t, k), relation="=") for k in range(n) for t in (N, D)])
@@ -3557,7 +3560,8 @@ class Sized(Algebra):
         require(isinstance(sizes, dict) and set(sizes) == set(self.dimensions), "the point gives every dimension")
         self.sizes = {name: read_integer(size, 1, MOST_SIZE) for name, size in sizes.items()}
         own = {name: limit for name, limit in self.box.items() if name not in sizes}
-        self.names |= {name: number(size) for name, size in self.sizes.items()} | read_point(numbers, own)
+        self.place = {name: number(size) for name, size in self.sizes.items()} | read_point(numbers, own)
+        self.balls = {name: evaluate(value, {}, arb) for name, value in self.place.items()}
 
     def make_letter(self, name: str, rows: Any, columns: Any, words: list[str]) -> Any:
         require(isinstance(self.matrices, dict) and name in self.matrices, "the point gives every matrix")
@@ -3578,8 +3582,8 @@ class Sized(Algebra):
 
     def value_of(self, term: Term) -> fmpq:
         """A rational number; where it is none, nothing is shown."""
-        q = constant_of(term)
-        require(q is not None and value_of(term, {}).is_finite(), "no rational number")
+        q = constant_of(substitute(term, self.place))
+        require(q is not None and value_of(term, self.balls).is_finite(), "no rational number")
         return q  # type: ignore[return-value]
 
     def trace(self, body: Any, rows: Any) -> Term:
@@ -3687,7 +3691,8 @@ def grant(statement: Any, item: Any) -> str:
     require(isinstance(parts, list) and all(isinstance(part, dict) for part in parts), "expected certificates")
     own = [part.get("statement") for part in parts]
     refuting = [part for part in parts if part.get("kind") in ("counterexample", "sized") or part.get("outside") == 1]
-    known = all(part.get("kind") in ("proof", "counterexample", "condition", "words", "sized") for part in parts)
+    kinds = ("proof", "counterexample", "condition", "observability", "words", "sized")
+    known = all(part.get("kind") in kinds for part in parts)
     require(known and own == ([own[0]] if refuting else statements), "the certificate of another statement")
     require(all(text in statements for text in own), "the certificate of another statement")
     check(item)

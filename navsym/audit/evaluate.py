@@ -411,6 +411,7 @@ class Evaluator:
             base.cells.setdefault(place, self.read(base, place, value.line))
             view = Variable(name, base.number, ())
             view.cells = CellView(base, place)
+            view.views.append(base)  # a write that is not read loses the whole of it: a pointer may be moved
             return view
         raise Unreadable(statement.line, "a reference or pointer to what is no variable")
 

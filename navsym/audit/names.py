@@ -44,6 +44,13 @@ class Names:
             self.spellings.setdefault(self.symbols[key], spelling)
         return build_symbol(self.symbols[key])
 
+    def twin(self, symbol: Tree) -> Tree:
+        """Another symbol of the same range, which is shown as ``x'``."""
+        name = symbol.args[0]
+        twin = self.symbol(f"{self.spellings.get(name, name)}'")
+        self.declarations[twin.args[0]] = self.declarations[name]
+        return twin
+
     def enter(self, key: str, name: str) -> None:
         """A spelling with its symbol, real unless it is declared."""
         self.symbols[key] = name

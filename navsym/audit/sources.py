@@ -84,7 +84,7 @@ class Source:
             shape = tuple(sizes) if len(sizes) == len(argument.shape) else None
         if shape:
             return [self.symbol(spell_entry(self.unit, key, place)) for place in places_of(shape)]
-        if key not in self.names.symbols:
+        if key not in self.names.symbols and key not in self.names.inputs:
             listed = [*self.names.symbols]
             message = (
                 f"expected an input that {self.function.name} reads; got {quote(reference)}; "

@@ -26,6 +26,7 @@ from navsym.report.formula.latex import sentence_html, sentence_latex
 from navsym.report.formula.sides import Formula, coordinates, formula, only_truth
 from navsym.report.names import latex_escape
 from navsym.report.plots import refutation_svg
+from navsym.report.trust import backing_words, trust_of
 from navsym.report.wording import Words
 from navsym.verification.ledger import Ledger, is_only_in_the_copy, records_about, sort_records
 
@@ -128,6 +129,7 @@ class ClaimView:
     correction: ClaimLink | None
     corrects: ClaimLink | None
     certificates: tuple[str, ...]
+    backing: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +181,7 @@ def pages(
     progress : called with the id of each claim that is set in type
 
     Files: ``certificates/*.json``, ``verdicts.json``, ``MODULE.html``, ``MODULE.erratum.html`` and
-    ``.tex``, ``index.html``.
+    ``.tex``, ``trust.html``, ``index.html``.
     """
     words, env, papers = words or {}, environment(), []
     shared = {"marks": MARKS, "meanings": MEANINGS, "copy_mark": COPY_MARK, "kinds": KINDS, "whose": WHOSE}
@@ -193,6 +195,8 @@ def pages(
         yield f"{paper.file}.html", env.get_template("paper.html").render(shared, paper=paper)
         yield f"{paper.file}.erratum.html", env.get_template("erratum.html").render(shared, paper=paper)
         yield f"{paper.file}.erratum.tex", env.get_template("erratum.tex").render(paper=paper)
+    places = {claim.record.id: f"{paper.file}.html#{claim.anchor}" for paper in papers for claim in paper.claims}
+    yield "trust.html", env.get_template("trust.html").render(shared, trust=trust_of(ledger), places=places)
     papers.sort(key=lambda paper: not paper.erratum.entries)  # those with something to correct come first
     yield "index.html", env.get_template("index.html").render(shared, papers=papers, total=total(papers))
 
@@ -298,6 +302,7 @@ def claim_view(record: Record, correction: Record | None, corrected: Record | No
         correction=link(correction),
         corrects=link(corrected),
         certificates=tuple(name for name, _ in certificates_by_file(record)),
+        backing=backing_words(record),
     )
 
 

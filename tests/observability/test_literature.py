@@ -21,7 +21,6 @@ QUATERNION = [
 GRAVITY = ["2*(q1*q3 - q0*q2)", "2*(q2*q3 + q0*q1)", "q0**2 - q1**2 - q2**2 + q3**2"]
 NORTH = ["q0**2 + q1**2 - q2**2 - q3**2", "2*(q1*q2 - q0*q3)", "2*(q1*q3 + q0*q2)"]
 RATES = {"w1": REAL, "w2": REAL, "w3": REAL}
-MOVING = {"u": REAL, "e": "nonzero", "rates": {"u": "e"}}
 UNIT = {"relations": ["q0**2 + q1**2 + q2**2 + q3**2 = 1"]}
 
 #: name and source, states, dynamics, measurements, rank, further arguments of the model
@@ -61,9 +60,16 @@ EXAMPLES = [
     # Holmberg 1982: Monod's growth; without the substrate its unit is free
     ("Monod, both", "x s m K d Y", "m*x*s/(K + s) - d*x; -m*x*s/(Y*(K + s)); 0; 0; 0; 0", "x; s", 6, {}),
     ("Monod, biomass", "x s m K d Y", "m*x*s/(K + s) - d*x; -m*x*s/(Y*(K + s)); 0; 0; 0; 0", "x", 5, {}),
-    # Bergman et al. 1979: the minimal model of glucose needs insulin that changes
-    ("minimal model, held", "G X p q r B", "-(p + X)*G + p*B; -q*X + r*u; 0; 0; 0; 0", "G", 5, {"u": "nonzero"}),
-    ("minimal model", "G X p q r B", "-(p + X)*G + p*B; -q*X + r*u; 0; 0; 0; 0", "G", 6, MOVING),
+    # Bergman et al. 1979: the minimal model of glucose, with insulin known; at a steady level p + X is all that is seen
+    (
+        "minimal model",
+        "G X p q r B",
+        "-(p + X)*G + p*B; -q*X + r*u; 0; 0; 0; 0",
+        "G",
+        6,
+        {"u": "nonzero", "k": "positive", "rates": {"u": "-k*u"}},
+    ),
+    ("minimal model, steady", "G X p q r B", "-(p + X)*G + p*B; -q*X + r*u; 0; 0; 0; 0", "G", 5, {"u": "nonzero"}),
     # Godfrey 1983: a constant supply into an unknown volume
     ("supply and volume", "x a k V", "a - k*x; 0; 0; 0", "x/V", 3, {}),
     # Ljung and Glad 1994: a pendulum shows gravity over length only
