@@ -32,6 +32,8 @@ from navsym.observability.ring import Poly, Ring, irreducible_factors
 
 #: Nodes looked at, terms of a row, and terms of an entry to split on; what lies beyond is listed as open.
 NODES, TERMS, SPLIT_TERMS = 120, 2000, 120
+#: Nodes of a model that moves, whose rows get long.
+MOVING_NODES = 24
 #: Points at which the sign of a condition is looked at.
 TRIALS = 200
 #: Equations added when a condition is to hold along a motion, and terms of them.
@@ -164,12 +166,13 @@ class Tree:
     def search(self) -> Cases:
         """All leaves, or as many as the limits allow."""
         visited = 0
+        most = MOVING_NODES if self.motion is not None and self.motion.rates else NODES
         while self.heap:
             node = heapq.heappop(self.heap)[2]
             if any(all(lies_in_ideal(f, node.system) for f in leaf.system) for leaf in self.drops):
                 continue
             visited += 1
-            if visited > NODES:
+            if visited > most:
                 self.open.append(node.system)
                 continue
             try:
