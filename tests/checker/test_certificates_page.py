@@ -14,7 +14,7 @@ from navsym import checker
 
 PAGE = (Path(__file__).parents[2] / "docs" / "certificates.md").read_text(encoding="utf-8")
 BLOCKS = [checker.load(body) for body in re.findall(r"^```json\n(.*?)^```$", PAGE, re.M | re.S)]
-GRANTED = ("proof", "counterexample", "condition", "words", "sized")
+GRANTED = ("proof", "counterexample", "condition", "observability", "words", "sized")
 HONEST = [block for block in BLOCKS if isinstance(block, dict)]
 OWNERS = accumulate(BLOCKS, lambda before, block: block if isinstance(block, dict) else before)
 FORGED = [(item, row) for item, block in zip(OWNERS, BLOCKS, strict=True) if isinstance(block, list) for row in block]
