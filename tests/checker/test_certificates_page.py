@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import re
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +14,10 @@ from navsym import checker
 
 PAGE = (Path(__file__).parents[2] / "docs" / "certificates.md").read_text(encoding="utf-8")
 BLOCKS = [checker.load(body) for body in re.findall(r"^```json\n(.*?)^```$", PAGE, re.M | re.S)]
+GRANTED = ("proof", "counterexample", "condition", "observability", "words", "sized")
 HONEST = [block for block in BLOCKS if isinstance(block, dict)]
-FORGED: list[tuple[Any, dict[str, str]]] = []
-for block in BLOCKS:
-    honest = block if isinstance(block, dict) else honest
-    FORGED += [(honest, row) for row in block if isinstance(block, list)]
+OWNERS = accumulate(BLOCKS, lambda before, block: block if isinstance(block, dict) else before)
+FORGED = [(item, row) for item, block in zip(OWNERS, BLOCKS, strict=True) if isinstance(block, list) for row in block]
 
 
 def put(item: Any, pointer: str, value: Any) -> Any:
@@ -32,9 +32,9 @@ def put(item: Any, pointer: str, value: Any) -> Any:
 
 
 def answer(item: Any) -> str:
-    """The verdict on the certificate's own statement, its kind if it has none, or the reason of a refusal."""
+    """The verdict on the certificate's own statement, its kind if it gives no verdict, or the reason of a refusal."""
     try:
-        if isinstance(item, dict) and "statement" in item:
+        if item["kind"] in GRANTED:
             return checker.grant(item["statement"], item)
         return checker.check(item)
     except checker.Refused as why:
@@ -44,7 +44,7 @@ def answer(item: Any) -> str:
 @pytest.mark.parametrize("item", HONEST, ids=lambda item: item["kind"])
 def test_a_certificate_of_the_page_is_accepted(item):
     refuting = item["kind"] in ("counterexample", "sized") or item.get("outside") == 1
-    assert answer(item) == (("FAILS" if refuting else "HOLDS") if "statement" in item else item["kind"])
+    assert answer(item) == (("FAILS" if refuting else "HOLDS") if item["kind"] in GRANTED else item["kind"])
 
 
 @pytest.mark.parametrize(("item", "row"), FORGED, ids=lambda part: str(part)[:60])
@@ -52,3 +52,11 @@ def test_a_forgery_of_the_page_is_refused_for_its_reason(item, row):
     assert set(row) == {"at", "put", "refused"}
     said = answer(put(item, row["at"], row["put"]))
     assert said.startswith("refused: ") and re.search(row["refused"], said), said
+
+
+def test_every_kind_and_every_rule_has_an_example_and_a_forgery():
+    shown = " ".join(map(str, HONEST))
+    assert [kind for kind in checker.KINDS if f"'kind': '{kind}'" not in shown] == []
+    assert [rule for rule in checker.RULES if f"'rule': '{rule}'" not in shown] == []
+    assert [key for key in (*checker.KINDS, *checker.RULES) if f"`{key}`" not in PAGE] == []
+    assert [item["kind"] for item in HONEST if not any(own is item for own, _ in FORGED)] == []
