@@ -18,7 +18,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = Path(__file__).parent / "ocaml"
 #: In the order in which they need each other.
-MODULES = ("text", "tree", "ball", "value", "algebra", "rules", "checker")
+MODULES = ("text", "tree", "ball", "value", "algebra", "calculus", "goal", "rules", "checker")
 
 
 def find_zarith() -> bool:

@@ -130,6 +130,104 @@ let key (a : form) : key = Terms.bindings a
 let as_number (a : form) =
   match key a with [] -> Some Q.zero | [ ([], q) ] -> Some q | _ -> None
 
+let of_key (k : key) : form = List.fold_left (fun a (m, c) -> Terms.add m c a) nothing k
+let floor q = Z.fdiv q.Q.num q.Q.den
+let fraction q = Q.sub q (Q.of_bigint (floor q))
+let circle () : Monomial.t = [ (intern Circle, Q.one) ]
+
+(* Is a normal form zero? *)
+
+let is_root i = match Hashtbl.find atoms i with Root _ -> true | _ -> false
+
+(* The root with the highest number: no other root of the form lies around it. *)
+let last_root (a : form) =
+  let in_monomial m _ best = List.fold_left (fun best (i, _) -> if is_root i then max best i else best) best m in
+  Terms.fold in_monomial a (-1)
+
+let exponent_of i (m : Monomial.t) = Option.value ~default:Q.zero (List.assoc_opt i m)
+
+(* The form divided by S^low, as a list of r and N_r with 0 <= r < 1: the form is the sum of S^r N_r, and S^k is R^k for whole k. *)
+let sort_by_root i (a : form) =
+  let content = match Hashtbl.find atoms i with Root k -> of_key k | _ -> assert false in
+  let low = Terms.fold (fun m _ low -> Q.min low (exponent_of i m)) a (exponent_of i (fst (Terms.min_binding a))) in
+  let place m c groups =
+    let e = Q.sub (exponent_of i m) low in
+    let whole = floor e in
+    let r = Q.sub e (Q.of_bigint whole) in
+    let rest = List.filter (fun (j, _) -> j <> i) m in
+    let same, others = List.partition (fun ((r', k), _) -> Q.equal r r' && Z.equal k whole) groups in
+    let old = match same with [ (_, f) ] -> f | _ -> nothing in
+    ((r, whole), add_term rest c old) :: others
+  in
+  let groups = Terms.fold place a [] in
+  let collect sums ((r, k), f) =
+    let value = multiply f (whole_power content k) in
+    let same, others = List.partition (fun (r', _) -> Q.equal r r') sums in
+    (r, match same with [ (_, old) ] -> add old value | _ -> value) :: others
+  in
+  List.fold_left collect [] groups
+
+(* The cyclotomic polynomial of order n: the product of (x^d - 1)^mu(n/d) *)
+let cyclotomic n =
+  let rec mu n p =
+    if n = 1 then 1 else if p * p > n then -1
+    else if n mod p <> 0 then mu n (p + 1)
+    else if n / p mod p = 0 then 0
+    else -mu (n / p) (p + 1)
+  in
+  let divisors = List.filter (fun d -> n mod d = 0) (List.init n (fun i -> i + 1)) in
+  let times_binomial a d =
+    let size = Array.length a in
+    Array.init (size + d) (fun j ->
+        Z.sub (if j >= d then a.(j - d) else Z.zero) (if j < size then a.(j) else Z.zero))
+  in
+  let over_binomial a d =
+    (* a = (x^d - 1) q, so q_j = q_(j - d) - a_j *)
+    let q = Array.make (Array.length a - d) Z.zero in
+    Array.iteri (fun j _ -> q.(j) <- Z.sub (if j >= d then q.(j - d) else Z.zero) a.(j)) q;
+    q
+  in
+  let pick sign = List.filter (fun d -> mu (n / d) 2 = sign) divisors in
+  List.fold_left over_binomial (List.fold_left times_binomial [| Z.one |] (pick 1)) (pick (-1))
+
+(* True when the monic polynomial divides the other one. *)
+let divides phi p =
+  let p = Array.copy p and degree = Array.length phi - 1 in
+  for j = Array.length p - 1 downto degree do
+    let c = p.(j) in
+    if Q.sign c <> 0 then
+      Array.iteri (fun k f -> if Z.sign f <> 0 then p.(j - degree + k) <- Q.sub p.(j - degree + k) (Q.mul c (Q.of_bigint f))) phi
+  done;
+  Array.for_all (fun c -> Q.sign c = 0) p
+
+(* Without roots: the coefficients are polynomials in z = exp(i pi/n), with z^n = -1. *)
+let vanishes_on_the_circle (a : form) =
+  let turn = intern (Cis (circle ())) in
+  let n = Terms.fold (fun m _ n -> Z.lcm n (exponent_of turn m).Q.den) a Z.one in
+  if Z.gt n (Z.of_int 5040) then refuse "an angle of more than 5040 parts of pi";
+  let n = Z.to_int n in
+  let sort m c sums =
+    let e = Q.mul (exponent_of turn m) (Q.of_int n) in
+    let k = Z.to_int (Z.erem e.Q.num (Z.of_int (2 * n))) in
+    let rest = List.filter (fun (j, _) -> j <> turn) m in
+    let p = match Terms.find_opt rest sums with Some p -> p | None -> Array.make n Q.zero in
+    p.(k mod n) <- (if k < n then Q.add else Q.sub) p.(k mod n) c;
+    Terms.add rest p sums
+  in
+  let sums = Terms.fold sort a Terms.empty in
+  let all_zero p = Array.for_all (fun c -> Q.sign c = 0) p in
+  Terms.for_all (fun _ p -> all_zero p) sums
+  ||
+  let phi = cyclotomic (2 * n) in
+  Terms.for_all (fun _ p -> divides phi p) sums
+
+let rec is_zero (a : form) =
+  Terms.is_empty a
+  ||
+  match last_root a with
+  | -1 -> vanishes_on_the_circle a
+  | i -> List.for_all (fun (_, f) -> is_zero f) (sort_by_root i a)
+
 (* Primes: trial, then Pollard's rho. A factor that is taken for a prime and is none does no harm: the product is still the number. *)
 
 let rec split_number n =
@@ -169,9 +267,6 @@ let exponents_of c =
 
 (* Powers *)
 
-let floor q = Z.fdiv q.Q.num q.Q.den
-let fraction q = Q.sub q (Q.of_bigint (floor q))
-let circle () : Monomial.t = [ (intern Circle, Q.one) ]
 let half = Q.of_ints 1 2
 
 (* cis(c M) for a monomial M, and cos(c pi), without the rules for inverse functions *)
@@ -216,7 +311,7 @@ let power (a : form) q =
   if is_whole q && Q.sign q >= 0 then whole_power a q.Q.num
   else
     match key a with
-    | [] -> refuse "a power of 0"
+    | k when (match k with [ _ ] -> false | _ -> is_zero a) -> refuse "a power of 0"
     | [ (m, c) ] when is_whole q -> Terms.singleton (power_monomial m q) (rational_power c q.Q.num)
     | [ (m, c) ] when Q.equal c Q.one && List.length m >= 2 && List.for_all is_even_whole m ->
         let one_factor p (i, e) =
@@ -230,7 +325,6 @@ let power (a : form) q =
 (* Functions *)
 
 let single (m : Monomial.t) = match m with [ (i, q) ] when Q.equal q Q.one -> Some (Hashtbl.find atoms i) | _ -> None
-let of_key (k : key) : form = List.fold_left (fun a (m, c) -> Terms.add m c a) nothing k
 
 let product_of_terms f (a : form) = Terms.fold (fun m c p -> multiply p (f m c)) a unit_form
 
@@ -340,99 +434,6 @@ let rec normal t : form =
   | Fun (name, [ x ]) -> function_form name (normal x)
   | Fun (name, _) -> outside "function %s" name
 
-(* Is a normal form zero? *)
-
-let is_root i = match Hashtbl.find atoms i with Root _ -> true | _ -> false
-
-(* The root with the highest number: no other root of the form lies around it. *)
-let last_root (a : form) =
-  let in_monomial m _ best = List.fold_left (fun best (i, _) -> if is_root i then max best i else best) best m in
-  Terms.fold in_monomial a (-1)
-
-let exponent_of i (m : Monomial.t) = Option.value ~default:Q.zero (List.assoc_opt i m)
-
-(* The form divided by S^low, as a list of r and N_r with 0 <= r < 1: the form is the sum of S^r N_r, and S^k is R^k for whole k. *)
-let sort_by_root i (a : form) =
-  let content = match Hashtbl.find atoms i with Root k -> of_key k | _ -> assert false in
-  let low = Terms.fold (fun m _ low -> Q.min low (exponent_of i m)) a (exponent_of i (fst (Terms.min_binding a))) in
-  let place m c groups =
-    let e = Q.sub (exponent_of i m) low in
-    let whole = floor e in
-    let r = Q.sub e (Q.of_bigint whole) in
-    let rest = List.filter (fun (j, _) -> j <> i) m in
-    let same, others = List.partition (fun ((r', k), _) -> Q.equal r r' && Z.equal k whole) groups in
-    let old = match same with [ (_, f) ] -> f | _ -> nothing in
-    ((r, whole), add_term rest c old) :: others
-  in
-  let groups = Terms.fold place a [] in
-  let collect sums ((r, k), f) =
-    let value = multiply f (whole_power content k) in
-    let same, others = List.partition (fun (r', _) -> Q.equal r r') sums in
-    (r, match same with [ (_, old) ] -> add old value | _ -> value) :: others
-  in
-  List.fold_left collect [] groups
-
-(* The cyclotomic polynomial of order n: the product of (x^d - 1)^mu(n/d) *)
-let cyclotomic n =
-  let rec mu n p =
-    if n = 1 then 1 else if p * p > n then -1
-    else if n mod p <> 0 then mu n (p + 1)
-    else if n / p mod p = 0 then 0
-    else -mu (n / p) (p + 1)
-  in
-  let divisors = List.filter (fun d -> n mod d = 0) (List.init n (fun i -> i + 1)) in
-  let times_binomial a d =
-    let size = Array.length a in
-    Array.init (size + d) (fun j ->
-        Z.sub (if j >= d then a.(j - d) else Z.zero) (if j < size then a.(j) else Z.zero))
-  in
-  let over_binomial a d =
-    (* a = (x^d - 1) q, so q_j = q_(j - d) - a_j *)
-    let q = Array.make (Array.length a - d) Z.zero in
-    Array.iteri (fun j _ -> q.(j) <- Z.sub (if j >= d then q.(j - d) else Z.zero) a.(j)) q;
-    q
-  in
-  let pick sign = List.filter (fun d -> mu (n / d) 2 = sign) divisors in
-  List.fold_left over_binomial (List.fold_left times_binomial [| Z.one |] (pick 1)) (pick (-1))
-
-(* True when the monic polynomial divides the other one. *)
-let divides phi p =
-  let p = Array.copy p and degree = Array.length phi - 1 in
-  for j = Array.length p - 1 downto degree do
-    let c = p.(j) in
-    if Q.sign c <> 0 then
-      Array.iteri (fun k f -> if Z.sign f <> 0 then p.(j - degree + k) <- Q.sub p.(j - degree + k) (Q.mul c (Q.of_bigint f))) phi
-  done;
-  Array.for_all (fun c -> Q.sign c = 0) p
-
-(* Without roots: the coefficients are polynomials in z = exp(i pi/n), with z^n = -1. *)
-let vanishes_on_the_circle (a : form) =
-  let turn = intern (Cis (circle ())) in
-  let n = Terms.fold (fun m _ n -> Z.lcm n (exponent_of turn m).Q.den) a Z.one in
-  if Z.gt n (Z.of_int 5040) then refuse "an angle of more than 5040 parts of pi";
-  let n = Z.to_int n in
-  let sort m c sums =
-    let e = Q.mul (exponent_of turn m) (Q.of_int n) in
-    let k = Z.to_int (Z.erem e.Q.num (Z.of_int (2 * n))) in
-    let rest = List.filter (fun (j, _) -> j <> turn) m in
-    let p = match Terms.find_opt rest sums with Some p -> p | None -> Array.make n Q.zero in
-    p.(k mod n) <- (if k < n then Q.add else Q.sub) p.(k mod n) c;
-    Terms.add rest p sums
-  in
-  let sums = Terms.fold sort a Terms.empty in
-  let all_zero p = Array.for_all (fun c -> Q.sign c = 0) p in
-  Terms.for_all (fun _ p -> all_zero p) sums
-  ||
-  let phi = cyclotomic (2 * n) in
-  Terms.for_all (fun _ p -> divides phi p) sums
-
-let rec is_zero (a : form) =
-  Terms.is_empty a
-  ||
-  match last_root a with
-  | -1 -> vanishes_on_the_circle a
-  | i -> List.for_all (fun (_, f) -> is_zero f) (sort_by_root i a)
-
 (* Quotients of polynomials in parts of the tree: a numerator over powers of polynomials with leading coefficient 1 *)
 
 type quotient = { over : form; under : (key * int) list }
@@ -491,9 +492,24 @@ let rec has_other_generator t =
   | Pow (a, b) -> whole_exponent b = None || has_other_generator a
   | Pi | Fun _ -> true
 
-let normal_form_vanishes t =
+(* One question about normal forms *)
+let counted f x =
   left := most_work;
-  match is_zero (normal t) with yes -> yes | exception Too_much -> refuse "more than %d units of work" most_work
+  try f x with Too_much -> refuse "more than %d units of work" most_work
+
+let normal_form_vanishes = counted (fun t -> is_zero (normal t))
+
+let atom_of i = Hashtbl.find atoms i
+
+(* The atoms inside an atom, at any depth *)
+let rec atoms_inside atom =
+  let of_monomial m = List.concat_map (fun (i, _) -> let a = atom_of i in a :: atoms_inside a) m in
+  let of_form k = List.concat_map (fun (m, _) -> of_monomial m) k in
+  match atom with
+  | Circle | Symbol _ | Part _ -> []
+  | Log k | Asin k | Acos k | Atan k | Root k -> of_form k
+  | Atan2 (y, x) -> of_form y @ of_form x
+  | Exp m | Cis m -> of_monomial m
 
 (* "Is seen to vanish" *)
 let vanishes t =

@@ -10,13 +10,32 @@ open Text
 open Tree
 open Ball
 open Value
+open Goal
 open Rules
 
-(* Statements *)
+(* Statements. Of section 9 only hypotheses between plain expressions are read; all else of it is outside. *)
 
-type statement = { goals : (tree * relation) list; box : (string * range) list; said : tree list }
+type statement = {
+  goals : (tree * relation) list;
+  box : (string * range) list;
+  said : tree list; (* what has to have a value *)
+  given : tree list;
+  zeros : tree list;
+}
 
-let get_side what = function Text s -> read_tree s | List _ | Object _ -> outside "matrices and cases" | _ -> refuse "%s: expected an expression" what
+let words_of_section_9 =
+  [ "where"; "min"; "max"; "sign"; "transpose"; "cross"; "dot"; "norm"; "skew"; "det"; "inv"; "trace"; "eye"; "zeros"; "diag" ]
+  @ [ "qmul"; "conj"; "rot"; "diff"; "dot_"; "integral"; "sum"; "product"; "limit" ]
+
+(* A plain expression, or a text of section 9 *)
+let read_side text =
+  if String.exists (fun c -> String.contains "@[]<>=!" c) text then outside "matrices, or conditions inside an expression";
+  try read_tree text
+  with Refused why ->
+    let is_called word = why = "expression: unknown function " ^ word in
+    if List.exists is_called words_of_section_9 then outside "a function of section 9" else raise (Refused why)
+
+let get_side what = function Text s -> read_side s | _ -> refuse "%s: expected an expression" what
 
 let read_goals left right relation tolerance =
   let d = subtract left right in
@@ -31,30 +50,86 @@ let read_goals left right relation tolerance =
   | "<=", None -> [ (subtract right left, AtLeast) ]
   | _ -> refuse "unknown relation %S" relation
 
+(* The two sides of a condition and its relation, which is the first of the marks that stands in the text *)
+let split_condition text =
+  let n = String.length text in
+  let starts i mark = i + String.length mark <= n && String.sub text i (String.length mark) = mark in
+  let rec go i =
+    if i >= n then refuse "given: expected a relation"
+    else
+      match List.find_opt (starts i) [ "!="; ">="; "<="; "="; ">"; "<" ] with
+      | Some mark ->
+          let after = i + String.length mark in
+          (read_side (String.sub text 0 i), mark, read_side (String.sub text after (n - after)))
+      | None -> go (i + 1)
+  in
+  go 0
+
+(* Supposes a condition. *)
+let suppose s value =
+  let x, mark, y = split_condition (get_text "given" value) in
+  let distance a b = match (a, b) with a, Num q when Q.sign q = 0 -> a | Num q, b when Q.sign q = 0 -> negate b | _ -> subtract a b in
+  let with_value s t = { s with said = s.said @ [ t ] } in
+  let away s d = with_value s (Pow (d, Num Q.minus_one)) in
+  let at_least s d = { (with_value s d) with given = s.given @ [ d ] } in
+  match mark with
+  | "=" -> let d = distance x y in { (with_value s d) with zeros = s.zeros @ [ d ] }
+  | "!=" -> let d = distance x y in away (with_value s d) d
+  | ">" -> let d = distance x y in away (at_least s d) d
+  | "<" -> let d = distance y x in away (at_least s d) d
+  | ">=" -> at_least s (distance x y)
+  | _ -> at_least s (distance y x)
+
+let plain_keys = [ "left"; "right"; "relation"; "symbols"; "exists"; "tolerance" ]
+
+let read_hypotheses o =
+  if List.mem_assoc "order" o then outside "statement with order";
+  let more = [ "shapes"; "given"; "rates" ] in
+  if not (List.exists (fun k -> List.mem_assoc k o) more) then []
+  else
+    match get_keys "statement" (plain_keys @ more) (Object o) with
+    | [ _; _; _; _; _; _; shapes; given; rates ] ->
+        if shapes <> Object [] || rates <> Object [] then outside "shapes and rates";
+        get_list "given" given
+    | _ -> assert false
+
 let read_statement value =
   let o = get_object "statement" value in
-  let beyond = List.filter (fun k -> List.mem_assoc k o) [ "shapes"; "given"; "rates"; "order" ] in
-  if beyond <> [] then outside "statement with %s" (String.concat ", " beyond);
-  match get_keys "statement" [ "left"; "right"; "relation"; "symbols"; "exists"; "tolerance" ] value with
+  let hypotheses = read_hypotheses o in
+  let plain = Object (List.filter (fun (k, _) -> not (List.mem k [ "shapes"; "given"; "rates" ])) o) in
+  match get_keys "statement" plain_keys plain with
   | [ left; right; relation; symbols; exists; tolerance ] ->
       let left = get_side "left" left and right = get_side "right" right in
-      let tolerance = match tolerance with Null -> None | v -> Some (get_side "tolerance" v) in
+      let tolerance = match tolerance with Null -> None | v -> Some (get_tree "tolerance" v) in
       let exists = List.map (get_side "exists") (get_list "exists" exists) in
       let read (name, v) = if is_name name then (name, read_range name v) else refuse "expected a name" in
       let box = List.map read (get_object "symbols" symbols) in
       let said = (left :: right :: Option.to_list tolerance) @ exists in
       let goals = read_goals left right (get_text "relation" relation) tolerance in
-      { goals; box; said }
+      List.fold_left suppose { goals; box; said; given = []; zeros = [] } hypotheses
   | _ -> assert false
 
-let goal_of s (tree, relation) = { tree; relation; box = s.box; exists = s.said; given = []; zeros = [] }
+(* A tree of `given` that is a symbol, or -1 times a symbol, cuts the range at 0. *)
+let goal_of s (tree, relation) =
+  let goal = { tree; relation; box = s.box; exists = s.said; given = s.given; zeros = s.zeros } in
+  let cut goal = function
+    | Sym name -> cut_range goal name 1
+    | Prod [ Num q; Sym name ] when Q.equal q Q.minus_one -> cut_range goal name (-1)
+    | _ -> goal
+  in
+  List.iter (fun t -> check_symbols (premise goal t relation)) (s.said @ s.given @ s.zeros);
+  List.fold_left cut goal s.given
 
-(* All that the statement says has a finite ball at a point in the box. *)
+(* All that the statement says has a finite ball at a point in the box, and the hypotheses hold there. *)
 let check_values s point =
   check_point s.box point;
   let balls = List.map (fun (name, t) -> (name, number_ball name t)) point in
   let value name = match List.assoc_opt name balls with Some x -> x | None -> no_symbols name in
   List.iter (fun t -> if finite_ball value t = None then refuse "no value at the point") s.said;
+  let is_positive t = match finite_ball value t with Some x -> sign_of x.lo >= 0 | None -> false in
+  let is_null t = Algebra.vanishes (put point t) in
+  shown "a hypothesis does not hold at the point"
+    (List.for_all (fun t -> is_positive t || is_null t) s.given && List.for_all is_null s.zeros);
   value
 
 (* Kinds *)

@@ -1,221 +1,11 @@
-(* Goals and the rules that prove them. Sections 5 and 7 of docs/certificates.md. *)
+(* The rules that prove goals. Section 7 of docs/certificates.md. *)
 
 open Text
 open Tree
 open Ball
 open Value
 open Algebra
-
-(* Ranges *)
-
-type range = { low : tree option; high : tree option; open_low : bool; open_high : bool; nonzero : bool; integer : bool }
-
-let anything = { low = None; high = None; open_low = false; open_high = false; nonzero = false; integer = false }
-
-let read_end what = function
-  | Null -> None
-  | value ->
-      let t = get_tree what value in
-      ignore (number_ball what t);
-      Some t
-
-let read_range what value =
-  match get_list what value with
-  | [ low; high; flags ] ->
-      let set r flag =
-        match get_text what flag with
-        | "open-low" when not r.open_low -> { r with open_low = true }
-        | "open-high" when not r.open_high -> { r with open_high = true }
-        | "nonzero" when not r.nonzero -> { r with nonzero = true }
-        | "integer" when not r.integer -> { r with integer = true }
-        | f -> refuse "%s: unknown or repeated flag %S" what f
-      in
-      let r = { anything with low = read_end what low; high = read_end what high } in
-      List.fold_left set r (get_list what flags)
-  | _ -> refuse "%s: expected [low, high, flags]" what
-
-let shown what = function true -> () | false -> refuse "%s" what
-
-(* A number is shown to lie in a range. *)
-let check_inside name r t =
-  let outside_range () = refuse "%s lies outside its range, or is not shown to lie there" name in
-  let x = number_ball name t in
-  if r.integer then (match !constant t with Some q when is_whole q -> () | _ -> outside_range ());
-  if r.nonzero && has_zero x then outside_range ();
-  let check_end is_open distance =
-    match finite_ball no_symbols distance with
-    | Some d when is_above d -> ()
-    | _ -> if is_open || not (vanishes distance) then outside_range ()
-  in
-  Option.iter (fun low -> check_end r.open_low (subtract t low)) r.low;
-  Option.iter (fun high -> check_end r.open_high (subtract high t)) r.high
-
-let check_point box point =
-  if List.length box <> List.length point || not (List.for_all (fun (s, _) -> List.mem_assoc s point) box) then
-    refuse "expected a number for every symbol and no other";
-  List.iter (fun (s, r) -> check_inside s r (List.assoc s point)) box
-
-let read_numbers what value =
-  let read (name, v) =
-    let t = get_tree what v in
-    if has_symbols t then refuse "%s: expected no symbols" what;
-    if not (is_name name) then refuse "%s: expected a name" what;
-    (name, t)
-  in
-  List.map read (get_object what value)
-
-(* Goals *)
-
-type goal = {
-  tree : tree;
-  relation : relation;
-  box : (string * range) list;
-  exists : tree list;
-  given : tree list;
-  zeros : tree list;
-}
-
-let premise goal tree relation = { goal with tree; relation }
-let remember goal tree relation = { goal with tree; relation; exists = goal.tree :: goal.exists }
-let alone tree relation = { tree; relation; box = []; exists = []; given = []; zeros = [] }
-let all_trees goal = (goal.tree :: goal.exists) @ goal.given @ goal.zeros
-
-let check_symbols goal =
-  let check s = if not (List.mem_assoc s goal.box) then refuse "the symbol %s has no range" s in
-  List.iter (fun t -> Names.iter check (symbols t)) (all_trees goal)
-
-let range_of goal name =
-  match List.assoc_opt name goal.box with Some r -> r | None -> refuse "the symbol %s is without a range" name
-
-let with_range goal name range = { goal with box = (name, range) :: List.remove_assoc name goal.box }
-
-(* The keys of a rule, beside `rule` *)
-let rule_keys value names = List.tl (get_keys "proof" ("rule" :: names) value)
-let key_of value name = match rule_keys value [ name ] with [ v ] -> v | _ -> assert false
-
-let require goal relations = if not (List.mem goal.relation relations) then refuse "this rule is for another relation"
-
-let get_sign what = function Int z when Z.equal (Z.abs z) Z.one -> Z.to_int z | _ -> refuse "%s: expected the sign 1 or -1" what
-let signed sign t = if sign = 1 then t else negate t
-
-let same_length what a b =
-  if List.length a <> List.length b then refuse "%s: expected %d entries, got %d" what (List.length a) (List.length b)
-
-let require_equal what a b = if not (vanishes (subtract a b)) then refuse "%s: the terms differ" what
-
-(* Defined: which conditions still want a proof *)
-
-let implies (r, t) (r', t') =
-  equal t t' && (r = r' || (r = Above && (r' = AtLeast || r' = Unequal)))
-
-let open_conditions level goal trees =
-  let known = conditions 0 (goal.tree :: goal.exists) in
-  let is_settled (r, t) =
-    List.exists (fun k -> implies k (r, t)) known
-    || ((not (has_symbols t)) && match finite_ball no_symbols t with Some x -> satisfies r x | None -> false)
-    || List.exists (fun (r', t') -> r = r' && vanishes (subtract t' t)) known
-  in
-  List.filter (fun c -> not (is_settled c)) (conditions level trees)
-
-(* Exponents that are compared by `rewrite` and `abstract` *)
-
-let rec check_exponents ~skip change t =
-  if not (skip t) then begin
-    (match t with
-    | Pow (_, e) -> (
-        match !constant e with
-        | Some q -> if !constant (change e) <> Some q then refuse "an exponent changes"
-        | None -> ())
-    | _ -> ());
-    List.iter (check_exponents ~skip change) (parts t)
-  end
-
-(* Rules of signs: parts *)
-
-let is_even_part t =
-  match t with
-  | Pow (_, e) -> ( match !constant e with None -> true | Some q -> (not (is_whole q)) || is_even q)
-  | Fun (("exp" | "cosh" | "abs" | "sqrt" | "acos"), _) -> true
-  | _ -> false
-
-let cannot_be_zero t =
-  match t with
-  | Pow (_, e) -> ( match !constant e with None -> true | Some q -> Q.sign q <= 0)
-  | Fun (("exp" | "cosh"), _) -> true
-  | _ -> false
-
-let base_and_exponent t =
-  match t with Pow (b, e) -> Option.map (fun q -> (b, q)) (!constant e) | _ -> Some (t, Q.one)
-
-(* The middle m and the half width h of the values of a function, and whether it reaches its ends *)
-let known_range = function
-  | Fun (("sin" | "cos"), _) -> (zero, one, true)
-  | Fun ("tanh", _) -> (zero, one, false)
-  | Fun ("atan", _) -> (zero, half_pi, false)
-  | Fun ("asin", _) -> (zero, half_pi, true)
-  | Fun ("acos", _) -> (half_pi, half_pi, true)
-  | Fun ("atan2", _) -> (zero, Pi, true)
-  | _ -> refuse "bounded: a function without a known range"
-
-let sum_of = function [ t ] -> t | l -> Sum l
-let product_of = function [ t ] -> t | l -> Prod l
-
-(* The tree that `bounded` asks for, and whether one of its functions stays away from its ends *)
-let bounded_tree t =
-  let stays = ref false in
-  let bound term =
-    if not (has_symbols term) then `Fixed term
-    else
-      match List.partition has_symbols (factors term) with
-      | [ g ], others ->
-          let m, h, reaches = known_range g in
-          let c = product_of (others @ [ one ]) in
-          let away_from_zero = match finite_ball no_symbols c with Some x -> not (has_zero x) | None -> false in
-          if (not reaches) && away_from_zero then stays := true;
-          `Bounded (Prod [ c; m ], negate (Prod [ apply "abs" c; h ]))
-      | _ -> refuse "bounded: a product of functions"
-  in
-  let found = List.map bound (terms t) in
-  let fixed = List.filter_map (function `Fixed t -> Some t | _ -> None) found in
-  let others = List.concat_map (function `Bounded (a, b) -> [ a; b ] | _ -> []) found in
-  (sum_of (fixed @ others), !stays)
-
-(* The premises of `solve`, with their relations *)
-let solve_premises a v =
-  let square t = Prod [ t; t ] in
-  let sine = apply "sin" v and cosine = apply "cos" v in
-  match a with
-  | Fun ("log", [ u ]) -> [ (subtract (apply "exp" v) u, Equal) ]
-  | Fun ("sqrt", [ u ]) -> [ (subtract (square v) u, Equal); (v, AtLeast) ]
-  | Fun ("abs", [ u ]) -> [ (subtract (square v) (square u), Equal); (v, AtLeast) ]
-  | Fun ("asin", [ u ]) ->
-      [ (subtract sine u, Equal); (Sum [ half_pi; v ], AtLeast); (subtract half_pi v, AtLeast) ]
-  | Fun ("acos", [ u ]) -> [ (subtract cosine u, Equal); (v, AtLeast); (subtract Pi v, AtLeast) ]
-  | Fun ("atan", [ u ]) ->
-      [ (subtract (Prod [ u; cosine ]) sine, Equal); (Sum [ half_pi; v ], Above); (subtract half_pi v, Above) ]
-  | Fun ("atan2", [ y; x ]) ->
-      [
-        (subtract (Prod [ x; sine ]) (Prod [ y; cosine ]), Equal);
-        (Sum [ Prod [ x; cosine ]; Prod [ y; sine ] ], Above);
-        (subtract Pi v, AtLeast);
-        (Sum [ Pi; v ], Above);
-      ]
-  | Pow (u, e) -> (
-      match !constant e with
-      | Some q ->
-          let n = Num (Q.of_bigint q.Q.num) and d = Num (Q.of_bigint q.Q.den) in
-          [ (subtract (Pow (v, d)) (Pow (u, n)), Equal); (v, AtLeast) ]
-      | None -> refuse "solve: an exponent that is not rational")
-  | _ -> refuse "solve: expected an inverse function"
-
-(* The rules *)
-
-let get_bits most value = get_integer "bits" 53 most value
-
-let at_precision bits f =
-  let old = !precision in
-  precision := bits + 32;
-  Fun.protect ~finally:(fun () -> precision := old) f
+open Goal
 
 let rec prove goal value =
   check_symbols goal;
@@ -248,6 +38,13 @@ let rec prove goal value =
       | "bounded" -> prove_bounded goal value
       | "product" -> prove_product goal value
       | "sum" -> prove_sum goal value
+      | "corners" -> prove_corners goal value
+      | "roots" -> prove_roots goal value
+      | "quadratic" -> prove_quadratic goal value
+      | "derivative" -> prove_derivative goal value
+      | "slope" -> prove_slope goal value
+      | "concave" -> prove_concave goal value
+      | "dense" -> prove_dense goal value
       | name -> outside "rule %s" name)
 
 and prove_each what goals proofs =
@@ -293,19 +90,7 @@ and prove_cases goal value =
       check_symbols (premise goal u goal.relation);
       defined goal [ u ] (List []);
       let without v = replace (fun t -> if equal t (apply "abs" u) then Some v else None) goal.tree in
-      let below t = match finite_ball no_symbols t with Some x -> is_below x | None -> false in
-      let above t = match finite_ball no_symbols t with Some x -> is_above x | None -> false in
-      let cut side g =
-        match u with
-        | Sym s ->
-            let r = range_of g s in
-            if side = 1 then
-              if Option.fold ~none:true ~some:below r.low then with_range g s { r with low = Some zero; open_low = false } else g
-            else if Option.fold ~none:true ~some:above r.high then
-              with_range g s { r with high = Some zero; open_high = false }
-            else g
-        | _ -> g
-      in
+      let cut side g = match u with Sym s -> cut_range g s side | _ -> g in
       let case side =
         let v = signed side u in
         let g = remember goal (without v) goal.relation in
@@ -596,4 +381,183 @@ and prove_sum goal value =
         refuse "sum: no term with this number";
       let prove_term i t proof = prove (remember goal t (if is_strict i then Above else AtLeast)) proof in
       List.iteri (fun i (t, proof) -> prove_term i t proof) (List.combine parts proofs)
+  | _ -> assert false
+
+and prove_corners goal value =
+  match rule_keys value [ "symbols"; "proofs" ] with
+  | [ names; proofs ] ->
+      require goal [ AtLeast; Above ];
+      let names = List.map (get_name "symbols") (get_list "symbols" names) in
+      if List.length (List.sort_uniq compare names) <> List.length names then refuse "corners: a name given twice";
+      if List.length names > 16 then refuse "corners: more than 16 symbols";
+      let ends name =
+        match range_of goal name with
+        | { low = Some low; high = Some high } -> [ (name, low); (name, high) ]
+        | _ -> refuse "corners: a range without an end"
+      in
+      let sides = List.map ends names in
+      check_degree_one names goal.tree;
+      let rec choices = function
+        | [] -> [ [] ]
+        | side :: others -> let rest = choices others in List.concat_map (fun e -> List.map (List.cons e) rest) side
+      in
+      let box = List.filter (fun (s, _) -> not (List.mem s names)) goal.box in
+      let corner choice = { (alone (put choice goal.tree) goal.relation) with box } in
+      prove_each "corners" (List.map corner (choices sides)) (get_list "proofs" proofs)
+  | _ -> assert false
+
+and prove_roots goal value =
+  match rule_keys value [ "from"; "to" ] with
+  | [ from; to_ ] ->
+      require goal [ Unequal; AtLeast; Above ];
+      let s = match Names.elements (symbols goal.tree) with [ s ] -> s | _ -> refuse "roots: expected one symbol" in
+      let r = range_of goal s in
+      (* an end of the interval, and whether it is left out of the range *)
+      let read what value limit is_open outward =
+        match (value, limit) with
+        | Null, _ -> (None, [])
+        | _, None -> refuse "roots: a range without this end"
+        | v, Some limit ->
+            let x = get_number what v in
+            let distance = outward (Num x) limit in
+            if vanishes distance then (Some x, if is_open then [ x ] else [])
+            else if (match finite_ball no_symbols distance with Some d -> is_above d | None -> false) then (Some x, [])
+            else refuse "roots: an end inside the range"
+      in
+      let low, open_low = read "from" from r.low r.open_low (fun x limit -> subtract limit x) in
+      let high, open_high = read "to" to_ r.high r.open_high subtract in
+      let holes = open_low @ open_high @ if r.nonzero then [ Q.zero ] else [] in
+      Calculus.check_roots goal.relation (Calculus.fraction s goal.tree) (low, high) holes
+  | _ -> assert false
+
+and prove_quadratic goal value =
+  match rule_keys value [ "symbol"; "coefficients"; "defined"; "proofs" ] with
+  | [ symbol; coefficients; conditions; proofs ] -> (
+      require goal [ AtLeast; Above ];
+      let s = get_name "symbol" symbol in
+      let v = Sym s in
+      match List.map (get_tree "coefficients") (get_list "coefficients" coefficients) with
+      | [ a; b; c ] as all ->
+          List.iter (fun t -> check_symbols (premise goal t goal.relation)) all;
+          if List.exists (fun t -> Names.mem s (symbols t)) all then refuse "quadratic: the symbol in a coefficient";
+          require_equal "quadratic" goal.tree (Sum [ Prod [ a; v; v ]; Prod [ b; v ]; c ]);
+          defined goal all conditions;
+          let rest = subtract (Prod [ number 4; a; c ]) (Prod [ b; b ]) in
+          let goals = [ remember goal a AtLeast; remember goal c AtLeast; remember goal rest goal.relation ] in
+          prove_each "quadratic" goals (get_list "proofs" proofs)
+      | _ -> refuse "quadratic: expected 3 coefficients")
+  | _ -> assert false
+
+and prove_derivative goal value =
+  match rule_keys value [ "point"; "value"; "slopes"; "defined" ] with
+  | [ point; start; slopes; conditions ] ->
+      require goal [ Equal ];
+      if List.exists (fun (_, r) -> r.nonzero || r.integer) goal.box then refuse "derivative: a box with holes";
+      let names = Names.elements (symbols goal.tree) in
+      let point = read_numbers "point" point in
+      check_point (List.map (fun s -> (s, range_of goal s)) names) point;
+      prove (alone (put point goal.tree) Equal) start;
+      let slopes_of_tree = List.map (fun s -> Calculus.derive s goal.tree) names in
+      let free t = { (alone t Equal) with box = goal.box } in
+      prove_each "slopes" (List.map free slopes_of_tree) (get_list "slopes" slopes);
+      defined ~level:2 (free zero) (goal.tree :: slopes_of_tree) conditions
+  | _ -> assert false
+
+(* The conditions of `smooth`, each a goal in V without lists *)
+and prove_smooth box f wanted value =
+  let known = conditions 1 [ f ] in
+  let once = List.fold_left (fun found c -> if List.mem c found then found else c :: found) [] wanted in
+  let left = List.filter (fun c -> not (List.exists (fun k -> implies k c) known)) (List.rev once) in
+  prove_each "smooth" (List.map (fun (r, t) -> { (alone t r) with box }) left) (get_list "smooth" value)
+
+and prove_slope goal value =
+  match rule_keys value [ "symbol"; "end"; "strict"; "continuous"; "smooth"; "slope"; "floor" ] with
+  | [ symbol; which; strict; continuous; smooth; slope; floor ] ->
+      require goal [ AtLeast; Above ];
+      let s = get_name "symbol" symbol and at_high = get_integer "end" 0 1 which = 1 in
+      let r = range_of goal s and f = goal.tree in
+      let limit = match if at_high then r.high else r.low with Some t -> t | None -> refuse "slope: a range without this end" in
+      let filled = { r with nonzero = false; integer = false } in
+      let filled = if at_high then { filled with open_high = false } else { filled with open_low = false } in
+      let inner = { filled with open_low = true; open_high = true } in
+      let w = (with_range goal s filled).box and v = (with_range goal s inner).box in
+      let rate = Calculus.derive s f in
+      let left_out = if at_high then r.open_high else r.open_low in
+      let strict = read_strict goal s inner rate left_out strict in
+      defined ~level:1 { (alone zero Equal) with box = w } [ f ] continuous;
+      prove_smooth v f (conditions 2 [ f ] @ conditions 0 [ rate ]) smooth;
+      let is_above = goal.relation = Above in
+      let rising = signed (if at_high then -1 else 1) rate in
+      let curve = alone rising (if is_above && strict = `Rising then Above else AtLeast) in
+      prove { curve with box = v; exists = [ f ] } slope;
+      let start = alone (put [ (s, limit) ] f) (if is_above && strict = `Start then Above else AtLeast) in
+      prove { start with box = List.remove_assoc s w } floor
+  | _ -> assert false
+
+(* Where the strictness of > comes from: the start, the slope, or a point at which the slope is not 0 *)
+and read_strict goal s inner rate left_out value =
+  let need_open () = if goal.relation = Above && not left_out then refuse "slope: the end belongs to the range" in
+  match value with
+  | Int z when Z.equal z Z.zero -> `Start
+  | Int z when Z.equal z Z.one -> need_open (); `Rising
+  | Text text ->
+      need_open ();
+      let t = read_tree text in
+      if goal.relation = Above then begin
+        if not (Names.equal (symbols goal.tree) (Names.singleton s)) then refuse "slope: a point with other symbols";
+        check_inside s inner t;
+        let x = number_ball s t in
+        match finite_ball (fun _ -> x) rate with
+        | Some y when not (has_zero y) -> ()
+        | _ -> refuse "slope: the derivative may vanish at the point"
+      end;
+      `Point
+  | _ -> refuse "slope: expected 0, 1 or a point"
+
+and prove_concave goal value =
+  match rule_keys value [ "symbol"; "continuous"; "smooth"; "curve"; "floors" ] with
+  | [ symbol; continuous; smooth; curve; floors ] ->
+      require goal [ AtLeast ];
+      let s = get_name "symbol" symbol in
+      let r = range_of goal s and f = goal.tree in
+      let low, high =
+        match (r.low, r.high) with Some low, Some high -> (low, high) | _ -> refuse "concave: a range without an end"
+      in
+      let closed = { anything with low = Some low; high = Some high } in
+      let w = (with_range goal s closed).box in
+      let v = (with_range goal s { closed with open_low = true; open_high = true }).box in
+      let rate = Calculus.derive s f in
+      let bend = Calculus.derive s rate in
+      defined ~level:1 { (alone zero Equal) with box = w } [ f ] continuous;
+      prove_smooth v f (conditions 2 [ f; rate ] @ conditions 0 [ bend ]) smooth;
+      prove { (alone (negate bend) AtLeast) with box = v; exists = [ f ] } curve;
+      let floor t = { (alone (put [ (s, t) ] f) AtLeast) with box = List.remove_assoc s w } in
+      prove_each "floors" [ floor low; floor high ] (get_list "floors" floors)
+  | _ -> assert false
+
+and prove_dense goal value =
+  match rule_keys value [ "except"; "point"; "defined"; "proof" ] with
+  | [ except; point; conditions; proof ] ->
+      require goal [ AtLeast ];
+      let h = get_tree "except" except in
+      check_entire h;
+      let read (name, v) = if is_name name then (name, of_rational (get_number "point" v)) else refuse "point: expected a name" in
+      let point = List.map read (get_object "point" point) in
+      let value name = match List.assoc_opt name point with Some x -> x | None -> no_symbols name in
+      (match finite_ball value h with
+      | Some x when not (has_zero x) -> ()
+      | _ -> refuse "dense: the exception may vanish throughout");
+      let fill (name, r) =
+        let wide =
+          match (r.low, r.high) with
+          | Some low, Some high -> ( match finite_ball no_symbols (subtract high low) with Some d -> is_above d | None -> false)
+          | _ -> true
+        in
+        if r.integer || not wide then refuse "dense: a range without inner points";
+        (name, { r with open_low = false; open_high = false; nonzero = false })
+      in
+      let w = List.map fill goal.box in
+      defined ~level:1 { (alone zero AtLeast) with box = w } (goal.tree :: goal.exists) conditions;
+      let away = Pow (h, Num Q.minus_one) in
+      prove { goal with exists = away :: goal.exists; given = []; zeros = [] } proof
   | _ -> assert false
