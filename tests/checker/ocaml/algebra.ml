@@ -62,7 +62,9 @@ exception Too_much
 
 let left = ref 0 (* units of work that are still allowed *)
 let most_work = 1_000_000 (* for a question about normal forms: section 3 *)
-let most_work_of_quotients = 1_500_000 (* for a question about quotients: section 3 names no bound, this is ours; beyond it is outside *)
+(* For a question about quotients section 3 names no bound: these are ours, and what is beyond them is outside. *)
+let few_units = 300_000
+let many_units = 1_500_000
 
 let charge units =
   left := !left - units;
@@ -511,15 +513,55 @@ let rec atoms_inside atom =
   | Atan2 (y, x) -> of_form y @ of_form x
   | Exp m | Cis m -> of_monomial m
 
+let try_quotient units t =
+  left := units;
+  try if Terms.is_empty (quotient t).over then `Yes else `No with No_quotient -> `No | Too_much -> `Too_much
+
+(* The tree where every sum of plain products is written in a basis of the space that these sums span, with new symbols for the basis.
+   If this vanishes for all values of the new symbols, so does the tree. Only for trees that are too large otherwise. *)
+let group_sums t =
+  let rec is_plain = function
+    | Num _ | Sym _ -> true
+    | Prod l -> List.for_all is_plain l
+    | Pow (a, e) -> ( match whole_exponent e with Some n -> n > 0 && is_plain a | None -> false)
+    | Sum _ | Fun _ | Pi -> false
+  in
+  let basis = ref [] (* pivot and form, in order *) in
+  let coefficient m f = Option.value ~default:Q.zero (Terms.find_opt m f) in
+  let reduce (f, shares) (k, (pivot, row)) =
+    let c = coefficient pivot f in
+    if Q.sign c = 0 then (f, shares) else (add f (scale (Q.neg c) row), (k, c) :: shares)
+  in
+  let coordinates f =
+    let rest, shares = List.fold_left reduce (f, []) (List.mapi (fun k row -> (k, row)) !basis) in
+    if Terms.is_empty rest then shares
+    else begin
+      let pivot, c = Terms.min_binding rest in
+      let k = List.length !basis in
+      basis := !basis @ [ (pivot, scale (Q.inv c) rest) ];
+      (k, c) :: shares
+    end
+  in
+  let share (k, c) = Prod [ Num c; Sym (Printf.sprintf "#%d" k) ] in
+  let change = function
+    | Sum l as t when List.for_all is_plain l -> Some (Sum (zero :: List.map share (coordinates (quotient t).over)))
+    | _ -> None
+  in
+  left := many_units;
+  try replace change t with Too_much -> t
+
+(* A quotient that is too large at first is tried in grouped form, and once more with more work. *)
+let vanishes_as_quotient t =
+  match try_quotient few_units t with
+  | `Too_much -> if try_quotient many_units (group_sums t) = `Yes then `Yes else try_quotient many_units t
+  | answer -> answer
+
 (* "Is seen to vanish" *)
 let vanishes t =
-  left := most_work_of_quotients;
-  let as_quotient =
-    try if Terms.is_empty (quotient t).over then `Yes else `No with No_quotient -> `No | Too_much -> `Too_much
-  in
+  let as_quotient = vanishes_as_quotient t in
   if as_quotient = `Yes || (has_other_generator t && normal_form_vanishes t) then true
-  else if as_quotient = `Too_much then outside "a quotient with more than %d units of work" most_work_of_quotients
-  else false
+  else if as_quotient = `No then false
+  else outside "a quotient with more than %d units of work" many_units
 
 (* The constant of an exponent *)
 

@@ -45,6 +45,9 @@ let rec prove goal value =
       | "slope" -> prove_slope goal value
       | "concave" -> prove_concave goal value
       | "dense" -> prove_dense goal value
+      | "cones" ->
+          require goal [ AtLeast; Above ];
+          Cones.check goal (key_of value "splits")
       | name -> outside "rule %s" name)
 
 and prove_each what goals proofs =
