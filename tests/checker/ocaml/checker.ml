@@ -12,135 +12,21 @@ open Ball
 open Value
 open Goal
 open Rules
-
-(* Statements. Of section 9 only hypotheses between plain expressions are read; all else of it is outside. *)
-
-type statement = {
-  goals : (tree * relation) list;
-  box : (string * range) list;
-  said : tree list; (* what has to have a value *)
-  given : tree list;
-  zeros : tree list;
-}
-
-let words_of_section_9 =
-  [ "where"; "min"; "max"; "sign"; "transpose"; "cross"; "dot"; "norm"; "skew"; "det"; "inv"; "trace"; "eye"; "zeros"; "diag" ]
-  @ [ "qmul"; "conj"; "rot"; "diff"; "dot_"; "integral"; "sum"; "product"; "limit" ]
-
-(* A plain expression, or a text of section 9 *)
-let read_side text =
-  if String.exists (fun c -> String.contains "@[]<>=!" c) text then outside "matrices, or conditions inside an expression";
-  try read_tree text
-  with Refused why ->
-    let is_called word = why = "expression: unknown function " ^ word in
-    if List.exists is_called words_of_section_9 then outside "a function of section 9" else raise (Refused why)
-
-let get_side what = function Text s -> read_side s | _ -> refuse "%s: expected an expression" what
-
-let read_goals left right relation tolerance =
-  let d = subtract left right in
-  match (relation, tolerance) with
-  | "=", None -> [ (d, Equal) ]
-  | "=", Some e -> [ (Sum [ e; d ], AtLeast); (Sum [ e; negate d ], AtLeast) ]
-  | _, Some _ -> refuse "a tolerance goes with = only"
-  | "!=", None -> [ (d, Unequal) ]
-  | ">", None -> [ (d, Above) ]
-  | ">=", None -> [ (d, AtLeast) ]
-  | "<", None -> [ (subtract right left, Above) ]
-  | "<=", None -> [ (subtract right left, AtLeast) ]
-  | _ -> refuse "unknown relation %S" relation
-
-(* The two sides of a condition and its relation, which is the first of the marks that stands in the text *)
-let split_condition text =
-  let n = String.length text in
-  let starts i mark = i + String.length mark <= n && String.sub text i (String.length mark) = mark in
-  let rec go i =
-    if i >= n then refuse "given: expected a relation"
-    else
-      match List.find_opt (starts i) [ "!="; ">="; "<="; "="; ">"; "<" ] with
-      | Some mark ->
-          let after = i + String.length mark in
-          (read_side (String.sub text 0 i), mark, read_side (String.sub text after (n - after)))
-      | None -> go (i + 1)
-  in
-  go 0
-
-(* Supposes a condition. *)
-let suppose s value =
-  let x, mark, y = split_condition (get_text "given" value) in
-  let distance a b = match (a, b) with a, Num q when Q.sign q = 0 -> a | Num q, b when Q.sign q = 0 -> negate b | _ -> subtract a b in
-  let with_value s t = { s with said = s.said @ [ t ] } in
-  let away s d = with_value s (Pow (d, Num Q.minus_one)) in
-  let at_least s d = { (with_value s d) with given = s.given @ [ d ] } in
-  match mark with
-  | "=" -> let d = distance x y in { (with_value s d) with zeros = s.zeros @ [ d ] }
-  | "!=" -> let d = distance x y in away (with_value s d) d
-  | ">" -> let d = distance x y in away (at_least s d) d
-  | "<" -> let d = distance y x in away (at_least s d) d
-  | ">=" -> at_least s (distance x y)
-  | _ -> at_least s (distance y x)
-
-let plain_keys = [ "left"; "right"; "relation"; "symbols"; "exists"; "tolerance" ]
-
-let read_hypotheses o =
-  if List.mem_assoc "order" o then outside "statement with order";
-  let more = [ "shapes"; "given"; "rates" ] in
-  if not (List.exists (fun k -> List.mem_assoc k o) more) then []
-  else
-    match get_keys "statement" (plain_keys @ more) (Object o) with
-    | [ _; _; _; _; _; _; shapes; given; rates ] ->
-        if shapes <> Object [] || rates <> Object [] then outside "shapes and rates";
-        get_list "given" given
-    | _ -> assert false
-
-let read_statement value =
-  let o = get_object "statement" value in
-  let hypotheses = read_hypotheses o in
-  let plain = Object (List.filter (fun (k, _) -> not (List.mem k [ "shapes"; "given"; "rates" ])) o) in
-  match get_keys "statement" plain_keys plain with
-  | [ left; right; relation; symbols; exists; tolerance ] ->
-      let left = get_side "left" left and right = get_side "right" right in
-      let tolerance = match tolerance with Null -> None | v -> Some (get_tree "tolerance" v) in
-      let exists = List.map (get_side "exists") (get_list "exists" exists) in
-      let read (name, v) = if is_name name then (name, read_range name v) else refuse "expected a name" in
-      let box = List.map read (get_object "symbols" symbols) in
-      let said = (left :: right :: Option.to_list tolerance) @ exists in
-      let goals = read_goals left right (get_text "relation" relation) tolerance in
-      List.fold_left suppose { goals; box; said; given = []; zeros = [] } hypotheses
-  | _ -> assert false
-
-(* A tree of `given` that is a symbol, or -1 times a symbol, cuts the range at 0. *)
-let goal_of s (tree, relation) =
-  let goal = { tree; relation; box = s.box; exists = s.said; given = s.given; zeros = s.zeros } in
-  let cut goal = function
-    | Sym name -> cut_range goal name 1
-    | Prod [ Num q; Sym name ] when Q.equal q Q.minus_one -> cut_range goal name (-1)
-    | _ -> goal
-  in
-  List.iter (fun t -> check_symbols (premise goal t relation)) (s.said @ s.given @ s.zeros);
-  List.fold_left cut goal s.given
-
-(* All that the statement says has a finite ball at a point in the box, and the hypotheses hold there. *)
-let check_values s point =
-  check_point s.box point;
-  let balls = List.map (fun (name, t) -> (name, number_ball name t)) point in
-  let value name = match List.assoc_opt name balls with Some x -> x | None -> no_symbols name in
-  List.iter (fun t -> if finite_ball value t = None then refuse "no value at the point") s.said;
-  let is_positive t = match finite_ball value t with Some x -> sign_of x.lo >= 0 | None -> false in
-  let is_null t = Algebra.vanishes (put point t) in
-  shown "a hypothesis does not hold at the point"
-    (List.for_all (fun t -> is_positive t || is_null t) s.given && List.for_all is_null s.zeros);
-  value
+open Statement
 
 (* Kinds *)
 
 let keep_out_answers value = if List.mem_assoc "answers" (get_object "certificate" value) then outside "answers"
 
+let get_names what value =
+  let names = List.map (get_name what) (get_list what value) in
+  if List.length (List.sort_uniq compare names) <> List.length names then refuse "%s: a name given twice" what;
+  names
+
 let check_identity value =
   match get_keys "identity" [ "kind"; "left"; "right"; "symbols" ] value with
   | [ _; left; right; symbols ] ->
-      let names = List.map (get_name "symbols") (get_list "symbols" symbols) in
-      if List.length (List.sort_uniq compare names) <> List.length names then refuse "a name given twice";
+      let names = get_names "symbols" symbols in
       let difference = subtract (get_tree "left" left) (get_tree "right" right) in
       Names.iter (fun s -> if not (List.mem s names) then no_symbols s) (Tree.symbols difference);
       shown "the sides differ" (Algebra.normal_form_vanishes difference)
@@ -203,6 +89,85 @@ let check_counterexample value =
           | _ -> refuse "the relation allows 0")
   | _ -> assert false
 
+(* Matrices of expressions in listed symbols *)
+
+let get_matrix what names value =
+  let read_entry v =
+    let t = get_tree what v in
+    Names.iter (fun s -> if not (List.mem s names) then no_symbols s) (Tree.symbols t);
+    t
+  in
+  List.map (fun row -> List.map read_entry (get_list what row)) (get_list what value)
+
+let check_width what n rows =
+  if List.exists (fun row -> List.length row <> n) rows then refuse "%s: expected rows of %d entries" what n
+
+(* The entries of M v *)
+let apply_rows rows v = List.map (fun row -> Sum (zero :: List.map2 (fun a b -> Prod [ a; b ]) row v)) rows
+let column j rows = List.map (fun row -> List.nth row j) rows
+
+let check_exponential value =
+  match get_keys "exponential" [ "kind"; "matrix"; "solution"; "variable"; "symbols" ] value with
+  | [ _; matrix; solution; variable; symbols ] ->
+      let others = get_names "symbols" symbols and t = get_name "variable" variable in
+      if List.mem t others then refuse "a name given twice";
+      let a = get_matrix "matrix" others matrix and x = get_matrix "solution" (t :: others) solution in
+      let n = List.length a in
+      if n = 0 || List.length x <> n then refuse "expected two square matrices of one size";
+      check_width "matrix" n a;
+      check_width "solution" n x;
+      let must_vanish what t = shown what (Algebra.normal_form_vanishes t) in
+      let check_column j =
+        let v = column j x in
+        List.iter2 (fun f g -> must_vanish "X' differs from A X" (subtract (Calculus.derive t f) g)) v (apply_rows a v);
+        let unit i = if i = j then one else zero in
+        List.iteri (fun i f -> must_vanish "X(0) differs from I" (subtract (put [ (t, zero) ] f) (unit i))) v
+      in
+      List.iter check_column (List.init n Fun.id)
+  | _ -> assert false
+
+(* The determinant of balls, by elimination with the pivot that is farthest from 0; no value where none is seen to differ from 0 *)
+let rec determinant = function
+  | [] -> ball_one
+  | rows ->
+      let distance row = (size (List.hd row)).lo in
+      let best = List.fold_left (fun m row -> greatest m (distance row)) nought rows in
+      let rec pick before = function
+        | row :: l when compare_ends (distance row) best = 0 -> (List.length before, row, List.rev_append before l)
+        | row :: l -> pick (row :: before) l
+        | [] -> assert false
+      in
+      let k, pivot, others = pick [] rows in
+      let reduce row =
+        let c = over (List.hd row) (List.hd pivot) in
+        List.map2 (fun x p -> less x (times c p)) (List.tl row) (List.tl pivot)
+      in
+      let rest = times (List.hd pivot) (determinant (List.map reduce others)) in
+      if k land 1 = 1 then minus rest else rest
+
+let check_rank value =
+  match get_keys "rank" [ "kind"; "matrix"; "symbols"; "rank"; "point"; "rows"; "null" ] value with
+  | [ _; matrix; symbols; rank; point; rows; null ] ->
+      let names = get_names "symbols" symbols in
+      let m = get_matrix "matrix" names matrix in
+      let n = match m with row :: _ -> List.length row | [] -> refuse "matrix: expected a row" in
+      let null = get_matrix "null" names null in
+      check_width "matrix" n m;
+      check_width "null" n null;
+      let r = get_integer "rank" 0 n rank in
+      let rows = List.map (get_integer "rows" 0 (List.length m - 1)) (get_list "rows" rows) in
+      if List.length rows <> r || List.length null <> n - r then refuse "rank: another number of entries";
+      let read (name, v) = (name, of_rational (get_number "point" v)) in
+      let point = List.map read (get_object "point" point) in
+      if List.length point <> List.length names || not (List.for_all (fun s -> List.mem_assoc s point) names) then
+        refuse "point: expected every symbol";
+      List.iter (fun v -> List.iter (fun t -> shown "M v does not vanish" (Algebra.normal_form_vanishes t)) (apply_rows m v)) null;
+      let at t = match finite_ball (fun s -> List.assoc s point) t with Some x -> x | None -> refuse "no value at the point" in
+      let square = List.map (fun i -> List.nth m i) rows @ null in
+      let is_regular = match determinant (List.map (List.map at) square) with x -> not (has_zero x) | exception No_value -> false in
+      shown "the rows and vectors may be dependent" is_regular
+  | _ -> assert false
+
 let rec check value =
   match List.assoc_opt "kind" (get_object "certificate" value) with
   | None -> refuse "expected the key kind"
@@ -212,6 +177,8 @@ let rec check value =
       | "positivity" -> check_positivity value
       | "proof" -> check_proof value
       | "counterexample" -> check_counterexample value
+      | "exponential" -> check_exponential value
+      | "rank" -> at_precision 128 (fun () -> check_rank value)
       | "all" -> (
           match get_keys "all" [ "kind"; "of" ] value with
           | [ _; List (_ :: _ as l) ] -> List.iter check l
