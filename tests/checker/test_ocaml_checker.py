@@ -168,7 +168,7 @@ def test_no_certificate_of_the_ledger_is_refused(program: Path) -> None:
     refused = [(c, a) for c, a in zip(ledger, answers, strict=True) if a.startswith("refused")]
     assert not refused, refused[:3]
     accepted = sum(n for (_, word), n in counts.items() if word == "accepted")
-    assert accepted >= 0.97 * len(ledger), counts
+    assert accepted >= 0.99 * len(ledger), counts
 
 
 def test_changed_statements_of_the_ledger_are_not_accepted(program: Path) -> None:

@@ -177,6 +177,7 @@ let rec check value =
       | "positivity" -> check_positivity value
       | "proof" -> check_proof value
       | "counterexample" -> check_counterexample value
+      | "condition" -> Condition.check value ~at_precision
       | "exponential" -> check_exponential value
       | "rank" -> at_precision 128 (fun () -> check_rank value)
       | "all" -> (
