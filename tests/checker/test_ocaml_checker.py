@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import random
 import re
 import shutil
 import subprocess
@@ -15,23 +16,12 @@ from typing import Any
 import flint
 import pytest
 
+import navsym as nav
+
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = Path(__file__).parent / "ocaml"
 #: In the order in which they need each other.
-MODULES = (
-    "text",
-    "tree",
-    "ball",
-    "value",
-    "algebra",
-    "calculus",
-    "goal",
-    "cones",
-    "rules",
-    "language",
-    "statement",
-    "checker",
-)
+MODULES = tuple("text tree ball value algebra calculus goal cones rules language statement condition checker".split())
 
 
 def find_zarith() -> bool:
@@ -158,6 +148,69 @@ def test_the_opposite_of_a_proved_statement_is_never_accepted(program: Path) -> 
         texts += [json.dumps(put(false, "/proofs", other["proofs"])) for other in proved]
     assert len(texts) > 900
     assert "accepted" not in judge(program, texts)
+
+
+def list_places(part: Any, place: str = "") -> Iterable[tuple[str, Any]]:
+    """Every text, number and list of a document with its JSON pointer."""
+    if isinstance(part, dict):
+        for key, value in part.items():
+            yield from list_places(value, f"{place}/{key}")
+    else:
+        yield place, part
+        for i, value in enumerate(part if isinstance(part, list) else []):
+            yield from list_places(value, f"{place}/{i}")
+
+
+def change_one_place(dice: random.Random, document: Any) -> Any:
+    """The document with one text, number or list changed a little."""
+    relations = ["=", "!=", ">", ">=", "<", "<="]
+    swaps = [
+        "+-",
+        "-+",
+        ("sin", "cos"),
+        ("x", "(x + 1)"),
+        "32",
+        "21",
+        "10",
+        ("2", "1/2"),
+        "*/",
+        ("x", "-x"),
+        "01",
+        "/*",
+    ]
+    while True:
+        place, old = dice.choice([found for found in list_places(document) if found[0] != "/kind"])
+        new = old
+        if isinstance(old, list) and old:
+            i = dice.randrange(len(old))
+            new = dice.choice([old[:i] + old[i + 1 :], [*old, old[i]], old[::-1]])
+        elif old in relations:
+            new = dice.choice(relations)
+        elif isinstance(old, str):
+            part, other = dice.choice(swaps)
+            new = old.replace(part, other, 1)
+        elif isinstance(old, int):
+            new = dice.choice([0, 1, -1, old + 1, 2 * old])
+        if new != old and new != []:
+            return put(document, place, new)
+
+
+@pytest.mark.long
+def test_both_checkers_agree_on_certificates_that_were_changed(program: Path) -> None:
+    """A change may leave a certificate true; what one accepts the other may not refuse."""
+    true = read_page()[0]
+    dice = random.Random(25)
+    changed = [change_one_place(dice, dice.choice(true)) for _ in range(800)]
+    answers = judge(program, [json.dumps(c) for c in changed])
+    first = [nav.check(c)[0] for c in changed]
+    apart = [
+        (c, answer, check.why)
+        for c, answer, check in zip(changed, answers, first, strict=True)
+        if not answer.startswith("outside") and (answer == "accepted") != (check.status == "ACCEPTED")
+    ]
+    assert not apart, apart[:3]
+    assert answers.count("accepted") > 50
+    assert sum(a.startswith("refused") for a in answers) > 300
 
 
 @pytest.mark.long

@@ -24,11 +24,11 @@ let read_range what value =
   | [ low; high; flags ] ->
       let set r flag =
         match get_text what flag with
-        | "open-low" when not r.open_low -> { r with open_low = true }
-        | "open-high" when not r.open_high -> { r with open_high = true }
-        | "nonzero" when not r.nonzero -> { r with nonzero = true }
-        | "integer" when not r.integer -> { r with integer = true }
-        | f -> refuse "%s: unknown or repeated flag %S" what f
+        | "open-low" -> { r with open_low = true }
+        | "open-high" -> { r with open_high = true }
+        | "nonzero" -> { r with nonzero = true }
+        | "integer" -> { r with integer = true }
+        | f -> refuse "%s: unknown flag %S" what f
       in
       let r = { anything with low = read_end what low; high = read_end what high } in
       List.fold_left set r (get_list what flags)

@@ -41,10 +41,11 @@ let read_goals left right relation tolerance =
 (* Supposes a condition between numbers, or an equation of matrices entry by entry. *)
 let suppose s (x, mark, y) =
   let distance a b = match (a, b) with a, Num q when Q.sign q = 0 -> a | Num q, b when Q.sign q = 0 -> negate b | _ -> subtract a b in
-  let with_value s t = { s with said = s.said @ [ t ] } in
+  let join t l = if List.mem t l then l else l @ [ t ] in
+  let with_value s t = { s with said = join t s.said } in
   let away s d = with_value s (Pow (d, Num Q.minus_one)) in
-  let at_least s d = { (with_value s d) with given = s.given @ [ d ] } in
-  let equal_to s d = { (with_value s d) with zeros = s.zeros @ [ d ] } in
+  let at_least s d = { (with_value s d) with given = join d s.given } in
+  let equal_to s d = { (with_value s d) with zeros = join d s.zeros } in
   match (x, mark, y) with
   | _, "=", _ ->
       let all = combine (function [ a; b ] -> distance a b | _ -> assert false) [ x; y ] in
