@@ -36,6 +36,7 @@ from flint import (
     arb_series,
     ctx,
     fmpq,
+    fmpq_mat,
     fmpq_mpoly,
     fmpq_mpoly_ctx,
     fmpq_poly,
@@ -632,6 +633,37 @@ def check_rank(item: Any) -> None:
     require(not square.det().contains(0), "the rows and null vectors may be dependent at the point")
     for row, v in product(read_matrix(matrix, n, names, Exact), read_matrix(null, n, names, Exact)):
         require(dot(row, v).parts[0].is_zero(), "M v does not vanish")
+
+
+def check_condition(item: Any) -> None:
+    """The condition number of a matrix N, or of N with columns of unit length, lies between two numbers; or outside.
+
+    It is the quotient of the largest and the smallest singular value. Their squares are the numbers q for which
+    N'N - q D is singular, where D is the unit matrix or the diagonal of N'N. Theorem: as many of them lie above q as
+    this matrix has positive pivots, when none is 0 (Sylvester's law of inertia).
+    """
+    _, statement, outside, brackets, bits = read_fields(item, "kind statement outside brackets bits")
+    rows, unit, lower, upper = read_fields(statement, "matrix unit lower upper")
+    (low, high), (a, b, c, d) = map(read_number, (lower, upper)), read_list(brackets, read_number, 4)
+    n, ctx.prec = read_integer(len(read_list(rows, len)) and len(rows[0]), 1, 200), read_integer(bits, 53, 20000)
+    N = fmpq_mat(len(rows), n, [x for row in rows for x in read_list(row, read_number, n)])
+    gram = N.transpose() * N
+    scale = [gram[j, j] if read_integer(unit, 0, 1) else fmpq(1) for j in range(n)]
+
+    def count_above(q: fmpq) -> int:
+        rest, above = [[arb(gram[i, j] - q * scale[j] * (i == j)) for j in range(n)] for i in range(n)], 0
+        while rest:
+            (pivot, *row), *below = rest
+            require(pivot > 0 or pivot < 0, "a pivot that may be 0")
+            above += bool(pivot > 0)
+            rest = [[x - first / pivot * y for x, y in zip(other, row, strict=True)] for first, *other in below]
+        return above
+
+    require(count_above(a) > 0 and count_above(b) == 0, "the largest singular value is not enclosed")
+    require(c > 0 and count_above(c) == n > count_above(d), "the smallest singular value is not enclosed")
+    require(0 <= low <= high, "expected two ends")
+    within, beside = low * low <= max(a / d, fmpq(1)) and b / c <= high * high, b / c < low * low or high * high < a / d
+    require(beside if read_integer(outside, 0, 1) else within, "the condition number is not shown to lie there")
 
 
 # -- 7. Certificates by balls ------------------------------------------------------------------------------------------
@@ -2538,21 +2570,18 @@ def grant(statement: Any, item: Any) -> str:
     statements = statement if isinstance(statement, list) else [statement]
     require(isinstance(parts, list) and all(isinstance(part, dict) for part in parts), "expected certificates")
     own = [part.get("statement") for part in parts]
-    if [part.get("kind") for part in parts] == ["counterexample"]:
-        require(own[0] in statements, "the certificate of another statement")
-        check(item)
-        return "FAILS"
-    require(
-        own == statements and all(part.get("kind") == "proof" for part in parts), "the certificate of another statement"
-    )
+    refuting = [part for part in parts if part.get("kind") == "counterexample" or part.get("outside") == 1]
+    known = all(part.get("kind") in ("proof", "counterexample", "condition") for part in parts)
+    require(known and own == ([own[0]] if refuting else statements), "the certificate of another statement")
+    require(all(text in statements for text in own), "the certificate of another statement")
     check(item)
-    return "HOLDS"
+    return "FAILS" if refuting else "HOLDS"
 
 
 # -- 10. The entry -----------------------------------------------------------------------------------------------------
 EVERY_CHECK: tuple[Callable[[Any], None], ...] = (
-    check_identity, check_exponential, check_rank, check_positivity, check_all, check_gap, check_touch, check_proof,
-    check_counterexample,
+    check_identity, check_exponential, check_rank, check_condition, check_positivity, check_all, check_gap, check_touch,
+    check_proof, check_counterexample,
 )  # fmt: skip
 KINDS = {check.__name__.removeprefix("check_"): check for check in EVERY_CHECK}
 KINDS |= {"sliver": check_gap, "range": check_touch}

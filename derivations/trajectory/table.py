@@ -11,11 +11,12 @@ from functools import lru_cache
 
 from navsym.claims import CERTIFIED, REFUTED, Claim, Finding, Property
 from navsym.models.earth import observability_rows, power_rows
-from navsym.trajectory.conditioning import Enclosure, condition_number
+from navsym.trajectory.conditioning import Enclosure, certify_condition, condition_number, state_condition
 
 RHO = Fraction(1, 6371000)
 STEPS = {"tau0.2": Fraction(1, 5), "tau1": Fraction(1)}
 COLUMNS = ("Np", "NpN", "Nf", "Ns")
+UNIT_COLUMNS = ("NpN", "Ns")
 ORDERS = (2, 3, 4, 5, 10, 19, 20)
 
 #: Order, step -> printed condition numbers of N_p, N_pN, N_f, N_s.
@@ -45,11 +46,15 @@ CORRECTED: dict[tuple[int, str], tuple[str, str, str, str]] = {
 }
 
 
+def entry_rows(n: int, step: str, column: str) -> list[list[Fraction]]:
+    """The matrix of one entry before its columns are scaled."""
+    return power_rows(n) if column in ("Nf", "Ns") else observability_rows(n, RHO, STEPS[step])
+
+
 @lru_cache(maxsize=256)
 def true_value(n: int, step: str, column: str, digits: int = 30) -> Enclosure:
     """Certified condition number of one entry of the table."""
-    rows = power_rows(n) if column in ("Nf", "Ns") else observability_rows(n, RHO, STEPS[step])
-    return condition_number(rows, digits=digits, equilibrate=column in ("NpN", "Ns"))
+    return condition_number(entry_rows(n, step, column), digits=digits, equilibrate=column in UNIT_COLUMNS)
 
 
 def in_printed_format(found: Enclosure, printed: str) -> str:
@@ -66,6 +71,13 @@ def round_places(x: Fraction, places: int) -> str:
     return f"{text[:-places]}.{text[-places:]}"
 
 
+def ends_of(printed: str) -> tuple[Fraction, Fraction]:
+    """The numbers that round to a printed numeral: half a unit of its last digit on either side."""
+    digits, _, exponent = printed.partition("e")
+    half = Fraction(1, 2) * Fraction(10) ** (int(exponent or 0) - len(digits.partition(".")[2]))
+    return Fraction(printed) - half, Fraction(printed) + half
+
+
 def relative_error(printed: str, found: Enclosure) -> Fraction:
     """Printed over true value, minus one."""
     return Fraction(printed) / found.lower - 1
@@ -74,6 +86,7 @@ def relative_error(printed: str, found: Enclosure) -> Fraction:
 def entry(n: int, step: str, column: str, printed: str) -> Property:
     found = true_value(n, step, column)
     lower, upper = found.decimal(12)
+    meaning = state_condition(entry_rows(n, step, column), *ends_of(printed), equilibrate=column in UNIT_COLUMNS)
     finding = Finding(
         in_printed_format(found, printed),
         "exact matrix, certified singular values",
@@ -81,8 +94,9 @@ def entry(n: int, step: str, column: str, printed: str) -> Property:
         scope=f"n = {n}, rho = 1/6371000, tau = {STEPS[step]}",
         evidence=f"condition number in [{lower}, {upper}]; printed value off by "
         f"{float(relative_error(printed, found)):+.1e}",
+        certificate=certify_condition(meaning),
     )
-    return Property(printed=printed, derived=finding)
+    return Property(printed, finding, (meaning,))
 
 
 def entry_claim(n: int, step: str, column: str, printed: str, corrects: bool, wrong: bool) -> Claim:

@@ -146,10 +146,12 @@ class Property:
 
     printed : what the paper says, for example ``True``, ``3`` or ``"three instants"``
     derived : a :class:`Finding` whose value is compared with it
+    meaning : what the printed fact says, as statements that the checker reads; empty where it has no words for it
     """
 
     printed: Any
     derived: Finding
+    meaning: tuple[Mapping[str, Any], ...] = ()
 
     def _repr_latex_(self) -> str:
         return display_latex(rf"{latex_of(self.printed)} \overset{{?}}{{=}} {latex_of(self.derived.value)}")

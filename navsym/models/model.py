@@ -20,6 +20,7 @@ from navsym.language.files import name_file, write_text
 from navsym.language.names import join_place, quote
 from navsym.language.tomlfile import read_toml, toml_text
 from navsym.language.values import read_assumptions, write_declaration, write_entries, write_value
+from navsym.language.vectors import is_wide
 from navsym.models.linear import LinearModel, linear_row
 from navsym.models.modelfile import BasisFile, ModelFile, Piece, model_from, need_fixed, piece_model, read_model
 
@@ -562,8 +563,8 @@ def target_rows(targets: Mapping[str, Any], states: Sequence[str], declared: Map
 
 
 def read_row(row: Any, states: Sequence[str], known: Mapping[str, sp.Symbol], where: str) -> Any:
-    """A row of texts as it is; a formula of the states as its coefficients."""
-    if not isinstance(row, str):
+    """A row of texts as it is, and so a text of vectors and matrices; a formula of the states as its coefficients."""
+    if not isinstance(row, str) or is_wide(row) or any("[" in str(name) for name in states):
         return row
     symbols = {name: symbol(name, where=where) for name in states}
     formula = parse(row, {**known, **symbols}, where=where)
@@ -572,7 +573,8 @@ def read_row(row: Any, states: Sequence[str], known: Mapping[str, sp.Symbol], wh
 
 def known_symbols(declared: Mapping[str, Any]) -> dict[str, sp.Symbol]:
     """The declared parameters as symbols."""
-    return symbols_of(read_parameters(dict(declared), "Model: parameters"))
+    numbers = {name: value for name, value in declared.items() if not isinstance(value, Mapping)}
+    return symbols_of(read_parameters(numbers, "Model: parameters"))
 
 
 # Contents to tables of a model file
@@ -625,9 +627,9 @@ def declaration_of(parameter: Parameter) -> Any:
 
 
 def copy_as_texts(value: Any) -> Any:
-    """Plain data of our own: tables and lists copied, numbers of TOML as text."""
+    """Plain data of our own: tables and lists copied, numbers of TOML as text; sizes stay numbers."""
     if isinstance(value, Mapping):
-        return {key: copy_as_texts(item) for key, item in value.items()}
+        return {key: item if key in ("vector", "matrix") else copy_as_texts(item) for key, item in value.items()}
     if isinstance(value, list):
         return [copy_as_texts(item) for item in value]
     return str(value) if isinstance(value, str) or type(value) is int else value

@@ -37,6 +37,7 @@ from navsym.language.schema import (
     require_key,
 )
 from navsym.language.tomlfile import read_toml
+from navsym.models.blocks import write_out
 from navsym.models.linear import LinearModel
 
 # What a model file says, as plain exact data.
@@ -247,7 +248,7 @@ def read_model(path: str | os.PathLike[str], values: Mapping[str, str] | None = 
 
 def model_from(document: Table, where: str = "", values: Mapping[str, str] | None = None) -> ModelFile | BasisFile:
     """Like :func:`read_model` for a document in memory, with the same errors."""
-    place = join_place(where, "parameters")
+    document, place = write_out(document, where), join_place(where, "parameters")
     parameters = read_parameters(as_table(document.get("parameters", {}), place), place)
     known = dict(symbols_of(parameters)) | read_values(values or {}, parameters)
     free = {name: parameter for name, parameter in parameters.items() if name not in (values or {})}

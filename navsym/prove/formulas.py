@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
@@ -63,9 +64,9 @@ def prove(
 ) -> Verdict | Verdicts:
     """Verdict of a formula, or the verdicts of a claim file.
 
-    statement : a formula as text, ``"sin(2*a) = 2*sin(a)*cos(a)"``, or in LaTeX (a text with a backslash); or its left
-                side, followed by ``relation`` and ``right``; or the path of a claim file (TOML). A side is text, an
-                exact number, a sympy expression, or a list of rows or matrix of these.
+    statement : a formula as text, ``"sin(2*a) = 2*sin(a)*cos(a)"``, a chain of them, ``"a <= b = c"``, either in LaTeX
+                (a text with a backslash); or its left side, followed by ``relation`` and ``right``; or the path of a
+                claim file (TOML). A side is text, an exact number, a sympy expression, or rows or a matrix of these.
     relation  : one of ``= != < <= > >=``
     symbols   : declarations: ``T=("0", "2*pi")`` for a closed range, ``"real"``, ``"positive"``, ``"nonnegative"``,
                 ``"nonzero"``, or a table such as ``u={"vector": 3}``; without one real, or as sympy assumes
@@ -109,11 +110,12 @@ def prove(
 
 @dataclass(frozen=True, slots=True)
 class Sides:
-    """What a caller says: two sides in any accepted form, and the relation between them."""
+    """What a caller says: two sides in any accepted form, and the relation between them; or the text of a chain."""
 
     left: Any
     relation: str
     right: Any
+    chain: str = ""
 
 
 def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress: Progress | None) -> Verdicts:
@@ -136,7 +138,9 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
     )
     from navsym.prove.claimfile import ClaimFile, Symbols, decide_claims, read_claim
 
-    left, right = write_entries(sides.left, "prove: left"), write_entries(sides.right, "prove: right")
+    left, right = sides.chain, ""
+    if not sides.chain:
+        left, right = write_entries(sides.left, "prove: left"), write_entries(sides.right, "prove: right")
     existing = beside["exists"] if isinstance(beside["exists"], (list, tuple)) else [beside["exists"]]
     exists = write_entries(list(existing), "prove: exists")
     hypotheses = list(beside["given"]) if isinstance(beside["given"], (list, tuple)) else [beside["given"]]
@@ -152,7 +156,8 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
         raise UnknownSymbolError(message, where=f"prove: {name}")
     table, narrowed = merge_declarations(words, declared, "prove")
     narrowed |= {name: write_declaration(ends, f"prove: box.{name}") for name, ends in beside["box"].items()}
-    block = {"id": "formula", "left": left, "relation": sides.relation, "right": right, "box": narrowed}
+    block: dict[str, Any] = {"id": "formula", "box": narrowed}
+    block |= {"chain": left} if sides.chain else {"left": left, "relation": sides.relation, "right": right}
     block |= {"exists": exists} if exists else {}
     block |= {"given": hypotheses} if hypotheses else {}
     if beside["tolerance"] is not None:
@@ -201,8 +206,7 @@ def split_formula(statement: Any, given: Mapping[str, Any]) -> Sides:
         message = f"expected a relation = != < <= > >= or a file.toml; got {quote(statement)}; write both sides"
         raise ExpressionSyntaxError(message, where="prove: statement")
     if len(marks) > 1:
-        message = f"expected one relation; got {len(marks)} in {quote(statement)}; prove them one by one"
-        raise ExpressionSyntaxError(message, where="prove: statement")
+        return Sides("", "", "", statement)
     (mark,) = marks
     return Sides(statement[: mark.start()].strip(), mark[0], statement[mark.end() :].strip())
 
@@ -224,11 +228,15 @@ def read_latex(statement: str, given: Mapping[str, Any]) -> Sides:
     refused = next((formula for formula in reading.formulas if formula.status != "READ"), None)
     if refused is not None:
         raise ExpressionSyntaxError(str(refused.why).partition(": ")[2], where=f"prove: statement, line {refused.line}")
-    if len(reading.formulas) != 1:
-        message = f"expected one relation; got {len(reading.formulas)} in {quote(statement)}; prove them one by one"
+    first, *others = reading.formulas
+    if not others:
+        return Sides(first.left, str(first.relation), first.right)
+    if any(one.right != other.left for one, other in itertools.pairwise(reading.formulas)):
+        count = len(reading.formulas)
+        message = f"expected one formula or a chain of them; got {count} in {quote(statement)}; prove them one by one"
         raise ExpressionSyntaxError(message, where="prove: statement")
-    (formula,) = reading.formulas
-    return Sides(formula.left, str(formula.relation), formula.right)
+    links = [f"{formula.relation} {formula.right}" for formula in reading.formulas]
+    return Sides("", "", "", f"{first.left} {' '.join(links)}")
 
 
 def symbols_in(sides: Iterable[Any], given: Mapping[str, Any]) -> set[str]:

@@ -18,7 +18,7 @@ import sympy as sp
 from flint import arb, fmpq
 
 from navsym import checker
-from navsym.claims.statement import Bound, Equation, Optimum, Statement
+from navsym.claims.statement import Bound, Equation, Optimum, Property, Statement
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
 from navsym.core.errors import NavsymError
 from navsym.core.numbers import Number
@@ -53,7 +53,7 @@ def write_statements(statement: Statement) -> list[Document] | None:
             return [write_entry(statement, *sides) for sides in list_sides(statement)]
     except (NavsymError, *REFUSALS):
         pass
-    return None
+    return [dict(text) for text in statement.meaning] or None if isinstance(statement, Property) else None
 
 
 def list_sides(statement: Equation | Bound) -> list[tuple[str, str]]:
@@ -156,7 +156,7 @@ def is_granted(verdict: Verdict) -> bool:
     """True when the certificate is one of the statement's own, which the checker has accepted."""
     certificate = verdict.certificate or {}
     parts = certificate["of"] if certificate.get("kind") == "all" else [certificate]
-    return bool(parts) and all(part.get("kind") in ("proof", "counterexample") for part in parts)
+    return bool(parts) and all(part.get("kind") in ("proof", "counterexample", "condition") for part in parts)
 
 
 def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECONDS) -> Verdict:
@@ -169,6 +169,8 @@ def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECON
     if documents is None:
         return leave_unchecked(verdict)
     try:
+        if isinstance(statement, Property) and verdict.certificate:
+            return grant_finding(documents, verdict)
         if verdict.status == REFUTED:
             return grant_refutation(documents, verdict)
         return grant_proofs(documents, verdict, seconds)
@@ -192,6 +194,12 @@ def withdraw(verdict: Verdict, why: str) -> Verdict:
 def grant(documents: Sequence[Document], certificate: Mapping[str, Any]) -> str:
     """HOLDS or FAILS by the checker, of what has been written down and read again; raises Refused."""
     return checker.grant(list(documents), checker.load(json.dumps(certificate)))
+
+
+def grant_finding(documents: Sequence[Document], verdict: Verdict) -> Verdict:
+    """The verdict of a fact that was found with its certificate, when that is what the checker grants."""
+    answer = grant(documents, verdict.certificate or {})
+    return verdict if (answer == "HOLDS") == verdict.status.holds else withdraw(verdict, f"the statement {answer}")
 
 
 def grant_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict:

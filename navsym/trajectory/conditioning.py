@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -117,11 +117,14 @@ def squared_singular_polynomial(rows: Rows, *, equilibrate: bool = False) -> fli
 
     Its roots are the squared singular values of N, or of N D^-1.
     """
+    return squared_matrix(rows, equilibrate).charpoly()
+
+
+def squared_matrix(rows: Rows, equilibrate: bool) -> flint.fmpq_mat:
+    """N^T N, or N^T N D^-2 with the squared lengths of the columns in D^2."""
     matrix = rational_matrix(rows)
     gram = matrix.transpose() * matrix
-    if equilibrate:
-        gram = gram * inverse_diagonal(gram)
-    return gram.charpoly()
+    return gram * inverse_diagonal(gram) if equilibrate else gram
 
 
 def rational_matrix(rows: Rows) -> flint.fmpq_mat:
@@ -200,6 +203,57 @@ def condition_by_polynomial(rows: Rows, *, digits: int, equilibrate: bool = Fals
     largest = largest_root(polynomial, digits + 3)
     reciprocal = largest_root(flint.fmpq_poly(polynomial.coeffs()[::-1]), digits + 3)
     return square_root(largest.lower * reciprocal.lower, largest.upper * reciprocal.upper, digits + 3)
+
+
+def state_condition(rows: Rows, lower: Fraction, upper: Fraction, *, equilibrate: bool = False) -> dict[str, Any]:
+    """That the condition number lies between two numbers, as the checker reads it."""
+    matrix = [[str(Fraction(x)) for x in row] for row in rows]
+    return {"matrix": matrix, "unit": int(equilibrate), "lower": str(lower), "upper": str(upper)}
+
+
+def certify_condition(statement: dict[str, Any], digits: int = 12) -> dict[str, Any]:
+    """The certificate that the statement holds, or else that it fails: brackets of the extreme squared singular values.
+
+    statement : by :func:`state_condition`
+    digits    : of the brackets, more than the ends of the statement have
+    """
+    rows = [[Fraction(x) for x in row] for row in statement["matrix"]]
+    bits, (largest, smallest) = extreme_values(squared_matrix(rows, bool(statement["unit"])), digits)
+    low, high = Fraction(10**digits - 1, 10**digits), Fraction(10**digits + 1, 10**digits)
+    brackets = [round_to(x * side, digits + 4) for x in (largest, smallest) for side in (low, high)]
+    least, most = brackets[0] / brackets[3], brackets[1] / brackets[2]
+    outside = most < Fraction(statement["lower"]) ** 2 or least > Fraction(statement["upper"]) ** 2
+    return {
+        "kind": "condition",
+        "statement": statement,
+        "outside": int(outside),
+        "brackets": [*map(str, brackets)],
+        "bits": bits,
+    }
+
+
+def extreme_values(matrix: flint.fmpq_mat, digits: int) -> tuple[int, tuple[Fraction, Fraction]]:
+    """Bits, and the largest and the smallest eigenvalue, agreed on at half of these bits; all are real and positive.
+
+    A proposal, which its reader proves.
+    """
+    before, bits = None, 128
+    while bits <= 20000:
+        with flint.ctx.workprec(bits):
+            values = [x.real.mid() for x in flint.acb_mat(matrix).eig(algorithm="approx")]
+            ends = max(values, key=to_fraction), min(values, key=to_fraction)
+        found = to_fraction(ends[0]), to_fraction(ends[1])
+        near = [abs(x - y) < x / 10 ** (digits + 4) for x, y in zip(found, before or found, strict=True)]
+        if before and all(near):
+            return bits, found
+        before, bits = found, 2 * bits
+    raise TooLargeError(f"expected {digits} digits of two eigenvalues; got fewer within the limits; ask for fewer")
+
+
+def round_to(x: Fraction, digits: int) -> Fraction:
+    """A positive number to so many significant digits."""
+    unit = Fraction(10) ** (exponent_of(x) - digits)
+    return round(x / unit) * unit
 
 
 # Singular values of a matrix whose signs are known: Collatz and Wielandt's bounds in ball arithmetic.
@@ -561,6 +615,17 @@ class Conditions(Answer):
         """The JSON document of ``navsym condition``."""
         head = {"n": self.n, "rho": str(self.rho), "tau": str(self.tau), "digits": self.digits}
         return {**head, **{c.name: c.document() for c in self}, "warnings": list(self.warnings)}
+
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """That each of the four condition numbers lies between its ends, for the checker."""
+        measured, powers = observability_rows(self.n, self.rho, self.tau), power_rows(self.n)
+        matrices = {"N_p": measured, "N_pN": measured, "N_f": powers, "N_s": powers}
+        found: list[Mapping[str, Any]] = []
+        for part in self:
+            ends = (Fraction(part.value.lower), Fraction(part.value.upper))
+            statement = state_condition(matrices[part.name], *ends, equilibrate=part.name in ("N_pN", "N_s"))
+            found.append(certify_condition(statement, self.digits + 10))
+        return found
 
     def __repr__(self) -> str:
         values = ", ".join(f"{c.name} {float(c.value):.6g}" for c in self)

@@ -96,7 +96,7 @@ def grant_entry(texts: list[dict[str, Any]], entry: Any, seconds: float) -> Verd
         return None
     if answer == "HOLDS":
         return verdict if verdict.status.holds else None
-    point = certificate["point"]
+    point = certificate.get("point", {})
     same = all(point.get(name, value) == value for name, value in (verdict.counterexample or {}).items())
     return verdict if verdict.status == REFUTED and same else None
 

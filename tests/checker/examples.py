@@ -320,7 +320,22 @@ LAST = (
 # A root of what vanishes identically is zero.
 ROOT_OF_ZERO = GAP | {"panels": [VELOCITY | {"H": ["1 + sqrt(0*t)", "t"]}]}
 ALL = {"kind": "all", "of": [IDENTITY, RANK]}
+# Singular values of [[1, 0], [0, 3], [0, 4]]: 1 and 5; with unit columns both are 1.
+CONDITION = {
+    "kind": "condition",
+    "statement": {"matrix": [["1", "0"], ["0", "3"], ["0", "4"]], "unit": 0, "lower": "4.9", "upper": "5.1"},
+    "outside": 0,
+    "brackets": ["24.9", "25.1", "0.999", "1.001"],
+    "bits": 64,
+}
+SCALED = CONDITION | {
+    "statement": CONDITION["statement"] | {"unit": 1, "lower": "4.9", "upper": "5.1"},
+    "outside": 1,
+    "brackets": ["0.99", "1.01", "0.999", "1.001"],
+}
 GOOD = [
+    CONDITION,
+    SCALED,
     IDENTITY,
     ROW,
     OFFSET,

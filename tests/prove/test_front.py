@@ -73,7 +73,8 @@ def test_a_float_is_refused_with_its_exact_spelling(value):
     ("arguments", "declared", "kind", "where"),
     [
         (("sin(a)",), {}, "syntax", "prove: statement"),
-        (("a = b = c",), {}, "syntax", "prove: statement"),
+        (("a = b = ",), {}, "empty", "prove: right"),
+        ((r"a = b \quad c = d",), {}, "syntax", "prove: statement"),
         ((3,), {}, "syntax", "prove: statement"),
         ((sp.Eq(REAL, 1, evaluate=False),), {}, "syntax", "prove: statement"),
         ((None, "=", "a"), {}, "syntax", "prove: left"),
@@ -194,3 +195,20 @@ def test_what_is_no_statement_is_refused_with_its_place(statement, where):
     with pytest.raises(nav.NavsymError) as caught:
         decide(statement)
     assert (caught.value.kind, caught.value.where) == ("domain", where) and caught.value.remedy
+
+
+@pytest.mark.parametrize(
+    ("chain", "status"),
+    [
+        ("dot(u, v)**2 <= dot(u, u)*dot(v, v) = norm(u)**2*norm(v)**2", nav.PROVED),
+        ("dot(u, v)**2 <= dot(u, u)*dot(v, v) = norm(u)**2*norm(v)**3", nav.REFUTED),
+        ("dot(u, v) = dot(v, u) < dot(u, u)", nav.REFUTED),
+    ],
+)
+def test_a_chain_holds_when_all_of_its_links_do(chain, status):
+    assert nav.prove(chain, u={"vector": 3}, v={"vector": 3}).status == status
+
+
+def test_a_chain_in_latex_is_a_chain():
+    assert nav.prove(r"\sin(2a) = 2\sin a\cos a \le 1").status == nav.PROVED
+    assert nav.prove(r"\sin(2a) = 2\sin a\cos a \le \frac12").status == nav.REFUTED

@@ -10,11 +10,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from navsym.checker import Refused, check
 from navsym.core.errors import DomainError, NotEstimableError, ShapeError, TooLargeError
 from navsym.models.earth import observability_rows, power_rows
 from navsym.trajectory.conditioning import (
     Enclosure,
     best_scaling,
+    certify_condition,
     condition,
     condition_by_polynomial,
     condition_by_signs,
@@ -163,3 +165,18 @@ def test_unit_columns_are_worse_than_none_in_the_radius_channel():
     rows = observability_rows(5, Fraction(1), Fraction(13, 20))
     plain, scaled = (condition_number(rows, digits=20, equilibrate=flag) for flag in (False, True))
     assert plain.upper < Fraction(9, 10) * scaled.lower
+
+
+@pytest.mark.parametrize("n", [1, 2, 7, 20])
+def test_the_checker_grants_each_end_of_an_answer_and_no_narrower_one(n: int) -> None:
+    import navsym as nav
+
+    answer = nav.condition(n, tau="0.2", digits=20)
+    assert answer.check().accepted
+    for part, certificate in zip(answer, answer.certificates(), strict=True):
+        statement = certificate["statement"]
+        if Fraction(part.value.lower) > 1:
+            wrong = statement | {"lower": part.value.upper, "upper": str(2 * Fraction(part.value.upper))}
+            with pytest.raises(Refused):
+                check(certificate | {"statement": wrong})
+            assert check(certify_condition(wrong, 40)) == "condition" and certify_condition(wrong, 40)["outside"]

@@ -1,0 +1,305 @@
+"""Vectors and matrices in model files: the document with one number in the place of each entry.
+
+A state ``v[3]`` stands for ``v_1, v_2, v_3``, a parameter declared as a vector or matrix for its entries. F, h,
+dynamics and targets then have one entry for each state of the list, which is a block of the state's size.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+from navsym.core.errors import DomainError, DuplicateError, ShapeError
+from navsym.language.names import join_place, quote
+from navsym.language.schema import SIDE, Table, as_list, as_table, as_text
+from navsym.language.shapes import Shape, name_entries, read_shape
+from navsym.language.vectors import describe_size, is_wide, read_value
+
+STATE = re.compile(r"([A-Za-z]\w*)\[(\d{1,3})\]", re.ASCII)
+SCALARS = ("positive", "nonnegative", "nonzero", "real")
+Rows = list[list[str]]
+
+
+def write_out(document: Table, where: str) -> Table:
+    """The document without vectors and matrices; the same where it has none."""
+    model = document.get("model")
+    if not isinstance(model, Mapping) or not has_arrays(document):
+        return document
+    return Writer(document, where).write(document, model)
+
+
+def has_arrays(value: Any) -> bool:
+    """Whether a table declares an array, or some text in it needs one."""
+    if isinstance(value, Mapping):
+        return any(has_arrays(item) or (key == "parameters" and has_table(item)) for key, item in value.items())
+    if isinstance(value, list):
+        return any(map(has_arrays, value))
+    return isinstance(value, str) and is_wide(value)
+
+
+def has_table(parameters: Any) -> bool:
+    return isinstance(parameters, Mapping) and any(isinstance(value, Mapping) for value in parameters.values())
+
+
+class Writer:
+    """Writes the tables of a model out; ``arrays`` are the declared vectors and matrices by name."""
+
+    def __init__(self, document: Table, where: str) -> None:
+        self.where = where
+        self.arrays: dict[str, tuple[tuple[str, ...], ...]] = {}
+        self.scalars: set[str] = {"t"}
+        place = join_place(where, "parameters")
+        declared = as_table(document.get("parameters", {}), place)
+        self.parameters = dict(self.declare(declared, place))
+        place = join_place(join_place(where, "model"), "states")
+        states = as_list(document["model"].get("states", []), place, "a list of names")
+        self.sizes = [*self.list_states(states, place)]
+
+    def declare(self, declared: Table, place: str) -> Iterator[tuple[str, Any]]:
+        """The declarations of numbers; those of vectors and matrices entry by entry."""
+        for name, value in declared.items():
+            here = join_place(place, name)
+            if not isinstance(value, Mapping):
+                self.scalars.add(name)
+                yield name, value
+                continue
+            (shape,) = self.read_shape(name, value, declared, here)
+            if shape.kind == "scalar":
+                self.scalars.add(name)
+                yield name, value.get("range", value.get("sign", "real"))
+                continue
+            self.arrays[name] = shape.rows
+            yield from ((entry, "real") for entry in dict.fromkeys(entry for row in shape.rows for entry in row))
+
+    def read_shape(self, name: str, value: Mapping[str, Any], declared: Table, here: str) -> list[Shape]:
+        """What a table declares; a model has no relations between parameters, and no functions of its own."""
+        found = read_shape(name, value, declared, here)
+        if found[0].relations or len(found) > 1 or "integer" in value:
+            message = (
+                f"expected a number, a vector or a matrix; got {quote(dict(value))}; give its entries as parameters"
+            )
+            raise DomainError(message, where=here)
+        return found
+
+    def list_states(self, states: Sequence[Any], place: str) -> Iterator[tuple[str, tuple[str, ...]]]:
+        """Each state of the list with the names of its entries."""
+        for i, text in enumerate(states):
+            found = STATE.fullmatch(text) if isinstance(text, str) else None
+            if found is None:
+                yield text, (text,)
+                continue
+            name, size = found[1], int(found[2])
+            if not 1 <= size <= SIDE:
+                raise ShapeError(f"expected 1 to {SIDE} entries; got {size}; split it", where=join_place(place, i))
+            if name in self.arrays or name in self.scalars:
+                message = f"expected a new name; got {name!r}, which is declared already; rename it"
+                raise DuplicateError(message, where=join_place(place, i))
+            taken = {*self.scalars, *(other for other in states if isinstance(other, str))}
+            self.arrays[name] = name_entries(name, (size, 1), False, taken)
+            yield name, tuple(row[0] for row in self.arrays[name])
+
+    # Texts
+
+    def evaluate(self, text: Any, here: str) -> Rows | str:
+        """The entries of a text, as texts; a number as it is written."""
+        if not isinstance(text, str) or not (is_wide(text) or self.names_array(text)):
+            return str(text) if isinstance(text, int) and not isinstance(text, bool) else text  # type: ignore[no-any-return]
+        from navsym.prove.grant import write_numerals
+        from navsym.prove.rooms.goals import player, write_term
+
+        states = [name for name, entries in self.sizes if entries == (name,)] if hasattr(self, "sizes") else []
+        known = dict.fromkeys([*self.scalars, *(name for name in states if isinstance(name, str))])
+        read_value(text, known | {name: (len(rows), len(rows[0])) for name, rows in self.arrays.items()}, where=here)
+        names = {name: ("symbol", name) for name in known}
+        names |= {
+            name: player.Matrix([[("symbol", entry) for entry in row] for row in rows])
+            for name, rows in self.arrays.items()
+        }
+        try:
+            reader = player.Reader(names, {}, [])
+            value = reader.read(write_numerals(text))
+        except player.Refused as refusal:
+            raise DomainError(
+                f"expected a formula of numbers; got {quote(text)}: {refusal}; write it out", where=here
+            ) from None
+        if reader.choices:
+            raise DomainError(f"expected no cases; got {quote(text)}; a model is one formula", where=here)
+        if not isinstance(value, player.Matrix):
+            return str(write_term(value))
+        return [[write_term(entry) for entry in row] for row in value.rows]
+
+    def names_array(self, text: str) -> bool:
+        return not self.arrays.keys().isdisjoint(re.findall(r"[A-Za-z]\w*", text))
+
+    def scalar(self, value: Any, here: str) -> Any:
+        """A number; an array is none."""
+        found = self.evaluate(value, here)
+        if isinstance(found, list):
+            message = f"expected a number; got {describe_size((len(found), len(found[0])))}; pick an entry"
+            raise ShapeError(message, where=here)
+        return found
+
+    def block(self, value: Any, rows: int, columns: int, here: str) -> Rows:
+        """A block of this size; 0 is a block of zeros."""
+        found = self.evaluate(value, here)
+        if str(found).strip() == "0":
+            return [["0"] * columns for _ in range(rows)]
+        if not isinstance(found, list) and rows == columns == 1:
+            return [[found]]
+        size = (len(found), len(found[0])) if isinstance(found, list) else None
+        if size != (rows, columns):
+            message = f"expected {rows} x {columns}; got {describe_size(size)}; correct the block, or write 0"
+            raise ShapeError(message, where=here)
+        return found  # type: ignore[return-value]
+
+    # Tables
+
+    def write(self, document: Table, model: Table) -> Table:
+        """All tables of the document, written out."""
+        done, where = dict(document), join_place(self.where, "model")
+        names = [entry for _, entries in self.sizes for entry in entries]
+        done["parameters"] = self.parameters
+        done["model"] = own = dict(model) | {"states": names}
+        if "F" in model:
+            own["F"] = self.square(model["F"], join_place(where, "F"))
+        if "dynamics" in model:
+            own["dynamics"] = self.column(model["dynamics"], join_place(where, "dynamics"))
+        if "relations" in model:
+            place = join_place(where, "relations")
+            items = as_list(model["relations"], place, "a list of equations")
+            own["relations"] = [self.relation(item, join_place(place, i)) for i, item in enumerate(items)]
+        for key, change in TABLES.items():
+            if key in document:
+                done[key] = change(self, document[key], join_place(self.where, key))
+        return done
+
+    def square(self, value: Any, here: str) -> Any:
+        """F: one text, or a list of rows of blocks; written out in full already where it has a row for every entry."""
+        sizes = [len(entries) for _, entries in self.sizes]
+        if isinstance(value, str):
+            return self.block(value, sum(sizes), sum(sizes), here)
+        rows = as_list(value, here, "a list of rows")
+        if len(rows) != len(sizes):
+            return self.entries(rows, sum(sizes), here)
+        return [line for i, row in enumerate(rows) for line in self.line(row, sizes[i], join_place(here, i))]
+
+    def entries(self, items: Sequence[Any], whole: int, here: str) -> Any:
+        """What is written out already, with an entry for each number."""
+        if len(items) != whole:
+            message = (
+                f"expected {len(self.sizes)} entries, one for each state of the list; got {len(items)}; correct it"
+            )
+            raise ShapeError(message, where=here)
+        return items
+
+    def line(self, row: Any, height: int, here: str) -> Rows:
+        """A row of blocks, or one text for all of it, as rows of entries."""
+        sizes = [len(entries) for _, entries in self.sizes]
+        if isinstance(row, str):
+            return self.block(row, height, sum(sizes), here)
+        items = as_list(row, here, "a list of expressions")
+        if len(items) != len(sizes):
+            message = f"expected {len(sizes)} blocks, one for each state of the list; got {len(items)}; correct the row"
+            raise ShapeError(message, where=here)
+        blocks = [
+            self.block(item, height, size, join_place(here, j))
+            for j, (item, size) in enumerate(zip(items, sizes, strict=True))
+        ]
+        return [[entry for block in blocks for entry in block[i]] for i in range(height)]
+
+    def column(self, value: Any, here: str) -> Any:
+        """One entry for each state of the list, each a vector of its size."""
+        items = as_list(value, here, "a list of expressions")
+        if len(items) != len(self.sizes):
+            return self.entries(items, sum(len(entries) for _, entries in self.sizes), here)
+        rows = [
+            self.block(item, len(entries), 1, join_place(here, i))
+            for i, (item, (_, entries)) in enumerate(zip(items, self.sizes, strict=True))
+        ]
+        return [entry for block in rows for (entry,) in block]
+
+    def relation(self, text: Any, here: str) -> Any:
+        """An equation between numbers."""
+        sides = as_text(text, here, "an equation").split("=")
+        return " = ".join(str(self.scalar(side.strip(), here)) for side in sides)
+
+    def list_measurements(self, value: Any, here: str) -> Any:
+        """One block for each number that is measured; a vector gives as many, with numbered names."""
+        found: list[Any] = []
+        for i, block in enumerate(as_list(value, here, "[[measurement]] blocks")):
+            place = join_place(here, i)
+            table = dict(as_table(block, place))
+            key = "h" if "h" in table else "z"
+            if key not in table:
+                found.append(table)
+                continue
+            there = join_place(place, key)
+            rows = self.measured(table[key], key, there)
+            name, sigma = table.get("name", f"z{i + 1}"), self.scalar(table.get("sigma", 1), join_place(place, "sigma"))
+            for k, row in enumerate(rows, 1):
+                found.append(table | {key: row, "sigma": sigma, "name": name if len(rows) == 1 else f"{name}_{k}"})
+        return found
+
+    def measured(self, value: Any, key: str, here: str) -> list[Any]:
+        """The rows of h, by blocks or in one text, or the entries of z."""
+        found = value if isinstance(value, list) else self.evaluate(value, here)
+        if key == "z":
+            return [found] if isinstance(found, str) else [entry for (entry,) in self.block(value, len(found), 1, here)]
+        whole = sum(len(entries) for _, entries in self.sizes)
+        if found is not value and isinstance(found, list):
+            return self.block(value, len(found), whole, here)
+        if not isinstance(value, list) or len(value) not in (len(self.sizes), whole):
+            items = value if isinstance(value, list) else as_list(value, here, "a list of blocks")
+            return [self.entries(items, whole, here)]
+        if len(value) != len(self.sizes):
+            return [value]
+        blocks = [self.evaluate(item, join_place(here, j)) for j, item in enumerate(value)]
+        height = max((len(block) for block in blocks if isinstance(block, list)), default=1)
+        return self.line(value, height, here)
+
+    def list_targets(self, value: Any, here: str) -> Any:
+        """Functionals: a block is a row of the state's size."""
+        table = as_table(value, here)
+        whole = {name: as_list(row, join_place(here, name), "a list of expressions") for name, row in table.items()}
+        return {
+            name: self.line(row, 1, join_place(here, name))[0] if len(row) == len(self.sizes) else row
+            for name, row in whole.items()
+        }
+
+    def list_rates(self, value: Any, here: str) -> Any:
+        """Rates of numbers; that of a vector or matrix entry by entry."""
+        done: dict[str, Any] = {}
+        for name, text in as_table(value, here).items():
+            rows = self.arrays.get(name)
+            if rows is None:
+                done[name] = self.scalar(text, join_place(here, name))
+                continue
+            found = self.block(text, len(rows), len(rows[0]), join_place(here, name))
+            done |= {
+                entry: x for row, line in zip(rows, found, strict=True) for entry, x in zip(row, line, strict=True)
+            }
+        return done
+
+    def list_pieces(self, value: Any, here: str) -> Any:
+        """The pieces, each with its F."""
+        blocks = [dict(as_table(block, join_place(here, i))) for i, block in enumerate(as_list(value, here, "blocks"))]
+        for i, block in enumerate(blocks):
+            place = join_place(here, i)
+            block |= {key: self.scalar(block[key], join_place(place, key)) for key in ("from", "to") if key in block}
+            if "F" in block:
+                block["F"] = self.square(block["F"], join_place(place, "F"))
+        return blocks
+
+    def list_numbers(self, value: Any, here: str) -> Any:
+        """A table of numbers."""
+        return {key: self.scalar(item, join_place(here, key)) for key, item in as_table(value, here).items()}
+
+
+TABLES: dict[str, Callable[[Writer, Any, str], Any]] = {
+    "measurement": Writer.list_measurements,
+    "targets": Writer.list_targets,
+    "rates": Writer.list_rates,
+    "piece": Writer.list_pieces,
+    "interval": Writer.list_numbers,
+}
