@@ -14,6 +14,7 @@ import shlex
 import struct
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -224,10 +225,10 @@ CLOSING = """MISRA counts findings of cppcheck's add-on, all of them in the list
 SHORT = {"javascript": "js", "fortran": "f90"}
 
 
-def as_markdown(document: Record, command: str) -> str:
+def as_markdown(document: Record, command: str, title: str = "Ready-made exports") -> str:
     """The page that is committed; produced, never edited."""
     names = [n for n, record in document["languages"].items() if record["status"] != "not executed"]
-    lines = ["# Ready-made exports", ""]
+    lines = [f"# {title}", ""]
     lines += [f"Produced by `{command}`; do not edit. {document['machine']}.", ""]
     lines += [INTRODUCTION.format(document["vectors"]), ""]
     head = ["function", *(SHORT.get(n, n) for n in names), "vectors", "MISRA", "M4 bytes"]
@@ -237,6 +238,9 @@ def as_markdown(document: Record, command: str) -> str:
         vectors = max(found["vectors"] for found in record["languages"].values())
         tail = ["-" if record[key] is None else str(record[key]) for key in ("misra", "cortex_m4_bytes")]
         lines.append(f"| {' | '.join([record['name'], *cells, str(vectors), *tail])} |")
+    if made := document.get("seconds"):
+        said = ", ".join(f"{name} {seconds:.2g} s" for name, seconds in made.items())
+        lines += ["", f"Formulas, proofs and bounds of a group, without its vectors, in processor time: {said}."]
     lines += ["", "## Verdicts and bounds", "", "| function | verdict | bound |", "| --- | --- | --- |"]
     for record in document["functions"]:
         lines.append(f"| {record['name']} | {', '.join(record['status'])} | {record['bound'].replace('|', '/')} |")
@@ -285,7 +289,8 @@ def measured_cell(found: Record) -> str:
 def read_words(words: Sequence[str]) -> argparse.Namespace:
     """The options of the command line."""
     reader = argparse.ArgumentParser(description="Run the ready-made exports in every language of this machine.")
-    reader.add_argument("names", nargs="*", help=f"ready-made names among {', '.join(READY)}; all when none is given")
+    words_of_names = f"ready-made names among {', '.join(READY)}, or model files; all names when none is given"
+    reader.add_argument("names", nargs="*", help=words_of_names)
     reader.add_argument("--to", default=EVERY, help="languages")
     reader.add_argument("--real", default="double", choices=("double", "float"))
     reader.add_argument("--vectors", type=int, default=48, help="vectors for each function")
@@ -294,7 +299,7 @@ def read_words(words: Sequence[str]) -> argparse.Namespace:
     reader.add_argument("--write", type=Path, help="write the table as a markdown page")
     reader.add_argument("--json", action="store_true", help="print one JSON document")
     options = reader.parse_args(words)
-    unknown = [name for name in options.names if name not in READY]
+    unknown = [name for name in options.names if name not in READY and not name.endswith(".toml")]
     if unknown:
         reader.error(f"expected ready-made names among {', '.join(READY)}; got {unknown[0][:40]!r}; correct it")
     return options
@@ -305,20 +310,23 @@ def main(words: Sequence[str]) -> int:
     options = read_words(words)
     spoken = [n for n in options.to.split(",") if n not in TARGETS or options.real in TARGETS[n].reals]
     targets = find_targets(spoken, options.real)
-    groups = {
-        name: [f for claim in READY[name] for f in functions_of_claim(claim, options.real)]
-        for name in options.names or READY
-    }
+    groups, seconds = {}, {}
+    for name in options.names or READY:
+        start = time.process_time()
+        groups[name] = [f for claim in READY.get(name, (name,)) for f in functions_of_claim(claim, options.real)]
+        seconds[name] = time.process_time() - start
 
     def tell(doing: str) -> None:
         print(doing, file=sys.stderr, flush=True)
 
     document = closing_table(groups, targets, options.vectors, tell, options.points, options.jobs)
+    document["seconds"] = seconds
+    title = "Exported models" if any(n.endswith(".toml") for n in groups) else "Ready-made exports"
     command = shlex.join(["python", "docs/exports_table.py", *without_option("--write", words)])
     if options.write is not None:
-        options.write.write_text(as_markdown(document, command), encoding="utf-8")
+        options.write.write_text(as_markdown(document, command, title), encoding="utf-8")
     if options.json or options.write is None:
-        print(json.dumps(document, indent=2) if options.json else as_markdown(document, command))
+        print(json.dumps(document, indent=2) if options.json else as_markdown(document, command, title))
     said = [*document["languages"].values(), *document["tools"].values()]
     return 1 if any(record["status"] == "failed" for record in said) else 0
 

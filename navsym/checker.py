@@ -13,7 +13,8 @@ The sections stand in the order of trust: each rests on those before it, and eve
 3. Functions of a parameter, and 4. expressions, both in balls. 5. Exact algebra, which decides that numbers are equal.
 6. The kinds identity, exponential and rank, by exact algebra. 7. The kinds positivity, by balls, and all.
 8. The optimum of guaranteed estimation: the kinds gap and sliver, touch and range. 9. The kinds proof and
-   counterexample: statements and the rules of their proofs. 10. The entry: check.
+   counterexample: statements, the rules of their proofs, answers for integrals, sums, products and limits.
+10. Equations between matrices of any size: the kinds words and sized. 11. The entry: check.
 """
 
 from __future__ import annotations
@@ -947,16 +948,19 @@ SIGNS = {"=": (1, "="), "!=": (1, "!="), ">": (1, ">"), ">=": (1, ">="), "<": (-
 MOST_CASES = 128
 
 
-def read_statement(item: Any) -> tuple[list[Case], dict[str, Range]]:
+def read_statement(item: Any, answers: Answers | None = None) -> tuple[list[Case], dict[str, Range]]:
     """The cases of a statement, which cover all its points, and its box.
 
     ``shapes`` has names in the place of the entries of vectors and matrices, ``given`` hypotheses, and ``rates`` the
     derivatives by time. One condition after the other is taken to hold, then to fail; each case has goals of its own.
+    ``answers`` say what integrals, sums, products and limits are; ``order`` is that of an equation up to small terms.
     """
     more = " shapes given rates" if isinstance(item, dict) and "given" in item else ""
+    more += " order" if isinstance(item, dict) and "order" in item else ""
     left, relation, right, symbols, exists, tolerance, *rest = read_fields(
         item, f"left relation right symbols exists tolerance{more}"
     )
+    small = rest.pop() if "order" in more else None
     require(isinstance(symbols, dict), "expected ranges by symbol")
     box = {name: read_range(symbols[name]) for name in read_symbols([*symbols])}
     shapes, given, rates = rest or ({}, [], {})
@@ -973,8 +977,11 @@ def read_statement(item: Any) -> tuple[list[Case], dict[str, Range]]:
         for text in read_list(exists, str):
             reader.need(*list_entries(reader.read(text)))
         goals = state_goals(reader.read(left), relation, reader.read(right), limit)
+        goals = settle_questions(reader, goals, box, answers or Answers([]))
+        goals = goals if small is None else expand_goals(reader, goals, small, box)
         cases.append(reader.make_case(goals, box))
         choices = next_choices(reader.choices)
+    require(answers is None or not answers.entries, "an answer without a question")
     return cases, box
 
 
@@ -1187,6 +1194,7 @@ class Reader:
         self.slopes: dict[str, Term | None] = {}
         self.dead = self.conditions = 0
         self.exists, self.given, self.zeros = (dict[Term, None]() for _ in range(3))
+        self.questions: list[Question] = []
 
     def read(self, text: Any) -> Value:
         """The value of a text."""
@@ -1270,6 +1278,7 @@ class Reader:
 
     def differentiate(self, x: Value, name: str) -> Value:
         """The derivative by a symbol, where there is one; by time t it is that of all that has a rate."""
+        require(not any(map(is_asked, list_entries(x))), "a derivative of an integral, sum, product or limit")
         self.need(*(t for entry in list_entries(x) for t in (entry, *smoothness(entry))))
         if name == "t" and "t" in self.rates:
             return change_entries(self.differentiate_by_time, x)
@@ -1277,6 +1286,7 @@ class Reader:
 
     def differentiate_by_time(self, term: Term) -> Term:
         """The chain rule: the sum of df/ds ds/dt over the symbols that have a rate; the others are constant."""
+        require(not is_asked(term), "a derivative of an integral, sum, product or limit")
         slopes = self.slopes = self.slopes or self.list_rates()
         rows = [(name, slopes[name]) for name in sorted(symbols_of(term)) if name in slopes]
         require(all(rate is not None for _, rate in rows), "no rate is known")
@@ -1305,12 +1315,7 @@ def take_off(x: Term, y: Term) -> Term:
 
 def smoothness(term: Term) -> list[Term]:
     """Terms with a value only where a term is differentiable."""
-    made: dict[str, Callable[[Term], Term]] = {
-        ">": lambda t: ("log", t),
-        ">=": lambda t: ("sqrt", t),
-        "!=": lambda t: ("^", t, MINUS_ONE),
-    }
-    return [made[relation](t) for relation, t in conditions(term, 2)]
+    return [EXISTING[relation](t) for relation, t in conditions(term, 2)]
 
 
 def next_choices(choices: list[bool]) -> list[bool] | None:
@@ -1440,6 +1445,8 @@ class Formula(Parser):
         """A function of values; where, min, max and sign are cases, diff and dot_ derivatives."""
         if name == "where":
             return self.read_where()
+        if name in QUESTIONS:
+            return self.read_question(name)
         before, arguments = self.reader.conditions, [self.read_sum()]
         while self.take(","):
             arguments.append(self.read_sum())
@@ -1477,6 +1484,51 @@ class Formula(Parser):
         require(self.take(")"), "not an expression: no )")
         require(shape_of(values[0]) == shape_of(values[1]), "branches of different shapes")
         return values[0] if taken else values[1]
+
+    def read_question(self, kind: str) -> Term:
+        """integral(f, x, a, b), sum and product the same, limit(f, x, a): a symbol in its place, or all terms."""
+        reader = self.reader
+        before, first, outside = reader.conditions, len(reader.questions), reader.exists
+        reader.exists = {}
+        term, needs, reader.exists = to_number(self.read_sum()), [*reader.exists], outside
+        require(self.take(","), f"expected a variable in {kind}")
+        name, ends = self.words.pop(), []
+        plain = matches("[A-Za-z][A-Za-z0-9_]*", name) and name not in ("pi", "oo", *reader.names, *reader.rates)
+        require(plain, f"expected the name of a number in {kind}")
+        while self.take(","):
+            ends.append(to_number(self.read_sum()))
+        require(self.take(")") and len(ends) == 2 - (kind == "limit"), f"expected the ends of {kind}, and )")
+        require(before == reader.conditions, f"{kind} of cases")
+        if reader.dead:
+            return ZERO
+        reader.need(*(t for t in needs if name not in symbols_of(t)))
+        needs = [t for t in needs if name in symbols_of(t)]
+        own = f"{name}__{len(reader.questions) + 1}"
+        seen = set().union(*map(symbols_of, (term, *ends, *needs)))
+        require(own not in seen, "a name that is in use")
+        if kind in ("sum", "product") and all(constant_of(end) is not None for end in ends):
+            require(len(reader.questions) == first, f"{kind} of an open question")
+            return self.write_out(kind, name, term, needs, ends)
+        bound = {name: ("symbol", own)}
+        inner = [q.change(lambda t: substitute(t, bound)) for q in reader.questions[first:]]
+        question = Question(
+            kind, f"value {len(reader.questions) + 1}", own, substitute(term, bound), ends[0], ends[-1],
+            tuple(substitute(t, bound) for t in needs), (),
+        )  # fmt: skip
+        reader.questions[first:] = [q._replace(within=(*q.within, question)) for q in inner]
+        reader.questions.append(question)
+        return ("symbol", question.value)
+
+    def write_out(self, kind: str, name: str, term: Term, needs: list[Term], ends: list[Term]) -> Term:
+        """A sum or product with numbers as ends; one of no terms is 0 or 1."""
+        low, high = map(constant_of, ends)
+        require(low is not None and high is not None and low.q == high.q == 1, "expected whole ends")
+        require(high - low < MOST_TERMS, "too many terms")  # type: ignore[operator]
+        values = [{name: number(k)} for k in range(int(low), int(high) + 1)]  # type: ignore[arg-type]
+        self.reader.need(*(substitute(t, value) for t in (term, *needs) for value in values))
+        terms = [substitute(term, value) for value in values]
+        unit = ZERO if kind == "sum" else ONE
+        return ("+" if kind == "sum" else "*", unit, *terms) if terms else unit
 
     def pick(self, name: str, x: Term, y: Term) -> Term:
         """The smaller or the larger of two numbers, which both need a value."""
@@ -2497,6 +2549,364 @@ def to_fraction(term: Term) -> tuple[fmpq_poly, fmpq_poly]:
     raise Refused("no rational function")
 
 
+# Integrals, sums, products and limits. The reader puts a symbol in the place of each and keeps the question what it is.
+# An answer is a term with a proof that this is its value, at all points of the case where all else that was typed has
+# values; it takes the place of the symbol.
+
+QUESTIONS = ("integral", "sum", "product", "limit")
+INFINITY: Term = ("symbol", "oo")
+MOST_TERMS, TINY, SLOW = 400, fmpq(-(10**9)), fmpq(1, 1000)
+
+
+class Question(NamedTuple):
+    """The integral, sum or product of a term over a variable from low to high, or its limit at low = high.
+
+    ``needs`` have to have a value wherever the term has to, and the question may stand ``within`` others.
+    """
+
+    kind: str
+    value: str
+    variable: str
+    term: Term
+    low: Term
+    high: Term
+    needs: tuple[Term, ...]
+    within: tuple[Question, ...]
+
+    def change(self, f: Callable[[Term], Term]) -> Question:
+        needs, within = tuple(map(f, self.needs)), tuple(q.change(f) for q in self.within)
+        return self._replace(term=f(self.term), low=f(self.low), high=f(self.high), needs=needs, within=within)
+
+    def list_terms(self) -> tuple[Term, ...]:
+        return (self.term, *self.needs, self.low, self.high)
+
+
+class Answers:
+    """The answers of a certificate, in the order of the questions; at a point, or for all of the box."""
+
+    def __init__(self, entries: Any, point: dict[str, Term] | None = None):
+        self.entries, self.point = read_list(entries, lambda entry: entry), point
+
+    def settle(self, question: Question, goal: Goal) -> Term:
+        """The value of a question at all points of a goal."""
+        require(self.entries, f"{question.kind} without an answer")
+        return ANSWERS[question.kind](self.entries.pop(0), question, goal)
+
+
+def is_asked(term: Term) -> bool:
+    """Whether the symbol of a question stands in a term."""
+    return any(" " in name for name in symbols_of(term))
+
+
+def at_point(term: Term, point: dict[str, Term]) -> Term:
+    """The term at a point; an exponent that was no number stays none."""
+    for exponent in list_exponents(term):
+        keep_power(exponent, substitute(exponent, point))
+    return substitute(term, point)
+
+
+Parts = list[tuple[Term, str, tuple[Term, ...]]]
+
+
+def settle_questions(reader: Reader, goals: Parts, box: dict[str, Range], answers: Answers) -> Parts:
+    """The goals with the values of all questions, which hold where all else that was typed has values."""
+    if not reader.questions:
+        return goals
+    bound = {q.variable for q in reader.questions}
+    require(not bound & set(box) and "oo" not in box, "a name that is in use")
+    typed = [*(t for goal in goals for t in goal[2]), *reader.exists]
+    typed += [t for q in reader.questions for t in q.list_terms()]
+    pairs = [(r, t) for r, t in set_union(map(conditions, typed)) if not is_asked(t) and not bound & symbols_of(t)]
+    reader.need(*(EXISTING[r](t) for r, t in pairs))
+    known = [tuple(t for t in part if not is_asked(t)) for part in (reader.given, reader.zeros)]
+    point, values = answers.point, dict[str, Term]()
+    for question in reader.questions:
+        q, goal = question.change(lambda t: substitute(t, values)), Goal(ZERO, "=", box, (), *known)
+        goal = goal._replace(exists=tuple(EXISTING[r](t) for r, t in pairs))
+        if point is not None:
+            q, goal = q.change(lambda t: at_point(t, point)), Goal(ZERO, "=", {})
+        for outer in q.within:
+            goal = bind(outer, goal)
+        values[q.value] = answers.settle(q, goal)
+    for part in (reader.exists, reader.given, reader.zeros):
+        rows = dict.fromkeys(substitute(t, values) for t in part)
+        part.clear()
+        part |= rows
+    return [(substitute(t, values), r, tuple(substitute(p, values) for p in parts)) for t, r, parts in goals]
+
+
+EXISTING: dict[str, Callable[[Term], Term]] = {
+    ">": lambda t: ("log", t),
+    ">=": lambda t: ("sqrt", t),
+    "!=": lambda t: ("^", t, MINUS_ONE),
+}
+
+
+def bind(outer: Question, goal: Goal) -> Goal:
+    """The goal for all values of the variable of a question; for all numbers where its ends are no numbers."""
+    ends = [None if is_infinite(end) or symbols_of(end) else end for end in (outer.low, outer.high)]
+    if None not in ends and not value_of(ends[1], {}) > value_of(ends[0], {}):  # type: ignore[arg-type]
+        ends = [None, None]
+    limit = Range(ends[0], ends[1], integer=outer.kind in ("sum", "product"))
+    limit = Range(None, None) if outer.kind == "limit" else limit
+    return goal._replace(box=goal.box | {outer.variable: limit})
+
+
+def is_infinite(end: Term) -> bool:
+    """Whether an end is oo or -oo."""
+    require(end in (INFINITY, negate(INFINITY)) or "oo" not in symbols_of(end), "a sum or product with oo")
+    return "oo" in symbols_of(end)
+
+
+def prove_vanishing(proof: Any, goal: Goal, plain: Term, term: Term) -> None:
+    """A term is 0 by exact algebra, as it is without a proof, or at all points of the goal."""
+    if proof is None:
+        require(is_identity(plain), "the terms differ")
+    else:
+        prove(proof, goal._replace(term=term, relation="="))
+
+
+def answer_integral(entry: Any, q: Question, goal: Goal) -> Term:
+    """Over a range in pieces: sum F(d) - F(c) for antiderivatives F on the pieces from c to d.
+
+    Theorem: a function f that is continuous between c and d, where F' = f, has the integral F(d-) - F(c+), improper or
+    not, where F has these limits: the integral from c + h to d - h is F(d - h) - F(c + h).
+    """
+    cuts, pieces = read_fields(entry, "cuts pieces")
+    places = [q.low, *read_list(cuts, parse), q.high]
+    require(not any(q.variable in symbols_of(place) for place in places), "the variable in a cut")
+    rows = zip(read_list(pieces, lambda piece: piece, len(places) - 1), pairwise(places), strict=True)
+    return ("+", ZERO, *(integrate_piece(row, q, goal, *ends) for row, ends in rows))
+
+
+def integrate_piece(piece: Any, q: Question, goal: Goal, c: Term, d: Term) -> Term:
+    """F(d) - F(c) by values, for a continuous F, or by limits; x runs from c to d as the parameter does from 0."""
+    text, by_limit, continuous, smooth, equal, signs = read_fields(
+        piece, "antiderivative limits continuous smooth equal signs"
+    )
+    F, name, x = parse(text), q.variable, ("symbol", q.variable)
+    require(not (is_infinite(c) and is_infinite(d)), "expected a cut between -oo and oo")
+    is_open = [bool(read_integer(k, 0, 1)) for k in read_list(by_limit, lambda k: k, 2)]
+    require(all(o or not is_infinite(end) for o, end in zip(is_open, (c, d), strict=True)), "expected a limit at oo")
+    w = ("^", x, MINUS_ONE)
+    if is_infinite(d):
+        require(d == INFINITY, "a range that ends at -oo")
+        path, limit, ways = add_terms((c, x)), Range(ZERO, None, is_open[0]), (add_terms((c, w)), x)
+    elif is_infinite(c):
+        require(c == negate(INFINITY), "a range that begins at oo")
+        path, limit, ways = subtract(d, x), Range(ZERO, None, is_open[1]), (negate(x), take_off(d, w))
+    else:
+        across = take_off(d, c)
+        path, limit = add_terms((c, ("*", across, x))), Range(ZERO, ONE, *is_open)
+        ways = (add_terms((c, ("*", across, w))), take_off(d, ("*", across, w)))
+    whole = goal._replace(box=goal.box | {name: limit})
+    inside = goal._replace(box=goal.box | {name: limit._replace(open_low=True, open_high=True)})
+    slope = differentiate(F, name)
+    prove_defined(continuous, whole, substitute(F, {name: path}), level=1)
+    inner = [substitute(t, {name: path}) for t in (F, slope, q.term, *q.needs)]
+    prove_defined(smooth, inside, *inner, level=2)
+    difference = subtract(slope, q.term)
+    prove_vanishing(equal, inside, difference, substitute(difference, {name: path}))
+    ends = [
+        find_limit(substitute(F, {name: way}), name, signs, goal) if o else substitute(F, {name: end})
+        for o, way, end in zip(is_open, ways, (c, d), strict=True)
+    ]
+    require(signs == [], "a sign too many")
+    return subtract(ends[1], ends[0])
+
+
+def answer_sum(entry: Any, q: Question, goal: Goal) -> Term:
+    """G(high + 1) - G(low) where G(k + 1) - G(k) = f(k); of a product their quotient where G(k + 1) = f(k) G(k).
+
+    Theorem: induction over whole high >= low - 1, where there are no terms; to oo by the limit.
+    """
+    text, defined, equal, start, count, signs = read_fields(entry, "telescoper defined equal start count signs")
+    G, name, k = parse(text), q.variable, ("symbol", q.variable)
+    require(is_integral(q.low, goal.box), "expected whole ends")
+    path, following = add_terms((q.low, k)), substitute(G, {name: ("+", k, ONE)})
+    inside = goal._replace(box=goal.box | {name: Range(ZERO, None, integer=True)})
+    first = substitute(G, {name: q.low})
+    if not is_infinite(q.high):
+        require(is_integral(q.high, goal.box), "expected whole ends")
+        inside = inside._replace(given=(*goal.given, subtract(subtract(q.high, q.low), k)))
+        prove(count, goal._replace(term=("+", subtract(q.high, q.low), ONE), relation=">="))
+        last = substitute(G, {name: ("+", q.high, ONE)})
+    else:
+        require(q.high == INFINITY and count is None, "a sum to -oo")
+        last = find_limit(G, name, signs, goal)
+    require(signs == [], "a sign too many")
+    prove_defined(defined, inside, *(substitute(t, {name: path}) for t in (G, following, q.term, *q.needs)))
+    step = ("+", G, q.term) if q.kind == "sum" else ("*", G, q.term)
+    difference = subtract(following, step)
+    prove_vanishing(equal, inside, difference, substitute(difference, {name: path}))
+    needed = first if q.kind == "sum" else ("^", first, MINUS_ONE)
+    prove_defined(start, goal, needed)
+    return subtract(last, first) if q.kind == "sum" else ("*", last, needed)
+
+
+def is_integral(term: Term, box: dict[str, Range]) -> bool:
+    """Whether a term is seen to be whole: sums and products of whole numbers and whole symbols."""
+    match term:
+        case ("symbol", name):
+            return name in box and box[name].integer
+        case ("+" | "*", *parts):
+            return all(is_integral(part, box) for part in parts)
+    return term[0] == "number" and term[1].q == 1
+
+
+def answer_limit(entry: Any, q: Question, goal: Goal) -> Term:
+    """At oo by growth; at a number a the limit of N/D is N^(n)(a)/D^(n)(a); at oo that of N/D in 1/x at 0.
+
+    Theorem (Taylor): N, D are analytic at a, where the derivatives of order below n vanish, and that of D does not.
+    """
+    name, far, signs = q.variable, is_infinite(q.low), entry["signs"]
+    y, a = ("symbol", name), ZERO if far else q.low
+    way = y if not far or q.low == INFINITY else negate(y)
+    typed = [substitute(t, {name: way}) for t in (q.term, *q.needs)]
+    places = [(r, t) for r, t in set_union(map(conditions, typed)) if name in symbols_of(t)]
+    if far:
+        for r, t in places:
+            c = grow(t, name, lambda c: ask_sign(c, signs, goal))[1]
+            require(c is not None and (ask_sign(c, signs, goal) == 1 or r == "!="), "it may have no value")
+    if set(entry) == {"signs"}:
+        require(far, "expected oo")
+        value = find_limit(typed[0], name, signs, goal)
+        require(signs == [], "a sign too many")
+        return value
+    top, bottom, order, defined, zeros, pole, around, _ = read_fields(
+        entry, "top bottom order defined zeros pole around signs"
+    )
+    require(signs == [], "a sign too many")
+    N, D, n = parse(top), parse(bottom), read_integer(order, 0, 8)
+    f = substitute(typed[0], {name: ("^", y, MINUS_ONE)}) if far else typed[0]
+    require(is_identity(subtract(f, ("*", N, ("^", D, MINUS_ONE)))), "the quotient is another one")
+
+    def derive(term: Term, times: int) -> Term:
+        return substitute(reduce(lambda t, _: differentiate(t, name), range(times), term), {name: a})
+
+    places = [] if far else places
+    orders = read_list(around, lambda k: read_integer(k, 0, 8), len(places))
+    require(all(r == "!=" or k == 0 for (r, _), k in zip(places, orders, strict=True)), "a sign on both sides")
+    # What is != 0 or > 0 at a is so near a; what has a derivative that is != 0 there vanishes at no other point near a.
+    near = [(r if r == "!=" else ">", derive(t, k)) for (r, t), k in zip(places, orders, strict=True)]
+    value, divisor = derive(N, n), derive(D, n)
+    analytic = (*(derive(t, 0) for t in (N, D, *(t for _, t in places))), *(t for _, t in near), value, divisor)
+    prove_defined(defined, goal, *analytic, level=2)
+    prove_all(pole, [goal._replace(term=t, relation=r) for r, t in (*near, ("!=", divisor))])
+    prove_all(zeros, [goal._replace(term=derive(t, k), relation="=") for k in range(n) for t in (N, D)])
+    return ("*", value, ("^", divisor, MINUS_ONE))
+
+
+ANSWERS: dict[str, Callable[[Any, Question, Goal], Term]] = {
+    "integral": answer_integral, "sum": answer_sum, "product": answer_sum, "limit": answer_limit,
+}  # fmt: skip
+
+
+def ask_sign(c: Term, signs: Any, goal: Goal) -> int:
+    """The sign of a number that is not 0, from its ball, or by the next proof of a certificate."""
+    ball = value_of(c, {}) if not symbols_of(c) else arb.nan()
+    if ball > 0 or ball < 0:
+        return 1 if ball > 0 else -1
+    require(isinstance(signs, list) and signs, "expected a sign with its proof")
+    sign, proof = read_list(signs.pop(0), lambda entry: entry, 2)
+    s = read_integer(sign, -1, 1)
+    require(s != 0, "expected a sign")
+    prove(proof, goal._replace(term=c if s == 1 else negate(c), relation=">"))
+    return s
+
+
+def find_limit(term: Term, w: str, signs: Any, goal: Goal) -> Term:
+    """The limit of a term for w to +oo."""
+    degree, c = grow(term, w, lambda t: ask_sign(t, signs, goal))
+    require(degree < 0 or (degree == 0 and c is not None), "no limit is known")
+    return c if degree == 0 and c is not None else ZERO
+
+
+def grow(term: Term, w: str, sign: Callable[[Term], int]) -> tuple[fmpq, Term | None]:
+    """(d, c) with term/w**d -> c for w to +oo; (d, None) where it is only bounded for large w, by which it is defined.
+
+    Sums and products of limits; powers and functions of them where these are continuous; exp(-c w**d) falls faster than
+    any power, log grows slower than any, and sin u/u and atan u/u -> 1 for u -> 0.
+    """
+    if w not in symbols_of(term):
+        return fmpq(0), term
+    match term:
+        case ("symbol", _):
+            return fmpq(1), ONE
+        case ("+", *terms):
+            parts = [grow(t, w, sign) for t in terms if t != ZERO]
+            require(parts, "an empty sum")
+            top = max(d for d, _ in parts)
+            first = [c for d, c in parts if d == top]
+            return top, None if None in first else add_terms(first)  # type: ignore[arg-type]
+        case ("*", *factors):
+            parts = [grow(f, w, sign) for f in factors]
+            known = [c for _, c in parts if c is not None]
+            return sum((d for d, _ in parts), fmpq(0)), multiply_terms(*known) if len(known) == len(parts) else None
+        case ("^", base, exponent):
+            q = constant_of(exponent)
+            if q is None:
+                return grow(("exp", ("*", exponent, ("log", base))), w, sign)
+            d, c = grow(base, w, sign)
+            if q.q > 1 or q <= 0:
+                require(c is not None and (sign(c) == 1 or q.q == 1), "a power that may have no value")
+            return d * q, None if c is None else ("^", c, number(q))
+        case ("sqrt", u):
+            return grow(("^", u, number(HALF)), w, sign)
+        case (name, u) if name in DEFINITIONS and name not in ("abs", "tanh"):
+            return grow(replace(parse(DEFINITIONS[name]), ("symbol", "x"), u), w, sign)
+        case (name, u):
+            return grow_function(name, *grow(u, w, sign), sign)
+    raise Refused("no growth is known")
+
+
+def grow_function(name: str, d: fmpq, c: Term | None, sign: Callable[[Term], int]) -> tuple[fmpq, Term | None]:
+    """The growth of a function of u from that of u."""
+    zero = fmpq(0)
+    if name == "abs":
+        return d, None if c is None else ("abs", c)
+    if name == "log":
+        require(c is not None and sign(c) == 1, "a logarithm that may have no value")
+        return (SLOW, None) if d != 0 else (zero, ("log", c))
+    require(name in ("exp", "sin", "cos", "atan", "tanh"), "no growth is known")
+    if d < 0:
+        return (zero, ONE) if name in ("exp", "cos") else (d, c)
+    if d == 0:
+        return zero, None if c is None else (name, c)
+    if name in ("sin", "cos"):
+        return zero, None
+    require(c is not None, "no growth is known")
+    if name == "exp":
+        require(sign(c) == -1, "an exponential that may grow")  # type: ignore[arg-type]
+        return TINY, None
+    return zero, multiply_terms(number(sign(c)), HALF_TURN if name == "atan" else ONE)  # type: ignore[arg-type]
+
+
+# Equations up to small terms
+
+
+def expand_goals(reader: Reader, goals: Parts, small: Any, box: dict[str, Range]) -> Parts:
+    """left - right = O(s**n) for s to 0: all that was typed is analytic at s = 0, where derivatives below n vanish."""
+    require(isinstance(small, dict) and len(small) == 1, "expected the order in one symbol")
+    ((name, n),) = small.items()
+    require(name in box and read_integer(n, 1, 8), "an order in no symbol")
+    limit = box[name]
+    near = not limit.integer and is_inside(ZERO, Range(limit.low, limit.high)) and not is_narrow(limit)
+    require(near, "0 is no limit of the symbol")
+    require(not any(name in symbols_of(t) for t in (*reader.given, *reader.zeros)), "a hypothesis on a small symbol")
+    zero, found = {name: ZERO}, []
+    typed = [t for goal in goals for t in goal[2]] + [*reader.exists]
+    analytic = [substitute(t, zero) for part in typed for t in (part, *smoothness(part))]
+    reader.exists.clear()
+    reader.need(*analytic)
+    for term, relation, _ in goals:
+        require(relation == "=", "an order of what is no equation")
+        for _ in range(n):
+            found.append((substitute(term, zero), "=", (*analytic, substitute(term, zero))))
+            term = differentiate(term, name)
+    return found
+
+
 RULES: dict[str, Callable[[Any, Goal], None]] = {
     rule.__name__.removeprefix("prove_"): rule
     for rule in (
@@ -2529,9 +2939,10 @@ def lies_in(case: Case, place: dict[str, Term]) -> bool:
 
 def check_proof(item: Any) -> None:
     """A statement holds wherever all of it is defined and its hypotheses hold; the witness is such a point."""
-    _, statement, bits, witness, proofs = read_fields(item, "kind statement bits witness proofs")
+    more = " answers" if "answers" in item else ""
+    _, statement, bits, witness, proofs, *rest = read_fields(item, f"kind statement bits witness proofs{more}")
     ctx.prec = read_integer(bits, 53, 20000)
-    cases, box = read_statement(statement)
+    cases, box = read_statement(statement, Answers(rest[0] if rest else []))
     place = read_point(witness, box)
     require(any(lies_in(case, place) for case in cases), "the statement may have no value at the witness")
     prove_all(proofs, [goal for case in cases for goal in case.goals])
@@ -2547,9 +2958,12 @@ FAILURES: dict[str, Callable[[arb], Any]] = {
 
 def check_counterexample(item: Any) -> None:
     """At a point where all of it is defined a statement fails: by balls, or because a term is exactly 0 there."""
-    _, statement, bits, point, zero = read_fields(item, "kind statement bits point zero")
+    more = " answers" if "answers" in item else ""
+    _, statement, bits, point, zero, *rest = read_fields(item, f"kind statement bits point zero{more}")
     ctx.prec = read_integer(bits, 53, 200000)
-    cases, box = read_statement(statement)
+    require(isinstance(point, dict), "expected numbers by symbol")
+    there = {name: parse(text) for name, text in point.items()}
+    cases, box = read_statement(statement, Answers(rest[0] if rest else [], there))
     place = read_point(point, box)
     goals = [goal for case in cases if lies_in(case, place) for goal in case.goals]
     require(goals, "the statement may have no value at the point")
@@ -2564,24 +2978,654 @@ def check_counterexample(item: Any) -> None:
     require(any(FAILURES[relation](value) for relation, value in values), "the statement is not seen to fail there")
 
 
+# -- 10. Matrices of any size ------------------------------------------------------------------------------------------
+# A matrix has two dimensions, each a whole number or the name of one; shapes are compared by these names. An equation
+# between matrices holds for all values of the names if the difference of its sides, multiplied out into words of
+# letters that do not commute, is a sum of c L r M: the relation r is 0 by a declaration, a hypothesis or the definition
+# of an inverse. Equal sums of words are equal matrices of every size (Raab, Regensburger, Hossein Poor, Formal proofs
+# of operator identities by a single formal computation, 2021).
+Letter = tuple[str, bool]  # a name, and whether it is transposed
+Word = tuple[Letter, ...]
+PROPERTIES = ("symmetric", "positive", "nonnegative", "invertible", "orthogonal", "skew", "diagonal")
+REGULAR = ("positive", "invertible")
+MOST_WORDS, MOST_SIZE = 20000, 8
+
+
+class Typed(NamedTuple):
+    """A matrix: its dimensions, its value in an algebra, one of PROPERTIES or nothing, and whose product it is."""
+
+    rows: Any
+    columns: Any
+    body: Any
+    known: str = ""
+    factors: tuple[Any, ...] = ()
+
+
+class Algebra:
+    """Matrices by their dimensions; what is positive definite, nonnegative or invertible; inverses taken to exist.
+
+    What a value is and how it is computed is said by :class:`Words` and :class:`Sized`.
+    """
+
+    make_letter: Callable[..., Any]
+    declare: Callable[..., None]
+    relate: Callable[[Any], None]
+    to_number: Callable[[Any], Term]
+    add_bodies: Callable[[Any, Any], Any]
+    scale_body: Callable[[Term, Any], Any]
+    multiply_bodies: Callable[[Any, Any], Any]
+    transpose_body: Callable[[Any], Any]
+    invert_body: Callable[[Any, Any], Any]
+
+    def __init__(self, item: Any):
+        self.statement = read_fields(item, "left relation right symbols matrices dimensions given")
+        symbols, matrices, dimensions = self.statement[3:6]
+        require(isinstance(symbols, dict) and isinstance(matrices, dict), "expected declarations by name")
+        self.dimensions = read_list(dimensions, str)
+        names = read_symbols([*symbols, *matrices, *self.dimensions])
+        require(not any(matches("(trace|inv|arg)__.*", name) for name in names), "a name of the checker's own")
+        self.box = {name: read_range(symbols[name]) for name in symbols}
+        self.box |= dict.fromkeys(self.dimensions, Range(ONE, None, integer=True))
+        self.names: dict[str, Any] = {name: ("symbol", name) for name in self.box}
+        self.terms: dict[Term, None] = {}
+        self.assumed: dict[str, None] = {}
+        self.above: set[Term] = set()  # numbers x' M x with nonnegative M
+
+    def declare_all(self) -> None:
+        """The declared matrices, each a letter with its properties; all but products of any shape are square."""
+        for name, item in self.statement[4].items():
+            size, words = read_fields(item, "size is")
+            rows, columns = read_list(size, self.read_dimension, 2)
+            require(set(read_list(words, str)) <= set(PROPERTIES), "an unknown property")
+            require(not words or rows == columns, "a property of square matrices")
+            require((rows, columns) != (1, 1), "a matrix of one entry is declared as a number")
+            known = next((word for word in ("positive", "invertible", "nonnegative") if word in words), "")
+            known = known or "invertible" * ("orthogonal" in words)
+            self.names[name] = Typed(rows, columns, self.make_letter(name, rows, columns, words), known)
+            self.declare(self.names[name], words)
+
+    def read_dimension(self, item: Any) -> Any:
+        return item if item in self.dimensions else read_integer(item, 1, 64)
+
+    def make(self, rows: Any, columns: Any, body: Any, known: str = "", factors: tuple[Any, ...] = ()) -> Any:
+        """A matrix, or the number where it has one row and one column whatever the dimensions are."""
+        if not rows == columns == 1:
+            return Typed(rows, columns, body, known, factors)
+        if known in ("positive", "nonnegative"):
+            self.above.add(self.to_number(body))
+        return self.to_number(body)
+
+    def add(self, *values: Any) -> Any:
+        """A sum; of nonnegative matrices it is nonnegative, and positive definite where one is."""
+        if not any(isinstance(x, Typed) for x in values):
+            return make_sum(*values)
+        require(all(isinstance(x, Typed) for x in values) and len({x[:2] for x in values}) == 1, "different shapes")
+        known = {x.known for x in values}
+        word = "positive" if "positive" in known else "nonnegative"
+        body = reduce(self.add_bodies, (x.body for x in values))
+        return Typed(values[0].rows, values[0].columns, body, word if known <= {"positive", "nonnegative"} else "")
+
+    def scale(self, factor: Term, x: Typed) -> Typed:
+        sign = self.sign_of(factor)
+        known = x.known if sign == ">" else "invertible" * (sign == "!=" and x.known in REGULAR)
+        self.terms[factor] = None
+        return Typed(x.rows, x.columns, self.scale_body(factor, x.body), known)
+
+    def sign_of(self, term: Term) -> str:
+        """``>`` for products of what is declared to be positive, ``!=`` where it is not 0, else nothing."""
+        if term[0] == "+":
+            some = [part for part in term[1:] if part not in self.above]
+            return ">" * bool(some and all(self.sign_of(part) == ">" for part in some))
+        signs = set()
+        for factor in list_factors(term):
+            base = factor[1] if factor[0] == "^" and factor[2][0] == "number" else factor
+            limit = self.box.get(base[1], Range(None, None)) if base[0] == "symbol" else Range(None, None)
+            low = None if limit.low is None else constant_of(limit.low)
+            apart = limit.nonzero or limit.open_low or (low is not None and low > 0)
+            above = base[1] > 0 if base[0] == "number" else low is not None and low >= 0 and apart
+            signs.add(">" if above else "!=" if limit.nonzero or (base[0] == "number" and base[1] != 0) else "")
+        return min(signs, key=("", "!=", ">").index)
+
+    def multiply(self, x: Any, y: Any) -> Any:
+        """A product of matrices, whose dimensions fit."""
+        require(isinstance(x, Typed) and isinstance(y, Typed) and x.columns == y.rows, "shapes that do not fit")
+        factors = (x.factors or (x,)) + (y.factors or (y,))
+        known = self.judge_product(factors) if x.rows == y.columns else ""
+        return self.make(x.rows, y.columns, self.multiply_bodies(x.body, y.body), known, factors)
+
+    def judge_product(self, factors: tuple[Typed, ...]) -> str:
+        """M N M' is nonnegative where N is, positive definite if M is regular; products of regular ones are regular."""
+        k = 0
+        while 2 * k + 1 < len(factors) and self.transpose(factors[k]).body == factors[-1 - k].body:
+            k += 1
+        centre, regular = factors[k : len(factors) - k], all(x.known in REGULAR for x in factors)
+        middle = centre[0].known if len(centre) == 1 else "" if centre else "positive"
+        if regular:
+            return "positive" if middle == "positive" else "invertible"
+        return "nonnegative" if middle in ("positive", "nonnegative") else ""
+
+    def transpose(self, x: Any) -> Typed:
+        require(isinstance(x, Typed), "expected a matrix")
+        factors = tuple(self.transpose(factor) for factor in reversed(x.factors))
+        return Typed(x.columns, x.rows, self.transpose_body(x.body), x.known, factors)
+
+    def invert(self, x: Any, text: str) -> Typed:
+        """The inverse, which is taken to exist unless it is known to; ``text`` is how the matrix is written."""
+        require(isinstance(x, Typed) and x.rows == x.columns, "expected a square matrix")
+        if x.known not in REGULAR:
+            self.assumed[f"{text} invertible"] = None
+        return Typed(
+            x.rows, x.rows, self.invert_body(x.body, x.rows), "positive" if x.known == "positive" else "invertible"
+        )
+
+    def read(self, text: Any) -> Any:
+        """The value of a text."""
+        formula = self.start(text)
+        value = formula.read_sum()
+        require(formula.words == [""], "not an expression: more than one")
+        return value
+
+    def start(self, text: Any) -> WordFormula:
+        require(matches(r"[A-Za-z0-9_+\-*/()., @=]{1,400000}", text), "unexpected characters")
+        return WordFormula(text, self)
+
+    def subtract(self, x: Any, y: Any) -> Any:
+        """A difference of two matrices of one shape, or of two numbers, which have to have a value."""
+        self.terms |= dict.fromkeys(side for side in (x, y) if not isinstance(side, Typed))
+        minus = self.scale(MINUS_ONE, y) if isinstance(y, Typed) else negate(y)
+        return self.add(x, minus)
+
+    def suppose(self) -> None:
+        """The declarations and the hypotheses; S = X is as definite as X."""
+        self.declare_all()
+        for text in read_list(self.statement[6], str):
+            formula = self.start(text)
+            name, x = formula.words[-1], formula.read_sum()
+            require(formula.take("="), "expected a hypothesis with =")
+            y = formula.read_sum()
+            require(formula.words == [""], "not a hypothesis: more than one")
+            self.relate(self.subtract(x, y))
+            own = self.names.get(name)
+            if isinstance(own, Typed) and own is x and isinstance(y, Typed) and not own.known:
+                self.names[name] = own._replace(known=y.known)
+
+    def state(self) -> tuple[str, Any]:
+        """The relation between both sides, and their difference, after the declarations and the hypotheses."""
+        left, relation, right = self.statement[:3]
+        self.suppose()
+        require(relation in SIGNS, "an unknown relation")
+        x, y = self.read(left), self.read(right)
+        require(not isinstance(x, Typed) or relation in ("=", "!="), "matrices have no order")
+        return relation, self.subtract(x, y)
+
+
+class WordFormula(Formula):
+    """The language of files for matrices of any size: + - @ * of numbers, .T, and the functions of WORD_CALLS."""
+
+    reader: Any
+
+    def __init__(self, text: str, reader: Any):
+        super().__init__(text, reader)
+        self.every = [*self.words]
+
+    def read_sum(self) -> Any:
+        terms = [self.read_product()]
+        while sign := self.take("+", "-"):
+            value = self.read_product()
+            terms.append(self.negate(value) if sign == "-" else value)
+        return self.reader.add(*terms) if len(terms) > 1 else terms[0]
+
+    def negate(self, value: Any) -> Any:
+        return self.reader.scale(MINUS_ONE, value) if isinstance(value, Typed) else negate(value)
+
+    def read_product(self) -> Any:
+        factors = [self.read_signed()]
+        while mark := self.take("*", "/", "@"):
+            before, value = len(self.words), self.read_signed()
+            if mark == "/" and has_trace(value) and not self.reader.sign_of(value):
+                self.reader.assumed[f"{write_words(self.every[len(self.words) : before])} != 0"] = None
+            if mark == "@":
+                factors = [self.reader.multiply(self.scale(factors), value)]
+                continue
+            require(mark == "*" or not isinstance(value, Typed), "a division by a matrix")
+            factors.append(value if mark == "*" else ("^", value, MINUS_ONE))
+        return self.scale(factors)
+
+    def scale(self, factors: list[Any]) -> Any:
+        """The product of numbers and at most one matrix."""
+        matrices = [x for x in factors if isinstance(x, Typed)]
+        require(len(matrices) < 2, "a product of matrices is written with @")
+        numbers = [x for x in factors if not isinstance(x, Typed)]
+        if not matrices:
+            return ("*", *numbers) if len(numbers) > 1 else numbers[0]
+        return self.reader.scale(multiply_terms(*numbers), matrices[0]) if numbers else matrices[0]
+
+    def read_signed(self) -> Any:
+        if sign := self.take("+", "-"):
+            value = self.read_signed()
+            return self.negate(value) if sign == "-" else value
+        base = self.read_entry()
+        if not self.take("**"):
+            return base
+        exponent = self.read_signed()
+        require(not isinstance(base, Typed) and not isinstance(exponent, Typed), "a power of a matrix")
+        whole = is_whole(exponent) and constant_of(exponent) > 0  # type: ignore[operator]
+        require(whole or not has_trace(base), "a root or inverse power of a trace; write a quotient")
+        return ("^", base, exponent)
+
+    def read_entry(self) -> Any:
+        value = self.read_value()
+        while self.take("."):
+            require(self.take("T"), "expected T behind the point")
+            value = self.reader.transpose(value)
+        return value
+
+    def read_value(self) -> Any:
+        word, is_call = self.words[-1], self.words[-2:-1] == ["("]
+        known = is_call or not word[:1].isalpha() or word == "pi" or word in self.reader.names
+        require(known and word != "[", "an unknown name, or entries of a matrix")
+        return super().read_value()
+
+    def read_call(self, name: str) -> Any:
+        """A function of matrices; or one of numbers, with one argument."""
+        algebra, before = self.reader, len(self.words)
+        if name in ("eye", "zeros"):
+            rows = self.read_dimension()
+            require(name == "eye" or self.take(","), "expected zeros(m, n)")
+            columns = rows if name == "eye" else self.read_dimension()
+            require(self.take(")"), "not an expression: no )")
+            return algebra.make(
+                rows, columns, algebra.make_body(name == "eye", rows, columns), "positive" * (name == "eye")
+            )
+        arguments = [self.read_sum()]
+        while self.take(","):
+            arguments.append(self.read_sum())
+        require(self.take(")"), "not an expression: no )")
+        require(len(arguments) == 1 + (name == "dot"), f"a wrong number of arguments of {name}")
+        x = arguments[0]
+        if name == "inv":
+            return algebra.invert(x, write_words(self.every[len(self.words) + 1 : before]))
+        if name == "transpose":
+            return algebra.transpose(x)
+        if name == "trace":
+            require(isinstance(x, Typed) and x.rows == x.columns, "expected a square matrix")
+            return algebra.trace(x.body, x.rows)
+        if name == "dot":
+            product = algebra.multiply(algebra.transpose(x), arguments[1])
+            require(not isinstance(product, Typed), "expected two vectors")
+            return product
+        require(name in (*DEFINITIONS, *DERIVATIVES) and not isinstance(x, Typed), f"unknown function {name}")
+        require(not has_trace(x), "a function of a trace")
+        return (name, x)
+
+    def read_dimension(self) -> Any:
+        word = self.words.pop()
+        return self.reader.read_dimension(int(word) if word.isdigit() else word)
+
+
+def has_trace(x: Any) -> bool:
+    """Whether a number has traces, or products of one row and one column."""
+    return not isinstance(x, Typed) and any(name.startswith("trace__") for name in symbols_of(x))
+
+
+def write_words(words: list[str]) -> str:
+    """The text of words in reverse."""
+    spaced = (f" {word} " if word in "+-@" else f"{word} " if word == "," else word for word in reversed(words))
+    return "".join(spaced).strip()
+
+
+class Words(Algebra):
+    """The free algebra: a matrix is a sum of words with numbers before them, ``relations`` are sums that are 0.
+
+    A word is split where it has one row or column: what stands between two such places is a number, and moves before
+    the word. Such a number, and every trace, is a symbol: trace(A B) = trace(B A), and trace(A) = trace(A').
+    """
+
+    def __init__(self, item: Any):
+        super().__init__(item)
+        self.sizes: dict[str, tuple[Any, Any]] = {}
+        self.symmetric: set[str] = set()
+        self.inverses: dict[str, str] = {}
+        self.arguments: list[tuple[Any, str]] = []
+        self.relations: list[Typed] = []
+
+    def make_letter(self, name: str, rows: Any, columns: Any, words: list[str]) -> Any:
+        self.sizes[name] = (rows, columns)
+        if {"symmetric", "positive", "nonnegative", "diagonal"} & {*words}:
+            self.symmetric.add(name)
+        return {((name, False),): ONE}
+
+    def declare(self, x: Typed, words: list[str]) -> None:
+        """What holds of a declared matrix: U' U = U U' = 1, S + S' = 0, and diagonal matrices of one size commute."""
+        ((name, _),) = next(iter(x.body))
+        if x.known in REGULAR:
+            self.find_inverse(name)
+        if "orthogonal" in words:
+            for product in (self.multiply(x, self.transpose(x)), self.multiply(self.transpose(x), x)):
+                self.relate(self.subtract(product, self.make_unit(x.rows)))
+        if "skew" in words:
+            self.relate(self.add(x, self.transpose(x)))
+        others = self.statement[4].items() if "diagonal" in words else ()
+        for other in (n for n, own in others if n in self.names and n != name and "diagonal" in own["is"]):
+            y = self.names[other]
+            if x.rows == y.rows:
+                self.relate(self.subtract(self.multiply(x, y), self.multiply(y, x)))
+
+    def make_unit(self, rows: Any) -> Typed:
+        return Typed(rows, rows, {(): ONE}, "positive")
+
+    def make_body(self, is_unit: bool, rows: Any, columns: Any) -> Any:
+        return {(): ONE} if is_unit else {}
+
+    def turn(self, word: Word) -> Word:
+        """The transpose of a word."""
+        return tuple((name, not turned and name not in self.symmetric) for name, turned in reversed(word))
+
+    def rows_of(self, letter: Letter) -> Any:
+        return self.sizes[letter[0]][letter[1]]
+
+    def columns_of(self, letter: Letter) -> Any:
+        return self.sizes[letter[0]][not letter[1]]
+
+    def fits(self, word: Word, rows: Any, columns: Any) -> bool:
+        """Whether the dimensions of a word fit, and are these; of no letters it is the unit matrix."""
+        ends = [rows, *(self.columns_of(letter) for letter in word)]
+        return ends[-1] == columns and all(self.rows_of(letter) == end for letter, end in zip(word, ends, strict=False))
+
+    def gather(self, pairs: Iterable[tuple[Word, Term]]) -> dict[Word, Term]:
+        """A sum of words, with their numbers taken out."""
+        total: dict[Word, Term] = {}
+        for word, c in pairs:
+            word, c = self.take_out(word, c)
+            total[word] = add_numbers(total.get(word, ZERO), c)
+            require(len(total) <= MOST_WORDS, "too many words")
+        return {word: c for word, c in total.items() if c != ZERO}
+
+    def take_out(self, word: Word, c: Term) -> tuple[Word, Term]:
+        """u (v' w) x' = (v' w) u x', where v' w has one row and one column."""
+        cuts = [k for k in range(len(word) + 1) if word and self.side_of(word, k) == 1]
+        for start, end in pairwise(cuts):
+            c = multiply_numbers(c, self.make_trace(word[start:end]))
+        return (word[: cuts[0]] + word[cuts[-1] :] if cuts else word), c
+
+    def side_of(self, word: Word, k: int) -> Any:
+        """The dimension at a place of a word."""
+        return self.rows_of(word[k]) if k < len(word) else self.columns_of(word[-1])
+
+    def make_trace(self, word: Word) -> Term:
+        """The symbol of a trace: the same one for words that are rotated or transposed."""
+        ways = [w[k:] + w[:k] for w in (word, self.turn(word)) for k in range(len(word))]
+        order = [*self.sizes]
+        first = min([(order.index(name), turned) for name, turned in way] for way in ways)
+        return ("symbol", "trace__" + "_".join(f"{k}{'t' * turned}" for k, turned in first))
+
+    def trace_of(self, word: Word, rows: Any) -> Term:
+        """The trace of a word; that of the unit matrix is its dimension."""
+        if not word:
+            return number(rows) if isinstance(rows, int) else ("symbol", rows)
+        cut = next((k for k in range(len(word)) if self.rows_of(word[k]) == 1), None)
+        return self.make_trace(word) if cut is None else self.take_out(word[cut:] + word[:cut], ONE)[1]
+
+    def trace(self, body: Any, rows: Any) -> Term:
+        return reduce(add_numbers, (multiply_numbers(c, self.trace_of(w, rows)) for w, c in body.items()), ZERO)
+
+    def to_number(self, body: Any) -> Term:
+        return reduce(add_numbers, (c for c in body.values()), ZERO)
+
+    def add_bodies(self, x: Any, y: Any) -> Any:
+        return self.gather([*x.items(), *y.items()])
+
+    def scale_body(self, factor: Term, x: Any) -> Any:
+        return self.gather((word, multiply_numbers(factor, c)) for word, c in x.items())
+
+    def multiply_bodies(self, x: Any, y: Any) -> Any:
+        require(len(x) * len(y) <= MOST_WORDS, "too many words")
+        return self.gather((v + w, multiply_numbers(c, d)) for v, c in x.items() for w, d in y.items())
+
+    def transpose_body(self, x: Any) -> Any:
+        return {self.turn(word): c for word, c in x.items()}
+
+    def invert_body(self, x: Any, rows: Any) -> Any:
+        """The inverse of a letter; a matrix that is none gets one of its own, which is equal to it."""
+        if len(x) == 1:
+            ((word, c),) = x.items()
+            inverse = ("^", c, MINUS_ONE)
+            if c != ONE:
+                self.terms[inverse] = None
+                return self.scale_body(inverse, self.invert_body({word: ONE}, rows))
+            if len(word) < 2:
+                return {tuple((self.find_inverse(name), turned) for name, turned in word): ONE}
+        name = next((name for body, name in self.arguments if body == x), None)
+        if name is None:
+            name = f"arg__{len(self.arguments) + 1}"
+            self.arguments.append((x, name))
+            body = self.make_letter(name, rows, rows, ["symmetric"] if self.transpose_body(x) == x else [])
+            self.relate(self.subtract(Typed(rows, rows, body), Typed(rows, rows, x)))
+        return {((self.find_inverse(name), False),): ONE}
+
+    def find_inverse(self, name: str) -> str:
+        """The letter of an inverse, X Y = Y X = 1; it is symmetric if the other one is."""
+        if name not in self.inverses:
+            own, rows = f"inv__{name}", self.sizes[name][0]
+            self.inverses |= {name: own, own: name}
+            y = Typed(rows, rows, self.make_letter(own, rows, rows, ["symmetric"] if name in self.symmetric else []))
+            x = y._replace(body={((name, False),): ONE})
+            for product in (self.multiply(x, y), self.multiply(y, x)):
+                self.relate(self.subtract(product, self.make_unit(rows)))
+        return self.inverses[name]
+
+    def relate(self, x: Any) -> None:
+        """Note what is 0, transposed too; where X Y = 1 for square matrices, also Y X = 1."""
+        x = x if isinstance(x, Typed) else Typed(1, 1, {(): x})
+        if any(r.body in (x.body, self.transpose_body(x.body)) for r in self.relations):
+            return
+        self.relations.append(x._replace(known="", factors=()))
+        if self.transpose_body(x.body) != x.body:
+            self.relations.append(Typed(x.columns, x.rows, self.transpose_body(x.body)))
+        word = max(x.body, key=len, default=())
+        if x.rows == x.columns and len(x.body) == 2 and x.body.get((), None) == negate(x.body[word]):
+            for k in range(1, len(word)):
+                if self.side_of(word, k) == x.rows != 1 and x.body[word] in (ONE, MINUS_ONE):
+                    self.relate(
+                        self.subtract(Typed(x.rows, x.rows, {word[k:] + word[:k]: ONE}), self.make_unit(x.rows))
+                    )
+
+    def read_word(self, text: Any) -> Word:
+        """A word as it is written in a certificate: ``H.T inv__R``."""
+        require(isinstance(text, str), "expected a word")
+        word = tuple((name.removesuffix(".T"), name.endswith(".T")) for name in text.split())
+        require(
+            all(name in self.sizes and not (turned and name in self.symmetric) for name, turned in word), "a letter"
+        )
+        return word
+
+    def expand(self, share: Any, x: Typed) -> Iterator[tuple[Word, Term]]:
+        """c L r M; or c trace(L r M) W, where a word W is given."""
+        text, *words, place, factor = read_fields(share, "coefficient left right relation word")
+        (left, right), c = map(self.read_word, words), parse(text)
+        self.check_coefficient(c)
+        r = self.relations[read_integer(place, 0, len(self.relations) - 1)]
+        rows, columns = x[:2] if factor is None else [self.rows_of(left[0]) if left else r.rows] * 2
+        require(self.fits(left, rows, r.rows) and self.fits(right, r.columns, columns), "dimensions that do not fit")
+        products = {left + word + right: multiply_numbers(c, d) for word, d in r.body.items()}
+        if factor is None:
+            yield from products.items()
+            return
+        word = self.read_word(factor)
+        require(self.fits(word, *x[:2]), "dimensions that do not fit")
+        yield word, self.trace(products, rows)
+
+    def check_coefficient(self, c: Term) -> None:
+        """Its divisors are not 0: as declared, or because the statement divides by them too."""
+        known = set_union(map(conditions, self.terms))
+        for relation, term in conditions(c):
+            own = relation == "!=" and all(
+                self.sign_of(f) or any(r != ">=" and is_identity(subtract(f, t)) for r, t in known)
+                for f in list_factors(term)
+            )
+            require(own or (relation, term) in known, "a number that may not exist")
+
+
+def add_numbers(x: Term, y: Term) -> Term:
+    return number(x[1] + y[1]) if x[0] == y[0] == "number" else add_terms((x, y))
+
+
+def multiply_numbers(x: Term, y: Term) -> Term:
+    if x[0] == y[0] == "number":
+        return number(x[1] * y[1])
+    return ZERO if ZERO in (x, y) else multiply_terms(x, y)
+
+
+class Sized(Algebra):
+    """Matrices of rational numbers, at a point: what is declared and given is seen to hold there."""
+
+    def __init__(self, item: Any, point: Any):
+        super().__init__(item)
+        sizes, self.matrices, numbers = read_fields(point, "sizes matrices numbers")
+        require(isinstance(sizes, dict) and set(sizes) == set(self.dimensions), "the point gives every dimension")
+        self.sizes = {name: read_integer(size, 1, MOST_SIZE) for name, size in sizes.items()}
+        own = {name: limit for name, limit in self.box.items() if name not in sizes}
+        self.names |= {name: number(size) for name, size in self.sizes.items()} | read_point(numbers, own)
+
+    def make_letter(self, name: str, rows: Any, columns: Any, words: list[str]) -> Any:
+        require(isinstance(self.matrices, dict) and name in self.matrices, "the point gives every matrix")
+        m, n = self.size_of(rows), self.size_of(columns)
+        x = fmpq_mat(read_list(self.matrices[name], lambda row: read_list(row, read_number, n), m))
+        require(all(HAS_PROPERTY[word](x) for word in words), "a matrix without its properties")
+        return x
+
+    def size_of(self, dimension: Any) -> int:
+        return dimension if isinstance(dimension, int) else self.sizes[dimension]
+
+    def declare(self, x: Typed, words: list[str]) -> None:
+        """Its properties have been seen."""
+
+    def make_body(self, is_unit: bool, rows: Any, columns: Any) -> Any:
+        m, n = self.size_of(rows), self.size_of(columns)
+        return fmpq_mat(m, n, [int(is_unit and i == j) for i in range(m) for j in range(n)])
+
+    def value_of(self, term: Term) -> fmpq:
+        """A rational number; where it is none, nothing is shown."""
+        q = constant_of(term)
+        require(q is not None and value_of(term, {}).is_finite(), "no rational number")
+        return q  # type: ignore[return-value]
+
+    def trace(self, body: Any, rows: Any) -> Term:
+        return number(sum((body[i, i] for i in range(body.nrows())), fmpq(0)))
+
+    def to_number(self, body: Any) -> Term:
+        return number(body[0, 0])
+
+    def add_bodies(self, x: Any, y: Any) -> Any:
+        return x + y
+
+    def scale_body(self, factor: Term, x: Any) -> Any:
+        return x * self.value_of(factor)
+
+    def multiply_bodies(self, x: Any, y: Any) -> Any:
+        return x * y
+
+    def transpose_body(self, x: Any) -> Any:
+        return x.transpose()
+
+    def invert_body(self, x: Any, rows: Any) -> Any:
+        require(x.det() != 0, "a singular matrix")
+        return x.inv()
+
+    def relate(self, x: Any) -> None:
+        """A hypothesis holds at the point."""
+        zero = x.body == 0 * x.body if isinstance(x, Typed) else self.value_of(x) == 0
+        require(zero, "a hypothesis that does not hold")
+
+    def evaluate(self) -> bool:
+        """Whether the statement holds at the point."""
+        relation, x = self.state()
+        require(set(self.matrices) == set(self.statement[4]), "the point gives every matrix")
+        for term in self.terms:
+            self.value_of(term)
+        if isinstance(x, Typed):
+            return bool((x.body == 0 * x.body) == (relation == "="))
+        sign, own = SIGNS[relation]
+        value = sign * self.value_of(x)
+        return bool({"=": value == 0, "!=": value != 0, ">": value > 0, ">=": value >= 0}[own])
+
+
+def make_unit(n: int) -> fmpq_mat:
+    return fmpq_mat(n, n, [int(i == j) for i in range(n) for j in range(n)])
+
+
+def list_minors(x: fmpq_mat, sets: Iterable[Sequence[int]]) -> Iterator[fmpq]:
+    """Determinants of rows and columns of the same numbers."""
+    for places in sets:
+        yield fmpq_mat([[x[i, j] for j in places] for i in places]).det()
+
+
+def is_definite(x: fmpq_mat) -> bool:
+    """Sylvester's criterion: a symmetric matrix is positive definite if its leading minors are positive."""
+    leading = [range(k) for k in range(1, x.nrows() + 1)]
+    return x == x.transpose() and all(minor > 0 for minor in list_minors(x, leading))
+
+
+def is_nonnegative(x: fmpq_mat) -> bool:
+    """A symmetric matrix is nonnegative if all its principal minors are."""
+    n = x.nrows()
+    require(n <= MOST_SIZE, "too many rows")
+    sets = [[i for i in range(n) if mask >> i & 1] for mask in range(1, 1 << n)]
+    return x == x.transpose() and all(minor >= 0 for minor in list_minors(x, sets))
+
+
+HAS_PROPERTY: dict[str, Callable[[fmpq_mat], bool]] = {
+    "symmetric": lambda x: x == x.transpose(),
+    "positive": is_definite,
+    "nonnegative": is_nonnegative,
+    "invertible": lambda x: x.det() != 0,
+    "orthogonal": lambda x: x.transpose() * x == make_unit(x.nrows()),
+    "skew": lambda x: x.transpose() == -1 * x,
+    "diagonal": lambda x: all(x[i, j] == 0 for i in range(x.nrows()) for j in range(x.nrows()) if i != j),
+}
+
+
+def check_words(item: Any) -> None:
+    """An equation holds for matrices of all sizes where all of it is defined; the witness is such a point.
+
+    The difference of its sides is equal to the sum of the shares, as sums of words; each share is 0.
+    """
+    _, statement, witness, shares = read_fields(item, "kind statement witness shares")
+    require(Sized(statement, witness).evaluate(), "the statement may have no value at the witness")
+    algebra = Words(statement)
+    relation, x = algebra.state()
+    require(relation == "=", "a relation that sums of words do not prove")
+    x = x if isinstance(x, Typed) else Typed(1, 1, {(): x})
+    pairs = [(word, multiply_numbers(MINUS_ONE, c)) for word, c in x.body.items()]
+    for share in read_list(shares, lambda entry: entry):
+        pairs.extend(algebra.expand(share, x))
+    require(all(map(is_identity, algebra.gather(pairs).values())), "another sum of words")
+
+
+def check_sized(item: Any) -> None:
+    """A statement on matrices of any size fails at matrices of one size, which have all declared properties."""
+    _, statement, point = read_fields(item, "kind statement point")
+    require(not Sized(statement, point).evaluate(), "the statement holds there")
+
+
 def grant(statement: Any, item: Any) -> str:
     """The verdict that a certificate gives a statement: HOLDS or FAILS; raises Refused where it gives none."""
     parts = item["of"] if isinstance(item, dict) and item.get("kind") == "all" else [item]
     statements = statement if isinstance(statement, list) else [statement]
     require(isinstance(parts, list) and all(isinstance(part, dict) for part in parts), "expected certificates")
     own = [part.get("statement") for part in parts]
-    refuting = [part for part in parts if part.get("kind") == "counterexample" or part.get("outside") == 1]
-    known = all(part.get("kind") in ("proof", "counterexample", "condition") for part in parts)
+    refuting = [part for part in parts if part.get("kind") in ("counterexample", "sized") or part.get("outside") == 1]
+    known = all(part.get("kind") in ("proof", "counterexample", "condition", "words", "sized") for part in parts)
     require(known and own == ([own[0]] if refuting else statements), "the certificate of another statement")
     require(all(text in statements for text in own), "the certificate of another statement")
     check(item)
     return "FAILS" if refuting else "HOLDS"
 
 
-# -- 10. The entry -----------------------------------------------------------------------------------------------------
+# -- 11. The entry -----------------------------------------------------------------------------------------------------
 EVERY_CHECK: tuple[Callable[[Any], None], ...] = (
     check_identity, check_exponential, check_rank, check_condition, check_positivity, check_all, check_gap, check_touch,
-    check_proof, check_counterexample,
+    check_proof, check_counterexample, check_words, check_sized,
 )  # fmt: skip
 KINDS = {check.__name__.removeprefix("check_"): check for check in EVERY_CHECK}
 KINDS |= {"sliver": check_gap, "range": check_touch}

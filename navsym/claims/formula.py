@@ -29,6 +29,7 @@ class Formula:
     given       : hypotheses, each a relation
     chain       : ``"a = b <= c"`` in the place of both sides and their relation
     rates       : name -> derivative by time
+    order       : name -> whole number n: equal up to terms of order name**n
     """
 
     left: Side
@@ -42,10 +43,12 @@ class Formula:
     given: tuple[str, ...] = ()
     chain: str | None = None
     rates: Mapping[str, Any] = field(default_factory=dict)
+    order: Mapping[str, int] = field(default_factory=dict)
 
     def __str__(self) -> str:
         within = "" if self.tolerance is None else f" +- {self.tolerance}"
-        return self.chain or f"{side_text(self.left)}{within} {self.relation} {side_text(self.right)}"
+        rest = "".join(f" + O({name}**{n})" for name, n in self.order.items())
+        return self.chain or f"{side_text(self.left)}{within} {self.relation} {side_text(self.right)}{rest}"
 
     def document(self) -> dict[str, Any]:
         """A whole claim file of this formula: ``{"symbols": …, "claim": [{"id", "left", "right", "relation"}]}``."""
@@ -53,7 +56,7 @@ class Formula:
         if self.chain:
             block = {"id": self.id, "chain": self.chain}
         more = {"box": dict(self.box), "tolerance": self.tolerance, "exists": list(self.exists)}
-        more |= {"given": list(self.given)}
+        more |= {"given": list(self.given), "order": dict(self.order)}
         block |= {key: value for key, value in more.items() if value}
         rates: dict[str, Any] = {"rates": dict(self.rates)} if self.rates else {}
         return {"symbols": dict(self.symbols), **rates, "claim": [block]}
@@ -63,6 +66,7 @@ class Formula:
             return rf"$\displaystyle {chain_latex(self.chain, self.symbols)}$"
         left, right = (side_latex(side, self.symbols) for side in (self.left, self.right))
         left += "" if self.tolerance is None else rf" \pm {side_latex(self.tolerance, {})}"
+        right += "".join(rf" + O({side_latex(f'{name}**{n}', self.symbols)})" for name, n in self.order.items())
         return rf"$\displaystyle {left} {SIGNS.get(self.relation, self.relation)} {right}$"
 
 

@@ -20,7 +20,8 @@ RESUME = "nothing was written; fewer languages in --to, fewer --vectors, or --no
 
 def command(
     claims: Annotated[
-        list[str], typer.Argument(help="module:number, FILE.toml:id, or regimes joined as A+B+C; or a ready-made name")
+        list[str],
+        typer.Argument(help="module:number, FILE.toml:id, MODEL.toml, regimes joined as A+B+C; or a ready-made name"),
     ],
     to: Annotated[str, typer.Option(help="languages separated by commas; the documentation lists them")] = "c",
     out: Annotated[Path, typer.Option(help="folder for the code; made when it is not there")] = Path("export"),

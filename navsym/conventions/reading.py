@@ -50,7 +50,7 @@ QUANTITIES: Mapping[str, tuple[int, ...]] = {
 
 TABLES = ("model", "parameters", "roles", "quantities", "known")
 #: Tables of a model file that say nothing about the error dynamics.
-BESIDE = ("measurement", "interval", "targets")
+BESIDE = ("measurement", "interval", "targets", "ranges")
 
 
 @dataclass(frozen=True, slots=True, eq=False)

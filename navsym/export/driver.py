@@ -41,7 +41,8 @@ def export(
 
     item  : id of a claim ("guaranteed_velocity:4.13.y3", "claims.toml:ratio"), regimes "A+B", a ready-made name
             ("kalman"), or a list of these; a verdict of :func:`navsym.prove`; an Estimator, as a function of its
-            measurements; Phases with closed forms, as functions of the parameter; a Derivation or a Model, as Phi and H
+            measurements; Phases with closed forms, as functions of the parameter; a Derivation, as Phi and the
+            regressors; a Model or its file, as F, H, Phi, Qd and the steps of a Kalman filter in Joseph's and UD form
     to    : languages: c, cpp, python, batch, javascript, rust, fortran, casadi, wasm, html, julia, octave
     out   : folder for the code; made when it is not there
     real  : "double" or "float"; force : replace files that are there

@@ -13,7 +13,8 @@ import sympy as sp
 from navsym.claims import CERTIFIED, PROVED, Claim, Equation, Record, Verdict, Verdicts, equation_of
 from navsym.core.errors import DomainError, NavsymError
 from navsym.core.sandbox import Exhausted, run_limited
-from navsym.export.functions import RefusedError, formula_lines, function_of, material, require_exportable
+from navsym.export.algorithms.models import functions_of_model, matrix_function, plain_name
+from navsym.export.functions import RefusedError, formula_lines, function_of, material
 from navsym.export.languages.names import function_name
 from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source
 from navsym.export.ready import ALGORITHMS, READY, UNITS, algorithm
@@ -21,8 +22,9 @@ from navsym.guaranteed.phases.answer import Phases, Regime
 from navsym.guaranteed.phases.driver import phases
 from navsym.guaranteed.solver import Estimator, solve
 from navsym.language.names import quote
-from navsym.models.derivation import Derivation, derive
+from navsym.models.derivation import Derivation
 from navsym.models.model import Model, contents_of
+from navsym.models.modelfile import BasisFile
 from navsym.prove.claimfile import claims_from, decide_claim, read_claims, statement_of
 from navsym.prove.ladder import decide_within, leave_open
 from navsym.verification.papers import file_of_source, is_model, load_papers, split_id
@@ -39,7 +41,7 @@ def functions_from(
     """The functions of whatever can be exported; raises RefusedError for what does not hold, DomainError for the rest.
 
     item : claim id ``MODULE:NUMBER`` or ``FILE.toml:ID``, regimes ``A+B+C``, ``NAME=A``, a ready-made name; a record or
-           claim; a verdict with its formula; an estimator, phases, derivation or model
+           claim; a verdict with its formula; an estimator, phases, derivation or model; the path of a model file
     """
     units = units or {}
     if isinstance(item, (list, tuple, Verdicts)):
@@ -58,7 +60,7 @@ def functions_from(
     if isinstance(item, Phases):
         return [function_of_phases(item, real, units)]
     if isinstance(item, Model):
-        item = derive(item)
+        return functions_of_system(item, real, units)
     if isinstance(item, Derivation):
         return functions_of_derivation(item, real, units)
     raise DomainError(f"expected {EXPORTABLE}; got {quote(item)}; name one of these", where="export")
@@ -79,6 +81,8 @@ def functions_of_claim(
     """The functions of one claim or of regimes ``A+B+C``; ``name=A+B`` gives a name; a ready-made program has two."""
     if text in ALGORITHMS:
         return algorithm(text, lambda claim: material_of_claim(claim, allow_confirmed), real)
+    if text.endswith(".toml") and is_model(path := file_of_source(text)):
+        return functions_of_system(Model.load(path), real, units or {})
     name, _, claims = text.rpartition("=") if "=" in text else ("", "", text)
     module, _, target = split_id(claims)
     if module.endswith(".toml") and is_model(file := file_of_source(module)):
@@ -159,6 +163,15 @@ def functions_of_target(path: Path, target: str, real: str, units: Mapping[str, 
         raise DomainError(message, where=str(path))
     answer = phases(path, target, parameter=free[0]) if free else solve(path, target)
     return functions_from(answer, real=real, units=units)
+
+
+def functions_of_system(model: Model, real: str, units: Mapping[str, str]) -> list[ExportedFunction]:
+    """The matrices of a model and the steps of its Kalman filter; DomainError for regressors."""
+    contents = contents_of(model, None, {}, "export")
+    if isinstance(contents, BasisFile):
+        message = "expected a model with F and H; got a basis of regressors; export what nav.solve or nav.phases gives"
+        raise RefusedError(message)
+    return list(functions_of_model(contents, real, units))
 
 
 def unknown_claim(name: str, known: list[str], where: str) -> NavsymError:
@@ -279,16 +292,9 @@ def functions_of_derivation(found: Derivation, real: str, units: Mapping[str, st
         raise RefusedError(f"expected a model with one matrix F; got {came}; export what nav.solve or nav.phases gives")
     F, Phi, rows = found.system[0], found.transition[0].matrix, found.pieces[0].rows
     time = next(iter(Phi.free_symbols - F.free_symbols), sp.Symbol("t", real=True))
-    label = re.sub(r"\W+", "_", found.name).strip("_") or "model"
-    pairs = (
-        ("Phi", Phi, Equation(Phi.diff(time), F * Phi), "Transition matrix, Phi' = F Phi"),
-        ("H", rows, Equation(rows.diff(found.time), rows * F), "Regressors of the state at the end, H' = H F"),
-    )
-    made = []
-    for name, matrix, statement, title in pairs:
-        verdict = decide_within(statement, SECONDS)
-        require_exportable(f"{label}:{name}", verdict, None, False)
-        part = material(f"{label}:{name}", Equation(matrix, matrix), verdict, title=title)
-        part = Material(part.claim, [(Output(name, out.shape), flat) for out, flat in part.results], {}, part.source)
-        made.append(function_of([part], real=real, name=function_name(f"{label}_{name}"), layout=Layout(units=units)))
-    return made
+    label, layout = plain_name(found.name), Layout(units=units)
+    phi_law, h_law = Equation(Phi.diff(time), F * Phi), Equation(rows.diff(found.time), rows * F)
+    return [
+        matrix_function(f"{label}:Phi", Phi, phi_law, "Transition matrix, Phi' = F Phi", real, layout),
+        matrix_function(f"{label}:H", rows, h_law, "Regressors of the state at the end, H' = H F", real, layout),
+    ]

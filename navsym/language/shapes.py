@@ -2,24 +2,28 @@
 
 A vector or matrix has one symbol for each entry: ``v`` has ``v_1, v_2, v_3``, shown as ``v[1]``. A symmetric matrix has
 one symbol in two places. A rotation and a unit quaternion have relations, which every claim about them may use.
+A matrix of any size, ``["m", "n"]``, has names of dimensions and no symbols of entries.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Any
 
 from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, TooLargeError
 from navsym.language.declarations import SIGNS, read_range
 from navsym.language.expression import Expr
-from navsym.language.names import check_name, expect_keys, quote
+from navsym.language.names import NAME, RESERVED, check_name, expect_keys, quote
 from navsym.language.printer import to_text
 from navsym.language.schema import SIDE, as_list, as_text, describe_value, join_place, read_entry
 
 #: What a table may say; ``unit`` and ``frame`` are notes for people.
 KINDS = ("vector", "matrix", "rotation", "quaternion", "integer")
-KEYS = (*KINDS, "symmetric", "function", "range", "sign", "unit", "frame")
+#: What a square matrix may be; positive is positive definite, nonnegative is positive semidefinite.
+PROPERTIES = ("symmetric", "positive", "nonnegative", "invertible", "orthogonal", "skew", "diagonal")
+KEYS = (*KINDS, *PROPERTIES, "function", "range", "sign", "unit", "frame")
 ORDERS = 3  # derivatives of a function of time that have symbols of their own
 RANGES: dict[str, list[Any]] = {
     "real": [None, None, []],
@@ -39,6 +43,8 @@ class Shape:
     relations : what holds of it, as text
     rates     : name -> derivative by time as text, None where none is known
     label     : how a derivative is written, ``dot_(x)``; empty for what is declared
+    sizes     : rows and columns of a matrix of any size, numbers or names of dimensions, which has no rows
+    properties : what a matrix is, words of :data:`PROPERTIES`
     """
 
     name: str
@@ -48,10 +54,14 @@ class Shape:
     relations: tuple[str, ...] = ()
     rates: Mapping[str, str | None] | None = None
     label: str = ""
+    sizes: tuple[int | str, int | str] | None = None
+    properties: tuple[str, ...] = ()
 
     @property
-    def size(self) -> tuple[int, int] | None:
+    def size(self) -> tuple[int | str, int | str] | None:
         """Rows and columns; None for a scalar."""
+        if self.sizes:
+            return self.sizes
         return None if self.kind == "scalar" else (len(self.rows), len(self.rows[0]))
 
     def shown(self) -> dict[str, str]:
@@ -91,14 +101,26 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
         message = f"expected one of {', '.join(KINDS)}; got {' and '.join(kinds)}; keep one of them"
         raise ShapeError(message, where=where)
     kind = kinds[0] if kinds else "scalar"
-    rows = name_entries(name, read_size(kind, value, where), bool(value.get("symmetric")), taken)
+    properties = read_properties(kind, value, where)
+    size = read_size(kind, value, where)
+    if size is not None and properties and size[0] != size[1]:
+        got = f"{size[0]} x {size[1]}"
+        raise ShapeError(f"expected a square matrix to be {properties[0]}; got {got}; correct it", where=where)
+    if size is not None and not all(isinstance(side, int) for side in size):
+        if "function" in value or "range" in value or "sign" in value:
+            message = f"expected a constant matrix of any size; got {', '.join(value)}; give the dimensions as numbers"
+            raise ShapeError(message, where=where)
+        return [Shape(name, (), kind, {}, sizes=size, properties=properties)]
+    even = bool({"symmetric", "positive", "nonnegative"} & {*properties})
+    rows = name_entries(name, size, even, taken)
     limits = read_limits(kind, value, where)
     shape = Shape(
         name,
         rows,
         "scalar" if kind == "integer" else kind,
         limit_entries(rows, limits),
-        relations_of(kind, value, name, where),
+        (*relations_of(kind, value, name, where), *relations_of_properties(name, len(rows), properties)),
+        properties=properties,
     )
     if "function" not in value:
         return [shape]
@@ -108,7 +130,19 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
     return list_derivatives(shape, taken)
 
 
-def read_size(kind: str, value: Mapping[str, Any], where: str) -> tuple[int, int] | None:
+def read_properties(kind: str, value: Mapping[str, Any], where: str) -> tuple[str, ...]:
+    """The properties that a table gives a matrix."""
+    words = tuple(word for word in PROPERTIES if word in value)
+    for word in words:
+        place = join_place(where, word)
+        if not isinstance(value[word], bool):
+            raise ShapeError(f"expected true or false; got {describe_value(value[word])}; correct it", where=place)
+        if kind != "matrix":
+            raise ShapeError(f"expected {word} beside a matrix; got none; remove it", where=place)
+    return tuple(word for word in words if value[word])
+
+
+def read_size(kind: str, value: Mapping[str, Any], where: str) -> tuple[int | str, int | str] | None:
     """Rows and columns of what a table declares; None for a scalar."""
     if kind == "rotation":
         as_text(value["rotation"], join_place(where, "rotation"), 'two frames, such as "b to n",')
@@ -119,30 +153,23 @@ def read_size(kind: str, value: Mapping[str, Any], where: str) -> tuple[int, int
             raise DomainError(message, where=join_place(where, "quaternion"))
         return 4, 1
     if kind not in ("vector", "matrix"):
-        if "symmetric" in value:
-            raise ShapeError(
-                "expected symmetric beside a matrix; got none; remove it", where=join_place(where, "symmetric")
-            )
         return None
     place = join_place(where, kind)
     sizes = [value["vector"]] if kind == "vector" else list(as_list(value["matrix"], place, "two numbers"))
     if len(sizes) != (1 if kind == "vector" else 2):
         raise ShapeError(f"expected rows and columns; got {len(sizes)} numbers; write [2, 3]", where=place)
     for size in sizes:
+        if isinstance(size, str) and NAME.fullmatch(size) and size not in RESERVED:
+            continue
         if not isinstance(size, int) or isinstance(size, bool) or size < 1:
-            message = f"expected a whole number from 1 on; got {describe_value(size)}; give the dimension as a number"
-            raise ShapeError(message, where=place)
+            message = f"expected a whole number from 1 on, or the name of one; got {describe_value(size)}"
+            raise ShapeError(f"{message}; give the dimension so", where=place)
         if size > SIDE:
             raise TooLargeError(f"expected at most {SIDE} rows; got {size}; split it", where=place)
-    rows, columns = (sizes[0], 1) if kind == "vector" else sizes
-    if value.get("symmetric") and rows != columns:
-        raise ShapeError(f"expected a square matrix to be symmetric; got {rows} x {columns}; correct it", where=place)
-    return rows, columns
+    return (sizes[0], 1) if kind == "vector" else (sizes[0], sizes[1])
 
 
-def name_entries(
-    name: str, size: tuple[int, int] | None, symmetric: bool, taken: Collection[str]
-) -> tuple[tuple[str, ...], ...]:
+def name_entries(name: str, size: Any, symmetric: bool, taken: Collection[str]) -> tuple[tuple[str, ...], ...]:
     """Names of the entries that nobody has declared: ``v_1``, or ``v__1`` where ``v_1`` is taken."""
     if size is None:
         return ((name,),)
@@ -207,6 +234,27 @@ def relations_of(kind: str, value: Mapping[str, Any], name: str, where: str) -> 
     columns = [f"[{', '.join(f'{name}[{i},{j}]' for i in (1, 2, 3))}]" for j in (1, 2, 3)]
     products = [f"cross({columns[a]}, {columns[b]}) = {columns[c]}" for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1))]
     return (f"{name}.T @ {name} = eye(3)", f"{name} @ {name}.T = eye(3)", f"det({name}) = 1", *products)
+
+
+def relations_of_properties(name: str, n: int, properties: tuple[str, ...]) -> tuple[str, ...]:
+    """What a matrix of fixed size is, as hypotheses; Sylvester: leading minors are > 0, principal minors are >= 0."""
+
+    def minor(places: Iterable[int]) -> str:
+        chosen = list(places)
+        rows = [f"[{', '.join(f'{name}[{i},{j}]' for j in chosen)}]" for i in chosen]
+        return f"det([{', '.join(rows)}])" if len(chosen) > 1 else f"{name}[{chosen[0]},{chosen[0]}]"
+
+    every = [c for k in range(1, n + 1) for c in combinations(range(1, n + 1), k)] if n < 6 else []
+    stated: dict[str, Callable[[], list[str]]] = {
+        "symmetric": list,
+        "positive": lambda: [f"{minor(range(1, k + 1))} > 0" for k in range(1, n + 1)],
+        "nonnegative": lambda: [f"{minor(c)} >= 0" for c in every],
+        "invertible": lambda: [f"{minor(range(1, n + 1))} != 0"],
+        "orthogonal": lambda: [f"{name}.T @ {name} = eye({n})", f"{name} @ {name}.T = eye({n})"],
+        "skew": lambda: [f"{name}.T = -{name}"],
+        "diagonal": lambda: [f"{name}[{i},{j}] = 0" for i in range(1, n + 1) for j in range(1, n + 1) if i != j],
+    }
+    return tuple(text for word in properties for text in stated[word]())
 
 
 def list_derivatives(shape: Shape, taken: Collection[str]) -> list[Shape]:

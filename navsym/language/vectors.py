@@ -16,12 +16,12 @@ from typing import Any, NoReturn
 from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError, ShapeError, TooLargeError
 from navsym.language.arithmetic import FACTORS, refuse_size
 from navsym.language.expression import LENGTH, Reader
-from navsym.language.names import FUNCTIONS, quote
+from navsym.language.names import FUNCTIONS, RESERVED, quote
 from navsym.language.printer import LOOSE, RAISED, TIGHT, WHOLE, LatexWriter, Text
 from navsym.language.tokens import Source, split_tokens
 from navsym.language.tree import MINUS_ONE, NUMBER, POWER, PRODUCT, SUM, SYMBOL, Tree, build, fold_tree
 
-Size = tuple[int, int] | None  # rows and columns; None for a number
+Size = tuple[Any, Any] | None  # rows and columns, whole numbers or names of dimensions; None for a number
 
 RELATIONS = ("=", "!=", "<", "<=", ">", ">=")
 MOST_INVERSE, MOST_DETERMINANT, MOST_ORDER = 4, 5, 8
@@ -48,9 +48,17 @@ TAKES: dict[str, tuple[str, int, int]] = {
     "diff": ("a value, a symbol and how many times", 2, 3),
     "dot_": ("a value", 1, 1),
 }
+#: Functions with a variable of their own, in words, and how many arguments.
+BINDERS = {
+    "integral": ("a number, its variable and two ends", 4),
+    "sum": ("a number, its variable and two ends", 4),
+    "product": ("a number, its variable and two ends", 4),
+    "limit": ("a number, its variable and a point", 3),
+}
+INFINITE = "oo"
 #: Words of the language of files that nothing decides yet.
-UNDECIDED = ("integral", "sum", "product", "limit", "floor", "erf", "expm", "E", "cov")
-WIDE = re.compile(r"[@\[\]]|\.\s*T\b|\b(?:" + "|".join((*TAKES, *UNDECIDED)) + r")\s*\(")
+UNDECIDED = ("floor", "erf", "expm", "E", "cov")
+WIDE = re.compile(r"[@\[\]]|\.\s*T\b|\b(?:" + "|".join((*TAKES, *BINDERS, *UNDECIDED)) + r")\s*\(")
 
 
 def is_wide(text: str) -> bool:
@@ -120,12 +128,12 @@ class ValueReader(Reader):
             "dot": (vector and first == second, lambda: None),
             "norm": (vector, lambda: None),
             "skew": (first == (3, 1), lambda: (3, 3)),
-            "det": (square and first[0] <= MOST_DETERMINANT, lambda: None),  # type: ignore[index]
-            "inv": (square and first[0] <= MOST_INVERSE, lambda: first),  # type: ignore[index]
+            "det": (square and self.is_small(first, MOST_DETERMINANT), lambda: None),
+            "inv": (square and (bool(self.dimensions) or self.is_small(first, MOST_INVERSE)), lambda: first),
             "trace": (square, lambda: None),
             "transpose": (first is not None, lambda: (first[1], first[0])),  # type: ignore[index]
-            "eye": (is_count(part.args[0]), lambda: (count_of(part.args[0]),) * 2),  # type: ignore[return-value]
-            "zeros": (all(map(is_count, part.args)), lambda: (count_of(part.args[0]), count_of(part.args[-1]))),
+            "eye": (self.is_size(part.args[0]), lambda: (size_of(part.args[0]),) * 2),  # type: ignore[return-value]
+            "zeros": (all(map(self.is_size, part.args)), lambda: (size_of(part.args[0]), size_of(part.args[-1]))),
             "diag": (not any(sizes) or (vector and len(sizes) == 1), lambda: (first[0] if first else len(sizes),) * 2),  # type: ignore[return-value]
             "qmul": (first == second == (4, 1), lambda: (4, 1)),
             "conj": (first == (4, 1), lambda: (4, 1)),
@@ -138,6 +146,19 @@ class ValueReader(Reader):
         if not good:
             self.refuse_shapes(at, f"{name} of {TAKES[name][0]}", sizes, "correct the call")
         return result()
+
+    @property
+    def dimensions(self) -> set[str]:
+        """The names of dimensions."""
+        return {side for size in self.arrays.values() if size for side in size if isinstance(side, str)}
+
+    def is_size(self, part: Tree) -> bool:
+        """Whether a part is a whole number, or the name of a dimension."""
+        return is_count(part) or (part.head == SYMBOL and part.args[0] in self.dimensions)
+
+    @staticmethod
+    def is_small(size: Size, most: int) -> bool:
+        return size is not None and isinstance(size[0], int) and size[0] <= most
 
     def refuse_shapes(self, at: int, expected: str, sizes: list[Size], remedy: str) -> NoReturn:
         """Refuse values by their shapes."""
@@ -193,6 +214,9 @@ class ValueReader(Reader):
             self.unexpected("] behind the index")
         self.position += 1
         ends = size if len(places) == 2 else size[:1]
+        if not all(isinstance(side, int) for side in size):
+            remedy = "state the claim by whole matrices, or give the dimensions as numbers"
+            self.fail(at, "a matrix of fixed size before an index", describe_size(size), remedy, ShapeError)
         if len(places) == 1 and size[1] != 1:
             self.refuse_shapes(at, "two indices, as in A[1,2]", [size], "give row and column")
         if any(p > end for p, end in zip(places, ends, strict=True)):
@@ -263,6 +287,8 @@ class ValueReader(Reader):
                 return part
         if called and token in TAKES and token not in (self.names or ()):
             return self.call(at, token)
+        if called and token in BINDERS and token not in (self.names or ()):
+            return self.bind(at, token)
         if called and token in UNDECIDED and token not in (self.names or ()):
             remedy = "state the claim without it"
             self.fail(at, "a construct that claims are decided for", f"{token}(...)", remedy)
@@ -285,6 +311,54 @@ class ValueReader(Reader):
         if name == "diff" and len(arguments) == 3 and not is_count(arguments[2], MOST_ORDER):
             self.fail(at, f"a whole number of times from 1 to {MOST_ORDER} in diff", "another one", "correct it")
         return self.make(at, name, *arguments)
+
+    def bind(self, at: int, name: str) -> Tree:
+        """A function with a variable of its own, which is a number inside the call, whatever it is outside."""
+        opening, words, most = self.position, *BINDERS[name]
+        places = self.list_arguments(opening)
+        if len(places) != most:
+            number = f"{len(places)} argument{'s' * (len(places) > 1)}"
+            self.fail(at, f"{name} of {words}", number, "correct the call", ShapeError)
+        variable = self.tokens[places[1]]
+        plain = variable[:1].isalpha() and variable not in (*RESERVED, INFINITE) and places[2] == places[1] + 2
+        if not plain or self.arrays.get(variable) is not None:
+            got = "another expression" if not plain else describe_size(self.arrays[variable])
+            self.fail(places[1], f"the name of a number as the variable of {name}", got, "name another one")
+        own = build(SYMBOL, (variable,))
+        names, leaf = self.names, self.leaves.get(variable)
+        self.names, self.leaves[variable] = {*(names or ()), variable}, own
+        self.position = opening + 1
+        arguments = [self.nested(opening, self.sum), own]
+        self.names = names
+        self.leaves.pop(variable)
+        self.leaves |= {variable: leaf} if leaf is not None else {}
+        for place in places[2:]:
+            self.position = place
+            arguments.append(self.end(opening))
+        self.close(opening)
+        return self.make(at, name, *arguments)
+
+    def end(self, opening: int) -> Tree:
+        """A number, oo or -oo."""
+        minus = self.tokens[self.position] == "-"
+        if self.tokens[self.position + minus] != INFINITE:
+            return self.nested(opening, self.sum)
+        self.position += 1 + minus
+        if self.tokens[self.position] not in (",", ")"):
+            self.unexpected("oo alone")
+        return build(PRODUCT, (MINUS_ONE, build(SYMBOL, (INFINITE,)))) if minus else build(SYMBOL, (INFINITE,))
+
+    def list_arguments(self, opening: int) -> list[int]:
+        """The first token of each argument of a call."""
+        places, depth = [opening + 1], 0
+        for k in range(opening, len(self.tokens)):
+            token = self.tokens[k]
+            depth += (token in ("(", "[")) - (token in (")", "]"))
+            if depth == 1 and token == ",":
+                places.append(k + 1)
+            if depth == 0 or not token:
+                break
+        return places
 
     def relation(self) -> Tree:
         """Two sides with a relation between them."""
@@ -312,8 +386,26 @@ def is_count(tree: Tree, most: int = 64) -> bool:
     return tree.head == NUMBER and tree.args[0].denominator == 1 and 1 <= tree.args[0] <= most
 
 
-def count_of(tree: Tree) -> int:
-    return int(tree.args[0])
+def size_of(tree: Tree) -> int | str:
+    """A whole number, or the name of a dimension."""
+    return str(tree.args[0]) if tree.head == SYMBOL else int(tree.args[0])
+
+
+def list_free_names(tree: Tree) -> frozenset[str]:
+    """The names in a tree, without the variables of integrals, sums, products and limits inside these.
+
+    >>> sorted(list_free_names(read_value("integral(a*x, x, 0, b)", {"a": None, "b": None}).tree))
+    ['a', 'b']
+    """
+
+    def collect(part: Tree, inner: list[frozenset[str]]) -> frozenset[str]:
+        if part.head == SYMBOL:
+            return frozenset(part.args) - {INFINITE}
+        if part.head in BINDERS:
+            return (inner[0] - inner[1]).union(*inner[2:])
+        return frozenset().union(*inner)
+
+    return fold_tree(tree, collect)
 
 
 @dataclass(frozen=True, slots=True)
@@ -367,6 +459,8 @@ def start_reading(text: Any, arrays: Mapping[str, Size], where: str) -> ValueRea
     if not text.strip():
         raise EmptyError('expected an expression; got an empty text; write one, such as "0"', where=where)
     source = Source(text, where, wide=True)
+    sides = {side for size in arrays.values() if size for side in size if isinstance(side, str)}
+    arrays = {**dict.fromkeys(sides), **arrays}  # a dimension is a number
     names: Collection[str] = arrays.keys()
     return ValueReader(source, split_tokens(source, LENGTH), names, arrays=arrays)
 
@@ -389,6 +483,8 @@ class ValueWriter(LatexWriter):
     def spell(self, part: Tree, inner: list[Text]) -> Text:
         """A part from the texts of its own parts."""
         texts = [text.text for text in inner]
+        if part.head == SYMBOL and part.args[0] == INFINITE:
+            return Text(r"\infty", WHOLE)
         if part.head == "@":
             return Text(rf"{self.enclose(inner[0], TIGHT)} \, {self.enclose(inner[1], RAISED)}", TIGHT)
         if part.head in ("T", "transpose", "inv", "conj"):
@@ -412,6 +508,8 @@ class ValueWriter(LatexWriter):
             return Text(rf"I_{{{texts[0]}}}", WHOLE)
         if part.head == "zeros":
             return Text(rf"0_{{{texts[0]} \times {texts[1]}}}", WHOLE)
+        if part.head in BINDERS:
+            return self.spell_bound(part.head, texts, self.enclose(inner[0], TIGHT))
         if part.head == "where":
             return Text(rf"\begin{{cases}}{texts[1]} & {texts[0]} \\ {texts[2]}\end{{cases}}", WHOLE)
         if part.head == "diff":
@@ -420,6 +518,16 @@ class ValueWriter(LatexWriter):
                 rf"\frac{{\partial{order}}}{{\partial {texts[1]}{order}}} {self.enclose(inner[0], RAISED)}", TIGHT
             )
         return super().spell(part, inner)
+
+    @staticmethod
+    def spell_bound(head: str, texts: list[str], inside: str) -> Text:
+        """A function with a variable of its own."""
+        variable, low, high = texts[1], texts[2], texts[-1]
+        if head == "integral":
+            return Text(rf"\int_{{{low}}}^{{{high}}} {inside} \, d{variable}", LOOSE)
+        if head == "limit":
+            return Text(rf"\lim_{{{variable} \to {low}}} {inside}", LOOSE)
+        return Text(rf"\{'sum' if head == 'sum' else 'prod'}_{{{variable} = {low}}}^{{{high}}} {inside}", LOOSE)
 
 
 def print_value_latex(tree: Tree) -> str:

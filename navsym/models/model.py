@@ -53,6 +53,7 @@ class Model:
     dynamics     : f, one formula per state, in place of F: ``dx/dt = f(x)``; H then holds formulas z of the states
     relations    : equations between the states that hold always, such as ``q0**2 + q1**2 = 1``; with dynamics
     rates        : parameter -> its derivative by the time, for parameters that move; for ``observe`` only
+    ranges       : state, parameter or ``dt`` -> two ends, what the inputs of exported code may be; for ``export`` only
     parameters   : name -> declaration; keywords that remain mean the same
 
     Entries are text of the language of files, ints, Fractions, sympy expressions, or matrices and integer arrays
@@ -94,6 +95,7 @@ class Model:
         dynamics: Any = None,
         relations: Any = None,
         rates: Mapping[str, Any] | None = None,
+        ranges: Mapping[str, Any] | None = None,
         name: str = "model",
         parameters: Mapping[str, Any] | None = None,
         **declared: Any,
@@ -111,6 +113,8 @@ class Model:
             document["parameters"] = declarations
             if rates is not None:
                 document["rates"] = {key: write_value(value, f"Model: rates.{key}") for key, value in rates.items()}
+            if ranges is not None:
+                document["ranges"] = {key: write_entries(ends, f"Model: ranges.{key}") for key, ends in ranges.items()}
             linear = names if dynamics is None else None
             document["measurement"] = measurement_blocks(H, sigma, measurements, linear, declarations)
             if pieces is not None:
@@ -611,6 +615,7 @@ def document_of(contents: ModelFile | BasisFile) -> dict[str, Any]:
         tables["piece"] = [piece_table(piece) for piece in contents.pieces]
     tables["interval"] = {} if contents.T is None else {"T": to_text(contents.T)}
     tables["targets"] = targets
+    tables["ranges"] = {name: [to_text(end) for end in ends] for name, ends in contents.ranges.items()}
     return {table: content for table, content in tables.items() if content}
 
 

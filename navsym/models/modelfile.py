@@ -80,6 +80,7 @@ class ModelFile:
     rates        : parameter -> its derivative by the time; the others are constant
     dynamics     : f, one entry per state, of a nonlinear model; there are no pieces then
     relations    : functions of the states that are zero on the manifold on which they move
+    ranges       : state, parameter or ``dt`` (the step of a filter) -> its ends, for exported code
     """
 
     name: str
@@ -93,6 +94,7 @@ class ModelFile:
     rates: Mapping[str, Expr] = field(default_factory=dict)
     dynamics: tuple[Expr, ...] = ()
     relations: tuple[Expr, ...] = ()
+    ranges: Mapping[str, tuple[Expr, Expr]] = field(default_factory=dict)
 
     def _repr_latex_(self) -> str:
         """The matrix of the system, for notebooks."""
@@ -233,7 +235,11 @@ def read_targets(document: Table, known: Known, names: tuple[str, ...], where: s
     return targets
 
 
-TABLES = ("model", "basis", "parameters", "rates", "measurement", "piece", "interval", "targets")
+TABLES = ("model", "basis", "parameters", "rates", "measurement", "piece", "interval", "targets", "ranges")
+#: Tables of the same file that only ``conventions`` reads.
+BESIDE = ("roles", "quantities", "known")
+#: Name of the step of a filter among the ranges.
+STEP = "dt"
 
 
 def read_model(path: str | os.PathLike[str], values: Mapping[str, str] | None = None) -> ModelFile | BasisFile:
@@ -287,7 +293,7 @@ def admitted(value: Expr, parameter: Parameter) -> bool:
 
 def read_system(document: Table, where: str, parameters: Mapping[str, Parameter], known: Known) -> ModelFile:
     """The [model] with its measurements, interval and targets."""
-    expect_keys(document, tuple(key for key in TABLES if key != "basis"), where)
+    expect_keys(document, (*(key for key in TABLES if key != "basis"), *BESIDE), where)
     place = join_place(where, "model")
     model = as_table(document["model"], place)
     expect_keys(model, ("name", "states", "F", "dynamics", "relations"), place)
@@ -308,6 +314,7 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
         T=T,
         targets=read_targets(document, known, states, where),
         rates=read_rates(document, moving, parameters, where),
+        ranges=read_ranges(document, (*states, *parameters, STEP), where),
     )
 
 
@@ -365,6 +372,25 @@ def read_rates(document: Table, moving: Known, parameters: Mapping[str, Paramete
             message = f"expected a parameter that is left free; got a value for {name}, which moves; drop its rate"
             raise DomainError(message, where=place)
     return {name: read_entry(value, moving, join_place(place, name)) for name, value in table.items()}
+
+
+def read_ranges(document: Table, names: tuple[str, ...], where: str) -> dict[str, tuple[Expr, Expr]]:
+    """The [ranges] table: what the inputs of exported code may be; two exact numbers for each."""
+    place = join_place(where, "ranges")
+    found = {}
+    for name, value in as_table(document.get("ranges", {}), place).items():
+        here = join_place(place, name)
+        if name not in names:
+            hint = suggest_nearest(name, names)
+            raise UnknownSymbolError(
+                f"expected a state, a parameter or dt; got {quote(name)}; correct it: {hint}", where=here
+            )
+        low, high = read_vector(value, {}, here, 2, "the ends of a range")
+        require_order(low, high, here)
+        if name == STEP:
+            require_positive(low, "the least step", here)
+        found[name] = (low, high)
+    return found
 
 
 def read_names(value: Any, where: str) -> tuple[str, ...]:

@@ -77,10 +77,11 @@ class Symbols:
         chain, names = block.get("chain"), set(box)
         names = names.union(*map(names_of, (*sides, *exists, *map(str, given), *([chain] if chain else []))))
         rates = {name: text for name, text in self.rates.items() if is_derived((*sides, chain or ""))}
-        names = names.union(rates, *map(names_of, rates.values()))
+        order = block.get("order", {})
+        names = names.union(rates, order, *map(names_of, rates.values()))
         symbols = {name: value for name, value in self.written.items() if name in names}
         tolerance = None if "tolerance" not in block else str(block["tolerance"])
-        relation, more = block.get("relation", "="), (tuple(given), chain, rates)
+        relation, more = block.get("relation", "="), (tuple(given), chain, rates, dict(order))
         return Formula(sides[0], relation, sides[1], symbols, box, block["id"], tolerance, exists, *more)
 
     def limit(self, name: str, ends: Any, place: str) -> list[Any]:

@@ -41,6 +41,7 @@ def prove(
     exists: Any = ...,
     given: Any = ...,
     rates: Mapping[str, Any] | None = ...,
+    order: Mapping[str, int] | None = ...,
     seconds: float = ...,
     **symbols: Any,
 ) -> Verdict: ...
@@ -57,6 +58,7 @@ def prove(
     exists: Any = (),
     given: Any = (),
     rates: Mapping[str, Any] | None = None,
+    order: Mapping[str, int] | None = None,
     seconds: float = SECONDS,
     jobs: int = 1,
     progress: Progress | None = None,
@@ -75,6 +77,7 @@ def prove(
     exists    : expression, or list of them, that must have a value: points where one has none do not count
     given     : hypothesis, or list of them, each a relation: ``"dot(u, u) = 1"``
     rates     : name -> derivative by time, for ``dot_(x)``
+    order     : name -> whole number: ``{"eps": 2}`` for equality up to terms of order eps**2
     seconds   : limit for one formula, seconds of processor time; above it the verdict is OPEN
     jobs, progress : claims of a file decided at the same time; called with each verdict and their number
 
@@ -91,6 +94,8 @@ def prove(
     <Status.PROVED: 'PROVED'>
     >>> nav.prove("cross(u, cross(v, u)) = v - u*dot(u, v)", given="dot(u, u) = 1", u={"vector": 3}, v={"vector": 3})
     <PROVED: cross(u, cross(v, u)) = v - u*dot(u, v); proof tree; all u in R^3, v in R^3>
+    >>> nav.prove("inv(A @ B) = inv(B) @ inv(A)", A={"matrix": ["n", "n"]}, B={"matrix": ["n", "n"]}).assumptions
+    ('A @ B invertible', 'B invertible', 'A invertible')
     >>> import sympy
     >>> nav.prove(sympy.Symbol("x") ** 2, ">=", 0).holds
     True
@@ -100,6 +105,7 @@ def prove(
     """
     require_options(box, seconds, jobs)
     beside = {"box": box or {}, "tolerance": tolerance, "exists": exists, "given": given, "rates": rates or {}}
+    beside |= {"order": order}
     if relation is None and is_file(statement):
         if given := symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())}:
             raise misplaced_declarations(given)
@@ -146,7 +152,8 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
     hypotheses = list(beside["given"]) if isinstance(beside["given"], (list, tuple)) else [beside["given"]]
     slopes = {name: write_entries(rate, f"prove: rates.{name}") for name, rate in dict(beside["rates"]).items()}
     texts = (left, right, exists, *map(str, hypotheses), *slopes.values())
-    words = dict.fromkeys(sorted(symbols_in(texts, given) | slopes.keys()), "real")
+    dimensions = {side for value in given.values() for side in list_dimensions(value)} - given.keys()
+    words = dict.fromkeys(sorted((symbols_in(texts, given) - dimensions) | slopes.keys()), "real")
     words |= read_assumptions((sides.left, sides.right, *existing), "prove")
     declared = {name: write_declaration(value, f"prove: {name}") for name, value in given.items()}
     for name in declared.keys() - words.keys():
@@ -160,11 +167,19 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
     block |= {"chain": left} if sides.chain else {"left": left, "relation": sides.relation, "right": right}
     block |= {"exists": exists} if exists else {}
     block |= {"given": hypotheses} if hypotheses else {}
+    block |= {"order": beside["order"]} if beside["order"] else {}
     if beside["tolerance"] is not None:
         block["tolerance"] = write_value(beside["tolerance"], "prove: tolerance")
     symbols = Symbols.read(table, "prove", slopes)
     claim = read_claim(block, symbols, "prove")
     return decide_claims(ClaimFile(symbols.parameters, (claim,)), seconds=seconds)[0]
+
+
+def list_dimensions(value: Any) -> list[str]:
+    """The names of dimensions in a declaration such as ``{"matrix": ["n", "n"]}``."""
+    sizes = (value.get("matrix"), value.get("vector")) if isinstance(value, Mapping) else ()
+    sides = [side for size in sizes for side in (size if isinstance(size, (list, tuple)) else [size])]
+    return [side for side in sides if isinstance(side, str)]
 
 
 def require_options(box: Any, seconds: Any, jobs: Any) -> None:
@@ -245,8 +260,8 @@ def symbols_in(sides: Iterable[Any], given: Mapping[str, Any]) -> set[str]:
     ``e`` and ``ln`` count where the caller declares them; the reader says of the others what to write instead.
     """
     from navsym.language.advice import FOREIGN
-    from navsym.language.vectors import TAKES, UNDECIDED
+    from navsym.language.vectors import BINDERS, INFINITE, TAKES, UNDECIDED
 
     called = {name for side in sides for name in re.findall(r"([A-Za-z]\w*)\s*\(", side_text(side))}
-    functions = called & {*TAKES, *UNDECIDED}
+    functions = called & {*TAKES, *BINDERS, *UNDECIDED} | ({INFINITE} if called & set(BINDERS) else set())
     return set().union(*map(names_of, sides)) - RESERVED - ((FOREIGN.keys() | functions) - given.keys())

@@ -33,6 +33,8 @@ UNCHECKED = "unchecked: no certificate of this statement"
 BITS = (128, 1024, 8192)
 POINTS = 18
 SHARE = "share"
+#: Kinds of certificates that give a statement its verdict.
+GRANTS = ("proof", "counterexample", "condition", "words", "sized")
 NUMERAL = re.compile(r"(?<![\w.])\d+(?:\.\d+)?[eE][+-]?\d+", re.ASCII)
 IDENTITY = {"rule": "identity"}
 #: The checker and its player are two modules, and each has its own class.
@@ -156,7 +158,7 @@ def is_granted(verdict: Verdict) -> bool:
     """True when the certificate is one of the statement's own, which the checker has accepted."""
     certificate = verdict.certificate or {}
     parts = certificate["of"] if certificate.get("kind") == "all" else [certificate]
-    return bool(parts) and all(part.get("kind") in ("proof", "counterexample", "condition") for part in parts)
+    return bool(parts) and all(part.get("kind") in GRANTS for part in parts)
 
 
 def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECONDS) -> Verdict:
@@ -217,14 +219,16 @@ def grant_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict
 def refute_document(documents: Sequence[Document], document: Document, point: Mapping[str, str]) -> Document:
     """The certificate of a counterexample; raises Refused."""
     refusal = checker.Refused("no counterexample")
+    more = answer_at_point(document, point)
     for bits in BITS:
         certificate: Document = {"kind": "counterexample", "statement": document, "bits": bits, "point": dict(point)}
+        certificate |= more
         try:
             grant(documents, certificate | {"zero": None})
             return certificate | {"zero": None}
         except REFUSALS as error:
             refusal = error
-    if document["relation"] in ("<", ">", "!="):
+    if document["relation"] in ("<", ">", "!=") and not more:
         term = player.read_statement(document)[0][0].goals[0].term
         for name, value in point.items():
             term = player.replace(term, ("symbol", name), player.parse(value))
@@ -234,6 +238,18 @@ def refute_document(documents: Sequence[Document], document: Document, point: Ma
             grant(documents, certificate | {"zero": zero})
             return certificate | {"zero": zero}
     raise refusal
+
+
+def answer_at_point(document: Document, point: Mapping[str, str]) -> Document:
+    """What integrals, sums, products and limits of a statement are at a point, for its certificate."""
+    from navsym.language.vectors import BINDERS
+    from navsym.prove.calculus.answers import read_with_answers
+
+    if not any(f"{name}(" in json.dumps(document) for name in BINDERS):
+        return {}
+    place = {name: player.parse(text) for name, text in point.items()}
+    answers = read_with_answers(document, point=place)[2]
+    return {"answers": answers} if answers else {}
 
 
 def simple_value(limits: Any) -> str:

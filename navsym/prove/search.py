@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -42,6 +42,7 @@ from navsym.prove.rooms.signs import (
     by_logarithms,
     by_many_balls,
     by_number,
+    by_positive_radicand,
     by_product,
     by_quadratic,
     by_range,
@@ -62,8 +63,8 @@ EQUATIONS: tuple[tuple[Room, ...], ...] = (
 )  # fmt: skip
 SIGNS: tuple[tuple[Room, ...], ...] = (
     (
-        by_number, by_identity, by_elimination, by_sums_of_hypotheses, by_range, by_roots, by_bounds, by_corners,
-        by_product, by_sum, by_few_balls, by_values, by_side, by_squares, by_cones, by_forms,
+        by_number, by_positive_radicand, by_identity, by_elimination, by_sums_of_hypotheses, by_range, by_roots,
+        by_bounds, by_corners, by_product, by_sum, by_few_balls, by_values, by_side, by_squares, by_cones, by_forms,
     ),
     (
         by_cofactors, by_hypothesis, by_cases, by_quadratic, by_divisors, by_roots_of_symbols, by_substitution,
@@ -192,6 +193,24 @@ def find_proof(goal: Any, seconds: float = SECONDS, rounds: Sequence[tuple[int, 
             found = search.find(goal)
             if found is not None:
                 return plain(found)
+        return None
+    finally:
+        ctx.prec, ctx.cap = before
+        player.prove = check_rule
+
+
+def find_filled(check: Callable[[], Any], seconds: float) -> Any:
+    """What a check of the player returns when the search can fill the holes that it comes upon; else None."""
+    before, search = (ctx.prec, ctx.cap), Search(time.process_time() + seconds)
+    ctx.prec = 128
+    try:
+        player.prove, player.prove_all = search.prove, search.prove_all
+        for search.most_depth, search.tries, search.kinds in ROUNDS[1:3]:
+            search.lost.clear()
+            try:
+                return check()
+            except (player.Refused, ArithmeticError, ValueError, KeyError, TypeError, RecursionError):
+                continue
         return None
     finally:
         ctx.prec, ctx.cap = before

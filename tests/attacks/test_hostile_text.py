@@ -36,7 +36,7 @@ relation = "="
 """
 HONEST_CLAIM = {"IDENT": "c1", "LEFT": "a"}
 
-SYNTAX, LARGE, DOMAIN, UNKNOWN = "syntax", "too-large", "domain", "unknown-symbol"
+SYNTAX, LARGE, DOMAIN, UNKNOWN, SHAPE = "syntax", "too-large", "domain", "unknown-symbol", "shape"
 TWICE, EMPTY = "duplicate", "empty"
 
 EXPRESSIONS = {
@@ -59,13 +59,13 @@ EXPRESSIONS = {
     "new line statement": ("w\\nimport os", SYNTAX),
     "comment": ("w # comment", SYNTAX),
     "string": ("'w'", SYNTAX),
-    "subscript": ("w[0]", SYNTAX),
+    "subscript": ("w[0]", SHAPE),
     "star arguments": ("sin(*w)", SYNTAX),
     "keyword argument": ("sin(x=1)", SYNTAX),
     "ternary": ("w if w else w", SYNTAX),
     "comparison": ("w == w", SYNTAX),
     "and": ("w and w", SYNTAX),
-    "matrix product": ("w @ w", SYNTAX),
+    "matrix product": ("w @ w", SHAPE),
     "shift": ("1 << 99999999", SYNTAX),
     "floor division": ("w // 2", SYNTAX),
     "modulo": ("w % 2", SYNTAX),
@@ -209,8 +209,7 @@ def table():
     for name, (text, kind) in EXPRESSIONS.items():
         cases[f"F: {name}"] = (read_model, filled(MODEL, HONEST, "EXPRESSION", text), kind)
         claim = text.replace("w", "a").replace("ne" + "a", "new")
-        of_claim = "shape" if name in ("subscript", "matrix product") else kind  # of numbers: claims have vectors
-        cases[f"claim: {name}"] = (read_claims, filled(CLAIMS, HONEST_CLAIM, "LEFT", claim), of_claim)
+        cases[f"claim: {name}"] = (read_claims, filled(CLAIMS, HONEST_CLAIM, "LEFT", claim), kind)
     for name, (text, kind) in NAMES.items():
         cases[f"state: {name}"] = (read_model, filled(MODEL, HONEST, "NAME", text), kind)
     for name, (text, kind) in LABELS.items():

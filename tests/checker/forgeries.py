@@ -14,7 +14,7 @@ from typing import Any
 
 from flint import arb, arb_series, ctx
 
-from tests.checker import proofs
+from tests.checker import proofs, words
 from tests.checker.examples import (
     ALL,
     AT_ONCE,
@@ -415,6 +415,7 @@ def identity(left: str, right: str) -> dict[str, Any]:
 def discrepancies(module: Any) -> Iterator[str]:
     """What a module with the checker's names answers otherwise than it must."""
     yield from proofs.discrepancies(module)
+    yield from words.discrepancies(module)
     yield from (f"refused: {item}" for item in GOOD if verdict(item, module) != "")
     for item, path, value, why in FORGERIES:
         if not re.search(why, verdict(changed(item, path, value), module) or "accepted"):

@@ -44,6 +44,8 @@ OPERATORS: dict[type[ast.operator], type[ast.operator]] = {
     ast.Pow: ast.Mult,
     ast.BitOr: ast.BitAnd,
     ast.BitAnd: ast.BitOr,
+    ast.LShift: ast.Mult,
+    ast.RShift: ast.Mult,
 }
 
 

@@ -41,9 +41,9 @@ def test_phases_are_functions_of_the_parameter(tmp_path):
     assert value == pytest.approx(float(found.at(T="3").value), rel=1e-14)
 
 
-def test_a_model_is_its_transition_matrix(tmp_path):
+def test_a_derivation_is_its_transition_matrix(tmp_path):
     swing = nav.Model("x v", F=[[0, 1], ["-w**2", 0]], H=["x"], interval="T", w="positive", T="positive")
-    nav.export(swing, to="python", out=tmp_path, run=False)
+    nav.export(nav.derive(swing), to="python", out=tmp_path, run=False)
     Phi = exported(tmp_path).model_Phi(0.5, 2.0)
     assert Phi.shape == (2, 2) and Phi[0, 0] == pytest.approx(0.5403023058681398)
 

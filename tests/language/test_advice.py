@@ -75,7 +75,7 @@ sigma = "1"
     ("right", "wrong", "advice"),
     [
         ("[[measurement]]", "[measurement]", r"write \[\[measurement\]\], with two brackets"),
-        ('[["0"]]', '"[0]"', "a matrix by its rows"),
+        ('[["0"]]', '"0"', "a matrix by its rows"),
         ('h = ["1"]', '\u03bb = "1"', "keys are ASCII"),
     ],
 )

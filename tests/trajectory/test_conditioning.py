@@ -23,9 +23,9 @@ from navsym.trajectory.conditioning import (
     condition_number,
     condition_numbers,
     roots_above,
-    scientific,
     squared_singular_polynomial,
 )
+from navsym.trajectory.enclosure import scientific
 
 fractions = st.fractions(min_value=-5, max_value=5, max_denominator=9)
 

@@ -11,6 +11,7 @@ from typing import Any
 from navsym.core.errors import DuplicateError, ExpressionSyntaxError, ShapeError
 from navsym.language.files import name_file
 from navsym.language.names import FUNCTIONS, check_name, describe_unknown, join_place, quote
+from navsym.language.shapes import PROPERTIES
 from navsym.language.tomlfile import read_toml
 
 #: Rows and columns, as written; none for a scalar.
@@ -45,7 +46,7 @@ CALLS: Mapping[str, str] = {
 COMMANDS = frozenset("sin cos tan cot sec csc exp ln log sinh cosh tanh arcsin arccos arctan det min max".split())
 
 DECLARATIONS = ("vector", "rotation", "quaternion", "matrix", "function", "integer", "random")
-COMPANIONS = ("unit", "frame", "range", "symmetric", "positive", "invertible", "orthogonal", "skew", "diagonal")
+COMPANIONS = ("unit", "frame", "range", *PROPERTIES)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ import re
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import islice
 from typing import Any
 
 from flint import arb
@@ -17,11 +18,13 @@ from flint import arb
 from navsym.claims.formula import Formula
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Verdict
 from navsym.core.errors import NavsymError
+from navsym.prove.calculus.answers import MOST_POINTS, SECONDS, read_with_answers
 from navsym.prove.grant import BITS, IDENTITY, REFUSALS, Document, grant, refute_document, withdraw, write_point
 from navsym.prove.relations.points import Rows, draw_special_points
 from navsym.prove.rooms.goals import player, to_sympy, write_term
 from navsym.prove.search import find_proof, rules_of
 from navsym.prove.wording import decimal_ends, expression_text
+from navsym.prove.words.judge import decide_words
 
 POINTS = 16
 QUICK = 0.4  # seconds for a condition that need not be listed
@@ -57,13 +60,17 @@ class TextClaim:
 
 def decide_text(claim: TextClaim, seconds: float) -> Verdict:
     """Verdict of the claim: every link, entry and case of it."""
+    if "matrices" in claim.documents[0]:
+        return decide_words(claim.documents, claim.scope, seconds)
     end = time.process_time() + seconds
     certificates, assumptions, rules = [], dict[str, None](), set[str]()
     for document in claim.documents:
         try:
-            cases, box = player.read_statement(document)
+            cases, box, answers = read_with_answers(document)
         except (*REFUSALS, ArithmeticError, RecursionError) as error:
-            return Verdict(OPEN, "none", claim.scope, evidence=f"the checker does not read it: {error}")
+            refuted = refute_at_points(claim, document)
+            why = f"the checker does not read it: {error}"
+            return refuted or Verdict(OPEN, "none", claim.scope, evidence=why)
         points = [*list_points(claim, cases, box)]
         broken = find_failure(points)
         if broken is not None:
@@ -79,9 +86,8 @@ def decide_text(claim: TextClaim, seconds: float) -> Verdict:
             proofs.append(proof)
         rules |= set().union(*map(rules_of, proofs))
         witness = write_point(points[0][0])
-        certificates.append(
-            {"kind": "proof", "statement": document, "bits": BITS[0], "witness": witness, "proofs": proofs}
-        )
+        certificate = {"kind": "proof", "statement": document, "bits": BITS[0], "witness": witness, "proofs": proofs}
+        certificates.append(certificate | ({"answers": answers} if answers else {}))
         assumptions |= dict.fromkeys(list_assumptions(claim, cases))
     return conclude(claim, certificates, rules, tuple(assumptions))
 
@@ -145,11 +151,27 @@ def refute(claim: TextClaim, document: Document, point: Mapping[str, Any]) -> Ve
     return replace(verdict, evidence=words, certificate=certificate, difference=difference)
 
 
+def refute_at_points(claim: TextClaim, document: Document) -> Verdict | None:
+    """REFUTED where the questions of a statement have answers at a point, if not at all of them."""
+    box = {name: player.read_range(limits) for name, limits in document["symbols"].items()}
+    kinds = {name: kind for name, kind in claim.kinds.items() if {e for row in kind[1] for e in row} <= set(box)}
+    for point in islice(draw_special_points(box, (), kinds, MOST_POINTS) if box else iter([{}]), MOST_POINTS):
+        place = {name: player.number(value) for name, value in point.items()}
+        try:
+            cases, _, _ = read_with_answers(document, SECONDS / 2, place)
+            inside = [(point, case) for case in cases if player.lies_in(case, place)]
+            if find_failure(inside) is not None:
+                return refute(claim, document, point)
+        except (*REFUSALS, ArithmeticError, RecursionError):
+            continue
+    return None
+
+
 def difference_at(document: Document, point: Mapping[str, Any]) -> Any:
     """An enclosure of left - right at the point, of the entry that differs most visibly."""
     place = {name: player.number(value) for name, value in point.items()}
     balls = {name: player.Jet(arb(value)) for name, value in point.items()}
-    cases, _ = player.read_statement({**document, "relation": "=", "tolerance": None})
+    cases, _, _ = read_with_answers({**document, "relation": "=", "tolerance": None}, SECONDS, place)
     values = [player.value_of(goal.term, balls) for case in cases if player.lies_in(case, place) for goal in case.goals]
     far = [value for value in values if value.is_finite()]
     return decimal_ends(max(far, key=lambda value: abs(float(value.mid())))) if far else None

@@ -8,6 +8,8 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from itertools import combinations
+from math import isqrt
 from typing import Any
 
 from flint import fmpq
@@ -23,7 +25,7 @@ def draw_special_points(
 ) -> Iterator[Point]:
     """Points of the box, some of which satisfy the hypotheses.
 
-    kinds : name -> ("rotation", "quaternion" or "vector", the names of the entries)
+    kinds : name -> ("rotation", "orthogonal", "positive", "quaternion" or "vector", the names of the entries)
     """
     generator = random.Random(1)
     plain = [*draw_points(box, count)]
@@ -41,7 +43,9 @@ def draw_special_points(
             entries = [name for row in rows for name in row]
             values = draw_entries(kind, place, len(entries), frame, k, generator)
             point.update(zip(entries, values, strict=True)) if values else None
-            fixed.update(entries if kind in ("rotation", "quaternion") or (values and k % 3) else ())
+            fixed.update(
+                entries if kind in ("rotation", "quaternion", "orthogonal", "positive") or (values and k % 3) else ()
+            )
         for zero in zeros:
             solve_for_one(zero, point, fixed)
         yield point
@@ -70,6 +74,8 @@ def draw_entries(
     """Values of the entries of a matrix or vector; none where any values do."""
     if kind == "rotation":
         return [entry for row in draw_rotation(generator) for entry in row]
+    if kind in ("orthogonal", "positive"):
+        return [entry for row in draw_square(kind, isqrt(size), generator) for entry in row]
     if kind == "quaternion":
         return draw_unit(4, generator)
     if kind == "vector" and k % 3 == 1 and size == 3:
@@ -92,6 +98,19 @@ def draw_rotation(generator: random.Random) -> list[list[fmpq]]:
         [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
         [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
     ]
+
+
+def draw_square(kind: str, n: int, generator: random.Random) -> list[list[fmpq]]:
+    """A product of rotations by rational sines in pairs of axes, or X X' + 1."""
+    rows = [[fmpq(i == j) for j in range(n)] for i in range(n)]
+    if kind == "positive":
+        x = [[fmpq(generator.randint(-2, 3)) for _ in range(n)] for _ in range(n)]
+        return [[rows[i][j] + sum(a * b for a, b in zip(x[i], x[j], strict=True)) for j in range(n)] for i in range(n)]
+    for i, j in combinations(range(n), 2):
+        c, s = draw_unit(2, generator)
+        for row in rows:
+            row[i], row[j] = c * row[i] - s * row[j], s * row[i] + c * row[j]
+    return rows
 
 
 def transpose(rows: list[list[fmpq]]) -> list[list[fmpq]]:

@@ -13,18 +13,30 @@ from typing import Any
 from navsym.claims.formula import Formula, names_of, side_text
 from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
 from navsym.language.declarations import read_range
-from navsym.language.names import expect_keys, quote, suggest_nearest
+from navsym.language.names import FUNCTIONS, expect_keys, quote, suggest_nearest
 from navsym.language.printer import to_text
 from navsym.language.schema import Table, as_list, as_table, as_text, join_place, require_key
 from navsym.language.shapes import RANGES, Shape, read_shape
 from navsym.language.tree import Tree, list_names, list_parts
-from navsym.language.vectors import RELATIONS, Size, describe_size, is_wide, read_hypothesis, read_value
+from navsym.language.vectors import (
+    RELATIONS,
+    Size,
+    describe_size,
+    is_wide,
+    list_free_names,
+    read_hypothesis,
+    read_value,
+)
 from navsym.prove.grant import Document, write_numerals
 from navsym.prove.relations.judge import TextClaim
 
 #: Two sides of a chain at each of its relations, outside of parentheses and brackets.
 SIGN = re.compile(r"[<>!]=|[<>=]")
-MOST_LINKS = 16
+MOST_LINKS, MOST_ORDER = 16, 8
+KEYS = ("id", "left", "right", "relation", "chain", "given", "box", "tolerance", "exists", "order")
+#: What may stand between matrices of any size.
+WORD_NAMES = ("+", "-", "*", "/", "@", ".T", "transpose", "inv", "trace", "dot", "eye", "zeros")
+WORD_HEADS = {*WORD_NAMES, *RELATIONS, "T", "**", "number", "symbol", "pi"}
 TIME = "t"
 
 
@@ -49,7 +61,7 @@ def read_shapes(table: Table, rates: Table, where: str) -> dict[str, Shape]:
 
 def is_text_claim(block: Table, symbols: Table) -> bool:
     """True for a claim that the grammar of numbers alone does not have."""
-    if {"given", "chain"} & set(block):
+    if {"given", "chain", "order"} & set(block):
         return True
     texts = [text for key in ("left", "right") for text in list_cells(block.get(key))]
     texts += [str(text) for text in block.get("exists", ()) if isinstance(block.get("exists"), list)]
@@ -75,16 +87,20 @@ def read_text_claim(
     make_formula : the claim as it is written
     limit        : name, ends and place of a range of the claim itself -> the range in the words of the checker
     """
-    expect_keys(block, ("id", "left", "right", "relation", "chain", "given", "box", "tolerance", "exists"), where)
+    expect_keys(block, KEYS, where)
     sizes = {name: shape.size for name, shape in shapes.items()}
     links = read_links(block, where)
     trees = [read_link(link, sizes, where) for link in links]
     texts = [text for left, _, right in links for text in (left, right)]
     given = read_given(block.get("given", []), sizes, join_place(where, "given"))
+    stated = [read_hypothesis(text, sizes, where=join_place(where, "given")) for text in given]
     exists = read_texts(block.get("exists", []), join_place(where, "exists"))
     for i, text in enumerate(exists):
         trees.append(read_value(text, sizes, where=join_place(join_place(where, "exists"), i)).tree)
-    used, slopes = collect_names([*texts, *exists, *given], shapes, rates, sizes)
+    order = read_order(block, shapes, join_place(where, "order"))
+    trees += stated
+    free = set(order).union(*map(list_free_names, trees))
+    used, slopes = collect_names([*texts, *exists], free, given, shapes, rates, sizes)
     require_rates(trees, slopes, where)
     relations = [text for name in used for text in shapes[name].relations]
     ranges = {entry: span for name in used for entry, span in shapes[name].ranges.items()}
@@ -94,14 +110,91 @@ def read_text_claim(
             expect_keys({name: ends}, tuple(shapes), join_place(where, "box"))
         ranges[name] = limit(name, ends, place)
     formula = make_formula(block)
+    if any(shape.sizes for shape in shapes.values()) and is_of_any_size([shapes[n] for n in used], trees):
+        plain = {
+            "exists": exists,
+            "tolerance": formula.tolerance,
+            "rates": slopes,
+            "box": block.get("box"),
+            "order": order,
+        }
+        require_plain(plain, where)
+        declared, scope = declare_any_size(shapes, used, trees, ranges, where)
+        declared["given"] = [*map(clean, given)]
+        documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | declared for x, sign, y in links]
+        return TextClaim(formula, tuple(documents), scope=scope)
     common: Document = {"symbols": ranges, "exists": [*map(clean, exists)], "tolerance": formula.tolerance}
     common |= {"shapes": {n: [[*row] for row in shapes[n].rows] for n in used if shapes[n].size}}
     common |= {"given": [*map(clean, (*given, *relations))], "rates": slopes}
+    common |= {"order": order} if order else {}
     documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | common for x, sign, y in links]
-    kinds = {name: (shapes[name].kind, shapes[name].rows) for name in used if shapes[name].size}
+    kinds = {name: (kind_of(shapes[name]), shapes[name].rows) for name in used if shapes[name].size}
     shown = {entry: text for name in used for entry, text in shapes[name].shown().items()}
     scope = describe_scope([shapes[n] for n in used if not shapes[n].label], ranges)
     return TextClaim(formula, tuple(documents), kinds, shown, scope)
+
+
+def kind_of(shape: Shape) -> str:
+    """How points of it are drawn."""
+    return next((word for word in ("orthogonal", "positive") if word in shape.properties), shape.kind)
+
+
+def is_of_any_size(shapes: Sequence[Shape], trees: Sequence[Tree]) -> bool:
+    """Whether a claim has a matrix of any size, also a unit matrix of a named dimension."""
+    sized = any(part.args[0].head == "symbol" for part in list_parts(*trees) if part.head in ("eye", "zeros"))
+    return sized or any(shape.sizes for shape in shapes)
+
+
+def require_plain(parts: Mapping[str, Any], where: str) -> None:
+    """Refuse what claims on matrices of any size do not have."""
+    for name, value in parts.items():
+        if value:
+            message = f"expected a claim on matrices of any size alone; got {name} beside it; remove it"
+            raise DomainError(message, where=join_place(where, name))
+
+
+def declare_any_size(
+    shapes: Mapping[str, Shape],
+    used: Sequence[str],
+    trees: Sequence[Tree],
+    ranges: Mapping[str, Sequence[Any]],
+    where: str,
+) -> tuple[Document, str]:
+    """The declarations of a claim on matrices of any size in the words of the checker, and its scope in words."""
+    for part in list_parts(*trees):
+        if part.head not in WORD_HEADS and part.head not in FUNCTIONS:
+            message = f"expected {' '.join(WORD_NAMES)} of matrices of any size; got {part.head}"
+            raise ShapeError(f"{message}; write it with these, or give the dimensions as numbers", where=where)
+    matrices: dict[str, Any] = {}
+    sides: dict[str, None] = {}
+    for shape in (shapes[name] for name in used):
+        if shape.size is None:
+            continue
+        if shape.rates or shape.kind == "quaternion":
+            message = f"expected constant matrices and vectors beside those of any size; got {shape.name}"
+            raise ShapeError(f"{message}; state the claim without it", where=where)
+        words = ["orthogonal"] if shape.kind == "rotation" else [*shape.properties]
+        matrices[shape.name] = {"size": [*shape.size], "is": words}
+        sides |= dict.fromkeys(side for side in shape.size if isinstance(side, str))
+    for part in list_parts(*trees):
+        if part.head in ("eye", "zeros"):
+            sides |= dict.fromkeys(size.args[0] for size in part.args if size.head == "symbol")
+    known = {side for shape in shapes.values() for side in shape.size or () if isinstance(side, str)}
+    sides |= dict.fromkeys(name for tree in trees for name in sorted(list_names(tree)) if name in known)
+    numbers = [shapes[n] for n in used if shapes[n].size is None and n not in sides]
+    for name in {*sides} & {*shapes}:
+        require_dimension(shapes[name], where)
+    scope = describe_scope([*numbers, *(shapes[name] for name in matrices)], ranges)
+    symbols = {shape.name: ranges[shape.name] for shape in numbers}
+    return {"symbols": symbols, "matrices": matrices, "dimensions": [*sides]}, scope
+
+
+def require_dimension(shape: Shape, where: str) -> None:
+    """Refuse a dimension that is declared as something else than a whole number from 1 on."""
+    limit = shape.ranges.get(shape.name, [None, None, []])
+    if shape.size is not None or limit != ["1", None, ["integer"]]:
+        message = f"expected {shape.name} as a dimension alone; got another declaration of it"
+        raise DomainError(f'{message}; write {{ integer = ["1", "oo"] }}, or rename one', where=where)
 
 
 def read_links(block: Table, where: str) -> list[tuple[str, str, str]]:
@@ -153,6 +246,26 @@ def read_link(link: tuple[str, str, str], sizes: Mapping[str, Size], where: str)
     return build(link[1], (left.tree, right.tree))
 
 
+def read_order(block: Table, shapes: Mapping[str, Shape], where: str) -> dict[str, int]:
+    """The small number and the order of the terms that do not count; none of a chain or an inequality."""
+    if "order" not in block:
+        return {}
+    table = as_table(block["order"], where)
+    if len(table) != 1 or "chain" in block or block.get("relation", "=") != "=":
+        message = "expected the order in one number, beside one equation; got another claim; write order = { eps = 2 }"
+        raise ExpressionSyntaxError(message, where=where)
+    ((name, order),) = table.items()
+    if name not in shapes or shapes[name].size is not None:
+        raise UnknownSymbolError(
+            f"expected the name of a number; got {quote(name)}; declare it: {suggest_nearest(name, shapes)}",
+            where=where,
+        )
+    if not isinstance(order, int) or isinstance(order, bool) or not 1 <= order <= MOST_ORDER:
+        message = f"expected a whole number from 1 to {MOST_ORDER}; got {quote(order)}; correct it"
+        raise DomainError(message, where=where)
+    return {name: order}
+
+
 def read_given(value: Any, sizes: Mapping[str, Size], where: str) -> list[str]:
     """The hypotheses, each a relation."""
     texts = read_texts(value, where)
@@ -168,11 +281,17 @@ def read_texts(value: Any, where: str) -> list[str]:
 
 
 def collect_names(
-    texts: Iterable[str], shapes: Mapping[str, Shape], rates: Table, sizes: Mapping[str, Size]
+    texts: Iterable[str],
+    free: set[str],
+    given: Sequence[str],
+    shapes: Mapping[str, Shape],
+    rates: Table,
+    sizes: Mapping[str, Size],
 ) -> tuple[list[str], dict[str, str | None]]:
-    """The names in texts and in the rates of these, in the order of declaration; and the rates."""
-    derived = any(re.search(r"\b(diff|dot_)\s*\(", text) for text in texts)
-    waiting, used, slopes = [*set().union(*map(names_of, texts)) & set(shapes)], set[str](), dict[str, str | None]()
+    """The free names of texts, those of hypotheses and rates, in the order of declaration; and the rates."""
+    derived = any(re.search(r"\b(diff|dot_)\s*\(", text) for text in (*texts, *given))
+    waiting = [*free.union(*map(names_of, given)) & set(shapes)]
+    used, slopes = set[str](), dict[str, str | None]()
     while waiting:
         name = waiting.pop()
         if name in used:
@@ -215,6 +334,11 @@ def describe_scope(shapes: Sequence[Shape], ranges: Mapping[str, Sequence[Any]])
     for shape in shapes:
         if shape.kind == "scalar":
             words.append(describe_range(shape.name, ranges[shape.name]))
+        elif shape.sizes or shape.properties:
+            kind = f"{' '.join(shape.properties)} " if shape.properties else ""
+            rows, columns = shape.size or (1, 1)
+            size = str(rows) if columns == 1 else f"({rows} x {columns})"
+            words.append(f"{kind}{shape.name} in R^{size}")
         elif shape.relations:
             words.append(f"{shape.name} in {'SO(3)' if shape.kind == 'rotation' else 'S^3'}")
         else:

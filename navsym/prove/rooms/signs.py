@@ -324,3 +324,13 @@ def by_logarithms(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """A sum of logarithms by its exponential."""
     if any(p[0] == "log" for p in subterms(goal.term)) and not any(p[0] == "exp" for p in subterms(goal.term)):
         yield {"rule": "exponential", "proof": Hole()}
+
+
+def by_positive_radicand(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """sqrt(u) > 0 or != 0 where u > 0: its square is u, and it is >= 0."""
+    if goal.term[0] != "sqrt" or goal.relation not in (">", "!="):
+        return
+    square: Proof = {"rule": "equal", "to": write_term(goal.term[1]), "defined": Holes(), "proof": Hole()}
+    body: Proof = {"rule": "squares", "left": write_term(goal.term), "right": "0", "sign": 1, "defined": Holes()}
+    body |= {"proofs": [square, {"rule": "product", "factors": [None]}]}
+    yield body if goal.relation == ">" else {"rule": "side", "sign": 1, "proof": body}

@@ -1,0 +1,94 @@
+"""Answers of the questions in a statement, with the proofs that their rules ask for.
+
+A candidate comes from :mod:`navsym.prove.calculus.candidates` with holes for proofs. The player plays the rule of the
+checker on it, and the search fills the holes; what the rule refuses is no answer.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from navsym.prove.calculus.candidates import Signs, list_candidates
+from navsym.prove.grant import REFUSALS, Document
+from navsym.prove.rooms.goals import Hole, player, values_of
+from navsym.prove.search import find_filled
+
+SECONDS = 6.0
+SHARE = 1.5  # seconds for one candidate
+TROUBLE = (*REFUSALS, ArithmeticError, ValueError, TypeError, KeyError, RecursionError)
+MOST_POINTS = 3
+
+
+def guess_sign(c: Any, signs: Any, goal: Any) -> int:
+    """The sign of a number at sample points, noted with its proof; what a rule asks the player."""
+    if isinstance(signs, Signs) and player.symbols_of(c):
+        values = values_of(goal, c)
+        entry = [1 if values and all(value > 0 for value in values) else -1, Hole()]
+        signs.noted.append(entry)
+        return take_sign(c, [entry], goal)
+    return take_sign(c, signs, goal)
+
+
+take_sign, player.ask_sign = player.ask_sign, guess_sign
+
+
+class Search(player.Answers):  # type: ignore[misc,name-defined]
+    """Answers that are sought when they are asked for; those that were found stay for the next case."""
+
+    def __init__(self, seconds: float, point: Mapping[str, Any] | None = None):
+        super().__init__([], None if point is None else dict(point))
+        self.deadline, self.found, self.known = time.process_time() + seconds, list[Any](), dict[Any, Any]()
+
+    def settle(self, question: Any, goal: Any) -> Any:
+        """The value of a question with the first candidate that its rule accepts."""
+        key = (question._replace(value=""), goal.exists, goal.given, goal.zeros, tuple(sorted(goal.box.items())))
+        if key not in self.known:
+            self.known[key] = self.seek(question, goal)
+        found = self.known[key]
+        player.require(found is not None, f"no closed form of the {question.kind} was found")
+        self.found.append(found[0])
+        return found[1]
+
+    def seek(self, question: Any, goal: Any) -> tuple[Any, Any] | None:
+        """The first answer and its value."""
+        try:
+            for make in list_candidates(question, goal):
+                left = min(SHARE, self.deadline - time.process_time())
+                if left <= 0:
+                    return None
+                found = play(make, question, goal, left)
+                if found is not None:
+                    return found
+        except TROUBLE:
+            pass
+        return None
+
+
+def play(make: Callable[[], Any], question: Any, goal: Any, seconds: float) -> tuple[Any, Any] | None:
+    """A candidate with its holes filled, and the value that its rule gives."""
+    tried: list[Any] = []
+
+    def check() -> Any:
+        tried.append(make())
+        return player.ANSWERS[question.kind](tried[-1], question, goal)
+
+    value = find_filled(check, seconds)
+    return None if value is None else (finish(tried[-1]), value)
+
+
+def finish(entry: Any) -> Any:
+    """A candidate as plain data."""
+    if isinstance(entry, dict):
+        return {key: finish(value) for key, value in entry.items()}
+    if isinstance(entry, list):
+        return [finish(value) for value in (entry.noted if isinstance(entry, Signs) else entry)]
+    return entry
+
+
+def read_with_answers(document: Document, seconds: float = SECONDS, point: Mapping[str, Any] | None = None) -> Any:
+    """The cases of a statement, its box and the answers of its questions; raises Refused."""
+    answers = Search(seconds, point)
+    cases, box = player.read_statement(document, answers)
+    return cases, box, answers.found

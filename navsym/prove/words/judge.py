@@ -1,0 +1,86 @@
+"""Claims on matrices of any size, decided: a point of one size refutes, shares of the relations prove."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from flint import arb
+
+from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
+from navsym.prove.grant import REFUSALS, Document, grant, withdraw
+from navsym.prove.rooms.goals import player, to_sympy
+from navsym.prove.search import find_proof
+from navsym.prove.wording import decimal_ends, expression_text
+from navsym.prove.words.points import draw_sized_points, list_numbers, show_point
+from navsym.prove.words.shares import find_shares
+
+QUICK = 0.4  # seconds for a condition that need not be listed
+FEW = 8  # points that are enough evidence before a proof is sought
+
+
+def decide_words(documents: Sequence[Document], scope: str, seconds: float) -> Verdict:
+    """The verdict of all links of a claim."""
+    end, certificates, assumed, count = time.process_time() + seconds, list[Document](), dict[str, None](), 0
+    for document in documents:
+        try:
+            algebra = player.Words(document)
+            relation, _ = algebra.state()
+        except (*REFUSALS, ArithmeticError, RecursionError) as error:
+            return Verdict(OPEN, "none", scope, evidence=f"the checker does not read it: {error}")
+        points = []
+        for point, holds in draw_sized_points(document):
+            if not holds:
+                return refute(documents, document, point)
+            points.append(point)
+            if len(points) == FEW:
+                break
+        if not points:
+            return Verdict(OPEN, "none", scope, evidence="no matrices are known at which all of it has a value")
+        shares = find_shares(document, end) if relation == "=" else None
+        if shares is None:
+            words = f"no sum of relations was found; it holds at {len(points)} exact points"
+            return Verdict(OPEN, "words", scope, evidence=words)
+        witness = min(points, key=lambda point: len(str(point)))
+        certificates.append({"kind": "words", "statement": document, "witness": witness, "shares": shares})
+        assumed |= dict.fromkeys((*algebra.assumed, *list_conditions(algebra)))
+        count += len(shares)
+    whole = certificates[0] if len(certificates) == 1 else {"kind": "all", "of": certificates}
+    evidence = f"the difference is a sum of {count} multiples of relations between the letters"
+    verdict = Verdict(PROVED, "sums of words", scope, tuple(assumed), evidence, certificate=whole)
+    try:
+        grant(documents, whole)
+    except REFUSALS as refusal:
+        return withdraw(replace(verdict, certificate=None), str(refusal))
+    return verdict
+
+
+def list_conditions(algebra: Any) -> Iterator[str]:
+    """What the numbers of a text need to have a value, where their ranges do not say so; traces have been noted."""
+    for relation, term in player.set_union(map(player.conditions, algebra.terms)):
+        if player.has_trace(term) or not player.symbols_of(term) or algebra.sign_of(term) in (">", relation):
+            continue
+        if find_proof(player.Goal(term, relation, algebra.box), QUICK, ((6, 60, 2),)) is None:
+            yield f"{expression_text(to_sympy(term))} {relation} 0"
+
+
+def refute(documents: Sequence[Document], document: Document, point: Mapping[str, Any]) -> Verdict:
+    """REFUTED at a point, when the checker grants it."""
+    certificate: Document = {"kind": "sized", "statement": document, "point": point}
+    verdict = Verdict(REFUTED, "exact matrices", "matrices of one size", (), "", show_point(dict(point)))
+    try:
+        grant(documents, certificate)
+    except REFUSALS as refusal:
+        return withdraw(verdict, str(refusal))
+    words = "the text fails at exact matrices with all declared properties"
+    return replace(verdict, evidence=words, certificate=certificate, difference=difference_at(document, point))
+
+
+def difference_at(document: Document, point: Mapping[str, Any]) -> Any:
+    """The difference of the sides at a point, of the entry where it is largest."""
+    sized = player.Sized(document, point)
+    _, x = sized.state()
+    numbers = list_numbers(x.body) if isinstance(x, player.Typed) else [sized.value_of(x)]
+    return decimal_ends(arb(max(numbers, key=abs)))
