@@ -23,7 +23,7 @@ from navsym.language.tomlfile import read_toml
 
 FOLDER = Path(__file__).with_name("chapters")
 KEPT = Path(__file__).with_name("statuses.json")
-STATEMENT = ("left", "relation", "right", "chain", "given", "box")
+STATEMENT = ("left", "relation", "right", "chain", "given", "box", "order")
 SECONDS = 20.0  # of processor time for one entry, as in ``navsym prove``
 
 
@@ -200,7 +200,7 @@ def read_misprint(printed: Table, block: Table, document: Table, where: str) -> 
     """One [[entry.misprint]] block; hypotheses and ranges are those of its entry."""
     expect_keys(printed, ("latex", "source", "left", "relation", "right", "chain"), where)
     latex, source = [require_key(printed, key, where) for key in ("latex", "source")]
-    stated = {**{key: block[key] for key in ("given", "box") if key in block}, **printed}
+    stated = {**{key: block[key] for key in ("given", "box", "order") if key in block}, **printed}
     return Misprint(block["id"], latex, source, claim_file(stated, block["id"], document))
 
 

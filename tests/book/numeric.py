@@ -11,7 +11,7 @@ import random
 import re
 from functools import reduce
 from itertools import pairwise
-from math import comb
+from math import comb, prod
 
 import mpmath as mp
 import numpy as np
@@ -94,6 +94,36 @@ FUNCTIONS = {
 }
 
 
+def integrate(term, low, high):
+    """By mpmath's double exponential rule, cut where an oscillation may end."""
+    cuts = [low, *([mp.mpf(0)] if low < 0 < high else []), *([mp.mpf(60)] if high == mp.inf and low < 60 else []), high]
+    with mp.workdps(25):
+        return mp.quad(term, cuts)
+
+
+def add(term, low, high):
+    """Term by term; to infinity until the terms are small, with Richardson's rule."""
+    if high < mp.inf:
+        return sum((term(mp.mpf(k)) for k in range(int(low), int(high) + 1)), mp.mpf(0))
+    with mp.workdps(25):
+        return mp.nsum(term, [int(low), mp.inf])
+
+
+def multiply(term, low, high):
+    """Factor by factor."""
+    return prod((term(mp.mpf(k)) for k in range(int(low), int(high) + 1)), start=mp.mpf(1))
+
+
+def approach(term, place):
+    """The value far out, or the mean of both sides very near."""
+    if place == mp.inf:
+        return term(mp.mpf(10) ** 25)
+    return (term(place + STEP) + term(place - STEP)) / 2
+
+
+BINDERS = {"integral": integrate, "sum": add, "product": multiply, "limit": approach}
+
+
 class Point:
     """Values of the declared symbols, and what dot_ does to them."""
 
@@ -122,7 +152,7 @@ class Point:
             case ast.Constant(value=number):
                 return mp.mpf(number)
             case ast.Name(id=name):
-                return mp.pi if name == "pi" else self.values[name]
+                return {"pi": mp.pi, "oo": mp.inf, **self.values}[name]
             case ast.List(elts=entries):
                 return array([self.value(entry) for entry in entries])
             case ast.UnaryOp(operand=inner):
@@ -156,6 +186,10 @@ class Point:
             return self.differences(arguments[0], order, lambda step: self.move(arguments[1].id, step))
         if name == "where":
             return self.value(arguments[1] if self.value(arguments[0]) else arguments[2])
+        if name in BINDERS:
+            term, bound = arguments[:2]
+            ends = [self.value(argument) for argument in arguments[2:]]
+            return BINDERS[name](lambda x: Point({**self.values, bound.id: x}, self.rates).value(term), *ends)
         values = [self.value(argument) for argument in arguments]
         flat = [v.reshape(-1) if name in ("dot", "cross", "norm") else v for v in values]
         return FUNCTIONS[name](*flat)
@@ -168,7 +202,7 @@ def draw(declared, rng):
         return array([some() for _ in range(declared["vector"])])
     if isinstance(declared, dict) and "matrix" in declared:
         value = array([[some() for _ in range(declared["matrix"][1])] for _ in range(declared["matrix"][0])])
-        return value + value.T if declared.get("symmetric") else value
+        return with_property(value, declared)
     if isinstance(declared, dict) and ("quaternion" in declared or "rotation" in declared):
         q = array([some() for _ in range(4)])
         unit = q / mp.sqrt((q * q).sum())
@@ -185,6 +219,50 @@ def draw(declared, rng):
         for bound in kind
     )
     return some(low, high)
+
+
+def with_property(value, declared):
+    """A matrix that has what is declared, from one without."""
+    if declared.get("positive"):
+        return value @ value.T + array(np.eye(len(value), dtype=int))
+    if declared.get("symmetric"):
+        return value + value.T
+    if declared.get("skew"):
+        return value - value.T
+    if declared.get("orthogonal"):  # Cayley's form
+        one, turn = array(np.eye(len(value), dtype=int)), value - value.T
+        return inverse(one + turn) @ (one - turn)
+    assert set(declared) <= {"matrix", "invertible"}, declared
+    return value
+
+
+def with_sizes(declarations, rng):
+    """Declarations with numbers for the names of dimensions, and these numbers."""
+    names = {
+        name: mp.mpf(rng.randint(2, 3))
+        for part in declarations.values()
+        if isinstance(part, dict)
+        for name in np.atleast_1d(part.get("matrix", part.get("vector", 3))).tolist()
+        if isinstance(name, str) and not name.isdigit()
+    }
+    sized = {}
+    for symbol, part in declarations.items():
+        kind = next((kind for kind in ("matrix", "vector") if isinstance(part, dict) and kind in part), None)
+        sizes = np.atleast_1d(part[kind]).tolist() if kind else []
+        numbers = [int(names.get(size, size)) for size in sizes]
+        sized[symbol] = {**part, kind: numbers if kind == "matrix" else numbers[0]} if kind else part
+    return sized, names
+
+
+def define(point, equations):
+    """The point with symbols that an equation defines by others, and the equations that are left."""
+    left_over = []
+    for left, right in equations:
+        if left in point.values and not re.search(rf"\b{left}\b", right):
+            point = Point({**point.values, left: point.at(right)}, point.rates)
+        else:
+            left_over.append((left, right))
+    return point, left_over
 
 
 def spread(value):
@@ -243,11 +321,15 @@ def holds_numerically(document, seed):
     rng = random.Random(seed)
     with mp.workdps(DIGITS):
         for _ in range(60):
-            point = Point({n: draw(d, rng) for n, d in document["symbols"].items()}, document.get("rates", {}))
-            point = solve_hypotheses(point, equations) if equations else point
+            symbols, sizes = with_sizes(document["symbols"], rng)
+            values = {**sizes, **{name: draw(declared, rng) for name, declared in symbols.items()}}
+            point, left_over = define(Point(values, document.get("rates", {})), equations)
+            point = solve_hypotheses(point, left_over) if left_over else point
             if point is None or not all(compare(point, *part) for part in given if part[1] != "="):
                 continue
             try:
+                if "order" in claim:
+                    return agree_to_order(point, *sides, *claim["order"].items())
                 return all(compare(point, *part) for part in zip(sides, relations, sides[1:], strict=False))
             except (TypeError, ZeroDivisionError):  # a value that is not real: another point
                 continue
@@ -261,3 +343,13 @@ def compare(point, left, relation, right):
     if relation == "=":
         return a.shape == b.shape and max(map(abs, a - b)) < slack
     return bool(a[0] <= b[0] + slack if relation in ("<", "<=") else a[0] >= b[0] - slack)
+
+
+def agree_to_order(point, left, right, order):
+    """Whether the difference falls with the power of a small quantity that is declared."""
+    name, power = order
+    gaps = []
+    for small in (mp.mpf(10) ** -5, mp.mpf(10) ** -8):
+        near = Point({**point.values, name: small}, point.rates)
+        gaps.append(abs(near.at(left) - near.at(right)) / small**power)
+    return gaps[1] <= 10 * gaps[0] + CLOSE
