@@ -23,6 +23,7 @@ PAPER = Paper(
     source="IEEE Transactions on Aerospace and Electronic Systems AES-20 (2), 174-182; numbered here as derived",
     language="English",
     equations=tuple(str(number) for number in range(1, 13)),
+    remarks="4.riccati 8.product 12.other-root remark.* index-one",
     definitions={
         "1": "the model: position and velocity, acceleration constant in each period and white between them",
         "2": "the form of the filter: alpha corrects the position, beta / T the velocity",

@@ -636,6 +636,78 @@ def check_rank(item: Any) -> None:
         require(dot(row, v).parts[0].is_zero(), "M v does not vanish")
 
 
+def check_observability(item: Any) -> None:
+    """The rows H, D H, D D H, ... have rank r at the point, and at most r where the zeros vanish around it.
+
+    D a = a' + a F, where ' is the derivative along the motion: symbols have rates, and zeros stay zero. Theorem
+    (Hermann and Krener, 1977): let N have n - r columns with H N = 0 and F N - N' = N M where the zeros vanish. Then
+    a N = 0 gives (D a) N = (a N)' + a (F N - N') = 0, so that no row sees N. What is a sum of zeros with factors
+    vanishes with them, around a point where all that is typed has a value and is smooth.
+    """
+    _, statement, *parts = read_fields(item, "kind statement point order free null shares bits")
+    F, H, rates, zeros, r = read_fields(statement, "F H rates zeros rank")
+    point, order, free, null, shares, bits = parts
+    n, names = read_integer(len(F), 1, 100), make_symbols([*point])
+    places = read_list(free, lambda k: read_integer(k, 0, n - 1), n - read_integer(r, 0, n))
+    require(set(rates) <= set(names) and len(null) == len(places), "expected a point of all symbols, n - r vectors")
+    slopes = {x: evaluate(parse(rate), names, Exact).parts[0] for x, rate in rates.items()}
+    moving = names | {x: Jet(*names[x].parts, slope) for x, slope in slopes.items()}
+    A, rows, N, (z,) = (
+        [[(Exact(e.parts[0]), Exact([*e.parts, 0][1])) for e in row] for row in read_matrix(part, size, moving, Exact)]
+        for part, size in ((F, n), (H, n), (null, n), ([zeros], len(zeros)))
+    )
+    left = list_remainders(A, rows, N, z, places)
+    factors = read_matrix(shares, len(z), names, Exact) if z else [[]] * len(left)
+    require(len(factors) == len(left), "expected factors for every remainder")
+    for value, row in zip(left, factors, strict=True):
+        rest = sum((q.parts[0] * x * -1 for q, (x, _) in zip(row, z, strict=True)), value)
+        require(rest.is_zero(), "a direction that is seen, or zeros that do not stay")
+    here = {x: evaluate(parse(text), {}, Exact) for x, text in point.items()}
+    require(all(e.parts[0].is_zero() for e in read_matrix([zeros], len(z), here, Exact)[0]), "the zeros do not vanish")
+    ctx.prec, ctx.cap = read_integer(bits, 53, 20000), read_integer(order, 1, 100) + 1
+    series = follow_motion(point, rates, order)
+    read_series([zeros, *(shares if z else [])], len(z), series)
+    V, a, G = read_series(null, n, series), read_series(H, n, series), read_series(F, n, series)
+    require(not any(v[k][0].contains(0) for v, k in zip(V, places, strict=True)), "a pivot that may be zero")
+    columns, seen = [*zip(*G, strict=True)], [*a]
+    for _ in range(order - 1):
+        a = [[x.derivative() + sum(map(mul, row, g)) for x, g in zip(row, columns, strict=True)] for row in a]
+        seen += a
+    whole = arb_mat([[x[0] for x in row] for row in (*seen, *V)])
+    require((whole.transpose() * whole).det() > 0, "the rank may be smaller at the point")
+
+
+def list_remainders(A: Any, rows: Any, N: Any, z: Any, places: list[int]) -> list[Exact]:
+    """z', H N and F N - N' - N M of numbers (value, slope), which have to vanish with the zeros.
+
+    N is diagonal in its places, where F N - N' = N M therefore gives M.
+    """
+    left = [slope for _, slope in z]
+    left += [sum((a * b for (a, _), (b, _) in zip(h, v, strict=True)), Exact(0)) for h, v in product(rows, N)]
+    for v in N:
+        flow = [sum((a * b for (a, _), (b, _) in zip(row, v, strict=True)), Exact(0)) for row in A]
+        flow = [x + slope * -1 for x, (_, slope) in zip(flow, v, strict=True)]
+        shares = [flow[k] * u[k][0] ** fmpq(-1) for k, u in zip(places, N, strict=True)]
+        left += [sum((m * u[i][0] * -1 for m, u in zip(shares, N, strict=True)), flow[i]) for i in range(len(flow))]
+    for (j, v), (k, _) in product(enumerate(N), enumerate(places)):
+        require(j == k or not v[places[k]][0].terms, "the vectors are not diagonal in the free places")
+    return left
+
+
+def follow_motion(point: dict[str, Any], rates: dict[str, Any], order: int) -> dict[str, Jet]:
+    """The symbols along the motion from a point, as series of the time, by Picard's iteration."""
+    start = {x: arb_series([*evaluate(parse(text), {}, arb).parts]) for x, text in point.items()}
+    series = {x: Jet(value) for x, value in start.items()}
+    for _ in range(order if rates else 0):
+        values = {x: arb_series(evaluate(parse(rate), series, arb).parts[0]) for x, rate in rates.items()}
+        series |= {x: Jet(start[x] + value.integral()) for x, value in values.items()}
+    return series
+
+
+def read_series(rows: Any, columns: int, series: dict[str, Jet]) -> list[list[arb_series]]:
+    return [[arb_series(e.parts[0]) for e in row] for row in read_matrix(rows, columns, series, arb)]
+
+
 def check_condition(item: Any) -> None:
     """The condition number of a matrix N, or of N with columns of unit length, lies between two numbers; or outside.
 
@@ -1546,7 +1618,8 @@ class Formula(Parser):
             require(by is None, "expected dot_ of 1 argument")
             self.reader.need(*(t for entry in list_entries(x) for t in (entry, *smoothness(entry))))
             return change_entries(self.reader.differentiate_by_time, x)
-        require(by is not None and not isinstance(by, Matrix) and by[0] == "symbol", "expected a symbol behind diff")
+        is_symbol = by is not None and not isinstance(by, Matrix) and by[0] == "symbol" and not is_asked(by)
+        require(is_symbol, "expected a symbol behind diff")
         require(read_size(times) <= 8, "a derivative of a high order")
         return reduce(lambda y, _: self.reader.differentiate(y, by[1]), range(read_size(times)), x)  # type: ignore[index]
 
@@ -2791,6 +2864,8 @@ def answer_limit(entry: Any, q: Question, goal: Goal) -> Term:
     near = [(r if r == "!=" else ">", derive(t, k)) for (r, t), k in zip(places, orders, strict=True)]
     value, divisor = derive(N, n), derive(D, n)
     analytic = (*(derive(t, 0) for t in (N, D, *(t for _, t in places))), *(t for _, t in near), value, divisor)
+    # An exponent may become rational at a, and b**q exists for b <= 0, too; N and D exist near a where b > 0.
+    analytic += tuple(substitute(t, {name: a}) for t in (*smoothness(N), *smoothness(D)))
     prove_defined(defined, goal, *analytic, level=2)
     prove_all(pole, [goal._replace(term=t, relation=r) for r, t in (*near, ("!=", divisor))])
     prove_all(zeros, [goal._replace(term=derive(t, k), relation="=") for k in range(n) for t in (N, D)])
@@ -3485,7 +3560,8 @@ class Sized(Algebra):
         require(isinstance(sizes, dict) and set(sizes) == set(self.dimensions), "the point gives every dimension")
         self.sizes = {name: read_integer(size, 1, MOST_SIZE) for name, size in sizes.items()}
         own = {name: limit for name, limit in self.box.items() if name not in sizes}
-        self.names |= {name: number(size) for name, size in self.sizes.items()} | read_point(numbers, own)
+        self.place = {name: number(size) for name, size in self.sizes.items()} | read_point(numbers, own)
+        self.balls = {name: evaluate(value, {}, arb) for name, value in self.place.items()}
 
     def make_letter(self, name: str, rows: Any, columns: Any, words: list[str]) -> Any:
         require(isinstance(self.matrices, dict) and name in self.matrices, "the point gives every matrix")
@@ -3506,8 +3582,8 @@ class Sized(Algebra):
 
     def value_of(self, term: Term) -> fmpq:
         """A rational number; where it is none, nothing is shown."""
-        q = constant_of(term)
-        require(q is not None and value_of(term, {}).is_finite(), "no rational number")
+        q = constant_of(substitute(term, self.place))
+        require(q is not None and value_of(term, self.balls).is_finite(), "no rational number")
         return q  # type: ignore[return-value]
 
     def trace(self, body: Any, rows: Any) -> Term:
@@ -3615,7 +3691,8 @@ def grant(statement: Any, item: Any) -> str:
     require(isinstance(parts, list) and all(isinstance(part, dict) for part in parts), "expected certificates")
     own = [part.get("statement") for part in parts]
     refuting = [part for part in parts if part.get("kind") in ("counterexample", "sized") or part.get("outside") == 1]
-    known = all(part.get("kind") in ("proof", "counterexample", "condition", "words", "sized") for part in parts)
+    kinds = ("proof", "counterexample", "condition", "observability", "words", "sized")
+    known = all(part.get("kind") in kinds for part in parts)
     require(known and own == ([own[0]] if refuting else statements), "the certificate of another statement")
     require(all(text in statements for text in own), "the certificate of another statement")
     check(item)
@@ -3624,8 +3701,8 @@ def grant(statement: Any, item: Any) -> str:
 
 # -- 11. The entry -----------------------------------------------------------------------------------------------------
 EVERY_CHECK: tuple[Callable[[Any], None], ...] = (
-    check_identity, check_exponential, check_rank, check_condition, check_positivity, check_all, check_gap, check_touch,
-    check_proof, check_counterexample, check_words, check_sized,
+    check_identity, check_exponential, check_rank, check_observability, check_condition, check_positivity, check_all,
+    check_gap, check_touch, check_proof, check_counterexample, check_words, check_sized,
 )  # fmt: skip
 KINDS = {check.__name__.removeprefix("check_"): check for check in EVERY_CHECK}
 KINDS |= {"sliver": check_gap, "range": check_touch}

@@ -137,7 +137,7 @@ assert low < Fraction(6371000) < high < Fraction("6371008.8")
 # %% [markdown]
 # ## What normalisation does and does not do
 # It lowers the condition number throughout the table, but not always by much, and in the radius channel
-# ($\rho = 1$) with τ = 0.65 s it raises it. It changes no bit of what the filter computes.
+# ($\rho = 1$) with τ = 0.65 s it raises it. In a run of 2000 steps it changed no bit of what the filter computes.
 
 # %%
 explain("experiment.better")

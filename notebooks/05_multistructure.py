@@ -48,15 +48,6 @@ explain("8")
 explain("10")
 
 # %% [markdown]
-# The same for any number of modes:
-
-# %%
-explain("8.every")
-
-# %%
-explain("10.every")
-
-# %% [markdown]
 # The printed (9) takes the density of the wrong mode:
 
 # %%

@@ -246,7 +246,7 @@ explain("table.quantisation")
 nav.claims("terrain_search", words=":table.")
 
 # %%
-explain("table.bias*")
+explain("table.bias")
 
 # %%
 explain("table.full")

@@ -7,7 +7,7 @@ navigation system. Reports of NAS RA 123 (2), 2023 (in Russian).
     duality.py     sections 2 and 3: the estimator, its worst correlation, the dual problem
     polynomial.py  section 4.1 to (4.9): the generalised Chebyshev polynomial and its deviations
     weights.py     (4.10) to (4.16): weights, guaranteed errors, estimates of both channels
-    beyond.py      what the paper does not have: uniqueness, all interval lengths up to 2 pi
+    beyond.py      what the paper does not have: uniqueness, all interval lengths
 """
 
 from navsym.claims import Paper
@@ -32,5 +32,22 @@ PAPER = Paper(
         "2.1": "a general linear system: given",
         "2.2": "a general scalar measurement: given",
         "2.3": "hypotheses on the noise of the general measurement: given",
+        "2.7": "the problem itself: its objective is 2.D, its name 2.7.name",
+        "3.5": "the form of a solution, impulses at the chosen times; 4.7 judges it",
+    },
+    beside="2.7.name 3.2.contacts 3.2.theorem 4.2.identity-of-channels 4.6.same-instants",
+    remarks=(
+        "1.3.spectrum 1.9.root-cause 1.observable 1.quarter-period.minute 3.1.terms 3.2.consistent 4.1.order "
+        "4.3.unique 4.4.closed-form 4.5.positive 4.6.stationary 4.6.weights 4.8.signs 4.14.y2.bias unique.*"
+    ),
+    beyond="4.11.nonzero-beyond range.*",
+    causes={"4.4": "4.3.u2"},
+    left_out={
+        "after (1.1): all y_i are of one order": "no figures of the errors are given",
+        "section 3: position correction has l = m, hence unique algorithms": "a result of [9], model not printed",
+        "section 4.1: S0 satisfies the lemma of [9]": "the lemma is not printed; 4.4* proves the optimum without it",
+        "section 3: steps 1 to 4 of the algorithm": "taken step by step by 4.1 to 4.13; for any system by no claim",
+        "(2.5): the part Phi_H of the weight": "2.5, 2.6 and 2.D treat impulses only",
+        "(3.1): both problems have one value; the converse of (3.4)": "proved for this system alone, by 4.13 and 3.4",
     },
 )

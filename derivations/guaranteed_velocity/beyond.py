@@ -1,8 +1,8 @@
-"""What the paper does not have: uniqueness proved, and the solution for every T up to 2 pi.
+"""What the paper does not have: the solution for every T, and when it is the only one.
 
 The paper states its formulas for T <= pi/2. They hold further, each to its own bound, which is
 where a weight changes sign: y1 for every T, y2 up to 4 pi/3, y3 up to 2 pi/3. Beyond these
-bounds two instants are enough, one of them the end of the interval, and then the value is one.
+bounds two instants are enough; from 3 pi/2 (y2) and pi (y3) on they are half a period apart, and the value is one.
 """
 
 from __future__ import annotations
@@ -14,13 +14,12 @@ import sympy as sp
 from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, Statement, claim
 from navsym_papers.guaranteed_velocity.model import INSTANTS, H, T, alternating, tau, weights
 
-FULL = 2 * sp.pi
 UNITS = {"y1": (1, 0, 0), "y2": (0, 1, 0), "y3": (0, 0, 1)}
 ALTERNATING_ERROR = {"y2": 2 * sp.cot(T / 4), "y3": sp.cos(T / 2) / sp.sin(T / 4) ** 2}
 
 
 def solution(
-    state: str, dual: tuple, support: tuple, weights_: tuple, value: sp.Expr, lower: sp.Expr, upper: sp.Expr
+    state: str, dual: tuple, support: tuple, weights_: tuple, value: sp.Expr, lower: sp.Expr, upper: sp.Expr | None
 ) -> Optimum:
     return Optimum(
         regressors=tuple(H()),
@@ -47,8 +46,8 @@ def three_instants(state: str, upper: sp.Expr) -> Optimum:
 
 @claim("range.y1")
 def velocity_for_every_interval():
-    """y1: the last measurement alone is optimal for every T up to 2 pi (and for any T at all)."""
-    return solution("y1", (1, 0, 0), (T,), (sp.Integer(1),), sp.Integer(1), sp.Integer(0), FULL)
+    """y1: the last measurement alone is optimal for every T."""
+    return solution("y1", (1, 0, 0), (T,), (sp.Integer(1),), sp.Integer(1), sp.Integer(0), None)
 
 
 @claim("range.y2")
@@ -71,14 +70,18 @@ def tilt_does_not_hold_further():
     return three_instants("y2", 3 * sp.pi / 2)
 
 
+def tilt_dual() -> tuple:
+    """The dual of y2 for 4 pi/3 <= T <= 3 pi/2."""
+    return (1 - 1 / sp.sin(T) ** 2 + sp.cos(T) / sp.sin(T) ** 2, -1 / sp.sin(T), sp.cos(T) / sp.sin(T) ** 2)
+
+
 @claim("range.y2.end*", corrects="range.y2.end")
 def tilt_with_two_instants():
     """y2, 4 pi/3 <= T <= 3 pi/2: two instants, 2(T - pi) and 0, and the error -1/sin T."""
     sine = sp.sin(T)
-    dual = (-sp.sin(T) * 0 + (1 - 1 / sine**2) + sp.cos(2 * sp.pi - T) / sine**2, -1 / sine, sp.cos(T) / sine**2)
     return solution(
         "y2",
-        dual,
+        tilt_dual(),
         (2 * T - 2 * sp.pi, sp.Integer(0)),
         (-1 / (2 * sine), 1 / (2 * sine)),
         -1 / sine,
@@ -89,7 +92,7 @@ def tilt_with_two_instants():
 
 @claim("range.y2.last")
 def tilt_with_two_inner_instants():
-    """y2, 3 pi/2 <= T <= 2 pi: half the difference of two measurements half a period apart, error 1."""
+    """y2, every T >= 3 pi/2: half the difference of two measurements half a period apart, error 1."""
     return solution(
         "y2",
         (0, 1, 0),
@@ -97,7 +100,7 @@ def tilt_with_two_inner_instants():
         (sp.Rational(1, 2), -sp.Rational(1, 2)),
         sp.Integer(1),
         3 * sp.pi / 2,
-        FULL,
+        None,
     )
 
 
@@ -109,14 +112,18 @@ def drift_does_not_hold_further():
     return three_instants("y3", 3 * sp.pi / 4)
 
 
+def drift_dual() -> tuple:
+    """The dual of y3 for 2 pi/3 <= T <= pi."""
+    return (-1 / sp.cos(T) - sp.tan(T) ** 2, sp.sin(T) / sp.cos(T) ** 2, -1 / sp.cos(T))
+
+
 @claim("range.y3.end*", corrects="range.y3.end")
 def drift_with_two_instants():
     """y3, 2 pi/3 <= T <= pi: two instants, 2 T - pi and 0, and the error -1/cos T."""
     cosine = sp.cos(T)
-    dual = (-1 / cosine - sp.sin(T) ** 2 / cosine**2, sp.sin(T) / cosine**2, -1 / cosine)
     return solution(
         "y3",
-        dual,
+        drift_dual(),
         (2 * T - sp.pi, sp.Integer(0)),
         (-1 / (2 * cosine), 1 / (2 * cosine)),
         -1 / cosine,
@@ -127,9 +134,9 @@ def drift_with_two_instants():
 
 @claim("range.y3.last")
 def drift_with_half_a_period():
-    """y3, pi <= T <= 2 pi: half the difference of two measurements half a period apart, error 1."""
+    """y3, every T >= pi: half the difference of two measurements half a period apart, error 1."""
     return solution(
-        "y3", (1, 0, 1), (T, T - sp.pi), (sp.Rational(1, 2), -sp.Rational(1, 2)), sp.Integer(1), sp.pi, FULL
+        "y3", (1, 0, 1), (T, T - sp.pi), (sp.Rational(1, 2), -sp.Rational(1, 2)), sp.Integer(1), sp.pi, None
     )
 
 
@@ -160,7 +167,7 @@ MEETINGS: tuple[Claim, ...] = tuple(
 # -- uniqueness ---------------------------------------
 
 v = sp.Symbol("v", positive=True)  # position inside a half interval, 0 < v <= 1
-UNIQUE_BOX = {T: (0, sp.pi / 2), v: (0, 1)}
+UNIQUE_BOX = {T: (0, 4 * sp.pi / 3), v: (0, 1)}
 
 
 def dual_polynomial(at: sp.Expr) -> sp.Expr:
@@ -169,49 +176,88 @@ def dual_polynomial(at: sp.Expr) -> sp.Expr:
 
 @claim("unique.upper-bound")
 def upper_bound_touched_once():
-    """1 - x.H > 0 at distance v T/2 on either side of T/2: the bound +1 is touched at T/2 only."""
+    """1 - x.H > 0 at T/2 - v T/2, 0 < v <= 1, T <= 4 pi/3: by unique.symmetric it touches +1 at T/2 only."""
     return Bound(1 - dual_polynomial(T / 2 - v * T / 2), ">", 0, UNIQUE_BOX)
 
 
 @claim("unique.symmetric")
 def polynomial_is_symmetric():
-    """x.H is symmetric about T/2, so that one half decides for both."""
-    return Equation(printed=dual_polynomial(T - tau), derived=dual_polynomial(tau), box={T: (0, sp.pi / 2)})
+    """x.H is symmetric about T/2 (T <= 4 pi/3), so that one half decides for both."""
+    return Equation(printed=dual_polynomial(T - tau), derived=dual_polynomial(tau), box={T: (0, 4 * sp.pi / 3)})
 
 
 @claim("unique.lower-bound")
 def lower_bound_touched_at_the_ends():
-    """1 + x.H > 0 for instants v T/2 with 0 < v <= 1: the bound -1 is touched at 0 and T only.
+    """1 + x.H > 0 at v T/2, 0 < v <= 1, T <= 4 pi/3: by unique.symmetric it touches -1 at 0 and T only.
 
     Every optimal weight function lives on the contacts of an optimal dual; with three contacts
-    and det N != 0 there is one such function for y2 and y3. This is the argument that the paper
-    leaves to (4.11).
+    and det N != 0 there is one such function for y2 (T <= 4 pi/3) and y3 (T <= 2 pi/3). This is
+    the argument that the paper leaves to (4.11).
     """
     return Bound(1 + dual_polynomial(v * T / 2), ">", 0, UNIQUE_BOX)
 
 
-@claim("unique.y1")
-def velocity_estimate_is_unique():
-    """y1: the dual (1, -1, 0) is optimal too and touches only at T, so that the estimate is unique.
+s = sp.Symbol("s", nonnegative=True)  # T - tau, how long before the end
 
-    For y1 the argument from (4.11) does not apply, since X = (1, 0, 0) touches everywhere.
-    1 - x.H = sin(T - tau) > 0 before the end, and 1 + x.H > 0.
+
+def contacts(dual: tuple, below: sp.Expr, above: sp.Expr) -> Equation:
+    """1 - x.H and 1 + x.H at T - s beside their closed forms: the contacts are the zeros."""
+    value = (sp.Matrix([dual]) * H(T - s))[0]
+    return Equation(printed=[below, above], derived=[1 - value, 1 + value])
+
+
+@claim("range.y1.contacts")
+def velocity_touches_once():
+    """y1, every T: 1 - x.H = sin^2(s/2), s = T - tau, for the dual (1, 0, 1/2): before T < 2 pi no other contact.
+
+    Every optimal weight function lives on the contacts of every optimal dual, so that the estimate is unique for
+    T < 2 pi. The argument from (4.11) does not apply, since the dual (1, 0, 0) touches everywhere.
     """
-    inside = 1 - (H(T - v * T)[0] - H(T - v * T)[1])
-    return Bound(inside, ">", 0, UNIQUE_BOX)
+    return contacts((1, 0, sp.Rational(1, 2)), sp.sin(s / 2) ** 2, 1 + sp.cos(s / 2) ** 2)
 
 
-@claim("unique.y1.feasible")
+@claim("range.y1.other_dual")
 def other_dual_of_velocity():
-    """y1: the dual (1, -1, 0) is feasible and has the value 1."""
-    return Optimum(
-        regressors=tuple(H()),
-        functional=UNITS["y1"],
-        variable=tau,
-        interval=(sp.Integer(0), T),
-        dual=(1, -1, 0),
-        support=(T,),
-        weights=(sp.Integer(1),),
-        value=sp.Integer(1),
-        box={T: (0, sp.pi / 2)},
-    )
+    """y1, every T: the dual (1, 0, 1/2) is feasible and has the value 1."""
+    return solution("y1", (1, 0, sp.Rational(1, 2)), (T,), (sp.Integer(1),), sp.Integer(1), sp.Integer(0), None)
+
+
+@claim("range.y2.end.contacts")
+def tilt_touches_twice():
+    """y2, 4 pi/3 <= T <= 3 pi/2: zeros s = 2 pi - T of 1 - x.H and s = T of 1 + x.H (s = 0 too at T = 4 pi/3).
+
+    The last sine has an argument between 0 and pi. Contacts at 2(T - pi) and 0 make the estimate unique.
+    """
+    size = 2 / sp.sin(T) ** 2
+    above = size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - 2 * sp.pi)
+    return contacts(tilt_dual(), size * sp.sin((T + s) / 2) ** 2, above)
+
+
+@claim("range.y2.last.contacts")
+def tilt_touches_half_a_period_apart():
+    """y2, T >= 3 pi/2: x.H = sin s touches at s = pi/2 and 3 pi/2; no other s < 5 pi/2: unique for T < 5 pi/2."""
+    below, above = 2 * sp.sin(s / 2 - sp.pi / 4) ** 2, 2 * sp.cos(s / 2 - sp.pi / 4) ** 2
+    return contacts((0, 1, 0), below, above)
+
+
+@claim("range.y3.end.contacts")
+def drift_touches_twice():
+    """y3, 2 pi/3 <= T <= pi: zeros s = pi - T of 1 - x.H and s = T of 1 + x.H (s = 0 too at T = 2 pi/3).
+
+    The last sine has an argument between 0 and pi. Contacts at 2 T - pi and 0 make the estimate unique.
+    """
+    size = 2 / sp.cos(T) ** 2
+    above = size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - sp.pi)
+    return contacts(drift_dual(), size * sp.cos((T + s) / 2) ** 2, above)
+
+
+@claim("range.y3.last.contacts")
+def drift_touches_half_a_period_apart():
+    """y3, T >= pi: x.H = cos s touches at s = 0 and pi; no other s below 2 pi, so unique for T < 2 pi."""
+    return contacts((1, 0, 1), 2 * sp.sin(s / 2) ** 2, 2 * sp.cos(s / 2) ** 2)
+
+
+@claim("range.repeats")
+def measurements_repeat():
+    """H repeats after 2 pi: from T = 2 pi (y1, y3) and 5 pi/2 (y2) on other times serve as well: no longer unique."""
+    return Equation(printed=list(H(tau - 2 * sp.pi)), derived=list(H(tau)))

@@ -6,7 +6,7 @@ from itertools import product
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property, claim
+from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Property, claim
 from navsym.prove.identities.normal_form import vanishes_identically
 from navsym.prove.signs.bounds import Sign, prove_sign
 from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, weights
@@ -125,12 +125,11 @@ def worst_correlation_is_admissible():
     return Equation(printed=(c.T * signs)[0] ** 2, derived=form)
 
 
-@claim("2.7")
-def objective_is_the_root_of_the_worst_variance():
-    """The objective sigma integral |Phi| is the square root of the guaranteed variance (3 instants)."""
-    sizes = sp.symbols("a1:4", positive=True)
-    ones = sp.ones(3, 3)
-    return Equation(printed=(sigma * sum(sizes)) ** 2, derived=variance(sizes, ones, (sigma,) * 3))
+def objective(correlation: int) -> Equation:
+    """The squared objective of (2.7) beside the variance at one correlation, for two weights of one sign."""
+    a1, a2 = sp.symbols("a1 a2", positive=True)
+    between = sp.Matrix([[1, correlation], [correlation, 1]])
+    return Equation(printed=variance((a1, a2), between, (sigma, sigma)), derived=(sigma * (a1 + a2)) ** 2)
 
 
 @claim(
@@ -140,24 +139,14 @@ def objective_is_the_root_of_the_worst_variance():
     reason="the introduction and [3] call it the problem of the worst correlation, and so it is",
 )
 def name_of_the_problem():
-    """The problem (2.7) is about the best correlation, as printed after it."""
-    return Property(printed="best", derived=kind_of_correlation())
+    """After (2.7): its objective belongs to the best correlation, -1 for two weights of one sign."""
+    return objective(-1)
 
 
-@claim("2.7.name*", corrects="2.7.name", expect=CERTIFIED)
+@claim("2.7.name*", corrects="2.7.name")
 def name_of_the_problem_corrected():
-    """The problem (2.7) is about the worst correlation."""
-    return Property(printed="worst", derived=kind_of_correlation())
-
-
-def kind_of_correlation() -> Finding:
-    """Compare the variance that (2.7) minimises with that of independent noise, for the paper's y3."""
-    values = weights(2)
-    objective = sum(modulus(w) for w in values) ** 2
-    independent = sum(w**2 for w in values)
-    worse = prove_sign(objective - independent, {T: (sp.Rational(1, 10), sp.pi / 2)}, Sign.POSITIVE)
-    kind = "worst" if worse.at_least(Sign.POSITIVE) else "undecided"
-    return Finding(kind, "sign of a difference of variances", CERTIFIED, "T in [1/10, pi/2]")
+    """After (2.7): its objective belongs to the worst correlation, +1 for two weights of one sign."""
+    return objective(1)
 
 
 def modulus(weight: sp.Expr) -> sp.Expr:
@@ -182,13 +171,20 @@ def permuting_components():
 
 @claim("3.1")
 def weak_duality():
-    """sum |Phi_j| - x.P = sum (|Phi_j| - Phi_j x.H(tau_j)) >= 0: the dual (3.1) bounds (2.7) from below."""
+    """sum |Phi_j| - x.P = sum (|Phi_j| - Phi_j x.H(tau_j)), for three impulses; 3.1.terms has the sign of each term."""
     Phi, x = generic("Phi", 3), generic("x", 3)
     columns, sizes = generic("H", 3, 3), generic("a", 3)
     P = columns * Phi
     printed = sum(sizes) - (x.T * P)[0]
     derived = sum(sizes[j] - Phi[j] * (x.T * columns[:, j])[0] for j in range(3))
     return Equation(printed=printed, derived=derived)
+
+
+@claim("3.1.terms")
+def terms_of_weak_duality():
+    """|Phi_j| - Phi_j x.H(tau_j) >= 0 where |x.H| <= 1: with 3.1, the dual (3.1) bounds (2.7) from below."""
+    Phi, bounded = sp.symbols("Phi s", real=True)
+    return Bound(sp.Abs(Phi) - Phi * bounded, ">=", 0, {bounded: (-1, 1)})
 
 
 @claim("3.2")
@@ -212,7 +208,7 @@ def number_of_contacts():
 
 @claim("3.2.contacts*", corrects="3.2.contacts")
 def number_of_contacts_corrected():
-    """The duals of y2 and y3 touch at no more than three instants; that of y1 may touch everywhere."""
+    """The dual of y1 touches at every instant, those of y2 and y3 at finitely many (three for T <= pi/2: unique.*)."""
     return Property(printed=(False, True, True), derived=finitely_many_contacts())
 
 
@@ -226,6 +222,47 @@ def finitely_many_contacts() -> Finding:
         PROVED,
         "an analytic function that is not identically zero has finitely many zeros on [0, T]",
     )
+
+
+def sums_of_weights(weights_: tuple) -> tuple:
+    """N Phi and sum |Phi_j| at the times 0, pi, 2 pi for T = 2 pi."""
+    columns = sp.Matrix.hstack(*(H(at).subs(T, 2 * sp.pi) for at in (sp.Integer(0), sp.pi, 2 * sp.pi)))
+    return (*(columns * sp.Matrix(weights_)), sum(abs(w) for w in weights_))
+
+
+@claim(
+    "3.2.theorem",
+    expect=REFUTED,
+    slip="paper",
+    reason="a solution of (3.2) for y3 at T = 2 pi, X0 = (1, 0, 1), contacts 0, pi, 2 pi has sum |Phi_j| = 10, not 1; "
+    "the signs of the weights have to be those of X0.H(tau_j)",
+)
+def any_solution_is_optimal():
+    """After (3.2): every solution at the contacts of an optimal dual has the value X0.P; here Phi = (5, -1/2, -9/2)."""
+    return Equation(printed=(0, 0, 1, 1), derived=sums_of_weights((5, -sp.Rational(1, 2), -sp.Rational(9, 2))))
+
+
+@claim("3.2.theorem*", corrects="3.2.theorem")
+def solution_with_signs_is_optimal():
+    """After (3.2): a solution has the value X0.P when sgn Phi_j = X0.H(tau_j) at each of its three instants."""
+    sizes, x = sp.symbols("a1:4", nonnegative=True), generic("x", 3)
+    printed, derived = [], []
+    for signs in product((1, -1), repeat=3):
+        columns = generic("H", 3, 3)
+        for j, sign in enumerate(signs):  # x.H(tau_j) = sign
+            columns[0, j] = (sign - x[1] * columns[1, j] - x[2] * columns[2, j]) / x[0]
+        P = columns * sp.Matrix([sign * size for sign, size in zip(signs, sizes, strict=True)])
+        printed.append(sum(sizes))
+        derived.append((x.T * P)[0])
+    return Equation(printed=tuple(printed), derived=tuple(derived))
+
+
+@claim("3.2.consistent")
+def contact_without_solution():
+    """(3.2) need not be consistent at chosen contacts: y1, X0 = (1, 0, 0), tau = 0, T = pi/2: |H(0) Phi - e1| > 0."""
+    Phi = sp.Symbol("Phi", real=True)
+    defect = H(sp.Integer(0)).subs(T, sp.pi / 2) * Phi - sp.Matrix([1, 0, 0])
+    return Bound(sp.expand((defect.T * defect)[0]), ">", 0)
 
 
 @claim("3.3")
@@ -267,22 +304,14 @@ def coefficients_of_the_polynomial() -> Finding:
 
 @claim("3.4")
 def dual_from_polynomial():
-    """x01 = 1/L and x0j = u_j/L: the dual value X.P is 1/L for P = (1, 0, 0)."""
-    L = sp.Symbol("L", positive=True)
-    u2, u3 = sp.symbols("u2 u3", real=True)
-    # From |X.H| <= 1 by X = x01 (1, u2, u3): the first component carries the value.
-    x01, x02, x03 = sp.symbols("x01 x02 x03", real=True)
-    scale = sp.Matrix([1, u2, u3]) / L
-    value = sp.Matrix([x01, x02, x03]).subs(dict(zip((x01, x02, x03), scale, strict=True)))
-    return Equation(printed=(1 / L, u2 / L, u3 / L), derived=tuple(value))
-
-
-@claim("3.5")
-def solution_of_impulses():
-    """The solution (3.5) satisfies the constraint of (2.7): sum Phi_j H(tau_j) = P for y3."""
-    values = weights(2)
-    total = sum((w * H(at) for w, at in zip(values, INSTANTS, strict=True)), sp.zeros(3, 1))
-    return Equation(printed=sp.Matrix([0, 0, 1]), derived=total, box=STATED)
+    """x01 = 1/L and x0j = u_j/L: alternance of (3.3) for y3 and the constraints of (3.1) give one dual (T <= pi/2)."""
+    columns = sp.Matrix.hstack(*(H(at) for at in INSTANTS))
+    front, second, third = columns[2, :], columns[0, :], columns[1, :]
+    # front + u2 second + u3 third = -L, L, -L at the three times, for (u2, u3, L)
+    matrix = sp.Matrix.vstack(second, third, sp.Matrix([[1, -1, 1]])).T
+    u2, u3, L = -matrix.adjugate() * front.T / matrix.det()
+    x = alternating()
+    return Equation(printed=(1 / L, u2 / L, u3 / L), derived=(x[2], x[0], x[1]), box=STATED)
 
 
 def least_deviation() -> sp.Expr:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, claim
-from navsym.models.linear import observability_matrix
-from navsym.models.transition.exponential import transition_matrix
+from navsym.models.linear import LinearModel, observability_matrix
+from navsym.models.transition.exponential import regressors, transition_matrix
 from navsym.prove.identities.normal_form import vanishes_identically
 from navsym_papers.guaranteed_velocity.model import CHANNEL, H, T, tau
 
@@ -32,14 +32,14 @@ def channel_rates(with_azimuth: bool) -> sp.Matrix:
 
 @claim("1.1")
 def lateral_channel():
-    """The lateral channel obeys dy/dtau = A y in y1 = pi1 + U beta3, y2 = alpha1 - eps1, y3 = pi1 + nu1."""
+    """With constant beta3, eps1, nu1: dy/dtau = A y in y1 = pi1 + U beta3, y2 = alpha1 - eps1, y3 = pi1 + nu1."""
     y = sp.Matrix([velocity + earth_rate * azimuth, alpha - bias, velocity + drift])
     return Equation(printed=PRINTED_A * y, derived=channel_rates(with_azimuth=True))
 
 
 @claim("1.2")
 def longitudinal_channel():
-    """The longitudinal channel obeys the same equations in y4 = pi2, y5 = alpha2 - eps2, y6 = pi2 + nu2."""
+    """With constant eps2 and nu2: the same equations in y4 = pi2, y5 = alpha2 - eps2, y6 = pi2 + nu2."""
     y = sp.Matrix([velocity, alpha - bias, velocity + drift])
     return Equation(printed=PRINTED_A * y, derived=channel_rates(with_azimuth=False))
 
@@ -52,6 +52,17 @@ def system_matrix():
     back = {velocity: y1, alpha: y2 + bias, drift: y3 - y1}
     assert all(vanishes_identically(e.subs(back) - v) for e, v in zip(y, (y1, y2, y3), strict=True))
     return Equation(printed=PRINTED_A, derived=channel_rates(False).subs(back).jacobian([y1, y2, y3]))
+
+
+@claim("4.2.identity-of-channels")
+def channels_share_the_regressors():
+    """H(tau) of the longitudinal channel, derived from its own rates and z2 = y4 + w2, is that of the lateral one."""
+    y4, y5, y6 = sp.symbols("y4 y5 y6", real=True)
+    rates = channel_rates(False).subs({velocity: y4, alpha: y5 + bias, drift: y6 - y4})
+    second = LinearModel(
+        F=rates.jacobian([y4, y5, y6]).tolist(), H=[[1, 0, 0]], states=("y4", "y5", "y6"), measurements=("velocity",)
+    )
+    return Equation(printed=H(), derived=sp.Matrix(regressors(second, T, tau).matrix.T))
 
 
 @claim("1.3.spectrum")
@@ -73,13 +84,6 @@ def quarter_period_to_the_minute():
     """T = pi/2 is 21 minutes to the minute; the printed 20 stands behind a sign of approximation."""
     seconds = sp.pi / 2 * sp.sqrt(sp.Rational(6371000) / sp.Rational("9.81"))
     return Equation(printed=sp.Integer(21), derived=seconds / 60, tolerance=sp.Rational(1, 2))
-
-
-@claim("1.4")
-def measured_component():
-    """The measurement of the first channel picks its first state: z1 - w1 = y1."""
-    y1, y2, y3 = sp.symbols("y1 y2 y3", real=True)
-    return Equation(printed=y1, derived=(sp.Matrix(CHANNEL.H) * sp.Matrix([y1, y2, y3]))[0])
 
 
 def second_measurement():

@@ -12,13 +12,6 @@ from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, N, T, a
 # -- (4.10), (4.11) ---------------------------------------
 
 
-@claim("4.10")
-def weights_by_inversion():
-    """Phi_s = N^-1 e_s: the three columns of the inverse solve the unbiasedness conditions."""
-    inverse = N().adjugate() / N().det()
-    return Equation(printed=inverse, derived=sp.Matrix.hstack(*(sp.Matrix(weights(s)) for s in range(3))), box=STATED)
-
-
 PRINTED_N = sp.Matrix([[1, 1, 0], [sp.sin(T), sp.sin(T / 2), 0], [sp.cos(T) - 1, sp.cos(T / 2) - 1, 0]])
 
 
@@ -83,6 +76,12 @@ PRINTED_WEIGHTS = (
 )
 
 
+@claim("4.10")
+def weights_by_inversion():
+    """Phi_s = N^-1 e_s: with the printed weights (4.12) as columns of Phi, N Phi is the identity."""
+    return Equation(printed=sp.eye(3), derived=N() * sp.Matrix(PRINTED_WEIGHTS).T, box=STATED)
+
+
 def weight(state: int, place: int) -> Callable[[], Statement]:
     def derive() -> Statement:
         return Equation(printed=PRINTED_WEIGHTS[state][place], derived=weights(state)[place], box=STATED)
@@ -129,10 +128,15 @@ def guaranteed_error(state: int) -> Callable[[], Statement]:
 
 
 def error_with_sigma(state: int, sigma: sp.Symbol) -> Callable[[], Statement]:
-    """The printed error with its factor sigma, against sigma times the dual value x.P."""
+    """The printed error with its factor sigma, against the objective of (2.7): sigma times sum |Phi_j|.
+
+    The weights of y2 and y3 have the signs -, +, - on the stated range (4.8.signs); y1 has one weight.
+    """
 
     def derive() -> Statement:
-        return Equation(printed=PRINTED_ERRORS[state] * sigma, derived=sigma * dual_of(state)[state], box=STATED)
+        signs = (1, 1, 1) if state == 0 else (-1, 1, -1)
+        total = sum((sign * w for sign, w in zip(signs, weights(state), strict=True)), sp.Integer(0))
+        return Equation(printed=PRINTED_ERRORS[state] * sigma, derived=sigma * total, box=STATED)
 
     derive.__module__ = __name__
     return derive
@@ -145,11 +149,13 @@ OPTIMAL_ERRORS: tuple[Claim, ...] = tuple(
     for s in range(3)
 )
 LATERAL_ERRORS: tuple[Claim, ...] = tuple(
-    claim(f"4.13.y{s + 1}.sigma", title=f"d_opt(y{s + 1}) with its factor sigma1.")(error_with_sigma(s, sigma1))
+    claim(f"4.13.y{s + 1}.sigma", title=f"d_opt(y{s + 1}) = sigma1 times the sum of the moduli of its weights.")(
+        error_with_sigma(s, sigma1)
+    )
     for s in range(3)
 )
 LONGITUDINAL_ERRORS: tuple[Claim, ...] = tuple(
-    claim(f"4.15.y{s + 4}", title=f"d_opt(y{s + 4}) = sigma2 times the value of the same dual.")(
+    claim(f"4.15.y{s + 4}", title=f"d_opt(y{s + 4}) = sigma2 times the sum of the moduli of the same weights.")(
         error_with_sigma(s, sigma2)
     )
     for s in range(3)
@@ -248,14 +254,6 @@ def printed_tilt_estimate_is_biased():
     """What the slip costs: a velocity error y1 enters the printed estimate of y2 with this factor."""
     printed = (sp.sin(T / 2) - 1) / (2 * sp.sin(T / 2) ** 2)
     return Equation(printed=printed, derived=bias_of_printed_tilt(0), box=STATED)
-
-
-@claim("4.2.identity-of-channels")
-def channels_share_the_solution():
-    """The channels differ only in sigma: scaling the noise scales the error and leaves the weights."""
-    ratio = sp.Symbol("k", positive=True)
-    scaled = sum((w * ratio * z for w, z in zip(weights(2), (z0, zm, zT), strict=True)), sp.Integer(0))
-    return Equation(printed=ratio * derived_estimate(2), derived=scaled, box=STATED)
 
 
 @claim("4.scale")

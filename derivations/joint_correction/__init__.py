@@ -23,5 +23,41 @@ PAPER = Paper(
     definitions={
         "1.1": "the given linear system and its measurements",
         "1.2": "definition of the two chains of vectors",
+        "2.5": "defines the position information by gamma of (2.3)",
+    },
+    beside=(
+        "1.dimensions 1.6.gain_unique 1.6.kalman_unique 1.11.gain_unique 1.13.free_of_gain 1.13.weight "
+        "1.13.separate 1.14.dimension 1.14.choice 1.14.higher_derivatives 1.14.one_to_one 1.two_stage.* 2.1.climb "
+        "2.8.neglected 2.[67].span 2.8.inhomogeneous 2.9.inhomogeneous_printed 2.[89].observable 3.1.overlap "
+        "3.1.remaining 3.1.fast 3.1.slow 3.2.gains 3.3.gains 3.3.only_velocity"
+    ),
+    remarks=(
+        "1.6.gain_unique.determinant 1.6.initial 1.6.kalman_unique.stabilising 1.11.characteristic 1.13.preferable "
+        "1.13.equivalent 1.14.characteristic 1.14.exists* 1.14.gains_unique 1.14.next 1.two_stage.transition "
+        "1.two_stage.dimension 2.1.dropped 2.8.solution 2.[89].accuracy* 2.assumption1.orthodrome.limit "
+        "2.scale.earth 2.scale.mu_u3 3.2.gains_unique 3.3.gains_unique 3.3.triangular 3.preestimation.* "
+        "3.situations.*"
+    ),
+    beyond="3.coupled.* 3.bias.* 3.noise.* 3.choice.* sensors.*",
+    causes={"2.9.inhomogeneous_printed": "2.9.y2"},
+    scopes={
+        "1.two_stage.small": "m = 2, Theta = 0",
+        "1.two_stage.linear": "m = n - m = 1",
+        "1.two_stage.*": "",
+        "1.13.preferable": "",
+        "1.14.higher_derivatives": "",
+        "1.14*": "n - m and m of the systems named in the file, not every size",
+        "1.13*": "sizes (m, n - m) of the systems named in the file, one family of C_1 and C_2, not every size",
+        "1.*": "systems with (n, m) = (2, 1), (3, 2), (4, 2), (5, 3), one family of C_1 and C_2, not every size",
+        "3.1.remaining": "mu u_3 not 1 or -1",
+    },
+    left_out={
+        "q_x = L_x q, q_z = L_z q, q_u, q_v, q_w, r_x = r_1, r_z = r_2": "names of the noises in new variables",
+        "below (1.13): in general less preferable than (1.11)": "a judgement; 1.13.preferable shows both sides",
+        "section 2, condition 1: far below the first cosmic speed": "no figure; 2.scale.mu has mu <= 0.1",
+        "section 2, list of dimensionless quantities: nu_i for omega_i, no w_i^c and r_i^c": "names of symbols",
+        "section 3.1: with position, velocity is hardly needed": "a judgement; sensors.position says what is missing",
+        "the simulation showed the algorithm to be acceptable": "no figures are printed",
+        "words of the scan: юбщий, реакционного, Ройтберг, Шакогъко": "spelling of the copy",
     },
 )

@@ -97,6 +97,13 @@ def systems() -> tuple[System, ...]:
 
 
 @cache
+def direct_sum() -> System:
+    """n = 3, m = 2, l = 1: neither measurement sees a state of the other, and m + l is just n."""
+    core = sp.Matrix([[0, 1, 0], [g[0], g[1], 0], [0, 0, g[2]]])
+    return scrambled(core, 2, sp.Matrix([[0, 0, 1]]))
+
+
+@cache
 def overlapping() -> System:
     """n = 4, m = 3, l = 4: the chains overlap, so that i = 2 and i = 1 are possible."""
     core = sp.Matrix([[0, 1, 0, 0], [0, 0, 1, 0], [g[0], g[1], g[2], 0], [0, 0, g[3], g[4]]])

@@ -124,4 +124,4 @@ def position_accuracy_needs_time():
     gains = [
         sp.sqrt(variance(POSITION, place, sp.Integer(1)) / variance(POSITION, place, sp.Integer(3))) for place in (3, 0)
     ]
-    return Equation([sp.Integer(135), sp.Rational(18, 10)], gains, tolerance=sp.Rational(1, 2))
+    return Equation([sp.Integer(135), sp.Integer(18)], [gains[0], 10 * gains[1]], tolerance=sp.Rational(1, 2))

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, Equation, Finding, Property, claim
+from navsym.claims import CERTIFIED, PROVED, Equation, Finding, Property, claim
 from navsym.models.inertial import EARTH, MU
 from navsym.observability.splits import exact_inverse, to_lowest_terms
 from navsym_papers.joint_correction.section1_systems import coefficients_of_polynomial, p, polynomial_of
@@ -187,6 +187,7 @@ def coupled_system_is_stable_inside():
         Finding(
             found,
             "no crossing of the axis, Routh's table at one point of every region",
+            PROVED,
             scope="all lambda_c > 0, all real kappa",
             evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}",
         ),
@@ -268,7 +269,9 @@ def link_removed_by_the_split():
     free = F - K * H.subs(kappa, 0)
     repaired = L * (F - to_lowest_terms(back * L_0 * K) * H) * back
     return Equation(
-        [(p + lam) ** 6, *(L_0 * free * back_0)], [polynomial_of(free), *to_lowest_terms(sp.Matrix(repaired))]
+        [(p + lam) ** 6, *(L_0 * free * back_0)],
+        [polynomial_of(free), *to_lowest_terms(sp.Matrix(repaired))],
+        nonzero=(1 - kappa**2,),
     )
 
 
@@ -374,7 +377,7 @@ def position_only_block(gains: tuple[sp.Expr, ...]) -> sp.Matrix:
 
 @claim("3.situations.position_only")
 def position_only():
-    """Only position: four gains in closed form give (p + lambda_h)^4 on y_1, y_2, x_1, x_2.
+    """Only position, mu^2 left out: four gains in closed form give (p + lambda_h)^4 on y_1, y_2, x_1, x_2.
 
     They are 4 l, 6 l^2 - 1, 4 l - 4 l^3, 6 l^2 - l^4 - 1 with l = lambda_h.
     """

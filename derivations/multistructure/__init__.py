@@ -4,8 +4,8 @@ The files follow the paper: error models (1)-(3), the jump model (4)-(6) with (1
 (7)-(11), moments (12)-(13), the Gaussian step (15)-(18), the pulsating filters, the polygaussian filter
 (19)-(21). Recurrences for densities are total probability and Bayes' rule: they are decided on finite-state
 analogues with free symbols for every probability (:mod:`navsym_papers.multistructure.finite`), where integrals
-are sums, for any number of modes by induction (:mod:`navsym_papers.multistructure.any_number`), and again for Gaussian
-families. Words are decided by counting, by one exact example, or by an integral in balls.
+are sums, and again for Gaussian families: for the numbers of modes and values that each title names. Words are
+decided by counting, by one exact example, or by an integral in balls.
 
 ``conditions`` has what stands in words between the equations; ``forgetting`` goes beyond the paper: how wrong the
 probabilities of the modes can be, and for how long.
@@ -29,5 +29,24 @@ PAPER = Paper(
     definitions={
         "4": "the switching state model itself: matrices A, G and the mode I(k) are given",
         "6": "the switching measurement model itself; it defines H, V and R",
+    },
+    beside=(
+        "1.inertial 1.nonlinear 2.drift.polar 2.growth* 3.time 4.type 6.markov 8.correct 8.definition 8.posterior "
+        "8.predict 10.definition 11.form 12.optimal 13.sequences 14.follows 15.gaussian 17.cost 17.memory "
+        "17.suboptimal 18.next 19.count 20.rho 21.mixture 21.optimal"
+    ),
+    remarks=(
+        "1.arguments 2.form 2.drift.across 2.drift.equation 3.inertial 5.prediction 6.gaussian 8.joseph 11.parts "
+        "12.selection 13.densities 13.every 17.first 17.fold 17.same 21.prior 21.start K.second K.series near.* "
+        "accumulate.all"
+    ),
+    beyond="10.forgets* 10.error* 17.error* K.exact K.fold K.longer",
+    left_out={
+        "(18), exponent: v^T/(2D) v": "a division by a matrix, read as the inverse",
+        "unlike existing methods": "a comparison without a method named",
+        "(8) to (21) for any number of modes and values": "claimed for the numbers that each title names",
+        "below (4): W(k)": "its covariance is not printed",
+        "the scan lost dots over S1 and S2 in (3)": "damage that no formula below depends on",
+        "below (21): the polygaussian filter with I N_c Gaussians": "its weights of pairs are not printed",
     },
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import REFUTED, Equation, Finding, Property, claim
+from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Property, claim
 from navsym_papers.multistructure import model
 
 RECKONING = model.dead_reckoning()
@@ -28,35 +28,24 @@ def nonlinear():
         derived=Finding(
             bool(curvature != 0),
             "second derivative at an exact point",
+            PROVED,
             scope="course and log on a sphere",
             evidence=f"d2S/dK2 = {curvature} at the equator, heading north at unit speed",
         ),
     )
 
 
-@claim(
-    "1.arguments",
-    expect=REFUTED,
-    slip="paper",
-    reason="the rate of the position error also depends on the readings: the same coordinates, position error and "
-    "sensor error give another rate at another speed; by hand: a course error alone, heading north, makes the "
-    "eastern rate v dK/R: twice the speed, twice the rate",
-)
-def arguments():
-    """(1): S is a function of the reckoned coordinates, their errors and the sensor errors alone."""
-    other = sp.symbols("v_y' v_x' K'", real=True)
-    changed = S.subs(dict(zip((model.vy, model.vx, model.heading), other, strict=True)), simultaneous=True)
-    return Equation(printed=changed, derived=S, box=SPHERE)
-
-
-@claim("1.arguments*", corrects="1.arguments")
+@claim("1.arguments")
 def arguments_corrected():
     """(1): S is a function of coordinates, their errors, sensor errors and readings, and of nothing else."""
     known = {*RECKONING.reckoned, *RECKONING.errors, *RECKONING.sensor_errors, *RECKONING.readings, model.radius}
     return Property(
         printed=True,
         derived=Finding(
-            S.free_symbols <= known, "free symbols of the derived right side", scope="course and log on a sphere"
+            S.free_symbols <= known,
+            "free symbols of the derived right side",
+            PROVED,
+            scope="course and log on a sphere",
         ),
     )
 
@@ -116,27 +105,14 @@ def unsteady():
         derived=Finding(
             all(bool(slope != 0) for slope in slopes),
             "derivative by latitude at an exact point",
+            PROVED,
             scope="course and log on a sphere",
             evidence=f"dS1/dphi = {slopes[0]}, dS2/dphi = {slopes[1]} at 45 degrees, heading east",
         ),
     )
 
 
-@claim(
-    "2.form",
-    expect=REFUTED,
-    slip="paper",
-    reason="the rate of longitude contains the latitude, so the longitude error is fed by the latitude error; only "
-    "the latitude equation is free of the position error; by hand: due east at 60 degrees, reckoned as 59: 1/cos is "
-    "2.00 against 1.94",
-)
-def without_feedback():
-    """(2): with course and log the rate of the position error does not contain the position error."""
-    nothing = dict.fromkeys(RECKONING.errors, 0)
-    return Equation(printed=S.subs(nothing), derived=S, box=SPHERE)
-
-
-@claim("2.form*", corrects="2.form")
+@claim("2.form")
 def feedback():
     """(2): the latitude error obeys (2); to first order the longitude error adds only a latitude term."""
     S1, S2 = RECKONING.linear_parts()
@@ -211,6 +187,7 @@ def inertial_is_nonlinear():
         derived=Finding(
             (int(rate.subs(at_rest)), bool(curvature != 0)),
             "value, second derivative at a point",
+            PROVED,
             scope="one horizontal axis, a tilted platform",
             evidence=f"d2S/dbeta2 = {curvature} at f = 1",
         ),
@@ -226,26 +203,34 @@ def inertial_linearised():
     return Equation(printed=df + gravity * tilt, derived=linear)
 
 
-@claim("2.growth.every")
-def every_sensor_error_grows():
-    """Below (2): with course and log every constant sensor error (speeds, course, height) gives a growing one.
+def latitude_rates(heading):
+    """Rates of the latitude error per constant sensor error at unit speed and one heading, radius 1, height 0."""
+    point = {model.heading: heading, model.vy: 1, model.vx: 0, model.height: 0, model.radius: 1}
+    return [sp.expand(entry.subs(point)) for entry in RECKONING.linear_parts()[1].row(0)]
 
-    North-east at unit speed from 45 degrees: each column of S2 is a constant rate that is not zero.
-    """
-    _, S2 = RECKONING.linear_parts()
-    point = {
-        model.latitude: sp.pi / 4,
-        model.heading: sp.pi / 4,
-        model.vy: 1,
-        model.vx: 0,
-        model.height: 0,
-        model.radius: 1,
-    }
-    rates = tuple(any(bool(entry.subs(point) != 0) for entry in S2.col(k)) for k in range(S2.cols))
-    return Property(
-        printed=(True,) * 4,
-        derived=Finding(rates, "columns of S2 at an exact point", scope="course and log on a sphere, one motion"),
-    )
+
+@claim(
+    "2.growth.every",
+    expect=REFUTED,
+    slip="paper",
+    reason="true on straight courses; on a circle the rate turns with the course, its mean is zero, the error comes "
+    "back; by hand: the integral of cos over a whole turn is 0",
+)
+def every_sensor_error_grows_on_every_course():
+    """Below (2), for every course: after a turn at constant rate a constant sensor error is left in the latitude."""
+    # cos and sin of the course, from the rates due north and due east; their integrals over a turn
+    over_turn = [
+        north * (sp.sin(2 * sp.pi) - sp.sin(0)) - east * (sp.cos(2 * sp.pi) - sp.cos(0))
+        for north, east in zip(latitude_rates(sp.Integer(0)), latitude_rates(sp.pi / 2), strict=True)
+    ]
+    return Bound(printed=sum(value**2 for value in over_turn), relation=">", derived=sp.Integer(0))
+
+
+@claim("2.growth.every*", corrects="2.growth.every")
+def every_sensor_error_grows_on_a_straight_course():
+    """Below (2): north-east at constant speed each constant sensor error gives latitude a constant rate, not zero."""
+    half = sp.sqrt(2) / 2
+    return Equation(printed=[half, -half, -half, -half], derived=latitude_rates(sp.pi / 4))
 
 
 t, drift = sp.symbols("t epsilon_p", real=True)

@@ -48,7 +48,7 @@ def kappa() -> sp.Expr:
 
 @claim("10.forgets")
 def modes_are_forgotten():
-    """(10), two modes: an error of the log-odds is multiplied by kappa less a square over a positive number.
+    """(10) with rho^i, two modes: an error of the log-odds is multiplied by kappa less a square over a positive number.
 
     For p11 p22 >= p12 p21 the multiplier lies between 0 and kappa < 1; else the modes change places, kappa its size.
     """
@@ -58,20 +58,13 @@ def modes_are_forgotten():
 
 @claim("10.forgets.sharp")
 def the_bound_is_reached():
-    """(10), two modes: at the odds sqrt(p12 p22/(p11 p21)) the multiplier is kappa itself: no bound is smaller."""
+    """(10) with rho^i, two modes: at the odds sqrt(p12 p22/(p11 p21)) the multiplier is kappa: no bound is smaller."""
     return Equation(kappa(), amplification(CHAIN).subs(x, b * d / (a * c)))
-
-
-@claim("10.forgets.measurements")
-def whatever_is_measured():
-    """(10), two modes: the multiplier does not depend on the likelihoods rho^1 and rho^2."""
-    multiplier = amplification(CHAIN)
-    return Equation([sp.Integer(0)] * 2, [multiplier.diff(rho1), multiplier.diff(rho2)])
 
 
 @claim("10.forgets.cases")
 def the_three_chains():
-    """kappa is 0 under (14), 1 - 2 s for a symmetric chain that changes with probability s < 1/2, and 1 under (19)."""
+    """With rho^i kappa is 0 under (14), 1 - 2 s for a symmetric chain of changes s < 1/2, and 1 under (19)."""
     first, change = sp.symbols("p s", positive=True)
     chains = [
         ((first, first), (1 - first, 1 - first)),
@@ -110,7 +103,7 @@ def the_worst_probability():
 
 @claim("10.error.steady")
 def errors_do_not_pile_up():
-    """(10), two modes: an error of log-odds of 2 c/(1 - kappa) stays where it is; from zero it never gets there.
+    """(10) with rho^i, two modes: an error of log-odds of 2 c/(1 - kappa) stays; from zero it never gets there.
 
     A step multiplies by kappa and adds at most 2 c: what is missing to the bound is multiplied by kappa, too.
     """

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from navsym.claims import REFUTED, Equation, Finding, Property, claim
+from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
 from navsym.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
 from navsym.multimodel.schemes import scheme
 from navsym_papers.multistructure import finite
@@ -106,22 +106,7 @@ def mixture():
     return Equation(printed=printed, derived=derived)
 
 
-@claim(
-    "21.start",
-    expect=REFUTED,
-    slip="paper",
-    reason="g^i(0) is defined as f[i / Y_0^0], after the measurement Y(0); the prior p^i is what stands before it, "
-    "so either the measurements begin at step 1 or g^i(0) needs Bayes' rule; by hand: p = (1/2, 1/2) and "
-    "likelihoods 3 : 1 make g(0) = (3/4, 1/4)",
-)
-def start_printed():
-    """Below (21): the initial condition is g^i(0) = p^i, with measurements from step 0 on."""
-    p, rho0 = finite.distribution("p", 2), finite.free("rho", 2)
-    given = [p[i] * rho0[i] / sum(p[j] * rho0[j] for j in (0, 1)) for i in (0, 1)]
-    return Equation(printed=p, derived=given, box={p[0]: (0, 1)})
-
-
-@claim("21.start*", corrects="21.start")
+@claim("21.start")
 def start():
     """Below (21): g^i(0) = p^i rho^i(0) / sum; equal to p^i when step 0 has no measurement (two to four modes)."""
     printed, derived = [], []
@@ -165,7 +150,7 @@ def living_sequences():
     alive = tuple(sum(1 for leaf in step.leaves if sum(leaf.weights) > 0) for step in exact)
     return Property(
         printed=(3, 3, 3),
-        derived=Finding(alive, "leaves of positive weight counted", scope="one model, I = 3, k = 1..3"),
+        derived=Finding(alive, "leaves of positive weight counted", PROVED, scope="one model, I = 3, k = 1..3"),
     )
 
 
@@ -179,7 +164,9 @@ def optimal():
         equal = equal and sorted(map(gaussian, ours.leaves)) == sorted(map(gaussian, living))
     return Property(
         printed=True,
-        derived=Finding(equal, "Gaussians of both compared as rationals", scope="one model, I = 3, three steps"),
+        derived=Finding(
+            equal, "Gaussians of both compared as rationals", PROVED, scope="one model, I = 3, three steps"
+        ),
     )
 
 
@@ -196,6 +183,7 @@ def prior():
         derived=Finding(
             tuple(len(different_gaussians(L)) for L in (1, 2, 3)),
             "different Gaussians of the exact tree counted",
+            PROVED,
             scope="two modes, L = 1..3, one step",
         ),
     )

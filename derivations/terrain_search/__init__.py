@@ -34,4 +34,22 @@ PAPER = Paper(
         "5": "the estimate is defined as the grid point of the smallest criterion",
         "7": "the estimate is defined as the grid point of the smallest criterion",
     },
+    beside=(
+        "2.c* 6.time 9.angle 9.crossing 9.sum 10.weights 10.minimum 10.equal* 10.informative 11.several 13.sign* "
+        "13.same"
+    ),
+    remarks=(
+        "1.height 6.rest 9.family 9.small 10.after 10.before 10.sufficient 10.unique 10.flat 11.beta 12.linear* "
+        "bias.mirror bias.only_way bias.units cost.experiment middle.trace noise roots.both roots.values "
+        "roots.range roots.gram roots.solvable flat mean.* interval.half interval.whole sigma.mean sigma.table "
+        "table.bias* table.grid* table.percent table.runs* table.quantisation table.acceleration*"
+    ),
+    beyond="joint.* centre sequential.* 14.centre halves acceleration offset*",
+    causes={"13.sign0": "13.Ay0"},
+    left_out={
+        "sigma over n - 1": "a convention; about a known truth n makes the mean square unbiased",
+        "accuracy close to that of the joint search": "by table 1 only (table.close)",
+        "the editors' questions in the manuscript": "no statements of the authors",
+        "the index of the velocity step in (8)": "illegible in the copy",
+    },
 )

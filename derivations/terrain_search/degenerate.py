@@ -107,7 +107,7 @@ def quadratic_points(count: int) -> list:
 
 @claim("joint.quadratic")
 def quadratic_ground_is_blind():
-    """Over quadratic ground, flown straight at constant speed, the error R g_k along the contours is never seen.
+    """Over quadratic ground, flown straight and evenly, the error R g_k along the contours is not seen to first order.
 
     The slopes b + k w change linearly, so that R g_k is itself an error of position R b and velocity R w.
     """

@@ -6,9 +6,11 @@ G c + M1 v = b0, M1 c + M2 v = b1. The first stage finds c* = G^-1 b0, the secon
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import sympy as sp
 
-from navsym.claims import REFUTED, Equation, claim
+from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
 from navsym_papers.terrain_search.model import free_motion, inverse, slopes, symmetric
 
 G, M1, M2 = symmetric("G"), symmetric("M"), symmetric("N")
@@ -118,6 +120,27 @@ def sequential_normal(t):
     matrix = M2 - 2 * t * M1 + t**2 * G
     right = (M2 - M1 * centre() - t * (M1 - G * centre())) * v
     return matrix, right
+
+
+def least_criteria(start: Fraction, velocity: Fraction) -> tuple[Fraction, Fraction]:
+    """Least (6) about t_G of (10) and least (4), two measurements over ground of slope one, all grids -1, 0, 1."""
+    grid, times = (-1, 0, 1), (0, 1)
+    error = [start + velocity * k for k in times]
+    joint = min(sum((e - i - w * k) ** 2 for k, e in zip(times, error, strict=True)) for i in grid for w in grid)
+    coarse = min(grid, key=lambda i: sum((e - i) ** 2 for e in error))
+    turn = Fraction(sum(times), len(times))  # equal slopes
+    second = (sum((e - coarse - w * (k - turn)) ** 2 for k, e in zip(times, error, strict=True)) for w in grid)
+    return min(second), joint
+
+
+@claim("sequential.below")
+def sequential_search_may_fit_better():
+    """Least (6) may be below least (4) on one grid: here 0 and 1/2, since (6) turns about t_G, off the grid of (4)."""
+    found = least_criteria(Fraction(-1, 2), Fraction(1))
+    scope = "heights h(x) = x, n = 1, steps of one, errors -1/2 of the position and 1 of the velocity"
+    return Property(
+        printed=(Fraction(0), Fraction(1, 2)), derived=Finding(found, "all hypotheses counted", PROVED, scope=scope)
+    )
 
 
 @claim("sequential.shrinks")

@@ -8,7 +8,7 @@ from itertools import pairwise
 import flint
 import sympy as sp
 
-from navsym.claims import CERTIFIED, REFUTED, Claim, Equation, Finding, Property, claim
+from navsym.claims import CERTIFIED, PROVED, REFUTED, Claim, Equation, Finding, Property, claim
 
 RADIUS = Fraction(6371000)
 TAU = Fraction(1, 5)
@@ -32,39 +32,23 @@ def three_parts_fill_the_run():
     parts = ((0, True, 1000, False), (1000, True, 2080, True), (2080, False, 3600, True))
     meets = all(left[2] == right[0] and left[3] != right[1] for left, right in pairwise(parts))
     found = (parts[0][0], parts[-1][2], meets)
-    return Property(printed=(0, 3600, True), derived=Finding(found, "ends of the parts"))
+    return Property(printed=(0, 3600, True), derived=Finding(found, "ends of the parts", PROVED))
 
 
-def heading_jump(argument: sp.Expr) -> sp.Expr:
-    """Heading just after the start of the yawing part minus heading before it, degrees."""
-    return 5 * sp.cos(argument)
-
-
-@claim(
-    "experiment.heading",
-    expect=REFUTED,
-    slip="paper",
-    reason="2 pi 1000/360 is not an odd multiple of pi/2: the heading jumps by 0.87 degrees when yawing starts and "
-    "ends, the northern speed by 1.1 m/s, which no ship and no polynomial does; by hand: 1000/360 turns are 280 "
-    "degrees more than two, and 5 cos(280 degrees) = 0.87",
-)
-def heading_printed():
-    """The printed heading, 45 + 5 cos(2 pi t/T) degrees, starts from the straight course at 1000 s."""
-    return Equation(printed=45 + heading_jump(2 * sp.pi * 1000 / 360), derived=sp.Integer(45))
-
-
-@claim("experiment.heading*", corrects="experiment.heading")
+@claim("experiment.heading")
 def heading():
-    """The heading 45 + 5 sin(2 pi (t - 1000)/T) degrees is 45 degrees at both ends of the yawing part."""
-    ends = [45 + 5 * sp.sin(2 * sp.pi * (t - 1000) / 360) for t in (1000, 2080)]
-    return Equation(printed=ends, derived=[sp.Integer(45)] * 2)
+    """The printed heading leaves the straight course by a jump of 0.87 degrees at 1000 and at 2080 s: three periods."""
+    jumps = [5 * sp.cos(2 * sp.pi * sp.Integer(t) / 360) for t in (1000, 2080)]
+    return Equation(printed=[5 * sp.cos(14 * sp.pi / 9)] * 2 + [3], derived=[*jumps, sp.Rational(2080 - 1000, 360)])
 
 
 @claim("experiment.stop")
 def tuning_stops_at_a_step():
     """Tuning stops at 168.8 s, a whole number of steps of 0.2 s."""
     steps = Fraction("168.8") / TAU
-    return Property(printed=True, derived=Finding(steps.denominator == 1, "exact division", evidence=f"{steps} steps"))
+    return Property(
+        printed=True, derived=Finding(steps.denominator == 1, "exact division", PROVED, evidence=f"{steps} steps")
+    )
 
 
 # -- printed errors of position ------------------------------------------------------------------------
@@ -135,7 +119,7 @@ UNITS = {"m": (1, 0), "m/s": (1, -1), "m/s^2": (1, -2)}
 
 def rate(unit: tuple[int, int]) -> Finding:
     """Unit of the time derivative of a quantity."""
-    return Finding((unit[0], unit[1] - 1), "unit of a time derivative, exponents of metre and second")
+    return Finding((unit[0], unit[1] - 1), "unit of a time derivative, exponents of metre and second", PROVED)
 
 
 @claim(

@@ -232,7 +232,10 @@ MOTIONS = tuple(
 
 @claim("limit.yawing", expect=CERTIFIED)
 def yawing_of_the_experiment():
-    """At 100 m/s, as yawing begins, nothing guarantees V_2 better than 0.86 m/s if errors are any within sqrt(3) m."""
+    """Known only |dV_2/dt| <= 0.108 m/s^2, as continuous yawing begins at 100 m/s: V_2 no better than 0.86 m/s.
+
+    Errors are any within sqrt(3) m; the greatest acceleration of that heading is 0.117 m/s^2.
+    """
     yaw_rate = 5 * sp.pi / 180 * 2 * sp.pi / 360
     acceleration = 100 * sp.sin(sp.pi / 4) * yaw_rate
     least = QUESTIONS[0].best.subs({sigma: sp.sqrt(3), M: acceleration})

@@ -7,7 +7,7 @@ from math import comb
 
 import sympy as sp
 
-from navsym.claims import REFUTED, Equation, Finding, Property, claim
+from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
 from navsym_papers.trajectory import model
 
 rho, tau = sp.symbols("rho tau", positive=True)
@@ -155,21 +155,21 @@ def transition_is_triangular():
     """Phi_f is upper triangular with integer elements."""
     Phi = transitions()
     holds = all(Phi[i, j].is_Integer and (j >= i or Phi[i, j] == 0) for i in range(LARGEST) for j in range(LARGEST))
-    return Property(printed=True, derived=Finding(holds, "exact matrix", scope=SCOPE))
+    return Property(printed=True, derived=Finding(holds, "exact matrix", PROVED, scope=SCOPE))
 
 
 @claim("6.Phif.diagonal")
 def transition_diagonal():
     """Phi_f,ii = 1."""
     found = tuple(int(transitions()[i, i]) for i in range(LARGEST))
-    return Property(printed=(1,) * LARGEST, derived=Finding(found, "exact matrix", scope=SCOPE))
+    return Property(printed=(1,) * LARGEST, derived=Finding(found, "exact matrix", PROVED, scope=SCOPE))
 
 
 @claim("6.Phif.first_row")
 def transition_first_row():
     """Phi_f,1j = 1."""
     found = tuple(int(x) for x in transitions()[0, :])
-    return Property(printed=(1,) * LARGEST, derived=Finding(found, "exact matrix", scope=SCOPE))
+    return Property(printed=(1,) * LARGEST, derived=Finding(found, "exact matrix", PROVED, scope=SCOPE))
 
 
 def recurrence_holds(row_step: int) -> bool:
@@ -194,13 +194,13 @@ def recurrence_holds(row_step: int) -> bool:
 )
 def recurrence_printed():
     """Phi_(i+i, j+1) = Phi_ij + Phi_(i+1)j, as it came out of the scan."""
-    return Property(printed=True, derived=Finding(recurrence_holds(0), "exact matrix", scope=SCOPE))
+    return Property(printed=True, derived=Finding(recurrence_holds(0), "exact matrix", PROVED, scope=SCOPE))
 
 
 @claim("6.Phif.recurrence*", corrects="6.Phif.recurrence")
 def recurrence():
     """Phi_(i+1, j+1) = Phi_ij + Phi_(i+1)j: Pascal's triangle."""
-    return Property(printed=True, derived=Finding(recurrence_holds(1), "exact matrix", scope=SCOPE))
+    return Property(printed=True, derived=Finding(recurrence_holds(1), "exact matrix", PROVED, scope=SCOPE))
 
 
 def reached(allowed) -> int:
@@ -230,14 +230,14 @@ def reached(allowed) -> int:
 )
 def recurrence_range_printed():
     """The recurrence for i >= j determines all 10 elements above the diagonal (n = 5)."""
-    found = Finding(reached(lambda i, j: i >= j), "closure of the rules", scope="n = 5")
+    found = Finding(reached(lambda i, j: i >= j), "closure of the rules", PROVED, scope="n = 5")
     return Property(printed=10, derived=found)
 
 
 @claim("6.Phif.range*", corrects="6.Phif.range")
 def recurrence_range():
     """The recurrence for i <= j determines all 10 elements above the diagonal (n = 5)."""
-    found = Finding(reached(lambda i, j: i <= j), "closure of the rules", scope="n = 5")
+    found = Finding(reached(lambda i, j: i <= j), "closure of the rules", PROVED, scope="n = 5")
     return Property(printed=10, derived=found)
 
 
@@ -246,7 +246,7 @@ def observability_elements():
     """N_f,ij = i^(j-1)."""
     found = tuple(int(x) for x in N_f(16))
     printed = tuple(i**j for i in range(1, 17) for j in range(16))
-    return Property(printed=printed, derived=Finding(found, "exact matrix", scope="n = 16"))
+    return Property(printed=printed, derived=Finding(found, "exact matrix", PROVED, scope="n = 16"))
 
 
 @claim("6.Nf.row_step")

@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import cache
 from itertools import pairwise
 
-from navsym.claims import CERTIFIED, REFUTED, Finding, Property, claim
+from navsym.claims import CERTIFIED, Finding, Property, claim
 from navsym.trajectory.conditioning import Enclosure
 from navsym_papers.trajectory.table import COLUMNS, ORDERS, PRINTED, STEPS, true_value
 
@@ -89,27 +89,3 @@ def the_first_stage_alone_can_worsen():
     )
     expected = ((10, "tau1"), (19, "tau0.2"), (19, "tau1"), (20, "tau0.2"), (20, "tau1"))
     return Property(printed=expected, derived=Finding(worse, METHOD, CERTIFIED, scope="n and tau of the table"))
-
-
-def first_stage_at_twenty() -> Finding:
-    before, after = conditioning(20, "Np", "tau0.2"), conditioning(20, "Nf", "tau0.2")
-    ratio = f"mu(N_f)/mu(N_p) = {float(after.lower / before.upper):.4g}"
-    return Finding(lowered(before, after), METHOD, CERTIFIED, scope="n = 20, tau = 0.2 s", evidence=ratio)
-
-
-@claim(
-    "6.first_stage",
-    expect=REFUTED,
-    slip="paper",
-    reason="both printed numbers are rounding noise; with the digits of the table one would keep a first stage that "
-    "in truth makes the condition 49,000 times worse",
-)
-def the_table_lets_the_first_stage_look_useful():
-    """By the printed digits the first stage alone lowers the condition number for n = 20, tau = 0.2 s."""
-    return Property(printed=printed_lowered(20, "tau0.2"), derived=first_stage_at_twenty())
-
-
-@claim("6.first_stage*", expect=CERTIFIED, corrects="6.first_stage")
-def the_first_stage_worsens_at_twenty():
-    """For n = 20, tau = 0.2 s the first stage alone raises the condition number."""
-    return Property(printed=False, derived=first_stage_at_twenty())

@@ -9,7 +9,7 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import lru_cache
 
-from navsym.claims import CERTIFIED, REFUTED, Claim, Finding, Property
+from navsym.claims import CERTIFIED, REFUTED, UNDECIDED, Claim, Finding, Property
 from navsym.models.earth import observability_rows, power_rows
 from navsym.trajectory.conditioning import Enclosure, certify_condition, condition_number, state_condition
 
@@ -60,10 +60,10 @@ def true_value(n: int, step: str, column: str, digits: int = 30) -> Enclosure:
 def in_printed_format(found: Enclosure, printed: str) -> str:
     """The enclosure rounded as the printed numeral is; 'undecided' when its ends round differently."""
     if "e" in printed:
-        return found.rounded(5) or "undecided"
+        return found.rounded(5) or UNDECIDED
     places = len(printed.split(".")[1])
     low, high = (round_places(x, places) for x in (found.lower, found.upper))
-    return low if low == high else "undecided"
+    return low if low == high else UNDECIDED
 
 
 def round_places(x: Fraction, places: int) -> str:
@@ -114,8 +114,8 @@ def entry_claim(n: int, step: str, column: str, printed: str, corrects: bool, wr
         expect=REFUTED if wrong else CERTIFIED,
         corrects=number if corrects else None,
         slip="paper" if wrong else None,
-        reason="rounding: the ratio exceeds what double precision resolves, the smallest singular value is "
-        "noise, and entries that must be equal differ; by hand: N_f has no tau in it, yet the rows of 0.2 s and 1 s "
+        reason="the paper calls them distorted itself: ratio exceeds what doubles resolve, the least singular value "
+        "is noise, and entries that must be equal differ; by hand: N_f has no tau in it, yet the rows of 0.2 s and 1 s "
         "differ"
         if wrong
         else "",

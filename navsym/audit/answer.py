@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.answers import Answer
 from navsym.core.errors import ExpressionSyntaxError, NavsymError, ShapeError
+from navsym.language.files import name_file
 from navsym.language.names import expect_keys, join_place, quote
 from navsym.language.schema import as_table, require_distinct, require_key
 from navsym.language.tomlfile import read_toml
@@ -231,12 +232,20 @@ def audit_function(path: Path, function: str) -> Audit:
     return Audit((describe_file(source.unit.file, [source]),), (), tuple(list_formulas(source)))
 
 
-def audit_specification(path: Path) -> Audit:
-    """The verdicts on the questions of a file."""
+def audit_specification(path: Path, only: str | None = None) -> Audit:
+    """The verdicts on the questions of a file, or on the one of a name."""
+    sources, questions = read_specification(path)
+    chosen = [question for question in questions if only in (None, question.name)]
+    answers = tuple(answer_question(question, sources) for question in chosen)
+    files = {source.unit.file: [s for s in sources if s.unit.file == source.unit.file] for source in sources}
+    return Audit(tuple(describe_file(file, group) for file, group in files.items()), answers)
+
+
+def read_specification(path: Path) -> tuple[list[Source], list[Question]]:
+    """The sources and questions of a file."""
     from navsym.audit.names import Names
     from navsym.audit.questions import read_question
     from navsym.audit.sources import read_source
-    from navsym.language.files import name_file
 
     document, where = read_toml(path), name_file(path)
     expect_keys(document, ("code", "question"), where)
@@ -252,9 +261,7 @@ def audit_specification(path: Path) -> Audit:
         read_question(block, by_name, names, path.parent, join_place(place, i)) for i, block in enumerate(blocks)
     ]
     require_distinct((question.name for question in questions), place)
-    answers = tuple(answer_question(question, sources) for question in questions)
-    files = {source.unit.file: [s for s in sources if s.unit.file == source.unit.file] for source in sources}
-    return Audit(tuple(describe_file(file, group) for file, group in files.items()), answers)
+    return sources, questions
 
 
 def read_blocks(document: Mapping[str, Any], key: str, where: str) -> list[Any]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, Unit
+from navsym.audit.functions import METHODS
 from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, parse_source, read_decimal, text_of
 
 RULES = {"c": Rules(integer=True), "cpp": Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))}
@@ -70,9 +71,23 @@ class Reader(SourceReader):
                 self.read_macro(node)
             elif node.type == "preproc_function_def":
                 self.unit.macros[text_of(field_of(node, "name"))] = "a macro with arguments"
+            elif node.type == "enumerator_list":
+                self.read_enumerators(node)
             elif node.type == "declaration" and is_constant(node):
                 self.unit.constants += [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
         self.unit.constants.sort(key=lambda statement: statement.span)
+
+    def read_enumerators(self, node: Any) -> None:
+        """The names of an enumeration, each one more than the one before."""
+        previous: Part = self.part("number", node, -1, "int")
+        one = self.part("number", node, 1, "int")
+        for child in named(node):
+            if child.type != "enumerator":
+                return
+            given = field_of(child, "value")
+            previous = self.expression(given) if given is not None else self.part("op", child, "+", previous, one)
+            name = text_of(field_of(child, "name"))
+            self.unit.constants.append(self.part("declare", child, name, "int", (), previous, False))
 
     def read_macro(self, node: Any) -> None:
         """An object-like macro; a second definition refuses the name."""
@@ -81,6 +96,8 @@ class Reader(SourceReader):
         meaning: Part | str = "a macro without a value" if not body else read_c_expression(body, self.unit)
         if isinstance(meaning, Part) and meaning.kind == "refused":
             meaning = "a macro that is no expression"
+        if isinstance(meaning, Part) and meaning.kind not in ("number", "name", "call", "minus") and body[0] != "(":
+            meaning = "a macro whose operators have no parentheses around them"
         self.unit.macros[name] = "a macro with two definitions" if name in self.unit.macros else meaning
 
     def read_function(self, node: Any) -> None:
@@ -211,14 +228,25 @@ class Reader(SourceReader):
             if value is not None and value.type == "argument_list":
                 items = tuple(map(self.expression, named(value)))
                 start = self.part("list", value, items) if len(items) > 1 else items[0] if items else None
+            elif value is not None and value.type == "initializer_list" and sizes is None and len(named(value)) == 1:
+                start = self.expression(named(value)[0])  # Vector3f v{a + b}
             else:
                 start = None if value is None else self.expression(value)
             if inner.type == "function_declarator":  # Vector3f v(a, b, c), which the grammar takes for a function
-                items = tuple(map(self.expression, named(field_of(inner, "parameters"))))
+                items = tuple(map(self.taken_for_parameter, named(field_of(inner, "parameters"))))
                 name, start = text_of(field_of(inner, "declarator")), self.part("list", inner, items)
-            is_link = shared and sizes is None
+                if shape is None:  # MatrixXd K(n, m), or the declaration of a function
+                    done.append(self.unread(child, "a declaration with parentheses of a type without known sizes"))
+                    continue
+            is_link = shared and sizes is None and inner.type != "function_declarator"
             done.append(self.part("declare", child, name, number_of(kind), shape, start, is_link))
         return tuple(done)
+
+    def taken_for_parameter(self, node: Any) -> Part:
+        """An expression in parentheses behind a declared name: a name alone looks like the type of a parameter."""
+        kind = field_of(node, "type") if node.type == "parameter_declaration" else None
+        is_name = kind is not None and kind.type == "type_identifier" and text_of(kind) == text_of(node)
+        return self.part("name", node, text_of(node)) if is_name else self.expression(node)
 
     def effect(self, node: Any) -> tuple[Part, ...]:
         """What an expression that stands alone writes."""
@@ -310,6 +338,8 @@ class Reader(SourceReader):
                     return self.part("address", node, pointed)
                 if pointed.kind == "name":
                     return self.part("first", node, pointed)
+                if pointed.kind == "op" and pointed.parts[0] == "+" and pointed.parts[1].kind == "name":  # *(p + k)
+                    return self.part("index", node, pointed.parts[1], (pointed.parts[2],))
         return self.refuse(node, f"an expression outside the language of audit ({node.type.replace('_', ' ')})")
 
     def number(self, node: Any) -> Part:
@@ -348,6 +378,10 @@ class Reader(SourceReader):
         arguments = tuple(map(self.expression, named(field_of(node, "arguments"))))
         if function.type == "field_expression":
             base, method = self.expression(field_of(function, "argument")), text_of(field_of(function, "field"))
+            if method in ("noalias", "eval") and not arguments:  # say how Eigen computes, not what
+                return base
+            if (block := self.block_of(node, base, method, arguments)) is not None:
+                return block
             return self.part("method", node, base, method, arguments)
         name = re.sub(r"\s", "", text_of(function))
         if function.type == "primitive_type" or (name in REAL and len(arguments) == 1):
@@ -356,9 +390,45 @@ class Reader(SourceReader):
             return self.part("cast", node, "real", arguments[0])
         if shape_of_type(name) is not None:
             return self.part("list", node, arguments)
-        if function.type in ("identifier", "qualified_identifier", "template_function", "call_expression"):
+        if found := re.fullmatch(r"\(\*(\w+)\)", name):  # (*M)(i, j)
+            name = found[1]
+        if (
+            function.type == "call_expression"
+        ):  # s.q()(0) is an entry of an accessor, M.transpose()(0, 1) one of a value
+            owner = self.expression(function)
+            if owner.kind == "name":
+                return self.part("call", node, owner.parts[0], arguments)
+            if not re.fullmatch(r"[\w.:>-]+\(\)", name) or name.removesuffix("()").split(".")[-1] in METHODS:
+                return self.part("index", node, owner, arguments)
+            return self.part("call", node, name, arguments)
+        if found or function.type in ("identifier", "qualified_identifier", "template_function"):
             return self.part("call", node, name, arguments)
         return self.refuse(node, "a call of an expression")
+
+    def entry_of_call(self, node: Any, name: str, owner: Part, arguments: tuple[Part, ...]) -> Part:
+        """``s.q()(0)`` is an entry of an accessor, ``M.transpose()(0, 1)`` one of a value."""
+        if owner.kind == "name":
+            return self.part("call", node, owner.parts[0], arguments)
+        is_accessor = re.fullmatch(r"[\w.:>-]+\(\)", name) and name.removesuffix("()").split(".")[-1] not in METHODS
+        return self.part("call", node, name, arguments) if is_accessor else self.part("index", node, owner, arguments)
+
+    def block_of(self, node: Any, base: Part, method: str, arguments: tuple[Part, ...]) -> Part | None:
+        """``M.block<p, q>(i, j)``, ``M.block(i, j, p, q)`` and the like of vectors as slices; None for others."""
+        bare = method.replace(" ", "").replace("template", "")
+        found = re.fullmatch(r"(block|segment|head|tail)(?:<([\d,]+)>)?", bare)
+        if found is None or found[1] == "tail":
+            return None
+        sizes = [self.part("number", node, int(n), "int") for n in (found[2] or "").split(",") if n]
+        starts = [*arguments]
+        if not sizes:
+            starts, sizes = starts[: len(starts) // 2], starts[len(starts) // 2 :]
+        if found[1] == "head":
+            starts, sizes = [self.part("number", node, 0, "int")], sizes
+        if not starts or len(starts) != len(sizes):
+            return None
+        ends = [self.part("op", node, "+", a, n) for a, n in zip(starts, sizes, strict=True)]
+        slices = tuple(self.part("slice", node, a, b) for a, b in zip(starts, ends, strict=True))
+        return self.part("index", node, base, slices)
 
 
 def list_commas(node: Any) -> list[Any]:

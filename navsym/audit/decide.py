@@ -240,6 +240,8 @@ def name_atoms(tree: Tree, atoms: dict[Tree, Tree]) -> Tree:
     def step(part: Tree, inner: list[Tree]) -> Tree:
         if part.head in (NUMBER, SYMBOL):
             return part
+        if part.head == POWER and inner[0].head == NUMBER and (exact := rational_value(part)) is not None:
+            return build_number(exact)
         if part.head in (SUM, PRODUCT) or (part.head == POWER and is_count(part.args[1])):
             by = {old: new for old, new in zip(parts_of(part), inner, strict=True) if old is not new}
             return replace_parts(part, by)

@@ -180,6 +180,8 @@ class Evaluator:
     def targets(self, part: Part) -> tuple[Variable, list[Index], Index]:
         """Variable, places and shape of an entry or a block."""
         if part.kind == "name":
+            if self.member_of_array(part) is not None:
+                raise Unreadable(part.line, "a member of an array as a target")
             variable = self.variable(part.parts[0])
             shape = variable.shape or ()
             return variable, [*places_of(shape)], shape
@@ -187,10 +189,15 @@ class Evaluator:
             variable = self.variable(part.parts[0].parts[0])
             is_array = bool(variable.shape) or (variable.shape is None and any(variable.cells))
             return variable, [(0,) * max(len(variable.shape or ()), 1) if is_array else ()], ()
+        if part.kind == "method" and part.parts[0].kind == "name" and part.parts[2] and self.unit.language == "cpp":
+            member = Part("name", part.line, (f"{part.parts[0].parts[0]}.{part.parts[1]}",), part.span)  # s.v(0)
+            part = Part("index", part.line, (member, part.parts[2]), part.span)
         if part.kind not in ("index", "call") and not (part.kind == "method" and part.parts[1] == "block"):
             raise Unreadable(part.line, "a target that is no entry")
         indices: list[Part] = []
         while part.kind == "index":
+            if indices and any(index.kind == "slice" for index in part.parts[1]):
+                raise Unreadable(part.line, "an index of a block")
             indices = [*part.parts[1], *indices]
             part = part.parts[0]
         if part.kind == "call":
@@ -287,6 +294,8 @@ class Evaluator:
         name = part.parts[0]
         if name not in self.frame and name in self.unit.macros:
             return self.macro(name, part.line)
+        if (member := self.member_of_array(part)) is not None:
+            return self.component(member)
         if name not in self.frame and name not in self.file_names and name in CONSTANTS:
             return Scalar(CONSTANTS[name])
         variable = self.variable(name)
@@ -365,7 +374,7 @@ class Evaluator:
         try:
             variable, places, shape = self.targets(part)
         except Unreadable:
-            base = self.value(part.parts[0]) if part.parts[0].kind in ("call", "method", "op") else None
+            base = self.value(part.parts[0]) if part.parts[0].kind in ("call", "method", "op", "index") else None
             if not isinstance(base, Array):
                 raise
             variable = Variable("", shape=base.shape, cells=dict(zip(places_of(base.shape), base.cells, strict=True)))
@@ -402,6 +411,7 @@ class Evaluator:
             base.cells.setdefault(place, self.read(base, place, value.line))
             view = Variable(name, base.number, ())
             view.cells = CellView(base, place)
+            view.views.append(base)  # a write that is not read loses the whole of it: a pointer may be moved
             return view
         raise Unreadable(statement.line, "a reference or pointer to what is no variable")
 
@@ -505,19 +515,40 @@ class Evaluator:
         is_array = base.kind != "name" or name == "T" or bool(self.variable_shape(base.parts[0]))
         if name in METHODS and is_array:
             return METHODS[name](self.value(base), [self.value(a) for a in arguments], self.unit)
+        if base.kind == "name" and self.variable_shape(base.parts[0]):
+            return self.component(part)
+        if name in METHODS:  # never an accessor: without its size nobody knows what it gives
+            raise Unreadable(part.line, f"{name} of what has no known size; declare it under [code.symbols]")
         if base.kind == "name" and self.unit.language in ("c", "cpp"):
             accessor = f"{base.parts[0]}.{name}"
             if not arguments:
-                return self.read(self.variable(f"{accessor}()"), (), part.line)
+                variable = self.variable(f"{accessor}()")
+                return self.whole_value(variable) if variable.shape else self.read(variable, (), part.line)
             if all(self.is_constant(a) for a in arguments):
                 index = Part("index", part.line, (Part("name", part.line, (accessor,)), arguments))
                 return self.entries(index)
         raise Unreadable(part.line, f"the method {name}")
 
+    def member_of_array(self, part: Part) -> Part | None:
+        """``v.x`` of a vector as the method of that name; None for a name that is no member of an array."""
+        base, dot, field = part.parts[0].rpartition(".")
+        if not dot or part.parts[0] in self.shapes or not self.variable_shape(base):
+            return None
+        return Part("method", part.line, (Part("name", part.line, (base,), part.span), field, ()), part.span)
+
+    def component(self, part: Part) -> Value:
+        """``v.x()`` of a vector of two or three, and ``M(i, j)`` in the long spellings."""
+        base, name, arguments = part.parts
+        shape = self.variable_shape(base.parts[0]) or ()
+        if name in ("x", "y", "z") and not arguments and shape in ((2,), (3,)) and "xyz".index(name) < shape[0]:
+            place = Part("number", part.line, ("xyz".index(name), "int"))
+            return self.entries(Part("index", part.line, (base, (place,)), part.span))
+        raise Unreadable(part.line, f"the method {name}")
+
     def variable_shape(self, name: str) -> Index | None:
         """The shape of a name that is known already."""
         known = self.frame.get(name) or self.file_names.get(name) or self.globals.get(name)
-        return known.shape if known else None
+        return known.shape if known else self.shapes.get(name)
 
 
 def head_of(name: str) -> str:

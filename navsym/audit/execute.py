@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from navsym.audit.evaluate import CASES, Case, Condition, Evaluator, Inputs, Reading, Returning, head_of
+from navsym.audit.evaluate import CASES, Case, CellView, Condition, Evaluator, Inputs, Reading, Returning, head_of
 from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
 from navsym.audit.functions import HARMLESS, METHODS, is_known
 from navsym.audit.values import (
@@ -21,6 +21,8 @@ from navsym.audit.values import (
     Variable,
     constant_of,
     count_cells,
+    lose,
+    lose_views,
     make_array,
     places_of,
 )
@@ -129,8 +131,8 @@ class Machine(Evaluator):
         self.reading.refused_spans.add(statement.span)
         targets: set[str] = set()
         for part in walk(statement):
-            if part.kind == "assign":
-                targets.add(self.root_name(part.parts[0]))
+            if part.kind == "assign" and not (part is statement and self.lose_entries(part, unread)):
+                targets |= self.root_names(part.parts[0])
             elif part.kind in ("declare", "for"):
                 targets.add(part.parts[0])
             elif part.kind == "unread":
@@ -139,16 +141,33 @@ class Machine(Evaluator):
                 targets |= names_in(part)
             elif part.kind in ("call", "method") and not self.is_plain(part):
                 targets |= {name for name in names_in(part) if not self.is_safe(name)}
-            if part.kind == "jump" or (part.kind == "call" and self.may_jump(part)):
+            may_leave = part.kind == "refused" and part.parts[3:] == (True,)
+            if part.kind == "jump" or may_leave or (part.kind == "call" and self.may_jump(part)):
                 self.stop(unread)
-            if part.kind == "unread" or (part.kind == "call" and not self.is_plain(part)):
+            if part.kind == "unread" or self.has_effect(part):
                 self.lose(unread)
+            if part.kind == "refused" and self.has_effect(part):
+                targets.update(part.parts[1])
+            if part.kind == "call" and self.is_closure(part.parts[0]):
+                targets |= {*self.frame}
         for name in targets:
             if name in self.frame or name not in self.file_names:
-                self.variable(name).all_unread = unread
+                lose(self.variable(name), unread)
                 self.lose_members(name, unread)
         if any(part.kind == "return" for part in walk(statement)):
             self.stop(unread)
+
+    def lose_entries(self, statement: Part, unread: Unread) -> bool:
+        """True where an assignment that is not read can only write known entries, which are unread now."""
+        try:
+            variable, places, _ = self.targets(statement.parts[0])
+        except Unreadable:
+            return False
+        if statement.parts[0].kind == "name" or variable.all_unread is not None:
+            return False
+        for place in places:
+            self.write_cell(variable, place, unread, statement)
+        return True
 
     def lose_members(self, name: str, unread: Unread) -> None:
         """The members of a structure that may have been written as a whole."""
@@ -184,13 +203,28 @@ class Machine(Evaluator):
         if part.kind == "method":
             return part.parts[1] in METHODS
         name = part.parts[0]
-        return name in self.frame or name in HARMLESS or is_known(name, self.unit.language)
+        is_entry = name in self.frame and not self.is_closure(name)
+        return is_entry or name in HARMLESS or is_known(name, self.unit.language)
 
-    def root_name(self, target: Part) -> str:
-        """The variable of a target."""
+    def is_closure(self, name: str) -> bool:
+        """True for a name that is called though its value is not read: it may hold a function that writes any name."""
+        known = self.frame.get(name) or self.globals.get(name)
+        return known is not None and known.all_unread is not None
+
+    def has_effect(self, part: Part) -> bool:
+        """True for an expression that may write more than the target of its statement."""
+        if part.kind == "refused":
+            return any(part.parts[2:])
+        return part.kind == "call" and not self.is_plain(part)
+
+    def root_names(self, target: Part) -> set[str]:
+        """The variable of a target; all names in one that is not understood."""
         while target.kind in ("index", "method", "first"):
             target = target.parts[0]
-        return str(target.parts[0])
+        if target.kind in ("name", "call"):
+            return {str(target.parts[0])}
+        refused = (part.parts[1:2] for part in walk(target) if part.kind == "refused")
+        return names_in(target).union(*(names for several in refused for names in several))
 
     def run_unread(self, why: str, names: tuple[str, ...], statement: Part) -> None:
         raise Unreadable(statement.line, why)
@@ -231,6 +265,8 @@ class Machine(Evaluator):
         result = self.value(value)
         if sign:
             result = self.combine(sign, self.value(target), result, statement.line)
+        if target.kind == "name" and self.member_of_array(target) is not None:
+            raise Unreadable(statement.line, "a member of an array as a target")
         if target.kind == "name":
             variable = self.variable(target.parts[0])
             if isinstance(result, Array) and variable.shape in (None, ()) and not variable.is_input:
@@ -273,7 +309,7 @@ class Machine(Evaluator):
     def write(self, variable: Variable, value: Value, statement: Part) -> None:
         """A whole variable."""
         if isinstance(value, Unread):
-            variable.all_unread = value
+            lose(variable, value)
             return
         variable.all_unread = None
         if isinstance(value, Array):
@@ -298,8 +334,8 @@ class Machine(Evaluator):
             number = variable.number if self.unit.rules.integer else cell.number
             cell = Scalar(cell.tree, number, statement.line, statement)
         variable.cells[place] = cell
-        for view in variable.views:
-            view.all_unread = Unread(statement.line, "a view of an array that has changed; write a copy")
+        if not isinstance(variable.cells, CellView):  # which has no cells of its own
+            lose_views(variable, Unread(statement.line, "a view of an array that has changed; write a copy"))
 
     def run_block(self, body: tuple[Part, ...], statement: Part) -> None:
         self.block(body)
@@ -324,13 +360,23 @@ class Machine(Evaluator):
             raise Returning(None)
         if self.unit.language == "python" and value.kind == "list":
             raise Returning(self.returned_tuple(value))
-        raise Returning(self.value(value))
+        try:
+            raise Returning(self.value(value))
+        except Unreadable as refusal:
+            if any(self.has_effect(p) or (p.kind == "method" and not self.is_plain(p)) for p in walk(value)):
+                raise
+            unread = Unread(refusal.line or statement.line, refusal.why)  # the end is known, the value is not
+            self.reading.refused.setdefault(unread.line, unread.why)
+            self.reading.refused_spans.add(statement.span)
+            raise Returning(unread) from None
 
     def returned_tuple(self, value: Part) -> Value:
         """A tuple: numbers as an array; arrays by their names only."""
         try:
             return self.value(value)
         except Unreadable:
+            if any(self.has_effect(p) or (p.kind == "method" and not self.is_plain(p)) for p in walk(value)):
+                raise
             return Unread(value.line, "several arrays returned; ask for them by their names")
 
     def run_do(self, call: Part, statement: Part) -> None:
@@ -340,7 +386,7 @@ class Machine(Evaluator):
             if name in ("setZero", "zero", "setIdentity", "identity", "fill", "setAll"):
                 self.reset(base, name, arguments, statement)
                 return
-        elif call.kind == "call" and call.parts[0] in HARMLESS:
+        elif call.kind == "call" and (call.parts[0] in HARMLESS or call.parts[0] in self.unit.ignored):
             return
         elif call.kind == "call" and call.parts[0] == "memset":
             self.reset(call.parts[1][0], "memset", call.parts[1][1:2], statement)
@@ -387,7 +433,7 @@ class Machine(Evaluator):
             left, right = a.tree, b.tree
             if left.head == right.head == NUMBER:
                 return COMPARE[sign](left.args[0], right.args[0])
-        elif test.kind == "name":
+        elif test.kind in ("name", "index"):
             value = self.value(test)
             exact = constant_of(value)
             if exact is not None:

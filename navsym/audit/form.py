@@ -79,6 +79,7 @@ class Unit:
     functions : by name; several of one name are overloads
     constants : declarations of the file that never change, in their order
     macros    : name -> what an object-like macro stands for; a text says why it is refused
+    ignored   : functions and macros that write nothing, as a mapping declares
     """
 
     file: str
@@ -88,6 +89,7 @@ class Unit:
     functions: dict[str, list[Function]] = field(default_factory=dict)
     constants: list[Part] = field(default_factory=list)
     macros: dict[str, Part | str] = field(default_factory=dict)
+    ignored: frozenset[str] = frozenset()
 
     def text(self, part: Part) -> str:
         """The source of a part."""

@@ -37,7 +37,7 @@ PLAIN = {
 CONSTANTS: dict[str, Tree] = dict.fromkeys(("M_PI", "math.pi", "np.pi", "numpy.pi", "pi", "M_PI_F", "PI"), PI)
 CONSTANTS |= dict.fromkeys(("M_PI_2", "M_PI_2_F"), multiply(build_number(Fraction(1, 2)), PI))
 HARMLESS = frozenset(("printf", "fprintf", "print", "assert", "disp", "static_assert", "puts"))
-PREFIX = re.compile(r"(std::|math\.|np\.|numpy\.|matrix::|Eigen::)")
+PREFIX = re.compile(r"(std::|::|math\.|np\.|numpy\.|matrix::|Eigen::)")
 MAKERS = frozenset(
     "zeros ones eye identity array asarray copy diag outer cross dot matmul norm transpose linalg.norm".split()
 )
@@ -64,7 +64,7 @@ def is_known(name: str, language: str) -> bool:
 
 
 TWO = ("pow", "atan2", "hypot")
-MAKE = re.compile(r"(\d).*::(Zero|Identity)$")
+MAKE = re.compile(r"(?:^|::)Mat(?:rix)?(?:(\d)[fd]?|<\w+,(\d+),(\d+)>|X[fd]?)::(Zero|Identity)$")
 
 
 def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Value:
@@ -89,8 +89,11 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
     if bare in ARRAYS and len(values) in (1, 2):
         return ARRAYS[bare](values, unit)
     if found := MAKE.search(name):
-        side = int(found[1])
-        return identity_array(side, side) if found[2] == "Identity" else filled((side, side), 0)
+        sides = sizes_of(values, unit) or tuple(
+            int(side) for side in (found[1] or found[2], found[1] or found[3]) if side
+        )
+        if len(sides) == 2:
+            return identity_array(*sides) if found[4] == "Identity" else filled(sides, 0)
     raise Unreadable(line, f"the function {name} with {len(values)} arguments")
 
 

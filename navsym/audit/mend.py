@@ -163,6 +163,8 @@ def right_sides(statement: Part) -> list[Part]:
 
 def right_side(statement: Part, place: tuple[int, int]) -> Part | None:
     """What a statement assigns to a place: the item of a list, or the whole right side."""
+    if statement.kind not in ("declare", "assign"):  # the argument of a call
+        return None
     value = statement.parts[3] if statement.kind == "declare" else statement.parts[2]
     if statement.kind not in ("declare", "assign") or value is None:
         return None

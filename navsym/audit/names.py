@@ -15,8 +15,9 @@ SPELLING = re.compile(r"[A-Za-z_]\w*(?:(?:\.|->|::)\w+)*(?:\(\))?(?:\s*(?:\[[\d,
 
 
 def squeeze(spelling: str) -> str:
-    """A spelling without blanks, ``->`` as it is: ``P[0, 1]`` and ``P[0,1]`` are one entry."""
-    return re.sub(r"\s", "", spelling)
+    """A spelling without blanks, ``->`` as it is: ``P[0, 1]``, ``P[0][1]`` and ``P(0, 1)`` are one entry."""
+    bare = re.sub(r"\s", "", spelling).replace("][", ",")
+    return re.sub(r"\((\d+(?:,\d+)*)\)", r"[\1]", bare)
 
 
 @dataclass(slots=True, eq=False)
@@ -26,12 +27,14 @@ class Names:
     symbols      : squeezed spelling -> name of its symbol
     spellings    : name of a symbol -> how the source writes it
     declarations : name of a symbol -> its declaration, as in [symbols]
+    inputs       : names that no source assigns, which an expression may hold though no source reads them
     """
 
     symbols: dict[str, str] = field(default_factory=dict)
     spellings: dict[str, str] = field(default_factory=dict)
     declarations: dict[str, Any] = field(default_factory=dict)
     written: dict[str, Any] = field(default_factory=dict)
+    inputs: set[str] = field(default_factory=set)
 
     def symbol(self, spelling: str) -> Tree:
         """The symbol of an input, made when it is first met."""
@@ -40,6 +43,13 @@ class Names:
             self.enter(key, self.free_name(key))
             self.spellings.setdefault(self.symbols[key], spelling)
         return build_symbol(self.symbols[key])
+
+    def twin(self, symbol: Tree) -> Tree:
+        """Another symbol of the same range, which is shown as ``x'``."""
+        name = symbol.args[0]
+        twin = self.symbol(f"{self.spellings.get(name, name)}'")
+        self.declarations[twin.args[0]] = self.declarations[name]
+        return twin
 
     def enter(self, key: str, name: str) -> None:
         """A spelling with its symbol, real unless it is declared."""
@@ -85,6 +95,8 @@ class Names:
             key = squeeze(found[0])
             if key in self.symbols:
                 return self.symbols[key]
+            if key.partition("[")[0] in self.inputs:
+                return str(self.symbol(found[0].strip()).args[0])
             return found[0]
 
         return SPELLING.sub(step, text)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, Unit, names_in
 from navsym.audit.syntax import SourceReader, field_of, line_of, named, parse_source, read_decimal, text_of
 
 RULES = Rules(entry=("{}[{}]", "{}[{}, {}]"))
+MODULES = {"numpy": "np.", "math": "math.", "numpy.linalg": "np.linalg."}
 SIGNS = {"+", "-", "*", "/", "%", "//", "@", "**"}
 
 
@@ -16,7 +17,9 @@ def read_python(source: bytes, file: str) -> Unit:
     """The functions and constants of a source in Python."""
     unit = Unit(file, "python", RULES, source)
     reader = Reader(unit)
-    reader.read_body(named(parse_source(source, "python", file)))
+    nodes = named(parse_source(source, "python", file))
+    reader.read_imports(nodes)
+    reader.read_body(nodes)
     return unit
 
 
@@ -31,7 +34,21 @@ def read_python_expression(text: str, unit: Unit) -> Part:
 
 @dataclass(slots=True, eq=False)
 class Reader(SourceReader):
-    """Walks the syntax tree of Python."""
+    """Walks the syntax tree of Python; ``imported`` says what names of numpy and math are called here."""
+
+    imported: dict[str, str] = field(default_factory=dict)
+
+    def read_imports(self, nodes: list[Any]) -> None:
+        """``from numpy import dot`` and its like; a name that the file defines again is not taken."""
+        for node in nodes:
+            module = text_of(field_of(node, "module_name")) if node.type == "import_from_statement" else ""
+            if module in MODULES:
+                for child in node.children_by_field_name("name"):
+                    own = field_of(child, "alias") or child
+                    self.imported[text_of(own)] = MODULES[module] + text_of(field_of(child, "name") or child)
+        for node in nodes:
+            if node.type in ("function_definition", "class_definition"):
+                self.imported.pop(text_of(field_of(node, "name")), None)
 
     def read_body(self, nodes: list[Any]) -> None:
         """Functions and methods, and names of the module that are assigned once, to numbers."""
@@ -45,7 +62,9 @@ class Reader(SourceReader):
                 self.read_function(node)
             elif node.type == "expression_statement":
                 for statement in self.statement(node):
-                    if statement.kind == "assign" and statement.parts[0].kind == "name":
+                    if statement.kind != "assign" or self.unit.text(statement.parts[2]) == "None":  # set elsewhere
+                        continue
+                    if statement.parts[0].kind == "name":
                         assigned.setdefault(statement.parts[0].parts[0], []).append(statement)
         self.unit.constants += [many[0] for many in assigned.values() if len(many) == 1 and not many[0].parts[1]]
 
@@ -127,7 +146,10 @@ class Reader(SourceReader):
         value = self.expression(right)
         if len(targets) == 1:
             return (self.part("assign", node, self.expression(targets[0]), "", value),)
-        if value.kind == "name":  # a, b = x
+        is_computed = value.kind in ("op", "call", "method", "minus")
+        if is_computed and {text_of(target) for target in targets} & names_in(value):
+            return (self.unread(node, "names assigned from each other at once"),)
+        if value.kind in ("name", "op"):  # a, b = x
             items = [Part("index", value.line, (value, (self.part("number", node, k, "int"),)), value.span)
                      for k in range(len(targets))]  # fmt: skip
         elif value.kind == "list" and len(value.parts[0]) == len(targets):
@@ -243,5 +265,5 @@ class Reader(SourceReader):
             method = text_of(field_of(function, "attribute"))
             return self.part("method", node, self.expression(field_of(function, "object")), method, tuple(arguments))
         if function.type == "identifier":
-            return self.part("call", node, name, tuple(arguments))
+            return self.part("call", node, self.imported.get(name, name), tuple(arguments))
         return self.refuse(node, "a call of an expression")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import combinations_with_replacement, product
 from pathlib import Path
 from typing import Any
 
@@ -34,12 +34,15 @@ from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, 
 from navsym.language.expression import read_tree
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
 from navsym.language.schema import as_list, as_table, as_text, as_title, require_key
-from navsym.language.tree import ONE
+from navsym.language.tree import ONE, SYMBOL, Tree, list_parts, replace
 
 MOST_CASES = 64
+MOST_ENTRIES = 4000
 INDEX = re.compile(r"(.*?)((?:\s*[\[(][\d\s,]+[\])])*)", re.DOTALL)
 MATRIX_KEYS = ("F", "G", "H", "Q", "R")
 
+#: What is said about a question in a workspace, as about a claim.
+NOTES = ("title", "expect", "corrects", "reason")
 #: The keys of each kind of question.
 KINDS = {
     "jacobian": ("of", "by", "is"),
@@ -49,6 +52,7 @@ KINDS = {
     "orthogonal": ("of",),
     "unit": ("of",),
     "inverse": ("of", "is"),
+    "dead": ("of", "by"),
     "claim": ("of", "claim"),
     "model": ("file", *MATRIX_KEYS),
 }
@@ -93,7 +97,7 @@ def read_question(block: Any, sources: Mapping[str, Source], names: Names, folde
     if kind not in KINDS:
         message = f"expected one of {' '.join(KINDS)}; got {quote(kind)}; correct it: {suggest_nearest(kind, KINDS)}"
         raise ExpressionSyntaxError(message, where=join_place(where, "kind"))
-    expect_keys(table, ("name", "kind", *KINDS[kind]), where)
+    expect_keys(table, ("name", "kind", *NOTES, *KINDS[kind]), where)
     for key in KINDS[kind] if kind != "model" else ("file",):
         require_key(table, key, where)
     name = as_title(table.get("name", kind), join_place(where, "name"))
@@ -102,22 +106,64 @@ def read_question(block: Any, sources: Mapping[str, Source], names: Names, folde
 
 def list_entries(question: Question) -> list[Entry]:
     """The entries of a question, in every case of the code that it is about."""
-    used = [s for s in question.sources.values() if is_used(s.name, question.keys)]
-    cases = [[*source.read().cases] for source in used]
+    if question.kind == "dead":
+        return list_dead(question)
     entries: list[Entry] = []
-    for count, chosen in enumerate(product(*cases)):
-        if count == MOST_CASES:
-            message = f"expected at most {MOST_CASES} cases; got more; ask about one function at a time"
-            raise DomainError(message, where=question.where)
-        conditions = tuple(c for case in chosen for c in case.conditions)
-        if is_contradictory(conditions):
-            continue
-        asking = Asking(question, {s.name: case for s, case in zip(used, chosen, strict=True)}, conditions)
+    for asking in list_askings(question):
         asked: list[Entry] = getattr(asking, f"ask_{question.kind}")()
         if question.kind == "symmetric":
             asked = [entry for entry in asked if entry.place[0] < entry.place[1]]
         entries += asked
     return entries
+
+
+def list_askings(question: Question) -> list[Asking]:
+    """The question in every case of the code; raises DomainError for too many."""
+    used = [s for s in question.sources.values() if is_used(s.name, question.keys)]
+    cases = [[*source.read().cases] for source in used]
+    askings: list[Asking] = []
+    for count, chosen in enumerate(product(*cases)):
+        if count == MOST_CASES:
+            message = f"expected at most {MOST_CASES} cases; got more; ask about one function at a time"
+            raise DomainError(message, where=question.where)
+        conditions = tuple(c for case in chosen for c in case.conditions)
+        if not is_contradictory(conditions):
+            askings.append(Asking(question, {s.name: case for s, case in zip(used, chosen, strict=True)}, conditions))
+    return askings
+
+
+def list_dead(question: Question) -> list[Entry]:
+    """Each output beside what it is for another value of one input: where it is dead, both are equal.
+
+    Two values of an input may lead into two cases: each pair of cases is compared that one choice of the others allows.
+    """
+    entries: list[Entry] = []
+    askings = list_askings(question)
+    for column, symbol in enumerate(askings[0].inputs(question.keys["by"], "by"), start=1):
+        held = [r for s in question.sources.values() for r in s.relations if symbol in list_parts(r)]
+        if held or symbol.head != SYMBOL:
+            got = "one in relations" if held else "a constant"
+            message = f"expected an input that is free; got {got}; ask about others"
+            raise DomainError(message, where=join_place(question.where, "by"))
+        twin = {symbol: question.names.twin(symbol)}
+        for one, two in combinations_with_replacement(askings, 2):
+            conditions = (*one.conditions, *(replace_in(condition, twin) for condition in two.conditions))
+            if is_contradictory(conditions):
+                continue
+            if len(entries) > MOST_ENTRIES:
+                raise DomainError("expected fewer outputs and cases; got too many; ask for one", where=question.where)
+            cells = [cells_of(asking.resolve(question.keys["of"], "of")) for asking in (one, two)]
+            for row, (cell, other) in enumerate(zip(*cells, strict=True)):
+                source = one.repeat("of", row, cell)[0]
+                moved = other if isinstance(other, Unread) else Scalar(replace(other.tree, twin))
+                entries.append(Entry((row + 1, column), cell, moved, conditions, source))
+    return entries
+
+
+def replace_in(condition: Condition, by: Mapping[Tree, Tree]) -> Condition:
+    """A condition on other symbols."""
+    sides = (None if tree is None else replace(tree, by) for tree in (condition.left, condition.right))
+    return Condition(condition.text, condition.line, condition.holds, condition.sign, *sides)
 
 
 def is_used(name: str, keys: Any) -> bool:

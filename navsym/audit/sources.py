@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from navsym.audit.evaluate import Reading, spell_entry
 from navsym.audit.execute import read_function
-from navsym.audit.form import Function, Part, Unit
+from navsym.audit.form import Argument, Function, Part, Unit, names_in
+from navsym.audit.fragment import take_lines
 from navsym.audit.names import Names
-from navsym.audit.syntax import SIZE
+from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import Index, places_of
-from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
+from navsym.core.choice import one_of
+from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
 from navsym.language.expression import read_tree
 from navsym.language.files import decode, name_file, read_bytes
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
 from navsym.language.schema import Table, as_list, as_table, as_text, require_key
-from navsym.language.tree import Tree, build_sum, negate
+from navsym.language.tree import ONE, ZERO, Tree, build_sum, negate
 
 LANGUAGES = {
     **dict.fromkeys((".c", ".h"), "c"),
@@ -28,6 +30,8 @@ LANGUAGES = {
     ".m": "matlab",
 }
 LARGEST_SIDE = 64
+#: The keys of a block ``[[code]]``.
+KEYS = ("name", "file", "function", "lines", "relations", "symbols", "constants", "functions", "ignored", "language")
 
 
 @dataclass(slots=True, eq=False)
@@ -37,6 +41,7 @@ class Source:
     shapes    : sizes of inputs that are arrays
     symmetric : names of matrices whose lower half is the upper one
     relations : polynomials of the inputs that are zero
+    starts    : spelling of an entry -> the number that it holds at the beginning
     """
 
     name: str
@@ -48,6 +53,7 @@ class Source:
     relations: tuple[Tree, ...]
     reading: Reading | None = None
     mirrored: dict[str, str] | None = None
+    starts: Mapping[str, Tree] = field(default_factory=dict)
 
     def symbol(self, spelling: str) -> Tree:
         """The symbol of an input; of a symmetric matrix that of the upper half."""
@@ -58,7 +64,7 @@ class Source:
                 for i, j in places_of(self.shapes[name])
                 if i > j
             }
-        return self.names.symbol(self.mirrored.get(spelling, spelling))
+        return self.starts.get(spelling) or self.names.symbol(self.mirrored.get(spelling, spelling))
 
     def read(self, edits: Mapping[int, Part] | None = None) -> Reading:
         """The function, read once; with edits it is read again."""
@@ -78,7 +84,7 @@ class Source:
             shape = tuple(sizes) if len(sizes) == len(argument.shape) else None
         if shape:
             return [self.symbol(spell_entry(self.unit, key, place)) for place in places_of(shape)]
-        if key not in self.names.symbols:
+        if key not in self.names.symbols and key not in self.names.inputs:
             listed = [*self.names.symbols]
             message = (
                 f"expected an input that {self.function.name} reads; got {quote(reference)}; "
@@ -88,12 +94,12 @@ class Source:
         return [self.names.symbol(reference)]
 
 
-def load_unit(path: str | os.PathLike[str]) -> Unit:
-    """A source file in the one form; its language follows from the end of its name.
+def load_unit(path: str | os.PathLike[str], language: str | None = None) -> Unit:
+    """A source file in the one form; its language follows from the end of its name where none is given.
 
     Raises NavsymError of kind ``missing-file``, ``syntax``, ``too-large`` or ``missing`` (no grammar on this machine).
     """
-    where, language = name_file(path), LANGUAGES.get(Path(path).suffix.lower())
+    where, language = name_file(path), language or LANGUAGES.get(Path(path).suffix.lower())
     if language is None:
         expected = f"a source that ends in {' '.join(LANGUAGES)}"
         raise ExpressionSyntaxError(f"expected {expected}; got {quote(Path(path).name)}; rename it", where=where)
@@ -127,9 +133,11 @@ def read_expression(text: str, unit: Unit) -> Part:
     return read_c_expression(text, unit)
 
 
-def find_function(unit: Unit, name: str, where: str) -> Function:
-    """The function of a name; raises UnknownSymbolError, or DomainError for several."""
+def find_function(unit: Unit, name: str, where: str, line: int | None = None) -> Function:
+    """The function of a name, the last before a line; raises UnknownSymbolError, or DomainError for several."""
     candidates = unit.functions.get(name, [])
+    if line is not None:
+        candidates = sorted((f for f in candidates if f.line <= line), key=lambda f: f.line)[-1:]
     if not candidates:
         known = ", ".join([*unit.functions][:12]) or "none"
         message = f"expected a function of {Path(unit.file).name} ({known}); got {quote(name)}; correct the name"
@@ -144,22 +152,101 @@ def find_function(unit: Unit, name: str, where: str) -> Function:
 def read_source(block: Any, folder: Path, names: Names, where: str) -> Source:
     """One ``[[code]]`` block."""
     table = as_table(block, where)
-    expect_keys(table, ("name", "file", "function", "relations", "symbols"), where)
+    keys = (
+        "name",
+        "file",
+        "function",
+        "lines",
+        "relations",
+        "symbols",
+        "constants",
+        "functions",
+        "ignored",
+        "language",
+    )
+    expect_keys(table, keys, where)
     texts = {
         key: as_text(require_key(table, key, where), join_place(where, key), "a name")
         for key in ("name", "file", "function")
     }
-    unit = load_unit(folder / texts["file"])
-    function = find_function(unit, texts["function"], join_place(where, "function"))
+    language = table.get("language")
+    if language is not None:
+        one_of(as_text(language, join_place(where, "language"), "a language"), LANGUAGES.values(), where)
+    unit = load_unit(folder / texts["file"], language)
+    declare_constants(unit, as_table(table.get("constants", {}), join_place(where, "constants")), where)
+    declare_functions(unit, as_table(table.get("functions", {}), join_place(where, "functions")), where)
+    ignored = as_list(table["ignored"], join_place(where, "ignored")) if "ignored" in table else []
+    unit.ignored = frozenset(as_text(name, join_place(where, "ignored"), "a name") for name in ignored)
+    lines = read_lines(table["lines"], join_place(where, "lines")) if "lines" in table else None
+    function = find_function(unit, texts["function"], join_place(where, "function"), lines[0] if lines else None)
+    whole = function
+    if lines is not None:
+        function = take_lines(unit, function, *lines, join_place(where, "lines"))
+        fixed = as_table(table.get("constants", {}), where)  # such as the counter of a loop around the lines
+        function = replace(function, arguments=tuple(a for a in function.arguments if a.name not in fixed))
     place = join_place(where, "symbols")
     shapes, symmetric = read_symbols(as_table(table.get("symbols", {}), place), names, place)
-    source = Source(texts["name"], unit, function, names, shapes, symmetric, ())
-    source.read()
+    starts = {
+        spell_entry(unit, spelling, p): ONE if len({*p}) == 1 and declaration["start"] == "identity" else ZERO
+        for spelling, declaration in as_table(table.get("symbols", {}), place).items()
+        if isinstance(declaration, dict) and read_start(declaration, join_place(place, spelling))
+        for p in places_of(shapes[spelling])
+    }
+    source = Source(texts["name"], unit, function, names, shapes, symmetric, (), starts=starts)
+    names.inputs |= list_inputs(source, whole)
     listed = as_list(table["relations"], join_place(where, "relations")) if "relations" in table else []
     source.relations = tuple(
         read_relation(text, names, join_place(join_place(where, "relations"), i)) for i, text in enumerate(listed)
     )
     return source
+
+
+def list_inputs(source: Source, whole: Function) -> set[str]:
+    """The names of inputs, whether the code reads them or not: a wrong version may have forgotten one."""
+    cases, unit = source.read().cases, source.unit
+    variables = [v for case in cases for v in case.variables.values()]
+    own = {v.name for v in variables if not v.is_input} | {*unit.macros, *unit.functions}
+    own |= {constant.parts[0] for constant in unit.constants if constant.kind == "declare"}
+    named = {argument.name for argument in whole.arguments} | {*source.shapes} | names_in(*whole.body)
+    return {v.name for v in variables if v.is_input} | (named - own)
+
+
+def read_lines(value: Any, where: str) -> tuple[int, int]:
+    """The first and the last line."""
+    is_pair = isinstance(value, list) and len(value) == 2 and all(type(n) is int for n in value)
+    if not is_pair or not 0 < value[0] <= value[1]:
+        raise ShapeError(
+            f"expected the first and the last line, [12, 30]; got {quote(value)}; correct them", where=where
+        )
+    return value[0], value[1]
+
+
+def declare_constants(unit: Unit, table: Table, where: str) -> None:
+    """Names whose values stand in files that are not read, such as headers."""
+    for name, value in table.items():
+        place = join_place(join_place(where, "constants"), name)
+        exact = read_decimal(str(value).removeprefix("-")) if not isinstance(value, bool) else None
+        if exact is None:
+            raise ExpressionSyntaxError(f"expected a number; got {quote(value)}; correct it", where=place)
+        kind = "int" if isinstance(value, int) else "real"
+        number = Part("number", 0, (-exact if str(value).startswith("-") else exact, kind))
+        unit.constants.append(Part("declare", 0, (name, kind, (), number, False)))
+
+
+def declare_functions(unit: Unit, table: Table, where: str) -> None:
+    """Functions that stand in other files, each as ``{ of = ["x"], is = "x*x" }`` in the language of the source."""
+    for name, value in table.items():
+        place = join_place(join_place(where, "functions"), name)
+        entry = as_table(value, place)
+        expect_keys(entry, ("of", "is"), place)
+        if name in unit.functions:
+            raise DuplicateError(f"expected a function of another file; got {name} of this one; remove it", where=place)
+        names = [as_text(n, place, "a name") for n in as_list(require_key(entry, "of", place), place)]
+        meaning = read_expression(as_text(require_key(entry, "is", place), place, "an expression"), unit)
+        if meaning.kind == "refused":
+            raise ExpressionSyntaxError(f"expected an expression; got {quote(entry['is'])}; correct it", where=place)
+        body = (Part("return", 0, (meaning,)),)
+        unit.functions[name] = [Function(name, 0, tuple(Argument(n, "real") for n in names), body)]
 
 
 def read_symbols(table: Table, names: Names, where: str) -> tuple[dict[str, Index], frozenset[str]]:
@@ -173,7 +260,7 @@ def read_symbols(table: Table, names: Names, where: str) -> tuple[dict[str, Inde
                 expect_keys(declaration, ("name", "range", "sign"), place)
             names.declare(spelling, declaration, place)
             continue
-        expect_keys(declaration, ("matrix", "vector", "symmetric"), place)
+        expect_keys(declaration, ("matrix", "vector", "symmetric", "start"), place)
         given = sizes if isinstance(sizes, list) else [sizes]
         if not all(isinstance(n, int) and not isinstance(n, bool) and 0 < n <= LARGEST_SIDE for n in given):
             message = f"expected sizes from 1 to {LARGEST_SIDE}, such as [3, 3]; got {quote(sizes)}; correct them"
@@ -185,6 +272,14 @@ def read_symbols(table: Table, names: Names, where: str) -> tuple[dict[str, Inde
                 raise ShapeError(message, where=place)
             symmetric.add(spelling)
     return shapes, frozenset(symmetric)
+
+
+def read_start(declaration: Table, where: str) -> bool:
+    """True for an array that holds zeros or the identity at the beginning, as a mapping says."""
+    if "start" in declaration and declaration["start"] not in ("zero", "identity"):
+        message = f'expected "zero" or "identity"; got {quote(declaration["start"])}; correct it'
+        raise ExpressionSyntaxError(message, where=where)
+    return "start" in declaration and bool({"matrix", "vector"} & {*declaration})
 
 
 def read_relation(text: Any, names: Names, where: str) -> Tree:

@@ -114,6 +114,13 @@ JUMPS = frozenset(
 )
 
 
+#: What may write names inside an expression, in any of the grammars.
+WRITES = frozenset(
+    "assignment_expression update_expression assignment augmented_assignment named_expression call_expression call "
+    "function_call lambda_expression lambda compound_statement new_expression delete_expression ERROR".split()
+)
+
+
 @dataclass(slots=True, eq=False)
 class SourceReader:
     """Walks the syntax tree of one language; ``shift`` moves the spans of a text that was read alone."""
@@ -127,8 +134,12 @@ class SourceReader:
         return Part(kind, line_of(node), parts, (start, end))
 
     def refuse(self, node: Any, why: str) -> Part:
-        """An expression that is not read."""
-        return self.part("refused", node, why)
+        """An expression that is not read: its names, whether it may write them, and whether it may leave the way."""
+        inside = {inner.type for inner in descend(node)}
+        is_shouting = "call_expression" in inside and any(name.isupper() for name in identifiers_in(node))
+        return self.part(
+            "refused", node, why, identifiers_in(node), bool(inside & WRITES), bool(inside & JUMPS) or is_shouting
+        )
 
     def unread(self, node: Any, why: str) -> Part:
         """A statement that is not read: all names in it may have been written, or the way may be left there."""

@@ -98,6 +98,25 @@ class Variable:
     views: list[Variable] = field(default_factory=list)
 
 
+def lose(variable: Variable, unread: Unread) -> None:
+    """Leave unread a variable, and all that share its cells."""
+    waiting, met = [variable], set[int]()
+    while waiting:
+        current = waiting.pop()
+        if id(current) not in met:
+            met.add(id(current))
+            current.all_unread = unread
+            waiting += current.views
+
+
+def lose_views(variable: Variable, unread: Unread) -> None:
+    """Leave unread the other names of the cells of a variable."""
+    kept = variable.all_unread
+    if variable.views:
+        lose(variable, unread)
+        variable.all_unread = kept
+
+
 def places_of(shape: Index) -> Iterator[Index]:
     """All places of a shape, row by row."""
     return product(*map(range, shape))

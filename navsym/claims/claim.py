@@ -13,7 +13,8 @@ from navsym.claims.statement import Statement
 from navsym.claims.verdict import PROVED, Status, Verdict
 from navsym.core.errors import MissingEngineError
 
-Slip = Literal["paper", "scan"]
+#: Who slipped: the authors, the copy that was read, or one of the two, nobody can tell which.
+Slip = Literal["paper", "scan", "undecidable"]
 
 #: The package of the papers; in a checkout it is the folder ``derivations/``.
 PAPERS = "navsym_papers"
@@ -29,7 +30,7 @@ class Claim:
     derive   : function without arguments that returns the statement
     expect   : the verdict that the source declares
     corrects : number of the refuted claim that this one replaces
-    slip     : where the printed side went wrong, ``"paper"`` or ``"scan"``
+    slip     : where the printed side went wrong: ``"paper"``, ``"scan"``, or ``"undecidable"`` between the two
     reason   : one sentence: what is wrong and how one can tell
     place    : file and line of a claim that no Python states; empty for others
     complete : what is added to a verdict, such as the conditions that only the text shows

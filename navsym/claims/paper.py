@@ -6,11 +6,16 @@ import importlib
 import pkgutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from pathlib import Path
 from types import ModuleType
+from typing import Literal
 
 from navsym.claims.claim import PAPERS, Claim
 from navsym.core.errors import DuplicateError
+
+#: A printed formula; a printed sentence beside one; a remark of ours; a result beyond the paper.
+Kind = Literal["printed", "beside", "remark", "beyond"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -20,6 +25,15 @@ class Paper:
     module      : derivation module
     equations   : every number printed in the paper, in order
     definitions : number -> why nothing can be checked there (notation, a given model)
+    beside      : claims on printed sentences, which say nothing about the numbered formula beside them
+    remarks     : claims in our own words on what is printed
+    beyond      : claims on what the paper does not treat
+    causes      : refuted claim -> the claim whose slip it only repeats
+    scopes      : claims -> the sizes or values they are examined for, unless their statements name them; the first fits
+    left_out    : printed statement -> why no claim judges it
+
+    Claims are named by number or pattern, with blanks between (``"1.3.spectrum range.*"``), a correction by the claim
+    that it corrects. All others are on printed formulas. Only what is printed can be a slip.
     """
 
     module: str
@@ -31,6 +45,27 @@ class Paper:
     equations: tuple[str, ...]
     definitions: Mapping[str, str] = field(default_factory=dict)
     doi: str = ""
+    beside: str = ""
+    remarks: str = ""
+    beyond: str = ""
+    causes: Mapping[str, str] = field(default_factory=dict)
+    scopes: Mapping[str, str] = field(default_factory=dict)
+    left_out: Mapping[str, str] = field(default_factory=dict)
+
+    def kind_of(self, number: str) -> Kind:
+        """Whether a claim is on a printed formula, on a printed sentence, a remark of ours, or beyond the paper."""
+        kinds: tuple[tuple[Kind, str], ...] = (
+            ("remark", self.remarks),
+            ("beyond", self.beyond),
+            ("beside", self.beside),
+        )
+        name = number.rstrip("*")
+        return next((kind for kind, names in kinds if any(fnmatchcase(name, one) for one in names.split())), "printed")
+
+    def scope_of(self, number: str, scope: str) -> str:
+        """The scope of a verdict, with the sizes or values that the card names for the claim."""
+        more = next((words for name, words in self.scopes.items() if fnmatchcase(number.rstrip("*"), name)), "")
+        return scope if scope.endswith(more) else f"{scope}; {more}".removeprefix("; ")
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from typing import Any
 import msgspec
 
 from navsym.claims.claim import Slip
+from navsym.claims.paper import Kind
 from navsym.claims.verdict import Status
 from navsym.core.numbers import Number
 
@@ -24,6 +25,8 @@ class Record:
     status, method, scope, assumptions, evidence, counterexample, difference, certificate : as in :class:`Verdict`
     printed, derived : the sides in the language of files; empty when deriving them was stopped
     seconds          : how long deriving and deciding took
+    kind             : as in :class:`Paper`: a printed formula, a sentence beside one, a remark, or beyond the paper
+    cause            : id of the claim whose slip a refuted one only repeats
     statement        : hash of the statement that was decided; in ledgers only, empty where it is not known
 
     ``Record.from_json(data).to_json() == data`` for an entry of ``navsym verify --json``, and
@@ -55,6 +58,8 @@ class Record:
     evidence: str
     counterexample: Mapping[str, str] | None
     difference: Number | None
+    kind: Kind = "printed"
+    cause: str | None = None
     certificate: Mapping[str, Any] | None = None
     seconds: float = 0.0
     statement: str = ""

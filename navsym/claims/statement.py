@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.claims.display import SIGNS, display_latex, latex_of
-from navsym.claims.verdict import PROVED, Status
+from navsym.claims.verdict import Status
 
 #: Box: symbol -> (lower, upper), exact numbers, None for an end at infinity.
 Box = Mapping[Any, tuple[Any, Any]]
@@ -122,18 +122,23 @@ class Optimum:
         return display_latex(rf"{problem}{answer}, \quad \text{{value }} {latex_of(self.value)}")
 
 
+#: The value of a finding whose method did not decide: the claim is then OPEN, whatever is printed.
+UNDECIDED = "undecided"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Finding:
     """A derived fact that an exact method has decided: a rank, a count, yes or no.
 
-    value       : an exact, comparable value (bool, int, Fraction, str, tuple of these)
+    value       : an exact, comparable value (bool, int, Fraction, str, tuple of these); :data:`UNDECIDED`, or a tuple
+                  that holds it, where the method did not decide
     status      : how strongly the method decided it (PROVED, CERTIFIED or CONFIRMED)
     method, scope, assumptions, evidence, certificate : as in a verdict
     """
 
     value: Any
     method: str
-    status: Status = PROVED
+    status: Status
     scope: str = ""
     assumptions: tuple[str, ...] = ()
     evidence: str = ""

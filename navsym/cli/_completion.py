@@ -117,7 +117,7 @@ POSITIONAL: dict[str, Callable[[], Iterable[str]]] = {
 VALUES: dict[str, Callable[[], Iterable[str]]] = {
     "--paper": sources,
     "--status": lambda: STATUSES,
-    "--slip": lambda: ("paper", "scan", "any"),
+    "--slip": lambda: ("paper", "scan", "undecidable", "any"),
     "--real": lambda: ("double", "float"),
     "--policy": lambda: ("strict", "repair"),
 }

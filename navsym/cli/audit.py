@@ -24,6 +24,7 @@ def command(
     annotations: Annotated[
         bool, typer.Option("--annotations", help="print file:line: message, for editors and CI")
     ] = False,
+    html: Annotated[Path | None, typer.Option(help="page to write: the source, coloured by verdict")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Read the formulas of source code and decide questions about them. Status 1 when an entry is refuted.
@@ -35,6 +36,11 @@ def command(
     import navsym as nav
 
     answer = nav.audit(file, function=function)
+    if html is not None:
+        from navsym.language.files import write_text
+        from navsym.report.audit_page import audit_page
+
+        write_text(html, audit_page(answer))
     if annotations and not json_:
         lines = answer.annotations()
         emit({}, as_json=False, text="\n".join(lines))

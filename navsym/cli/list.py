@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def command(
     paper: Annotated[list[str] | None, typer.Option(help="derivation module; may be repeated")] = None,
     status: Annotated[list[str] | None, typer.Option(help="verdict; may be repeated")] = None,
-    slip: Annotated[str | None, typer.Option(help="who slipped: paper, scan, or any")] = None,
+    slip: Annotated[str | None, typer.Option(help="who slipped: paper, scan, undecidable, or any")] = None,
     words: Annotated[str | None, typer.Option(help="text that the id or the title contains")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:

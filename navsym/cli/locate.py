@@ -53,6 +53,12 @@ def as_text(found: Fix) -> str:
         f"{list(found.velocity_index)}, {found.evaluated} evaluated",
         f"criterion {found.criterion:.6g}, second best {second}, unique {found.unique}",
     ]
+    trust = found.trust
+    if trust.direction is not None:
+        where = ", ".join(f"{v:.3f}" for v in trust.direction)
+        lines.append(f"weakest along ({where}): deviation {trust.weakest:.4g} m, {trust.strongest:.4g} m across")
+    if found.geodetic is not None:
+        lines.append(f"latitude {found.geodetic[0]:.7f}, longitude {found.geodetic[1]:.7f} degrees")
     if found.height_offset is not None:
         lines.append(f"height offset {found.height_offset:.3f} m, measured minus mapped")
     if found.t_G:

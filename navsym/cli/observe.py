@@ -56,7 +56,8 @@ def command(
         write_text(html, answer.page())
     if latex is not None:
         write_text(latex, answer.latex())
-    emit(answer.document(), as_json=json_, text=lambda: as_text(answer.document()))
+    data = answer.document()
+    emit(data, as_json=json_, text=lambda: as_text(data))
 
 
 # Text for people
@@ -81,7 +82,8 @@ def overview(data: Mapping[str, Any]) -> str:
     directions = data["unobservable_directions"]
     return "\n".join(
         [
-            f"{data['n']} states, joint dimension {data['joint_dimension']}: {verdict}\n",
+            f"{data['n']} states, joint dimension {data['joint_dimension']}: {verdict}"
+            f"{' (granted by the checker)' if data['checked'] else ' (unchecked)'}\n",
             table(
                 ["measurement", "dimension", "companion"],
                 [[m["name"], str(m["dimension"]), ", ".join(m["companion"])] for m in data["measurements"]],
@@ -107,13 +109,13 @@ def pieces_text(pieces: Sequence[Mapping[str, Any]], n: int) -> list[str]:
 
 def drops_text(data: Mapping[str, Any]) -> str:
     """Where a dimension drops, and for which subspaces the list of such places is proved complete."""
+    heads = ["rank drops of", "where", "to", "list complete", "checker"]
     blocks = ["no rank drops found\n"]
     if data["rank_drops"]:
-        blocks = [table(["rank drops of", "where", "list complete"], [drop_row(d) for d in data["rank_drops"]])]
+        blocks = [table(heads, [drop_row(d) for d in data["rank_drops"]])]
     instant = data["instant"]
     if instant and instant["rank_drops"]:
-        heads = ["at an instant, rank drops of", "where", "list complete"]
-        blocks.append(table(heads, [drop_row(d) for d in instant["rank_drops"]]))
+        blocks.append(table([f"at an instant, {heads[0]}", *heads[1:]], [drop_row(d) for d in instant["rank_drops"]]))
     if instant and instant["frozen_rank"] not in (None, data["joint_dimension"]):
         blocks.append(f"with F and h frozen at one time the rank would be {instant['frozen_rank']}: another model\n")
     unsure = [name for name, complete in data["rank_drops_complete"].items() if not complete]
@@ -123,10 +125,12 @@ def drops_text(data: Mapping[str, Any]) -> str:
 
 
 def drop_row(drop: Mapping[str, Any]) -> list[str]:
-    """One rank drop as a row: subspace, conditions, completeness of its list."""
+    """One rank drop as a row: subspace, conditions, what is left, completeness of its list, and the checker's word."""
     where = " and ".join(f"{zero} = 0" for zero in drop["zeros"])
     excluded = " (excluded by declaration)" if drop["excluded_by_declaration"] else ""
-    return [drop["subspace"], where + excluded, "proved" if drop["complete"] else "not proved"]
+    left = "" if drop["rank"] is None else str(drop["rank"])
+    listed, checked = "proved" if drop["complete"] else "not proved", "granted" if drop["checked"] else "unchecked"
+    return [drop["subspace"], where + excluded, left, listed, checked]
 
 
 def split_text(chosen: Mapping[str, Any]) -> str:

@@ -32,6 +32,10 @@ def command(
     policy: Annotated[
         str, typer.Option(help="strict refuses bad rows; repair mends or drops them, and lists them")
     ] = "strict",
+    reference: Annotated[
+        Path | None, typer.Option(help="CSV of t, ve, vn, vu to compare with: prints NEES and its 95 % band")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="write all rows to this CSV file")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
     """Velocity (m/s) and acceleration (m/s^2) from measured positions, with standard deviations.
@@ -43,7 +47,11 @@ def command(
     import navsym as nav
 
     with called_options("track"):
-        found = nav.track(file, window=window, order=order, method=method, sigma=sigma, gate=gate, policy=policy)
+        found = nav.track(
+            file, window=window, order=order, method=method, sigma=sigma, gate=gate, policy=policy, reference=reference
+        )
+    if out is not None:
+        found.save(out)
     for line in found.warnings:
         remark(f"warning: {line}")
     for line in found.repairs:
@@ -58,4 +66,9 @@ def as_text(found: Track) -> str:
         f"{len(found.t)} rows, method {found.method}, {found.order} states; noise of the positions "
         f"{found.position_sd[0]:.3g} m horizontal, {found.position_sd[2]:.3g} m vertical"
     )
+    for name, value in (("NIS", found.nis), ("NEES", found.nees)):
+        if value is not None:
+            word = "in" if value.holds else "outside"
+            low, high = value.band
+            summary += f"\n{name} {value.mean:.3g}, {word} its 95 % band {low:.3g} to {high:.3g}"
     return f"{summary}\n{table(head, lines, right=head[:-1])}"

@@ -36,8 +36,7 @@ def export(
 ) -> Exported:
     """Write proved formulas as code with test vectors, rounding bounds and certificates, compiled and run here.
 
-    A claim that does not hold is refused, and the one that corrects it is named. Code outside its enclosures is not
-    written.
+    A claim that does not hold is refused, with the one that corrects it; code outside its enclosures is not written.
 
     item  : id of a claim ("guaranteed_velocity:4.13.y3", "claims.toml:ratio"), regimes "A+B", a ready-made name
             ("kalman"), or a list of these; a verdict of :func:`navsym.prove`; an Estimator, as a function of its

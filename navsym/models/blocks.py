@@ -291,6 +291,14 @@ class Writer:
                 block["F"] = self.square(block["F"], join_place(place, "F"))
         return blocks
 
+    def list_ranges(self, value: Any, here: str) -> Any:
+        """Ranges of numbers; that of a vector or matrix is the range of each of its entries."""
+        return {
+            entry: ends
+            for name, ends in as_table(value, here).items()
+            for entry in (x for row in self.arrays.get(name, ((name,),)) for x in row)
+        }
+
     def list_numbers(self, value: Any, here: str) -> Any:
         """A table of numbers."""
         return {key: self.scalar(item, join_place(here, key)) for key, item in as_table(value, here).items()}
@@ -302,4 +310,5 @@ TABLES: dict[str, Callable[[Writer, Any, str], Any]] = {
     "rates": Writer.list_rates,
     "piece": Writer.list_pieces,
     "interval": Writer.list_numbers,
+    "ranges": Writer.list_ranges,
 }

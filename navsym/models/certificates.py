@@ -62,4 +62,5 @@ def trial_points(symbols: Sequence[sp.Symbol]) -> Iterator[dict[sp.Symbol, sp.Ra
 
 
 def matrix_texts(M: sp.MatrixBase) -> list[list[str]]:
+    """The entries in the language of files, row by row; a NavsymError where one stands outside of it."""
     return [[to_text(entry) for entry in M.row(i)] for i in range(M.rows)]

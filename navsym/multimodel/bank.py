@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.core import arrays
-from navsym.core.errors import EmptyError, NotFiniteError, ShapeError
+from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError, TooLargeError
 from navsym.language.names import only_keys
 
 Array = NDArray[np.float64]
@@ -249,6 +249,46 @@ def measurements_for(made: Bank, values: Any, *, missing: bool = False) -> Array
             f"given; got {len(table)}; give models for every step"
         )
     return arrays.freeze(table)
+
+
+#: Steps that time stamps may span.
+MOST_STEPS = 2_000_000
+
+
+def spaced(table: Any, times: Any, step: Any) -> tuple[list[Any], NDArray[np.intp], float]:
+    """Rows at every multiple of a step, None where no measurement came; where the given rows stand; and the step.
+
+    times : one increasing number for each row, whole steps apart (to a millionth of one)
+    step  : seconds of one step of the models; None takes the shortest time between two rows
+
+    >>> spaced([[1.0], [2.0]], [10.0, 10.6], 0.2)[1].tolist()
+    [0, 3]
+    """
+    rows = list(table)
+    t = arrays.as_array("times", times, (len(rows),), "one for each row of measurements")
+    gaps = np.diff(t)
+    if (gaps <= 0.0).any():
+        k = int(np.flatnonzero(gaps <= 0.0)[0])
+        raise DomainError(f"times: expected increasing numbers; got {t[k + 1]:g} after {t[k]:g}; sort the rows")
+    if step is None:
+        step = float(gaps.min()) if gaps.size else 1.0
+    if isinstance(step, bool) or not isinstance(step, int | float | np.number) or not 0.0 < float(step) < np.inf:
+        raise DomainError(f"step: expected a positive number of seconds; got {step!r:.40}; give the step of the models")
+    counts = (t - t[0]) / float(step) if len(t) else t
+    off = np.flatnonzero(np.abs(counts - np.round(counts)) > 1e-6 * np.maximum(1.0, counts))
+    if off.size:
+        k = int(off[0])
+        raise DomainError(
+            f"times[{k}]: expected a whole number of steps of {float(step):g} s after times[0]; got "
+            f"{counts[k]:.9g}; give the key step, or models over time"
+        )
+    places = np.round(counts).astype(np.intp)
+    if len(places) and places[-1] >= MOST_STEPS:
+        raise TooLargeError(f"times: expected at most {MOST_STEPS} steps; got {places[-1] + 1}; give a longer step")
+    wide: list[Any] = [None] * (int(places[-1]) + 1 if len(places) else 0)
+    for place, row in zip(places, rows, strict=True):
+        wide[place] = row
+    return wide, places, float(step)
 
 
 def table_of(values: Any, p: int) -> Array:

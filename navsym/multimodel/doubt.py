@@ -45,15 +45,17 @@ def settle(estimate: Estimates, rerun: Rerun, rule: Scheme, models: Bank, z: Arr
     if not (doubtful.size or estimate.singular):
         return estimate
     first = min([*estimate.singular[:1], *(int(k) + 1 for k in doubtful[:1])])
+    lost = f"step {first}: double precision does not suffice from here on"
     n, p = models.states, models.channels
     work = estimate.filters_run * (2 * n**3 + 3 * n * n * p + n * p * p + p**3 + 100)
     if work <= WORK:
         from navsym.multimodel.digits import run_in_digits
 
-        note = f"step {first}: double precision does not suffice from here on; filtered with a hundred digits"
+        note = f"{lost}; filtered with a hundred digits instead of any form"
         return replace(run_in_digits(rule, models, z, estimate.filters_run), notes=(note,))
     reason = f"two runs differ by {np.max(doubt):.1g}" if doubtful.size else "an innovation covariance is singular"
-    note = f"step {first}: double precision does not suffice from here on: {reason}; filter fewer steps"
+    remedy = "ask for a form that keeps twice the digits (qr, ud), or filter fewer steps"
+    note = f"{lost}: {reason}; {remedy}"
     return replace(estimate, notes=(note,))
 
 

@@ -199,6 +199,8 @@ def fold_hypotheses(rule: Scheme, k: int, found: Hypotheses, whole: tuple[Array,
     return Hypotheses(means, covariances, on_diagonal(np.array(modes)))
 
 
+#: Sentences of one kind before they become one.
+MOST_SENTENCES = 5
 #: Log-likelihood below which every likelihood is zero in double precision.
 UNDERFLOW = -745.0
 
@@ -219,6 +221,8 @@ class Estimates(Answer):
     singular      : steps at which doubles had no density of a branch; empty once digits have decided
     sound         : whether doubles are certain to have kept their digits
     engine        : ``compiled``, ``numpy``, or ``digits`` where doubles did not suffice
+    times         : (T,) s, when the file has time stamps; then steps without a measurement are not shown, and a step
+                    in a sentence counts multiples of the usual time between two, from 1
     notes         : further sentences for people
     """
 
@@ -232,6 +236,7 @@ class Estimates(Answer):
     singular: tuple[int, ...] = ()
     sound: bool = False
     engine: str = "numpy"
+    times: Array | None = None
     notes: tuple[str, ...] = ()
 
     @property
@@ -247,11 +252,18 @@ class Estimates(Answer):
     @property
     def remarks(self) -> tuple[str, ...]:
         """Sentences about measurements that no mode explains."""
-        unlikely = (
-            f"step {k}: every mode gives this measurement a likelihood below 1e-323; weighed by logarithms"
-            for k in self.impossible
-            if k not in self.left_out
-        )
+        steps = [k for k in self.impossible if k not in self.left_out]
+        if len(steps) > MOST_SENTENCES:
+            listed = ", ".join(map(str, steps[:MOST_SENTENCES]))
+            unlikely = [
+                f"the data contradict every mode at {len(steps)} steps, the first {listed}: each gives a likelihood "
+                "below 1e-323; weighed by logarithms"
+            ]
+        else:
+            unlikely = [
+                f"step {k}: every mode gives this measurement a likelihood below 1e-323; weighed by logarithms"
+                for k in steps
+            ]
         left = (f"step {k}: the measurement is impossible under every mode; left out" for k in self.left_out)
         return (*self.notes, *unlikely, *left)
 
@@ -264,6 +276,8 @@ class Estimates(Answer):
             "log_likelihood": self.log_likelihood.tolist(),
             "filters_run": self.filters_run,
             **({"left_out": list(self.left_out)} if self.left_out else {}),
+            **({"times": self.times.tolist()} if self.times is not None else {}),
+            "remarks": list(self.remarks),
         }
 
     def rows(self) -> list[tuple[str, ...]]:

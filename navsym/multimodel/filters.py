@@ -8,29 +8,32 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from navsym.core import arrays
 from navsym.core.errors import DomainError, NavsymError, NotFiniteError, ShapeError
 from navsym.language.files import name_file
 from navsym.language.jsonfile import read_json
 from navsym.language.names import only_keys
-from navsym.multimodel.bank import Bank, check_initial, forget_modes, measurements_for
+from navsym.multimodel.bank import Bank, check_initial, forget_modes, measurements_for, spaced
 from navsym.multimodel.doubt import Rerun, settle
-from navsym.multimodel.engine import Estimates, run_in_numpy
+from navsym.multimodel.engine import MOST_SENTENCES, Estimates, run_in_numpy
 from navsym.multimodel.kalman import FORMS, form_of
 from navsym.multimodel.schemes import require_room, scheme
 
 Array = NDArray[np.floating[Any]]
 Engine = Literal["auto", "numpy", "compiled"]
 
-KEYS = ("models", "mode_transition", "initial", "measurements", "memoryless", "missing")
+KEYS = ("models", "mode_transition", "initial", "measurements", "memoryless", "missing", "times", "step")
 
 UNUSED = "mode_transition is not used: polygaussian takes modes that never switch, equation (19)"
+#: What an estimate has for each step.
+SERIES = ("probabilities", "mean", "covariance", "log_likelihood")
 #: Below this many one-step filters the compiled loops do not pay for being loaded.
 WORTH_COMPILING = 200_000
 #: In a shorter series two runs of the compiled loops may err alike; the readable engine errs in another way.
@@ -88,10 +91,25 @@ def filter(
         else:
             document = read_json(bank) if isinstance(bank, str | os.PathLike) else bank
             given = read_bank(document, z)
-        said = {"memoryless": memoryless or given.memoryless, "missing": missing or given.missing}
-        return run_filter(given.bank, given.measurements, method, depth=depth, form=form, engine=engine, **said)
+        said: dict[str, Any] = {"memoryless": memoryless or given.memoryless, "missing": missing or given.missing}
+        run = functools.partial(run_filter, given.bank, method=method, depth=depth, form=form, engine=engine)
+        return run(given.measurements, **said) if given.times is None else run_with_gaps(run, given, said)
     except NavsymError as error:
         raise error if error.where.startswith(place) else error.at(place) from None
+
+
+def run_with_gaps(run: Callable[..., Estimates], given: BankFile, said: dict[str, bool]) -> Estimates:
+    """The estimates at the time stamps: steps without a measurement are predicted, and gaps remarked."""
+    table = measurements_for(given.bank, given.measurements, missing=said["missing"])
+    wide, places, step = spaced(table, given.times, given.step)
+    found = run(wide, memoryless=said["memoryless"], missing=True)
+    empty = np.diff(places) - 1
+    gaps = [f"gap after time {given.times[k]:g}: {empty[k]} steps without a measurement" for k in np.flatnonzero(empty)]
+    if len(gaps) > MOST_SENTENCES:
+        gaps = [f"{len(gaps)} gaps, {empty.sum()} steps of {step:g} s without a measurement; the first {gaps[0]}"]
+    series: dict[str, Any] = {name: arrays.freeze(getattr(found, name)[places]) for name in SERIES}
+    times = arrays.freeze(np.array(given.times, dtype=float))
+    return replace(found, **series, times=times, notes=(*gaps, *found.notes))
 
 
 def run_filter(
@@ -177,12 +195,15 @@ class BankFile:
 
     memoryless : the printed (14)-(17)
     missing    : null is a number that did not come
+    times, step : time stamps of the rows in s, and the time of one step of the models; None without
     """
 
     bank: Bank
     measurements: Any
     memoryless: bool
     missing: bool
+    times: Any = None
+    step: Any = None
 
 
 def read_bank(document: Mapping[str, Any], z: Any = None) -> BankFile:
@@ -210,7 +231,10 @@ def read_bank(document: Mapping[str, Any], z: Any = None) -> BankFile:
         no_truth_values(document[key], key)
     made = Bank(document["models"], document["mode_transition"], document["initial"])
     measurements = document["measurements"] if z is None else z
-    return BankFile(made, measurements, switch(document, "memoryless"), switch(document, "missing"))
+    if "step" in document and "times" not in document:
+        raise ShapeError("step: expected times beside it; got none; add one time for each row of measurements")
+    switches = switch(document, "memoryless"), switch(document, "missing")
+    return BankFile(made, measurements, *switches, document.get("times"), document.get("step"))
 
 
 def no_truth_values(value: Any, place: str) -> None:

@@ -5,23 +5,24 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
 import sympy as sp
 
 from navsym.claims.display import display_latex, latex_of, write_card, write_table
+from navsym.claims.statement import Box
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError
 from navsym.language.expression import parse, symbol
 from navsym.language.names import RESERVED, join_place, quote
 from navsym.language.values import write_entries, write_value
 from navsym.models.along import model_along_motion
-from navsym.models.certificates import rank_certificate
-from navsym.models.linear import LinearModel, linear_row, observability_matrix
+from navsym.models.linear import LinearModel, linear_row
 from navsym.models.model import Model, contents_of, file_in_errors
 from navsym.models.modelfile import ModelFile
+from navsym.observability.certificates import Certifier, list_nested
 from navsym.observability.chains import (
     JointObservability,
     MeasurementObservability,
@@ -33,7 +34,7 @@ from navsym.observability.chains import (
 )
 from navsym.observability.document import as_html, as_latex, document_of_observability
 from navsym.observability.pieces import observe_pieces
-from navsym.observability.rank_drops import RankDrop, drops_and_completeness
+from navsym.observability.rank_drops import RankDrop, find_drops
 from navsym.observability.sensors import Restoration, restore_observability
 from navsym.observability.splits import FeasibleSplit, Split, best_split, choose_split, feasible_splits
 from navsym.observability.two_stage import POLE, StageGains, gains_by_poles, stage_gains
@@ -54,6 +55,7 @@ class Observability(Answer):
     rank_drops_complete : subspace -> whether the list of its drops is proved to hold all of them
     kind                : "constant", "varying", "nonlinear" or "pieces"
     frozen_rank         : of a varying model, the rank that it has with F and h frozen at one time: another question
+    rank_drops_open     : subspace -> conditions under which nothing was decided when the search ended
     pieces              : of a model in pieces, from, to and the rank of each by itself
     splits, best_split  : two-stage splits of two measurements that observe all; empty and None elsewhere
     split               : the chosen split, None where there is none
@@ -80,6 +82,7 @@ class Observability(Answer):
     kind: str = "constant"
     frozen_rank: int | None = None
     pieces: tuple[Mapping[str, Any], ...] = ()
+    rank_drops_open: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -133,11 +136,12 @@ class Observability(Answer):
         return document_of_observability(self)
 
     def certificates(self) -> list[Mapping[str, Any]]:
-        """The generic rank of the observability matrix, where a point of a few attains it."""
-        if self.kind in ("nonlinear", "pieces"):
+        """The generic rank and every rank that is left on a drop, as far as the checker grants them."""
+        if self.kind == "pieces":
             return []
-        proof = rank_certificate(observability_matrix(self.model))
-        return [] if proof is None else [proof]
+        certifier = Certifier.of(self.model)
+        listed = [certifier.certify_rank(self.joint), *map(certifier.certify_drop, list_nested(self.rank_drops))]
+        return [item for item in listed if item is not None]
 
     def latex(self) -> str:
         """The decomposition as a fragment of LaTeX, one display for each formula."""
@@ -232,9 +236,8 @@ def observe(
         polynomials = read_poles(poles, contents) if poles is not None else ()
         rows = read_candidate_rows(candidates or {}, contents)
         asked = restore or bool(candidates)
-        return observe_linear(
-            model_along_motion(contents), contents.name, request, polynomials, rows if asked else None
-        )
+        chosen = rows if asked else None
+        return observe_linear(model_along_motion(contents), contents.name, request, polynomials, chosen, contents.box)
 
 
 def observe_linear(
@@ -243,8 +246,12 @@ def observe_linear(
     request: tuple[int, int] | None = None,
     poles: Sequence[sp.Expr] = (),
     candidates: Mapping[str, Sequence[sp.Expr]] | None = None,
+    box: Box | None = None,
 ) -> Observability:
-    """Like :func:`observe` for exact data: poles in the symbol p, rows of candidates, empty for all states."""
+    """Like :func:`observe` for exact data: poles in the symbol p, rows of candidates, empty for all states.
+
+    box : ranges of parameters; rank drops outside of them are marked as excluded
+    """
     joint = observe_jointly(model)
     if (request is not None or poles) and not model.constant:
         message = "expected constant F and H for splits and poles; got entries that move; leave them out"
@@ -255,13 +262,14 @@ def observe_linear(
     if request is not None and not two:
         raise ShapeError(f"split: expected two measurements; got {len(joint.measurements)}; choose two of them")
     chosen = choose_split(joint, *(request or ())) if two else None
-    drops, complete = drops_and_completeness(joint)
+    drops = find_drops(joint, box)
     return Observability(
         name=name,
         model=model,
         joint=joint,
-        rank_drops=drops,
-        rank_drops_complete=complete,
+        rank_drops=drops.drops,
+        rank_drops_complete=drops.complete,
+        rank_drops_open=drops.open,
         splits=feasible_splits(joint) if two else (),
         best_split=best_split(joint) if two else None,
         split=chosen,

@@ -65,7 +65,7 @@ def drops_by_all_minors(rows: Matrix, rank: int, ring: Ring) -> list[System] | N
     The rank is smaller exactly where all maximal minors of the remainder vanish; for a square one that is its
     determinant, factored. Dense systems end here: cases on a pivot with thousands of terms do not end.
     """
-    reduced = take_out_regular(rows)
+    reduced = take_out_regular(rows, ring)
     wanted = rank - reduced.regular
     if wanted <= 0 or not reduced.rows:
         return []
@@ -97,7 +97,7 @@ def visit(search: Search, rows: Matrix, rank: int, system: System) -> None:
     if search.cases > CASES or len(system) > DEPTH:
         search.complete = False
         return
-    reduced = take_out_regular(substitute_rows(rows, system, search.ring))
+    reduced = take_out_regular(substitute_rows(rows, system, search.ring), search.ring)
     wanted = rank - reduced.regular
     if wanted <= 0:
         return
@@ -113,7 +113,7 @@ def visit(search: Search, rows: Matrix, rank: int, system: System) -> None:
         search.complete = False
         for child in components([*system, pivot], search.ring):
             visit(search, rows, rank, child)
-    elif not any(minor.is_constant() for minor in minors):
+    elif not any(map(search.ring.is_unit, minors)):
         for child in components([*system, *minors], search.ring):
             visit(search, rows, rank, child)
 
@@ -124,14 +124,14 @@ def is_whole(search: Search, rows: Matrix, rank: int, system: System, pivot: Pol
     Off pivot = 0 it is. An irreducible system has the rest in its closure; otherwise the part with
     pivot = 0 is examined on its own, and must be whole again.
     """
-    if is_irreducible(system) or pivot.is_constant():
+    if is_irreducible(system, search.ring) or search.ring.is_unit(pivot):
         return True
     ring = search.ring
     for part in components([*system, pivot], ring):
         search.cases += 1
         if search.cases > CASES:
             return False
-        reduced = take_out_regular(substitute_rows(rows, part, ring))
+        reduced = take_out_regular(substitute_rows(rows, part, ring), ring)
         try:
             minors, following = minors_on(reduced.rows, rank - reduced.regular, part, ring)
         except TooLargeError:
@@ -141,53 +141,54 @@ def is_whole(search: Search, rows: Matrix, rank: int, system: System, pivot: Pol
     return True
 
 
-def is_irreducible(system: System) -> bool:
-    """True when the zeros of a system are known not to split: all equations but one solve for a variable each.
-
-    An equation c x - g with a number c and without x in g only names x; it does not occur in the others.
-    """
-    rest = [f for f in system if solved_variable(f, system) is None]
+def is_irreducible(system: System, ring: Ring) -> bool:
+    """True when all equations but one name a variable each: a graph over an irreducible hypersurface."""
+    rest = [f for f in system if solved_variable(f, system, ring) is None]
     return not rest or (len(rest) == 1 and irreducible_factors(rest[0]) in ([rest[0]], [-rest[0]]))
 
 
-def solved_variable(f: Poly, system: System) -> int | None:
-    """Place of a variable that stands in f once, alone, with a numerical factor, and nowhere else."""
-    for powers in f.to_dict():
-        if sum(powers) != 1:
+def solved_variable(f: Poly, system: System, ring: Ring) -> int | None:
+    """Place of a variable x with f = c x - g, where c is a unit without x, and x stands in no other equation."""
+    listed = f.to_dict()
+    for place in range(len(ring.symbols)):
+        if f.degrees()[place] != 1 or any(other is not f and other.degrees()[place] for other in system):
             continue
-        place = list(map(int, powers)).index(1)
-        alone = f.degrees()[place] == 1 and sum(1 for p in f.to_dict() if p[place]) == 1
-        if alone and all(other is f or other.degrees()[place] == 0 for other in system):
+        alone = [powers for powers in listed if powers[place]]
+        if (len(alone) == 1 and sum(alone[0]) == 1) or (ring.units and ring.is_unit(f.derivative(place))):
             return place
     return None
 
 
-def substitute_rows(rows: Matrix, system: System, ring: Ring) -> Matrix:
-    """The rows with the variables that the system solves for replaced; rows times numbers."""
+def substitute_row(row: list[Poly], system: System, ring: Ring) -> list[Poly]:
+    """The row with the variables that the system solves for replaced; a row times a unit."""
     for f in system:
-        place = solved_variable(f, system) if len(f) <= SOLUTION else None
+        place = solved_variable(f, system, ring) if len(f) <= SOLUTION else None
         if place is not None:
-            rows = [replace_in_row(row, f, place, ring) for row in rows]
-    return rows
+            row = replace_in_row(row, f, place, ring)
+    return row
 
 
 def replace_in_row(row: list[Poly], f: Poly, place: int, ring: Ring) -> list[Poly]:
-    """x = g/c in every entry of a row, times the power of c that keeps integers; f = c x - g."""
-    unit = tuple(int(k == place) for k in range(len(ring.symbols)))
-    factor = int(f.to_dict()[unit])
-    value = factor * ring.context.gen(place) - f
+    """x = g/c in every entry of a row, times the power of c that keeps polynomials; f = c x - g."""
     degree = max(int(entry.degrees()[place]) if entry != 0 else 0 for entry in row)
     if degree == 0:
         return row
+    factor = f.derivative(place)
+    value = factor * ring.context.gen(place) - f
     return [replace_in_entry(entry, place, value, factor, degree, ring) for entry in row]
 
 
-def replace_in_entry(entry: Poly, place: int, value: Poly, factor: int, degree: int, ring: Ring) -> Poly:
+def replace_in_entry(entry: Poly, place: int, value: Poly, factor: Poly, degree: int, ring: Ring) -> Poly:
     """c^degree times the entry at x = value/c."""
     total = ring.constant(0)
     for (power,), rest in powers_apart(entry, place).items():
         total += rest * value**power * factor ** (degree - power)
     return total
+
+
+def substitute_rows(rows: Matrix, system: System, ring: Ring) -> Matrix:
+    """The rows with the variables that the system solves for replaced; rows times units."""
+    return [substitute_row(row, system, ring) for row in rows]
 
 
 def minors_on(rows: Matrix, wanted: int, system: System, ring: Ring) -> tuple[list[Poly], Poly]:
@@ -205,7 +206,7 @@ def minors_on(rows: Matrix, wanted: int, system: System, ring: Ring) -> tuple[li
         if not full:
             break
         found.append(pivot)
-        if pivot.is_constant():
+        if ring.is_unit(pivot):
             break
         columns = [k for k in columns if k != used]
     return found, first

@@ -62,7 +62,7 @@ def resting_directions(rows: Matrix, motion: Motion, rank: int, point: Sequence[
 
 def simplified_rows(rows: Matrix, ring: Ring) -> Matrix:
     """Rows with the same span over the field, without common factors; those with a number clear its column."""
-    basis, rest, waiting = UnitBasis(), list[list[Poly]](), list(rows)
+    basis, rest, waiting = UnitBasis(ring), list[list[Poly]](), list(rows)
     while waiting:
         rest, taken = [], False
         for row in waiting:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from navsym.language.expression import to_text
+from navsym.observability.certificates import Certifier
 from navsym.observability.chains import MeasurementObservability
 from navsym.observability.rank_drops import RankDrop
 from navsym.observability.splits import Split
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 def document_of_observability(answer: Observability) -> dict[str, Any]:
     """The answer as JSON data; every expression is text of the language of files."""
+    certifier = Certifier.of(answer.model) if answer.kind != "pieces" else None
     data: dict[str, Any] = {
         "n": len(answer.states),
         "states": list(answer.states),
@@ -30,11 +32,13 @@ def document_of_observability(answer: Observability) -> dict[str, Any]:
         "observable_functionals": list(answer.observable_functionals),
         "redundant": list(answer.redundant),
         "proved": answer.joint.proved,
+        "checked": certifier is not None and certifier.certify_rank(answer.joint) is not None,
         "model": answer.kind,
-        "instant": instant_data(answer),
+        "instant": instant_data(answer, certifier),
         "pieces": [dict(piece) for piece in answer.pieces],
-        "rank_drops": [drop_data(drop) for drop in answer.rank_drops if drop.lasting],
+        "rank_drops": [drop_data(drop, certifier) for drop in answer.rank_drops if drop.lasting],
         "rank_drops_complete": dict(answer.rank_drops_complete),
+        "rank_drops_open": {name: list(systems) for name, systems in answer.rank_drops_open.items() if systems},
         "assumptions": [f"{to_text(a)} != 0" for a in answer.joint.assumptions],
         "splits": [{"i": s.i, "j": s.j, "det_L": to_text(s.determinant)} for s in answer.splits],
         "best_split": [answer.best_split.i, answer.best_split.j] if answer.best_split else None,
@@ -44,14 +48,14 @@ def document_of_observability(answer: Observability) -> dict[str, Any]:
     return data | ({"restore": restoration_data(answer)} if answer.restoration is not None else {})
 
 
-def instant_data(answer: Observability) -> dict[str, Any] | None:
+def instant_data(answer: Observability, certifier: Certifier | None) -> dict[str, Any] | None:
     """What is known at one instant, from a measurement and its derivatives there; None for a constant model.
 
     Over an interval the rank is lost where the parameters are such that a drop lasts; at an instant also in passing.
     """
     if answer.kind in ("constant", "pieces"):
         return None
-    passing = [drop_data(drop) for drop in answer.rank_drops if not drop.lasting]
+    passing = [drop_data(drop, certifier) for drop in answer.rank_drops if not drop.lasting]
     return {"rank": answer.rank, "rank_drops": passing, "frozen_rank": answer.frozen_rank}
 
 
@@ -79,10 +83,11 @@ def measurement_data(measurement: MeasurementObservability) -> dict[str, Any]:
     }
 
 
-def drop_data(drop: RankDrop) -> dict[str, Any]:
+def drop_data(drop: RankDrop, certifier: Certifier | None) -> dict[str, Any]:
     """One rank drop, its condition as one polynomial.
 
     Over real parameters the squares of several sum to zero exactly where all of them vanish; ``zeros`` lists them.
+    ``checked`` says that the checker grants the smaller rank on them.
     """
     zeros = [to_text(zero) for zero in drop.zeros]
     text = zeros[0] if len(zeros) == 1 else " + ".join(f"({zero})**2" for zero in zeros)
@@ -92,6 +97,11 @@ def drop_data(drop: RankDrop) -> dict[str, Any]:
         "zeros": zeros,
         "complete": drop.complete,
         "excluded_by_declaration": drop.excluded,
+        "rank": drop.rank,
+        "checked": certifier is not None and certifier.certify_drop(drop) is not None,
+        "lost_basis": text_rows(drop.directions),
+        "inside": [drop_data(inner, certifier) for inner in drop.inside],
+        "inside_complete": drop.whole,
     }
 
 

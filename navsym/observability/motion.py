@@ -112,12 +112,10 @@ def motion_of(model: LinearModel, others: Sequence[sp.MatrixBase] = ()) -> tuple
     entries = [[known[entry] for entry in atoms.F[i, :]] for i in range(n)]
     cleared, clock = clear_denominators([*entries, list(rates.values())], ring.constant(1))
     roots = {ring.places[g]: ring.quotient(square).top for g, square in atoms.squares.items()}
+    found = [clear_denominators([[ring.quotient(entry) for entry in row]], ring.constant(1)) for row in atoms.rows]
+    ring = ring.with_units([clock, *(bottom for _, bottom in found)])
     motion = Motion(ring, cleared[:n], clock, dict(zip(rates, cleared[n], strict=True)), roots)
-    listed = []
-    for row in atoms.rows:
-        (numerators,), bottom = clear_denominators([[ring.quotient(entry) for entry in row]], ring.constant(1))
-        listed.append(([motion.reduced(x) for x in numerators], bottom))
-    return motion, listed
+    return motion, [([motion.reduced(x) for x in numerators], bottom) for (numerators,), bottom in found]
 
 
 def rates_of_generators(ring: Ring, rates: Mapping[sp.Symbol, Quotient]) -> dict[int, Quotient]:

@@ -11,19 +11,22 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import sympy as sp
 from flint import fmpz, fmpz_mat
 
+from navsym.claims.statement import Box
 from navsym.core.errors import TooLargeError
 from navsym.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_all_minors, drops_by_cases, minor_on
 from navsym.observability.chains import Chain, Chains, JointObservability
-from navsym.observability.directions import resting_directions
-from navsym.observability.linear import Matrix, residue_rank
-from navsym.observability.motion import Motion, residue_chains
-from navsym.observability.reduction import System, components, irredundant, is_inside, krylov_remainder, lies_in_ideal
-from navsym.observability.ring import Poly, Ring, is_odd
+from navsym.observability.linear import Matrix
+from navsym.observability.motion import Motion
+from navsym.observability.reduction import System, components, irredundant, krylov_remainder, lies_in_ideal
+from navsym.observability.ring import Poly, Ring, irreducible_factors, is_odd
+from navsym.observability.tree import SPLIT_TERMS, Leaf, is_covered, leaf_on, lost_columns, search_drops
+from navsym.prove.assumptions import is_nonzero
 
 # Determinants of chains by values at integer points.
 #
@@ -152,63 +155,150 @@ def newton(bound: int) -> fmpz_mat:
 MOST_STAIRCASES = 40
 #: Systems that are looked at when the part of a drop is sought that the motion keeps.
 KEPT_STEPS, KEPT_TERMS = 60, 40
+#: Drops inside drops inside drops are looked for so deep; more directions have too many terms to be read.
+NESTED, DIRECTION_TERMS = 3, 60
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RankDrop:
     """The rank of a subspace is smaller where all the polynomials vanish together.
 
-    subspace : name of a measurement, or "joint"
-    zeros    : polynomials, irreducible over the rationals where that could be reached
-    complete : True when the drops listed for this subspace are proved to be all real ones
-    lasting  : False where the condition holds at an instant only: the motion leaves it, and the interval shows all
+    subspace   : name of a measurement, or "joint"
+    zeros      : polynomials, irreducible over the rationals where that could be reached
+    complete   : True when the drops listed for this subspace are proved to be all real ones
+    lasting    : False where the condition holds at an instant only: the motion leaves it, and the interval shows all
+    excluded   : True when what the symbols are declared to be excludes it
+    rank       : what is left at almost all points of the condition; None where it was not found
+    directions : rows (k, n) of the directions that are shown elsewhere and lost here; none where they are long
+    inside     : drops within this one, where the rank is smaller still; of the joint subspace
+    whole      : True when ``inside`` is proved to hold all of them
+    leaves     : system, rank and unseen columns of its parts as polynomials, from which its certificate is made
     """
 
     subspace: str
     zeros: tuple[sp.Expr, ...]
     complete: bool
     lasting: bool = True
+    excluded: bool = False
+    rank: int | None = None
+    directions: sp.ImmutableMatrix = field(default_factory=lambda: sp.ImmutableMatrix(0, 0, []))
+    inside: tuple[RankDrop, ...] = ()
+    whole: bool = False
+    leaves: tuple[Leaf, ...] = ()
 
     @property
     def condition(self) -> str:
         """The drop as text: ``zero = 0`` for every polynomial, joined by ``and``."""
-        return " and ".join(f"{zero} = 0" for zero in self.zeros)
-
-    @property
-    def excluded(self) -> bool:
-        """True when what the symbols are declared to be (positive, nonzero) excludes it."""
-        return any(is_nonzero(zero) for zero in self.zeros)
+        return join_conditions(self.zeros)
 
 
-def is_nonzero(zero: sp.Expr) -> bool:
-    """True for a symbol that is declared nonzero, or a sum of products of positive symbols."""
-    if zero.is_Symbol:
-        return bool(zero.is_positive or zero.is_nonzero)
-    return bool(all(term.is_positive for term in sp.Add.make_args(zero)))
+def join_conditions(zeros: Iterable[sp.Expr]) -> str:
+    """Equations as text."""
+    return " and ".join(f"{zero} = 0" for zero in zeros)
 
 
 def rank_drops(found: JointObservability) -> tuple[RankDrop, ...]:
     """Drops of every measurement's subspace and of the joint one, with completeness."""
-    return drops_and_completeness(found)[0]
+    return find_drops(found).drops
 
 
 def drops_and_completeness(found: JointObservability) -> tuple[tuple[RankDrop, ...], dict[str, bool]]:
-    """The drops, and for every subspace whether its list is proved complete, also when it is empty.
+    """The drops, and for every subspace whether its list is proved complete, also when it is empty."""
+    answer = find_drops(found)
+    return answer.drops, answer.complete
 
-    Of a model that moves, the conditions that last come first: those that the motion keeps once they hold.
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DropList:
+    """The answer of :func:`find_drops`.
+
+    complete : subspace -> whether its list is proved to hold all drops
+    open     : subspace -> conditions under which nothing was decided; outside of them the list is complete, and where
+               there are none and it is not complete, nothing is known beside the list
     """
+
+    drops: tuple[RankDrop, ...]
+    complete: dict[str, bool]
+    open: dict[str, tuple[str, ...]]
+
+
+def find_drops(found: JointObservability, box: Box | None = None) -> DropList:
+    """The drops of every subspace. Of a model that moves those that last come first: the motion keeps them."""
     if found.written is None:
-        return (), {"joint": False}
-    motion, answer = found.chains.motion, all_drops(found.chains)
-    drops, complete = [], {}
-    for name, (systems, whole) in answer.items():
-        lasting, ended = kept_parts(systems, motion)
-        complete[name] = whole and ended
-        passing = [system for system in systems if not any(is_inside(system, other) for other in lasting)]
-        for listed, lasts in ((lasting, True), (passing, False)):
-            written = (conditions_on(system, motion.ring) for system in join_half_angles(listed, motion.ring))
-            drops += [RankDrop(name, zeros, complete[name], lasts) for zeros in written if zeros]
-    return tuple(sorted(drops, key=lambda drop: not drop.lasting)), complete
+        return DropList((), {"joint": False}, {})
+    chains, ring = found.chains, found.chains.ring
+    drops: list[RankDrop] = []
+    complete, left = {}, {}
+    for name, (part, locus) in all_loci(chains).items():
+        complete[name] = locus.complete
+        left[name] = tuple(filter(None, (join_conditions(conditions_on(system, ring)) for system in locus.open)))
+        rows = [chain.vectors[0] for chain in part]
+        generic = leaf_on([], rows, ring, chains.motion) if locus.lasting else None
+        view = View(name, rows, generic, chains.motion, locus.complete, box or {})
+        drops += view.list_drops(locus.lasting, NESTED if name == "joint" else 0)
+        written = (conditions_on(system, ring) for system in join_half_angles(locus.passing, ring))
+        drops += [view.make_drop(zeros, lasting=False) for zeros in written if zeros]
+    return DropList(tuple(sorted(drops, key=lambda drop: not drop.lasting)), complete, left)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """What is needed to describe the drops of one subspace: its rows h, and what is generically not shown."""
+
+    subspace: str
+    rows: Matrix
+    generic: Leaf | None
+    motion: Motion
+    complete: bool
+    box: Box
+
+    def make_drop(self, zeros: tuple[sp.Expr, ...], **more: Any) -> RankDrop:
+        """A drop with its zeros."""
+        excluded = any(is_nonzero(zero, self.box) for zero in zeros if self.is_limited(zero))
+        return RankDrop(self.subspace, zeros, self.complete, excluded=excluded, **more)
+
+    def is_limited(self, zero: sp.Expr) -> bool:
+        """True when something is declared of a symbol beside that it is real."""
+        return any(symbol in self.box or symbol.is_nonzero for symbol in zero.free_symbols)
+
+    def list_drops(self, systems: list[System], depth: int) -> list[RankDrop]:
+        """Drops on some systems, each with its rank, its lost directions, and the drops inside it."""
+        ring = self.motion.ring
+        listed = []
+        for system in join_half_angles(systems, ring):
+            zeros = conditions_on(system, ring)
+            if not zeros:
+                continue
+            leaves = self.leaves_on(system)
+            if not leaves:
+                listed.append(self.make_drop(zeros))
+                continue
+            lost = [
+                lost_columns(leaf, self.generic.unseen, ring) if self.generic is not None else [] for leaf in leaves
+            ]
+            sizes = [sum(len(entry) for column in columns for entry in column) for columns in lost]
+            short = lost[0] if all(columns == lost[0] for columns in lost) and sizes[0] <= DIRECTION_TERMS else []
+            entries = [ring.expression(entry) for column in short for entry in column]
+            inner = search_drops(self.rows, leaves[0].rank, ring, self.motion, system) if depth else None
+            listed.append(
+                self.make_drop(
+                    zeros,
+                    rank=leaves[0].rank,
+                    directions=sp.ImmutableMatrix(len(short), self.motion.size, entries),
+                    inside=tuple(self.list_drops([x.system for x in inner.drops], depth - 1)) if inner else (),
+                    whole=inner is not None and not inner.open,
+                    leaves=leaves,
+                )
+            )
+        return listed
+
+    def leaves_on(self, system: System) -> tuple[Leaf, ...]:
+        """What is shown on a system, on both of its parts where it joins half angles; none where it was not found."""
+        ring, long = self.motion.ring, sum(map(len, system)) > SPLIT_TERMS
+        parts = [[f] for f in irreducible_factors(system[0])] if len(system) == 1 and not long else [system]
+        found = [leaf_on(part, self.rows, ring, self.motion) for part in ([] if long else parts)]
+        leaves = tuple(leaf for leaf in found if leaf is not None)
+        return leaves if len(leaves) == len(parts) and len({leaf.rank for leaf in leaves}) == 1 else ()
 
 
 def conditions_on(system: System, ring: Ring) -> tuple[sp.Expr, ...]:
@@ -277,67 +367,77 @@ def join_half_angles(systems: list[System], ring: Ring) -> list[System]:
     return listed
 
 
-def all_drops(chains: Chains) -> dict[str, tuple[list[System], bool]]:
-    """Drops of every chain and of all of them together, each from what is not regular everywhere."""
-    answer = {chain.name: drops_of_group(chains, (chain,), chain.dimension) for chain in chains.chains}
+@dataclass(frozen=True, slots=True, eq=False)
+class Locus:
+    """Where the rank of a subspace is smaller: systems that the motion keeps, and those that hold in passing.
+
+    open : systems among whose zeros nothing was decided
+    """
+
+    lasting: list[System]
+    passing: list[System] = field(default_factory=list)
+    open: list[System] = field(default_factory=list)
+    complete: bool = True
+
+
+def all_loci(chains: Chains) -> dict[str, tuple[tuple[Chain, ...], Locus]]:
+    """Where every chain, and all of them together, span less."""
+    answer = {chain.name: ((chain,), locus_of(chains, (chain,), chain.dimension)) for chain in chains.chains}
     if len(chains.chains) == 1:
         return {**answer, "joint": answer[chains.chains[0].name]}
-    return {**answer, "joint": drops_of_group(chains, chains.chains, chains.joint_dimension)}
+    return {**answer, "joint": (chains.chains, locus_of(chains, chains.chains, chains.joint_dimension))}
 
 
-def drops_of_group(chains: Chains, part: tuple[Chain, ...], rank: int) -> tuple[list[System], bool]:
-    """Drops of what some chains span together: by cases, or else by the definition, written in one of three ways."""
+def locus_of(chains: Chains, part: tuple[Chain, ...], rank: int) -> Locus:
+    """Where some chains span less together: by cases on written rows, by the tree, or by the definition."""
     ring, motion = chains.ring, chains.motion
     if motion.roots:
-        return [], False
+        return Locus([], complete=False)
+    systems, whole = written_drops(part, rank, motion)
+    lasting, ended = kept_parts(systems, motion) if whole else ([], False)
+    listed = None if ended or motion.rates else written_by_values(chains, part, rank)
+    if listed is not None:
+        return Locus(irredundant(listed))
+    left: list[System] = []
+    if not ended:
+        found = search_drops([chain.vectors[0] for chain in part], rank, ring, motion)
+        lasting, left = irredundant([*lasting, *(leaf.system for leaf in found.drops)]), found.open
+    if motion.rates:
+        passing = [system for system in systems if not is_covered(system, lasting)]
+        return Locus(lasting, passing, left, whole and not left)
+    for write in (written_by_minors, written_by_elimination) if left else ():
+        listed = write(chains, part, rank)
+        if listed is not None:
+            return Locus(irredundant(listed))
+    return Locus(irredundant([*lasting, *systems]), [], left, not left)
+
+
+def written_drops(part: tuple[Chain, ...], rank: int, motion: Motion) -> tuple[list[System], bool]:
+    """Where the first vectors of the chains, as many as their dimensions, span less, and whether these are all."""
     try:
         rest = krylov_remainder([(chain.vectors[0], chain.dimension) for chain in part], motion)
     except TooLargeError:
-        return parameters_zero(chains, part, rank), False
-    found, complete = drops_by_cases(rest.rows, rank - rest.regular, ring)
-    if not complete and not motion.rates:
-        for written in (
-            lambda: drops_by_staircases(chains, part, rank, determinant_by_values),
-            lambda: drops_by_all_minors(rest.rows, rank - rest.regular, ring),
-            lambda: drops_by_staircases(chains, part, rank, determinant_by_elimination),
-        ):
-            listed = written()
-            if listed is not None:
-                return irredundant(listed), True
-    return irredundant(found), complete
+        return [], False
+    return drops_by_cases(rest.rows, rank - rest.regular, motion.ring)
 
 
-def parameters_zero(chains: Chains, part: tuple[Chain, ...], rank: int) -> list[System]:
-    """Drops where one symbol is zero, or all components of a vector (f1, f2, f3), each proved.
-
-    For a constant model that is too long for a complete list.
-    """
-    motion, rows = chains.motion, [chain.vectors[0] for chain in part]
-    if motion.rates:
-        return []
-    names = [str(symbol) for symbol in motion.ring.symbols]
-    vectors = [[k for k, name in enumerate(names) if name[:-1] == stem] for stem in sorted({n[:-1] for n in names})]
-    found: list[System] = []
-    for places in [*([k] for k in range(len(names))), *(v for v in vectors if len(v) > 1)]:
-        system = [motion.ring.context.gen(place) for place in places]
-        if any(is_inside(system, other) for other in found):
-            continue
-        still = [[without_generators(entry, places) for entry in row] for row in motion.matrix]
-        starts = [[without_generators(entry, places) for entry in row] for row in rows]
-        clock = without_generators(motion.clock, places)
-        if clock == 0 or not all(any(entry != 0 for entry in row) for row in starts):
-            continue
-        there = Motion(motion.ring, still, clock)
-        best, point = max((residue_rank(residue_chains(starts, there, p)), p) for p in there.points())
-        if best < rank and resting_directions(starts, there, best, point) is not None:
-            found.append(system)
-    return found
+def written_by_values(chains: Chains, part: tuple[Chain, ...], rank: int) -> list[System] | None:
+    """By determinants of staircases from values at integer points."""
+    return drops_by_staircases(chains, part, rank, determinant_by_values)
 
 
-def without_generators(entry: Poly, places: Sequence[int]) -> Poly:
-    """The polynomial where some generators are zero."""
-    kept = {powers: c for powers, c in entry.to_dict().items() if not any(powers[place] for place in places)}
-    return entry.context().from_dict(kept)
+def written_by_minors(chains: Chains, part: tuple[Chain, ...], rank: int) -> list[System] | None:
+    """By all maximal minors of what is not regular."""
+    try:
+        rest = krylov_remainder([(chain.vectors[0], chain.dimension) for chain in part], chains.motion)
+    except TooLargeError:
+        return None
+    return drops_by_all_minors(rest.rows, rank - rest.regular, chains.ring)
+
+
+def written_by_elimination(chains: Chains, part: tuple[Chain, ...], rank: int) -> list[System] | None:
+    """By determinants of staircases from elimination."""
+    return drops_by_staircases(chains, part, rank, determinant_by_elimination)
 
 
 #: The determinant of the first vectors of some chains, so many of each; None when it is too long to form.
@@ -383,7 +483,7 @@ def drops_by_staircases(
         minor = determinant_of(chains, part, step)
         if minor is None:
             return None
-        if minor != 0 and minor.is_constant():
+        if chains.ring.is_unit(minor):
             return []
         minors += [minor] if minor != 0 else []
         if sum(map(len, minors)) > LAST_TERMS:

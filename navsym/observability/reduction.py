@@ -1,12 +1,13 @@
 """Small matrices with the same rank: what is regular for all parameters is taken out first.
 
-Observable functionals are rows over Z[parameters]. A row with an entry that is a number different from zero is
+Observable functionals are rows over Z[parameters]. A row with an entry that vanishes nowhere is
 independent everywhere: it clears its column from all other rows and from all later vectors of the chains, which
 keeps their degrees low. What remains has few rows and columns, and its rank drops where the whole rank does.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import gcd
@@ -47,7 +48,7 @@ def components(polynomials: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
     common = gcd_all(polynomials, ring.constant(0))
     found = hypersurfaces(common, ring)
     rest = [p / common for p in polynomials]
-    if not any(p.is_constant() for p in rest):
+    if not any(map(ring.is_unit, rest)):
         found += split_system(rest, ring)
     return irredundant(found)
 
@@ -55,7 +56,7 @@ def components(polynomials: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
 def hypersurfaces(common: Poly, ring: Ring) -> list[list[Poly]]:
     """Real zeros of one polynomial, factor by factor; a sum of squares breaks up further."""
     found: list[list[Poly]] = []
-    for f in (f for f in irreducible_factors(common) if not is_definite(f)):
+    for f in (f for f in irreducible_factors(common) if not is_definite(f) and not ring.is_unit(f)):
         for system in real_systems([f], ring):
             found += [system] if system == [f] else split_system(system, ring)
     return found
@@ -87,7 +88,7 @@ def alternatives(f: Poly, ring: Ring) -> list[list[Poly]]:
     """The real zeros of one polynomial as a union of systems; [[f]] when nothing is gained."""
     factors = irreducible_factors(f)
     if len(factors) != 1 or factors[0] != f:
-        return [[g] for g in factors]
+        return [[g] for g in factors if not ring.is_unit(g)]
     return real_systems([f], ring)
 
 
@@ -105,7 +106,7 @@ def real_systems(system: list[Poly], ring: Ring) -> list[list[Poly]]:
 
 def reduce_generators(system: list[Poly], ring: Ring) -> list[Poly] | None:
     """Reduced generators of the same real zeros; None when there are none."""
-    system = [p.primitive()[1] for p in system if p != 0]
+    system = [ring.without_units(p.primitive()[1]) for p in system if p != 0]
     if any(p.is_constant() for p in system) or is_nowhere(system, ring) or any(map(is_definite, system)):
         return None
     kept: list[Poly] = []
@@ -117,7 +118,7 @@ def reduce_generators(system: list[Poly], ring: Ring) -> list[Poly] | None:
         basis, done = generators.buchberger_naive(limits=LIMITS)
         if done:
             reduced = [p for p in basis.autoreduction(groebner=True) if p != 0]
-            if any(p.is_constant() for p in reduced) or is_nowhere(reduced, ring) or any(map(is_definite, reduced)):
+            if any(map(ring.is_unit, reduced)) or is_nowhere(reduced, ring) or any(map(is_definite, reduced)):
                 return None
             kept = reduced
     return kept
@@ -187,42 +188,51 @@ class Remainder:
     rows: Matrix
 
 
-def is_number(entry: Poly) -> bool:
-    """A constant polynomial that is not zero."""
-    return entry != 0 and entry.is_constant()
-
-
 class UnitBasis:
-    """Rows with a number as pivot; every column of a pivot is zero in all other rows of the basis."""
+    """Rows with a unit as pivot; every column of a pivot is zero in all other rows of the basis."""
 
-    def __init__(self) -> None:
+    def __init__(self, ring: Ring) -> None:
+        self.ring = ring
         self.rows: list[list[Poly]] = []
         self.columns: list[int] = []
 
+    def over(self, ring: Ring) -> UnitBasis:
+        """The same rows, where more is known to be a unit."""
+        basis = UnitBasis(ring)
+        basis.rows, basis.columns = self.rows, self.columns
+        return basis
+
     def reduced(self, row: list[Poly]) -> list[Poly]:
-        """The row without its parts along the basis, times a number."""
+        """The row without its parts along the basis, times a unit."""
         for own, column in zip(self.rows, self.columns, strict=True):
             if (factor := row[column]) != 0:
                 row = [p * own[column] - factor * q for p, q in zip(row, own, strict=True)]
-        return lower_row(row)
+        return lower_row(row, self.ring)
 
     def take(self, row: list[Poly]) -> bool:
-        """Add a reduced row that has a number among its entries; False when it has none."""
-        column = next((k for k, entry in enumerate(row) if is_number(entry)), None)
+        """Add a reduced row that has a unit among its entries, a number if possible; False when it has none."""
+        numbers = (k for k, entry in enumerate(row) if entry != 0 and entry.is_constant())
+        column = next(itertools.chain(numbers, (k for k, entry in enumerate(row) if self.ring.is_unit(entry))), None)
         if column is None:
             return False
         pivot = row[column]
         for place, own in enumerate(self.rows):
             if (factor := own[column]) != 0:
                 cleared = [p * pivot - factor * q for p, q in zip(own, row, strict=True)]
-                self.rows[place] = lower_row(cleared)
+                self.rows[place] = lower_row(cleared, self.ring)
         self.rows.append(row)
         self.columns.append(column)
         return True
 
 
-def lower_row(row: list[Poly]) -> list[Poly]:
-    """The row without a common numerical factor."""
+def lower_row(row: list[Poly], ring: Ring) -> list[Poly]:
+    """The row without common factors that are numbers or units."""
+    for unit in ring.units:
+        while True:
+            parts = [divmod(entry, unit) if entry != 0 else (entry, entry) for entry in row]
+            if any(rest != 0 for _, rest in parts) or all(entry == 0 for entry in row):
+                break
+            row = [quotient for quotient, _ in parts]
     contents = [int(abs(entry.content())) for entry in row if entry != 0]  # type: ignore[attr-defined]
     if not contents or min(contents) == 1:
         return row
@@ -230,9 +240,9 @@ def lower_row(row: list[Poly]) -> list[Poly]:
     return row if common == 1 else [entry / common if entry != 0 else entry for entry in row]
 
 
-def take_out_regular(rows: Sequence[list[Poly]]) -> Remainder:
+def take_out_regular(rows: Sequence[list[Poly]], ring: Ring) -> Remainder:
     """Take out everything regular from some rows."""
-    basis = UnitBasis()
+    basis = UnitBasis(ring)
     waiting, passed = list(rows), True
     while passed:
         passed = False
@@ -267,7 +277,7 @@ def row_weight(row: list[Poly]) -> int:
 def krylov_remainder(starts: Sequence[tuple[list[Poly], int]], motion: Motion) -> Remainder:
     """Regular part and remainder of the chains h, G^T h, ...: (h, number of vectors) for each of them."""
     basis, rest = krylov_basis(starts, motion)
-    inner = take_out_regular(without_columns(basis, rest).rows)
+    inner = take_out_regular(without_columns(basis, rest).rows, motion.ring)
     return Remainder(len(basis.rows) + inner.regular, inner.rows)
 
 
@@ -287,21 +297,22 @@ def krylov_basis(starts: Sequence[tuple[list[Poly], int]], motion: Motion) -> tu
     Every vector is reduced before it is multiplied on: modulo the basis, which is multiplied on as well,
     nothing is lost, and degrees stay low.
     """
-    basis = UnitBasis()
+    basis = UnitBasis(motion.ring)
     step = [(list(row), count) for row, count in starts]
     rest: Matrix = []
+    longest = MOVING_TERMS if motion.rates else CONSTANT_TERMS
     while step:
-        following = []
+        following, total = [], 0
         for row, count in step:
             row = basis.reduced(row)
+            total += sum(map(len, row))
+            if total > longest:
+                raise TooLargeError("expected rows that can be written; got too many terms; fix some parameters")
             if all(entry == 0 for entry in row):
                 continue
             if not basis.take(row):
                 rest.append(row)
             if count > 1:
                 following.append((motion.advance(row), count - 1))
-        longest = MOVING_TERMS if motion.rates else CONSTANT_TERMS
-        if sum(len(entry) for row, _ in following for entry in row) > longest:
-            raise TooLargeError("expected rows that can be written; got too many terms; fix some parameters")
         step = following
     return basis, rest

@@ -7,7 +7,7 @@ and greatest common divisors of polynomials. Matrices come in as sympy and go ou
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import comb, lcm
 from typing import Any
 
@@ -142,6 +142,8 @@ class Ring:
 
     angles  : symbols that stand under sines and cosines; their halves are generators, as explained above
     meaning : symbols that stand for functions -> the functions, put in on the way back
+    units   : irreducible polynomials that vanish nowhere in the domain of the model: factors of its denominators,
+              and S^2 + C^2 of every angle. Next to numbers they are what may be divided by
     """
 
     symbols: tuple[sp.Basic, ...]
@@ -149,6 +151,7 @@ class Ring:
     angles: tuple[Angle, ...] = ()
     places: dict[sp.Basic, int] = field(default_factory=dict)
     meaning: Mapping[sp.Basic, sp.Basic] = field(default_factory=dict)
+    units: tuple[Poly, ...] = ()
 
     @classmethod
     def of(
@@ -178,6 +181,28 @@ class Ring:
         names = tuple(f"g{place}" for place in range(len(listed)))
         context = fmpz_mpoly_ctx.get(names, Ordering.degrevlex)
         return cls(listed, context, angles, {symbol: place for place, symbol in enumerate(listed)}, meaning or {})
+
+    def with_units(self, denominators: Iterable[Poly]) -> Ring:
+        """The ring in which these denominators, and S^2 + C^2 of every angle, are known to vanish nowhere."""
+        circles = [self.context.gen(s) ** 2 + self.context.gen(c) ** 2 for s, c in self.pairs()]
+        found = list(self.units)
+        for factor in (f for d in (*denominators, *circles) for f in irreducible_factors(d)):
+            found += [] if any(factor == other for other in found) else [factor]
+        return replace(self, units=tuple(found))
+
+    def without_units(self, value: Poly) -> Poly:
+        """The polynomial without its factors that vanish nowhere; with the same zeros in the domain of the model."""
+        for unit in self.units:
+            while value != 0 and len(value) >= len(unit):
+                quotient, rest = divmod(value, unit)
+                if rest != 0:
+                    break
+                value = quotient
+        return value
+
+    def is_unit(self, value: Poly) -> bool:
+        """True for a number, or a product of units: not zero anywhere in the domain of the model."""
+        return bool(value != 0 and (value.is_constant() or (self.units and self.without_units(value).is_constant())))
 
     def halves(self, angle: Angle) -> tuple[Poly, Poly]:
         """The generators sin and cos of half the smallest part of an angle."""

@@ -6,7 +6,7 @@ limits: a statement that needs more time or memory is OPEN.
 
 from __future__ import annotations
 
-from navsym.claims.statement import Bound, Equation, Finding, Optimum, Property, Statement
+from navsym.claims.statement import UNDECIDED, Bound, Equation, Finding, Optimum, Property, Statement
 from navsym.claims.verdict import OPEN, REFUTED, Verdict
 from navsym.core.errors import DomainError
 from navsym.core.sandbox import Exhausted, run_limited
@@ -58,8 +58,11 @@ def leave_open(outcome: Exhausted) -> Verdict:
 
 
 def decide_property(statement: Property) -> Verdict:
-    """A printed fact beside a computed one: they are equal, or the computed one refutes it."""
+    """A printed fact beside a computed one: they are equal, or the computed one refutes it; undecided is OPEN."""
     finding = statement.derived
+    if is_undecided(finding.value):
+        words = f"{finding.method} did not decide. {finding.evidence}".strip()
+        return Verdict(OPEN, finding.method, finding.scope, evidence=words)
     if not is_same_value(statement.printed, finding.value):
         return contradict(statement, finding)
     return Verdict(
@@ -85,6 +88,11 @@ def contradict(statement: Property, finding: Finding) -> Verdict:
         counterexample={},
         certificate=finding.certificate,
     )
+
+
+def is_undecided(value: object) -> bool:
+    """True for a value that the method left undecided, or a tuple with such a part."""
+    return any(map(is_undecided, value)) if isinstance(value, (tuple, list)) else value in (UNDECIDED, None)
 
 
 def is_same_value(printed: object, found: object) -> bool:

@@ -2,7 +2,8 @@
 
 Entries come from refuted claims that name a slip, each with the proved claim that corrects it; their
 wording for an editor comes from a file beside the derivation, or is made from the formulas where there
-is none. Slips of the scan are kept apart from slips of the authors.
+is none. Slips of the scan, and slips that may be of either, are kept apart from slips of
+the authors. A slip that another claim only repeats is told once.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ class Entry:
 
     ids    : claims that it is about
     place  : where in the paper, in words
-    slip   : "paper" or "scan"
+    slip   : "paper", "scan" or "undecidable"
     words  : wording for an editor, or None
     wrong, right : as printed, and as it should read, made from the claims (None without a proved correction)
     rows   : figures, for a correction of several
@@ -92,6 +93,11 @@ class Erratum:
         """Slips of the scan that was read."""
         return tuple(entry for entry in self.entries if entry.slip == "scan")
 
+    @property
+    def of_either(self) -> tuple[Entry, ...]:
+        """Slips of which the copy cannot tell whether they are the authors' or its own."""
+        return tuple(entry for entry in self.entries if entry.slip == "undecidable")
+
 
 def erratum_of(paper: Paper, records: Sequence[Record], words: Words | None = None) -> Erratum:
     """The sheet of one paper from its records; records of other papers must not be among them.
@@ -100,7 +106,7 @@ def erratum_of(paper: Paper, records: Sequence[Record], words: Words | None = No
     """
     words = words or {}
     corrections = {record.corrects: record for record in records if record.corrects}
-    refuted = [r for r in records if r.status == "REFUTED" and r.slip in ("paper", "scan")]
+    refuted = [r for r in records if r.status == "REFUTED" and r.slip and not r.cause]
     order = {pattern: place for place, pattern in enumerate(words)}
     entries = [
         entry(paper, group, corrections, words.get(pattern or ""))

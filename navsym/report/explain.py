@@ -253,6 +253,20 @@ class Step:
     formula: str = ""
 
 
+#: How an explanation opens, by the kind of a claim.
+HEADINGS = {
+    "printed": "What is printed",
+    "beside": "What is printed, beside a formula",
+    "remark": "What we remark; the paper does not print it",
+    "beyond": "What goes beyond the paper",
+}
+WHOSE = {
+    "paper": "A slip of the paper: ",
+    "scan": "A slip of the scan, not of the authors: ",
+    "undecidable": "A slip of the paper or of the scan, the copy alone cannot tell: ",
+}
+
+
 def steps(record: Record) -> list[Step]:
     """The whole story of one record of ``verify``, in the order in which a reader asks.
 
@@ -268,9 +282,10 @@ def steps(record: Record) -> list[Step]:
     if record.status == "REFUTED":
         found += counterexample_steps(record)
     if record.reason:
-        whose = {"paper": "A slip of the paper: ", "scan": "A slip of the scan, not of the authors: "}
-        words = f"{whose.get(record.slip or '', '')}{record.reason}."
+        words = f"{WHOSE.get(record.slip or '', '')}{record.reason}."
         found.append(Step("What went wrong" if record.slip else "Remark", words))
+    if record.cause:
+        found.append(Step("Where it comes from", f"It repeats the slip of {record.cause}, where it is counted."))
     if record.corrects:
         found.append(Step("What it corrects", f"It stands in the place of {record.corrects}."))
     if record.certificate:
@@ -285,7 +300,8 @@ def side_steps(record: Record) -> list[Step]:
         return [Step("What the file states", record.title, record.printed), *(right if record.derived else [])]
     derived = Step("What follows from the model", "Derived without looking at the printed side:", record.derived)
     whole = Step("What follows from the model", "The statement itself was derived and then examined.")
-    return [Step("What is printed", record.title, record.printed), derived if record.derived else whole]
+    heading = "What replaces it" if record.corrects else HEADINGS[record.kind]
+    return [Step(heading, record.title, record.printed), derived if record.derived else whole]
 
 
 def question(record: Record) -> str:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from navsym.report.citation import Citation
     from navsym.report.explain import Explanation
 
-SLIPS = ("paper", "scan", "any")
+SLIPS = ("paper", "scan", "undecidable", "any")
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -139,7 +139,7 @@ def claims(*papers: str, status: str | Sequence[str] = (), slip: str | None = No
 
     papers : names of derivation modules, such as "guaranteed_velocity"
     status : verdicts that count, such as "REFUTED"; all when none is given
-    slip   : "paper" or "scan" for claims refuted by a slip there, "any" for both
+    slip   : "paper" or "scan" for claims refuted by a slip there, "undecidable" between the two, "any" for all
     words  : text that the id or the title contains, in small or capital letters
 
     Raises DomainError for a paper, a verdict or a slip that is none, and NavsymError for a damaged ledger.

@@ -26,6 +26,7 @@ from navsym.report.formula.latex import sentence_html, sentence_latex
 from navsym.report.formula.sides import Formula, coordinates, formula, only_truth
 from navsym.report.names import latex_escape
 from navsym.report.plots import refutation_svg
+from navsym.report.trust import backing_words, trust_of
 from navsym.report.wording import Words
 from navsym.verification.ledger import Ledger, is_only_in_the_copy, records_about, sort_records
 
@@ -94,6 +95,14 @@ def truth_words(text: str) -> str:
 
 
 TEMPLATES = Path(__file__).parent / "templates"
+#: What stands over the first side of a claim, and before its reason.
+KINDS = {
+    "printed": "printed",
+    "beside": "printed, in words",
+    "remark": "a remark of ours",
+    "beyond": "beyond the paper",
+}
+WHOSE = {"paper": "Slip of the paper", "scan": "Slip of the scan", "undecidable": "Slip of the paper or of the scan"}
 MARKS = {"PROVED": "✓", "CERTIFIED": "◎", "CONFIRMED": "≈", "REFUTED": "✗", "OPEN": "?"}
 MEANINGS = {
     "PROVED": "exact algebra decides it on the whole stated scope",
@@ -120,6 +129,7 @@ class ClaimView:
     correction: ClaimLink | None
     corrects: ClaimLink | None
     certificates: tuple[str, ...]
+    backing: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,10 +181,10 @@ def pages(
     progress : called with the id of each claim that is set in type
 
     Files: ``certificates/*.json``, ``verdicts.json``, ``MODULE.html``, ``MODULE.erratum.html`` and
-    ``.tex``, ``index.html``.
+    ``.tex``, ``trust.html``, ``index.html``.
     """
     words, env, papers = words or {}, environment(), []
-    shared = {"marks": MARKS, "meanings": MEANINGS, "copy_mark": COPY_MARK}
+    shared = {"marks": MARKS, "meanings": MEANINGS, "copy_mark": COPY_MARK, "kinds": KINDS, "whose": WHOSE}
     yield from certificate_files(ledger.claims).items()
     yield "verdicts.json", json.dumps(ledger.document(), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
     for summary in ledger.papers:
@@ -185,6 +195,8 @@ def pages(
         yield f"{paper.file}.html", env.get_template("paper.html").render(shared, paper=paper)
         yield f"{paper.file}.erratum.html", env.get_template("erratum.html").render(shared, paper=paper)
         yield f"{paper.file}.erratum.tex", env.get_template("erratum.tex").render(paper=paper)
+    places = {claim.record.id: f"{paper.file}.html#{claim.anchor}" for paper in papers for claim in paper.claims}
+    yield "trust.html", env.get_template("trust.html").render(shared, trust=trust_of(ledger), places=places)
     papers.sort(key=lambda paper: not paper.erratum.entries)  # those with something to correct come first
     yield "index.html", env.get_template("index.html").render(shared, papers=papers, total=total(papers))
 
@@ -248,8 +260,10 @@ def equation_cell(card: Paper, equation: str, records: Sequence[Record]) -> Cell
     """The worst verdict on an equation; ``copy`` for damage of the copy, ``definition`` or ``missing`` without any."""
     found = records_about(equation, card.equations, records)
     if not found:
-        kind = "definition" if equation in card.definitions else "missing"
-        words = card.definitions.get(equation, "neither claimed nor listed as a definition")
+        beside = any(equation_of(record.number, card.equations) == equation for record in records)
+        kind = "definition" if equation in card.definitions or beside else "missing"
+        other = "only sentences beside it are claimed" if beside else "neither claimed nor listed as a definition"
+        words = card.definitions.get(equation, other)
         return Cell(equation, kind, "·" if kind == "definition" else "!", f"{kind}: {words}", "")
     worst = found[0]
     many = f"{len(found)} claims, the worst " if len(found) > 1 else ""
@@ -288,6 +302,7 @@ def claim_view(record: Record, correction: Record | None, corrected: Record | No
         correction=link(correction),
         corrects=link(corrected),
         certificates=tuple(name for name, _ in certificates_by_file(record)),
+        backing=backing_words(record),
     )
 
 

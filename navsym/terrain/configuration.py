@@ -7,13 +7,16 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from navsym.core.errors import DomainError, EmptyError, NavsymError, ShapeError
 from navsym.language.names import only_keys, quote
-from navsym.terrain.heights import TerrainMap
-from navsym.terrain.maps import local_frame, read_map, read_track
+from navsym.terrain.heights import Array, TerrainMap, vector
+from navsym.terrain.maps import GEODETIC, PLANE, local_frame, metres_per_degree, middle_latitude, read_map, read_track
 from navsym.terrain.track import Hypotheses, Profile
 
 KEYS = ("map", "track", "position", "velocity", "interpolation")
@@ -21,13 +24,30 @@ KEYS_OF_GRID = ("step", "half_count")
 #: What describes a map or a track: a file, or the numbers themselves, never both.
 KEYS_OF_MAP_FILE = ("file", "nodata", "frame")
 KEYS_OF_MAP = ("heights", "x0", "y0", "dx", "dy", "nodata")
-KEYS_OF_TRACK_FILE, KEYS_OF_TRACK = ("file",), ("t", "x", "y", "h")
+KEYS_OF_TRACK_FILE = ("file",)
+
+
+@dataclass(frozen=True, slots=True)
+class OnEarth:
+    """Where a map lies on the Earth: ``longitude = lon0 + x / per_degree[0]``, latitude likewise.
+
+    per_degree : map units of a degree of longitude and of latitude; metres : metres of a map unit along x and y
+    """
+
+    lon0: float
+    lat0: float
+    per_degree: tuple[float, float]
+    metres: tuple[float, float]
+
+    def geodetic(self, x: float, y: float) -> tuple[float, float]:
+        """(latitude, longitude) in degrees of a place of the map."""
+        return self.lat0 + y / self.per_degree[1], self.lon0 + x / self.per_degree[0]
 
 
 def read_search(
     config: Mapping[str, Any], folder: Path, *, velocity_needed: bool
-) -> tuple[TerrainMap, Profile, Hypotheses]:
-    """Map, track and hypotheses of a configuration; file names start in ``folder``.
+) -> tuple[TerrainMap, Profile, Hypotheses, OnEarth | None]:
+    """Map, track and hypotheses of a configuration, and where the map lies; file names start in ``folder``.
 
     velocity_needed : False when a grid without velocities will do
     """
@@ -36,8 +56,8 @@ def read_search(
     only_keys(config, KEYS)
     if config.get("interpolation", "bilinear") != "bilinear":
         raise DomainError(f"interpolation: expected bilinear; got {config['interpolation']!r:.40}; leave it out")
-    terrain = map_of(block(config, "map"), folder)
-    return terrain, track_of(block(config, "track"), folder), grid_of(config, velocity_needed)
+    terrain, place = map_of(block(config, "map"), folder)
+    return terrain, track_of(block(config, "track"), folder, place), grid_of(config, velocity_needed), place
 
 
 def block(config: Mapping[str, Any], name: str) -> Mapping[str, Any]:
@@ -58,28 +78,34 @@ def entry(table: Mapping[str, Any], name: str, where: str) -> Any:
     return table[name]
 
 
-def map_of(table: Mapping[str, Any], folder: Path) -> TerrainMap:
-    """A map from a file or from numbers."""
+def map_of(table: Mapping[str, Any], folder: Path) -> tuple[TerrainMap, OnEarth | None]:
+    """A map from a file or from numbers, and where it lies on the Earth if that is known."""
     only_keys(table, KEYS_OF_MAP_FILE if "file" in table else KEYS_OF_MAP, "map")
     try:
         nodata = None if table.get("nodata") is None else number(table["nodata"], "nodata")
         if "file" in table:
             return map_in(folder / file_name(table, "map"), table.get("frame"), nodata)
         entries = {name: entry(table, name, "map") for name in KEYS_OF_MAP[:5]}
-        return TerrainMap(**entries, nodata=nodata)
+        return TerrainMap(**entries, nodata=nodata), None
     except NavsymError as error:
         raise error.at("map") if not error.where else error from None
 
 
-def map_in(path: Path, frame: Any, nodata: float | None) -> TerrainMap:
-    """The map of a file, in the frame asked for, or in that of the file."""
-    raster = read_map(path)
-    frame = frame or ("geographic" if raster.geographic else "local")
+def map_in(path: Path, frame: Any, nodata: float | None) -> tuple[TerrainMap, OnEarth | None]:
+    """The map of a file, in the frame asked for, or in that of the file, and where it lies."""
+    tile = read_map(path)
+    frame = frame or ("geographic" if tile.geographic else "local")
     if frame not in ("geographic", "local"):
         raise DomainError(f"frame: expected geographic or local; got {frame!r:.40}; choose one")
-    raster = local_frame(raster) if frame == "local" else raster
+    raster = local_frame(tile) if frame == "local" else tile
     void = raster.nodata if nodata is None else nodata
-    return TerrainMap(raster.heights, raster.x0, raster.y0, raster.dx, raster.dy, nodata=void)
+    terrain = TerrainMap(raster.heights, raster.x0, raster.y0, raster.dx, raster.dy, nodata=void)
+    if not tile.geographic:
+        return terrain, None
+    metres = metres_per_degree(middle_latitude(tile))
+    if frame == "local":
+        return terrain, OnEarth(tile.x0, tile.y0, metres, (1.0, 1.0))
+    return terrain, OnEarth(0.0, 0.0, (1.0, 1.0), metres)
 
 
 def number(value: Any, name: str) -> float:
@@ -97,14 +123,29 @@ def file_name(table: Mapping[str, Any], where: str) -> str:
     return name
 
 
-def track_of(table: Mapping[str, Any], folder: Path) -> Profile:
-    """A track from a CSV file or from four lists."""
-    only_keys(table, KEYS_OF_TRACK_FILE if "file" in table else KEYS_OF_TRACK, "track")
+def track_of(table: Mapping[str, Any], folder: Path, place: OnEarth | None) -> Profile:
+    """A track from a CSV file or from four lists; ``lat`` and ``lon`` in degrees go to x and y of the map."""
+    geodetic = "file" not in table and ("lat" in table or "lon" in table)
+    only_keys(table, KEYS_OF_TRACK_FILE if "file" in table else GEODETIC if geodetic else PLANE, "track")
     try:
         columns = read_track(folder / file_name(table, "track")) if "file" in table else table
-        return Profile(*(entry(columns, name, "track") for name in KEYS_OF_TRACK))
+        if "lat" not in columns and "lon" not in columns:
+            return Profile(*(entry(columns, name, "track") for name in PLANE))
+        t, lat, lon, h = (entry(columns, name, "track") for name in GEODETIC)
+        return Profile(t, *on_map(vector("lat", lat, None, "degrees"), vector("lon", lon, None, "degrees"), place), h)
     except NavsymError as error:
         raise error.at("track") if not error.where else error from None
+
+
+def on_map(latitude: Array, longitude: Array, place: OnEarth | None) -> tuple[Array, Array]:
+    """x and y of latitudes and longitudes in degrees; DomainError for a map that does not lie on the Earth."""
+    if place is None:
+        raise DomainError(
+            "expected x and y for a map in metres; got lat and lon; use a tile in degrees, or give x and y"
+        )
+    if np.abs(latitude).max(initial=0.0) > 90.0 or np.abs(longitude).max(initial=0.0) > 360.0:
+        raise DomainError("expected lat within 90 and lon within 360 degrees; got larger numbers; give degrees")
+    return (longitude - place.lon0) * place.per_degree[0], (latitude - place.lat0) * place.per_degree[1]
 
 
 def grid_of(config: Mapping[str, Any], velocity_needed: bool) -> Hypotheses:

@@ -19,7 +19,8 @@ from navsym.language.files import name_file
 from navsym.language.jsonfile import read_json
 from navsym.language.names import quote
 from navsym.terrain.centre import demand_estimable, one_sided
-from navsym.terrain.configuration import read_search
+from navsym.terrain.configuration import OnEarth, read_search
+from navsym.terrain.covariance import Trust, trust_of
 from navsym.terrain.heights import ON_MAP, TerrainMap
 from navsym.terrain.refine import refine
 from navsym.terrain.search import Search, criteria, prepare, search_full, search_position
@@ -47,7 +48,9 @@ class Fix(Answer):
     evaluated    : hypotheses evaluated over all measurements
     height_offset : mean of the measured less the mapped heights, m; None unless it was asked for
     criterion_map : (My, Mx), row = j, inf off the map; None unless it was asked for
-    remarks      : sentences about units, the edge of the grid, ties
+    trust        : covariance of the fix, of x, y[, vx, vy] in units of the map, its weakest direction in metres
+    geodetic     : latitude and longitude in degrees, for a map that lies on the Earth, else None
+    remarks      : sentences about units, the edge of the grid, ties, geometry
     """
 
     method: str
@@ -66,6 +69,8 @@ class Fix(Answer):
     evaluated: int
     height_offset: float | None
     criterion_map: Array | None
+    trust: Trust
+    geodetic: tuple[float, float] | None
     remarks: tuple[str, ...]
 
     def document(self) -> dict[str, Any]:
@@ -83,7 +88,14 @@ class Fix(Answer):
             "fix": {"x": self.x, "y": self.y, "vx": self.vx, "vy": self.vy},
             "correction": dict(zip(("dx", "dy", "dvx", "dvy"), moves, strict=True)),
             "evaluated": self.evaluated,
+            "covariance": None if self.trust.covariance is None else self.trust.covariance.tolist(),
+            "weakest": None
+            if self.trust.direction is None
+            else {"direction": self.trust.direction.tolist(), "sd": self.trust.weakest, "across": self.trust.strongest},
+            "remarks": list(self.remarks),
         }
+        if self.geodetic is not None:
+            document["fix"] |= {"latitude": self.geodetic[0], "longitude": self.geodetic[1]}
         if self.height_offset is not None:
             document["height_offset"] = self.height_offset
         if self.criterion_map is not None:
@@ -161,23 +173,42 @@ def locate(
     else:
         document, place = config, "locate"
     try:
-        terrain, track, grid = read_search(document, Path(folder or "."), velocity_needed=method != "position")
-        return fix_of(terrain, track, grid, method, maps, offset_free)
+        case = read_search(document, Path(folder or "."), velocity_needed=method != "position")
+        return fix_of(*case, method, maps, offset_free)
     except NavsymError as error:
         raise error if error.where.startswith(place) else error.at(place) from None
 
 
-def fix_of(terrain: TerrainMap, track: Profile, grid: Hypotheses, method: str, maps: bool, offset_free: bool) -> Fix:
+def fix_of(
+    terrain: TerrainMap,
+    track: Profile,
+    grid: Hypotheses,
+    place: OnEarth | None,
+    method: str,
+    maps: bool,
+    offset_free: bool,
+) -> Fix:
     """The answer of one method."""
     found = SEARCHES[method](terrain, track, grid, offset_free)
     if not math.isfinite(found.criterion):
         message = "expected a hypothesis on known ground; got none; use a larger map, or smaller steps"
         raise OutsideMapError(message, where="position, velocity")
-    (x, y), velocity = (track.x[-1], track.y[-1]), track.final_velocity
+    x, y = float(track.x[-1]) + float(found.shift[0]), float(track.y[-1]) + float(found.shift[1])
+    velocity = track.final_velocity
+    trust = trust_of(
+        terrain,
+        track,
+        corrected(track, found),
+        found.criterion,
+        velocity=method != "position",
+        offset=offset_free,
+        grid=None if method == "refined" else grid,
+        metres=(1.0, 1.0) if place is None else place.metres,
+    )
     return Fix(
         method,
-        float(x) + float(found.shift[0]),
-        float(y) + float(found.shift[1]),
+        x,
+        y,
         velocity[0] + float(found.velocity[0]),
         velocity[1] + float(found.velocity[1]),
         (found.shift, found.velocity),
@@ -191,7 +222,9 @@ def fix_of(terrain: TerrainMap, track: Profile, grid: Hypotheses, method: str, m
         found.evaluated,
         height_offset(terrain, track, found) if offset_free else None,
         criterion_map(terrain, track, grid, found, offset_free) if maps else None,
-        remarks(terrain, track, grid, found, offset_free),
+        trust,
+        None if place is None else place.geodetic(x, y),
+        (*remarks(terrain, track, grid, found, offset_free), *trust.remarks),
     )
 
 

@@ -36,6 +36,7 @@ from navsym.core.errors import (
     TooLargeError,
 )
 from navsym.language.files import name_file, read_bytes, read_text
+from navsym.models.earth import ECCENTRICITY_SQUARED, SEMI_MAJOR, prime_vertical_radius
 from navsym.terrain.heights import voids_in
 
 # Plain GeoTIFF files: one band of numbers in strips or tiles, uncompressed or deflated. tifffile reads the tags; the
@@ -272,8 +273,6 @@ MOST_HEIGHTS, MOST_BYTES = 200_000_000, 64_000_000
 MOST_INFLATED, MOST_TIMES = 256_000_000, 50
 #: Largest GeoTIFF, bytes.
 MOST_TIFF_BYTES = 8 * MOST_HEIGHTS
-#: Mean radius of the Earth, metres, for the local frame of a tile.
-EARTH = 6_371_008.8
 SRTM_VOID = -32768
 
 #: A header's announcement: shape, type.
@@ -316,13 +315,25 @@ def read_map(path: str | os.PathLike[str]) -> Raster:
     return reader(Path(path))
 
 
+def metres_per_degree(latitude: float) -> tuple[float, float]:
+    """Metres of a degree of longitude and of one of latitude, on WGS-84 at a latitude in degrees and height zero."""
+    phi = math.radians(latitude)
+    N = float(prime_vertical_radius(phi))
+    M = N**3 * (1 - ECCENTRICITY_SQUARED) / SEMI_MAJOR**2
+    return math.radians(N * math.cos(phi)), math.radians(M)
+
+
+def middle_latitude(raster: Raster) -> float:
+    """The latitude of the middle row of a geographic tile, degrees."""
+    return raster.y0 + 0.5 * raster.dy * (raster.heights.shape[0] - 1)
+
+
 def local_frame(raster: Raster) -> Raster:
-    """A geographic tile in metres east and north of its south-west node, scaled at its middle latitude."""
+    """A geographic tile in metres east and north of its south-west node, by the ellipsoid at its middle latitude."""
     if not raster.geographic:
         return raster
-    middle = raster.y0 + 0.5 * raster.dy * (raster.heights.shape[0] - 1)
-    dx = EARTH * math.radians(raster.dx) * math.cos(math.radians(middle))
-    return Raster(raster.heights, 0.0, 0.0, dx, EARTH * math.radians(raster.dy), raster.nodata)
+    east, north = metres_per_degree(middle_latitude(raster))
+    return Raster(raster.heights, 0.0, 0.0, east * raster.dx, north * raster.dy, raster.nodata)
 
 
 # npz
@@ -591,8 +602,12 @@ def upright(heights: NDArray[Any], transform: Any, nodata: Any, geographic: bool
 # Tracks
 
 
+#: Columns of a track: in the unit of the map, or on the Earth in degrees.
+PLANE, GEODETIC = ("t", "x", "y", "h"), ("t", "lat", "lon", "h")
+
+
 def read_track(path: str | os.PathLike[str]) -> dict[str, list[float]]:
-    """Columns t, x, y, h of a CSV file with a header line; other columns are ignored.
+    """Columns t, x, y, h, or t, lat, lon, h, of a CSV file with a header line; other columns are ignored.
 
     Lines that start with # and empty lines are skipped. Raises NavsymError with the line.
     """
@@ -605,13 +620,13 @@ def read_track(path: str | os.PathLike[str]) -> dict[str, list[float]]:
     if not lines:
         raise EmptyError("expected a header line t,x,y,h; got nothing; write one", where=where)
     header = [name.strip().lower() for name in lines[0][1]]
-    missing = [name for name in ("t", "x", "y", "h") if header.count(name) != 1]
-    if missing:
+    wanted = next((names for names in (PLANE, GEODETIC) if all(header.count(name) == 1 for name in names)), None)
+    if wanted is None:
         raise ExpressionSyntaxError(
-            f"expected the columns t, x, y, h once each; got {','.join(header)[:120]!r}; name them",
+            f"expected the columns t, x, y, h, or t, lat, lon, h, once each; got {','.join(header)[:120]!r}; name them",
             where=f"{where}: line {lines[0][0]}",
         )
-    place = {name: header.index(name) for name in ("t", "x", "y", "h")}
+    place = {name: header.index(name) for name in wanted}
     table = [{name: cell(row, k, f"{where}: line {line}") for name, k in place.items()} for line, row in lines[1:]]
     if not table:
         raise EmptyError("expected at least one row below the header; got none; add the track", where=where)

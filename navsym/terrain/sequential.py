@@ -10,6 +10,7 @@ joint least-squares solution (terrain_search:sequential.exact) at the cost of si
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,8 @@ from numpy.typing import NDArray
 from navsym.terrain.centre import Information, demand_estimable, information, slopes
 from navsym.terrain.heights import TerrainMap
 from navsym.terrain.kernels.criteria import velocity_criteria
-from navsym.terrain.search import Search, criteria, lowest, need, prepare
+from navsym.terrain.kernels.margins import DOUBLE, PLAIN
+from navsym.terrain.search import Prepared, Search, criteria, lowest, need, position_noise, prepare
 from navsym.terrain.track import Hypotheses, Profile
 
 Array = NDArray[np.float64]
@@ -30,7 +32,8 @@ class Sequential:
 
     coarse      : result of the position stage
     index       : (i, j, Vi, Vj)
-    criterion   : Q_V at the chosen velocity (terrain_search:6); second_best, unique: among velocities
+    criterion   : Q_V at the chosen velocity (terrain_search:6); second_best: among velocities;
+                  unique: True where both stages are proved to have one best hypothesis, False where the first has not
     t_G         : (min, max, mid), counted in measurements from 0 as in the paper
     quadratic   : (A2, A1, A0) with the measurement number as time
     shift       : (2,) correction of the position at the last time, in map units
@@ -78,7 +81,7 @@ def search_sequential(
     Vi, Vj, criterion, second = two_lowest(values)
     velocity = np.array([Vi * grid.velocity_step[0], Vj * grid.velocity_step[1]])
     shift = start + (track.elapsed[-1] * np.eye(2) - centre) @ velocity  # terrain_search:14
-    unique = True if second > criterion * (1.0 + 1e-9) else (None if second > criterion else False)
+    unique = coarse.unique if coarse.unique is not True else (True if apart(position, criterion, second) else None)
     evaluated = coarse.evaluated + values.size
     index, t_G = (i, j, Vi, Vj), (low, high, middle)
     return Sequential(
@@ -101,6 +104,17 @@ def velocity_stage(
     case = (terrain.heights, bx, by, np.array(track.h), track.elapsed, track.elapsed)
     velocity_criteria(case, cells, steps, grid.counts[2:], centred, out)
     return out
+
+
+def apart(prepared: Prepared, criterion: float, second: float) -> bool:
+    """Whether two double sums differ by more than their rounding can: the margins of :func:`is_unique`, four times.
+
+    Turning a track about a centre takes a few roundings of coordinates more than moving it.
+    """
+    n = prepared.z.size
+    slack = 4.0 * DOUBLE * PLAIN * (prepared.bound + position_noise(prepared)) * math.sqrt(n)
+    grow = (n + 4) * DOUBLE
+    return math.sqrt(second) * (1.0 - grow) - slack > math.sqrt(criterion) * (1.0 + grow) + slack
 
 
 def two_lowest(values: Array) -> tuple[int, int, float, float]:

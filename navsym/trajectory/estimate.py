@@ -34,6 +34,8 @@ from navsym.trajectory.tracks import (
     isolated_outliers,
     memory,
     noise_of,
+    shape_of,
+    shaped,
     usual_step,
 )
 
@@ -148,7 +150,9 @@ def noise_points(
     East and North share one pair of parameters, Up has its own; point k moves both.
     """
     roots = [
-        covariance_root(Fit(track, order, use, channels, gate, fixed_scale), noise, channels[0])
+        covariance_root(
+            Fit(track, order, use, channels, gate, fixed_scale, shape_of(noise, channels[0])), noise, channels[0]
+        )
         for channels in ((0, 1), (2,))
     ]
     axes = 1 if fixed_scale else 2
@@ -157,7 +161,7 @@ def noise_points(
         for sign in (-1.0, 1.0):
             moves = [10.0 ** (sign * np.sqrt(REACH) * root[:, axis]) for root in roots]
             factors = np.array([moves[0], moves[0], moves[1]]).T
-            moved = Noise(freeze(noise.scale * factors[0]), freeze(noise.density * factors[1]))
+            moved = replace(noise, scale=freeze(noise.scale * factors[0]), density=freeze(noise.density * factors[1]))
             points.append(NoisePoint(1.0 / (2.0 * REACH), moved))
     return points
 
@@ -242,6 +246,7 @@ def estimate(track: Positions, settings: Settings) -> tuple[TrackEstimate, Noise
     if use.sum() < settings.order + 1:
         message = f"track: expected at least {settings.order + 1} rows that agree; got {use.sum()} of {len(use)}"
         raise ShapeError(f"{message}; lower the order, or set the gate to 0")
+    noise = shaped(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
     if settings.method in ("filter", "smoother"):
         return marginal(track, noise, settings, use), noise
     return by_method(track, noise, settings, use), noise
@@ -250,13 +255,55 @@ def estimate(track: Positions, settings: Settings) -> tuple[TrackEstimate, Noise
 def marginal(track: Positions, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
     """Filter or smoother, averaged over what the noise may be; gains and flags are those of the likeliest."""
     points = noise_points(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
-    found = [by_method(track, point.noise, settings, use) for point in points]
+    factors = local_scales(track, noise, settings, use)
+    found = [by_method(track, point.noise, settings, use, factors) for point in points]
     weights = np.array([point.weight for point in points])
     parts = [
         mixture(weights, [values for values, _ in derivative], [spread for _, spread in derivative])
         for derivative in zip(*(f.derivatives for f in found), strict=True)
     ]
     return TrackEstimate(parts, found[0].flags, found[0].gains)
+
+
+#: Rows to each side over which squared innovations are averaged (deviation of a bell), what the model itself weighs
+#: in rows, and the largest squared innovation that counts.
+NEAR, TRUSTED, WILDEST = 10, 8.0, 100.0
+
+
+def local_scales(track: Positions, noise: Noise, settings: Settings, use: Rows) -> Array:
+    """(3, N) factors on the variances: how large squared innovations are about each row, to what the noise predicts.
+
+    A recording is rarely as good, or as calm, all along. East and North share their factors, Up has its own. They are
+    one unless they predict: each innovation is predicted by those about it without itself (for the filter, by those
+    before it), and the log-likelihood of all has to rise by more than half the logarithm of their number.
+    """
+    run = filtered(track, noise, settings, use)
+    squares = np.minimum(run.innovations**2 / run.variances, WILDEST)
+    counted = use.astype(float)
+    counted[np.flatnonzero(use)[: settings.order]] = 0.0
+    factors = np.ones(squares.shape)
+    for channels in ([0, 1], [2]):
+        factor, predicted = (
+            (TRUSTED + bell(squares[channels].mean(axis=0) * counted, settings.method, own))
+            / (TRUSTED + bell(counted, settings.method, own))
+            for own in (True, False)
+        )
+        rise = squares[channels] * (1.0 - 1.0 / predicted) - np.log(predicted)
+        if (rise * counted).sum() > np.log(max(counted.sum(), 2.0)):
+            factors[channels] = factor
+    return factors
+
+
+def bell(values: Array, method: str, own: bool) -> Array:
+    """Sums (N,) of values (N,) about each row, weighted by a bell; of past rows only for the filter."""
+    away = np.arange(-3 * NEAR, 3 * NEAR + 1)
+    weights = np.exp(-0.5 * (away / NEAR) ** 2)
+    if method == "filter":
+        weights[away < 0] = 0.0
+    if not own:
+        weights[away == 0] = 0.0
+    whole = np.convolve(values, weights)
+    return np.asarray(whole[3 * NEAR : 3 * NEAR + len(values)])
 
 
 def mixture(weights: Array, means: list[Array], deviations: list[Array]) -> tuple[Array, Array]:
@@ -276,7 +323,7 @@ def departures(track: Positions, noise: Noise, settings: Settings, use: Rows) ->
     """
     run = filtered(track, noise, replace(settings, gate=0.0), use)
     smoothed(track, noise, run)
-    r, P = (track.variance * noise.scale).T, variance(run, 0)
+    r, P = noise.total(track).T, variance(run, 0)
     share = np.maximum(1.0 - P / r, 1e-6)
     residual = np.abs(track.position.T - run.states[:, :, 0])
     test = residual / np.sqrt(r * share) / settings.gate
@@ -291,23 +338,25 @@ def agreeing(track: Positions, noise: Noise, settings: Settings, use: Rows) -> M
     """(N,) True for rows left out that agree with the track of the others: an outlier had blamed them."""
     run = filtered(track, noise, replace(settings, gate=0.0), use)
     smoothed(track, noise, run)
-    deviation = np.sqrt((track.variance * noise.scale).T + variance(run, 0))
+    deviation = np.sqrt(noise.total(track).T + variance(run, 0))
     test = np.abs(track.position.T - run.states[:, :, 0]) / deviation
     fits: Mask = (use == 0) & (test < settings.gate).all(axis=0)
     return fits
 
 
-def by_method(track: Positions, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
+def by_method(
+    track: Positions, noise: Noise, settings: Settings, use: Rows, factors: Array | float = 1.0
+) -> TrackEstimate:
     """Velocity and acceleration by the method of the settings, for one noise.
 
-    use : (N,) 1 for rows that count, 0 for outliers
+    use : (N,) 1 for rows that count, 0 for outliers ; factors : (3, N) on the variances of filter and smoother
     """
     run = filtered(track, noise, settings, use)
     words = tuple(word(use[k], run.flags[k]) for k in range(len(track.t)))
     if settings.method in ("filter", "smoother"):
         if settings.method == "smoother":
             smoothed(track, noise, run)
-        return from_states(track, run, words)
+        return from_states(track, run, words, factors)
     if settings.method == "differences":
         windows = difference_windows(track, use)
         return from_weights(track, noise, windows, settings.order, least_squares, words)
@@ -339,13 +388,17 @@ def word(used: int, flags: Rows) -> str:
 
 @dataclass(slots=True, eq=False)
 class FilterRun:
-    """Arrays of a run, channel first: states, gains (3, N, n), roots of covariances (3, N, n, n), flags (N, 3), ..."""
+    """Arrays of a run, channel first: states, gains (3, N, n+1), roots of covariances (3, N, n+1, n+1), flags (N, 3).
+
+    The last state is the coloured error of the position; the first is the position with it.
+    """
 
     states: Array
     roots: Array
     gains: Array
     innovations: Array
     variances: Array
+    jumps: Array
     flags: Rows
 
 
@@ -353,19 +406,20 @@ def filtered(track: Positions, noise: Noise, settings: Settings, use: Rows) -> F
     """Forward run of the three channels; every root is kept for the smoother."""
     N, n = len(track.t), settings.order
     run = FilterRun(
-        states=np.empty((3, N, n)),
-        roots=np.empty((3, N, n, n)),
-        gains=np.empty((3, N, n)),
+        states=np.empty((3, N, n + 1)),
+        roots=np.empty((3, N, n + 1, n + 1)),
+        gains=np.empty((3, N, n + 1)),
         innovations=np.empty((3, N)),
         variances=np.empty((3, N)),
+        jumps=np.empty((3, N)),
         flags=np.empty((N, 3), dtype=np.int64),
     )
     spread = first_spread(track, n)
     for c in range(3):
-        z, r = track.position[:, c].copy(), track.variance[:, c] * noise.scale[c]
-        out = (run.states[c], run.roots[c], run.gains[c], run.innovations[c], run.variances[c])
+        z, r, b = track.position[:, c].copy(), noise.white(track, c), noise.coloured(track, c)
+        out = (run.states[c], run.roots[c], run.gains[c], run.innovations[c], run.variances[c], run.jumps[c])
         flags = np.empty(N, dtype=np.int64)
-        forward(track.t, z, r, use, noise.density[c], spread, settings.gate, *out, flags)
+        forward(track.t, z, r, b, use, noise.model(c), spread, settings.gate, *out, flags)
         run.flags[:, c] = flags
     return run
 
@@ -373,7 +427,7 @@ def filtered(track: Positions, noise: Noise, settings: Settings, use: Rows) -> F
 def smoothed(track: Positions, noise: Noise, run: FilterRun) -> None:
     """Replace the filtered states and roots of a run by the smoothed ones."""
     for c in range(3):
-        backward(track.t, run.states[c], run.roots[c], noise.density[c])
+        backward(track.t, noise.coloured(track, c), run.jumps[c], run.states[c], run.roots[c], noise.model(c))
 
 
 def variance(run: FilterRun, i: int) -> Array:
@@ -382,15 +436,17 @@ def variance(run: FilterRun, i: int) -> Array:
     return found
 
 
-def from_states(track: Positions, run: FilterRun, words: tuple[str, ...]) -> TrackEstimate:
+def from_states(
+    track: Positions, run: FilterRun, words: tuple[str, ...], factors: Array | float = 1.0
+) -> TrackEstimate:
     """The answer of a filter or smoother run.
 
     The gains are those of the last row at which the first channel used its measurement.
     """
     last = int(np.flatnonzero((run.gains[0] != 0).any(axis=1))[-1])
-    gains = {name: run.gains[c, last].tolist() for c, name in enumerate(CHANNELS)}
-    n = run.states.shape[2]
-    derivatives = [(run.states[:, :, i], variance(run, i)) for i in (1, 2) if i < n]
+    n = run.states.shape[2] - 1
+    gains = {name: run.gains[c, last, :n].tolist() for c, name in enumerate(CHANNELS)}
+    derivatives = [(run.states[:, :, i], variance(run, i) * factors) for i in (1, 2) if i < n]
     return turned(track, derivatives, words, gains)
 
 
@@ -468,7 +524,7 @@ def from_weights(
                     cache[key] = weights(dt, sigma, min(order, len(rows)), d)
                 w, deviation = cache[key]
                 values[d - 1, c, k] = w @ track.position[rows, c]
-                variances[d - 1, c, k] = deviation**2 * noise.scale[c]
+                variances[d - 1, c, k] = deviation**2 * noise.scale[c] * (1.0 + noise.ratio[c])
         if not same:
             cache.clear()
     return turned(track, list(zip(values, variances, strict=True)), words, {})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,8 +13,9 @@ from navsym.claims.display import write_table
 from navsym.core.answers import Answer
 from navsym.core.arrays import Array, freeze
 from navsym.core.errors import DomainError, NavsymError
-from navsym.language.files import name_file
+from navsym.language.files import name_file, write_text
 from navsym.language.names import quote
+from navsym.trajectory.consistency import Consistency, compare, consistency_of
 from navsym.trajectory.estimate import Settings, estimate, filtered, gaps, largest_gap, window_of
 from navsym.trajectory.reader import TrackFile, read_columns, read_track
 from navsym.trajectory.tracks import Noise, Positions, Rows, TrackEstimate, memory, project_positions, usual_step
@@ -40,6 +41,8 @@ class Track(Answer):
     noise         : :class:`navsym.trajectory.tracks.Noise` of the track; position_sd : (3,) m; memory : s
     certificate   : exact bounds of the weights of the guaranteed method, else None
     warnings, repairs : sentences, each naming its line where it has one
+    nis, nees     : :class:`navsym.trajectory.consistency.Consistency` of the innovations, and against a reference
+                    where one was given, else None
     """
 
     t: Array
@@ -58,6 +61,8 @@ class Track(Answer):
     certificate: dict[str, Any] | None
     warnings: tuple[str, ...]
     repairs: tuple[str, ...]
+    nis: Consistency | None = None
+    nees: Consistency | None = None
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym track``."""
@@ -79,10 +84,27 @@ class Track(Answer):
                 "position_sd": self.position_sd.tolist(),
                 "density": self.noise.density.tolist(),
                 "memory_seconds": self.memory,
+                "coloured_share": (self.noise.ratio / (1.0 + self.noise.ratio)).tolist(),
+                "correlation_seconds": self.noise.tau.tolist(),
+                "forgetting_rate": self.noise.rate.tolist(),
+                "exponent": self.noise.exponent.tolist(),
             },
+            "nis": None if self.nis is None else self.nis.document(),
+            "nees": None if self.nees is None else self.nees.document(),
             "warnings": list(self.warnings),
             "repairs": list(self.repairs),
+            "remarks": [*self.warnings, *self.repairs],
         }
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write all rows as CSV: time, velocity, its deviations, acceleration where it is estimated, and the flag."""
+        names, parts = ["t", "ve", "vn", "vu", "sd_ve", "sd_vn", "sd_vu"], [self.velocity, self.velocity_sd]
+        if self.acceleration is not None and self.acceleration_sd is not None:
+            names += ["ae", "an", "au", "sd_ae", "sd_an", "sd_au"]
+            parts += [self.acceleration, self.acceleration_sd]
+        numbers = np.column_stack([self.t, *parts]).tolist()
+        rows = [",".join([*map(repr, row), flag]) for row, flag in zip(numbers, self.flags, strict=True)]
+        write_text(path, "\n".join([",".join([*names, "row"]), *rows, ""]))
 
     def __repr__(self) -> str:
         fastest = float(np.sqrt((self.velocity**2).sum(axis=1)).max())
@@ -115,6 +137,7 @@ def track(
     sigma: float | None = None,
     gate: float = 5.0,
     policy: str = "strict",
+    reference: Any = None,
 ) -> Track:
     """Velocity and acceleration of measured positions, with standard deviations.
 
@@ -127,9 +150,12 @@ def track(
     sigma  : standard deviation of positions, m; default: the file's, else that found in the track
     gate   : an innovation beyond so many standard deviations has less weight; 0 switches this off
     policy : ``strict`` refuses bad rows; ``repair`` mends or leaves them out, and lists them
+    reference : velocities to compare with, a CSV file with columns t, ve, vn, vu (and sd_ve, sd_vn, sd_vu) or an array
+             (M, 4 or 7), s and m/s; the answer then has their NEES
 
-    Positions go to axes fixed to the Earth; noise of positions and of motion are found by maximum likelihood; the
-    smoother is that of Rauch, Tung and Striebel. Standard deviations know that the noise was only estimated.
+    Positions go to axes fixed to the Earth. The noise of positions, white and coloured, and of a motion that may
+    forget its last derivative are found by maximum likelihood; the smoother is that of Rauch, Tung and Striebel.
+    Standard deviations know that the noise was only estimated and follow the innovations about each row.
 
     Returns :class:`Track`. Raises NavsymError: ``missing-file``, ``syntax``, ``shape``, ``not-finite``, ``domain``,
     ``duplicate`` (equal times), ``empty``. Source: Maybeck, Stochastic Models, Estimation and Control, vol. 2, ch. 8.
@@ -147,9 +173,22 @@ def track(
     try:
         given = read.sigma if sigma is None else sigma
         positions = project_positions(read.t - read.t[0], read.latitude, read.longitude, read.height, given)
-        return describe_motion(read, positions, settings)
+        found = describe_motion(read, positions, settings)
+        if reference is None:
+            return found
+        return with_reference(found, reference)
     except NavsymError as error:
         raise error.at(place) from None
+
+
+def with_reference(found: Track, reference: Any) -> Track:
+    """The answer with its NEES, and a remark where the clocks seem to differ."""
+    nees = compare(found.t, found.velocity, found.velocity_sd, reference)
+    if nees.lag is None:
+        return replace(found, nees=nees)
+    side = "late" if nees.lag[0] > 0 else "early"
+    line = f"the reference fits best {abs(nees.lag[0]):.2g} s {side}, NEES {nees.lag[1]:.3g} there: check both clocks"
+    return replace(found, nees=nees, warnings=(*found.warnings, line))
 
 
 def settings_of(method: str | None, window: float | None, order: int, gate: float, sigma: float | None) -> Settings:
@@ -185,11 +224,12 @@ def describe_motion(read: TrackFile, positions: Positions, settings: Settings) -
         settings.order,
         window_in_use(positions, noise, settings),
         noise,
-        np.sqrt(noise.scale * np.median(positions.variance, axis=0)),
+        np.sqrt(np.median(noise.total(positions), axis=0)),
         memory(noise, positions.variance, settings.order),
         certificate(positions, found, noise, settings),
         (*read.warnings, *remarks(positions, found, noise, settings, read.lines)),
         read.repairs,
+        innovation_squares(positions, found, noise, settings),
     )
 
 
@@ -232,16 +272,21 @@ def remarks(track: Positions, found: TrackEstimate, noise: Noise, settings: Sett
     return out + doubts(track, found, noise, settings)
 
 
-def doubts(track: Positions, found: TrackEstimate, noise: Noise, settings: Settings) -> list[str]:
-    """Whether the standard deviations can be believed: innovations should be as large as they say."""
+def innovation_squares(track: Positions, found: TrackEstimate, noise: Noise, settings: Settings) -> Consistency | None:
+    """NIS of the rows in use, of the filter without a gate that has the noise of the track."""
     use = np.array([flag != "outlier" for flag in found.flags], dtype=np.int64)
     run = filtered(track, noise, Settings("filter", settings.order, gate=0.0), use)
     kept = np.flatnonzero(use)[settings.order :]
-    mean = float((run.innovations**2 / run.variances)[:, kept].mean())
-    if CONSISTENT[0] <= mean <= CONSISTENT[1] or not math.isfinite(mean):
+    return consistency_of((run.innovations / np.sqrt(run.variances))[:, kept].T)
+
+
+def doubts(track: Positions, found: TrackEstimate, noise: Noise, settings: Settings) -> list[str]:
+    """Whether the standard deviations can be believed: innovations should be as large as they say."""
+    nis = innovation_squares(track, found, noise, settings)
+    if nis is None or CONSISTENT[0] <= nis.mean <= CONSISTENT[1] or not math.isfinite(nis.mean):
         return []
-    side = "optimistic" if mean > 1 else "pessimistic"
+    side = "optimistic" if nis.mean > 1 else "pessimistic"
     return [
-        f"standard deviations are {side}: squared innovations are {mean:.3g} times their predicted variance; "
+        f"standard deviations are {side}: squared innovations are {nis.mean:.3g} times their predicted variance; "
         "the motion or the noise is not the same all along the track"
     ]

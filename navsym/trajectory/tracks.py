@@ -9,7 +9,7 @@ itself by maximum likelihood, East and North together, Up for itself.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -75,16 +75,55 @@ class Positions:
             )
 
 
+def three(value: float) -> Array:
+    """The same number for East, North and Up."""
+    return freeze(np.full(3, value))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Noise:
     """Noise found from a track, East, North, Up.
 
-    scale   : (3,) factor on the given variances of the positions
-    density : (3,) density of the white noise in the derivative of order n, m^2 / s^(2n-1)
+    With the given variance v of a row and their median m, a position has a white error of variance
+    ``scale m (v/m)^exponent`` and a coloured one, of variance ``ratio`` times that and correlation exp(-dt/tau).
+
+    scale    : (3,) factor on the given variances of the positions
+    density  : (3,) density of the white noise in the derivative of order n, m^2 / s^(2n-1)
+    rate     : (3,) 1/s, at which the last derivative forgets; 0: a polynomial driven by noise
+    ratio    : (3,) coloured to white variance ; tau : (3,) s, its correlation time
+    exponent : (3,) 1 where the given variances are to scale, more where bad positions are worse than they say
     """
 
     scale: Array
     density: Array
+    rate: Array = field(default_factory=lambda: three(0.0))
+    ratio: Array = field(default_factory=lambda: three(0.0))
+    tau: Array = field(default_factory=lambda: three(1.0))
+    exponent: Array = field(default_factory=lambda: three(1.0))
+
+    def model(self, c: int) -> Array:
+        """(q, rate, tau) of a channel, for the loops."""
+        return np.array([self.density[c], self.rate[c], self.tau[c]])
+
+    def white(self, track: Positions, c: int) -> Array:
+        """(N,) variances of the white errors of a channel."""
+        return raised(track.variance[:, c], float(self.exponent[c])) * self.scale[c]
+
+    def coloured(self, track: Positions, c: int) -> Array:
+        """(N,) standard deviations of the coloured errors of a channel."""
+        return np.asarray(np.sqrt(self.white(track, c) * self.ratio[c]))
+
+    def total(self, track: Positions) -> Array:
+        """(N, 3) variances of the positions, white and coloured."""
+        return np.stack([self.white(track, c) * (1.0 + self.ratio[c]) for c in range(3)], axis=1)
+
+
+def raised(variance: Array, exponent: float) -> Array:
+    """Variances (N,) whose logarithms are stretched about that of their median."""
+    if exponent == 1.0:
+        return variance.copy()
+    middle = np.median(variance)
+    return np.asarray(middle * (variance / middle) ** exponent)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -224,7 +263,7 @@ def first_spread(track: Positions, order: int) -> Array:
 
 
 def noise_of(track: Positions, order: int, use: Rows, *, gate: float = 0.0, fixed_scale: bool = False) -> Noise:
-    """Maximum-likelihood noise of a track: one pair for East and North, one for Up.
+    """Maximum-likelihood noise of a track, white errors and polynomial motion: a pair for East and North, one for Up.
 
     gate        : innovations beyond so many standard deviations count as if they were at it; 0 for none
     fixed_scale : take the given variances as they are
@@ -233,6 +272,16 @@ def noise_of(track: Positions, order: int, use: Rows, *, gate: float = 0.0, fixe
     pairs = [Fit(track, order, use, c, gate, fixed_scale).best() for c in ((0, 1), (2,))]
     scale, density = (np.array([pairs[0][i], pairs[0][i], pairs[1][i]]) for i in (0, 1))
     return Noise(freeze(scale), freeze(density))
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """What else the noise of some channels has: see :class:`Noise`."""
+
+    rate: float = 0.0
+    ratio: float = 0.0
+    tau: float = 1.0
+    exponent: float = 1.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -245,6 +294,7 @@ class Fit:
     channels: tuple[int, ...]
     gate: float
     fixed_scale: bool
+    shape: Shape = Shape()
 
     def sums(self, scale: float, density: float, gate: float) -> tuple[float, float, int]:
         """Sums of log S and of innovation^2 / S over the channels, and the number of innovations.
@@ -252,10 +302,13 @@ class Fit:
         scale : factor of the given variances ; density : of the process noise ; gate : as in :func:`noise_of`
         """
         spread = first_spread(self.track, self.order)
+        model = np.array([density, self.shape.rate, self.shape.tau])
         total = np.zeros(3)
-        for c in self.channels:
-            z, r = self.track.position[:, c].copy(), self.track.variance[:, c] * scale
-            total += misfit(self.track.t, z, r, self.use, density, spread, self.order, gate)
+        for channel in self.channels:
+            z = self.track.position[:, channel].copy()
+            r = raised(self.track.variance[:, channel], self.shape.exponent) * scale
+            c = np.sqrt(r * self.shape.ratio)
+            total += misfit(self.track.t, z, r, c, self.use, model, spread, gate)
         return float(total[0]), float(total[1]), int(total[2])
 
     def profile(self, ratio: float) -> tuple[float, float]:
@@ -304,7 +357,138 @@ def golden(f: Callable[[float], float], low: float, high: float, rounds: int) ->
     return float((low + high) / 2)
 
 
+# -- coloured errors and a motion that forgets ------------------------------------------------------------
+
+
+#: Rows in which shapes are sought: the most central ones of a long track.
+LONGEST_FIT = 20_000
+#: Decimal logarithms that a shape may have: coloured variance over the given one, correlation time, rate; exponents.
+COLOURS, LONGEST_TAU, RATES, EXPONENTS = (-6.0, 3.0), 2.5, (-4.0, 1.0), (0.0, 4.0)
+#: First guesses of (coloured variance over white, tau over a step or in s, rate), and the first steps of the search.
+GUESSES = ((0.0, 10.0, 1e-3), (3.0, 30.0, 1.0))
+FIRST_STEPS = (0.7, 0.7, 0.7, 0.5, 0.8, 0.5)
+
+
+def shaped(track: Positions, order: int, use: Rows, noise: Noise, *, gate: float, fixed_scale: bool) -> Noise:
+    """The noise with coloured errors, a motion that forgets and stretched variances, where the track asks for them.
+
+    A shape is taken when minus twice the log-likelihood falls by more than the logarithm of the number of innovations
+    for each of its parameters (Schwarz 1978), for East and North together and for Up alone.
+    """
+    if not SHORTEST_FIT <= usual_step(track.t) <= LONGEST_STEP or len(track.t) < 10 * order:
+        return noise
+    here = middle_rows(track, use)
+    found = {name: np.array(getattr(noise, name)) for name in ("scale", "density", "rate", "ratio", "tau", "exponent")}
+    for channels in ((0, 1), (2,)):
+        fit = Fit(here[0], order, here[1], channels, gate, fixed_scale)
+        best = search_shape(fit, float(noise.scale[channels[0]]), float(noise.density[channels[0]]))
+        if best is not None:
+            for name, value in best.items():
+                found[name][list(channels)] = value
+    return Noise(**{name: freeze(value) for name, value in found.items()})
+
+
+#: Usual steps, s, for which the bounds of a shape make sense.
+SHORTEST_FIT, LONGEST_STEP = 1e-3, 100.0
+
+
+def middle_rows(track: Positions, use: Rows) -> tuple[Positions, Rows]:
+    """At most LONGEST_FIT rows from the middle of a track, and which of them count."""
+    start = max(0, (len(track.t) - LONGEST_FIT) // 2)
+    part = slice(start, start + LONGEST_FIT)
+    return Positions(track.t[part], track.position[part], track.variance[part], track.turn[part]), use[part]
+
+
+def search_shape(fit: Fit, scale: float, density: float) -> dict[str, float] | None:
+    """The likeliest noise with a shape, or None where the plain one does."""
+    region = region_of(fit, np.log10(scale), np.log10(density))
+    plain, count = fit.cost(np.log10(scale), np.log10(density)), fit.sums(scale, density, fit.gate)[2]
+    needed = region.free[2:].sum() * np.log(max(count, 2))
+    short = [region.descend(fit, simplex, ROUNDS[0]) for simplex in region.simplices]
+    best, simplex = min(short, key=lambda result: result[0])
+    if not plain - best > needed / 4:
+        return None
+    best, simplex = region.descend(fit, simplex, ROUNDS[1])
+    if not plain - best > needed:
+        return None
+    at = region.whole(simplex[0])
+    return {"scale": 10.0 ** at[0], "density": 10.0 ** at[1]} | vars_of(shape_at(at))
+
+
+#: Evaluations of the likelihood: first from each guess, then from the better end.
+ROUNDS = (150, 500)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Region:
+    """Where a shape is sought: logarithms of scale, density, colour, tau, rate, and the exponent.
+
+    free : (6,) which of them vary ; still : (6,) values of the others ; low, high : (6,) bounds
+    simplices : where the search starts, (k+1, k) each for k free ones
+    """
+
+    free: Mask
+    still: Array
+    low: Array
+    high: Array
+    simplices: list[Array]
+
+    def whole(self, point: Array) -> Array:
+        """All six of a point of the free ones, within the bounds."""
+        at = self.still.copy()
+        at[self.free] = np.clip(point, self.low[self.free], self.high[self.free])
+        return at
+
+    def descend(self, fit: Fit, simplex: Array, rounds: int) -> tuple[float, Array]:
+        """The lowest cost that a simplex finds (Nelder and Mead 1965), and the last simplex, best point first."""
+        from scipy.optimize import minimize
+
+        def cost(point: Array) -> float:
+            at = self.whole(point)
+            return cost_of_shape(fit, at) + 1e3 * float(np.abs(point - at[self.free]).sum())
+
+        options = {"xatol": 0.02, "fatol": 0.05, "maxfev": rounds, "initial_simplex": simplex}
+        found = minimize(cost, simplex[0], method="Nelder-Mead", options=options)
+        return float(found.fun), np.asarray(found.final_simplex[0])
+
+
+def region_of(fit: Fit, x: float, y: float) -> Region:
+    """Where to seek a shape when the plain noise has the logarithms x of the scale and y of the density."""
+    step, found = usual_step(fit.track.t), not fit.fixed_scale
+    varied = not (fit.track.variance == fit.track.variance[:1]).all()
+    # With two states the last one is the speed, which no body forgets.
+    free = np.array([found, True, found, found, fit.order > 2, found and varied])
+    low = np.array([np.log10(SMALLEST_SCALE), y - 6, COLOURS[0], np.log10(step), RATES[0], EXPONENTS[0]])
+    high = np.array([max(x + 2, 4.0), y + 6, COLOURS[1], max(LONGEST_TAU, np.log10(3 * step)), RATES[1], EXPONENTS[1]])
+    simplices = []
+    for lift, tau, rate in GUESSES:
+        guess = np.array([x - lift / 3, y, x + lift / 6, np.log10(tau * step), np.log10(rate), 1.0 + lift / 10])
+        start = np.clip(guess, low, high)[free]
+        simplices.append(np.vstack([start, start + np.diag(np.array(FIRST_STEPS)[free])]))
+    return Region(free, np.array([x, y, -np.inf, 0.0, -np.inf, 1.0]), low, high, simplices)
+
+
+def cost_of_shape(fit: Fit, at: Array) -> float:
+    """Minus twice the log-likelihood at logarithms of scale, density, colour, tau, rate, and the exponent."""
+    return replace(fit, shape=shape_at(at)).cost(float(at[0]), float(at[1]))
+
+
+def shape_at(at: Array) -> Shape:
+    """The shape at such logarithms."""
+    return Shape(float(10.0 ** at[4]), float(10.0 ** (at[2] - at[0])), float(10.0 ** at[3]), float(at[5]))
+
+
+def vars_of(shape: Shape) -> dict[str, float]:
+    """A shape as a table."""
+    return {"rate": shape.rate, "ratio": shape.ratio, "tau": shape.tau, "exponent": shape.exponent}
+
+
+def shape_of(noise: Noise, channel: int) -> Shape:
+    """The shape of the noise of a channel."""
+    return Shape(*(float(getattr(noise, name)[channel]) for name in ("rate", "ratio", "tau", "exponent")))
+
+
 def memory(noise: Noise, variance: Array, order: int) -> float:
     """Time over which noise and motion balance, (variance/density)^(1/2n), seconds; East and North."""
-    ratio = noise.scale[0] * np.median(variance[:, 0]) / noise.density[0]
+    ratio = noise.scale[0] * (1.0 + noise.ratio[0]) * np.median(variance[:, 0]) / noise.density[0]
     return float(ratio ** (1 / (2 * order)))

@@ -200,7 +200,7 @@ def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict
         status=verdict.status,
         expect=verdict.status if claim.either and verdict.status.holds else claim.expect,
         method=verdict.method,
-        scope=verdict.scope,
+        scope=paper.scope_of(claim.number, verdict.scope),
         assumptions=tuple(verdict.assumptions),
         printed=printed,
         derived=derived,
@@ -211,4 +211,6 @@ def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict
         counterexample=verdict.counterexample,
         difference=verdict.difference,
         certificate=verdict.certificate,
+        kind=paper.kind_of(claim.number),
+        cause=f"{paper.module}:{cause}" if (cause := paper.causes.get(claim.number)) else None,
     )

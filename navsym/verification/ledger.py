@@ -31,6 +31,9 @@ from navsym.verification.certificates import LARGEST, REMEDY, certificates_file,
 from navsym.verification.papers import PaperSummary, load_papers
 
 MARKS = {"PROVED": "✓", "CERTIFIED": "✓", "CONFIRMED": "~", "REFUTED": "✗", "OPEN": "?"}
+#: What a claim is about, and who slipped, in a word.
+KINDS = {"printed": "formula", "beside": "sentence", "remark": "remark", "beyond": "beyond"}
+WHOSE = {"paper": "paper", "scan": "scan", "undecidable": "paper or scan"}
 WORST_FIRST = ("REFUTED", "OPEN", "CONFIRMED", "CERTIFIED", "PROVED")
 
 
@@ -215,8 +218,12 @@ def sort_records(paper: Paper | None, records: Iterable[Item]) -> list[Item]:
 
 
 def records_about(equation: str, equations: Sequence[str], records: Iterable[Record]) -> list[Record]:
-    """Records on a numbered equation, the worst verdict first; slips of a paper before the damage of a copy."""
-    about = [record for record in records if equation_of(record.number, equations) == equation]
+    """Records on the formula of an equation, the worst verdict first; slips of a paper before the damage of a copy.
+
+    Sentences and remarks beside it are not among them, nor a slip that another claim counts.
+    """
+    mine = [record for record in records if equation_of(record.number, equations) == equation]
+    about = [record for record in mine if record.kind == "printed" and record.cause is None]
     return sorted(about, key=lambda record: (WORST_FIRST.index(record.status), record.slip == "scan"))
 
 
@@ -307,14 +314,15 @@ def paper_lines(paper: PaperSummary, records: list[Record]) -> list[str]:
         f"{paper.title}. {paper.equations} numbered equations, {paper.claimed} claimed, "
         f"{paper.definitions} definitions, {len(paper.missing)} missing. {summary}.",
         "",
-        "| claim | verdict | what it says | slip |",
-        "| --- | --- | --- | --- |",
+        "| claim | verdict | kind | what it says | slip |",
+        "| --- | --- | --- | --- | --- |",
     ]
     return [*lines, *map(claim_line, records), ""]
 
 
 def claim_line(record: Record) -> str:
     """One claim as a line of the table."""
-    slip = f"{record.slip}: {record.reason}" if record.slip else record.reason or ""
-    cells = (f"`{record.number}`", f"{MARKS[record.status]} {record.status}", record.title, slip)
+    slip = f"{WHOSE[record.slip]}: {record.reason}" if record.slip else record.reason or ""
+    slip += f"; the slip of {record.cause.partition(':')[2]}" if record.cause else ""
+    cells = (f"`{record.number}`", f"{MARKS[record.status]} {record.status}", KINDS[record.kind], record.title, slip)
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"

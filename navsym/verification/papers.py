@@ -102,12 +102,15 @@ def load_source(name: str, listed: Mapping[str, Path | None]) -> PaperModule:
         one_of(name, dict.fromkeys([*listed, *paper_names()]), "paper")
         return paper_module(import_paper(name))
 
+    from navsym.verification.audits import files_of_source
     from navsym.verification.sources import claims_of_file, file_card, own_module
 
     if path.suffix == ".py":
         return paper_module(own_module(path))
     claims = claims_of_file(name, path)
-    return PaperModule(name, file_card(name), claims, key_of(path.read_bytes().hex()))
+    return PaperModule(
+        name, file_card(name), claims, key_of(*(file.read_bytes().hex() for file in files_of_source(path)))
+    )
 
 
 def summarise_paper(module: PaperModule) -> PaperSummary:

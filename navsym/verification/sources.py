@@ -34,15 +34,20 @@ def file_card(name: str, language: str = "") -> Paper:
 
 
 def claims_of_file(name: str, path: Path) -> tuple[Claim, ...]:
-    """The claims of a claim file, or one for each target of a model file; raises NavsymError for another file."""
+    """The claims of a claim file, one for each target of a model file or question of an audit; raises NavsymError."""
     document = read_toml(path)
     if "claim" in document:
         return tuple(claim_of_block(name, path, claim) for claim in read_claims(path).claims)
     if "model" in document or "basis" in document:
         targets = contents_of(path, None, {}, "verify").targets
         return tuple(claim_of_target(name, path, target) for target in targets)
+    if "question" in document:
+        from navsym.verification.audits import claims_of_audit
+
+        return claims_of_audit(name, path)
     got = ", ".join(document) or "nothing"
-    message = f"expected [[claim]] blocks, or a [model] or [basis] with targets; got {got[:80]}; correct the file"
+    expected = "[[claim]] blocks, [[question]] blocks, or a [model] or [basis] with targets"
+    message = f"expected {expected}; got {got[:80]}; correct the file"
     raise ExpressionSyntaxError(message, where=str(path))
 
 

@@ -333,9 +333,68 @@ SCALED = CONDITION | {
     "outside": 1,
     "brackets": ["0.99", "1.01", "0.999", "1.001"],
 }
+# A velocity with tilt and bias under a force f that grows at the rate r: where r = 0 stays, (0, 1, -f) is not seen.
+STILL = {
+    "kind": "observability",
+    "statement": {
+        "F": [["0", "f", "1"], ["0", "0", "0"], ["0", "0", "0"]],
+        "H": [["1", "0", "0"]],
+        "rates": {"f": "r"},
+        "zeros": ["r"],
+        "rank": 2,
+    },
+    "point": {"f": "2", "r": "0"},
+    "order": 3,
+    "free": [1],
+    "null": [["0", "1", "-f"]],
+    "shares": [["0"], ["0"], ["0"], ["0"], ["1"]],
+    "bits": 128,
+}
+GROWING = STILL | {
+    "statement": STILL["statement"] | {"zeros": [], "rank": 3},
+    "point": {"f": "2", "r": "3"},
+    "free": [],
+    "null": [],
+    "shares": [],
+}
+# On the unit circle, which the motion keeps, its angle is seen; the radius is not where the circle is not said.
+CIRCLE = {
+    "kind": "observability",
+    "statement": {
+        "F": [["0", "-w"], ["w", "0"]],
+        "H": [["c", "s"]],
+        "rates": {"c": "-w*s", "s": "w*c"},
+        "zeros": ["c**2 + s**2 - 1"],
+        "rank": 1,
+    },
+    "point": {"c": "3/5", "s": "4/5", "w": "2"},
+    "order": 2,
+    "free": [1],
+    "null": [["-s", "c"]],
+    "shares": [["0"], ["0"], ["0"], ["0"]],
+    "bits": 128,
+}
+PLAIN = {"kind": "observability", "order": 1, "shares": [], "bits": 53}
+TWO = PLAIN | {
+    "statement": {"F": [["0"] * 3] * 3, "H": [["1", "0", "0"]], "rates": {}, "zeros": [], "rank": 1},
+    "point": {},
+    "free": [1, 2],
+    "null": [["0", "1", "0"], ["0", "0", "1"]],
+}
+PIVOT = PLAIN | {
+    "statement": {"F": [["0", "0"]] * 2, "H": [["1", "0"]], "rates": {}, "zeros": [], "rank": 1},
+    "point": {"a": "1"},
+    "free": [1],
+    "null": [["0", "a"]],
+}
 GOOD = [
     CONDITION,
     SCALED,
+    STILL,
+    GROWING,
+    CIRCLE,
+    TWO,
+    PIVOT,
     IDENTITY,
     ROW,
     OFFSET,

@@ -130,6 +130,7 @@ MEANINGLESS = [
     (stated("dot_(u)", "=", "u", "u", rates={"u": "1"}), "another shape"),
     (stated("dot_(x)", "=", "0", rates={"x": "sign(x)"}, x=LINE), "a rate of cases"),
     (stated("erf(x)", "=", "0", x=LINE), "unknown function"),
+    (stated("diff(x**2, limit(y, y, x))", "=", "0", x=LINE), "expected a symbol behind diff"),
     (stated("x", "=", "x", given=["x"], x=LINE), "expected a relation"),
     (stated("x", "=", "x", given=["x = 1 = 1"], x=LINE), "more than one"),
     (stated("x", "=", "x", "u", given=["u > u"], x=LINE), "no order"),

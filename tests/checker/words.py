@@ -114,8 +114,12 @@ PROPERTIES = [
         ("orthogonal", TURN), ("skew", TURN), ("diagonal", "1 0; 0 2"),
     )
 ]  # fmt: skip
+POWERS = sized(
+    state("abs(x)*x**y*A", "2*x*x**y*A", symbols={"x": REAL, "y": REAL}, A=SQUARE),
+    at(A=A, numbers={"x": "2", "y": "3"}),
+)
 TRUE = [
-    DIFFERENCE, TRACE, TRACED, LINE, SCALED, DIVIDED, ORTHOGONAL, PUSHED, ONE_SIDED, NUMBER, UNITS, RANK_ONE,
+    POWERS, DIFFERENCE, TRACE, TRACED, LINE, SCALED, DIVIDED, ORTHOGONAL, PUSHED, ONE_SIDED, NUMBER, UNITS, RANK_ONE,
     DEFINITE,
     COMMUTING, APART_AT_ALL, *SIGNS, *PROPERTIES,
 ]  # fmt: skip
@@ -221,6 +225,7 @@ FORGERIES: list[tuple[Any, list[Any], Any, str]] = [
     (RANK_ONE, RIGHT, "dot(u, u)*(u @ v.T)/(v.T @ u + 1)", "no value at the witness"),
     (COMMUTING, ["point", "matrices", "B"], [["1", "0"], ["0", "1"]], "holds there"),
     (COMMUTING, ["point", "sizes", "n"], 1, "1 entries"),
+    (POWERS, ["point", "numbers"], {"x": "-1", "y": "2"}, "no rational number"),
     *((item, ["point", "matrices", "A"], [["1", "2"], ["3", "7"]], "without its properties") for item in PROPERTIES
       if item["statement"]["matrices"]["A"]["is"] != ["invertible"]),
     (PROPERTIES[3], ["point", "matrices", "A"], [["1", "2"], ["2", "4"]], "without its properties"),

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from navsym.claims import REFUTED, Bound, Equation, Finding, Optimum, Property, Verdict, claims_of
+from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Optimum, Property, Verdict, claims_of
 from navsym.claims.display import latex_of
 from navsym.core.numbers import Number
 from navsym.guaranteed.phases.driver import find_phases
@@ -58,7 +58,7 @@ def test_a_model_shows_its_equations_with_named_states(file):
         (Equation(2 * T, T + T), r"2 T \overset{?}{=} 2 T"),
         (Equation(sp.Rational(46, 10), T, tolerance=sp.Rational(1, 20)), r"\pm \frac{1}{20}"),
         (Bound(T, "<=", sp.Integer(3)), r"T \overset{?}{\le} 3"),
-        (Property("best", Finding("worst", "by reading")), r"\text{best} \overset{?}{=} \text{worst}"),
+        (Property("best", Finding("worst", "by reading", PROVED)), r"\text{best} \overset{?}{=} \text{worst}"),
         (Optimum((1, t), (0, 1), t, (0, T), (1, 2 / T), (0, T), (-1 / T, 1 / T), 2 / T), r"\text{value } \frac{2}{T}"),
     ],
 )

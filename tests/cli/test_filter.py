@@ -46,7 +46,7 @@ def answer(capsys, *arguments):
 def test_every_method_writes_the_keys_of_the_interface(tmp_path, capsys, options, filters):
     status, document, _ = answer(capsys, bank_file(tmp_path), *options)
     assert status == 0
-    assert list(document) == ["probabilities", "mean", "covariance", "log_likelihood", "filters_run"]
+    assert list(document) == ["probabilities", "mean", "covariance", "log_likelihood", "filters_run", "remarks"]
     assert np.shape(document["probabilities"]) == (3, 2)
     assert np.shape(document["mean"]) == (3, 1)
     assert np.shape(document["covariance"]) == (3, 1, 1)

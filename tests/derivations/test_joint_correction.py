@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
-from navsym.claims import REFUTED, claims_of, compare_equations
+from navsym.claims import PROVED, REFUTED, claims_of, compare_equations
 from navsym.models.inertial import ORDERS, lowest_order
+from navsym.prove.ladder import decide
 from navsym_papers import joint_correction
 from navsym_papers.joint_correction import section1_systems, section3_gains
-from navsym_papers.joint_correction.section2_groups import position, velocity
+from navsym_papers.joint_correction.section2_groups import VELOCITY_ROWS, mu, position, row, v1, velocity
 
 CLAIMS = claims_of(joint_correction)
 
@@ -17,7 +18,7 @@ CLAIMS = claims_of(joint_correction)
 def test_every_numbered_equation_is_claimed_or_a_definition():
     found = compare_equations(joint_correction.PAPER, CLAIMS)
     assert found.missing == ()
-    assert set(found.definitions) == {"1.1", "1.2"}
+    assert set(found.definitions) == {"1.1", "1.2", "2.5"}
 
 
 def test_refuted_rows_have_a_class_a_reason_and_a_correction():
@@ -50,6 +51,15 @@ def test_routh_counts_the_poles_that_numpy_finds():
         A = section3_gains.coupled_velocity_block().subs({section3_gains.kappa: kappa, section3_gains.lam: lam})
         right = int((np.linalg.eigvals(np.array(A, dtype=float)).real > 1e-9).sum())
         assert section3_gains.poles_on_the_right(sp.sympify(lam), sp.sympify(kappa)) == right
+
+
+def test_a_row_is_compared_up_to_the_order_that_it_neglects():
+    """A printed term of the order mu^2 rho is no slip; one of the order mu rho is."""
+    status = {
+        term: decide(row("row", "Row.", VELOCITY_ROWS[1] + term, lambda: velocity().rates[1]).derive()).status
+        for term in (mu**2 * v1, mu * v1)
+    }
+    assert status == {mu**2 * v1: PROVED, mu * v1: REFUTED}
 
 
 def test_every_dropped_term_is_on_record_with_its_order():

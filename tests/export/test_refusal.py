@@ -11,7 +11,7 @@ import pytest
 import sympy as sp
 
 import navsym as nav
-from navsym.claims import CONFIRMED, OPEN, Bound, Equation, Finding, Property, Verdict
+from navsym.claims import CONFIRMED, OPEN, PROVED, Bound, Equation, Finding, Property, Verdict
 from navsym.cli.main import run
 from navsym.core.errors import DomainError, NavsymError
 from navsym.export.folder import FolderError, write_folder
@@ -64,7 +64,7 @@ def test_open_and_confirmed_claims_are_refused() -> None:
 
 
 def test_an_inequality_and_a_fact_have_nothing_to_compute() -> None:
-    for statement in (Bound(a**2, ">=", 0), Property(True, Finding(True, "by hand"))):
+    for statement in (Bound(a**2, ">=", 0), Property(True, Finding(True, "by hand", PROVED))):
         with pytest.raises(RefusedError, match="nothing to compute"):
             material("m:1", statement, decide(statement))
 

@@ -22,9 +22,6 @@ NARROWER = {
     "terrain_search:10.equal.sum": A_NUMBER,
     "joint_correction:1.13.model": CANCELLED,
     "joint_correction:3.bias.velocity": CANCELLED,
-    "multistructure:8.every": CANCELLED,
-    "multistructure:10.every": CANCELLED,
-    "multistructure:17.every": CANCELLED,
 }
 
 
@@ -58,7 +55,7 @@ def test_what_is_printed_allows_the_units_that_its_derivation_allows(paper):
         ("alpha_beta_filter", (6, 9)),
         ("guaranteed_velocity", (16, 53)),
         ("joint_correction", (0, 22)),
-        ("multistructure", (23, 7)),
+        ("multistructure", (19, 7)),
         ("terrain_search", (56, 4)),
         ("trajectory", (45, 12)),
     ],
@@ -80,7 +77,7 @@ CHANGING = ("power", "index", "dropped", "doubled")
 @pytest.mark.parametrize("paper", PAPERS)
 def test_slips_in_the_formulas_of_every_paper_are_noticed_by_their_units(paper):
     tried = noticed = 0
-    for derived, mutant in slips(paper, 120):
+    for derived, mutant in slips(paper, 140):
         slip = Equation(mutant, derived)
         denied = Scaling(pairs_of(slip)).denied(units_of(paper, names_in(slip))) is not None
         tried, noticed = tried + 1, noticed + (denied or narrowed(slip) > 0)

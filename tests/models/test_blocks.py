@@ -75,6 +75,17 @@ def test_pieces_rates_and_the_whole_matrix_in_one_text() -> None:
     assert [moving._contents.rates[f"w_{i}"] - w.cross(a)[i - 1] for i in (1, 2, 3)] == [0, 0, 0]
 
 
+def test_the_range_of_a_vector_is_that_of_its_entries() -> None:
+    model = nav.Model(
+        states="x[2] y", F=[["0", "0"], ["0", "0"]], H=[["0", "1"]], ranges={"x": ["-1", "2"], "y": [0, 1]}
+    )
+    assert {name: [float(end) for end in ends] for name, ends in model._contents.ranges.items()} == {
+        "x_1": [-1, 2],
+        "x_2": [-1, 2],
+        "y": [0, 1],
+    }
+
+
 def test_a_file_with_blocks_is_read_and_saved_as_it_is_written(tmp_path) -> None:
     first = nav.Model(**BLOCKS)
     first.save(tmp_path / "model.toml")

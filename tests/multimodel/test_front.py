@@ -41,6 +41,45 @@ def test_an_answer_shows_itself_in_one_line_and_says_which_engine_ran() -> None:
     assert found.modes.shape == found.log_likelihood.shape and found.standard_deviations.shape == found.mean.shape
 
 
+def test_a_gap_of_time_stamps_is_steps_without_measurements() -> None:
+    """Times 10, 10.5, 12 of a bank of half seconds are steps 1, 2 and 5; a twin without the gap is another filter."""
+    document = {"models": [MODEL, {**MODEL, "R": [[100]]}], "mode_transition": SWITCH, "initial": START}
+    stamped = nav.filter({**document, "measurements": [[0.1], [3.0], [1.0]], "times": [10, 10.5, 12], "step": 0.5})
+    filled = nav.filter({**document, "measurements": [[0.1], [3.0], None, None, [1.0]], "missing": True})
+    for name in ("mean", "covariance", "probabilities", "log_likelihood"):
+        np.testing.assert_array_equal(getattr(stamped, name), getattr(filled, name)[[0, 1, 4]])
+    said = stamped.document()
+    assert said["times"] == [10, 10.5, 12] and said["remarks"] == ["gap after time 10.5: 2 steps without a measurement"]
+    closed = nav.filter({**document, "measurements": [[0.1], [3.0], [1.0]]})
+    assert abs(closed.covariance[2] - stamped.covariance[2]).max() > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("extra", "kind", "words"),
+    [
+        ({"times": [1, 2, 2]}, "domain", "increasing"),
+        ({"times": [1, 2, 3.3]}, "domain", "whole number of steps"),
+        ({"times": [1, 2]}, "shape", "one for each row"),
+        ({"step": 1}, "shape", "times beside it"),
+        ({"times": [1, 2, 3], "step": 0}, "domain", "positive number"),
+        ({"times": [0, 1, 1e9]}, "too-large", "at most"),
+    ],
+)
+def test_time_stamps_that_make_no_steps_are_refused(extra, kind, words) -> None:
+    document = {"models": [MODEL], "mode_transition": [[1]], "initial": {**START, "probabilities": [1]}}
+    with pytest.raises(NavsymError, match=words) as caught:
+        nav.filter({**document, "measurements": [[0.1], [3.0], [1.0]], **extra})
+    assert caught.value.kind == kind
+
+
+def test_data_that_contradict_every_mode_are_one_sentence_in_the_document() -> None:
+    document = {"models": [MODEL], "mode_transition": [[1]], "initial": {**START, "probabilities": [1]}}
+    wild = nav.filter({**document, "measurements": [[(-1) ** k * 1e3] for k in range(12)]}).document()
+    calm = nav.filter({**document, "measurements": [[0.1]] * 12}).document()
+    assert calm["remarks"] == [] and len(wild["remarks"]) == 1
+    assert "contradict every mode at 12 steps" in wild["remarks"][0]
+
+
 @pytest.mark.parametrize(
     ("arguments", "options", "kind"),
     [

@@ -8,6 +8,7 @@ from __future__ import annotations
 import pytest
 
 import navsym as nav
+from navsym.observability.certificates import Certifier
 
 REAL = "real"
 QUATERNION = [
@@ -51,6 +52,30 @@ EXAMPLES = [
     ("FitzHugh-Nagumo", "V R a b c", "c*(V - V**3/3 + R); -(V - a + b*R)/c; 0; 0; 0", "V", 5, {}),
     ("Lorenz", "x y z s r b", "s*(y - x); r*x - y - x*z; x*y - b*z; 0; 0; 0", "x", 6, {}),
     ("Goodwin", "x y z a b c d e f", "a/(1 + z) - b*x; c*x - d*y; e*y - f*z; 0; 0; 0; 0; 0; 0", "x", 8, {}),
+    # Vajda and Rabitz 1994: two reactions in a row, the middle substance seen; the rates may be exchanged, no more
+    ("two reactions", "x y k l", "-k*x; k*x - l*y; 0; 0", "y", 4, {}),
+    # Tuncer and Le 2018: a latent class; again with an unknown reported share
+    ("SEIR, prevalence", "S E I b n g", "-b*S*I; b*S*I - n*E; n*E - g*I; 0; 0; 0", "I", 6, {}),
+    ("SEIR, reported share", "S E I b n g k", "-b*S*I; b*S*I - n*E; n*E - g*I; 0; 0; 0; 0", "k*I", 6, {}),
+    # Holmberg 1982: Monod's growth; without the substrate its unit is free
+    ("Monod, both", "x s m K d Y", "m*x*s/(K + s) - d*x; -m*x*s/(Y*(K + s)); 0; 0; 0; 0", "x; s", 6, {}),
+    ("Monod, biomass", "x s m K d Y", "m*x*s/(K + s) - d*x; -m*x*s/(Y*(K + s)); 0; 0; 0; 0", "x", 5, {}),
+    # Bergman et al. 1979: the minimal model of glucose, with insulin known; at a steady level p + X is all that is seen
+    (
+        "minimal model",
+        "G X p q r B",
+        "-(p + X)*G + p*B; -q*X + r*u; 0; 0; 0; 0",
+        "G",
+        6,
+        {"u": "nonzero", "k": "positive", "rates": {"u": "-k*u"}},
+    ),
+    ("minimal model, steady", "G X p q r B", "-(p + X)*G + p*B; -q*X + r*u; 0; 0; 0; 0", "G", 5, {"u": "nonzero"}),
+    # Godfrey 1983: a constant supply into an unknown volume
+    ("supply and volume", "x a k V", "a - k*x; 0; 0; 0", "x/V", 3, {}),
+    # Ljung and Glad 1994: a pendulum shows gravity over length only
+    ("pendulum", "p w g l", "w; -g/l*sin(p); 0; 0", "p", 3, {}),
+    # Song 1996: ranges of a target that turns away from a straight line show all but a reflection
+    ("ranges, manoeuvre", "x y u v", "u; v; a; c", "sqrt(x**2 + y**2)", 4, {"a": REAL, "c": REAL}),
     # Nardone and Aidala 1981: bearings of a target that flies straight leave its range open; a manoeuvre shows it
     ("bearings, straight", "x y u v", "u; v; 0; 0", "atan2(y, x)", 3, {}),
     ("bearings, manoeuvre", "x y u v", "u; v; a; c", "atan2(y, x)", 4, {"a": REAL, "c": REAL}),
@@ -72,3 +97,4 @@ def test_a_published_answer_is_found(example):
     f, h = ([part.strip() for part in listed] for listed in parts)
     answer = nav.observe(nav.Model(states, dynamics=f, H=h, **further))
     assert (answer.rank, answer.joint.proved) == (rank, True)
+    assert Certifier.of(answer.model).certify_rank(answer.joint) is not None

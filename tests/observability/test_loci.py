@@ -11,7 +11,7 @@ import sympy as sp
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
 from navsym.observability.rank_drops import (
-    all_drops,
+    all_loci,
     compositions,
     determinant_by_elimination,
     determinant_by_values,
@@ -130,7 +130,8 @@ def test_drops_by_cases_hold_at_a_point_exactly_where_the_rank_is_smaller(seed):
 @pytest.mark.parametrize("seed", range(16, 28))
 def test_drops_by_cases_are_the_common_zeros_of_all_minors(seed):
     chains = observe_jointly(random_symbolic_model(seed)).chains
-    fast, complete = all_drops(chains)["joint"]
+    locus = all_loci(chains)["joint"][1]
+    fast, complete = locus.lasting, locus.complete
     slow = drops_by_minors([chains.staircase_vectors(s) for s in staircases(chains)], chains.ring)
     size = len(chains.ring.symbols)
     for point in itertools.product(range(-3, 4), repeat=size):

@@ -237,7 +237,7 @@ def test_declarations_that_a_range_cannot_hold_are_refused(declared):
 
 
 def test_values_inside_tuples_are_compared_like_values():
-    assert decide(Property((True,), Finding((1,), "count"))).status == REFUTED
+    assert decide(Property((True,), Finding((1,), "count", PROVED))).status == REFUTED
 
 
 # -- formulas of files: what the algebra cancels while it reads ------------------------------------

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+import navsym as nav
+from navsym.report.audit_page import audit_page
 from navsym.report.page import visible
 from navsym.report.wording import read_wording
 from navsym.verification.ledger import Ledger
@@ -219,3 +221,13 @@ def test_a_browser_that_dies_is_an_error_and_not_a_wait(tmp_path):
         for _ in range(100):
             lost.value("1 + 1")
     lost.close()
+
+
+def test_the_page_of_an_audit_is_quiet_and_coloured_by_verdict(shown):
+    page = shown({"audit.html": audit_page(nav.audit("examples/audit/yaw_jacobian.toml"))}, "audit.html")
+    assert not page.trouble
+    ground = "getComputedStyle(document.querySelector('{}')).backgroundColor"
+    red, green, plain = (page.value(ground.format(f"tr{kind} > th")) for kind in (".refuted", ".proved", ":not([id])"))
+    assert len({red, green, plain}) == 3
+    sizes = page.value("[...document.querySelectorAll('tr.refuted math')].map(m => m.getBoundingClientRect().width)")
+    assert len(sizes) == 2 and all(width > 5 for width in sizes)

@@ -9,7 +9,9 @@ from xml.dom import minidom
 
 import pytest
 
-from navsym.report.page import slug, visible
+from navsym.claims.verdict import PROVED
+from navsym.prove.grant import UNCHECKED
+from navsym.report.page import certificates_by_file, slug, visible
 from navsym.verification.ledger import is_only_in_the_copy, records_about, sort_records
 from tests.report.hostile import ledger, site
 
@@ -53,6 +55,20 @@ def pages(files):
 def test_a_report_has_an_index_a_page_and_an_erratum_sheet_for_each_paper(files):
     assert {"index.html", "sample.html", "sample.erratum.html", "sample.erratum.tex", "verdicts.json"} <= set(files)
     assert "certificates/sample_1-" in " ".join(files)
+
+
+def test_a_page_says_what_is_trusted_and_lists_what_has_no_certificate(card, records):
+    plain = next(k for k, record in enumerate(records) if not record.certificate)
+    bare = replace(records[plain], evidence=f"{records[plain].evidence}; {UNCHECKED}", status=PROVED)
+    others = [record for record in records if record is not records[plain]]
+    made = site(ledger([bare, *others], card))
+    page = " ".join(re.sub("<[^>]*>", " ", made["trust.html"]).split())
+    count = sum(len(certificates_by_file(record)) for record in others)
+    listed = re.findall(r"(\w+) (\d+) [\d,]+ [\d,]+ ", page)
+    assert sum(int(number) for _, number in listed) == count > 0
+    assert "1 verdict is a computed fact" in page and bare.id in page
+    assert "unchecked, the verdict rests on the code" in " ".join(Reading(made["sample.html"]).text.split())
+    assert "every file below" in page and "trust.html" in made["index.html"]
 
 
 def test_tags_are_closed_in_order_and_identifiers_are_used_once(files, hostile_files):
@@ -155,7 +171,7 @@ def test_hostile_words_make_no_element_attribute_or_file(hostile_files, hostile_
     assert len(hostile_words) == 40
     for name, page in pages(hostile_files).items():
         tags = [tag for tag, _ in page.elements]
-        assert tags.count("script") == (name != "index.html"), name
+        assert tags.count("script") == (name not in ("index.html", "trust.html")), name
         assert not {"iframe", "img", "base", "object", "embed", "animate"} & set(tags), name
         assert not [a for _, attributes in page.elements for a in attributes if a.startswith("on")], name
         assert "49" not in re.findall(r"title[^<]*\b(49)\b", page.text)

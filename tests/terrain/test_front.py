@@ -9,11 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 import navsym as nav
 from navsym.cli.main import run
 from navsym.core.errors import NavsymError
 from navsym.terrain import sequential
+from navsym.terrain.heights import bilinear
+from navsym.terrain.maps import metres_per_degree
 from tests.frames import Frame
 
 FILE = Path("examples/flight.json")
@@ -92,3 +95,75 @@ def test_a_hypothesis_off_the_map_is_never_the_answer(monkeypatch, capsys: pytes
     monkeypatch.setattr(sequential, "velocity_stage", lambda *_: outside)
     assert run(["locate", str(FILE), "--method", "sequential", "--json"]) == 2
     assert json.loads(capsys.readouterr().out)["error"]["kind"] == "outside-map"
+
+
+def made_search(slope_y: float = 1.0, noise: float = 0.5, seed: int = 3) -> tuple[dict, np.ndarray]:
+    """A search over hills that are ``slope_y`` times as steep along y, and its true correction at the last time."""
+    rng = np.random.default_rng(seed)
+    rows, columns = np.mgrid[0:60, 0:60] * 50.0
+    heights = 80 * np.sin(columns / 310) + slope_y * 80 * np.cos(rows / 270 + 0.3) + slope_y * 9 * np.sin(rows / 97)
+    t = np.arange(60.0)
+    x, y, error = 700 + 20 * t, 900 + 13 * t + 90 * np.sin(t / 9), np.array([60.0, -40.0, 0.5, -0.4])
+    true_x, true_y = x + error[0] + error[2] * t, y + error[1] + error[3] * t
+    h = bilinear(heights, true_x / 50, true_y / 50)[0] + noise * rng.normal(size=60)
+    steps = {
+        "position": {"step": [20, 20], "half_count": [4, 4]},
+        "velocity": {"step": [0.5, 0.5], "half_count": [1, 1]},
+    }
+    track = {"t": t, "x": x, "y": y, "h": h}
+    place = {"heights": heights, "x0": 0, "y0": 0, "dx": 50, "dy": 50}
+    return {"map": place, "track": track, **steps}, np.add(error, [59 * error[2], 59 * error[3], 0, 0])
+
+
+def test_the_covariance_of_a_refined_fix_is_that_of_its_errors() -> None:
+    """NEES of four unknowns over forty searches, against the 99.9 % band of the mean."""
+    found = []
+    for seed in range(40):
+        document, truth = made_search(seed=seed)
+        fix = nav.locate(document, "refined")
+        error = np.concatenate(fix.correction) - truth
+        found.append(error @ np.linalg.solve(fix.trust.covariance, error))
+    low, high = chi2.ppf([0.0005, 0.9995], 4 * 40) / 40
+    assert low < np.mean(found) < high
+    assert 2 * np.mean(found) > high  # halved variances fall out of the band
+
+
+def test_the_weakest_direction_is_where_the_slopes_are_small() -> None:
+    document = nav.locate(made_search(slope_y=0.02)[0], "refined").document()
+    direction = np.array(document["weakest"]["direction"])
+    assert direction[1] > 0.99 and document["weakest"]["sd"] > 10 * document["weakest"]["across"]
+    assert any("weak along" in line or "nearly singular" in line for line in document["remarks"])
+    steep = nav.locate(made_search()[0], "refined").document()
+    assert not any("weak" in line or "singular" in line for line in steep["remarks"])
+
+
+def test_latitudes_and_longitudes_are_positions_on_the_tile(tmp_path: Path) -> None:
+    """The same track in degrees and in metres of the local frame gives the same fix, and the fix its latitude."""
+    document, _ = made_search()
+    degrees = {"x0": 10.0, "y0": 45.0, "dx": 1 / 1200, "dy": 1 / 1200}
+    east, north = metres_per_degree(45.0 + 59 / 2400)
+    track = dict(document["track"])
+    np.savez(tmp_path / "tile.npz", elevation=document["map"]["heights"][::-1], **edges(degrees, 60))
+    document["map"] = {"file": "tile.npz", "frame": "local"}
+    cell = np.array([east, north]) / 1200
+    track["x"], track["y"] = track["x"] * cell[0] / 50, track["y"] * cell[1] / 50
+    plane = nav.locate({**document, "track": track}, "position", folder=tmp_path)
+    where = {"t": track["t"], "lat": 45.0 + track["y"] / north, "lon": 10.0 + track["x"] / east, "h": track["h"]}
+    earth = nav.locate({**document, "track": where}, "position", folder=tmp_path)
+    assert abs(plane.x - earth.x) < 1e-6 and abs(plane.y - earth.y) < 1e-6
+    assert abs(earth.document()["fix"]["latitude"] - (45.0 + earth.y / north)) < 1e-12
+    with pytest.raises(NavsymError, match="expected x and y for a map in metres"):
+        nav.locate({**made_search()[0], "track": where}, "position")
+
+
+def edges(degrees: dict[str, float], n: int) -> dict[str, float]:
+    """The outer edges of a tile of n by n cells, as matplotlib's sample has them."""
+    half, size = degrees["dx"] / 2, n * degrees["dx"]
+    corner = {"xmin": degrees["x0"] - half, "ymin": degrees["y0"] - half}
+    return {
+        **corner,
+        "xmax": corner["xmin"] + size,
+        "ymax": corner["ymin"] + size,
+        "dx": degrees["dx"],
+        "dy": degrees["dy"],
+    }

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from navsym.core.errors import NavsymError
+from navsym.models.earth import cartesian
 from navsym.terrain import maps as readers_maps
 from navsym.terrain.maps import local_frame, read_map, read_track
 
@@ -139,8 +140,10 @@ def test_a_tile_in_the_local_frame_has_metres(tmp_path):
     raster = readers_maps.Raster(np.zeros((1201, 1201)), 10.0, 60.0, 1 / 1200, 1 / 1200, None, True)
     local = local_frame(raster)
     assert (local.x0, local.y0, local.geographic) == (0.0, 0.0, False)
-    np.testing.assert_allclose(local.dy * 1200, 111_195, rtol=1e-5)
-    np.testing.assert_allclose(local.dx / local.dy, np.cos(np.radians(60.5)), rtol=1e-12)
+    # Chords of a thousandth of a degree on the ellipsoid; a sphere would be off by two parts in a thousand.
+    corner, east, north = (cartesian(*np.radians(place), 0.0) for place in ((60.5, 10), (60.5, 10.001), (60.501, 10)))
+    np.testing.assert_allclose(local.dx * 1.2, np.linalg.norm(east - corner), rtol=1e-7)
+    np.testing.assert_allclose(local.dy * 1.2, np.linalg.norm(north - corner), rtol=1e-6)
 
 
 @pytest.mark.parametrize(

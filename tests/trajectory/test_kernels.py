@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import mpmath as mp
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.linalg import expm
 
-from navsym.trajectory.kernels.tracks import backward, forward, noise_root, noise_shape, transition
+from navsym.trajectory.kernels.tracks import ROWS, backward, forward, noise_root, respond, transition
 
 
 def step_of(dt, q, n):
@@ -55,28 +57,40 @@ def smoothed_exactly(t, z, r, q, spread):
         )
 
 
-def run_of(t, z, r, q, spread):
-    """The compiled filter and smoother: states, covariances."""
+def run_of(t, z, r, q, spread, c=0.0, rate=0.0, tau=1.0):
+    """The compiled filter and smoother: states and covariances of motion and coloured error."""
     N, n = len(t), len(spread)
-    states, gains, roots = np.empty((N, n)), np.empty((N, n)), np.empty((N, n, n))
-    rest = np.empty(N), np.empty(N), np.empty(N, dtype=np.int64)
-    forward(t, z, r, np.ones(N, np.int64), q, spread, 0.0, states, roots, gains, *rest)
-    backward(t, states, roots, q)
+    states, gains, roots = np.empty((N, n + 1)), np.empty((N, n + 1)), np.empty((N, n + 1, n + 1))
+    rest = np.empty(N), np.empty(N), np.empty(N), np.empty(N, dtype=np.int64)
+    c, model = np.broadcast_to(c, N).astype(float), np.array([q, rate, tau])
+    forward(t, z, r, c, np.ones(N, np.int64), model, spread, 0.0, states, roots, gains, *rest)
+    backward(t, c, rest[2], states, roots, model)
     return states, np.einsum("kmi,kmj->kij", roots, roots)
 
 
 @pytest.mark.parametrize("n", [2, 3, 5])
-def test_noise_of_two_steps_is_noise_of_the_whole(n):
-    (whole_Phi, whole), (Phi1, Q1), (Phi2, Q2) = (compiled_step(dt, 0.3, n) for dt in (1.7, 0.6, 1.1))
-    assert_allclose(Phi2 @ Phi1, whole_Phi, rtol=1e-13)
-    assert_allclose(Phi2 @ Q1 @ Phi2.T + Q2, whole, rtol=1e-12)
+@pytest.mark.parametrize("rate", [0.0, 1e-3, 0.7, 30.0])
+def test_noise_of_two_steps_is_noise_of_the_whole(n, rate):
+    (whole_Phi, whole), (Phi1, Q1), (Phi2, Q2) = (compiled_step(dt, 0.3, n, rate) for dt in (1.7, 0.6, 1.1))
+    assert_allclose(Phi2 @ Phi1, whole_Phi, rtol=1e-12, atol=1e-300)
+    assert_allclose(Phi2 @ Q1 @ Phi2.T + Q2, whole, rtol=1e-5 if rate else 1e-12)
 
 
-def compiled_step(dt, q, n):
-    Phi, root = np.empty((n, n)), np.empty((n, n))
-    transition(dt, Phi)
-    noise_root(dt, q, noise_shape(n), root)
-    return Phi, root.T @ root
+@pytest.mark.parametrize("n", [2, 3, 6])
+@pytest.mark.parametrize("x", [1e-3, 0.4, 2.9, 3.1, 50.0])
+def test_the_response_of_a_motion_that_forgets_is_the_matrix_exponential(n, x):
+    A = np.diag(np.ones(n - 1), 1)
+    A[-1, -1] = -x
+    g = np.empty(n)
+    respond(1.0, x, g)
+    assert_allclose(g, expm(A)[:, -1], rtol=1e-11)
+
+
+def compiled_step(dt, q, n, rate=0.0):
+    Phi, rows, g = np.empty((n, n)), np.empty((ROWS, n)), np.empty(n)
+    transition(dt, rate, Phi, g)
+    noise_root(dt, rate, rows, g)
+    return Phi, q * rows[:n].T @ rows[:n]
 
 
 @pytest.mark.parametrize("n", [2, 3, 4, 5, 6])
@@ -96,8 +110,8 @@ def test_a_first_spread_far_above_the_noise_costs_no_digits(n, ratio):
     spread = np.array([1.0, *([sigma * ratio] * (n - 1))])
     states, covariances = run_of(t, z, r, 1e-6, spread)
     means, variances = smoothed_exactly(t, z, r, 1e-6, spread)
-    assert_allclose(np.diagonal(covariances, axis1=1, axis2=2), variances, rtol=1e-5)
-    assert (np.abs(states - means) < 1e-4 * np.sqrt(variances) + 1e-13 * np.abs(means)).all()
+    assert_allclose(np.diagonal(covariances, axis1=1, axis2=2)[:, :n], variances, rtol=1e-5)
+    assert (np.abs(states[:, :n] - means) < 1e-4 * np.sqrt(variances) + 1e-13 * np.abs(means)).all()
 
 
 def test_the_smoother_is_the_least_squares_fit_of_all_data():
@@ -119,6 +133,49 @@ def test_the_smoother_is_the_least_squares_fit_of_all_data():
             rows[:, (k - 1) * n : k * n], rows[:, k * n : (k + 1) * n] = -Phi, np.eye(n)
             information += rows.T @ np.linalg.inv(Q) @ rows
     solved = np.linalg.solve(information, vector).reshape(N, n)
-    assert_allclose(states, solved, atol=1e-8)
+    assert_allclose(states[:, :n], solved, atol=1e-8)
     blocks = np.linalg.inv(information).reshape(N, n, N, n)[np.arange(N), :, np.arange(N), :]
-    assert_allclose(covariances, blocks, atol=1e-8)
+    assert_allclose(covariances[:, :n, :n], blocks, atol=1e-8)
+
+
+def dense_smoother(t, z, r, q, spread, c, rate, tau):
+    """Mean and variance (N,) of the speed from the joint covariance of all rows: two states, no recursion.
+
+    The speed is an Ornstein-Uhlenbeck process from a first spread, the position its integral; errors are white of
+    variance r and coloured with covariance c_i c_j exp(-|t_i - t_j|/tau).
+    """
+    grid = np.concatenate([np.linspace(a, b, 9)[:-1] for a, b in itertools.pairwise(t)] + [t[-1:]])
+    at = np.searchsorted(grid, t)
+    P = np.diag(np.square(spread))
+    blocks, states = [P], [np.eye(2)]
+    for dt in np.diff(grid):
+        Phi = np.array([[1.0, -math.expm1(-rate * dt) / rate], [0.0, math.exp(-rate * dt)]])
+        e, E = -math.expm1(-rate * dt), -math.expm1(-2 * rate * dt)
+        Q = np.array([[(dt - 2 * e / rate + E / (2 * rate)) / rate**2, e**2 / (2 * rate**2)], [0, E / (2 * rate)]])
+        Q[1, 0] = Q[0, 1]
+        blocks.append(Phi @ blocks[-1] @ Phi.T + q * Q)
+        states.append(Phi @ states[-1])
+    N = len(t)
+    K = np.empty((2 * N, 2 * N))
+    for i in range(N):
+        for j in range(i + 1):
+            move = states[at[i]] @ np.linalg.inv(states[at[j]])
+            K[2 * i : 2 * i + 2, 2 * j : 2 * j + 2] = move @ blocks[at[j]]
+            K[2 * j : 2 * j + 2, 2 * i : 2 * i + 2] = (move @ blocks[at[j]]).T
+    errors = np.diag(r) + np.outer(c, c) * np.exp(-np.abs(t[:, None] - t) / tau)
+    gain = np.linalg.solve(K[::2, ::2] + errors, K[::2, 1::2]).T
+    return gain @ (z - z[0]), np.diag(K[1::2, 1::2] - gain @ K[::2, 1::2])
+
+
+def test_coloured_errors_and_a_motion_that_forgets_are_smoothed_as_by_the_joint_covariance():
+    """The filter with one more state against all rows at once; without the colour the variances are others."""
+    rng = np.random.default_rng(4)
+    t = np.cumsum(rng.uniform(0.3, 1.5, 14))
+    z, r, c = rng.normal(size=14), rng.uniform(0.1, 0.4, 14), rng.uniform(0.5, 2.0, 14)
+    spread, q, rate, tau = np.array([8.0, 5.0]), 0.6, 0.4, 3.0
+    states, covariances = run_of(t, z, r, q, spread, c, rate, tau)
+    mean, variance = dense_smoother(t, z, r, q, spread, c, rate, tau)
+    assert_allclose(states[:, 1], mean, atol=1e-6)
+    assert_allclose(covariances[:, 1, 1], variance, rtol=1e-6)
+    white = run_of(t, z, r, q, spread, 0.0, rate, tau)[1]
+    assert (variance > 1.2 * white[:, 1, 1]).all()

@@ -27,7 +27,7 @@ from navsym.trajectory.estimate import (
     noise_points,
     window_of,
 )
-from navsym.trajectory.kernels.tracks import noise_root, noise_shape, transition
+from navsym.trajectory.kernels.tracks import ROWS, noise_root, transition
 from navsym.trajectory.motion import describe_motion
 from navsym.trajectory.reader import TrackFile
 from navsym.trajectory.tracks import Fit, Noise, Positions, isolated_outliers, noise_of, project_positions
@@ -47,10 +47,10 @@ def flat_track(t, position):
 
 def step_of(dt, q, n):
     """Transition and noise matrices of a step."""
-    Phi, root = np.empty((n, n)), np.empty((n, n))
-    transition(dt, Phi)
-    noise_root(dt, q, noise_shape(n), root)
-    return Phi, root.T @ root
+    Phi, rows, g = np.empty((n, n)), np.empty((ROWS, n)), np.empty(n)
+    transition(dt, 0.0, Phi, g)
+    noise_root(dt, 0.0, rows, g)
+    return Phi, q * rows[:n].T @ rows[:n]
 
 
 def simulated(seed, N=400, q=0.02, sigma=2.0, order=3, gaps=True):

@@ -69,7 +69,9 @@ class Plant:
     @property
     def box(self) -> dict[sp.Symbol, tuple[Any, Any]]:
         """Ranges by symbol."""
-        symbols = {s for e in (*self.F, *self.H, *self.variances, self.dt) for s in sp.sympify(e).free_symbols}
+        symbols = {
+            s for e in (*self.F, *self.H, *self.variances, self.dt) for s in sp.sympify(e, strict=True).free_symbols
+        }
         return {s: self.ranges[s.name] for s in symbols}
 
 
@@ -210,7 +212,7 @@ class Steps:
 
     def put(self, names: Sequence[str], formulas: Sequence[sp.Expr], theorem: Any = None) -> list[sp.Expr]:
         """The values as symbols, defined by a link; what is a number or a symbol already stays what it is."""
-        formulas = [sp.sympify(e) for e in formulas]
+        formulas = [sp.sympify(e, strict=True) for e in formulas]
         new = [k for k, e in enumerate(formulas) if not (e.is_Atom and (e.is_Symbol or e.is_number))]
         made = {k: real(names[k]) for k in new}
         if new:

@@ -97,7 +97,7 @@ STEP = Chain(
             "",
             step_formulas(),
             three_steps,
-            cites=("guaranteed_velocity:2.7", "guaranteed_velocity:4.14.y3"),
+            cites=("guaranteed_velocity:2.5", "guaranteed_velocity:4.14.y3"),
         ),
     ),
     outputs={"next_sum": "next_sum", "next_weights": ("v1", "v2", "v3"), "next_instants": ("s1", "s2", "s3")},

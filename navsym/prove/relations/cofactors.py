@@ -124,6 +124,7 @@ def find_cofactors(
 
 
 def read_terms(polynomial: fmpq_mpoly) -> Polynomial:
+    """Powers of its symbols -> coefficient."""
     return {tuple(map(int, powers)): c for powers, c in polynomial.to_dict().items()}
 
 
@@ -172,6 +173,7 @@ def write_share(cofactor: Polynomial, above: fmpq_mpoly, below: fmpq_mpoly, part
 
 
 def write_polynomial(terms: Polynomial, parts: Sequence[Term]) -> str:
+    """The text of a polynomial in these parts, for the checker."""
     return " + ".join(
         "*".join([write_number(c), *(f"{write_term(p)}**{e}" for p, e in zip(parts, powers, strict=True) if e)])
         for powers, c in terms.items()

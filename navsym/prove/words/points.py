@@ -38,6 +38,7 @@ class Probe(player.Sized):  # type: ignore[misc,name-defined]
 
 
 def list_numbers(x: fmpq_mat) -> list[fmpq]:
+    """The entries, row by row."""
     return [x[i, j] for i in range(x.nrows()) for j in range(x.ncols())]
 
 

@@ -1,13 +1,19 @@
-"""Compiled loops for tracks: one channel, uneven times, polynomial motion with a noisy last derivative.
+"""Compiled loops for tracks: one channel, uneven times, a motion with a noisy last derivative, coloured errors.
 
-State (position, speed, acceleration, ...), n entries; white noise of density q drives the n-th derivative, so
-that over a step dt
+The motion (position, speed, acceleration, ...) has n entries. Its last one u is driven by white noise of density q and
+forgets at a rate a >= 0, du = -a u dt + dw; the others integrate it (Singer 1970; a = 0: a polynomial motion):
 
-    Phi_ij = dt^(j-i) / (j-i)!,   Q_ij = q dt^(2n-1-i-j) / ((2n-1-i-j) (n-1-i)! (n-1-j)!),   i, j = 0..n-1.
+    Phi_ij = dt^(j-i) / (j-i)!  for j < n-1,    Phi_i,n-1 = g_i(dt),    Q = q int_0^dt g(s) g(s)^T ds,
+    g_n-1(s) = exp(-a s),    g_i' = g_i+1,    g_i(0) = 0.
+
+A position is measured with a white error of variance r and a coloured one, b(k+1) = f c(k+1)/c(k) b(k) + noise with
+f = exp(-dt/tau), whose deviation is c(k) at row k. The first state is what is measured without its white error,
+position + b, the last one is b: the loops then correct by the first state alone, and Phi stays upper triangular.
 
 Forward filter with bounded influence; Rauch, Tung and Striebel's smoother backwards (Maybeck, vol. 2, ch. 8).
 An innovation beyond ``gate`` standard deviations is not cut off but believed less: its variance is raised until it
-is exactly at the gate. A wild measurement then does little harm, and a manoeuvre is followed after a few steps.
+is exactly at the gate. A wild measurement then does little harm, and a manoeuvre is followed after a few steps. Where
+errors are coloured, the excess is a jump of the coloured error, which stays: a receiver that changes its satellites.
 
 Covariances are kept as upper triangular roots U, P = U^T U. The first spread of the speed may be 1e9 times the
 noise of a position; with P itself such a track loses all digits, variances of the smoother came out negative and
@@ -31,10 +37,40 @@ Flags = NDArray[np.int64]
 USED, LEFT_OUT, DOUBTED = 0, 1, 2
 
 
+#: Nodes and weights of Gauss and Legendre on [0, 1]: exact for the products of g at a = 0 up to six states.
+NODES, WEIGHTS = (np.polynomial.legendre.leggauss(6)[0] + 1.0) / 2.0, np.polynomial.legendre.leggauss(6)[1] / 2.0
+#: Ends of the pieces of a step, in times of forgetting; each piece has six nodes.
+PIECES = np.array([1.5, 4.0, 8.0, 16.0, np.inf])
+#: Rows that hold all nodes.
+ROWS = 30
+
+
 @njit()
-def transition(dt: float, Phi: Array) -> None:
-    """Write the transition matrix of a step, (n, n), upper triangular with ones."""
-    n = Phi.shape[0]
+def respond(s: float, rate: float, g: Array) -> None:
+    """Write g(s) (n,): the motion a time s after a unit impulse on its last entry."""
+    n, x = g.shape[0], rate * s
+    if x >= 3.0:
+        g[n - 1], power = np.exp(-x), 1.0
+        for j in range(1, n):
+            g[n - 1 - j] = (power - g[n - j]) / rate
+            power *= s / j
+        return
+    power = 1.0
+    for j in range(n):
+        term, total = power, 0.0
+        for k in range(1, 40):
+            total += term
+            term *= -x / (k + j)
+            if abs(term) < 1e-18 * abs(total):
+                break
+        g[n - 1 - j] = total
+        power *= s / (j + 1)
+
+
+@njit()
+def transition(dt: float, rate: float, Phi: Array, g: Array) -> None:
+    """Write the transition matrix of the motion into the first n rows and columns of Phi; g (n,) is scratch."""
+    n = g.shape[0]
     for i in range(n):
         for j in range(i):
             Phi[i, j] = 0.0
@@ -42,35 +78,45 @@ def transition(dt: float, Phi: Array) -> None:
         for j in range(i, n):
             Phi[i, j] = factor
             factor *= dt / (j - i + 1)
+    respond(dt, rate, g)
+    for i in range(n):
+        Phi[i, n - 1] = g[i]
 
 
 @njit()
-def noise_shape(n: int) -> Array:
-    """Root (n, n) of the noise matrix of a unit step and density: row k holds moments of a Legendre polynomial.
+def noise_root(dt: float, rate: float, rows: Array, g: Array) -> None:
+    """Write a triangular root of Q at q = 1 into the first rows of ``rows`` (ROWS, n); g (n,) is scratch.
 
-    With a = n-1-i the entry is sqrt(2k+1) a! / ((a-k)! (a+k+1)!), and zero for k > a.
+    Each row is a value of g by the root of its weight, so that the sum of squares loses no digits.
     """
-    shape = np.zeros((n, n))
-    for k in range(n):
-        for i in range(n - k):
-            value, a = np.sqrt(2.0 * k + 1.0), n - 1 - i
-            for m in range(a - k + 1, a + 1):
-                value *= m
-            for m in range(2, a + k + 2):
-                value /= m
-            shape[k, i] = value
-    return shape
+    n, start, used = g.shape[0], 0.0, 0
+    for piece in range(5):
+        end = min(dt, PIECES[piece] / rate) if rate > 0.0 else dt
+        if end <= start:
+            continue
+        for k in range(6):
+            respond(start + (end - start) * NODES[k], rate, g)
+            weight = np.sqrt((end - start) * WEIGHTS[k])
+            for i in range(n):
+                rows[used, i] = weight * g[i]
+            used += 1
+        start = end
+    triangularise(rows[:used], n)
+    for i in range(n):
+        rows[i, :i] = 0.0
 
 
 @njit()
-def noise_root(dt: float, q: float, shape: Array, root: Array) -> None:
-    """Write a root (n, n) of the noise matrix of a step, root^T root = Q: columns of the shape by powers of dt."""
-    n = shape.shape[0]
-    power = np.sqrt(q * dt)
-    for i in range(n - 1, -1, -1):
-        for k in range(n):
-            root[k, i] = power * shape[k, i]
-        power *= dt
+def colour(dt: float, tau: float, c0: float, c1: float, Phi: Array, root: Array) -> None:
+    """Write what the coloured error adds to Phi and root (n+1, n+1): its own entry, and its share of the first."""
+    n = Phi.shape[0] - 1
+    kept = np.exp(-dt / tau)
+    for i in range(n):
+        Phi[n, i], Phi[i, n], root[n, i], root[i, n] = 0.0, 0.0, 0.0, 0.0
+    ratio = kept * c1 / c0 if c0 > 0.0 else 0.0
+    fresh = c1 * np.sqrt(-np.expm1(-2.0 * dt / tau))
+    Phi[n, n], Phi[0, n] = ratio, ratio - 1.0
+    root[n, 0], root[n, n] = fresh, fresh
 
 
 @njit()
@@ -126,19 +172,32 @@ def stack(U: Array, Phi: Array, root: Array, W: Array) -> None:
 
 
 @njit()
-def predict(dt: float, q: float, shape: Array, y: Array, U: Array, Phi: Array, root: Array, W: Array) -> None:
-    """y <- Phi y and the root of Phi P Phi^T + Q, in place.
+def step_of(
+    dt: float, last: float, model: Array, c0: float, c1: float, Phi: Array, root: Array, rows: Array, g: Array
+) -> None:
+    """Write Phi and root (n+1, n+1) of a step of length dt after one of length ``last``, whose motion may stay.
 
-    The shape is that of noise_shape; Phi, root (n, n) and W (2n, n) are scratch.
+    model : (q, rate, tau); rows (ROWS, n) keeps the root at q = 1 from step to step, g (n,) is scratch
     """
-    n = y.shape[0]
-    transition(dt, Phi)
-    noise_root(dt, q, shape, root)
+    n = g.shape[0]
+    if dt != last:
+        transition(dt, model[1], Phi, g)
+        noise_root(dt, model[1], rows, g)
+        for i in range(n):
+            for j in range(n):
+                root[i, j] = np.sqrt(model[0]) * rows[i, j]
+    colour(dt, model[2], c0, c1, Phi, root)
+
+
+@njit()
+def predict(y: Array, U: Array, Phi: Array, root: Array, W: Array) -> None:
+    """y <- Phi y and U <- the triangular root of Phi P Phi^T + Q, in place; W (2 m, m) is scratch."""
+    m = y.shape[0]
     move(Phi, y, y)
     stack(U, Phi, root, W)
-    triangularise(W, n)
-    for i in range(n):
-        for j in range(i, n):
+    triangularise(W, m)
+    for i in range(m):
+        for j in range(i, m):
             U[i, j] = W[i, j]
 
 
@@ -159,14 +218,16 @@ def correct(y: Array, U: Array, gain: Array, innovation: float, S: float, noise:
 
 
 @njit()
-def begin(first: float, spread: Array, y: Array, U: Array) -> None:
-    """The state before the first measurement: at its position, at rest, with deviations ``spread``."""
-    for i in range(y.shape[0]):
-        y[i] = 0.0
-        for j in range(y.shape[0]):
-            U[i, j] = 0.0
+def begin(first: float, spread: Array, c: float, y: Array, U: Array) -> None:
+    """The state before the first measurement: at its position, at rest, with deviations ``spread`` and colour c."""
+    n = spread.shape[0]
+    y[:], U[:] = 0.0, 0.0
+    for i in range(n):
         U[i, i] = spread[i]
     y[0] = first
+    # Position and coloured error are independent, their sum and the error are not.
+    U[0, 0] = np.hypot(spread[0], c)
+    U[0, n], U[n, n] = c * c / U[0, 0], c * spread[0] / U[0, 0]
 
 
 @njit()
@@ -178,12 +239,26 @@ def believed(innovation: float, S: float, gate: float) -> float:
 
 
 @njit()
+def leap(U: Array, excess: float, W: Array) -> None:
+    """U after a jump of the coloured error of variance ``excess``: a root of P + excess d d^T, d = (1, 0, ..., 1)."""
+    m = U.shape[0]
+    W[: m + 1, :m] = 0.0
+    W[:m, :m] = U
+    W[m, 0], W[m, m - 1] = np.sqrt(excess), np.sqrt(excess)
+    triangularise(W[: m + 1, :m], m)
+    for i in range(m):
+        for j in range(i, m):
+            U[i, j] = W[i, j]
+
+
+@njit()
 def forward(
     t: Array,
     z: Array,
     r: Array,
+    c: Array,
     use: Flags,
-    q: float,
+    model: Array,
     spread: Array,
     gate: float,
     states: Array,
@@ -191,30 +266,41 @@ def forward(
     gains: Array,
     innovations: Array,
     variances: Array,
+    jumps: Array,
     flags: Flags,
 ) -> None:
     """Filter one channel.
 
-    t, z, r (N,): times, measurements, variances; use (N,): zero leaves the measurement out
-    spread (n,) : standard deviations of the first state; gate : largest |innovation| in sigmas, 0 for none
-    states, gains (N, n); roots (N, n, n) of the covariances; innovations, variances, flags (N,) are filled
+    t, z, r, c (N,): times, measurements, variances of white and deviations of coloured errors; use (N,): zero leaves
+    the measurement out; model : (q, rate, tau) ; spread (n,) : standard deviations of the first state
+    gate : largest |innovation| in sigmas, 0 for none
+    states, gains (N, n+1); roots (N, n+1, n+1) of the covariances; innovations, variances, flags (N,) are filled, and
+    jumps (N,): variances of jumps of the coloured error, to which wild innovations are put down where there is one
     """
-    N, n = states.shape
-    Phi, root, W = np.empty((n, n)), np.empty((n, n)), np.empty((2 * n, n))
-    y, U, gain = np.empty(n), np.empty((n, n)), np.empty(n)
-    shape = noise_shape(n)
-    begin(z[0], spread, y, U)
+    N, m = states.shape
+    Phi, root, W, rows = np.zeros((m, m)), np.zeros((m, m)), np.empty((2 * m, m)), np.empty((ROWS, m - 1))
+    y, U, gain, g = np.empty(m), np.empty((m, m)), np.empty(m), np.empty(m - 1)
+    begin(z[0], spread, c[0], y, U)
+    last = -1.0
     for k in range(N):
         if k > 0:
-            predict(t[k] - t[k - 1], q, shape, y, U, Phi, root, W)
+            dt = t[k] - t[k - 1]
+            step_of(dt, last, model, c[k - 1], c[k], Phi, root, rows, g)
+            predict(y, U, Phi, root, W)
+            last = dt
         before = U[0, 0] * U[0, 0]
         innovation = z[k] - y[0]
         innovations[k], variances[k], flags[k] = innovation, before + r[k], LEFT_OUT
-        gain[:] = 0.0
+        gain[:], jumps[k] = 0.0, 0.0
         if use[k]:
             S = believed(innovation, variances[k], gate)
             flags[k] = DOUBTED if variances[k] < S else USED
-            correct(y, U, gain, innovation, S, r[k] if flags[k] == USED else S - before)
+            if flags[k] == DOUBTED and c[k] > 0.0 and k > 0:
+                jumps[k] = S - variances[k]
+                leap(U, jumps[k], W)
+                correct(y, U, gain, innovation, S, r[k])
+            else:
+                correct(y, U, gain, innovation, S, r[k] if flags[k] == USED else S - before)
         gains[k], states[k], roots[k] = gain, y, U
 
 
@@ -227,23 +313,28 @@ def gain_and_rest(W: Array, back: Array) -> None:
             total = W[i, n + j]
             for k in range(i + 1, n):
                 total -= W[i, k] * back[k, j]
-            back[i, j] = total / W[i, i]
+            # Without a coloured error its entry has no spread, and nothing to learn.
+            back[i, j] = total / W[i, i] if W[i, i] != 0.0 else 0.0
 
 
 @njit()
-def backward(t: Array, states: Array, roots: Array, q: float) -> None:
-    """Smooth in place: states (N, n) and roots (N, n, n) of the filter become those given all data.
+def backward(t: Array, c: Array, jumps: Array, states: Array, roots: Array, model: Array) -> None:
+    """Smooth in place: states (N, n+1) and roots (N, n+1, n+1) of the filter become those given all data.
 
     Turning [[U Phi^T, U], [root of Q, 0]] into [[A, B], [0, D]] gives the gain C^T = A^-1 B, and D is a root of
     what the next state leaves unknown; with the next root V the new one is the triangle of [D; V C^T].
     """
     N, n = states.shape
-    Phi, root, back = np.empty((n, n)), np.empty((n, n)), np.empty((n, n))
-    shape = noise_shape(n)
+    Phi, root, back = np.zeros((n, n)), np.zeros((n, n)), np.empty((n, n))
     W, V, ahead = np.empty((2 * n, 2 * n)), np.empty((2 * n, n)), np.empty(n)
+    rows, g, last = np.empty((ROWS, n - 1)), np.empty(n - 1), -1.0
     for k in range(N - 2, -1, -1):
-        transition(t[k + 1] - t[k], Phi)
-        noise_root(t[k + 1] - t[k], q, shape, root)
+        dt = t[k + 1] - t[k]
+        step_of(dt, last, model, c[k], c[k + 1], Phi, root, rows, g)
+        last = dt
+        if jumps[k + 1] > 0.0:
+            fresh = np.sqrt(root[n - 1, 0] ** 2 + jumps[k + 1])
+            root[n - 1, 0], root[n - 1, n - 1] = fresh, fresh
         stack(roots[k], Phi, root, W)
         W[:n, n:] = roots[k]
         W[n:, n:] = 0.0
@@ -266,30 +357,37 @@ def backward(t: Array, states: Array, roots: Array, q: float) -> None:
 
 @njit()
 def misfit(
-    t: Array, z: Array, r: Array, use: Flags, q: float, spread: Array, order: int, gate: float
+    t: Array, z: Array, r: Array, c: Array, use: Flags, model: Array, spread: Array, gate: float
 ) -> tuple[float, float, int]:
-    """Sums over the innovations after the first ``order``: of log S, of innovation^2 / S, and their number.
+    """Sums over the innovations after the first n: of log S, of innovation^2 / S, and their number.
 
     With a gate the variance of a wild innovation is raised as in :func:`forward`.
     """
-    n = order
-    Phi, root, W = np.empty((n, n)), np.empty((n, n)), np.empty((2 * n, n))
-    y, U, gain = np.empty(n), np.empty((n, n)), np.empty(n)
-    shape = noise_shape(n)
-    begin(z[0], spread, y, U)
-    logs, squares, count, seen = 0.0, 0.0, 0, 0
+    n = spread.shape[0]
+    m = n + 1
+    Phi, root, W, rows = np.zeros((m, m)), np.zeros((m, m)), np.empty((2 * m, m)), np.empty((ROWS, n))
+    y, U, gain, g = np.empty(m), np.empty((m, m)), np.empty(m), np.empty(n)
+    begin(z[0], spread, c[0], y, U)
+    logs, squares, count, seen, last = 0.0, 0.0, 0, 0, -1.0
     for k in range(t.shape[0]):
         if k > 0:
-            predict(t[k] - t[k - 1], q, shape, y, U, Phi, root, W)
+            dt = t[k] - t[k - 1]
+            step_of(dt, last, model, c[k - 1], c[k], Phi, root, rows, g)
+            predict(y, U, Phi, root, W)
+            last = dt
         if use[k] == 0:
             continue
         before = U[0, 0] * U[0, 0]
         innovation = z[k] - y[0]
         S = believed(innovation, before + r[k], gate)
-        if seen >= order:
+        if seen >= n:
             logs += np.log(S)
             squares += innovation * innovation / S
             count += 1
         seen += 1
-        correct(y, U, gain, innovation, S, r[k] if before + r[k] == S else S - before)
+        if before + r[k] < S and c[k] > 0.0 and k > 0:
+            leap(U, S - before - r[k], W)
+            correct(y, U, gain, innovation, S, r[k])
+        else:
+            correct(y, U, gain, innovation, S, r[k] if before + r[k] == S else S - before)
     return logs, squares, count

@@ -192,5 +192,12 @@ LIMITS = [
     ("limit(1/x, x, oo)", "0", {}, {"signs": [[1, I]]}, "a sign too many"),
     ("limit(1/x, x, 1)", "1", {}, {"signs": []}, "expected oo"),
     ("limit(x + 1, x, 0)", "0", {}, quotient("x__1", "1"), "another one"),
+    (  # (x**y)**(1/y) is x for x > 0 only, and abs(x) at y = 2
+        "limit(0*y, y, 2)",
+        "abs(x) - x",
+        {"x": ["-2", "-1", []]},
+        quotient("(x**y__1)**(1/y__1) - x", "1", 0, [BALLS], [], [BALLS]),
+        "expected 2 entries",
+    ),
 ]
 ALL = [*INTEGRALS, *SUMS, *PRODUCTS, *LIMITS]

@@ -1,0 +1,275 @@
+"""Certificates of ranks and of their drops, for the checker, in the words of the model.
+
+A rank is granted by a point that attains it and by columns that no row sees (``check_observability``). A drop is the
+same with zeros beside: where they vanish the columns stay unseen, because every remainder is a sum of the zeros. Here
+point, columns and factors are found; the checker alone grants them. What finds no certificate stands as unchecked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from math import prod
+from typing import Any
+
+import sympy as sp
+
+from navsym import checker
+from navsym.core.errors import NavsymError
+from navsym.core.rational_functions import cancel_fraction, replace_square
+from navsym.language.printer import to_text
+from navsym.models.certificates import matrix_texts
+from navsym.models.linear import LinearModel
+from navsym.observability.cases import replace_in_entry, solved_variable
+from navsym.observability.chains import JointObservability
+from navsym.observability.linear import Matrix, null_vectors, scalar_product
+from navsym.observability.motion import Motion, motion_of
+from navsym.observability.rank_drops import RankDrop
+from navsym.observability.reduction import System
+from navsym.observability.ring import Poly, Ring
+
+#: Points tried, terms of the columns and of all remainders, and bits for each state.
+POINTS, COLUMN_TERMS, TERMS, BITS = 6, 400, 6000, 96
+#: Values of angles that an equation names.
+TURNS = (sp.Integer(0), sp.pi, sp.pi / 2, -sp.pi / 2)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Statement:
+    """What a certificate says: the rows of H in these places show ``rank`` dimensions where the system vanishes."""
+
+    model: LinearModel
+    motion: Motion
+    rows: Matrix
+    bottoms: list[Poly]
+    places: Sequence[int]
+    system: System
+    rank: int
+
+    @property
+    def ring(self) -> Ring:
+        """The ring of all polynomials."""
+        return self.motion.ring
+
+    @property
+    def zeros(self) -> System:
+        """The system, and the relations of the manifold of the states."""
+        symbols, generator = self.ring.symbols, self.ring.context.gen
+        own = [k for k in self.motion.roots if symbols[k] in self.model.squares]
+        return [*self.system, *(generator(k) ** 2 - self.motion.roots[k] for k in own)]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Certifier:
+    """Proposes certificates of one model; ``certify`` and its like return what the checker grants, or None."""
+
+    model: LinearModel
+    motion: Motion
+    rows: Matrix
+    bottoms: list[Poly]
+
+    @classmethod
+    def of(cls, model: LinearModel) -> Certifier:
+        """Read the model once."""
+        motion, listed = motion_of(model)
+        return cls(model, motion, [row for row, _ in listed], [bottom for _, bottom in listed])
+
+    def certify(self, rank: int, columns: Matrix, system: System, places: Sequence[int]) -> dict[str, Any] | None:
+        """That the measurements in some places show ``rank`` dimensions where the system vanishes.
+
+        columns : n - rank columns that none of them sees there
+        """
+        said = Statement(self.model, self.motion, self.rows, self.bottoms, places, system, rank)
+        if sum(len(x) for column in columns for x in column) > COLUMN_TERMS:
+            return None
+        try:
+            return next((item for item in propose(said, columns) if is_granted(item)), None)
+        except NavsymError:
+            return None
+
+    def certify_rank(self, joint: JointObservability) -> dict[str, Any] | None:
+        """The generic rank of all measurements together."""
+        columns = joint.chains.directions
+        if columns is None:
+            return None
+        return self.certify(joint.joint_dimension, columns, [], range(len(self.rows)))
+
+    def certify_drop(self, drop: RankDrop) -> dict[str, Any] | None:
+        """A drop that lasts, with the rank that is left on it."""
+        names = self.model.measurements
+        places = range(len(names)) if drop.subspace == "joint" else [names.index(drop.subspace)]
+        found = [self.certify(leaf.rank, leaf.unseen, leaf.system, places) for leaf in drop.leaves]
+        parts = [item for item in found if item is not None]
+        if not parts or len(parts) < len(found):
+            return None
+        return parts[0] if len(parts) == 1 else {"kind": "all", "of": parts}
+
+
+def list_nested(drops: Iterable[RankDrop]) -> Iterator[RankDrop]:
+    """Drops, each before those inside it."""
+    for drop in drops:
+        yield drop
+        yield from list_nested(drop.inside)
+
+
+def is_granted(item: Mapping[str, Any]) -> bool:
+    """True when the checker accepts a certificate."""
+    try:
+        return bool(checker.check(item))
+    except checker.Refused:
+        return False
+
+
+def propose(said: Statement, columns: Matrix) -> Iterator[dict[str, Any]]:
+    """Certificates with a few points each."""
+    ring, n = said.ring, said.motion.size
+    columns, free = diagonal_columns(columns, n, ring)
+    zeros = said.zeros
+    shares = factors_of(said, columns, free, zeros) if zeros else []
+    if shares is None or len(columns) != n - said.rank:
+        return
+    H, named = said.model.H.extract(list(said.places), list(range(n))), [ring.expression(f) for f in zeros]
+    null = sp.Matrix(len(columns), n, [ring.expression(x) for column in columns for x in column])
+    factors = sp.Matrix(len(shares), len(zeros), [x for row in shares for x in row])
+    symbols, rates = symbols_and_rates(said.model, [said.model.F, H, null, factors, sp.Matrix(named)])
+    for point in points_on(zeros, said, symbols):
+        yield {
+            "kind": "observability",
+            "statement": {
+                "F": matrix_texts(said.model.F),
+                "H": matrix_texts(H),
+                "rates": {s.name: to_text(rate) for s, rate in rates.items()},
+                "zeros": [to_text(zero) for zero in named],
+                "rank": said.rank,
+            },
+            "point": {s.name: to_text(point[s]) for s in symbols},
+            "order": n,
+            "free": free,
+            "null": matrix_texts(null),
+            "shares": matrix_texts(factors),
+            "bits": 256 + BITS * n,
+        }
+
+
+def symbols_and_rates(model: LinearModel, matrices: Sequence[sp.MatrixBase]) -> tuple[list[sp.Symbol], dict[Any, Any]]:
+    """All symbols of the matrices and of the rates of those that move, and these rates."""
+    given = {model.time: sp.Integer(1), **model.rates}
+    found: set[Any] = set().union(*(matrix.free_symbols for matrix in matrices))
+    rates: dict[Any, Any] = {}
+    while moving := (found & given.keys()) - rates.keys():
+        for symbol in moving:
+            rates[symbol] = sp.sympify(given[symbol], strict=True)
+            found |= rates[symbol].free_symbols
+    return sorted(found, key=str), {s: rates[s] for s in sorted(rates, key=str)}
+
+
+def diagonal_columns(columns: Matrix, n: int, ring: Ring) -> tuple[Matrix, list[int]]:
+    """Columns with the same span of which each has a place where the others are zero, and these places."""
+    places = free_places(columns, n)
+    if len(places) < len(columns) and sum(len(x) for column in columns for x in column) <= COLUMN_TERMS:
+        columns = null_vectors(null_vectors(columns, n, ring), n, ring)
+        places = free_places(columns, n)
+    return (columns, places) if len(places) == len(columns) else ([], [])
+
+
+def free_places(columns: Matrix, n: int) -> list[int]:
+    """For each column the place of its shortest entry where all others are zero; fewer where one has none."""
+    found = []
+    for column in columns:
+        own = [k for k in range(n) if column[k] != 0 and all(c is column or c[k] == 0 for c in columns)]
+        found += [min(own, key=lambda k: len(column[k]))] if own else []
+    return found
+
+
+# Remainders as sums of the zeros
+
+
+def factors_of(said: Statement, columns: Matrix, free: Sequence[int], zeros: System) -> list[list[sp.Expr]] | None:
+    """For every remainder of the checker, in its order, the factors of the zeros; None where one was not found."""
+    found = []
+    budget = TERMS
+    for value, bottom in remainders(said, columns, free, zeros):
+        budget -= len(value)
+        row = as_combination(value, zeros, said) if budget > 0 else None
+        if row is None:
+            return None
+        parts, unit = row
+        found.append([said.ring.expression(cancel_fraction(part, unit * bottom)) for part in parts])
+    return found
+
+
+def remainders(said: Statement, columns: Matrix, free: Sequence[int], zeros: System) -> Iterator[tuple[Poly, Poly]]:
+    """z', H N and F N - N' - N M as (top, bottom)."""
+    ring, n = said.ring, said.motion.size
+    motion = replace(said.motion, roots={})
+    zero, one, clock = ring.constant(0), ring.constant(1), motion.clock
+    for z in zeros:
+        yield motion.derivative(z), clock
+    for place, column in product(said.places, columns):
+        yield scalar_product(said.rows[place], column, zero), said.bottoms[place]
+    for column in columns:
+        flow = motion.retreat(column)
+        shares = [(flow[k], own[k], own) for k, own in zip(free, columns, strict=True) if flow[k] != 0]
+        whole = prod((pivot for _, pivot, _ in shares), start=one)
+        for i in range(n):
+            value = whole * flow[i]
+            for share, pivot, own in shares:
+                value = value - whole / pivot * share * own[i] if own[i] != 0 else value
+            yield value, whole * clock
+
+
+def as_combination(value: Poly, zeros: System, said: Statement) -> tuple[list[Poly], Poly] | None:
+    """(factors q, unit u) with u value = sum q_k zeros_k up to squares of roots; None where there are none."""
+    ring = said.ring
+    unit, parts = ring.constant(1), [ring.constant(0) for _ in zeros]
+    order = sorted(range(len(zeros)), key=lambda k: solved_variable(zeros[k], zeros, ring) is None)
+    for k in order:
+        f, place = zeros[k], solved_variable(zeros[k], zeros, ring)
+        scale = ring.constant(1)
+        if k >= len(said.system):
+            root = next(g for g, square in said.motion.roots.items() if ring.context.gen(g) ** 2 - square == f)
+            rest = replace_square(value, root, said.motion.roots[root])
+        elif place is not None and value != 0 and (degree := int(value.degrees()[place])):
+            factor = f.derivative(place)
+            rest = replace_in_entry(value, place, factor * ring.context.gen(place) - f, factor, degree, ring)
+            scale = factor**degree
+        else:
+            rest = divmod(value, f)[1] if place is None else value
+        parts, unit = [part * scale for part in parts], unit * scale
+        parts[k] = (value * scale - rest) / f
+        value = rest
+    return None if said.motion.reduced(value) != 0 else (parts, unit)
+
+
+# Points
+
+
+def points_on(zeros: System, said: Statement, symbols: Sequence[sp.Symbol]) -> Iterator[dict[Any, sp.Expr]]:
+    """A few points where the zeros vanish: rational but for what the equations give, by roots or angles."""
+    ring = said.ring
+    angles = {s for f in zeros for s in ring.expression(f).atoms(sp.sin, sp.cos) for s in s.free_symbols}
+    order = sorted(zeros, key=lambda f: solved_variable(f, zeros, ring) is not None)
+    for k in range(POINTS):
+        small = 7 if k % 2 else 1
+        at = {s: sp.Rational(sp.prime(2 * i + k + 3), small * (7 * i + 2 * k + 9)) for i, s in enumerate(symbols)}
+        at |= {s: TURNS[k % len(TURNS)] for s in angles if k < len(TURNS)}
+        for f in order:
+            place = solved_variable(f, zeros, ring)
+            solve_for(ring.expression(f), at, [ring.symbols[place]] if place is not None else symbols)
+        yield at
+
+
+def solve_for(zero: sp.Expr, at: dict[Any, sp.Expr], choices: Sequence[sp.Basic]) -> None:
+    """Change one value such that the expression, of the first or second degree in its symbol, vanishes."""
+    for x in choices:
+        if x not in at or x not in zero.free_symbols or not zero.is_polynomial(x):
+            continue
+        others = {s: value for s, value in at.items() if s != x}
+        c = sp.Poly(zero.subs(others), x).all_coeffs()
+        if len(c) == 2:
+            at[x] = -c[1] / c[0]
+            return
+        if len(c) == 3 and (root := c[1] ** 2 - 4 * c[0] * c[2]).is_nonnegative:
+            at[x] = (sp.sqrt(root) - c[1]) / (2 * c[0])
+            return

@@ -1,0 +1,337 @@
+"""Where the rank of what a model shows is smaller than wanted: a tree of cases that leaves no parameters out.
+
+A node is a set of points: the equations of its system hold, and its units do not vanish. Rows are taken into a basis
+while they have a unit as pivot, each with its derivative behind it. Where no row has one, an entry p is chosen, and
+the points are split: p != 0, where it is a unit from now on, and q = 0 for every irreducible factor q of p, over the
+real numbers. Three facts make the answer a proof:
+
+* the children cover their parent, so that the leaves cover all points;
+* on a leaf the rows of the basis are independent and what they span holds its derivatives: the rank is their number at
+  every point of it, and the columns that vanish on them are all that is not shown there;
+* a smaller rank is a closed condition: it holds on the closure of the leaf, the zeros of the saturated system.
+
+Along a motion an equation holds with all its derivatives, or almost never: q = 0 stands for both.
+"""
+
+from __future__ import annotations
+
+import heapq
+import random
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from flint import Ordering, fmpz_mpoly_ctx, fmpz_mpoly_vec
+
+from navsym.core.errors import TooLargeError
+from navsym.observability.cases import is_irreducible, solved_variable, substitute_row
+from navsym.observability.linear import Matrix, primitive_vector
+from navsym.observability.motion import Motion
+from navsym.observability.reduction import System, UnitBasis, components, irredundant, lies_in_ideal
+from navsym.observability.ring import Poly, Ring, irreducible_factors
+
+#: Nodes looked at, terms of a row, and terms of an entry to split on; what lies beyond is listed as open.
+NODES, TERMS, SPLIT_TERMS = 120, 2000, 120
+#: Nodes of a model that moves, whose rows get long.
+MOVING_NODES = 24
+#: Points at which the sign of a condition is looked at.
+TRIALS = 200
+#: Equations added when a condition is to hold along a motion, and terms of them.
+STEPS, MOVED_TERMS = 12, 60
+#: Groebner bases of saturations: number of polynomials, terms, bits.
+SATURATION = (40, 150, 500)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Leaf:
+    """Points on which the rank is the same.
+
+    system : equations of the closure of these points
+    rank   : on the points
+    unseen : n - rank columns that no row sees there, polynomials modulo the system
+    """
+
+    system: System
+    rank: int
+    unseen: Matrix
+
+
+Advance = Callable[[list[Poly]], list[Poly]]
+
+
+@dataclass(slots=True, eq=False)
+class Node:
+    """A set of points, and what is known of the rows there: system = 0, and no unit of the ring vanishes."""
+
+    system: System
+    ring: Ring
+    basis: UnitBasis
+    waiting: Matrix
+
+    def tidy(self, row: list[Poly]) -> list[Poly]:
+        """A row on the points of the node, without its parts along the basis, times a unit."""
+        need_short(row)
+        row = self.basis.reduced(need_short(substitute_row(row, self.system, self.ring)))
+        return [0 * entry if lies_in_ideal(entry, self.system) else entry for entry in row]
+
+    def grow(self, advance: Advance | None, wanted: int) -> list[Poly]:
+        """Take rows while they have a unit as pivot; entries to split on where none has, none at a leaf."""
+        stuck: Matrix = []
+        while self.waiting and len(self.basis.rows) < wanted:
+            row = need_short(self.tidy(self.waiting.pop(0)))
+            if all(entry == 0 for entry in row):
+                continue
+            if not self.basis.take(row):
+                stuck.append(row)
+                continue
+            self.waiting = [*self.waiting, *stuck, *([advance(row)] if advance is not None else [])]
+            stuck = []
+        self.waiting = [*stuck, *self.waiting]
+        return [] if len(self.basis.rows) >= wanted else [entry for row in stuck for entry in row if entry != 0]
+
+    def split_on(self, entries: Sequence[Poly]) -> list[Poly]:
+        """Irreducible factors of the entry that is simplest without its units."""
+        plain = [self.ring.without_units(entry) for entry in entries]
+        chosen = min(plain, key=lambda f: (int(f.total_degree()), len(f)))
+        if len(chosen) > SPLIT_TERMS:
+            raise TooLargeError(f"expected conditions of at most {SPLIT_TERMS} terms; got more; fix some parameters")
+        return irreducible_factors(chosen)
+
+    def assume_nonzero(self, factors: Sequence[Poly]) -> None:
+        """Go on where these polynomials do not vanish."""
+        self.ring = self.ring.with_units(factors)
+        self.basis = self.basis.over(self.ring)
+
+    def follow(self, advance: Advance | None, wanted: int) -> None:
+        """Take rows until none is left, on almost all points of the node."""
+        while entries := self.grow(advance, wanted):
+            self.assume_nonzero(self.split_on(entries))
+
+    def unseen(self, width: int) -> Matrix:
+        """The columns of so many entries that vanish on the basis, by its free columns."""
+        found = []
+        for free in (k for k in range(width) if k not in self.basis.columns):
+            column = [self.ring.constant(0)] * width
+            column[free] = common = self.ring.constant(1)
+            for row, place in zip(self.basis.rows, self.basis.columns, strict=True):
+                top, bottom = -row[free] * common, row[place]
+                share = bottom / bottom.gcd(top) if top != 0 else self.ring.constant(1)
+                common, column = common * share, [entry * share for entry in column]
+                column[place] = top * share / bottom
+            found.append(primitive_vector(column, self.ring))
+        return found
+
+
+def need_short(row: list[Poly]) -> list[Poly]:
+    """The row, refused when it has too many terms."""
+    if sum(map(len, row)) > TERMS:
+        raise TooLargeError("expected rows that can be written; got too many terms; fix some parameters")
+    return row
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cases:
+    """The answer of a search.
+
+    full   : the first leaf of the wanted rank, None where there is none
+    drops  : leaves of smaller ranks, without those inside others; their closures are all points of smaller rank
+             except for those of the open systems
+    open   : systems that were not decided
+    """
+
+    full: Leaf | None
+    drops: list[Leaf]
+    open: list[System]
+
+
+@dataclass(slots=True, eq=False)
+class Tree:
+    """The search below a system for points where the rank is less than wanted."""
+
+    ring: Ring
+    wanted: int
+    width: int
+    motion: Motion | None = None
+    heap: list[tuple[int, int, Node]] = field(default_factory=list)
+    full: Leaf | None = None
+    drops: list[Leaf] = field(default_factory=list)
+    open: list[System] = field(default_factory=list)
+    count: int = 0
+
+    def push(self, node: Node) -> None:
+        """Put a node in the line: few equations come first, so that large sets are found before their parts."""
+        self.count += 1
+        heapq.heappush(self.heap, (len(node.system), self.count, node))
+
+    def search(self) -> Cases:
+        """All leaves, or as many as the limits allow."""
+        visited = 0
+        most = MOVING_NODES if self.motion is not None and self.motion.rates else NODES
+        while self.heap:
+            node = heapq.heappop(self.heap)[2]
+            if any(all(lies_in_ideal(f, node.system) for f in leaf.system) for leaf in self.drops):
+                continue
+            visited += 1
+            if visited > most:
+                self.open.append(node.system)
+                continue
+            try:
+                self.visit(node)
+            except TooLargeError:
+                self.open.append(node.system)
+        listed = irredundant([leaf.system for leaf in self.drops])
+        drops = [next(leaf for leaf in self.drops if leaf.system == system) for system in listed]
+        left = [system for system in irredundant(self.open) if not is_covered(system, listed)]
+        return Cases(self.full, drops, left)
+
+    def visit(self, node: Node) -> None:
+        """Make a node a leaf, or split it."""
+        entries = node.grow(self.motion.advance if self.motion is not None else None, self.wanted)
+        if entries:
+            self.split(node, entries)
+            return
+        rank = len(node.basis.rows)
+        if rank >= self.wanted:
+            self.full = self.full or Leaf(node.system, rank, node.unseen(self.width))
+            return
+        for system in closures(node.system, node.ring, self.ring):
+            self.drops.append(Leaf(system, rank, node.unseen(self.width)))
+
+    def split(self, node: Node, entries: Sequence[Poly]) -> None:
+        """p != 0, and the factors of p one by one, for the entry p that is simplest without its units."""
+        factors = node.split_on(entries)
+        for factor in factors:
+            for system in self.held(components([*node.system, factor], node.ring)):
+                child = restricted(node, system)
+                if child is not None:
+                    self.push(child)
+        node.assume_nonzero(factors)
+        self.push(node)
+
+    def held(self, systems: list[System]) -> list[System]:
+        """The systems with all derivatives of their equations along the motion."""
+        if self.motion is None or not self.motion.rates:
+            return systems
+        kept, steps = [], 0
+        while systems:
+            system = systems.pop()
+            fresh = [f for f in map(self.motion.derivative, system) if not lies_in_ideal(f, system)]
+            steps += 1
+            if fresh and (steps > STEPS or sum(map(len, fresh)) > MOVED_TERMS):
+                self.open.append(system)
+            elif fresh:
+                systems += components([*system, *fresh], self.ring)
+            else:
+                kept.append(system)
+        return irredundant(kept)
+
+
+def is_covered(system: System, listed: Sequence[System]) -> bool:
+    """True when the zeros of a system visibly lie inside those of one of the others."""
+    return any(all(lies_in_ideal(f, system) for f in other) for other in listed)
+
+
+def search_drops(
+    rows: Sequence[list[Poly]], wanted: int, ring: Ring, motion: Motion | None = None, system: System | None = None
+) -> Cases:
+    """Where the rank of the rows, and of all their derivatives along a motion, is below ``wanted``.
+
+    system : only among its zeros; all points by default
+    """
+    tree = Tree(ring, wanted, len(rows[0]) if rows else 0, motion)
+    start = restricted(Node([], ring, UnitBasis(ring), [list(row) for row in rows]), system or [])
+    if start is not None:
+        tree.push(start)
+    return tree.search()
+
+
+def leaf_on(system: System, rows: Matrix, ring: Ring, motion: Motion | None = None) -> Leaf | None:
+    """Rank, and columns that are not shown, at almost all real points of a system.
+
+    None for one that is not known to be irreducible with real points on all of it.
+    """
+    width = len(rows[0])
+    node = restricted(Node([], ring, UnitBasis(ring), [list(row) for row in rows]), system)
+    if node is None or not is_irreducible(system, ring) or not has_dense_points(system, ring):
+        return None
+    try:
+        node.follow(motion.advance if motion is not None else None, width)
+    except TooLargeError:
+        return None
+    return Leaf(system, len(node.basis.rows), node.unseen(width))
+
+
+def has_dense_points(system: System, ring: Ring) -> bool:
+    """True when no polynomial outside the ideal of an irreducible system vanishes at all its real points.
+
+    Theorem: an irreducible f that has both signs generates all polynomials that vanish on its real zeros. The variables
+    that the other equations name follow.
+    """
+    rest = [f for f in system if solved_variable(f, system, ring) is None]
+    source = random.Random(7)
+    points = [[source.choice((0, 0, 1, -1, 2, -3, 7)) for _ in ring.symbols] for _ in range(TRIALS)]
+    return all(len({f(*point) > 0 for point in points if f(*point) != 0}) == 2 for f in rest)
+
+
+def lost_columns(leaf: Leaf, generic: Matrix, ring: Ring) -> Matrix:
+    """Columns that are not shown on a leaf, without those that are generically not shown."""
+    node = restricted(Node([], ring, UnitBasis(ring), [list(column) for column in generic]), leaf.system)
+    if node is None or not leaf.unseen:
+        return []
+    width, lost = len(leaf.unseen[0]), []
+    node.follow(None, width)
+    for column in leaf.unseen:
+        known = len(node.basis.rows)
+        node.waiting = [list(column)]
+        node.follow(None, width)
+        lost += [column] if len(node.basis.rows) > known else []
+    return lost
+
+
+def restricted(node: Node, system: System) -> Node | None:
+    """A node among the zeros of a larger system; None where one of its units vanishes there."""
+    units = [substitute_row([unit], system, node.ring)[0] for unit in node.ring.units]
+    if any(lies_in_ideal(unit, system) for unit in units):
+        return None
+    ring = replace(node.ring, units=()).with_units(units)
+    basis = UnitBasis(ring)
+    for row, column in zip(node.basis.rows, node.basis.columns, strict=True):
+        basis.rows.append(substitute_row(row, system, node.ring))
+        basis.columns.append(column)
+    return Node(system, ring, basis, [list(row) for row in node.waiting])
+
+
+# Closures
+
+
+def closures(system: System, ring: Ring, domain: Ring) -> list[System]:
+    """The closure of the points with system = 0 where no unit of the ring vanishes, as simple systems.
+
+    The units of the domain vanish nowhere and need no closure. A system that only names variables is closed.
+    """
+    if is_irreducible(system, domain):
+        return [system]  # a unit does not vanish on a part of it
+    known = [*map(str, domain.units)]
+    for unit in (unit for unit in ring.units if str(unit) not in known):
+        system = saturate(system, unit, domain)
+    return components(system, domain)
+
+
+def saturate(system: System, unit: Poly, ring: Ring) -> System:
+    """Generators of the polynomials f with unit^k f in the ideal: f of the ideal with 1 - y unit, without y.
+
+    Raises TooLargeError where the Groebner basis gets long.
+    """
+    names = ("y", *(f"g{k}" for k in range(len(ring.symbols))))
+    wider = fmpz_mpoly_ctx.get(names, Ordering.lex)
+
+    def lift(f: Poly, power: int = 0) -> Poly:
+        return wider.from_dict({(power, *map(int, powers)): int(c) for powers, c in f.to_dict().items()})
+
+    generators: Any = fmpz_mpoly_vec([*map(lift, system), wider.constant(1) - lift(unit, 1)], wider)
+    basis, done = generators.buchberger_naive(limits=SATURATION)
+    if not done:
+        raise TooLargeError("expected systems that can be written; got too many terms; fix some parameters")
+    found = [f.to_dict() for f in basis.autoreduction(groebner=True) if f != 0]
+    free = [f for f in found if not any(int(powers[0]) for powers in f)]
+    return [ring.context.from_dict({tuple(map(int, p[1:])): int(c) for p, c in f.items()}) for f in free]

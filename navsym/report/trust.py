@@ -1,0 +1,89 @@
+"""What a reader of the report has to trust: the certificates by kind and size, and the verdicts that have none."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from navsym import checker
+from navsym.prove.grant import UNCHECKED
+from navsym.verification.ledger import Ledger, Record
+
+
+@dataclass(frozen=True, slots=True)
+class KindRow:
+    """Certificates of one kind: how many, and their sizes in bytes."""
+
+    kind: str
+    count: int
+    median: int
+    largest: int
+
+
+@dataclass(frozen=True, slots=True)
+class Trust:
+    """What stands on the page.
+
+    rows      : kinds of certificates, the most frequent first
+    rules     : rules of proofs, and the number of verdicts that use them
+    unchecked : verdicts that rest on the code that computes them
+    sampled   : verdicts that are neither proved nor refuted
+    lines     : of the checker
+    """
+
+    rows: tuple[KindRow, ...]
+    rules: tuple[tuple[str, int], ...]
+    unchecked: tuple[Record, ...]
+    sampled: tuple[Record, ...]
+    lines: int
+
+
+def trust_of(ledger: Ledger) -> Trust:
+    """Counts of the certificates of a ledger, and what has none."""
+    kinds, rules = defaultdict[str, list[int]](list), Counter[str]()
+    for record in ledger.claims:
+        if record.certificate:
+            for part in list_parts(record.certificate):
+                kinds[str(part.get("kind"))].append(len(json.dumps(part, ensure_ascii=False).encode()))
+            rules.update({*list_rules(record.certificate)})
+    rows = [KindRow(kind, len(sizes), round(median(sizes)), max(sizes)) for kind, sizes in kinds.items()]
+    return Trust(
+        rows=tuple(sorted(rows, key=lambda row: (-row.count, row.kind))),
+        rules=tuple(sorted(rules.items(), key=lambda item: (-item[1], item[0]))),
+        unchecked=ledger.unchecked,
+        sampled=tuple(record for record in ledger.claims if record.status in ("CONFIRMED", "OPEN")),
+        lines=len(Path(checker.__file__).read_text(encoding="utf-8").splitlines()),
+    )
+
+
+def list_parts(certificate: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
+    """The certificates of the entries of a claim, or the one of all of it."""
+    return certificate["of"] if certificate.get("kind") == "all" else [certificate]
+
+
+def list_rules(value: Any) -> Iterator[str]:
+    """The rules that stand anywhere in a certificate."""
+    if isinstance(value, Mapping):
+        if isinstance(value.get("rule"), str):
+            yield value["rule"]
+        for part in value.values():
+            yield from list_rules(part)
+    elif isinstance(value, list):
+        for part in value:
+            yield from list_rules(part)
+
+
+def backing_words(record: Record) -> str:
+    """What stands behind a verdict, in words: the size of its certificate and who accepted it, or that it has none."""
+    if record.certificate:
+        size = sum(len(json.dumps(part, ensure_ascii=False).encode()) for part in list_parts(record.certificate))
+        judge = "not looked at by the checker" if UNCHECKED in record.evidence else "accepted by the checker"
+        return f"{size:,} bytes, {judge}"
+    if record.status in ("CONFIRMED", "OPEN"):
+        return "none: nothing is proved"
+    return "none: unchecked, the verdict rests on the code that computes it"

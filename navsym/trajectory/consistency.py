@@ -1,0 +1,147 @@
+"""Whether standard deviations hold: NIS from the recording itself, NEES from a reference, each with its 95 % band.
+
+NIS is the mean of squared innovations over their predicted variance, NEES that of squared errors over their variance.
+Both are one on average where the deviations hold. Errors of neighbouring rows are correlated: with the correlations
+rho_k of normalised errors, N rows are worth ``N / (1 + 2 sum rho_k^2)`` independent ones, since products of Gaussians
+have the squared correlation (Isserlis). Bar-Shalom, Li, Kirubarajan, Estimation with Applications, 2001, ch. 5.4.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import os
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from navsym.core.arrays import Array
+from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError
+from navsym.language.files import name_file, read_text
+
+LARGEST_FILE = 256 * 1024 * 1024
+#: Quantile of the normal distribution at 97.5 %.
+Z975 = 1.959963984540054
+#: Columns of a reference; the deviations may be left out.
+COLUMNS, DEVIATIONS = ("t", "ve", "vn", "vu"), ("sd_ve", "sd_vn", "sd_vu")
+#: Shifts of the reference's clock that are tried, s.
+LAGS = np.arange(-40, 41) * 0.05
+#: A shift is named when the mean falls by this factor; interpolation between noisy rows alone may halve it.
+CLEARLY = 0.4
+
+
+@dataclass(frozen=True, slots=True)
+class Consistency:
+    """A mean of squares that is one where standard deviations hold.
+
+    mean : over rows and axes; parts: of East, North, Up; band : where 95 % of such means lie, for ``worth``
+    independent squares; rows : that were compared; lag : shift of the reference's clock, s, at which it fits far
+    better, and the mean there; None without one
+    """
+
+    mean: float
+    parts: tuple[float, float, float]
+    band: tuple[float, float]
+    rows: int
+    worth: float
+    lag: tuple[float, float] | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether the mean lies in its band."""
+        return self.band[0] <= self.mean <= self.band[1]
+
+    def document(self) -> dict[str, Any]:
+        """As part of a JSON document."""
+        found: dict[str, Any] = {"mean": self.mean, "parts": list(self.parts)}
+        found |= {"band": list(self.band), "rows": self.rows}
+        if self.lag is not None:
+            found["lag"] = {"seconds": self.lag[0], "mean": self.lag[1]}
+        return found
+
+
+def consistency_of(normalised: Array) -> Consistency | None:
+    """The mean of squares of normalised errors (N, 3) and its band; None without rows."""
+    if len(normalised) == 0:
+        return None
+    squares = normalised**2
+    worth = sum(independent(normalised[:, c]) for c in range(3))
+    parts = tuple(float(value) for value in squares.mean(axis=0))
+    return Consistency(float(squares.mean()), (parts[0], parts[1], parts[2]), band(worth), len(squares), worth)
+
+
+def independent(errors: Array) -> float:
+    """Independent squares that those of a series (N,) are worth: correlations up to the first that is not positive."""
+    N, power = len(errors), float(errors @ errors)
+    total = 0.0
+    for k in range(1, N // 4):
+        rho = float(errors[:-k] @ errors[k:]) / power if power > 0.0 else 0.0
+        if rho <= 0.0:
+            break
+        total += rho**2
+    return N / (1.0 + 2.0 * total)
+
+
+def band(count: float) -> tuple[float, float]:
+    """Where 95 % of the means of ``count`` squares of independent normal numbers lie (Wilson and Hilferty 1931).
+
+    >>> [round(x, 3) for x in band(100.0)]
+    [0.742, 1.296]
+    """
+    spread = 2.0 / (9.0 * count)
+    low, high = (max(1.0 - spread + sign * Z975 * math.sqrt(spread), 0.0) ** 3 for sign in (-1.0, 1.0))
+    return low, high
+
+
+def compare(t: Array, velocity: Array, deviation: Array, reference: str | os.PathLike[str] | Any) -> Consistency:
+    """NEES of velocities (N, 3) with deviations (N, 3) at times t (N,) against a reference, interpolated linearly.
+
+    reference : file with the columns t, ve, vn, vu, or an array (M, 4) of them: seconds and m/s, increasing times;
+                three columns more, sd_ve, sd_vn, sd_vu, are the reference's own standard deviations
+    Raises EmptyError where no row of the track lies within the times of the reference.
+    """
+    table, place = reference_table(reference)
+    if table.ndim != 2 or table.shape[1] not in (4, 7) or len(table) < 2:
+        message = f"expected rows of t, ve, vn, vu; got shape {table.shape}; give two rows or more"
+        raise ShapeError(message, where=place)
+    if not np.isfinite(table).all() or not (np.diff(table[:, 0]) > 0).all():
+        raise NotFiniteError("expected finite numbers at increasing times; got others; mend the reference", where=place)
+    found = consistency_of(normalised_at(0.0, t, velocity, deviation, table))
+    if found is None:
+        message = f"expected times from {t[0]:g} to {t[-1]:g}; got {table[0, 0]:g} to {table[-1, 0]:g}; use one clock"
+        raise EmptyError(message, where=place)
+    shifted = [normalised_at(float(lag), t, velocity, deviation, table) for lag in LAGS]
+    means = [float((errors**2).mean()) if len(errors) else math.inf for errors in shifted]
+    best = int(np.argmin(means))
+    return replace(found, lag=(float(LAGS[best]), means[best])) if means[best] < CLEARLY * found.mean else found
+
+
+def normalised_at(lag: float, t: Array, velocity: Array, deviation: Array, table: Array) -> Array:
+    """Errors over their deviations (K, 3) of the rows within the times of a reference that is ``lag`` late."""
+    inside = (t + lag >= table[0, 0]) & (t + lag <= table[-1, 0])
+    columns = [np.interp(t[inside] + lag, table[:, 0], column) for column in table[:, 1:].T]
+    own = np.stack(columns[3:], axis=1) if len(columns) > 3 else 0.0
+    error = velocity[inside] - np.stack(columns[:3], axis=1)
+    return np.asarray(error / np.sqrt(deviation[inside] ** 2 + np.square(own)))
+
+
+def reference_table(reference: Any) -> tuple[Array, str]:
+    """The numbers of a reference (M, 4), or (M, 7) with its deviations, and its place in errors."""
+    if not isinstance(reference, str | os.PathLike):
+        try:
+            return np.array(reference, dtype=float), "track: reference"
+        except (TypeError, ValueError):
+            raise ShapeError("expected rows of t, ve, vn, vu; got others", where="track: reference") from None
+    place = name_file(reference)
+    rows = [row for row in csv.reader(io.StringIO(read_text(reference, LARGEST_FILE))) if row]
+    head = [name.strip().lower() for name in rows[0]] if rows else []
+    if any(head.count(name) != 1 for name in COLUMNS):
+        message = f"expected the columns {', '.join(COLUMNS)} once each; got {', '.join(head)[:99]}; name them"
+        raise ShapeError(message, where=place)
+    names = (*COLUMNS, *DEVIATIONS) if all(head.count(name) == 1 for name in DEVIATIONS) else COLUMNS
+    try:
+        return np.array([[float(row[head.index(name)]) for name in names] for row in rows[1:]]), place
+    except (ValueError, IndexError):
+        raise DomainError("expected numbers in the columns t, ve, vn, vu; got others; mend them", where=place) from None

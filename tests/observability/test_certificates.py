@@ -1,0 +1,90 @@
+"""Certificates of ranks and drops: the checker grants what is listed, and nothing that is changed."""
+
+from __future__ import annotations
+
+import copy
+
+import pytest
+
+import navsym as nav
+from navsym import checker
+from navsym.observability.certificates import is_granted, list_nested
+
+REAL = "real"
+
+
+def couplings():
+    F = [["0", "a", "0"], ["0", "0", "b"], ["0", "0", "0"]]
+    return nav.observe(nav.Model("x y z", F=F, H=["x"], a=REAL, b=REAL))
+
+
+def turning():
+    F = [["0", "f", "k*t + c"], ["0", "0", "k"], ["0", "0", "0"]]
+    return nav.observe(nav.Model("v tilt bias", F=F, H=["v"], f=REAL, r=REAL, k=REAL, c=REAL, rates={"f": "r"}))
+
+
+def at_latitude():
+    F = [["0", "w*sin(L)", "0"], ["-w*sin(L)", "0", "w*cos(L)"], ["0", "-w*cos(L)", "0"]]
+    return nav.observe(nav.Model("n e d", F=F, H=["n"], w=REAL, L=REAL))
+
+
+def on_a_cone():
+    F = [["0", "x**2*(y**2 + w**2) - 1"], ["0", "0"]]
+    return nav.observe(nav.Model("a b", F=F, H=["a"], x=REAL, y=REAL, w=REAL))
+
+
+@pytest.mark.parametrize("answer_of", [couplings, turning, at_latitude, on_a_cone])
+def test_every_rank_and_every_drop_that_lasts_is_granted(answer_of):
+    answer = answer_of()
+    lasting = [drop for drop in list_nested(answer.rank_drops) if drop.lasting]
+    listed = answer.certificates()
+    assert len(listed) == 1 + len(lasting) and all(map(is_granted, listed))
+    data = answer.document()
+    assert data["checked"] and all(drop["checked"] for drop in data["rank_drops"])
+    for drop in (data["instant"] or {"rank_drops": []})["rank_drops"]:
+        assert not drop["checked"]  # what holds in passing has no certificate yet
+
+
+def test_the_certificate_says_the_model_and_the_condition():
+    drop = next(drop for drop in couplings().certificates() if drop["statement"]["zeros"] == ["b"])
+    assert drop["statement"]["F"] == [["0", "a", "0"], ["0", "0", "b"], ["0", "0", "0"]]
+    assert (drop["statement"]["H"], drop["statement"]["rank"]) == ([["1", "0", "0"]], 2)
+
+
+@pytest.mark.parametrize("answer_of", [couplings, turning, at_latitude])
+def test_no_other_rank_and_no_weaker_condition_is_granted(answer_of):
+    parts = [part for item in answer_of().certificates() for part in item.get("of", [item])]
+    for part in parts:
+        for rank in range(len(part["statement"]["F"]) + 1):
+            forged = copy.deepcopy(part)
+            forged["statement"]["rank"] = rank
+            assert is_granted(forged) == (rank == part["statement"]["rank"])
+        for place, _ in enumerate(part["statement"]["zeros"]):
+            forged = copy.deepcopy(part)
+            del forged["statement"]["zeros"][place]
+            forged["shares"] = [[*row[:place], *row[place + 1 :]] for row in forged["shares"]]
+            assert not is_granted(forged)
+
+
+def test_an_attitude_on_its_manifold_is_granted():
+    """The unit quaternion is a zero that the motion keeps; gravity leaves the heading open."""
+    turn = [
+        "(-q1*w1 - q2*w2 - q3*w3)/2",
+        "(q0*w1 + q2*w3 - q3*w2)/2",
+        "(q0*w2 - q1*w3 + q3*w1)/2",
+        "(q0*w3 + q1*w2 - q2*w1)/2",
+    ]
+    gravity = ["2*(q1*q3 - q0*q2)", "2*(q2*q3 + q0*q1)", "q0**2 - q1**2 - q2**2 + q3**2"]
+    unit = ["q0**2 + q1**2 + q2**2 + q3**2 = 1"]
+    answer = nav.observe(nav.Model("q0 q1 q2 q3", dynamics=turn, H=gravity, relations=unit, w1=REAL, w2=REAL, w3=REAL))
+    (granted,) = answer.certificates()
+    assert (answer.rank, checker.check(granted)) == (3, "observability")
+    assert len(granted["statement"]["zeros"]) == 1
+
+
+def test_what_is_too_long_stands_as_unchecked():
+    from navsym.observability.certificates import Certifier
+    from tests.observability.test_motion import navigation_errors
+
+    model = navigation_errors()
+    assert Certifier.of(model).certify(12, [[Certifier.of(model).motion.clock ** 9] * 15] * 3, [], range(3)) is None

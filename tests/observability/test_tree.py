@@ -1,0 +1,133 @@
+"""Complete exceptional sets by the tree of cases: no point of small rank is missed, and no listed one has full rank."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import random
+
+import pytest
+import sympy as sp
+from flint import fmpq, fmpq_mat
+
+import navsym as nav
+from navsym.models.linear import LinearModel
+from navsym.observability.chains import chains_of, observe_jointly
+from navsym.observability.rank_drops import find_drops
+from navsym.observability.tree import search_drops
+
+a, b, c = sp.symbols("a b c", real=True)
+
+
+def random_model(seed: int) -> LinearModel:
+    """Sparse, so that pivots meet, with a denominator that vanishes nowhere on the grid."""
+    source = random.Random(seed)
+    n = source.randint(3, 5)
+    entries = [0, 0, 0, 0, 1, 2, a, b, c, a * b, a - b, b + 1, a**2 - c, c / (a**2 + 1)]
+    F = sp.Matrix(n, n, lambda i, j: source.choice(entries))
+    H = sp.Matrix([[1, *[source.choice(entries) for _ in range(n - 1)]], [source.choice(entries), b, *[0] * (n - 2)]])
+    return LinearModel(F, None, H)
+
+
+def exact_rank(model: LinearModel, at: dict[sp.Symbol, int]) -> int:
+    """Rank of the stacked rows H F^k at a point, in fractions."""
+    F, H = (fractions_of(matrix.subs(at)) for matrix in (model.F, model.H))
+    rows = [H]
+    for _ in range(model.size - 1):
+        rows.append(rows[-1] * F)
+    return int(fmpq_mat(len(rows) * H.nrows(), model.size, [x for row in rows for x in row.entries()]).rank())
+
+
+def fractions_of(matrix: sp.Matrix) -> fmpq_mat:
+    return fmpq_mat(*matrix.shape, [fmpq(int(x.p), int(x.q)) for x in matrix])
+
+
+def grid(seed: int) -> list[dict[sp.Symbol, int]]:
+    """Some points of a small grid, where equations with small coefficients hold often."""
+    points = random.Random(seed).sample(list(itertools.product((-2, -1, 0, 1, 3), repeat=3)), 30)
+    return [dict(zip((a, b, c), values, strict=True)) for values in points]
+
+
+def holds(zeros, at) -> bool:
+    return all(zero.subs(at) == 0 for zero in zeros)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_tree_alone_finds_the_points_of_smaller_rank_and_no_others(seed):
+    model = random_model(seed)
+    chains = chains_of(model)
+    ring, motion = chains.ring, chains.motion
+    found = search_drops([chain.vectors[0] for chain in chains.chains], chains.joint_dimension, ring, motion)
+    drops = [[ring.condition(f) for f in leaf.system] for leaf in found.drops]
+    left = [[ring.condition(f) for f in system] for system in found.open]
+    for at in grid(seed):
+        rank = exact_rank(model, at)
+        listed = [leaf.rank for leaf, zeros in zip(found.drops, drops, strict=True) if holds(zeros, at)]
+        assert not listed or rank <= min(listed) < chains.joint_dimension, at
+        if not any(holds(zeros, at) for zeros in left):
+            assert listed or rank == chains.joint_dimension, at
+
+
+@functools.cache
+def joint_drops(seed):
+    """A model and its joint drops."""
+    model = random_model(seed)
+    return model, [drop for drop in find_drops(observe_jointly(model)).drops if drop.subspace == "joint"]
+
+
+@pytest.mark.parametrize("seed", (21, 22, 23, 25))
+def test_nested_drops_give_the_rank_of_every_point(seed):
+    """Where all lists are whole, the smallest rank listed at a point is its rank."""
+    model, drops = joint_drops(seed)
+    listed = list(flatten(drops))
+    sure = all(drop.complete for drop in drops) and all(drop.whole for drop, depth in listed if depth < 2)
+    for at in grid(seed):
+        rank = exact_rank(model, at)
+        here = [(drop.rank, depth) for drop, depth in listed if holds(drop.zeros, at)]
+        ranks = [known for known, _ in here if known is not None]
+        assert not ranks or rank <= min(ranks), at
+        if sure and ranks and None not in [known for known, _ in here] and max(depth for _, depth in here) < 2:
+            assert rank == min(ranks), at
+
+
+def flatten(drops, depth=0):
+    for drop in drops:
+        yield drop, depth
+        yield from flatten(drop.inside, depth + 1)
+
+
+@pytest.mark.parametrize("seed", (21, 22, 23, 25))
+def test_lost_directions_are_not_seen_on_their_condition(seed):
+    model, drops = joint_drops(seed)
+    for drop in drops:
+        for at in grid(seed):
+            if holds(drop.zeros, at) and drop.directions.rows:
+                lost = drop.directions.subs(at).T
+                assert all((model.H * model.F**k).subs(at) * lost == sp.zeros(2, lost.cols) for k in range(model.size))
+
+
+def test_a_chain_of_couplings_loses_more_and_more():
+    answer = nav.observe(
+        nav.Model("x y z", F=[["0", "a", "0"], ["0", "0", "b"], ["0", "0", "0"]], H=["x"], a="real", b="real")
+    )
+    drops = {drop.condition: drop for drop in answer.rank_drops if drop.subspace == "joint"}
+    assert {name: drop.rank for name, drop in drops.items()} == {"a = 0": 1, "b = 0": 2}
+    assert drops["b = 0"].directions == sp.Matrix([[0, 0, 1]])
+    assert [(set(inner.zeros), inner.rank) for inner in drops["b = 0"].inside] == [({a, b}, 1)]
+    assert drops["b = 0"].whole and drops["a = 0"].inside == ()
+    data = next(d for d in answer.document()["rank_drops"] if d["subspace"] == "joint" and d["zeros"] == ["b"])
+    assert (data["rank"], data["lost_basis"], data["inside_complete"]) == (2, [["0", "0", "1"]], True)
+
+
+def test_denominators_are_no_drops():
+    """1/(r + h) vanishes nowhere: the model does not exist where r + h = 0."""
+    model = nav.Model("x v", F=[["0", "1/(r + h)"], ["0", "0"]], H=["x"], r="real", h="real")
+    assert nav.observe(model).rank_drops == ()
+
+
+def test_declared_ranges_exclude_a_condition():
+    F = [["0", "x - w"], ["0", "0"]]
+    inside = nav.observe(nav.Model("p q", F=F, H=["p"], x=["1", "3"], w=["2", "4"]))
+    outside = nav.observe(nav.Model("p q", F=F, H=["p"], x=["1", "2"], w=["3", "4"]))
+    assert [drop.excluded for drop in inside.rank_drops] == [False, False]
+    assert [drop.excluded for drop in outside.rank_drops] == [True, True]

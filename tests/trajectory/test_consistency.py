@@ -1,0 +1,90 @@
+"""NIS, NEES and their bands, against quantiles and simulated errors; the reference's own faults are named."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.stats import chi2
+
+import navsym as nav
+from navsym.core.errors import NavsymError
+from navsym.trajectory.consistency import band, compare, consistency_of, independent
+
+
+@pytest.mark.parametrize("count", [10.0, 100.0, 3000.0])
+def test_the_band_is_that_of_chi_squared(count: float) -> None:
+    assert_allclose(band(count), chi2.ppf([0.025, 0.975], count) / count, rtol=0.02)
+
+
+def correlated(seed: int, rows: int, kept: float) -> np.ndarray:
+    """Normal errors (rows, 3) of variance one whose neighbours have the correlation ``kept``."""
+    rng = np.random.default_rng(seed)
+    out = rng.normal(size=(rows, 3))
+    for k in range(1, rows):
+        out[k] = kept * out[k - 1] + np.sqrt(1 - kept**2) * out[k]
+    return out
+
+
+def test_the_band_of_correlated_errors_holds_and_that_of_independent_ones_would_not() -> None:
+    """Of two hundred series with true deviations, about 95 % lie in their bands; bands for all rows hold far fewer."""
+    found = [consistency_of(correlated(seed, 400, 0.9)) for seed in range(200)]
+    assert 0.88 <= np.mean([value.holds for value in found]) <= 0.99
+    low, high = band(1200.0)
+    assert np.mean([low <= value.mean <= high for value in found]) < 0.7
+    halved = [consistency_of(2 * correlated(seed, 400, 0.9)) for seed in range(50)]
+    assert not any(value.holds for value in halved)
+
+
+def test_a_series_of_ar_1_is_worth_what_its_correlations_say() -> None:
+    expected = 4000 * (1 - 0.8**2) / (1 + 0.8**2)
+    assert_allclose(np.mean([independent(correlated(seed, 4000, 0.8)[:, 0]) for seed in range(8)]), expected, rtol=0.1)
+
+
+def test_a_late_reference_is_named_and_its_own_deviations_count() -> None:
+    t = np.arange(0.0, 200.0)
+    speed = np.stack([np.sin(t / 7), np.cos(t / 9), 0 * t], axis=1)
+    noise = np.random.default_rng(1).normal(size=(200, 3))
+    late = np.column_stack([t + 0.4, speed])
+    found = compare(t, speed + 0.01 * noise, np.full((200, 3), 0.01), late)
+    assert found.lag[0] == pytest.approx(0.4) and found.lag[1] < 1.3 < found.mean
+    rough = np.column_stack([t, speed + 0.05 * noise])
+    plain = compare(t, speed, np.full((200, 3), 0.01), rough)
+    assert plain.mean > 10 and plain.lag is None
+    own = compare(t, speed, np.full((200, 3), 0.01), np.column_stack([rough, np.full((200, 3), 0.05)]))
+    assert 0.8 < own.mean < 1.2 and own.lag is None
+
+
+def test_the_answer_has_nees_and_the_csv_all_rows(tmp_path: Path) -> None:
+    drive = nav.track("examples/drive.csv", sigma=0.5)
+    reference = tmp_path / "reference.csv"
+    lines = [",".join(map(repr, [float(a), *v.tolist()])) for a, v in zip(drive.t, drive.velocity, strict=True)]
+    reference.write_text("t,ve,vn,vu\n" + "\n".join(lines) + "\n", encoding="utf-8")
+    found = nav.track("examples/drive.csv", sigma=0.5, reference=reference)
+    assert found.nees.mean == pytest.approx(0.0, abs=1e-9) and found.document()["nees"]["rows"] == len(drive.t)
+    assert found.document()["nis"]["band"][0] < 1 < found.document()["nis"]["band"][1]
+    found.save(tmp_path / "out.csv")
+    rows = list(csv.DictReader((tmp_path / "out.csv").read_text(encoding="utf-8").splitlines()))
+    assert len(rows) == len(drive.t) and [row["row"] for row in rows] == list(drive.flags)
+    assert_allclose([float(row["sd_vn"]) for row in rows], drive.velocity_sd[:, 1], rtol=0)
+    again = nav.track("examples/drive.csv", sigma=0.5, reference=tmp_path / "out.csv")
+    assert again.nees.mean == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("reference", "kind"),
+    [
+        ([[0, 1, 2]], "shape"),
+        ([[1e6, 0, 0, 0], [2e6, 0, 0, 0]], "empty"),
+        ([[1, 0, 0, 0], [0, 0, 0, 0]], "not-finite"),
+        ("none.csv", "missing-file"),
+        (object(), "shape"),
+    ],
+)
+def test_a_wrong_reference_is_an_error_with_kind_and_place(reference: object, kind: str) -> None:
+    with pytest.raises(NavsymError) as caught:
+        nav.track("examples/drive.csv", sigma=0.5, order=2, reference=reference)
+    assert caught.value.kind == kind and caught.value.where
