@@ -21,7 +21,7 @@ from tests.book.numeric import holds_numerically
 
 SAMPLE = list(nav.book)[::25]
 MISPRINTS = [entry.id for entry in nav.book.values() if entry.misprints]
-ZERO = r"0|zeros\(\d, \d\)|\[0(, 0)*\]"
+ZERO = r"0|zeros\(\w+, \w+\)|\[0(, 0)*\]"
 FLIPPED = {"=": "!=", "<=": ">", ">=": "<", "<": ">=", ">": "<="}
 
 
