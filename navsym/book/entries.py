@@ -23,8 +23,39 @@ from navsym.language.tomlfile import read_toml
 
 FOLDER = Path(__file__).with_name("chapters")
 KEPT = Path(__file__).with_name("statuses.json")
-STATEMENT = ("left", "relation", "right", "chain", "given", "box")
+STATEMENT = ("left", "relation", "right", "chain", "given", "box", "order")
 SECONDS = 20.0  # of processor time for one entry, as in ``navsym prove``
+
+
+@dataclass(frozen=True, slots=True)
+class Misprint:
+    """A published form of an entry that its author has corrected.
+
+    id       : the entry
+    latex    : as it was printed, in our own writing
+    source   : where it was printed and where the author corrected it
+    document : the claim file of the printed form
+
+    >>> import navsym as nav
+    >>> nav.book["rotation-about-x-orthogonal"].misprints[0].prove().status
+    Status.REFUTED
+    """
+
+    id: str
+    latex: str
+    source: str
+    document: Mapping[str, Any] = field(default_factory=dict, repr=False, hash=False)
+
+    @property
+    def status(self) -> Status:
+        """The verdict on the printed form that is kept; it is decided now when the text has changed since."""
+        rows = {row["statement"]: row["status"] for row in book.kept.get(self.id, {}).get("misprints", ())}
+        kept = rows.get(digest(self.document))
+        return self.prove().status if kept is None else Status(kept)
+
+    def prove(self, seconds: float = SECONDS) -> Verdict:
+        """The verdict on the printed form, searched and granted now."""
+        return decide(self.document, self.id, seconds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +67,7 @@ class Entry:
     source   : the textbook or paper that has the formula
     note     : a remark, or an empty text
     document : the claim file of this one statement, with the declarations of its chapter
+    misprints : printed forms that their author has corrected to this formula
 
     >>> import navsym as nav
     >>> entry = nav.book["skew-is-cross"]
@@ -52,6 +84,7 @@ class Entry:
     source: str
     note: str = ""
     document: Mapping[str, Any] = field(default_factory=dict, repr=False, hash=False)
+    misprints: tuple[Misprint, ...] = ()
 
     @property
     def statement(self) -> str:
@@ -68,15 +101,14 @@ class Entry:
 
     def prove(self, seconds: float = SECONDS) -> Verdict:
         """The verdict, searched and granted now; OPEN after ``seconds``."""
-        from navsym.prove.claimfile import claims_from, decide_claims
-
-        return decide_claims(claims_from(dict(self.document), self.id), seconds=seconds)[0]
+        return decide(self.document, self.id, seconds)
 
     def record(self) -> dict[str, Any]:
         """One entry of the JSON document of ``navsym book``."""
         names = ("id", "chapter", "title", "latex")
         shown = {name: getattr(self, name) for name in names}
-        return {**shown, "status": str(self.status), "source": self.source, "misprints": []}
+        misprints = [{"source": misprint.source, "printed": misprint.latex} for misprint in self.misprints]
+        return {**shown, "status": str(self.status), "source": self.source, "misprints": misprints}
 
     def __repr__(self) -> str:
         return f"<{self.status}: {self.id}; {self.statement}>"
@@ -105,8 +137,8 @@ class Book(Mapping[str, Entry]):
         return found
 
     @cached_property
-    def kept(self) -> dict[str, dict[str, str]]:
-        """What was granted: entry -> hash of its statement, status, hash of its certificate."""
+    def kept(self) -> dict[str, dict[str, Any]]:
+        """What was granted: entry -> hash of its statement, status, hash of its certificate, the same of misprints."""
         return dict(json.loads(KEPT.read_text(encoding="utf-8")))
 
     def __getitem__(self, name: str) -> Entry:
@@ -153,14 +185,39 @@ def read_chapter(path: Path) -> list[Entry]:
 
 def read_book_entry(block: Table, chapter: Table, document: Table, where: str) -> Entry:
     """One [[entry]] block; the source of the chapter holds unless the entry names its own."""
-    expect_keys(block, ("id", "title", "latex", "source", "note", *STATEMENT), where)
-    notes = [require_key(block, key, where) for key in ("id", "title", "latex")]
-    claim = {"id": notes[0], **{key: block[key] for key in STATEMENT if key in block}}
+    expect_keys(block, ("id", "title", "latex", "source", "note", "misprint", *STATEMENT), where)
+    name, title, latex = [require_key(block, key, where) for key in ("id", "title", "latex")]
+    misprints = tuple(
+        read_misprint(printed, block, document, join_place(where, f"misprint[{place}]"))
+        for place, printed in enumerate(block.get("misprint", ()))
+    )
+    source = block.get("source", chapter["source"])
+    statement = claim_file(block, name, document)
+    return Entry(name, chapter["title"], title, latex, source, block.get("note", ""), statement, misprints)
+
+
+def read_misprint(printed: Table, block: Table, document: Table, where: str) -> Misprint:
+    """One [[entry.misprint]] block; hypotheses and ranges are those of its entry."""
+    expect_keys(printed, ("latex", "source", "left", "relation", "right", "chain"), where)
+    latex, source = [require_key(printed, key, where) for key in ("latex", "source")]
+    stated = {**{key: block[key] for key in ("given", "box", "order") if key in block}, **printed}
+    return Misprint(block["id"], latex, source, claim_file(stated, block["id"], document))
+
+
+def claim_file(block: Table, name: str, document: Table) -> dict[str, Any]:
+    """The claim file of one statement under the declarations of its chapter."""
+    claim = {"id": name, **{key: block[key] for key in STATEMENT if key in block}}
     statement = {"symbols": document.get("symbols", {}), "claim": [claim]}
     if any("dot_(" in claim.get(side, "") for side in ("left", "right", "chain")):
         statement["rates"] = document.get("rates", {})
-    source = block.get("source", chapter["source"])
-    return Entry(notes[0], chapter["title"], notes[1], notes[2], source, block.get("note", ""), statement)
+    return statement
+
+
+def decide(document: Mapping[str, Any], name: str, seconds: float) -> Verdict:
+    """The verdict on a claim file of one statement; OPEN after ``seconds``."""
+    from navsym.prove.claimfile import claims_from, decide_claims
+
+    return decide_claims(claims_from(dict(document), name), seconds=seconds)[0]
 
 
 def digest(data: Any) -> str:
@@ -168,17 +225,20 @@ def digest(data: Any) -> str:
     return hashlib.sha256(json.dumps(data, sort_keys=True, default=str).encode()).hexdigest()[:32]
 
 
+def keep_row(stated: Entry | Misprint) -> dict[str, Any]:
+    """Decide a statement now: its hash, its status, the hash of its certificate."""
+    verdict = stated.prove()
+    certificate = "" if verdict.certificate is None else digest(verdict.certificate)
+    return {"certificate": certificate, "statement": digest(stated.document), "status": str(verdict.status)}
+
+
 def keep_statuses() -> list[Entry]:
-    """Decide every entry and write ``statuses.json``; the entries that are OPEN. Two minutes or so."""
+    """Decide every entry and every misprint and write ``statuses.json``; the entries that are OPEN. Some minutes."""
     rows = {}
     for entry in book.values():
-        verdict = entry.prove()
-        certificate = "" if verdict.certificate is None else digest(verdict.certificate)
-        rows[entry.id] = {
-            "certificate": certificate,
-            "statement": digest(entry.document),
-            "status": str(verdict.status),
-        }
+        rows[entry.id] = keep_row(entry)
+        if entry.misprints:
+            rows[entry.id]["misprints"] = [keep_row(misprint) for misprint in entry.misprints]
     lines = [f"{json.dumps(name)}: {json.dumps(row)}" for name, row in sorted(rows.items())]
     KEPT.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
     return [book[name] for name, row in rows.items() if row["status"] == OPEN]

@@ -29,6 +29,9 @@ def command(
 
 
 def as_text(entries: list[Entry]) -> str:
-    """Each entry with its verdict, its statement and its source."""
-    lines = [f"{entry.id}  {entry.status}  {entry.title}\n  {entry.statement}\n  {entry.source}\n" for entry in entries]
-    return "\n".join([*lines, f"{len(entries)} entries"])
+    """Each entry with its verdict, its statement and its source, and the misprints that its author corrected."""
+    blocks = []
+    for entry in entries:
+        blocks.append(f"{entry.id}  {entry.status}  {entry.title}\n  {entry.statement}\n  {entry.source}\n")
+        blocks += [f"  misprint {shown.status}: {shown.latex}\n    {shown.source}\n" for shown in entry.misprints]
+    return "\n".join([*blocks, f"{len(entries)} entries"])

@@ -33,6 +33,12 @@ def test_the_table_shows_every_fix_and_what_is_open():
         assert fix.fault == shown[fix.repository, fix.commit][5]
 
 
+def test_the_first_page_has_the_counts_of_the_table():
+    words = " ".join((Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8").split())
+    said = f"Of {len(FIXES)} corrections of public estimator code"
+    assert said in words and f"it decides {len(FIXES) - len(OPEN)} at the entries" in words
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("fix", FIXES, ids=lambda fix: fix.name)
 def test_the_corrected_entries_fall_before_and_hold_after(fix):
