@@ -28,6 +28,8 @@ from navsym.export.parts import ExportedFunction, Input, Layout, Material, Outpu
 from navsym.prove.identities.normal_form import vanishes_identically
 from navsym.prove.wording import expression_text
 
+#: Paper -> symbol -> the last value that its code accepts, where a claim holds without end: one Schuler period.
+LAST: dict[str, dict[str, sp.Expr]] = {"guaranteed_velocity": {"T": 2 * sp.pi}}
 MOST_OUTPUTS = 400
 WORK = 40_000  # nodes times cells that the uniform bound may cost
 
@@ -108,7 +110,13 @@ def material(
     said = (str(verdict.status), verdict.method, verdict.scope, assumptions)
     source = Source(claim, title, paper, equation, *said, formula_lines(results), certificate)
     box = statement.box if isinstance(statement, (Equation, Optimum)) else {}
-    return Material(claim, results, box, source)
+    return Material(claim, results, with_ends(box, claim.partition(":")[0]), source)
+
+
+def with_ends(box: Mapping[Any, Any], paper: str) -> Mapping[Any, Any]:
+    """The box of a claim; a range without an end gets the one that code for this paper has."""
+    ends = LAST.get(paper, {})
+    return {s: (r[0], ends[s.name]) if s.name in ends and r[1] is None else r for s, r in box.items()}
 
 
 def formula_lines(results: Sequence[tuple[Output, Sequence[sp.Expr]]]) -> tuple[str, ...]:

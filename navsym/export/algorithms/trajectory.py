@@ -28,8 +28,8 @@ FILTER = Program(
         links=(
             Link(AHEAD, "trajectory:algorithm.P_ahead"),
             Link(("K1", "K2", "K3"), "trajectory:algorithm.K*"),
-            Link(("g1", "g2", "g3"), "trajectory:algorithm.C"),
-            Link(AFTER, "trajectory:algorithm.P"),
+            Link(("g1", "g2", "g3"), "trajectory:algorithm.C*"),
+            Link(AFTER, "trajectory:algorithm.P*"),
         ),
         outputs={"estimate": ("g1", "g2", "g3"), "covariance": tuple(n for n in AFTER if n)},
         layout=LAYOUT,
