@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
 
 import sympy as sp
 
@@ -11,7 +11,8 @@ from navsym.models.inertial import FULL, joint_model
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
 from navsym_papers.joint_correction.section1_systems import p, polynomial_of
-from navsym_papers.joint_correction.section2_groups import mu, position, row, u3, velocity, w1, w2
+from navsym_papers.joint_correction.section2_groups import mu, position, u3, velocity, w1, w2
+from navsym_papers.joint_correction.section2_groups import row as row_up_to_order
 
 
 @cache
@@ -28,6 +29,9 @@ Kh = dict(zip((1, 2, 5, 6), sp.symbols("Kh1 Kh2 Kh5 Kh6", real=True), strict=Tru
 true_y2 = sp.Symbol("y2_true", real=True)
 
 # (3.1)
+
+#: The rows of the algorithm are compared with all of their terms.
+row = partial(row_up_to_order, kept=lambda side: side)
 
 common = tuple(
     row(
