@@ -123,7 +123,7 @@ def by_root(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
 
 def by_tangent(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
     """u = tan(x/(2 d)) for the one angle of which all others are multiples."""
-    waves = expression.atoms(sp.sin, sp.cos)
+    waves = {node for node in expression.atoms(sp.sin, sp.cos) if node.free_symbols}
     symbols = {s for node in waves for s in node.free_symbols}
     if len(symbols) != 1:
         return
