@@ -36,10 +36,12 @@ def prove_sign(expression: sp.Expr, box: Box, wanted: Sign = Sign.NONNEGATIVE, s
     A product form of it is tried as well.
     """
     expression = sp.sympify(expression, strict=True)
+    limits = ranges_of(sorted(expression.free_symbols, key=str), box)
+    points = {symbol: limit.lower for symbol, limit in limits.items() if limit.lower == limit.upper is not None}
+    expression, limits = expression.subs(points), {s: limit for s, limit in limits.items() if s not in points}
     if not expression.free_symbols:
         proof = constant_sign(expression)
         return proof if proof.at_least(wanted) else UNKNOWN
-    limits = ranges_of(sorted(expression.free_symbols, key=str), box)
     if is_known_to_fail(expression, limits, wanted):
         return UNKNOWN
     try:
@@ -89,7 +91,7 @@ def prove_term(term: Any, relation: str, limits: Mapping[sp.Symbol, Range], seco
         return {name: read(limit) for name, limit in written.items()}
 
     goal = player.Goal(term, relation, goal_of(player.read_range))
-    proof = find_proof(goal, seconds / 2, balls=False) or find_proof(goal, seconds / 2)
+    proof = find_proof(goal, seconds / 4, balls=False) or find_proof(goal, seconds)
     if proof is None:
         return None
     with precision(BITS):
