@@ -25,7 +25,7 @@ from navsym.prove.signs.one_variable import survey_signs
 from navsym.prove.signs.products import as_product
 
 #: Processor time for one sign.
-SECONDS = 4.0
+SECONDS = 3.0
 BITS = 128
 RELATIONS = {Sign.NONNEGATIVE: ">=", Sign.POSITIVE: ">"}
 
