@@ -25,7 +25,7 @@ from navsym.prove.signs.one_variable import survey_signs
 from navsym.prove.signs.products import as_product
 
 #: Processor time for one sign.
-SECONDS = 3.0
+SECONDS = 4.0
 BITS = 128
 RELATIONS = {Sign.NONNEGATIVE: ">=", Sign.POSITIVE: ">"}
 
@@ -91,7 +91,7 @@ def prove_term(term: Any, relation: str, limits: Mapping[sp.Symbol, Range], seco
         return {name: read(limit) for name, limit in written.items()}
 
     goal = player.Goal(term, relation, goal_of(player.read_range))
-    proof = find_proof(goal, seconds / 4, balls=False) or find_proof(goal, seconds)
+    proof = find_proof(goal, seconds / 2, balls=False) or find_proof(goal, seconds / 2)
     if proof is None:
         return None
     with precision(BITS):
