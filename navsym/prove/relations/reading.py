@@ -17,7 +17,7 @@ from navsym.language.names import FUNCTIONS, expect_keys, quote, suggest_nearest
 from navsym.language.printer import to_text
 from navsym.language.schema import Table, as_list, as_table, as_text, join_place, require_key
 from navsym.language.shapes import RANGES, Shape, read_shape
-from navsym.language.tree import Tree, list_names, list_parts
+from navsym.language.tree import Tree, fold_tree, list_names, list_parts
 from navsym.language.vectors import (
     RELATIONS,
     Size,
@@ -100,6 +100,7 @@ def read_text_claim(
     order = read_order(block, shapes, join_place(where, "order"))
     trees += stated
     free = set(order).union(*map(list_free_names, trees))
+    require_expected(trees, shapes, where)
     used, slopes = collect_names([*texts, *exists], free, given, shapes, rates, sizes)
     require_rates(trees, slopes, where)
     relations = [text for name in used for text in shapes[name].relations]
@@ -127,11 +128,37 @@ def read_text_claim(
     common |= {"shapes": {n: [[*row] for row in shapes[n].rows] for n in used if shapes[n].size}}
     common |= {"given": [*map(clean, (*given, *relations))], "rates": slopes}
     common |= {"order": order} if order else {}
+    random = {name: read_random(shapes[name], sizes) for name in used if shapes[name].random}
+    common |= {"random": random} if random else {}
     documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | common for x, sign, y in links]
     kinds = {name: (kind_of(shapes[name]), shapes[name].rows) for name in used if shapes[name].size}
     shown = {entry: text for name in used for entry, text in shapes[name].shown().items()}
     scope = describe_scope([shapes[n] for n in used if not shapes[n].label], ranges)
     return TextClaim(formula, tuple(documents), kinds, shown, scope)
+
+
+def read_random(shape: Shape, sizes: Mapping[str, Size]) -> dict[str, Any]:
+    """Mean and covariance of a random name in the words of the checker."""
+    known, place, n = shape.random or {}, join_place(join_place("symbols", shape.name), "random"), len(shape.rows)
+    for key, size in (("mean", shape.size), ("cov", shape.size and (n, n))):
+        found = read_value(known[key], sizes, where=join_place(place, key)).size
+        if found != size:
+            got = f"expected {describe_size(size)}; got {describe_size(found)}; correct it"
+            raise ShapeError(got, where=join_place(place, key))
+    return {**known, "mean": clean(known["mean"]), "cov": clean(known["cov"])}
+
+
+def require_expected(trees: Sequence[Tree], shapes: Mapping[str, Shape], where: str) -> None:
+    """Refuse a random name outside of an expectation or covariance."""
+
+    def collect(part: Tree, inner: list[frozenset[str]]) -> frozenset[str]:
+        if part.head == "symbol":
+            return frozenset(name for name in part.args if name in shapes and shapes[name].random)
+        return frozenset() if part.head in ("E", "cov") else frozenset().union(*inner)
+
+    for name in sorted(frozenset().union(*(fold_tree(tree, collect) for tree in trees))):
+        message = f"expected the random {name} inside E(...) or cov(...); got it outside; state what is expected of it"
+        raise DomainError(message, where=where)
 
 
 def kind_of(shape: Shape) -> str:
@@ -297,6 +324,8 @@ def collect_names(
         if name in used:
             continue
         used.add(name)
+        if shapes[name].random:
+            waiting += [n for key in ("mean", "cov") for n in names_of(shapes[name].random[key]) & set(shapes)]
         if not derived:
             continue
         own = dict(shapes[name].rates or {})
@@ -332,7 +361,10 @@ def describe_scope(shapes: Sequence[Shape], ranges: Mapping[str, Sequence[Any]])
     """The quantifier in words."""
     words = []
     for shape in shapes:
-        if shape.kind == "scalar":
+        if shape.random:
+            law = "normal " if shape.random["normal"] else "random "
+            words.append(f"{law}{shape.name} of mean {shape.random['mean']} and covariance {shape.random['cov']}")
+        elif shape.kind == "scalar":
             words.append(describe_range(shape.name, ranges[shape.name]))
         elif shape.sizes or shape.properties:
             kind = f"{' '.join(shape.properties)} " if shape.properties else ""
