@@ -485,7 +485,7 @@ class Exact:
         if q.q == 1 and q < 0 and all(atom == TURN for m in self.terms for atom, _ in m):
             square = (self * self).divide_turns()
             if set(square.terms) == {frozenset()}:  # 1/x = x/r where x x = r, as for the root of a prime
-                return (self * (1 / square.terms[frozenset()])) ** -q
+                return prod([self * (1 / square.terms[frozenset()])] * int(-q), start=Exact(1))
         ((monomial, c),) = self if len(self.terms) == 1 else [(frozenset(), fmpq(0))]
         if len(monomial) > 1 and c == 1 and all(fmpq(e).q == 1 and int(e) % 2 == 0 for _, e in monomial):
             squares = (Exact([(frozenset({(atom, 2)}), fmpq(1))]).make_atom("sum", q * e / 2) for atom, e in monomial)
@@ -1298,14 +1298,15 @@ CALLS: dict[str, tuple[range, Callable[..., Value]]] = {
     "conj": (range(1, 2), conjugate),
     "rot": (range(1, 2), rotation_of),
 }
+FRACTION = "fraction__"  # names of u - floor(u), which no text has
 MARKS = re.compile(r" *([0-9]+(?:\.[0-9]+)?|[A-Za-z][A-Za-z0-9_]*|\*\*|[<>!]=|[-+*/(),@.\[\]<>=])")
 
 
 class Reader:
     """Reads the texts of one case: the conditions that it meets get the choices, and then they are taken to hold."""
 
-    def __init__(self, names: dict[str, Value], rates: Any, choices: list[bool], box: dict[str, Range]):
-        self.names, self.rates, self.wanted, self.box = names, rates, choices, box
+    def __init__(self, names: dict[str, Value], rates: Any, choices: list[bool], box: dict[str, Range] | None = None):
+        self.names, self.rates, self.wanted, self.box = names, rates, choices, box or {}
         require(isinstance(rates, dict) and len(rates) <= 64, "expected rates by name")
         self.choices: list[bool] = []
         self.met: dict[tuple[str, Term], bool] = {}
@@ -1419,9 +1420,8 @@ class Reader:
             return make_sum(*whole, find_whole(u))
         name = next((f for f, v in self.fractions.items() if is_identity(subtract(u, v))), None)
         if name is None:
-            name = f"fraction__{len(self.fractions) + 1}"
-            taken = {*self.box, *self.rates, *(s for v in self.names.values() for e in list_entries(v) for s in e[1:])}
-            require(name not in taken, "a name that is in use")
+            name = f"{FRACTION}{len(self.fractions) + 1}"
+            require(name not in self.box, "a name that is in use")
             self.fractions[name] = u
         value = subtract(u, ("symbol", name))
         self.floors[value] = None
@@ -1472,9 +1472,9 @@ class Reader:
             rows = []
             for powers, c in polynomial.to_dict().items():
                 pairs = [*zip(parts, map(int, powers), fixed, strict=True)]
-                powers = [("^", part, number(n)) for part, n, known in pairs if known and n]
+                factors = [("^", part, number(n)) for part, n, known in pairs if known and n]
                 word = [part[1] for part, n, known in pairs if not known for _ in range(n)]
-                rows.append(("*", number(c), *powers, self.find_moment(word)))
+                rows.append(("*", number(c), *factors, self.find_moment(word)))
             return ("+", ZERO, *rows)
 
         require(not any(n for p in bottom.to_dict() for n, known in zip(p, fixed, strict=True) if not known), "below")
@@ -1649,6 +1649,7 @@ class Formula(Parser):
         if word[:1].isalpha():
             if self.take("("):
                 return self.read_call(word)
+            require(not word.startswith(FRACTION), "a name that is in use")
             return ("pi",) if word == "pi" else self.reader.names.get(word, ("symbol", word))
         require(word == "(", "not an expression")
         inside = self.read_sum()

@@ -147,7 +147,10 @@ class ValueReader(Reader):
             "dot_": (True, lambda: first),
             "expm": (square and self.is_small(first, MOST_EXPONENT), lambda: first),
             "E": (True, lambda: first),
-            "cov": (vector and last is not None and last[1] == 1, lambda: (first[0], last[0])),  # type: ignore[index]
+            "cov": (
+                not any(sizes) or (vector and last is not None and last[1] == 1),
+                lambda: (first[0], last[0]) if any(sizes) and (first[0], last[0]) != (1, 1) else None,  # type: ignore[index]
+            ),
         }
         good, result = fits.get(name, (not any(sizes), lambda: None))
         if not good:

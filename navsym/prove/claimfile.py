@@ -97,8 +97,8 @@ def widen_range(value: Any) -> Any:
     """A range up to infinity as a word, or as a table."""
     if not isinstance(value, (list, tuple)) or not {"oo", "-oo"} & {str(end) for end in value}:
         return value
-    ends = tuple(map(str, value))
-    return {("0", "oo"): "nonnegative", ("-oo", "oo"): "real"}.get(ends, {"range": [*value]})
+    word = {"0 oo": "nonnegative", "-oo oo": "real"}.get(" ".join(map(str, value)))
+    return word or {"range": [*value]}
 
 
 def is_derived(sides: tuple[Side, ...]) -> bool:

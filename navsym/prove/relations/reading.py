@@ -105,11 +105,7 @@ def read_text_claim(
     require_rates(trees, slopes, where)
     relations = [text for name in used for text in shapes[name].relations]
     ranges = {entry: span for name in used for entry, span in shapes[name].ranges.items()}
-    for name, ends in as_table(block.get("box", {}), join_place(where, "box")).items():
-        place = join_place(join_place(where, "box"), name)
-        if name not in shapes:
-            expect_keys({name: ends}, tuple(shapes), join_place(where, "box"))
-        ranges[name] = limit(name, ends, place)
+    ranges |= read_box(block, shapes, limit, join_place(where, "box"))
     formula = make_formula(block)
     if any(shape.sizes for shape in shapes.values()) and is_of_any_size([shapes[n] for n in used], trees):
         plain = {
@@ -124,12 +120,15 @@ def read_text_claim(
         declared["given"] = [*map(clean, given)]
         documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | declared for x, sign, y in links]
         return TextClaim(formula, tuple(documents), scope=scope)
-    common: Document = {"symbols": ranges, "exists": [*map(clean, exists)], "tolerance": formula.tolerance}
+    common: Document = {
+        "symbols": ranges,
+        "exists": [*map(clean, exists)],
+        "tolerance": formula.tolerance and clean(formula.tolerance),
+    }
     common |= {"shapes": {n: [[*row] for row in shapes[n].rows] for n in used if shapes[n].size}}
     common |= {"given": [*map(clean, (*given, *relations))], "rates": slopes}
     common |= {"order": order} if order else {}
-    random = {name: read_random(shapes[name], sizes) for name in used if shapes[name].random}
-    common |= {"random": random} if random else {}
+    common |= read_random([shapes[name] for name in used], sizes)
     documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | common for x, sign, y in links]
     kinds = {name: (kind_of(shapes[name]), shapes[name].rows) for name in used if shapes[name].size}
     shown = {entry: text for name in used for entry, text in shapes[name].shown().items()}
@@ -137,15 +136,32 @@ def read_text_claim(
     return TextClaim(formula, tuple(documents), kinds, shown, scope)
 
 
-def read_random(shape: Shape, sizes: Mapping[str, Size]) -> dict[str, Any]:
-    """Mean and covariance of a random name in the words of the checker."""
-    known, place, n = shape.random or {}, join_place(join_place("symbols", shape.name), "random"), len(shape.rows)
-    for key, size in (("mean", shape.size), ("cov", shape.size and (n, n))):
-        found = read_value(known[key], sizes, where=join_place(place, key)).size
-        if found != size:
-            got = f"expected {describe_size(size)}; got {describe_size(found)}; correct it"
-            raise ShapeError(got, where=join_place(place, key))
-    return {**known, "mean": clean(known["mean"]), "cov": clean(known["cov"])}
+def read_box(
+    block: Table, shapes: Mapping[str, Shape], limit: Callable[[str, Sequence[Any], str], list[Any]], where: str
+) -> dict[str, list[Any]]:
+    """The ranges of the claim itself."""
+    found = {}
+    for name, ends in as_table(block.get("box", {}), where).items():
+        if name not in shapes:
+            expect_keys({name: ends}, tuple(shapes), where)
+        found[name] = limit(name, ends, join_place(where, name))
+    return found
+
+
+def read_random(shapes: Iterable[Shape], sizes: Mapping[str, Size]) -> Document:
+    """Means and covariances of the random names in the words of the checker; nothing where there are none."""
+    found: Document = {}
+    for shape in shapes:
+        known, place, n = shape.random, join_place(join_place("symbols", shape.name), "random"), len(shape.rows)
+        if known is None:
+            continue
+        for key, size in (("mean", shape.size), ("cov", shape.size and (n, n))):
+            own = read_value(known[key], sizes, where=join_place(place, key)).size
+            if own != size:
+                message = f"expected {describe_size(size)}; got {describe_size(own)}; correct it"
+                raise ShapeError(message, where=join_place(place, key))
+        found[shape.name] = {**known, "mean": clean(known["mean"]), "cov": clean(known["cov"])}
+    return {"random": found} if found else {}
 
 
 def require_expected(trees: Sequence[Tree], shapes: Mapping[str, Shape], where: str) -> None:
@@ -325,7 +341,8 @@ def collect_names(
             continue
         used.add(name)
         if shapes[name].random:
-            waiting += [n for key in ("mean", "cov") for n in names_of(shapes[name].random[key]) & set(shapes)]
+            moments = [(shapes[name].random or {})[key] for key in ("mean", "cov")]
+            waiting += [n for text in moments for n in names_of(text) & set(shapes)]
         if not derived:
             continue
         own = dict(shapes[name].rates or {})
