@@ -75,7 +75,7 @@ class LooseReader(ValueReader):
     def name(self, at: int, token: str) -> Tree:
         """Any name; inside an integral or sum its variable is not the only one."""
         self.names = None
-        return super(LooseReader, self).name(at, token)
+        return super().name(at, token)
 
     def atom(self) -> Tree:
         """What may have .T and indices behind it."""
