@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import jinja2
-from latex2mathml.converter import convert
 from markupsafe import Markup
 
 from navsym.book.entries import Entry, Misprint, book
+from navsym.report.formula.latex import convert_own
 from navsym.report.page import slug
 
 
@@ -47,11 +46,11 @@ class Chapter:
     misprints: int
 
 
-def book_pages(env: jinja2.Environment, shared: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Names and texts of the pages; ``shared`` has the marks and meanings of verdicts.
+def book_pages(template: Callable[[str], Any], shared: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Names and texts of the pages; ``shared`` has the marks and meanings of verdicts, ``template`` those by name.
 
     >>> from navsym.report.page import MARKS, environment
-    >>> made = dict(book_pages(environment(), {"marks": MARKS}))
+    >>> made = dict(book_pages(environment().get_template, {"marks": MARKS}))
     >>> len(made), "Kinematics" in made["book.html"], "transport-rate" in made["book-04.html"]
     (24, True, True)
     """
@@ -59,9 +58,9 @@ def book_pages(env: jinja2.Environment, shared: Mapping[str, Any]) -> Iterator[t
     chapters = [read_chapter(title, f"book-{place:02}.html") for place, title in enumerate(titles, start=1)]
     for place, chapter in enumerate(chapters):
         near = [chapters[k] if 0 <= k < len(chapters) else None for k in (place - 1, place + 1)]
-        yield chapter.file, env.get_template("book_chapter.html").render(shared, chapter=chapter, near=near)
+        yield chapter.file, template("book_chapter.html").render(shared, chapter=chapter, near=near)
     total = sum((Counter(chapter.counts) for chapter in chapters), Counter[str]())
-    yield "book.html", env.get_template("book.html").render(shared, chapters=chapters, total=total)
+    yield "book.html", template("book.html").render(shared, chapters=chapters, total=total)
 
 
 def read_chapter(title: str, file: str) -> Chapter:
@@ -81,11 +80,7 @@ def view_entry(entry: Entry) -> EntryView:
 
 def show(stated: Entry | Misprint) -> Shown:
     """A formula in MathML, with its verdict."""
-    try:
-        mathml = Markup(convert(stated.latex, display="block"))
-    except Exception:  # whatever a converter says of a command that it does not know: the LaTeX is shown instead
-        mathml = None
-    return Shown(stated, str(stated.status), mathml)
+    return Shown(stated, str(stated.status), convert_own(stated.latex))
 
 
 def words_of(statement: str) -> set[str]:

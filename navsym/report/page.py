@@ -205,7 +205,7 @@ def pages(
     if book:
         from navsym.report.book_pages import book_pages
 
-        yield from book_pages(env, shared)
+        yield from book_pages(env.get_template, shared)
     papers.sort(key=lambda paper: not paper.erratum.entries)  # those with something to correct come first
     yield "index.html", env.get_template("index.html").render(shared, papers=papers, total=total(papers), book=book)
 

@@ -12,7 +12,7 @@ from tests.report.test_page import Reading
 
 @pytest.fixture(scope="module")
 def made():
-    return dict(book_pages(environment(), {"marks": MARKS, "meanings": MEANINGS}))
+    return dict(book_pages(environment().get_template, {"marks": MARKS, "meanings": MEANINGS}))
 
 
 def test_every_entry_and_every_misprint_stands_once_with_its_verdict(made):
