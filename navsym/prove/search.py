@@ -17,6 +17,7 @@ from flint import ctx
 
 from navsym.core.errors import NavsymError
 from navsym.prove.relations.cofactors import by_cofactors, by_elimination, by_sums_of_hypotheses
+from navsym.prove.relations.quadrics import by_quadrics
 from navsym.prove.rooms.equations import (
     by_algebra,
     by_cases,
@@ -66,7 +67,7 @@ SIGNS: tuple[tuple[Room, ...], ...] = (
     (
         by_number, by_positive_radicand, by_divided_root, by_identity, by_elimination, by_sums_of_hypotheses, by_range,
         by_roots, by_bounds, by_corners, by_product, by_sum, by_few_balls, by_values, by_side, by_squares, by_cones,
-        by_forms,
+        by_forms, by_quadrics,
     ),
     (
         by_cofactors, by_hypothesis, by_cases, by_quadratic, by_divisors, by_roots_of_symbols, by_substitution,
