@@ -17,7 +17,6 @@ from flint import ctx
 
 from navsym.core.errors import NavsymError
 from navsym.prove.relations.cofactors import by_cofactors, by_elimination, by_sums_of_hypotheses
-from navsym.prove.relations.quadrics import by_quadrics
 from navsym.prove.rooms.equations import (
     by_algebra,
     by_cases,
@@ -32,6 +31,7 @@ from navsym.prove.rooms.equations import (
 )
 from navsym.prove.rooms.forms import by_divisors, by_forms, by_hypothesis, by_roots_of_symbols, by_substitution
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Room, fails, player, sample_goal, subterms
+from navsym.prove.rooms.quadrics import by_quadrics
 from navsym.prove.rooms.signs import (
     by_bounds,
     by_concavity,

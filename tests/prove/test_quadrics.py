@@ -7,7 +7,7 @@ import pytest
 from flint import fmpq
 
 import navsym as nav
-from navsym.prove.relations.quadrics import split_squares
+from navsym.prove.rooms.quadrics import split_squares
 
 V = {"vector": 3}
 UNIT = ["dot(u, u) = 1", "dot(v, v) = 1"]
