@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from navsym.core.loops import njit
-from navsym.trajectory.kernels.transforms import Array, candidate
+from navsym_papers.trajectory.experiment.transforms import Array, candidate
 
 #: Candidates in a block: a multiple of what one vector instruction takes.
 LANES = 32

@@ -193,3 +193,6 @@ FILTER = Program(
     ),
     fields={"mean": "next_mean", "covariance": "next_covariance", "probabilities": "next_probabilities"},
 )
+
+
+PROGRAMS: dict[str, Chain | Program] = {"pulsating-filter": FILTER}

@@ -131,3 +131,6 @@ OBSERVER = Program(
     ),
     fields={"x": "next_x", "y": "next_y", "Kc": "", "Kh": ""},
 )
+
+
+PROGRAMS: dict[str, Chain | Program] = {"two-stage-observer": OBSERVER}

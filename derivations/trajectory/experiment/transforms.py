@@ -6,7 +6,7 @@ The measurement is a scalar, so a candidate diagonal q = (q_1, ..., q_n) enters 
     K_j = (g_j + h_j q_j) / S           gain, with g = (Phi P Phi^T) h^T and s0 = h g + R,
 
 and no candidate needs a covariance of its own. Candidates that carry their own estimates are in
-:mod:`navsym.trajectory.kernels.bank`.
+:mod:`navsym_papers.trajectory.experiment.windows`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from navsym.core.loops import njit
 
 Array = NDArray[np.float64]
 
-#: Criteria by number: see ``navsym.trajectory.inversion``.
+#: Criteria by number: see ``navsym_papers.trajectory.experiment.inversion``.
 PREDICTED, CORRECTED, LIKELIHOOD = 0, 1, 2
 
 #: The bits of minus zero and of a NaN, as integers.

@@ -35,6 +35,12 @@ UNITS = {
     "estimate": "unit of z",
     "z": "any, say m/s",
     "sum": "unit of z",
+    "tau": "1/omega_0 (Schuler time)",
+    "z0": "any, say m/s",
+    "zm": "that of z0",
+    "zT": "that of z0",
+    "dual": "1",
+    "sigma": "unit of z",
 }
 
 
@@ -115,3 +121,6 @@ def estimator(state: str) -> Program:
     claims = tuple(f"guaranteed_velocity:{number}" for number in REGIMES[state])
     fields = {"instants": "next_instants", "weights": "next_weights", "sum": "next_sum", "value": ""}
     return Program(Regimes(claims, queue, Layout(units=UNITS)), STEP, fields)
+
+
+PROGRAMS: dict[str, Chain | Program] = {f"velocity-estimator-{state}": estimator(state) for state in ("y1", "y2", "y3")}

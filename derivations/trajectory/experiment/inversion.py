@@ -20,9 +20,16 @@ import numpy as np
 
 from navsym.core.arrays import Array, as_array
 from navsym.core.errors import DomainError, TooLargeError
-from navsym.models.earth import need_order, pascal_rows, power_rows
-from navsym.trajectory.kernels.bank import tune_by_windows
-from navsym.trajectory.kernels.transforms import CORRECTED, LIKELIHOOD, PREDICTED, run_fixed_gain, tune_one_step
+from navsym.models.earth import need_order, power_rows
+from navsym_papers.trajectory.experiment.transforms import (
+    CORRECTED,
+    LIKELIHOOD,
+    PREDICTED,
+    run_fixed_gain,
+    tune_one_step,
+)
+from navsym_papers.trajectory.experiment.windows import tune_by_windows
+from navsym_papers.trajectory.model import pascal_rows
 
 Form = Literal["printed", "corrected"]
 Criterion = Literal["predicted", "corrected", "likelihood"]

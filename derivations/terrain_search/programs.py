@@ -165,3 +165,11 @@ CORRECTION = Chain(
         ),
     ),
 )
+
+
+PROGRAMS: dict[str, Chain | Program] = {
+    "terrain-crossing": CROSSING,
+    "terrain-t-G": DIRECTION,
+    "terrain-t-G-extremes": EXTREMES,
+    "terrain-correction": CORRECTION,
+}

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from navsym.models import kinematics as physical
-from navsym.models.kinematics import ALPHA, BETA, EPSILON, ErrorEquations, error_equations
 from navsym.models.linear import LinearModel
+from navsym_papers.joint_correction import kinematics as physical
+from navsym_papers.joint_correction.kinematics import ALPHA, BETA, EPSILON, ErrorEquations, error_equations
 
 # Bookkeeping of a small parameter: what is kept, what is dropped, and of which order it is.
 #
