@@ -20,7 +20,8 @@ MOST_EXCHANGES = 60
 
 Row = Sequence[float]
 Matrix = list[list[float]]
-Step = tuple[int, float | None, float | None, float | None]
+Step = tuple[int, float, float, float]
+NOTHING = (math.nan, math.nan, math.nan)
 
 
 @dataclass(slots=True)
@@ -65,22 +66,25 @@ class StreamingRule:
         return (len(self.target) + 8) * 1.1102230246251565e-16
 
     def step(self, z: Sequence[float | None], sigma: Row | None = None) -> Step:
-        """(status, estimate, radius, least) of an epoch; None or NaN is no measurement."""
+        """(status, estimate, radius, least) of an epoch; None or NaN is no measurement.
+
+        Of a status other than OK the numbers are NaN, and an INVALID epoch is not taken.
+        """
         values = [math.nan if value is None else float(value) for value in z]
         bounds = [float(bound) for bound in sigma or self.sigma]
         for value, bound in zip(values, bounds, strict=True):
             if not math.isnan(value) and not (abs(value) <= LARGEST and SMALLEST <= bound <= LARGEST):
-                return INVALID, None, None, None
+                return INVALID, *NOTHING
         self.epochs = [(values, bounds), *self.epochs[: self.lags - 1]]
         answer = self.certify(self.exchange()) if self.keep() else None
         if answer is None:
             if not self.spread():
                 self.support[0] = -1
-                return NOT_ESTIMABLE, None, None, None
+                return NOT_ESTIMABLE, *NOTHING
             answer = self.certify(self.exchange())
         if answer is None:
             self.support[0] = -1
-            return NOT_CERTIFIED, None, None, None
+            return NOT_CERTIFIED, *NOTHING
         return (OK, *answer)
 
     # Rows of the table that were measured
@@ -138,7 +142,7 @@ class StreamingRule:
         return found
 
     def price(self, found: Support) -> None:
-        """The row that breaks its bound most; ratio encloses the largest break from above, rounding included."""
+        """The row that breaks its bound most, by more than rounding; ratio encloses the largest break from above."""
         worst, total, gamma = 1.0 + 1e-12, 0.0, self.gamma
         for x in found.dual:
             total += abs(x)
@@ -147,8 +151,9 @@ class StreamingRule:
             value, size = add_products(self.table[row], found.dual)
             high = (abs(value) + (gamma * size) + (self.tiny * total) + SMALLEST) / bound
             found.ratio = found.ratio if high <= found.ratio else high
-            if abs(value) > worst * bound:
-                worst = abs(value) / bound
+            sure = abs(value) - (4.0 * gamma * size)
+            if sure > worst * bound:
+                worst = sure / bound
                 found.enter, found.side = row, 1.0 if value > 0.0 else -1.0
 
     def leave(self, found: Support) -> int:
@@ -196,7 +201,11 @@ class StreamingRule:
             return None
         cost = value = values = far = 0.0
         for i, row in enumerate(self.support):
-            z, bound, w = self.epochs[row // len(self.sigma)][0][row % len(self.sigma)], self.bound(row), found.weight[i]
+            z, bound, w = (
+                self.epochs[row // len(self.sigma)][0][row % len(self.sigma)],
+                self.bound(row),
+                found.weight[i],
+            )
             cost += bound * abs(w)
             value += w * z
             values += abs(w) * abs(z)
