@@ -1,4 +1,4 @@
-"""The streaming rule of a guard as code: tables of regressors, the exchange in doubles, and bounds of all its errors."""
+"""The streaming rule of a guard as code: tables of regressors, the exchange in doubles, bounds of all its errors."""
 
 from __future__ import annotations
 

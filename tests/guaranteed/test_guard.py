@@ -452,6 +452,32 @@ def test_a_single_gross_error_is_excluded_and_does_not_move_the_estimate():
     )
 
 
+@pytest.mark.parametrize("most", [1, 2])
+@pytest.mark.parametrize("system", range(3))
+def test_the_certificate_of_an_exclusion_is_accepted_and_spoiled_ones_refused(system, most):
+    rng, F = np.random.default_rng(system), SYSTEMS[system]
+    n = len(F)
+    model = nav.Model([f"x{k}" for k in range(n)], F, ["x0", f"x{n - 1}"], ["1/3", "1"], targets={"goal": f"x{n - 1}"})
+    guard, seen = nav.Guard(model, "goal", outliers=most, memory=12), 0
+    for k in range(12):
+        z = [round(float(x), 3) for x in rng.uniform(-0.3, 0.3, 2)]
+        gross = k in (4, 7)[:most]
+        estimate = guard.step([100 + k if gross else z[0], z[1]], t=Fraction(k, 2))
+        why = estimate.certificate
+        assert (why is not None) == bool(estimate.excluded)
+        if why is None:
+            continue
+        assert estimate.check().accepted and [float(Fraction(t)) for t in why["excluded"]] == list(estimate.excluded)
+        innocent = next(t for row in why["rows"] if (t := row["epoch"]) not in why["excluded"])
+        spoiled = [why | {"excluded": [*why["excluded"], innocent]}, why | {"most": most + 2}]
+        spoiled += [why | {"rows": [row | {"sigma": "200"} for row in why["rows"]]}, why | {"contradictions": []}]
+        for forged in spoiled:
+            with pytest.raises(checker.Refused):
+                checker.check(checker.load(json.dumps(forged)))
+        seen += 1
+    assert seen > 2
+
+
 def test_two_suspects_are_named_and_none_is_excluded():
     guard = nav.Guard(nav.Model("b", [["0"]], ["b"]), outliers=1)
     guard.step(0, t=0)

@@ -13,7 +13,7 @@ from navsym.core.balls import precision
 from navsym.core.errors import DomainError, DuplicateError, NavsymError, ShapeError, UnknownSymbolError
 from navsym.core.exact import decimal, to_fmpq
 from navsym.core.numbers import Number
-from navsym.guaranteed.streaming.estimate import Estimate, Plan
+from navsym.guaranteed.streaming.estimate import Estimate, Exclusion, Plan
 from navsym.guaranteed.streaming.exchange import (
     Cloud,
     Optimum,
@@ -386,15 +386,26 @@ class Guard:
             return Estimate(to_float(at), self.target, None, "outliers")
         times = [to_float(t) for t in memory.times[memory.oldest :]]
         (low, low_inner), (high_inner, high) = found.low, found.high
+        excluded = [memory.times[memory.oldest + e] for e in found.excluded]
         return Estimate(
             to_float(at),
             self.target,
             middle((low + high) / 2),
             "outliers",
-            excluded=tuple(times[e] for e in found.excluded),
+            excluded=tuple(map(to_float, excluded)),
             others=tuple(tuple(times[e] for e in s) for s in found.others),
             low=((high_inner - low_inner) / 2).max(arb(0)),
             high=(high - low) / 2,
+            exclusion=self.prepare_exclusion(at, excluded, found.contradictions) if excluded else None,
+        )
+
+    def prepare_exclusion(self, at: fmpq, excluded: list[fmpq], contradictions: Sequence[Sequence[int]]) -> Exclusion:
+        """What the certificate of the excluded epochs is made of, when it is asked for."""
+        places = sorted({i for rows in contradictions for i in rows})
+        renamed = {i: k for k, i in enumerate(places)}
+        found = [[renamed[i] for i in rows] for rows in contradictions]
+        return Exclusion(
+            self.flow, at, [self.memory.rows[i] for i in places], self.flow.columns, found, excluded, self.outliers
         )
 
 
