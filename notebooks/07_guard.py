@@ -55,7 +55,9 @@ if doppler is None or judge is None:
     print("The recorded run is not here: navsym data get nagoya-spp, and nagoya-reference, or set NAVSYM_DATA.")
 seconds, errors = recorded(doppler, judge) if doppler and judge else made()
 beyond = np.abs(errors) > SIGMA
-print(f"{len(errors)} epochs, {beyond.mean():.1%} with an error beyond {SIGMA} m/s, the largest {np.abs(errors).max():.0f}")
+print(
+    f"{len(errors)} epochs, {beyond.mean():.1%} with an error beyond {SIGMA} m/s, the largest {np.abs(errors).max():.0f}"
+)
 
 # %% [markdown]
 # ## Protection levels
@@ -103,7 +105,9 @@ shown = [(t, true, e) for t, (true, e, _) in zip(times, rows, strict=True) if e 
 middle = np.array([e.value for *_, e in shown])
 level = np.array([float(e.radius.upper) for *_, e in shown])
 figure, axes = plt.subplots(figsize=(8, 3.2))
-axes.fill_between([t for t, *_ in shown], middle - level, middle + level, color=BLUE, alpha=0.3, label="protection level")
+axes.fill_between(
+    [t for t, *_ in shown], middle - level, middle + level, color=BLUE, alpha=0.3, label="protection level"
+)
 axes.plot(times, truth, color="black", label="error of the inertial system")
 axes.plot(times, np.add(truth, errors), ".", color=ORANGE, ms=3, label="inertial minus Doppler")
 axes.set(xlabel="s", ylabel="m/s", ylim=(-4, 8), title="Two gross errors allowed in twelve epochs")
@@ -119,7 +123,9 @@ plt.show()
 generator = np.random.default_rng(1)
 clean = [e if abs(e) <= SIGMA else 0.0 for e in errors]
 places = {k + int(generator.integers(4)) for k in range(MEMORY, len(clean) - 4, MEMORY)}
-injected = [e + (generator.choice((-1, 1)) * generator.uniform(5, 40) if k in places else 0) for k, e in enumerate(clean)]
+injected = [
+    e + (generator.choice((-1, 1)) * generator.uniform(5, 40) if k in places else 0) for k, e in enumerate(clean)
+]
 rows = run(2, injected)
 count, contained, fair, violated = judged(rows)
 assert contained == count and fair == count and violated == 0

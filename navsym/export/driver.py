@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -67,9 +68,7 @@ def export(
     require_export_options(real, license, vectors, units)
     targets = tuple(find_targets([to] if isinstance(to, str) else to, real))
     items = list(item) if isinstance(item, (list, tuple, Verdicts)) else [item]
-    guard = guard_of(items)
-    if guard is not None and real != "double":
-        raise DomainError("expected double for a guard; got float; leave it out", where="real")
+    guard = guard_of(items, real)
     items = [part for i in items for part in (READY.get(i, (i,)) if isinstance(i, str) else (i,))]
     functions: list[ExportedFunction] = []
     total = len(items) + len(targets)
@@ -77,16 +76,12 @@ def export(
         functions += functions_from(part, real=real, allow_confirmed=allow_confirmed, units=units)
         progress(done, total, part if isinstance(part, str) else "")
     steps = iter(range(len(items) + 1, total + 1))
-    names = ", ".join(f.name for f in functions) or "guard"
-    words = tuple(command) or (f"navsym.export({names})",)
-
-    def ran(language: str) -> None:
-        progress(next(steps), total, language)
-
+    words = tuple(command) or (f"navsym.export({', '.join(f.name for f in functions) or 'guard'})",)
     order = Order(targets, license, vectors, words)
-    if guard is not None:
-        return export_guard(guard, order, Path(out), force=force, execute=run, progress=ran)
-    return write_export(functions, order, Path(out), force=force, execute=run, progress=ran)
+    write = partial(write_export, functions) if guard is None else partial(export_guard, guard)
+    return write(
+        order, Path(out), force=force, execute=run, progress=lambda language: progress(next(steps), total, language)
+    )
 
 
 def require_export_options(real: Any, license_: Any, vectors: Any, units: Any) -> None:

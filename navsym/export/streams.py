@@ -303,11 +303,13 @@ def export_guard(
     return Exported(out, (record,), outcomes, tuple(files))
 
 
-def guard_of(items: Sequence[Any]) -> Guard | None:
+def guard_of(items: Sequence[Any], real: str) -> Guard | None:
     """The guard that is to be exported, where it is one or the file of one."""
     found = [item for item in items if isinstance(item, Guard) or (isinstance(item, str) and item.endswith(".json"))]
     if not found:
         return None
+    if real != "double":
+        raise DomainError(f"expected double for a guard; got {real}; leave it out", where="real")
     if len(items) > 1:
         raise DomainError("expected a guard by itself; got other things beside it; export them one by one")
     return found[0] if isinstance(found[0], Guard) else Guard.load(found[0])

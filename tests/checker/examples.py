@@ -280,6 +280,7 @@ APART = EXCLUSION | {
     "contradictions": [[0, 1, 2], [0, 1, 3]],
 }
 ALMOST = EXCLUSION | {"rows": measured(*((str(k), f"1 {k}", "4.001" if k == 2 else "0") for k in range(5)))}
+NONE_GROSS = EXCLUSION | {"most": 0}
 SURE = APART | {"rows": [row | {"sigma": "0"} for row in APART["rows"]]}
 # Four gross errors and five contradictions without a common epoch but one: 1 + 4 + 16 + 64 + 256 sets are looked at.
 UNITS = ("1 0 0 0", "0 1 0 0", "0 0 1 0", "0 0 0 1")
@@ -441,6 +442,7 @@ GOOD = [
     WAVES,
     APART,
     ALMOST,
+    NONE_GROSS,
     SURE,
     FOUR,
     POSITIVITY,

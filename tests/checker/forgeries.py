@@ -299,6 +299,7 @@ FORGERIES = [
     (RANK, ["rows"], [], "expected 1 entries"),
     (EXCLUSION, ["most"], 2, "may explain"),
     (EXCLUSION, ["most"], 5, "integer from"),
+    (EXCLUSION, ["most"], -1, "integer from"),
     (EXCLUSION, ["excluded"], ["3"], "may explain"),
     (EXCLUSION, ["excluded"], ["2", "0"], "may explain"),
     (EXCLUSION, ["contradictions"], [[0, 1, 2]], "may explain"),
