@@ -56,7 +56,8 @@ if doppler is None or judge is None:
 seconds, errors = recorded(doppler, judge) if doppler and judge else made()
 beyond = np.abs(errors) > SIGMA
 print(
-    f"{len(errors)} epochs, {beyond.mean():.1%} with an error beyond {SIGMA} m/s, the largest {np.abs(errors).max():.0f}"
+worst = np.abs(errors).max()
+print(f"{len(errors)} epochs; {beyond.mean():.1%} of the errors exceed {SIGMA} m/s, the worst is {worst:.0f} m/s")
 )
 
 # %% [markdown]
