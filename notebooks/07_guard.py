@@ -55,10 +55,8 @@ if doppler is None or judge is None:
     print("The recorded run is not here: navsym data get nagoya-spp, and nagoya-reference, or set NAVSYM_DATA.")
 seconds, errors = recorded(doppler, judge) if doppler and judge else made()
 beyond = np.abs(errors) > SIGMA
-print(
 worst = np.abs(errors).max()
 print(f"{len(errors)} epochs; {beyond.mean():.1%} of the errors exceed {SIGMA} m/s, the worst is {worst:.0f} m/s")
-)
 
 # %% [markdown]
 # ## Protection levels
