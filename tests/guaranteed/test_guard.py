@@ -586,3 +586,32 @@ def test_a_hundred_thousand_epochs_need_constant_memory():
             assert Fraction(radius.upper) - Fraction(radius.lower) <= GAP * Fraction(radius.upper)
             assert nav.check(last)[0].status == "ACCEPTED"
     assert peaks[-1] - peaks[0] < 5000 and guard.remembered <= 50  # kB; a row kept for each epoch would need 50 000
+
+
+# Many epochs
+
+
+def stream_long(count):
+    """A stream with gaps and changing bounds; every gap of the bounds is looked at, every thousandth epoch replayed."""
+    model = nav.Model("x v a", [["0", "1", "0"], ["0", "0", "1"], ["0", "-1", "0"]], ["x", "v"], ["1", "1/2"])
+    guard, rng, replayed = nav.Guard(model, "v", "variance", memory=16), np.random.default_rng(6), 0
+    for k in range(count):
+        z = [None if rng.random() < 0.1 else int(rng.integers(-9, 9)) for _ in range(2)]
+        sigma = {"z1": 2} if rng.random() < 0.05 else None
+        estimate = guard.step(z, t=Fraction(k, 4), sigma=sigma)
+        if estimate.radius is not None:
+            assert (estimate.high - estimate.low) <= 1e-12 * estimate.high
+        assert len(guard.memory.rows) <= 400 and len(guard.flow.memory) <= 256
+        if k % 1000 == 999:
+            assert nav.check(estimate)[0].status == "ACCEPTED"
+            replayed += 1
+    return replayed
+
+
+def test_two_thousand_epochs_keep_their_gap_and_a_constant_memory():
+    assert stream_long(2000) == 2
+
+
+@pytest.mark.slow
+def test_a_million_epochs_keep_their_gap_and_a_constant_memory():
+    assert stream_long(1_000_000) == 1000
