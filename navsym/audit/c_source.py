@@ -171,6 +171,8 @@ class Reader(SourceReader):
             case "return_statement":
                 values = named(node)
                 return (self.part("return", node, self.expression(values[0]) if values else None),)
+            case "throw_statement":
+                return (self.part("fail", node, "an error is thrown"),)
             case "static_assert_declaration" | "using_declaration" | "empty_statement" | "type_definition":
                 return ()
         return (self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})"),)
@@ -296,6 +298,8 @@ class Reader(SourceReader):
         match node.type:
             case "number_literal":
                 return self.number(node)
+            case "true" | "false":
+                return self.part("number", node, int(node.type == "true"), "int")
             case "identifier" | "field_identifier" | "qualified_identifier" | "this":
                 return self.part("name", node, text_of(node))
             case "parenthesized_expression":
@@ -443,7 +447,9 @@ def number_of(kind: str) -> str:
     kind = re.sub(r"\b(const|static|constexpr|struct)\b", "", kind).strip()
     if WHOLE.fullmatch(kind):
         return "int"
-    is_real = kind in REAL or kind in ("auto", "long double", "") or shape_of_type(kind) is not None
+    if kind.rstrip("&* ") == "auto":
+        return "auto"
+    is_real = kind in REAL or kind in ("long double", "") or shape_of_type(kind) is not None
     return "real" if is_real else "other"
 
 

@@ -97,6 +97,8 @@ class Reader(SourceReader):
                 return (self.branch(node, [*node.children_by_field_name("alternative")]),)
             case "for_statement":
                 return (self.loop(node),)
+            case "raise_statement":
+                return (self.part("fail", node, "an error is raised"),)
             case "pass_statement" | "assert_statement" | "import_statement" | "import_from_statement":
                 return ()
         return (self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})"),)

@@ -179,6 +179,8 @@ def is_contradictory(conditions: Sequence[Condition]) -> bool:
     """True for two sources of which one needs what the other excludes."""
     known: dict[Any, bool] = {}
     for condition in conditions:
+        if condition.left is None:  # what is not read may be two things
+            continue
         key = (condition.sign, condition.left, condition.right)
         if known.setdefault(key, condition.holds) != condition.holds:
             return True

@@ -28,6 +28,7 @@ LANGUAGES = {
     **dict.fromkeys((".cpp", ".cc", ".cxx", ".hpp", ".hh", ".ino"), "cpp"),
     ".py": "python",
     ".m": "matlab",
+    ".rs": "rust",
 }
 LARGEST_SIDE = 64
 #: The keys of a block ``[[code]]``.
@@ -113,6 +114,10 @@ def load_unit(path: str | os.PathLike[str], language: str | None = None) -> Unit
         from navsym.audit.matlab_source import read_matlab
 
         return read_matlab(data, where)
+    if language == "rust":
+        from navsym.audit.rust_source import read_rust
+
+        return read_rust(data, where)
     from navsym.audit.c_source import read_c
 
     return read_c(data, where, language)
@@ -128,6 +133,10 @@ def read_expression(text: str, unit: Unit) -> Part:
         from navsym.audit.matlab_source import read_matlab_expression
 
         return read_matlab_expression(text, unit)
+    if unit.language == "rust":
+        from navsym.audit.rust_source import read_rust_expression
+
+        return read_rust_expression(text, unit)
     from navsym.audit.c_source import read_c_expression
 
     return read_c_expression(text, unit)
@@ -149,22 +158,10 @@ def find_function(unit: Unit, name: str, where: str, line: int | None = None) ->
     return candidates[0]
 
 
-def read_source(block: Any, folder: Path, names: Names, where: str) -> Source:
-    """One ``[[code]]`` block."""
+def read_source(block: Any, folder: Path, names: Names, where: str, line: int | None = None) -> Source:
+    """One ``[[code]]`` block; a line tells several functions of one name apart."""
     table = as_table(block, where)
-    keys = (
-        "name",
-        "file",
-        "function",
-        "lines",
-        "relations",
-        "symbols",
-        "constants",
-        "functions",
-        "ignored",
-        "language",
-    )
-    expect_keys(table, keys, where)
+    expect_keys(table, KEYS, where)
     texts = {
         key: as_text(require_key(table, key, where), join_place(where, key), "a name")
         for key in ("name", "file", "function")
@@ -178,7 +175,7 @@ def read_source(block: Any, folder: Path, names: Names, where: str) -> Source:
     ignored = as_list(table["ignored"], join_place(where, "ignored")) if "ignored" in table else []
     unit.ignored = frozenset(as_text(name, join_place(where, "ignored"), "a name") for name in ignored)
     lines = read_lines(table["lines"], join_place(where, "lines")) if "lines" in table else None
-    function = find_function(unit, texts["function"], join_place(where, "function"), lines[0] if lines else None)
+    function = find_function(unit, texts["function"], join_place(where, "function"), lines[0] if lines else line)
     whole = function
     if lines is not None:
         function = take_lines(unit, function, *lines, join_place(where, "lines"))
