@@ -15,18 +15,18 @@ REAL = frozenset("float double real_t ftype Scalar scalar_t Real postype_t T flo
 WHOLE = re.compile(
     r"(unsigned |signed )*(int|long|short|char|size_t|(u?int\d+(_t)?)|bool|unsigned|Eigen::Index)( int)?"
 )
-VECTOR = re.compile(r"(?:\w+::)*(?:Vector([2-9])[fd]?(?:<\w+>)?|Vector<\w+,(\d+)>)")
+VECTOR = re.compile(r"(?:\w+::)*(?:(?:Sparse)?Vector([2-9]|[1-5]\d)[fd]?(?:<[\w, ]+>)?|Vector<\w+,(\d+)>)")
 MATRIX = re.compile(
-    r"(?:\w+::)*(?:Matrix([2-9])[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
+    r"(?:\w+::)*(?:(?:Square)?Matrix([2-9]|[1-5]\d)[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
 )
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
 COMPARISONS = {"<", "<=", ">", ">=", "==", "!="}
 WORDS = {"&&": "both", "||": "either", "and": "both", "or": "either"}
 
 
-def read_c(source: bytes, file: str, language: str) -> Unit:
+def read_c(source: bytes, file: str, language: str, defined: frozenset[str] | None = None) -> Unit:
     """The functions, constants and object-like macros of a source in C (``language`` "c") or C++ ("cpp")."""
-    unit = Unit(file, language, RULES[language], source)
+    unit = Unit(file, language, RULES[language], source, defined=defined)
     Reader(unit).read_file(parse_source(source, language, file))
     return unit
 
@@ -64,7 +64,13 @@ class Reader(SourceReader):
 
     def read_file(self, root: Any) -> None:
         """Functions, constants and macros, also inside namespaces and classes."""
+        dropped: set[int] = set()
         for node in descend(root):
+            if node.id in dropped or (node.parent is not None and node.parent.id in dropped):
+                dropped.add(node.id)
+                continue
+            if (kept := self.kept_way(node)) is not None:
+                dropped |= {child.id for child in node.named_children[1:]} - {child.id for child in kept}
             if node.type == "function_definition":
                 self.read_function(node)
             elif node.type == "preproc_def":
@@ -76,6 +82,16 @@ class Reader(SourceReader):
             elif node.type == "declaration" and is_constant(node):
                 self.unit.constants += [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
         self.unit.constants.sort(key=lambda statement: statement.span)
+
+    def kept_way(self, node: Any) -> list[Any] | None:
+        """What is compiled of ``#ifdef NAME`` or ``#ifndef NAME``; None where nobody has said what is defined."""
+        if node.type != "preproc_ifdef" or self.unit.defined is None:
+            return None
+        holds = (text_of(field_of(node, "name")) in self.unit.defined) == (text_of(node).startswith("#ifdef"))
+        other = field_of(node, "alternative")
+        if not holds:
+            return [] if other is None else [other]
+        return [child for child in named(node)[1:] if other is None or child.id != other.id]
 
     def read_enumerators(self, node: Any) -> None:
         """The names of an enumeration, each one more than the one before."""
@@ -173,6 +189,10 @@ class Reader(SourceReader):
                 return (self.part("return", node, self.expression(values[0]) if values else None),)
             case "throw_statement":
                 return (self.part("fail", node, "an error is thrown"),)
+            case "preproc_ifdef" if (kept := self.kept_way(node)) is not None:
+                return tuple(s for child in kept for s in self.statement(child))
+            case "preproc_else":
+                return tuple(s for child in named(node) for s in self.statement(child))
             case "static_assert_declaration" | "using_declaration" | "empty_statement" | "type_definition":
                 return ()
         return (self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})"),)
@@ -384,6 +404,8 @@ class Reader(SourceReader):
             base, method = self.expression(field_of(function, "argument")), text_of(field_of(function, "field"))
             if method in ("noalias", "eval") and not arguments:  # say how Eigen computes, not what
                 return base
+            if (found := re.fullmatch(r"(?:template)?at<(\d+)>", re.sub(r"\s", "", method))) and not arguments:
+                return self.part("index", node, base, (self.part("number", node, int(found[1]), "int"),))
             if (block := self.block_of(node, base, method, arguments)) is not None:
                 return block
             return self.part("method", node, base, method, arguments)

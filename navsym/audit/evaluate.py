@@ -477,10 +477,12 @@ class Evaluator:
                 return a if isinstance(a, Unread) else b
             raise Unreadable(part.line, f"{part.parts[0]} of arrays")
         x, y = constant_of(a), constant_of(b)
+        text = " >= ".join(self.unit.text(argument) for argument in part.parts[1])
         if x is not None and y is not None:
-            return a if (x >= y) == (sign == ">=") else b
-        text = f" {sign} ".join(self.unit.text(argument) for argument in part.parts[1])
-        return a if self.choose(Condition(text, part.line, True, sign, a.tree, b.tree)) else b
+            is_first = x >= y
+        else:  # one condition for both, so that the larger and the smaller of the same two are told apart together
+            is_first = self.choose(Condition(text, part.line, True, ">=", a.tree, b.tree))
+        return a if is_first == (sign == ">=") else b
 
     def is_constant(self, part: Part) -> bool:
         """True for an index that is a whole number."""
@@ -607,14 +609,22 @@ class Evaluator:
 def may_write(function: Function, name: str) -> bool:
     """True for a function that may write to a parameter of its own; one that only reads it may share the caller's."""
     for part in walk(*function.body):
-        if part.kind == "assign" and name in names_in(part.parts[0]):
+        if part.kind == "assign" and name in {*names_in(part.parts[0]), *called_in(part.parts[0])}:
             return True
         is_link = part.kind == "declare" and part.parts[4]
-        if (is_link or part.kind in ("do", "address", "refused", "unread")) and name in names_in(part):
+        if (is_link or part.kind in ("do", "address", "refused", "unread")) and name in {
+            *names_in(part),
+            *called_in(part),
+        }:
             return True
         if part.kind == "call" and any(a.kind == "name" and a.parts[0] == name for a in part.parts[1]):
             return True
     return False
+
+
+def called_in(part: Part) -> set[str]:
+    """The names before parentheses: ``v`` of ``v(0)``."""
+    return {inner.parts[0] for inner in walk(part) if inner.kind == "call"}
 
 
 def head_of(name: str) -> str:

@@ -20,7 +20,7 @@ from navsym.audit.evaluate import (
     head_of,
 )
 from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
-from navsym.audit.functions import HARMLESS, METHODS, is_known
+from navsym.audit.functions import HARMLESS, METHODS, PURE, is_known
 from navsym.audit.values import (
     Array,
     Cell,
@@ -240,7 +240,8 @@ class Machine(Evaluator):
             return part.parts[1] in METHODS
         name = part.parts[0]
         is_entry = name in self.frame and not self.is_closure(name)
-        return is_entry or name in HARMLESS or is_known(name, self.unit.language)
+        is_pure = name in HARMLESS or name in PURE.get(self.unit.language, ())
+        return is_entry or is_pure or is_known(name, self.unit.language)
 
     def is_closure(self, name: str) -> bool:
         """True for a name that is called though its value is not read: it may hold a function that writes any name."""
@@ -509,7 +510,7 @@ class Machine(Evaluator):
             left, right = a.tree, b.tree
             if left.head == right.head == NUMBER:
                 return COMPARE[sign](left.args[0], right.args[0])
-        elif test.kind in ("name", "index"):
+        elif test.kind not in ("refused", "list"):
             value = self.value(test)
             exact = constant_of(value)
             if exact is not None:

@@ -30,16 +30,29 @@ from navsym.audit.values import (
     square_sum,
     transpose,
 )
-from navsym.language.tree import ONE, PI, ZERO, Tree, build_call, build_number
+from navsym.language.tree import ONE, PI, ZERO, Tree, build_call, build_inverse, build_number
 
 #: Functions of one number, by their names without prefix and suffix.
 PLAIN = {
     **{name: name for name in "sin cos tan exp log sqrt asin acos atan sinh cosh tanh".split()},
     **{"fabs": "abs", "abs": "abs", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "absolute": "abs"},
 }
+#: Degrees to radians and back.
+ANGLES = {"deg2rad": Fraction(1, 180), "radians": Fraction(1, 180), "rad2deg": Fraction(180), "degrees": Fraction(180)}
 CONSTANTS: dict[str, Tree] = dict.fromkeys(("M_PI", "math.pi", "np.pi", "numpy.pi", "pi", "M_PI_F", "PI"), PI)
 CONSTANTS |= dict.fromkeys(("M_PI_2", "M_PI_2_F"), multiply(build_number(Fraction(1, 2)), PI))
 HARMLESS = frozenset(("printf", "fprintf", "print", "assert", "disp", "static_assert", "puts"))
+#: Functions without a formula that write nothing, by language.
+PURE = {
+    "c": frozenset("isnan isfinite isinf".split()),
+    "cpp": frozenset("isnan isfinite isinf std::isnan std::isfinite std::isinf".split()),
+    "python": frozenset(
+        "isinstance len hasattr callable type np.isscalar np.any np.all np.isnan np.isfinite np.shape np.ndim "
+        "np.isclose np.allclose math.isnan math.isinf".split()
+    ),
+    "matlab": frozenset("isinf isnan isempty any all numel length size strcmp strcmpi nargin ischar isfield".split()),
+    "rust": frozenset(),
+}
 PREFIX = re.compile(r"(std::|::|math\.|np\.|numpy\.|matrix::|Eigen::)")
 MAKERS = frozenset(
     "zeros ones eye identity array asarray copy diag outer cross dot matmul norm transpose linalg.norm".split()
@@ -57,14 +70,14 @@ def is_known(name: str, language: str) -> bool:
     """True for a function that has a meaning of its own in the language."""
     bare = bare_name(name)
     if language == "python":
-        known = bare in PLAIN or bare in TWO or bare in MAKERS or bare in ("arctan2", "power", "square")
+        known = bare in PLAIN or bare in TWO or bare in MAKERS or bare in ("arctan2", "power", "square", *ANGLES)
         return known and (PREFIX.match(name) is not None or name == "abs")
     if language == "rust" and (name in NALGEBRA or bare in ("zeros", "eye")):
         return True
     if bare in TWO or (bare in PLAIN and not bare.startswith("arc") and bare != "absolute"):
         return True
     if language == "matlab":
-        return bare in MAKERS
+        return bare in MAKERS or bare in ("deg2rad", "rad2deg")
     return language == "cpp" and (bare == "cross" or MAKE.search(name) is not None)
 
 
@@ -94,6 +107,10 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
             raise Unreadable(line, "abs, which cuts to an integer in C; fabs does not")
         result = map_cells(lambda x: build_call(PLAIN[bare], x), values[0])
         return Scalar(result.tree) if isinstance(result, Scalar) else result
+    if bare in ANGLES and len(values) == 1:
+        factor = ANGLES[bare]
+        turn = multiply(build_number(factor), PI if factor < 1 else build_inverse(PI))
+        return as_real(map_cells(lambda x: multiply(turn, x), values[0]))
     if bare in ("pow", "power") and len(values) == 2:
         return as_real(map_cells(raise_to, *values))
     if bare in ("atan2", "arctan2") and len(values) == 2:
@@ -209,6 +226,7 @@ ARRAYS: dict[str, Callable[[Sequence[Value], Unit], Value]] = {
     "asarray": make_copy, "copy": make_copy, "diag": make_diagonal, "outer": make_outer, "cross": cross_of,
     "dot": dot_of, "matmul": multiply_arrays, "norm": norm_of, "linalg.norm": norm_of, "transpose": transpose_of,
 }  # fmt: skip
+
 
 def make_matrix(values: Sequence[Value], unit: Unit) -> Value:
     """The entries row by row, behind the sizes."""

@@ -351,7 +351,7 @@ def edit_names(source: Source, parts: list[Part]) -> Iterator[Edit]:
 def nearby_names(source: Source) -> list[str]:
     """Numbers that a right side could use: locals and parameters first, then entries of inputs."""
     case = source.read().cases[0]
-    scalars = [name for name, variable in case.variables.items() if variable.shape == () and "()" not in name]
+    scalars = [name for name, variable in case.variables.items() if variable.shape == () and not {*"(@"} & {*name}]
     entries = [s for s in source.names.spellings.values() if "[" in s or "(" in s]
     return list(dict.fromkeys([*scalars, *entries]))[:MOST_NAMES]
 

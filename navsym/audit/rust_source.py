@@ -1,4 +1,4 @@
-"""Rust: functions of numbers, arrays, and the vectors, matrices and quaternions of nalgebra; all else is refused with its line."""
+"""Rust: functions of numbers, arrays, and what nalgebra has of matrices and quaternions; all else is refused."""
 
 from __future__ import annotations
 
@@ -25,7 +25,18 @@ NUMBERS = dict.fromkeys("sin cos tan asin acos atan sinh cosh tanh exp sqrt atan
 }  # fmt: skip
 #: Methods that give what they are called on.
 SAME = ("clone", "as_ref", "to_owned", "into_inner", "into", "quaternion", "as_vector", "copied", "eval", "coords")
-QUIET = ("println", "eprintln", "debug_assert", "debug_assert_eq", "assert", "assert_eq", "trace", "debug", "info", "warn")
+QUIET = (
+    "println",
+    "eprintln",
+    "debug_assert",
+    "debug_assert_eq",
+    "assert",
+    "assert_eq",
+    "trace",
+    "debug",
+    "info",
+    "warn",
+)
 
 
 def read_rust(source: bytes, file: str) -> Unit:
@@ -79,7 +90,9 @@ class Reader(SourceReader):
                 name, kind = (text_of(field_of(node, key)) for key in ("name", "type"))
                 number, shape = type_of(kind)
                 value = self.expression(field_of(node, "value"))
-                self.unit.constants.append(self.part("declare", node, name, number, self.sizes(node, shape), value, False))
+                self.unit.constants.append(
+                    self.part("declare", node, name, number, self.sizes(node, shape), value, False)
+                )
             elif node.type == "field_declaration":
                 self.read_field(node)
         self.unit.constants.sort(key=lambda statement: statement.span)
@@ -178,8 +191,7 @@ class Reader(SourceReader):
         number, shape = type_of(text_of(given)) if given is not None else ("auto", None)
         if pattern.type != "identifier":
             return (self.unread(node, "a pattern"),)
-        is_link = value is not None and value.type == "reference_expression" and "mut" in map(text_of, value.children) \
-            or value is not None and any(child.type == "mutable_specifier" for child in value.children)  # fmt: skip
+        is_link = value is not None and any(child.type == "mutable_specifier" for child in value.children)  # &mut x
         start = None if value is None else self.expression(value)
         sizes = self.sizes(node, shape) if shape is not None or number == "auto" else None
         if start is None and shape is None:
@@ -193,7 +205,10 @@ class Reader(SourceReader):
         is_vector = function is not None and function.type == "field_expression"
         if not found or not is_vector or text_of(field_of(function, "field")) != "try_normalize":
             return (self.unread(node, "a let that may fail"),)
-        vector, least = self.expression(field_of(function, "value")), self.expression(named(field_of(value, "arguments"))[0])
+        vector, least = (
+            self.expression(field_of(function, "value")),
+            self.expression(named(field_of(value, "arguments"))[0]),
+        )
         length = self.part("method", value, vector, "norm", ())
         test = self.part("compare", value, ">", length, least)
         start = self.part("method", value, vector, "normalize", ())
@@ -308,9 +323,11 @@ class Reader(SourceReader):
         if last in ("zero", "one") and not arguments:
             return self.part("number", node, int(last == "one"), "auto")
         shape = type_of(head)[1]
-        if shape and last in ("new", "from_row_slice") and arguments:
-            return self.part("call", node, "Matrix::new", (*(self.part("number", node, n, "int") for n in shape),
-                             self.part("list", node, arguments if last == "new" else arguments[0].parts[0])))  # fmt: skip
+        if shape and last == "from_row_slice" and arguments and arguments[0].kind == "list":
+            last, arguments = "new", arguments[0].parts[0]
+        if shape and last == "new" and arguments:
+            sides = (self.part("number", node, n, "int") for n in shape)
+            return self.part("call", node, "Matrix::new", (*sides, self.part("list", node, arguments)))
         if shape and last in ("zeros", "identity", "zero") and not arguments:
             sizes = tuple(self.part("number", node, n, "int") for n in shape)
             return self.part("call", node, "eye" if last == "identity" else "zeros", sizes)

@@ -19,7 +19,7 @@ NODES = 400_000
 
 @functools.cache
 def load_parser(grammar: str) -> Any:
-    """The parser of a grammar: ``c``, ``cpp``, ``python``, ``matlab``, ``rust``; raises MissingEngineError without the wheel."""
+    """The parser of a grammar, such as ``c`` or ``rust``; raises MissingEngineError without its wheel."""
     try:
         from tree_sitter import Language, Parser
 
@@ -72,7 +72,11 @@ def line_of(node: Any) -> int:
 
 def named(node: Any) -> list[Any]:
     """The children that are more than signs; comments left out."""
-    return [child for child in node.named_children if child.type not in ("comment", "line_continuation", "line_comment", "block_comment")]
+    return [
+        child
+        for child in node.named_children
+        if child.type not in ("comment", "line_continuation", "line_comment", "block_comment")
+    ]
 
 
 def field_of(node: Any, name: str) -> Any:

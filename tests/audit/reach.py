@@ -9,12 +9,13 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
 from navsym.audit.evaluate import Reading
 from navsym.audit.names import Names
-from navsym.audit.sources import LANGUAGES, load_unit, read_source
+from navsym.audit.sources import load_unit, read_source
 from navsym.audit.syntax import descend, parse_source
 from navsym.core.errors import NavsymError
 from navsym.language.tomlfile import read_toml
@@ -53,10 +54,12 @@ def measure_reach(spec: Path, corpora: str) -> Reach | None:
     clone = Path(corpora) / head["repository"].partition("/")[2]
     if not corpora or not clone.is_dir():
         return None
-    command = ["git", "-C", str(clone), "show", f"{head['commit']}:{head['path']}"]
     with tempfile.TemporaryDirectory() as folder:
+        for file in (head["path"], *head.get("also", ())):
+            command = ["git", "-C", str(clone), "show", f"{head['commit']}:{file}"]
+            path = Path(folder) / Path(file).name
+            path.write_bytes(subprocess.run(command, capture_output=True, check=True).stdout)
         path = Path(folder) / Path(head["path"]).name
-        path.write_bytes(subprocess.run(command, capture_output=True, check=True).stdout)
         readings = read_all(path, document)
         unit = load_unit(path, document.get("code", {}).get("language"))
     texts = (head["repository"], head["commit"], head["path"], unit.language)
@@ -65,15 +68,14 @@ def measure_reach(spec: Path, corpora: str) -> Reach | None:
 
 def read_all(path: Path, document: dict) -> list[Reading]:
     """Every function of a file, with what the mapping says of all and of it alone."""
-    common, own = document.get("code", {}), document.get("function", {})
+    common, head = document.get("code", {}), document["file"]
+    also = [Path(file).name for file in head.get("also", ())]
+    variants = [{"defined": names} for names in head["variants"]] if "variants" in head else [{}]
     readings = []
     unit = load_unit(path, common.get("language"))
     for name, functions in unit.functions.items():
-        for function in functions:
-            block = {"name": "code", "file": path.name, "function": name, "lines": [function.line, function.line]}
-            symbols = {**common.get("symbols", {}), **own.get(name, {})}
-            whole = {**common, **block, "symbols": symbols}
-            del whole["lines"]
+        for variant, function in product(variants, functions):
+            whole = {**common, **variant, "name": "code", "file": path.name, "function": name, "also": also}
             try:
                 source = read_source(whole, path.parent, Names(), str(path), function.line)
                 readings.append(source.read())
