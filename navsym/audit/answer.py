@@ -193,7 +193,7 @@ class Audit(Answer):
 def audit(path: str | os.PathLike[str], /, function: str | None = None) -> Audit:
     """The formulas of source code, and the verdicts on questions about them.
 
-    path     : a file of questions (TOML); or a source in C, C++, Python or MATLAB
+    path     : a file of questions (TOML); or a source in C, C++, Python, MATLAB or Rust
     function : of a source, whose outputs are wanted as formulas of its inputs
 
     The source is read by its grammar and run on symbols, case by case. Nothing is compiled or executed. A line outside

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -58,13 +59,13 @@ def read_function(
     edits  : expressions in the place of others, by ``id``
     """
     reading = Reading(unit, function)
-    given = (reading, inputs, shapes or {}, edits or {})
+    start = functools.partial(Machine, reading, inputs, shapes or {}, edits or {})
     for is_bold in (True, False):  # first with two ways for conditions that are not read
-        reading.cases = list_cases(given, function, is_bold)
+        reading.cases = list_cases(start, reading, function, is_bold)
         if reading.cases:
             break
     else:
-        reading.cases = [Machine(*given, None, False).run(function)]
+        reading.cases = [start(None, False).run(function)]
     lasting = [case for case in reading.cases if not case.has_failed]
     for case in [] if lasting else reading.cases:
         why = Unread(function.line, f"every way through {function.name} ends in an error")
@@ -75,15 +76,14 @@ def read_function(
     return reading
 
 
-def list_cases(given: Any, function: Function, is_bold: bool) -> list[Case]:
+def list_cases(start: Callable[..., Machine], reading: Reading, function: Function, is_bold: bool) -> list[Case]:
     """The cases of a function; none where there are more than 32."""
     cases: list[Case] = []
     waiting: list[list[bool]] = [[]]
-    reading: Reading = given[0]
     for table in (reading.met, reading.refused, reading.refused_spans, reading.valueless):
         table.clear()  # type: ignore[attr-defined]
     while waiting:
-        machine = Machine(*given, waiting.pop(), is_bold)
+        machine = start(waiting.pop(), is_bold)
         cases.append(machine.run(function))
         if len(cases) + len(waiting) > CASES:
             return []
