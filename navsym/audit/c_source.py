@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, Unit
@@ -58,7 +58,9 @@ def shape_of_type(text: str) -> tuple[int, ...] | None:
 
 @dataclass(slots=True, eq=False)
 class Reader(SourceReader):
-    """Walks the syntax tree of C and C++."""
+    """Walks the syntax tree of C and C++; ``locals`` are the names that the function being read declares."""
+
+    locals: set[str] = field(default_factory=set)
 
     # -- the file --
 
@@ -125,6 +127,9 @@ class Reader(SourceReader):
             return
         name = text_of(field_of(declarator, "declarator")).split("::")[-1]
         parameters = named(field_of(declarator, "parameters"))
+        declared = (n for n in descend(node) if n.type in ("declaration", "parameter_declaration"))
+        inner = (field_of(c, "declarator") or c for n in declared for c in n.children_by_field_name("declarator"))
+        self.locals = {text_of(n) for c in inner for n in descend(c) if n.type == "identifier"}
         arguments = tuple(self.argument(p) for p in parameters if text_of(p) != "void")
         function = Function(name, line_of(node), arguments, self.block(body))
         self.unit.functions.setdefault(name, []).append(function)
@@ -345,7 +350,11 @@ class Reader(SourceReader):
                 owner = text_of(field_of(node, "argument"))
                 if not re.fullmatch(r"[\w.:\[\]()>\- ]*", owner) or re.search(r"\(\s*[^)\s]|\[[^\]\d]", owner):
                     return self.refuse(node, "a member of an expression")
-                return self.part("name", node, re.sub(r"\s", "", text_of(node)).removeprefix("this->"))
+                name = re.sub(r"\s", "", text_of(node))
+                member = name.removeprefix("this->")
+                if member != name and re.match(r"\w+", member)[0] in self.locals:  # type: ignore[index]
+                    return self.refuse(node, f"{name} beside a local name that is written alike")
+                return self.part("name", node, member)
             case "conditional_expression":
                 fields = (field_of(node, name) for name in ("condition", "consequence", "alternative"))
                 return self.part("choose", node, *map(self.expression, fields))

@@ -101,3 +101,17 @@ def test_a_mapping_replaces_a_function_of_the_file_only_when_it_says_so(tmp_path
     assert ask(tmp_path, source, ".c", "return", "1/a", keys % ", replace = true").status == nav.PROVED
     with pytest.raises(nav.NavsymError, match="replace = true"):
         ask(tmp_path, source, ".c", "return", "1/a", keys % "")
+
+
+def test_a_member_beside_a_parameter_of_the_same_name_is_not_that_parameter(tmp_path):
+    source = "void f(float x, float &y) { this->x = 2*x; y = x; }"
+    assert ask(tmp_path, source, ".cpp", "y", "2*x").status == nav.OPEN
+    clear = "void f(float z, float &y) { this->x = 2*z; y = x; }"
+    assert ask(tmp_path, clear, ".cpp", "y", "2*z").status == nav.PROVED
+
+
+def test_a_local_of_python_is_asked_for_where_it_has_a_value_and_a_member_everywhere(tmp_path):
+    source = "def f(a):\n    if a > 0:\n        {0} = 2*a\n    return a\n"
+    assert ask(tmp_path, source.format("b"), ".py", "b", "2*a").status == nav.PROVED
+    assert ask(tmp_path, source.format("b"), ".py", "b", "3*a").status == nav.REFUTED
+    assert ask(tmp_path, source.format("self.b"), ".py", "self.b", "2*a").status == nav.OPEN
