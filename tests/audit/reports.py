@@ -1,6 +1,6 @@
 """Questions about public estimator code at a named commit: mappings of our own, files where NAVSYM_CORPORA says.
 
-``python -m tests.audit.reports FOLDER`` writes the table of docs/audit_reports.md; FOLDER/NAME is a clone of OWNER/NAME.
+``python -m tests.audit.reports FOLDER`` writes the table in docs/audit_reports.md; FOLDER/NAME clones OWNER/NAME.
 """
 
 from __future__ import annotations
