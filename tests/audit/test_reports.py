@@ -15,7 +15,7 @@ PAGE = (Path(__file__).parents[2] / "docs" / "audit_reports.md").read_text()
 
 
 def test_the_page_shows_every_question():
-    rows = [line for line in PAGE.splitlines() if line.count(" | ") == 8 and "| PROVED |" in line or "| OPEN |" in line]
+    rows = [line for line in PAGE.splitlines() if any(f"| {verdict} |" in line for verdict in ("PROVED", "OPEN"))]
     assert len(rows) == sum(len(read_toml(spec)["question"]) for spec in SPECS) >= 10
     for spec in SPECS:
         head = read_toml(spec)["file"]
