@@ -68,6 +68,26 @@ def simulated(seed, N=400, q=0.02, sigma=2.0, order=3, gaps=True):
     return t, truth, truth[:, :, 0].T + sigma * rng.normal(size=(N, 3))
 
 
+def drifting(seed, rate, N=600, dt=0.2):
+    """Motion with accelerations of 0.5 m/s^2 over 3 s; every other 12 s are bad, and errors drift there at a rate (m/s).
+
+    White errors are 5 mm and 3 cm, the given deviations 1 cm and 30 cm: as of positions fixed and float.
+    """
+    rng, t, bad = np.random.default_rng(seed), dt * np.arange(N), (np.arange(N) // 60) % 2 == 1
+    kept = np.exp(-dt / 3)
+    a, v, p, d, e, z = (np.zeros((N, 3)) for _ in range(6))
+    for k in range(N):
+        fresh = np.sqrt(1 - kept**2) * rng.normal(size=(2, 3))
+        a[k] = kept * a[k - 1] + 0.5 * fresh[0]
+        v[k] = v[k - 1] + dt * a[k]
+        p[k] = p[k - 1] + dt * (v[k] + v[k - 1]) / 2
+        d[k] = (kept * d[k - 1] + rate * fresh[1]) * bad[k]
+        e[k] = (e[k - 1] + dt * d[k]) * bad[k]
+        z[k] = p[k] + e[k] + (0.03 if bad[k] else 0.005) * rng.normal(size=3)
+    variance = np.repeat(np.where(bad, 0.3, 0.01)[:, None] ** 2, 3, axis=1)
+    return v, bad, Positions(t, z, variance, np.broadcast_to(np.eye(3), (N, 3, 3)))
+
+
 # -- weights -------------------------------------------------------------------------------------------
 
 
