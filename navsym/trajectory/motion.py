@@ -88,7 +88,7 @@ class Track(Answer):
                 "correlation_seconds": self.noise.tau.tolist(),
                 "forgetting_rate": self.noise.rate.tolist(),
                 "exponent": self.noise.exponent.tolist(),
-                "drift_sd": self.drift_sd.tolist(),
+                "drift": self.noise.drift.tolist(),
                 "drift_seconds": self.noise.lasting.tolist(),
             },
             "nis": None if self.nis is None else self.nis.document(),

@@ -93,7 +93,7 @@ class Noise:
     rate     : (3,) 1/s, at which the last derivative forgets; 0: a polynomial driven by noise
     ratio    : (3,) coloured to white variance ; tau : (3,) s, its correlation time
     exponent : (3,) 1 where the given variances are to scale, more where bad positions are worse than they say
-    drift    : (3,) 1/s^2 ; lasting : (3,) s
+    drift    : (3,) 1/s^2 ; lasting : (3,) s ; fading : (3,) 1 where it fades as coloured errors do, else 0
     """
 
     scale: Array
@@ -104,10 +104,11 @@ class Noise:
     exponent: Array = field(default_factory=lambda: three(1.0))
     drift: Array = field(default_factory=lambda: three(0.0))
     lasting: Array = field(default_factory=lambda: three(1.0))
+    fading: Array = field(default_factory=lambda: three(0.0))
 
     def model(self, c: int) -> Array:
-        """(q, rate, tau, lasting) of a channel, for the loops."""
-        return np.array([self.density[c], self.rate[c], self.tau[c], self.lasting[c]])
+        """(q, rate, tau, lasting, fading) of a channel, for the loops."""
+        return np.array([self.density[c], self.rate[c], self.tau[c], self.lasting[c], self.fading[c]])
 
     def white(self, track: Positions, c: int) -> Array:
         """(N,) variances of the white errors of a channel."""
@@ -292,6 +293,7 @@ class Shape:
     exponent: float = 1.0
     drift: float = 0.0
     lasting: float = 1.0
+    fading: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -312,12 +314,13 @@ class Fit:
         scale : factor of the given variances ; density : of the process noise ; gate : as in :func:`noise_of`
         """
         spread = first_spread(self.track, self.order)
-        model = np.array([density, self.shape.rate, self.shape.tau, self.shape.lasting])
+        shape = self.shape
+        model = np.array([density, shape.rate, shape.tau, shape.lasting, shape.fading])
         total = np.zeros(3)
         for channel in self.channels:
             z = self.track.position[:, channel].copy()
             r = raised(self.track.variance[:, channel], self.shape.exponent) * scale
-            c, w = np.sqrt(r * self.shape.ratio), np.sqrt(r * self.shape.drift)
+            c, w = np.sqrt(r * shape.ratio), np.sqrt(r * shape.drift)
             total += misfit(self.track.t, z, r, c, w, self.use, model, spread, gate)
         return float(total[0]), float(total[1]), int(total[2])
 
@@ -376,7 +379,7 @@ LONGEST_FIT = 20_000
 COLOURS, LONGEST_TAU, RATES, EXPONENTS, DRIFTS = (-6.0, 3.0), 2.5, (-4.0, 1.0), (0.0, 4.0), (-8.0, 3.0)
 #: First guesses of (coloured variance over white, tau over a step or in s, rate), and the first steps of the search.
 GUESSES = ((0.0, 10.0, 1e-3), (3.0, 30.0, 1.0))
-FIRST_STEPS = (0.7, 0.7, 0.7, 0.5, 0.8, 0.5, 0.7, 0.5)
+FIRST_STEPS = (0.7, 0.7, 0.7, 0.5, 0.8, 0.5, 0.7, 0.5, 0.0)
 
 
 def shaped(track: Positions, order: int, use: Rows, noise: Noise, *, gate: float, fixed_scale: bool) -> Noise:
@@ -418,8 +421,12 @@ def search_shape(fit: Fit, scale: float, density: float) -> dict[str, float] | N
     if not fit.fixed_scale and not (fit.track.variance == fit.track.variance[:1]).all():
         # A drift is told from a motion only by the given variances: it is there where they are large.
         cost = plain if found is None else cost_of_shape(fit, found)
-        drifting = likeliest(fit, region_of(fit, x, y, drift=True), cost, 2 * np.log(count) + DECISIVE)
-        found = found if drifting is None else loosest(fit, drifting)
+        needed = 2 * np.log(count) + DECISIVE
+        for fading in (0.0, 1.0):
+            drifting = likeliest(fit, region_of(fit, x, y, fading), cost, needed)
+            if drifting is not None:
+                found, cost, needed = drifting, cost_of_shape(fit, drifting), 0.0
+        found = loosest(fit, found) if found is not None and needed == 0.0 else found
     if found is None:
         return None
     return {"scale": 10.0 ** found[0], "density": 10.0 ** found[1]} | vars_of(shape_at(found))
@@ -432,7 +439,7 @@ EXCLUDED = 3.84
 
 
 def likeliest(fit: Fit, region: Region, cost: float, needed: float) -> Array | None:
-    """The point (8,) of least cost, None unless that is below ``cost`` by what is needed."""
+    """The point (9,) of least cost, None unless that is below ``cost`` by what is needed."""
     short = [region.descend(fit, simplex, ROUNDS[0]) for simplex in region.simplices]
     best, simplex = min(short, key=lambda result: result[0])
     if not cost - best > needed / 4:
@@ -448,7 +455,7 @@ def loosest(fit: Fit, at: Array) -> Array:
     """
 
     def rise(lift: float) -> float:
-        return cost_of_shape(fit, at + lift * np.eye(8)[1]) - lowest
+        return cost_of_shape(fit, at + lift * np.eye(9)[1]) - lowest
 
     lowest = cost_of_shape(fit, at)
     if rise(-1.0) > EXCLUDED:
@@ -457,7 +464,7 @@ def loosest(fit: Fit, at: Array) -> Array:
     for _ in range(10):
         middle = (low + high) / 2
         low, high = (middle, high) if rise(middle) < EXCLUDED else (low, middle)
-    return at + low * np.eye(8)[1]
+    return at + low * np.eye(9)[1]
 
 
 #: Evaluations of the likelihood: first from each guess, then from the better end.
@@ -466,9 +473,9 @@ ROUNDS = (150, 500)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Region:
-    """Where a shape is sought: logarithms of scale, density, colour, tau, rate; exponent; logarithms of drift, lasting.
+    """Where a shape is sought: logarithms of scale, density, colour, tau, rate; exponent; of drift, lasting; fading.
 
-    free : (8,) which of them vary ; still : (8,) values of the others ; low, high : (8,) bounds
+    free : (9,) which of them vary ; still : (9,) values of the others ; low, high : (9,) bounds
     simplices : where the search starts, (k+1, k) each for k free ones
     """
 
@@ -479,7 +486,7 @@ class Region:
     simplices: list[Array]
 
     def whole(self, point: Array) -> Array:
-        """All eight of a point of the free ones, within the bounds."""
+        """All nine of a point of the free ones, within the bounds."""
         at = self.still.copy()
         at[self.free] = np.clip(point, self.low[self.free], self.high[self.free])
         return at
@@ -497,24 +504,37 @@ class Region:
         return float(found.fun), np.asarray(found.final_simplex[0])
 
 
-def region_of(fit: Fit, x: float, y: float, *, drift: bool = False) -> Region:
-    """Where to seek a shape, with or without drift, about the logarithms x of the plain scale and y of the density."""
-    step, found = usual_step(fit.track.t), not fit.fixed_scale
+def region_of(fit: Fit, x: float, y: float, fading: float | None = None) -> Region:
+    """Where to seek a shape about the logarithms x of the plain scale and y of the density.
+
+    fading : of a drift, 0 or 1; None for no drift
+    """
+    step, found, drift = usual_step(fit.track.t), not fit.fixed_scale, fading is not None
     varied = not (fit.track.variance == fit.track.variance[:1]).all()
     # With two states the last one is the speed, which no body forgets.
-    free = np.array([found, True, found, found, fit.order > 2, found and varied, drift, drift])
+    free = np.array([found, True, found, found, fit.order > 2, found and varied, drift, drift, False])
     low = np.array(
-        [np.log10(SMALLEST_SCALE), y - 6, COLOURS[0], np.log10(step), RATES[0], EXPONENTS[0], DRIFTS[0], np.log10(step)]
+        [
+            np.log10(SMALLEST_SCALE),
+            y - 6,
+            COLOURS[0],
+            np.log10(step),
+            RATES[0],
+            EXPONENTS[0],
+            DRIFTS[0],
+            np.log10(step),
+            0.0,
+        ]
     )
     longest = max(LONGEST_TAU, np.log10(3 * step))
-    high = np.array([max(x + 2, 4.0), y + 6, COLOURS[1], longest, RATES[1], EXPONENTS[1], DRIFTS[1], longest])
+    high = np.array([max(x + 2, 4.0), y + 6, COLOURS[1], longest, RATES[1], EXPONENTS[1], DRIFTS[1], longest, 1.0])
     simplices = []
     for lift, tau, rate in GUESSES:
         error, slow = x + lift / 6, np.log10(tau * step)
-        guess = np.array([x - lift / 3, y, error, slow, np.log10(rate), 1.0 + lift / 10, error - 2 * slow, slow])
+        guess = np.array([x - lift / 3, y, error, slow, np.log10(rate), 1.0 + lift / 10, error - 2 * slow, slow, 0.0])
         start = np.clip(guess, low, high)[free]
         simplices.append(np.vstack([start, start + np.diag(np.array(FIRST_STEPS)[free])]))
-    return Region(free, np.array([x, y, -np.inf, 0.0, -np.inf, 1.0, -np.inf, 0.0]), low, high, simplices)
+    return Region(free, np.array([x, y, -np.inf, 0.0, -np.inf, 1.0, -np.inf, 0.0, fading or 0.0]), low, high, simplices)
 
 
 def cost_of_shape(fit: Fit, at: Array) -> float:
@@ -523,14 +543,13 @@ def cost_of_shape(fit: Fit, at: Array) -> float:
 
 
 #: Names of a shape, as in :class:`Noise`.
-SHAPE = ("rate", "ratio", "tau", "exponent", "drift", "lasting")
+SHAPE = ("rate", "ratio", "tau", "exponent", "drift", "lasting", "fading")
 
 
 def shape_at(at: Array) -> Shape:
     """The shape at a point of the region."""
-    powers = 10.0 ** np.array([at[4], at[2] - at[0], at[3], 0.0, at[6] - at[0], at[7]])
-    powers[3] = at[5]
-    return Shape(*powers.tolist())
+    rate, ratio, tau, drift, lasting = (10.0 ** np.array([at[4], at[2] - at[0], at[3], at[6] - at[0], at[7]])).tolist()
+    return Shape(rate, ratio, tau, float(at[5]), drift, lasting, float(at[8]))
 
 
 def vars_of(shape: Shape) -> dict[str, float]:

@@ -57,12 +57,16 @@ def smoothed_exactly(t, z, r, q, spread):
         )
 
 
-def run_of(t, z, r, q, spread, c=0.0, rate=0.0, tau=1.0, w=0.0, lasting=1.0, use=1):
+def run_of(t, z, r, q, spread, c=0.0, rate=0.0, tau=1.0, w=0.0, lasting=1.0, fading=0.0, use=1):
     """The compiled filter and smoother: states and covariances of motion, coloured error and rate of the drift."""
     N, n = len(t), len(spread)
     states, gains, roots = np.empty((N, n + 2)), np.empty((N, n + 2)), np.empty((N, n + 2, n + 2))
     rest = np.empty(N), np.empty(N), np.empty(N), np.empty(N, dtype=np.int64)
-    c, w, model = np.broadcast_to(c, N).astype(float), np.broadcast_to(w, N).astype(float), [q, rate, tau, lasting]
+    c, w, model = (
+        np.broadcast_to(c, N).astype(float),
+        np.broadcast_to(w, N).astype(float),
+        [q, rate, tau, lasting, fading],
+    )
     model = np.array(model)
     forward(t, z, r, c, w, np.full(N, use), model, spread, 0.0, states, roots, gains, *rest)
     backward(t, c, w, rest[2], states, roots, model)
@@ -206,3 +210,15 @@ def test_the_rate_of_the_drift_has_the_deviation_of_each_row():
     t, w = np.cumsum(np.full(9, 0.7)), np.array([1.0, 1.0, 3.0, 0.1, 0.1, 5.0, 0.2, 0.01, 2.0])
     covariances = run_of(t, np.zeros(9), np.ones(9), 1.0, np.array([1.0, 1.0]), 0.5, 0.2, 3.0, w, 2.0, use=0)[1]
     assert_allclose(covariances[:, 3, 3], w**2, rtol=1e-9, atol=1e-15)
+
+
+def test_a_drift_that_fades_is_part_of_the_coloured_error():
+    """With a colour that neither forgets nor follows, both kinds are one; one that forgets bounds what has drifted."""
+    rng = np.random.default_rng(6)
+    t, spread = np.cumsum(rng.uniform(0.3, 1.5, 14)), np.array([8.0, 5.0])
+    z, r = rng.normal(size=14), rng.uniform(0.1, 0.4, 14)
+    stays, fades = (run_of(t, z, r, 0.6, spread, 1.0, 0.4, 1e9, 0.7, 2.5, kind) for kind in (0.0, 1.0))
+    assert_allclose(fades[0][:, :2], stays[0][:, :2], atol=1e-5)
+    assert_allclose(fades[1][:, :2, :2], stays[1][:, :2, :2], rtol=1e-5)
+    free = run_of(np.arange(200.0), np.zeros(200), np.ones(200), 1e-9, spread, 1.0, 0.4, 2.0, 0.7, 2.5, 1.0, use=0)[1]
+    assert free[-1, 2, 2] < 30 and np.abs(np.diff(free[100:, 2, 2])).max() < 1e-9

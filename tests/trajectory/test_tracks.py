@@ -21,6 +21,7 @@ from navsym.trajectory.estimate import (
     estimate,
     gaps,
     least_squares,
+    marginal,
     minimum_sum,
     minimum_sum_certificate,
     minimum_sum_solution,
@@ -69,7 +70,7 @@ def simulated(seed, N=400, q=0.02, sigma=2.0, order=3, gaps=True):
 
 
 def drifting(seed, rate, N=600, dt=0.2):
-    """Motion with accelerations of 0.5 m/s^2 over 3 s; every other 12 s are bad, and errors drift there at a rate (m/s).
+    """Motion with accelerations of 0.5 m/s^2 over 3 s; every other 12 s errors drift at a rate (m/s), and go again.
 
     White errors are 5 mm and 3 cm, the given deviations 1 cm and 30 cm: as of positions fixed and float.
     """
@@ -218,6 +219,21 @@ def test_with_known_noise_the_errors_lie_in_the_95_per_cent_range(method, order)
     squares = np.concatenate(errors) ** 2
     low, high = chi2.ppf([0.025, 0.975], squares.size) / squares.size
     assert low < squares.mean() < high
+
+
+@pytest.mark.long
+def test_errors_that_drift_where_deviations_are_large_are_no_motion():
+    """Deviations hold with the drift, and are far too small without; what does not drift is not said to."""
+    speed, bad, track = drifting(0, 0.5)
+    found, noise = estimate(track, Settings())
+    squares = ((found.velocity - speed) / found.velocity_sd) ** 2
+    assert 0.7 < squares.mean() < 1.5 and (noise.drift > 0).all()
+    deviation = noise.drifting(track, 0)[bad][0]
+    assert 0.35 < deviation < 0.75 and 1.5 < noise.lasting[0] < 6.0
+    plain = noise_of(track, 3, np.ones(600, dtype=np.int64), gate=5.0)
+    without = marginal(track, plain, Settings(), np.ones(600, dtype=np.int64))
+    assert (((without.velocity - speed) / without.velocity_sd) ** 2).mean() > 3
+    assert (estimate(drifting(0, 0.0)[2], Settings())[1].drift == 0).all()
 
 
 def test_the_noise_of_a_track_is_found():

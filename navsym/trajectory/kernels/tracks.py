@@ -10,7 +10,8 @@ A position is measured with a white error of variance r and a coloured one, b(k+
 f = exp(-dt/tau), whose deviation is c(k) at row k, and with an error that drifts at a rate d, a first-order Markov
 process of time constant ``lasting`` whose deviation is w(k). The first state is what is measured without its white
 error, position + b + drift; the last two are b and d: the loops then correct by the first state alone, and Phi stays
-upper triangular. Where w falls, d falls with it; where it grows, fresh noise makes up the difference.
+upper triangular. Where w falls, d falls with it; where it grows, fresh noise makes up the difference. What has drifted
+stays (``fading`` 0), or becomes part of b, which forgets and follows c (``fading`` 1).
 
 Forward filter with bounded influence; Rauch, Tung and Striebel's smoother backwards (Maybeck, vol. 2, ch. 8).
 An innovation beyond ``gate`` standard deviations is not cut off but believed less: its variance is raised until it
@@ -112,7 +113,7 @@ def noise_root(dt: float, rate: float, rows: Array, g: Array) -> None:
 def colour(dt: float, model: Array, c0: float, c1: float, w0: float, w1: float, Phi: Array, root: Array) -> None:
     """Write what the errors add to Phi (n+2, n+2) and root (n+3, n+2): their entries, and their shares of the first.
 
-    model : (q, rate, tau, lasting) ; c0, c1, w0, w1 : deviations of the coloured error and of the drift at both ends
+    model : (q, rate, tau, lasting, fading) ; c0, c1, w0, w1 : deviations of coloured error and drift at both ends
     """
     n = Phi.shape[0] - 2
     for i in range(n + 2):
@@ -125,14 +126,16 @@ def colour(dt: float, model: Array, c0: float, c1: float, w0: float, w1: float, 
     root[n, 0], root[n, n] = fresh, fresh
     if w0 == 0.0 and w1 == 0.0:
         return
-    lasting = model[3]
+    lasting, fading = model[3], model[4]
     kept = np.exp(-dt / lasting)
     ratio = kept if w1 >= w0 else kept * w1 / w0
     fresh = np.sqrt(max(w1 * w1 - ratio * ratio * w0 * w0, 0.0))
-    Phi[n + 1, n + 1], Phi[0, n + 1] = ratio, lasting * (1.0 - kept)
+    Phi[n + 1, n + 1], Phi[0, n + 1], Phi[n, n + 1] = ratio, lasting * (1.0 - kept), fading * lasting * (1.0 - kept)
     half = np.tanh(dt / (2.0 * lasting))
-    root[n + 1, 0], root[n + 1, n + 1] = lasting * half * fresh, fresh
-    root[n + 2, 0] = w1 * lasting * np.sqrt(max(2.0 * (dt / lasting - 2.0 * half), 0.0))
+    share = lasting * half * fresh
+    root[n + 1, 0], root[n + 1, n], root[n + 1, n + 1] = share, fading * share, fresh
+    rest = w1 * lasting * np.sqrt(max(2.0 * (dt / lasting - 2.0 * half), 0.0))
+    root[n + 2, 0], root[n + 2, n] = rest, fading * rest
 
 
 @njit()
@@ -195,7 +198,7 @@ def step_of(
 ) -> None:
     """Write Phi and root of the step dt from row k-1 to k, after one of length ``last``, whose motion may stay.
 
-    model : (q, rate, tau, lasting); rows (ROWS, n) keeps the root at q = 1 from step to step, g (n,) is scratch
+    model : (q, rate, tau, lasting, fading); rows (ROWS, n) keeps the root at q = 1 from step to step, g (n,) is scratch
     """
     n = g.shape[0]
     if dt != last:
@@ -292,7 +295,7 @@ def forward(
     """Filter one channel.
 
     t, z, r, c, w (N,): times, measurements, variances of white, deviations of coloured errors and of their drift;
-    w is zero in all rows or in none; use (N,): zero leaves the measurement out; model : (q, rate, tau, lasting)
+    w is zero in all rows or in none; use (N,): zero leaves the measurement out; model : (q, rate, tau, lasting, fading)
     spread (n,) : standard deviations of the first state
     gate : largest |innovation| in sigmas, 0 for none
     states, gains (N, n+2); roots (N, n+2, n+2) of the covariances; innovations, variances, flags (N,) are filled, and
