@@ -115,6 +115,7 @@ def test_the_frequency_is_a_parameter_like_any_other():
     assert set(accepted(answer)) <= {"range", "sliver"}
 
 
+@pytest.mark.long
 def test_the_ratio_of_two_noise_bounds_is_a_parameter():
     found = model_from(SCHULER, values={"Tf": "2", "w": "1"})
     answer = find_phases(family_of(found, "drift", "s"), sp.Rational(1, 10), sp.Integer(4))
@@ -208,6 +209,7 @@ def test_a_change_at_zero_is_found_and_the_mirrored_regime_has_its_closed_form()
     assert sp.expand(answer.regimes[2].closed.value) == 8 * k + 1 and answer.regimes[2].status == "PROVED"
 
 
+@pytest.mark.long
 def test_a_boundary_that_is_not_located_is_enclosed_by_what_is_proved_on_both_sides(monkeypatch):
     monkeypatch.setattr(events, "recognise_root", lambda *_: None)
     monkeypatch.setattr(events, "is_pattern_optimal", lambda *_: False)

@@ -86,6 +86,7 @@ def test_a_contact_has_the_sign_of_the_dual_polynomial():
     assert found.panel.tolist() == [1] and found.sign.tolist() == [1]
 
 
+@pytest.mark.long
 def test_both_sides_of_a_boundary_are_tried_before_it_is_given_up():
     answer = solved(oscillator("0", ("1+p**2", "2-p"), "2"), "2/5", "3/5")
     assert len(answer.boundaries) == 2 and all(b.proved for b in answer.boundaries) and answer.uncovered == ()
