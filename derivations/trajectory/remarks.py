@@ -17,8 +17,8 @@ from navsym_papers.trajectory.table import (
     ORDERS,
     PRINTED,
     STEPS,
-    UNIT_COLUMNS,
     TWO_NUMBERS,
+    UNIT_COLUMNS,
     Said,
     ends_of,
     entry_rows,
@@ -92,7 +92,7 @@ def distortions_begin_after_10():
 
 
 def say_distortion() -> Said:
-    """That every entry for n up to 10 rounds to what is printed, and one of N_s for n = 19 and one for n = 20 do not."""
+    """That every entry for n up to 10 rounds to what is printed, and N_s at 1 s for n = 19 and n = 20 does not."""
     enclosed = [
         state_condition(entry_rows(n, step, column), *ends_of(printed), equilibrate=column in UNIT_COLUMNS)
         for n in ORDERS

@@ -33,9 +33,9 @@ def noises() -> list[sp.Symbol]:
 def run(truth: list[sp.Matrix], start_error: sp.Matrix) -> tuple[list[sp.Expr], list[sp.Matrix]]:
     """Innovations and estimates of ``STEPS`` steps of the algorithm with free gains and noise."""
     estimate, innovations, estimates = truth[0] + start_error, [], []
-    for state, gain, noise in zip(truth[1:], gains(), noises(), strict=True):
+    for true, gain, noise in zip(truth[1:], gains(), noises(), strict=True):
         predicted = PHI * estimate
-        innovations.append(sp.expand((H * (state - predicted))[0] + noise))
+        innovations.append(sp.expand((H * (true - predicted))[0] + noise))
         estimate = (predicted + gain * innovations[-1]).applyfunc(sp.expand)
         estimates.append(estimate)
     return innovations, estimates
@@ -59,8 +59,8 @@ def the_tuning_does_not_see_the_speed():
         truth = straight(speed)
         innovations, estimates = run(truth, error)
         side += innovations
-        for before, after, state in zip([truth[0] + error, *estimates], estimates, truth[1:], strict=False):
-            side += [*(after - state), *(after - before)[1:]]
+        for before, after, true in zip([truth[0] + error, *estimates], estimates, truth[1:], strict=False):
+            side += [*(after - true), *(after - before)[1:]]
     return Equation([sp.expand(x) for x in printed], [sp.expand(x) for x in derived])
 
 

@@ -169,7 +169,8 @@ def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECON
     """
     documents = write_statements(statement)
     if documents is None:
-        return leave_unchecked(verdict, statement.unsaid if isinstance(statement, Property) else "")
+        apart = "the two sides have no common statement"
+        return leave_unchecked(verdict, statement.unsaid if isinstance(statement, Property) else apart)
     try:
         if isinstance(statement, Property) and verdict.certificate:
             return grant_finding(documents, verdict)
