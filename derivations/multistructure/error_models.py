@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import sympy as sp
 
 from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Property, claim, state
@@ -107,7 +109,9 @@ def unsteady():
         model.height: 0,
         model.radius: 1,
     }
-    meaning = tuple(changes_at(part[1, 0], model.latitude, 1, point) for part in (S1, S2))
+    # at one radian, a rational point
+    rational = point | {model.latitude: 1, model.heading: 1}
+    meaning = tuple(changes_at(part[1, 0], model.latitude, 1, rational) for part in (S1, S2))
     slopes = [S1.diff(model.latitude)[1, 0].subs(point), S2.diff(model.latitude)[1, 0].subs(point)]
     return Property(
         printed=True,
@@ -192,6 +196,7 @@ def inertial_is_nonlinear():
     """Below (1): an inertial system obeys an equation of type (1), nonlinear in its tilt and zero without errors."""
     rate = inertial_rate()
     at_rest = {tilt: 0, df: 0}
+    level = re.sub(rf"\b({tilt}|{df})\b", "0", to_text(rate))
     curvature = rate.diff(tilt, 2).subs(at_rest).subs({f: 1, gravity: 10})
     return Property(
         printed=(0, True),
@@ -203,9 +208,7 @@ def inertial_is_nonlinear():
             evidence=f"d2S/dbeta2 = {curvature} at f = 1",
         ),
         meaning=(
-            state(
-                to_text(rate), "=", "0", {s.name: [*["0"] * 2, []] if s in at_rest else FREE for s in rate.free_symbols}
-            ),
+            state(level, "=", "0", {s.name: FREE for s in (f, gravity)}),
             changes_at(rate, tilt, 2, {tilt: 0, df: 0, f: 1, gravity: 10}),
         ),
     )
