@@ -7,7 +7,8 @@ from fractions import Fraction
 
 import flint
 
-from navsym.claims import CERTIFIED, REFUTED, UNDECIDED, Finding, Property, claim
+from navsym.claims import CERTIFIED, REFUTED, UNDECIDED, Finding, Property, claim, state
+from navsym.models.earth import pascal_rows
 from navsym_papers.trajectory.experiment.stability import (
     gain_stability,
     harmonic_lag,
@@ -17,6 +18,7 @@ from navsym_papers.trajectory.experiment.stability import (
     stationary_covariance,
 )
 from navsym_papers.trajectory.experiment_printed import TAU, ball
+from navsym_papers.trajectory.scaling import write_rows
 
 PERIOD = Fraction(360)
 
@@ -80,6 +82,16 @@ def stationary_deviation(state: int, digits: int) -> Finding:
     )
 
 
+def say_stationary(low: str, high: str) -> tuple[dict, ...]:
+    """That P is stationary, P = C P C' + K K', and the root of its first entry lies between two numbers."""
+    gain = gain_in_f()
+    P, Phi = stationary_covariance(gain), pascal_rows(len(gain))
+    C = write_rows([[entry - k for entry in row] for row, k in zip(Phi, gain, strict=True)])
+    K, deviation = write_rows([[k] for k in gain]), f"sqrt({P[0][0]})"
+    moved = f"{C} @ {write_rows(P)} @ {C}.T + {K} @ {K}.T"
+    return state(write_rows(P), "=", moved), state(low, "<=", deviation), state(deviation, "<=", high)
+
+
 def yawing_lag(state: int, digits: int) -> Finding:
     """RMS of the steady error of speed (2) or acceleration (3) at |V| = 100 m/s that yawing alone causes.
 
@@ -109,13 +121,13 @@ def yawing_lag(state: int, digits: int) -> Finding:
 )
 def position_noise_printed():
     """Position error of 0.06 m with the printed constant gain (stationary part)."""
-    return Property(printed="0.06", derived=stationary_deviation(1, 2))
+    return Property("0.06", stationary_deviation(1, 2), say_stationary("0.055", "0.065"))
 
 
 @claim("experiment.sigma_phi.gain*", expect=CERTIFIED, corrects="experiment.sigma_phi.gain")
 def position_noise():
     """Stationary position error with the printed constant gain."""
-    return Property(printed="0.23", derived=stationary_deviation(1, 2))
+    return Property("0.23", stationary_deviation(1, 2), say_stationary("0.225", "0.235"))
 
 
 @claim(

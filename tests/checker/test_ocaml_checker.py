@@ -21,7 +21,10 @@ import navsym as nav
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = Path(__file__).parent / "ocaml"
 #: In the order in which they need each other.
-MODULES = tuple("text tree ball value algebra calculus goal cones rules language statement condition observability gap sized checker".split())
+MODULES = tuple(
+    "text tree ball value algebra calculus goal cones rules language statement condition observability gap sized "
+    "checker".split()
+)
 
 
 def find_zarith() -> bool:
