@@ -183,6 +183,7 @@ let rec check value =
       | "condition" -> Condition.check value ~at_precision
       | "exponential" -> check_exponential value
       | "rank" -> at_precision 128 (fun () -> check_rank value)
+      | "words" -> at_precision 128 (fun () -> Words.check value)
       | "sized" -> at_precision 128 (fun () -> Sized.check value)
       | "gap" | "sliver" -> Gap.check value
       | "observability" -> Observability.check value ~get_matrix ~check_width ~determinant
