@@ -245,7 +245,7 @@ let derive_by_symbol context s times f =
   in
   go times f
 
-let outside_words = [ "integral"; "limit" ]
+let outside_words = [ "integral"; "limit"; "floor"; "erf"; "expm"; "E"; "cov" ]
 
 (* sum and product with rational ends, written out *)
 let write_out name low high term =

@@ -99,6 +99,7 @@ let read_case values long_values order plan =
 (* The cases of a statement *)
 let read_statement value =
   let o = get_object "statement" value in
+  if List.mem_assoc "random" o then outside "statement with random numbers";
   let is_long = List.exists (fun k -> List.mem_assoc k o) more_keys and has_order = List.mem_assoc "order" o in
   let keys = plain_keys @ (if is_long then more_keys else []) @ if has_order then [ "order" ] else [] in
   let values = get_keys "statement" keys value in
