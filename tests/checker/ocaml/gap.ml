@@ -56,7 +56,6 @@ let read_problem keys value ~use =
           if panels = [] || functional = [] then refuse "panels, functional: expected entries";
           let first = get_number "from" first and last = get_number "to" last in
           let lower = get_number "lower" lower and upper = get_number "upper" upper in
-          if Q.gt first last || Q.gt lower upper then refuse "expected from <= to and lower <= upper";
           let low = of_rational first in
           let parameter = { low; length = less (of_rational last) low; start = Z.zero; level = 0 } in
           use { panels; functional; place = t; parameter; named = p; lower; upper; left = cells_allowed cells } others)
