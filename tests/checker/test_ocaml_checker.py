@@ -212,6 +212,27 @@ def test_both_checkers_agree_on_sums_of_words(program: Path) -> None:
     assert not [t for t, a in zip(texts, answers, strict=True) if (a == "accepted") != checker_accepts(t)]
 
 
+@pytest.mark.parametrize(
+    ("left", "given", "count"),
+    [
+        ("where(x > 0, 1, 1)", "x > 0", 2),
+        ("max(x, 2) - min(2, x)*0 - max(2, x) + 1", "x > 3", 3),
+        ("sign(x)**2", "x != 0", 3),
+    ],
+)
+def test_both_checkers_find_the_same_number_of_cases(program: Path, left: str, given: str, count: int) -> None:
+    """A hypothesis decides no question."""
+    claim = statement(left, "=", "1", {"x": [None, None, []]}) | {"shapes": {}, "given": [given], "rates": {}}
+    for number in range(1, 6):
+        text = proof_by({"rule": "identity"}, claim, {"x": "4"})
+        document = json.loads(text)
+        text = json.dumps(document | {"proofs": document["proofs"] * number})
+        (answer,) = judge(program, [text])
+        why = nav.check(json.loads(text))[0].why
+        expected = [f"expected {count} entries" in words for words in (why, answer)]
+        assert expected == [number != count] * 2, (number, answer, why)
+
+
 @pytest.mark.long
 def test_both_checkers_agree_on_certificates_that_were_changed(program: Path) -> None:
     """A change may leave a certificate true; what one accepts the other may not refuse."""

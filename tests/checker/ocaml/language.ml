@@ -16,7 +16,7 @@ type context = {
   mutable said : tree list; (* all that is typed, and so has to have a value *)
   mutable given : tree list; (* what is supposed to be >= 0 *)
   mutable zeros : tree list; (* what is supposed to be 0 *)
-  mutable known : (tree * signs) list; (* what is supposed of signs *)
+  mutable known : (tree * signs) list; (* what answers say of signs *)
   mutable plan : bool list; (* answers to the questions that come first in this case *)
   mutable answers : bool list; (* answers so far, the last one first *)
   mutable quiet : bool; (* in a branch that is not taken *)
@@ -235,9 +235,10 @@ let derive_by_time context f =
   Calculus.sum' (List.map share (Names.elements (symbols f)))
 
 let derive_by_symbol context s times f =
-  if List.mem_assoc s (rates_by_symbol context) then outside "diff by a symbol with a rate";
+  let has_rate = List.mem_assoc s (rates_by_symbol context) in
   let rec go n f =
     if n = 0 then f
+    else if has_rate then go (n - 1) (derive_by_time context f)
     else begin
       say_smooth context f;
       go (n - 1) (Calculus.derive s f)
@@ -278,8 +279,7 @@ let suppose_sign context d relation =
   | Equal -> context.zeros <- join d context.zeros
   | Unequal -> ()
   | AtLeast | Above -> context.given <- join d context.given);
-  if relation = Above || relation = Unequal then say context (Pow (d, Num Q.minus_one));
-  context.known <- (d, signs_of relation) :: context.known
+  if relation = Above || relation = Unequal then say context (Pow (d, Num Q.minus_one))
 
 let opposite_of d = function
   | Equal -> (d, Unequal)
@@ -334,8 +334,10 @@ let rec ask context d relation =
       let answer = match context.plan with [] -> true | a :: rest -> context.plan <- rest; a in
       context.answers <- answer :: context.answers;
       if List.length context.answers > 128 then refuse "more than 128 cases";
-      (if answer then suppose_sign context d relation
-       else let d, relation = opposite_of d relation in suppose_sign context d relation);
+      let d, relation = if answer then (d, relation) else opposite_of d relation in
+      suppose_sign context d relation;
+      (* hypotheses are no answers: they do not decide a question *)
+      context.known <- (d, signs_of relation) :: context.known;
       answer
     end
   end
