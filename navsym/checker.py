@@ -12,9 +12,9 @@ The sections stand in the order of trust: each rests on those before it, and eve
    whose exponent is not seen to be a rational number is exp(y*log(x)), so that it exists for x > 0 only.
 3. Functions of a parameter, and 4. expressions, both in balls. 5. Exact algebra, which decides that numbers are equal.
 6. The kinds identity, exponential and rank, by exact algebra. 7. The kinds positivity, by balls, and all.
-8. The optimum of guaranteed estimation: the kinds gap and sliver, touch and range. 9. The kinds proof and
-   counterexample: statements, the rules of their proofs, answers for integrals, sums, products and limits.
-10. Equations between matrices of any size: the kinds words and sized. 11. The entry: check.
+8. The optimum of guaranteed estimation: the kinds gap and sliver, touch and range; gross errors: the kind exclusion.
+9. The kinds proof and counterexample: statements, the rules of their proofs, answers for integrals, sums, products and
+   limits. 10. Equations between matrices of any size: the kinds words and sized. 11. The entry: check.
 """
 
 from __future__ import annotations
@@ -102,8 +102,11 @@ def read_symbols(names: list[Any]) -> list[str]:
     return names
 
 
+NUMBER = r"-?[0-9]{1,4000}([./][0-9]{1,4000})?"
+
+
 def read_number(item: Any) -> fmpq:
-    require(matches(r"-?[0-9]{1,4000}([./][0-9]{1,4000})?", item), "not a number")
+    require(matches(NUMBER, item), "not a number")
     return fmpq(*Fraction(item).as_integer_ratio())
 
 
@@ -981,6 +984,46 @@ def check_touch(item: Any) -> None:
         require(problem.lower <= optimum <= problem.upper, "the optimum is not between the bounds")
         edge = b
     require(pieces and edge == problem.high, "the pieces do not reach the end")
+
+
+def check_exclusion(item: Any) -> None:
+    """A set of at most ``most`` epochs, outside which a state x keeps |z - h.x| <= sigma, has those excluded.
+
+    Where h = sum w_i h_i, a state that keeps the bounds gives |z - sum w_i z_i| <= sigma + sum |w_i| sigma_i (Farkas).
+    Where that fails, such a set has an epoch of these rows: the last of each contradiction, and those before it.
+    """
+    fields = read_fields(item, "kind rows most excluded contradictions bits cells")
+    _, rows, most, excluded, contradictions, bits, cells = fields
+    budget = set_work(bits, cells)
+    table = read_list(rows, lambda row: read_fields(row, "epoch H z sigma"))
+    epochs, z, sigma = ([read_number(row[k]) for row in table] for k in (0, 2, 3))
+    require(all(s >= 0 for s in sigma), "expected noise bounds that are not negative")
+    exact = all(matches(NUMBER, e) for row in table for e in row[1])
+    matrix: Any = fmpq_mat if exact else arb_mat
+    H = [read_list(row[1], read_number if exact else read_entry) for row in table]
+    met = []
+    for places in read_list(contradictions, list):
+        *basis, last = [read_integer(k, 0, len(table) - 1) for k in places]
+        columns = matrix([H[k] for k in basis]).transpose()
+        weights = columns.solve(matrix([[e] for e in H[last]])).entries()
+        zeros = [w == 0 for w in weights]  # a ball is zero when nothing else is in it
+        used = [(w, k) for w, k, zero in zip(weights, basis, zeros, strict=True) if not zero]
+        distance = abs(sum((w * -z[k] for w, k in used), z[last]))
+        require(distance > sum((abs(w) * sigma[k] for w, k in used), sigma[last]), "no contradiction")
+        met.append({epochs[k] for k in (last, *(k for _, k in used))})
+    for e in read_list(excluded, read_number):
+        require(not can_meet(met, e, read_integer(most, 0, 4), budget), "a set without the epoch may explain the data")
+
+
+def read_entry(text: Any) -> arb:
+    return evaluate(parse(text), {}, arb).enclose()
+
+
+def can_meet(met: list[set[fmpq]], without: fmpq, most: int, budget: Iterator[bool]) -> bool:
+    """Whether at most so many epochs, this one not among them, meet all sets: one of them is in the first."""
+    require(next(budget, False), "more sets than announced")
+    rest = (([s for s in met if e not in s], without, most - 1, budget) for s in met[:1] for e in s - {without})
+    return not met or (most > 0 and any(can_meet(*choice) for choice in rest))
 
 
 # -- 9. Statements and their proofs ------------------------------------------------------------------------------------
@@ -3921,7 +3964,7 @@ def grant(statement: Any, item: Any) -> str:
 # -- 11. The entry -----------------------------------------------------------------------------------------------------
 EVERY_CHECK: tuple[Callable[[Any], None], ...] = (
     check_identity, check_exponential, check_rank, check_observability, check_condition, check_positivity, check_all,
-    check_gap, check_touch, check_proof, check_counterexample, check_words, check_sized,
+    check_gap, check_touch, check_exclusion, check_proof, check_counterexample, check_words, check_sized,
 )  # fmt: skip
 KINDS = {check.__name__.removeprefix("check_"): check for check in EVERY_CHECK}
 KINDS |= {"sliver": check_gap, "range": check_touch}

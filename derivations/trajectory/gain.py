@@ -8,7 +8,6 @@ from fractions import Fraction
 import flint
 
 from navsym.claims import CERTIFIED, REFUTED, UNDECIDED, Finding, Property, claim, state
-from navsym.models.earth import pascal_rows
 from navsym_papers.trajectory.experiment.stability import (
     gain_stability,
     harmonic_lag,
@@ -18,6 +17,7 @@ from navsym_papers.trajectory.experiment.stability import (
     stationary_covariance,
 )
 from navsym_papers.trajectory.experiment_printed import TAU, ball
+from navsym_papers.trajectory.model import pascal_rows
 from navsym_papers.trajectory.scaling import write_rows
 
 PERIOD = Fraction(360)

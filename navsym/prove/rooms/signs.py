@@ -27,7 +27,6 @@ from navsym.prove.rooms.goals import (
     values_of,
     write_term,
 )
-from navsym.prove.signs.polynomials import choose_pair
 
 CELLS = (120, 2500)
 #: Comparisons of variables in one proof by cones.
@@ -300,6 +299,29 @@ def split_cone(polynomial: fmpq_mpoly, budget: list[int], depth: int) -> Any:
         if parts[-1] is False:
             return False
     return [*pair, *parts]
+
+
+def choose_pair(terms: dict[Any, Any], negative: dict[Any, Any], depth: int) -> tuple[int, int] | None:
+    """The two variables to compare; None when a negative term has only one, so that nothing can mend it.
+
+    Best are y_i, y_j with a negative term between two positive ones, as in y_i**2 - y_i y_j + y_j**2.
+    """
+    scores: dict[tuple[int, int], Any] = {}
+    for exponents, value in negative.items():
+        places = [i for i, e in enumerate(exponents) if e]
+        if len(places) < 2:
+            return None
+        for pair in itertools.combinations(places, 2):
+            framed = all(terms.get(shift_power(exponents, i, j), 0) > 0 for i, j in (pair, pair[::-1]))
+            scores[pair] = scores.get(pair, 0) - (value if framed else 0)
+    best = max(scores.values())
+    ranked = sorted(pair for pair, score in scores.items() if score == best)
+    return ranked[depth % len(ranked)]
+
+
+def shift_power(exponents: Any, i: int, j: int) -> tuple[int, ...]:
+    """One power moved from y_j to y_i."""
+    return tuple(int(e) + (k == i) - (k == j) for k, e in enumerate(exponents))
 
 
 def by_contacts(goal: Any, sample: list[arb]) -> Iterator[Proof]:
