@@ -203,13 +203,16 @@ def weights_solve_the_system():
 )
 def number_of_contacts():
     """The dual polynomial of each of the three states touches its bounds at no more than m = 3 instants."""
-    return Property(printed=(True, True, True), derived=finitely_many_contacts())
+    return Property(printed=(True, True, True), derived=finitely_many_contacts(), unsaid=ZEROS)
 
 
 @claim("3.2.contacts*", corrects="3.2.contacts")
 def number_of_contacts_corrected():
     """The dual of y1 touches at every instant, those of y2 and y3 at finitely many (three for T <= pi/2: unique.*)."""
-    return Property(printed=(False, True, True), derived=finitely_many_contacts())
+    return Property(printed=(False, True, True), derived=finitely_many_contacts(), unsaid=ZEROS)
+
+
+ZEROS = "that zeros are finitely many follows from an identity that does not hold"
 
 
 def finitely_many_contacts() -> Finding:
@@ -283,13 +286,21 @@ def scaling_to_a_polynomial():
 )
 def variables_of_the_minimum():
     """The minimum of (3.3) is taken over z_2, z_3, as printed."""
-    return Property(printed=("z2", "z3"), derived=coefficients_of_the_polynomial())
+    return Property(
+        printed=("z2", "z3"),
+        derived=coefficients_of_the_polynomial(),
+        unsaid="a name is compared, and statements are about numbers",
+    )
 
 
 @claim("3.3.min*", corrects="3.3.min")
 def variables_of_the_minimum_corrected():
     """The minimum of (3.3) is taken over u_2, u_3."""
-    return Property(printed=("u2", "u3"), derived=coefficients_of_the_polynomial())
+    return Property(
+        printed=("u2", "u3"),
+        derived=coefficients_of_the_polynomial(),
+        unsaid="a name is compared, and statements are about numbers",
+    )
 
 
 def coefficients_of_the_polynomial() -> Finding:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Optimum, Property, claim
+from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Optimum, Property, claim, state
+from navsym.language.expression import to_text
 from navsym.prove.identities.normal_form import vanishes_identically
 from navsym.prove.signs.bounds import Sign, prove_sign
 from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, tau, weights
@@ -82,7 +83,9 @@ def third_of_permuted_corrected():
 @claim("4.1.order")
 def permutation_is_a_cycle():
     """(4.1) is the cyclic shift (H3, H1, H2), where remark 3.1 speaks of one exchange; nothing depends on it."""
-    return Property(printed="cycle", derived=permutation_kind())
+    return Property(
+        printed="cycle", derived=permutation_kind(), unsaid="a name is compared, and statements are about numbers"
+    )
 
 
 def permutation_kind() -> Finding:
@@ -216,7 +219,15 @@ def same_instants_for_all():
 @claim("4.6.weights")
 def instants_of_each_state():
     """Of the weights at (4.6) one is not zero for y1, all three for y2 and y3, as (4.12) prints."""
-    return Property(printed=(1, 3, 3), derived=instants_in_use())
+    # a weight that is not zero at T = 1 is not zero throughout
+    meaning = tuple(
+        state(to_text(w), "=", "0", {"T": ["0", None, ["open-low"]]})
+        if vanishes_identically(w)
+        else state(to_text(w), "!=", "0", {"T": ["1", "1", []]})
+        for index in range(3)
+        for w in weights(index)
+    )
+    return Property(printed=(1, 3, 3), derived=instants_in_use(), meaning=meaning)
 
 
 def instants_in_use() -> Finding:
@@ -282,7 +293,10 @@ def optimal_deviation(state: int) -> sp.Expr:
 def signs_of_the_weights():
     """The weights of y2 alternate -, +, - on the stated range, as optimal_deviation takes for granted."""
     found = tuple(proved_sign(weight) for weight in weights(1))
-    return Property(printed=(-1, 1, -1), derived=Finding(found, "signs of the product forms", PROVED, "T in (0, pi/2]"))
+    signs, stated = zip(weights(1), "<><", strict=True), {"T": ["0", "pi/2", ["open-low"]]}
+    meaning = tuple(state(to_text(weight), sign, "0", stated) for weight, sign in signs)
+    finding = Finding(found, "signs of the product forms", PROVED, "T in (0, pi/2]")
+    return Property(printed=(-1, 1, -1), derived=finding, meaning=meaning)
 
 
 def proved_sign(weight: sp.Expr) -> int:

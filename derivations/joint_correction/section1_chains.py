@@ -5,6 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.claims import PROVED, Bound, Equation, Finding, Property, claim
+from navsym.models.linear import LinearModel
 from navsym.observability.chains import numerators
 from navsym.observability.linear import linear_relation, pivot_rows
 from navsym.observability.ring import Ring
@@ -17,6 +18,8 @@ from navsym_papers.joint_correction.section1_systems import (
     flat,
     free,
     k,
+    say_ranks,
+    seen_at_once,
     systems,
 )
 
@@ -31,7 +34,13 @@ def dimensions():
         for s in (*systems(), direct_sum())
         for first, second in [s.found.measurements]
     )
-    return Property(True, Finding(found, "exact dimensions of the chains", PROVED, scope=SIZES))
+    ranks, relations = [], []
+    for s in (*systems(), direct_sum()):
+        sizes = [part.dimension for part in s.found.measurements]
+        alone = [LinearModel(s.G, None, s.model.H[number, :]) for number in (0, 1)]
+        ranks += [*zip(alone, sizes, strict=True), (s.model, s.n)]
+        relations += [*((str(size), "<=", str(s.n)) for size in sizes), (f"{sizes[0]} + {sizes[1]}", ">=", str(s.n))]
+    return say_ranks(True, Finding(found, "exact dimensions of the chains", PROVED, scope=SIZES), ranks, *relations)
 
 
 @claim("1.3.basis")
@@ -39,10 +48,11 @@ def chain_is_a_basis():
     """The first m vectors a_1 ... a_m are a basis of what sigma_1 observes."""
     counts = tuple(rank_of(s.chain(1, s.m)) for s in systems())
     longer = tuple(rank_of(s.chain(1, 2 * s.n)) for s in systems())
-    return Property(
-        tuple(s.m for s in systems()),
-        Finding(counts if counts == longer else None, "exact ranks of m and of 2 n vectors", PROVED, scope=SIZES),
-    )
+    value = counts if counts == longer else None
+    finding = Finding(value, "exact ranks of m and of 2 n vectors", PROVED, scope=SIZES)
+    ranks = [(seen_at_once(s.chain(1, s.m)), s.m) for s in systems()]
+    ranks += [(LinearModel(s.G, None, s.model.H[0, :]), s.m) for s in systems()]
+    return say_ranks(tuple(s.m for s in systems()), finding, ranks)
 
 
 def rank_of(rows: sp.MatrixBase) -> int:
@@ -174,6 +184,7 @@ def gain_is_unique():
             scope="m = 1, 2, 3, all theta and C_1",
             assumptions=("det C_1 != 0",),
         ),
+        unsaid="that a map is affine and invertible is said of all its values at once",
     )
 
 

@@ -6,12 +6,16 @@ off the entries. Nothing here knows a printed formula.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any
 
 import sympy as sp
 
+from navsym.claims import Finding, Property, state
 from navsym.models.linear import LinearModel
+from navsym.observability.certificates import Certifier
 from navsym.observability.chains import JointObservability, observe_jointly
 from navsym.observability.splits import exact_inverse
 
@@ -19,6 +23,33 @@ p = sp.Symbol("p", real=True)
 g = sp.symbols("g1:10", real=True)
 c = sp.symbols("c1:10", real=True)
 k = sp.symbols("k1:10", real=True)
+
+
+def say_ranks(
+    printed: Any, finding: Finding, ranks: Iterable[tuple[LinearModel, int]], *relations: tuple[str, str, str]
+) -> Property:
+    """A property that follows from ranks, which the checker grants one by one, and from relations between them.
+
+    ranks : models with the rank that all their measurements show together
+    """
+    parts = []
+    for model, rank in ranks:
+        found = observe_jointly(model)
+        part = Certifier.of(model).certify_rank(found) if found.joint_dimension == rank else None
+        if part is None:
+            return Property(printed, finding, unsaid="a rank has no certificate")
+        parts.append(part)
+    meaning = [part["statement"] for part in parts] + [state(*relation) for relation in relations]
+    for text in meaning[len(parts) :]:
+        rule = {"rule": "identity"} if text["relation"] == "=" else {"rule": "balls", "bits": 64, "cells": 0}
+        parts.append({"kind": "proof", "statement": text, "bits": 128, "witness": {}, "proofs": [rule]})
+    certificate = parts[0] if len(parts) == 1 else {"kind": "all", "of": parts}
+    return Property(printed, replace(finding, certificate=certificate), tuple(meaning))
+
+
+def seen_at_once(rows: sp.MatrixBase) -> LinearModel:
+    """The model that stands still and shows these rows: its rank is that of the rows."""
+    return LinearModel(sp.zeros(rows.cols, rows.cols), None, sp.Matrix(rows))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -269,6 +269,7 @@ def choice_of_i():
     return Property(
         (2, 2),
         Finding((best.i, best.j), "all determinants of a_1 ... a_i, b_1 ... b_j", PROVED, scope="n = 4, m = 3, l = 4"),
+        unsaid="a least value over all bases is found by trying them",
     )
 
 

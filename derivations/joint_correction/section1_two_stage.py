@@ -5,6 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
+from navsym.models.linear import LinearModel
 from navsym.observability.splits import companion, exact_inverse, last_row, unit_row
 from navsym_papers.joint_correction.section1_chains import SIZES, coefficients, rank_of
 from navsym_papers.joint_correction.section1_systems import (
@@ -17,6 +18,7 @@ from navsym_papers.joint_correction.section1_systems import (
     g,
     k,
     polynomial_of,
+    say_ranks,
     systems,
 )
 
@@ -31,7 +33,13 @@ def phi_of(s: System) -> list[sp.Expr]:
 def enough_vectors():
     """n - m <= l: the second chain is long enough to complete the basis."""
     found = tuple(s.found.measurements[1].dimension >= s.rest for s in (*systems(), direct_sum()))
-    return Property((True,) * 5, Finding(found, "exact dimensions of the chains", PROVED, scope=SIZES))
+    ranks, relations = [], []
+    for s in (*systems(), direct_sum()):
+        sizes = [part.dimension for part in s.found.measurements]
+        ranks += [(LinearModel(s.G, None, s.model.H[i, :]), sizes[i]) for i in (0, 1)]
+        relations.append((f"{s.n} - {sizes[0]}", "<=", str(sizes[1])))
+    finding = Finding(found, "exact dimensions of the chains", PROVED, scope=SIZES)
+    return say_ranks((True,) * 5, finding, ranks, *relations)
 
 
 @claim("1.8.basis")
@@ -58,6 +66,7 @@ def chains_complete_each_other():
             PROVED,
             scope="n - m = 1, 2, 3 with all entries symbolic, every m",
         ),
+        unsaid="that a chain is a basis wherever a pair is observable is said of all sizes",
     )
 
 
@@ -139,7 +148,11 @@ def output_row_of_z_printed():
     size = 2
     column = unit_row(size).T
     defined = column.cols == free("z", size).rows
-    return Property(True, Finding(defined, "shapes of the factors, n - m = 2", PROVED, scope="n - m = 2"))
+    return Property(
+        True,
+        Finding(defined, "shapes of the factors, n - m = 2", PROVED, scope="n - m = 2"),
+        unsaid="sides of shapes that do not fit have no value",
+    )
 
 
 @claim("1.10.gz*", corrects="1.10.gz")
@@ -253,6 +266,7 @@ def second_gain_is_unique():
             scope="n - m = 1, 2, 3, all phi and C_2",
             assumptions=("det C_2 != 0",),
         ),
+        unsaid="that a map is affine and invertible is said of all its values at once",
     )
 
 
@@ -292,7 +306,9 @@ def first_stage_ignores_the_second():
         found = found and not rows[:, m:].free_symbols and not any(rows.has(s) for s in b["Kz"])
         found = found and all(value == 0 for value in rows[:, m:])
     return Property(
-        True, Finding(found, "entries of the closed loop", PROVED, scope=f"(m, n - m) in {PAIRS}, all coefficients")
+        True,
+        Finding(found, "entries of the closed loop", PROVED, scope=f"(m, n - m) in {PAIRS}, all coefficients"),
+        unsaid="which symbols a formula has is read off it, not its value",
     )
 
 

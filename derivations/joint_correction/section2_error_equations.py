@@ -96,6 +96,7 @@ def climb_is_negligible():
             PROVED,
             scope="linear in the errors, alpha_3 up to rho/mu",
         ),
+        unsaid="orders of terms in a small parameter are compared, not values",
     )
 
 
@@ -203,14 +204,22 @@ def stationarity_units_printed():
 
     Both sides have one unit.
     """
-    return Property(degree(RATE**2), Finding(degree(RATE), "powers of 1/s on the right and on the left side", PROVED))
+    return Property(
+        degree(RATE**2),
+        Finding(degree(RATE), "powers of 1/s on the right and on the left side", PROVED),
+        unsaid="units are compared as exponents, and statements are about numbers",
+    )
 
 
 @claim("2.assumption1.units*", corrects="2.assumption1.units")
 def stationarity_units():
     """|d/dt (omega_x1^2 + omega_x2^2)^(1/2)| < max(omega_x1^2 + omega_x2^2): both sides in 1/s^2."""
     rate = sum(sp.diff(RATE, w) * dw for w, dw in zip((w1, w2), OMEGA_X_RATE[:2], strict=True))
-    return Property(degree(RATE**2), Finding(degree(rate), "powers of 1/s on the right and on the left side", PROVED))
+    return Property(
+        degree(RATE**2),
+        Finding(degree(rate), "powers of 1/s on the right and on the left side", PROVED),
+        unsaid="units are compared as exponents, and statements are about numbers",
+    )
 
 
 def stationarity(speed: sp.Expr, course: sp.Expr, place: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
@@ -252,6 +261,7 @@ def where_great_circles_are_not_stationary():
             PROVED,
             scope="speed 0.9 Omega R = 419 m/s, course constant -0.99",
         ),
+        unsaid="a maximum over a flight is compared, and no formula is given for it",
     )
 
 

@@ -37,6 +37,7 @@ from navsym_papers.joint_correction.inertial import (
     velocity_group,
 )
 from navsym_papers.joint_correction.kinematics import ALPHA, BETA, EPSILON
+from navsym_papers.joint_correction.section1_systems import say_ranks
 
 mu = MU
 a1, a2 = ALPHA[:2]
@@ -253,6 +254,7 @@ def neglected_terms():
             scope="alpha, pi, epsilon, nu, w of order rho; beta, gamma of order rho/mu; d omega/d tau of order mu",
             evidence=f"{sum(len(r) for g in (velocity(), position()) for r in g.dropped)} terms, listed by the model",
         ),
+        unsaid="orders of terms in a small parameter are compared, not values",
     )
 
 
@@ -263,21 +265,29 @@ def inhomogeneous_terms():
     highest = {truncate(f, ORDERS, 2).dropped for group in (velocity(), position()) for f in group.linear()[2]}
     found = tuple(sorted(orders)) if highest == {()} else None
     return Property(
-        (1,), Finding(found, "bookkeeping of every monomial", PROVED, scope="orders as declared in 2.8.neglected")
+        (1,),
+        Finding(found, "bookkeeping of every monomial", PROVED, scope="orders as declared in 2.8.neglected"),
+        unsaid="orders of terms in a small parameter are compared, not values",
     )
 
 
 @claim("2.9.inhomogeneous_printed", expect=REFUTED, slip="scan", reason=DOT)
 def inhomogeneous_term_as_printed():
     """The printed inhomogeneous term mu omega_2 beta_3 of y_2 has the order mu (times rho)."""
-    return Property(1, Finding(lowest_order(mu * w2 * b3, ORDERS), "bookkeeping of every monomial", PROVED))
+    return Property(
+        1,
+        Finding(lowest_order(mu * w2 * b3, ORDERS), "bookkeeping of every monomial", PROVED),
+        unsaid="orders of terms in a small parameter are compared, not values",
+    )
 
 
 @claim("2.9.inhomogeneous_printed*", corrects="2.9.inhomogeneous_printed")
 def inhomogeneous_term():
     """With the derivative of omega the inhomogeneous term of y_2 has the order mu (times rho)."""
     return Property(
-        1, Finding(lowest_order(position().linear()[2][1], ORDERS), "bookkeeping of every monomial", PROVED)
+        1,
+        Finding(lowest_order(position().linear()[2][1], ORDERS), "bookkeeping of every monomial", PROVED),
+        unsaid="orders of terms in a small parameter are compared, not values",
     )
 
 
@@ -299,6 +309,7 @@ def velocity_group_is_observable():
             PROVED,
             scope="homogeneous part of (2.8)",
         ),
+        unsaid="that a rank drops nowhere else is said of all points at once",
     )
 
 
@@ -313,6 +324,7 @@ def position_group_is_observable():
             PROVED,
             scope="homogeneous part of (2.9)",
         ),
+        unsaid="that a rank drops nowhere is said of all points at once",
     )
 
 
@@ -322,15 +334,7 @@ def velocity_observes_six_combinations():
 
     mu -> 0 in the motion, mu beta is kept; u_1, u_2, u_3 are arbitrary.
     """
-    return Property(
-        6,
-        Finding(
-            leading_rank((0, 1), mu * BETA),
-            "exact rank of the leading-order model",
-            PROVED,
-            scope="mu = 0 in the motion, mu beta of order rho; u_1, u_2, u_3 arbitrary",
-        ),
-    )
+    return leading_rank((0, 1), 6, "mu = 0 in the motion, mu beta of order rho; u_1, u_2, u_3 arbitrary")
 
 
 @claim("2.7.span")
@@ -339,18 +343,10 @@ def position_observes_eight_combinations():
 
     mu -> 0 in the motion, the drift mu beta_3 is kept.
     """
-    return Property(
-        8,
-        Finding(
-            leading_rank((2, 3), mu * BETA),
-            "exact rank of the leading-order model",
-            PROVED,
-            scope="mu = 0 in the motion, mu beta of order rho; omega_1, omega_2 arbitrary",
-        ),
-    )
+    return leading_rank((2, 3), 8, "mu = 0 in the motion, mu beta of order rho; omega_1, omega_2 arbitrary")
 
 
-def leading_rank(measurements: tuple[int, ...], slow: sp.Matrix) -> int:
+def leading_rank(measurements: tuple[int, ...], printed: int, scope: str) -> Property:
     """Rank of the chains of the 16-state model when mu -> 0 with B = mu beta_3 kept of order one.
 
     The slow angles are rescaled, beta = B/mu for the third; beta_1, beta_2 enter the position at order
@@ -366,4 +362,7 @@ def leading_rank(measurements: tuple[int, ...], slow: sp.Matrix) -> int:
         scale[place[symbol], place[symbol]] = mu
     F = (scale * model.F * scale.inv()).applyfunc(sp.expand).subs(mu, 0)
     H = (model.H * scale.inv()).applyfunc(sp.expand).subs(mu, 0)
-    return observe_jointly(LinearModel(F, None, sp.Matrix([H[k, :] for k in measurements]))).joint_dimension
+    leading = LinearModel(F, None, sp.Matrix([H[k, :] for k in measurements]))
+    rank = observe_jointly(leading).joint_dimension
+    finding = Finding(rank, "exact rank of the leading-order model", PROVED, scope=scope)
+    return say_ranks(printed, finding, [(leading, printed)])

@@ -6,11 +6,11 @@ from functools import cache, partial
 
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
+from navsym.claims import PROVED, REFUTED, Equation, Finding, claim
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
 from navsym_papers.joint_correction.inertial import FULL, joint_model
-from navsym_papers.joint_correction.section1_systems import p, polynomial_of
+from navsym_papers.joint_correction.section1_systems import p, polynomial_of, say_ranks, seen_at_once
 from navsym_papers.joint_correction.section2_groups import mu, position, u3, velocity, w1, w2
 from navsym_papers.joint_correction.section2_groups import row as row_up_to_order
 
@@ -50,16 +50,11 @@ def overlap():
     first, second = functionals(velocity().meaning), functionals(position().meaning)
     from navsym_papers.joint_correction.section1_chains import rank_of
 
-    shared = rank_of(first) + rank_of(second) - rank_of(sp.Matrix.vstack(first, second))
-    return Property(
-        4,
-        Finding(
-            shared,
-            "exact ranks of the functionals and of their union",
-            PROVED,
-            scope="16 error variables, all omega, u, mu",
-        ),
-    )
+    both = sp.Matrix.vstack(first, second)
+    shared = rank_of(first) + rank_of(second) - rank_of(both)
+    method, scope = "exact ranks of the functionals and of their union", "16 error variables, all omega, u, mu"
+    ranks = [(seen_at_once(rows), rank) for rows, rank in ((first, 6), (second, 8), (both, 10))]
+    return say_ranks(4, Finding(shared, method, PROVED, scope=scope), ranks, ("4", "=", "6 + 8 - 10"))
 
 
 def functionals(meaning: tuple[sp.Expr, ...]) -> sp.Matrix:
@@ -69,16 +64,15 @@ def functionals(meaning: tuple[sp.Expr, ...]) -> sp.Matrix:
 @claim("3.1.remaining")
 def remaining_variables():
     """After velocity correction four variables remain for the position information: y_1, y_2, y_5, y_6."""
-    found = observe_jointly(joint())
-    return Property(
-        (6, 4),
-        Finding(
-            (sum(found.staircase[:2]), sum(found.staircase[2:])),
-            "fraction-free staircase: velocity first, then position",
-            PROVED,
-            scope="joint model (2.8), (2.9)",
-        ),
+    found, model = observe_jointly(joint()), joint()
+    finding = Finding(
+        (sum(found.staircase[:2]), sum(found.staircase[2:])),
+        "fraction-free staircase: velocity first, then position",
+        PROVED,
+        scope="joint model (2.8), (2.9)",
     )
+    first = LinearModel(model.F, None, model.H[:2, :])
+    return say_ranks((6, 4), finding, [(first, 6), (model, 10)], ("4", "=", "10 - 6"))
 
 
 @claim("3.1.fast")

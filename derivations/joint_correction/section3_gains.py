@@ -191,6 +191,7 @@ def coupled_system_is_stable_inside():
             scope="all lambda_c > 0, all real kappa",
             evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}",
         ),
+        unsaid="roots of a polynomial with free coefficients are counted by regions",
     )
 
 

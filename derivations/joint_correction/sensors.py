@@ -14,8 +14,10 @@ from navsym.models.linear import LinearModel
 from navsym.observability.chains import prove_rank
 from navsym.observability.sensors import Restoration, restore_observability
 from navsym_papers.joint_correction.inertial import EARTH, MU, OMEGA, full_model, joint_model
+from navsym_papers.joint_correction.section1_systems import say_ranks
 
 GENERIC = "all values of mu, omega and u but those of a proper algebraic set"
+ANY_ROW = "that no fewer rows are enough is said of all rows at once"
 METHOD = "hidden directions that are exhibited, and minors that are not zero"
 
 
@@ -57,9 +59,10 @@ def one_coordinate_is_enough():
     """With velocity alone four variables are hidden; either coordinate of the position shows all four of them."""
     velocity = ("sigma_c1", "sigma_c2")
     answer = restore_observability(measured_by(velocity), others(velocity))
-    return Property(
-        printed=(4, (("sigma_M1",), ("sigma_M2",))), derived=found(answer, (answer.unobservable, answer.sets))
-    )
+    finding = found(answer, (answer.unobservable, answer.sets))
+    models = [measured_by((*velocity, name)) for name in ("sigma_M1", "sigma_M2")]
+    ranks = [(measured_by(velocity), 6), *((model, 10) for model in models)]
+    return say_ranks((4, (("sigma_M1",), ("sigma_M2",))), finding, ranks)
 
 
 @claim("sensors.triples")
@@ -69,28 +72,32 @@ def three_of_four_with_both_velocities():
     complete = tuple(triple for triple in combinations(names, 3) if not hidden(triple))
     finding = Finding(complete, METHOD, PROVED, scope=GENERIC)
     velocities = ("sigma_c1", "sigma_c2")
-    return Property(printed=((*velocities, "sigma_M1"), (*velocities, "sigma_M2")), derived=finding)
+    # of the other triples each shows nine
+    ranks = [(measured_by(t), 10 if set(velocities) <= set(t) else 9) for t in combinations(names, 3)]
+    return say_ranks(((*velocities, "sigma_M1"), (*velocities, "sigma_M2")), finding, ranks)
 
 
 @claim("sensors.pairs")
 def no_two_are_enough():
     """No two of the four measurements observe all ten variables: the pairs hide from one to four."""
     counts = tuple(hidden(pair) for pair in combinations(joint().measurements, 2))
-    return Property(printed=(4, 1, 1, 1, 1, 2), derived=Finding(counts, METHOD, PROVED, scope=GENERIC))
+    printed, pairs = (4, 1, 1, 1, 1, 2), combinations(joint().measurements, 2)
+    ranks = [(measured_by(pair), 10 - count) for pair, count in zip(pairs, printed, strict=True)]
+    return say_ranks(printed, Finding(counts, METHOD, PROVED, scope=GENERIC), ranks)
 
 
 @claim("sensors.position")
 def position_needs_exactly_two_variables():
     """With position alone two measurements are missing, and x_3 and x_6 are the only two variables that will do."""
     answer = restore_observability(measured_by(("sigma_M1", "sigma_M2")))
-    return Property(printed=(2, (("x_3", "x_6"),)), derived=found(answer, (answer.needed, answer.sets)))
+    return Property((2, (("x_3", "x_6"),)), found(answer, (answer.needed, answer.sets)), unsaid=ANY_ROW)
 
 
 @claim("sensors.full")
 def complete_model_needs_five():
     """With all constant errors kept and u frozen, five more measurements are needed, and five states will do."""
     answer = restore_observability(full_model())
-    return Property(printed=(5, 5), derived=found(answer, (answer.needed, answer.fewest)))
+    return Property((5, 5), found(answer, (answer.needed, answer.fewest)), unsaid=ANY_ROW)
 
 
 PRIME = 2**61 - 1
@@ -146,4 +153,5 @@ def complete_model_while_turning():
     parts = [LinearModel(model.F, None, model.H.extract(list(kept), list(range(16)))) for kept in ((0, 1), (2, 3))]
     frozen = tuple(prove_rank(part).rank for part in (*parts, model))
     found = (ranks_while_turning(), frozen)
-    return Property(printed=((11, 9, 14), (9, 9, 11)), derived=Finding(found, METHOD, PROVED, scope=scope))
+    finding = Finding(found, METHOD, PROVED, scope=scope)
+    return Property(printed=((11, 9, 14), (9, 9, 11)), derived=finding, unsaid="ranks from below alone")

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Property, claim
+from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Property, claim, state
+from navsym.language.expression import to_text
 from navsym_papers.multistructure import model
 
 RECKONING = model.dead_reckoning()
@@ -23,16 +26,22 @@ def nonlinear():
     """The errors of reckoned coordinates depend on the sensor errors in a nonlinear way."""
     point = {model.latitude: 0, model.vy: 1, model.vx: 0, model.heading: 0, model.height: 0, model.radius: 1}
     curvature = at_zero(S.diff(model.d_heading, 2))[0].subs(point)
-    return Property(
-        printed=True,
-        derived=Finding(
-            bool(curvature != 0),
-            "second derivative at an exact point",
-            PROVED,
-            scope="course and log on a sphere",
-            evidence=f"d2S/dK2 = {curvature} at the equator, heading north at unit speed",
-        ),
+    found = Finding(
+        bool(curvature != 0),
+        "second derivative at an exact point",
+        PROVED,
+        scope="course and log on a sphere",
+        evidence=f"d2S/dK2 = {curvature} at the equator, heading north at unit speed",
     )
+    at_rest = dict.fromkeys((*RECKONING.errors, *RECKONING.sensor_errors), 0)
+    return Property(True, found, (changes_at(S[0], model.d_heading, 2, at_rest | point),))
+
+
+def changes_at(formula: sp.Expr, variable: sp.Symbol, order: int, point: dict) -> dict:
+    """That a derivative is not zero at a point, in the words of the checker."""
+    ranges = {symbol: [to_text(sp.sympify(value))] * 2 + [[]] for symbol, value in point.items()}
+    symbols = {symbol.name: ranges[symbol] for symbol in {*formula.free_symbols, variable}}
+    return state(f"diff({to_text(formula)}, {variable.name}, {order})", "!=", "0", symbols)
 
 
 @claim("1.arguments")
@@ -47,6 +56,7 @@ def arguments_corrected():
             PROVED,
             scope="course and log on a sphere",
         ),
+        unsaid="which symbols a formula has is read off it, not its value",
     )
 
 
@@ -99,6 +109,9 @@ def unsteady():
         model.height: 0,
         model.radius: 1,
     }
+    # at one radian, a rational point
+    rational = point | {model.latitude: 1, model.heading: 1}
+    meaning = tuple(changes_at(part[1, 0], model.latitude, 1, rational) for part in (S1, S2))
     slopes = [S1.diff(model.latitude)[1, 0].subs(point), S2.diff(model.latitude)[1, 0].subs(point)]
     return Property(
         printed=True,
@@ -109,6 +122,7 @@ def unsteady():
             scope="course and log on a sphere",
             evidence=f"dS1/dphi = {slopes[0]}, dS2/dphi = {slopes[1]} at 45 degrees, heading east",
         ),
+        meaning=meaning,
     )
 
 
@@ -173,6 +187,7 @@ def inertial_rate():
     return f - true
 
 
+FREE = [None, None, []]
 LEVEL = {tilt: (-sp.Rational(3, 2), sp.Rational(3, 2))}
 
 
@@ -181,6 +196,7 @@ def inertial_is_nonlinear():
     """Below (1): an inertial system obeys an equation of type (1), nonlinear in its tilt and zero without errors."""
     rate = inertial_rate()
     at_rest = {tilt: 0, df: 0}
+    level = re.sub(rf"\b({tilt}|{df})\b", "0", to_text(rate))
     curvature = rate.diff(tilt, 2).subs(at_rest).subs({f: 1, gravity: 10})
     return Property(
         printed=(0, True),
@@ -190,6 +206,10 @@ def inertial_is_nonlinear():
             PROVED,
             scope="one horizontal axis, a tilted platform",
             evidence=f"d2S/dbeta2 = {curvature} at f = 1",
+        ),
+        meaning=(
+            state(level, "=", "0", {s.name: FREE for s in (f, gravity)}),
+            changes_at(rate, tilt, 2, {tilt: 0, df: 0, f: 1, gravity: 10}),
         ),
     )
 

@@ -151,6 +151,7 @@ def living_sequences():
     return Property(
         printed=(3, 3, 3),
         derived=Finding(alive, "leaves of positive weight counted", PROVED, scope="one model, I = 3, k = 1..3"),
+        unsaid="a program is run and what it does is counted",
     )
 
 
@@ -167,6 +168,7 @@ def optimal():
         derived=Finding(
             equal, "Gaussians of both compared as rationals", PROVED, scope="one model, I = 3, three steps"
         ),
+        unsaid="a program is run and what it does is counted",
     )
 
 
@@ -186,6 +188,7 @@ def prior():
             PROVED,
             scope="two modes, L = 1..3, one step",
         ),
+        unsaid="a program is run and what it does is counted",
     )
 
 

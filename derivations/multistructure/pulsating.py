@@ -127,6 +127,7 @@ def number_of_sequences():
             PROVED,
             scope="I = 1..4, k = 0..5; every step multiplies by I, so for all by induction",
         ),
+        unsaid="a program is run and what it does is counted",
     )
 
 
@@ -160,7 +161,9 @@ def suboptimal():
     series = [[3], [1]]
     pulsating = examples.enclosures("pulsating", MODELS, SWITCHING, series)[1]
     exact = examples.enclosures("exact", MODELS, SWITCHING, series)[1]
-    return Property(printed=True, derived=differs(pulsating, exact))
+    return Property(
+        printed=True, derived=differs(pulsating, exact), unsaid="a filter is run in balls over several steps"
+    )
 
 
 @claim("17.first")
@@ -213,6 +216,7 @@ def near_optimal():
             scope="g = 1 - 10^-k, unit Gaussians 10^(k/2) apart, k = 1..6",
             evidence=f"excess kurtosis grows from {float(values[0]):.3g} to {float(values[-1]):.3g}",
         ),
+        unsaid="what a limit of an excess is, is found along a sequence",
     )
 
 
@@ -314,6 +318,7 @@ def memory_printed():
         derived=Finding(
             memory(CASES), "arrays of the one-pass filter counted", PROVED, scope="I = 2, 3, 8; n = 1, 2, 6"
         ),
+        unsaid="a program is run and what it does is counted",
     )
 
 
@@ -325,4 +330,5 @@ def memory_corrected():
         derived=Finding(
             memory(CASES), "arrays of the one-pass filter counted", PROVED, scope="I = 2, 3, 8; n = 1, 2, 6"
         ),
+        unsaid="a program is run and what it does is counted",
     )

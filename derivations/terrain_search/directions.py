@@ -4,8 +4,20 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
-from navsym_papers.terrain_search.model import SIZES, beta_x, beta_y, crossing_time, moment, slopes, speed, step
+from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim, state
+from navsym.language.expression import to_text
+from navsym_papers.terrain_search.model import (
+    SIZES,
+    beta_x,
+    beta_y,
+    crossing_time,
+    misfit,
+    moment,
+    slopes,
+    speed,
+    step,
+    t,
+)
 
 DIRECTION = (beta_x, beta_y)
 #: The quadratic is decided on tracks of these sizes; every printed sum runs over pairs of points, so
@@ -60,7 +72,15 @@ def crossing_depends_on_the_direction():
     """A single t_G for all directions need not exist: with slopes (1, 0), (0, 1) it is 0 in one and 1 in the other."""
     points = [(1, 0), (0, 1)]
     found = tuple(crossing_time(points, way) for way in ((1, 0), (0, 1)))
-    return Property(True, Finding(found[0] != found[1], "exact example", PROVED, evidence=f"t_G = {found}"))
+    finding = Finding(found[0] != found[1], "exact example", PROVED, evidence=f"t_G = {found}")
+    return Property(True, finding, (*say_least(points, (1, 0), 0), *say_least(points, (0, 1), 1)))
+
+
+def say_least(points: list, way: tuple, crossing: int) -> tuple[dict, ...]:
+    """That the criterion is least at one crossing, and larger at the one a unit away."""
+    value, least, away = (to_text(sp.sympify(misfit(points, way, at))) for at in (t, crossing, 1 - crossing))
+    positive, real = {step.name: ["0", None, ["open-low"]]}, {t.name: [None, None, []]}
+    return state(value, ">=", least, positive | real), state(away, ">", least, positive)
 
 
 # Equations (12) and (13): the sums, entry by entry

@@ -6,8 +6,8 @@ from fractions import Fraction
 
 import sympy as sp
 
-from navsym.claims import OPEN, PROVED, REFUTED, UNDECIDED, Bound, Equation, Finding, Property, claim
-from navsym_papers.terrain_search.directions import quotient
+from navsym.claims import OPEN, PROVED, REFUTED, UNDECIDED, Bound, Equation, Finding, Property, claim, state
+from navsym_papers.terrain_search.directions import quotient, say_least
 from navsym_papers.terrain_search.model import beta_x, beta_y, crossing_time, inverse, moment, slopes, symmetric
 
 G, M = symmetric("G"), symmetric("M")
@@ -99,7 +99,13 @@ def roots_on_the_example():
 def two_directions():
     """The directions (beta_x : beta_y) that solve it are two, here the axes, with t_G = 1 and 0."""
     values = sorted(int(crossing_time([(1, 0), (0, 1)], way)) for way in axes_of_the_example())
-    return Property((0, 1), Finding(tuple(values), "exact example: slopes (1, 0) and (0, 1)", PROVED))
+    finding = Finding(tuple(values), "exact example: slopes (1, 0) and (0, 1)", PROVED)
+    A2, A1, A0 = example()
+    form, off_axes = f"{A2}*u**2 + {A1}*u*v + {A0}*v**2", {name: [None, None, ["nonzero"]] for name in "uv"}
+    axes = [(form.replace("u", x).replace("v", y), "=", "0") for x, y in ("10", "01")]
+    points = [(1, 0), (0, 1)]
+    least = (*say_least(points, (1, 0), 0), *say_least(points, (0, 1), 1))
+    return Property((0, 1), finding, (*(state(*axis) for axis in axes), state(form, "!=", "0", off_axes), *least))
 
 
 def axes_of_the_example():

@@ -139,7 +139,9 @@ def sequential_search_may_fit_better():
     found = least_criteria(Fraction(-1, 2), Fraction(1))
     scope = "heights h(x) = x, n = 1, steps of one, errors -1/2 of the position and 1 of the velocity"
     return Property(
-        printed=(Fraction(0), Fraction(1, 2)), derived=Finding(found, "all hypotheses counted", PROVED, scope=scope)
+        printed=(Fraction(0), Fraction(1, 2)),
+        derived=Finding(found, "all hypotheses counted", PROVED, scope=scope),
+        unsaid="a least value over a grid is found by trying all hypotheses",
     )
 
 

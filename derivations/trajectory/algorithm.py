@@ -11,7 +11,7 @@ from itertools import product
 
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
+from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim, state
 from navsym_papers.trajectory.model import dynamics, first_state, nilpotent_exponential, pascal_rows
 
 N = 3
@@ -167,27 +167,36 @@ def corrected_matrix():
 # -- the field of Q ----------------------------------------------------------------------------------------
 
 
+def say_field(count: int, n: int) -> dict:
+    """That n independent choices among three are so many."""
+    return state(str(count), "=", f"product(3, k, 1, {n})")
+
+
 @claim("algorithm.NQ", expect=REFUTED, slip="paper", reason="3^5 = 243; one candidate of the field is not counted")
 def field_size_printed():
     """Number of values in the field for n = 5, as printed."""
-    return Property(printed=242, derived=Finding(len(field(5)), "enumeration", PROVED, scope="n = 5"))
+    found = Finding(len(field(5)), "enumeration", PROVED, scope="n = 5")
+    return Property(printed=242, derived=found, meaning=(say_field(242, 5),))
 
 
 @claim("algorithm.NQ*", corrects="algorithm.NQ")
 def field_size():
     """Number of values in the field for n = 5."""
-    return Property(printed=243, derived=Finding(len(field(5)), "enumeration", PROVED, scope="n = 5"))
+    found = Finding(len(field(5)), "enumeration", PROVED, scope="n = 5")
+    return Property(printed=243, derived=found, meaning=(say_field(243, 5),))
 
 
 @claim("algorithm.NQ.power")
 def field_size_power():
     """The field has 3^n candidates: each of n elements may fall, stay or rise."""
     found = tuple(len(field(n)) for n in range(1, 8))
-    return Property(
-        printed=tuple(3**n for n in range(1, 8)), derived=Finding(found, "enumeration", PROVED, scope="n = 1..7")
-    )
+    meaning = tuple(say_field(3**n, n) for n in range(1, 8))
+    finding = Finding(found, "enumeration", PROVED, scope="n = 1..7")
+    return Property(printed=tuple(3**n for n in range(1, 8)), derived=finding, meaning=meaning)
 
 
+COUNTED = "the different values of a list are counted, and statements are about one value"
+UNITS = "units are compared as exponents, and statements are about numbers"
 #: What the counts are made for: other centres give other numbers.
 FIELD_SCOPE = "n = 5, centre 1, 1/3, ..., 1/9, start f = 0, P = E, R = 1, tau = 0.2, row of ones as printed"
 
@@ -230,7 +239,8 @@ def terms(n: int, row: list[int], residual_after: bool) -> list[tuple[Fraction, 
 def field_values():
     """For one centre and one start the 3^5 candidates give as many values of J (equal elements would merge some)."""
     found = len(criteria(5, [1] * 5, residual_after=False))
-    return Property(printed=3**5, derived=Finding(found, "exact enumeration", PROVED, scope=FIELD_SCOPE))
+    finding = Finding(found, "exact enumeration", PROVED, scope=FIELD_SCOPE)
+    return Property(printed=3**5, derived=finding, unsaid=COUNTED)
 
 
 @claim("algorithm.J.first")
@@ -240,7 +250,8 @@ def first_term_of_the_criterion():
     The candidates differ in K_(k+1), and so in x*_(k+1); what was estimated before cannot show which of them fits.
     """
     found = tuple(len({first for first, _ in terms(5, [1] * 5, after)}) for after in (False, True))
-    return Property(printed=(1, 216), derived=Finding(found, "exact enumeration", PROVED, scope=FIELD_SCOPE))
+    finding = Finding(found, "exact enumeration", PROVED, scope=FIELD_SCOPE)
+    return Property(printed=(1, 216), derived=finding, unsaid=COUNTED)
 
 
 @claim("algorithm.J.still")
@@ -293,7 +304,7 @@ def units_of_terms(speed_power: int, acceleration_power: int) -> set[tuple[int, 
 def criterion_units():
     """The terms of J have three units as printed (m^2, m^2/s, m^2/s^2), and one when weighted by tau^2 and tau^4."""
     found = len(units_of_terms(1, 2)), len(units_of_terms(2, 4))
-    return Property(printed=(3, 1), derived=Finding(found, "exponents of metre and second", PROVED))
+    return Property(printed=(3, 1), derived=Finding(found, "exponents of metre and second", PROVED), unsaid=UNITS)
 
 
 @claim("algorithm.P.not_covariance")

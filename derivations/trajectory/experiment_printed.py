@@ -8,7 +8,7 @@ from itertools import pairwise
 import flint
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, REFUTED, Claim, Equation, Finding, Property, claim
+from navsym.claims import CERTIFIED, PROVED, REFUTED, Claim, Equation, Finding, Property, claim, state
 
 RADIUS = Fraction(6371000)
 TAU = Fraction(1, 5)
@@ -32,7 +32,13 @@ def three_parts_fill_the_run():
     parts = ((0, True, 1000, False), (1000, True, 2080, True), (2080, False, 3600, True))
     meets = all(left[2] == right[0] and left[3] != right[1] for left, right in pairwise(parts))
     found = (parts[0][0], parts[-1][2], meets)
-    return Property(printed=(0, 3600, True), derived=Finding(found, "ends of the parts", PROVED))
+    first, second, third = (
+        "where(t < 1000, 1, 0)",
+        "where(t >= 1000, where(t <= 2080, 1, 0), 0)",
+        "where(t > 2080, 1, 0)",
+    )
+    meaning = (state(f"{first} + {second} + {third}", "=", "1", {"t": ["0", "3600", []]}),)
+    return Property((0, 3600, True), Finding(found, "ends of the parts", PROVED), meaning)
 
 
 @claim("experiment.heading")
@@ -46,12 +52,21 @@ def heading():
 def tuning_stops_at_a_step():
     """Tuning stops at 168.8 s, a whole number of steps of 0.2 s."""
     steps = Fraction("168.8") / TAU
-    return Property(
-        printed=True, derived=Finding(steps.denominator == 1, "exact division", PROVED, evidence=f"{steps} steps")
-    )
+    found = Finding(steps.denominator == 1, "exact division", PROVED, evidence=f"{steps} steps")
+    return Property(printed=True, derived=found, meaning=(state("168.8/0.2", "=", str(round(steps))),))
 
 
 # -- printed errors of position ------------------------------------------------------------------------
+
+
+def agreement(angle: str, half_angle: str, length: str, half_length: str, unit: str) -> Property:
+    """That two rounded figures can belong to one error."""
+    per_unit = {"degree": metres_per_degree(), "radian": metres_per_radian()}[unit]
+    low, high = (str(Fraction(angle) + sign * Fraction(half_angle)) for sign in (-1, 1))
+    bottom, top = (str(Fraction(length) + sign * Fraction(half_length)) for sign in (-1, 1))
+    metres = f"{RADIUS}*pi/180" if unit == "degree" else str(RADIUS)
+    meaning = (state(f"({low})*{metres}", "<=", top), state(f"({high})*{metres}", ">=", bottom))
+    return Property(True, agree(angle, half_angle, length, half_length, per_unit), meaning)
 
 
 def agree(angle: str, half_angle: str, length: str, half_length: str, per_unit: flint.arb) -> Finding:
@@ -85,13 +100,13 @@ def metres_per_radian() -> flint.arb:
 )
 def position_error_printed():
     """|V| = 100 m/s: 1.2e-8 degrees are 0.06 m."""
-    return Property(printed=True, derived=agree("1.2e-8", "0.05e-8", "0.06", "0.005", metres_per_degree()))
+    return agreement("1.2e-8", "0.05e-8", "0.06", "0.005", "degree")
 
 
 @claim("experiment.sigma_phi.100*", expect=CERTIFIED, corrects="experiment.sigma_phi.100")
 def position_error():
     """|V| = 100 m/s: 1.2e-8 radians are 0.08 m."""
-    return Property(printed=True, derived=agree("1.2e-8", "0.05e-8", "0.08", "0.005", metres_per_radian()))
+    return agreement("1.2e-8", "0.05e-8", "0.08", "0.005", "radian")
 
 
 def other_speed(speed: int) -> tuple[Claim, Claim]:
@@ -104,15 +119,16 @@ def other_speed(speed: int) -> tuple[Claim, Claim]:
         slip="paper",
         reason="2.2e-8 degrees are 2.4 mm; the unit is the radian",
         title=f"|V| = {speed} m/s: 2.2e-8 degrees are 0.1 m",
-    )(lambda: Property(printed=True, derived=agree(*figures, metres_per_degree())))
+    )(lambda: agreement(*figures, "degree"))
     right = claim(
         f"{number}*", expect=CERTIFIED, corrects=number, title=f"|V| = {speed} m/s: 2.2e-8 radians are 0.1 m"
-    )(lambda: Property(printed=True, derived=agree(*figures, metres_per_radian())))
+    )(lambda: agreement(*figures, "radian"))
     return wrong, right
 
 
 OTHER_SPEEDS = (*other_speed(2), *other_speed(300))
 
+EXPONENTS = "units are compared as exponents, and statements are about numbers"
 #: Exponents of metre and second.
 UNITS = {"m": (1, 0), "m/s": (1, -1), "m/s^2": (1, -2)}
 
@@ -130,16 +146,16 @@ def rate(unit: tuple[int, int]) -> Finding:
 )
 def speed_error_unit_printed():
     """The error of the speed V_2 at |V| = 100 m/s is printed in metres."""
-    return Property(printed=UNITS["m"], derived=rate(UNITS["m"]))
+    return Property(printed=UNITS["m"], derived=rate(UNITS["m"]), unsaid=EXPONENTS)
 
 
 @claim("experiment.sigma_v.unit*", corrects="experiment.sigma_v.unit")
 def speed_error_unit():
     """The error of a speed is in metres per second."""
-    return Property(printed=UNITS["m/s"], derived=rate(UNITS["m"]))
+    return Property(printed=UNITS["m/s"], derived=rate(UNITS["m"]), unsaid=EXPONENTS)
 
 
 @claim("experiment.sigma_a.unit")
 def acceleration_error_unit():
     """The error of the acceleration dV_2/dt is in metres per second squared."""
-    return Property(printed=UNITS["m/s^2"], derived=rate(UNITS["m/s"]))
+    return Property(printed=UNITS["m/s^2"], derived=rate(UNITS["m/s"]), unsaid=EXPONENTS)

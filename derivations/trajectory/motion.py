@@ -7,10 +7,11 @@ from itertools import pairwise
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property, claim
+from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property, claim, state
 from navsym.models import earth as motion
 from navsym.trajectory.conditioning import condition_number
 from navsym_papers.trajectory import model
+from navsym_papers.trajectory.table import TWO_NUMBERS, say_comparison, say_ends
 
 rho, tau, t = sp.symbols("rho tau t", positive=True)
 
@@ -46,13 +47,20 @@ def rate_of_state(n: int) -> list[sp.Expr]:
 def degree_of_the_speed():
     """The speed is a polynomial of degree n - 2."""
 
-    def degree(n: int) -> int:
-        speed = (model.nilpotent_exponential(model.dynamics(n, rho), t) * sp.Matrix(STATE[:n]))[1]
-        return int(sp.Poly(speed, t).degree())
+    def speed(n: int) -> sp.Expr:
+        return (model.nilpotent_exponential(model.dynamics(n, rho), t) * sp.Matrix(STATE[:n]))[1]
+
+    def say_degree(n: int) -> tuple[dict, dict]:
+        text, highest = str(speed(n)), {f"x{n}": [None, None, ["nonzero"]]}
+        symbols = {name.name: [None, None, []] for name in speed(n).free_symbols} | {"t": [None, None, []]}
+        top = text if n == 2 else f"diff({text}, t, {n - 2})"
+        return state(top, "!=", "0", symbols | highest), state(f"diff({text}, t, {n - 1})", "=", "0", symbols)
 
     orders = range(2, ORDER + 1)
-    found = Finding(tuple(map(degree, orders)), "degree of the exact solution", PROVED, scope=f"n = 2..{ORDER}")
-    return Property(printed=tuple(n - 2 for n in orders), derived=found)
+    degrees = tuple(int(sp.Poly(speed(n), t).degree()) for n in orders)
+    found = Finding(degrees, "degree of the exact solution", PROVED, scope=f"n = 2..{ORDER}")
+    meaning = tuple(text for n in orders for text in say_degree(n))
+    return Property(printed=tuple(n - 2 for n in orders), derived=found, meaning=meaning)
 
 
 @claim("1.row1")
@@ -149,7 +157,9 @@ def nilpotency():
         scope="n = 2..12; for every n the power k moves the diagonal k places up",
         assumptions=("rho != 0",),
     )
-    return Property(printed=tuple(n for n in ORDERS), derived=found)
+    return Property(
+        printed=tuple(n for n in ORDERS), derived=found, unsaid="a claim of eleven matrices and their powers"
+    )
 
 
 @claim("3.nonzero")
@@ -160,7 +170,7 @@ def nonzero_elements():
         return sum(x != 0 for x in model.dynamics(n, rho))
 
     found = Finding(tuple(map(count, ORDERS)), "count", PROVED, scope="n = 2..12", assumptions=("rho != 0",))
-    return Property(printed=tuple(n - 1 for n in ORDERS), derived=found)
+    return Property(printed=tuple(n - 1 for n in ORDERS), derived=found, unsaid="a count of entries")
 
 
 @claim("3.elements")
@@ -256,8 +266,12 @@ PAPER_RHO = sp.Rational(1, 6371000)
 
 def conditioning(n: int, step: sp.Rational):
     """Certified enclosure of mu(N_p) at the rho of the table."""
-    rows = motion.observability_rows(n, Fraction(1, 6371000), Fraction(int(step.p), int(step.q)))
-    return condition_number(rows, digits=12)
+    return condition_number(rows_of_table(n, step), digits=12)
+
+
+def rows_of_table(n: int, step: sp.Rational) -> list[list[Fraction]]:
+    """N_p at the rho of the table."""
+    return motion.observability_rows(n, Fraction(1, 6371000), Fraction(int(step.p), int(step.q)))
 
 
 def improves(n: int, longer: sp.Rational, shorter: sp.Rational) -> bool:
@@ -282,7 +296,7 @@ def smaller_steps_always_worsen():
         scope="n = 20, rho = 1/6371000, tau = 1 and 0.94",
         evidence=f"{conditioning(20, longer).rounded(5)} at 1 s, {conditioning(20, shorter).rounded(5)} at 0.94 s",
     )
-    return Property(printed=True, derived=found)
+    return Property(printed=True, derived=found, unsaid=TWO_NUMBERS)
 
 
 @claim("4.hadamard*", expect=CERTIFIED, corrects="4.hadamard")
@@ -291,4 +305,11 @@ def smaller_steps_worsen_below_a_second():
     steps = [sp.Rational(1, 2**k) for k in range(6)]
     holds = all(improves(n, longer, shorter) for n in (2, 3, 4, 5, 10, 19, 20) for longer, shorter in pairwise(steps))
     scope = "rho = 1/6371000, tau = 1, 1/2, ..., 1/32, n of the table"
-    return Property(printed=True, derived=Finding(holds, "certified condition numbers", CERTIFIED, scope=scope))
+    enclosed, relations = [], []
+    for n in (2, 3, 4, 5, 10, 19, 20):
+        ends = [say_ends(rows_of_table(n, step), conditioning(n, step), False) for step in steps]
+        enclosed += [end[0] for end in ends]
+        relations += [(shorter[1], ">", longer[2]) for longer, shorter in pairwise(ends)]
+    meaning, certificate = say_comparison(enclosed, relations)
+    found = Finding(holds, "certified condition numbers", CERTIFIED, scope=scope, certificate=certificate)
+    return Property(printed=True, derived=found, meaning=meaning)

@@ -7,7 +7,7 @@ from math import comb
 
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
+from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim, state
 from navsym_papers.trajectory import model
 
 rho, tau = sp.symbols("rho tau", positive=True)
@@ -150,29 +150,51 @@ def transitions() -> sp.Matrix:
 SCOPE = f"n = {LARGEST} and, as leading blocks, every smaller n; D_f exp(A tau) D_f^-1 for free rho, tau"
 
 
+def write_rows(rows) -> str:
+    """A matrix, or a vector, in the language of statements."""
+    return "[" + ", ".join(write_rows(row) if isinstance(row, list) else str(row) for row in rows) + "]"
+
+
+POSITIVE = {name: ["0", None, ["open-low"]] for name in ("rho", "tau")}
+
+
+def say_entries(rows: list[dict[tuple[int, int], int]]) -> tuple[dict, ...]:
+    """That D_f Phi D_f^-1, not multiplied out, has these entries at these places: one statement for each row."""
+    scale, Phi = D_f(LARGEST), step(LARGEST)
+
+    def write(i: int, j: int) -> str:
+        return f"({scale[i, i]})*({Phi[i, j]})/({scale[j, j]})"
+
+    texts = [([write(*place) for place in row], list(row.values())) for row in rows]
+    return tuple(state(write_rows(left), "=", write_rows(right), POSITIVE) for left, right in texts)
+
+
 @claim("6.Phif.triangular")
 def transition_is_triangular():
     """Phi_f is upper triangular with integer elements."""
     Phi = transitions()
     holds = all(Phi[i, j].is_Integer and (j >= i or Phi[i, j] == 0) for i in range(LARGEST) for j in range(LARGEST))
-    return Property(printed=True, derived=Finding(holds, "exact matrix", PROVED, scope=SCOPE))
+    rows = [{(i, j): comb(j, i) for j in range(LARGEST)} for i in range(LARGEST)]
+    return Property(True, Finding(holds, "exact matrix", PROVED, scope=SCOPE), say_entries(rows))
 
 
 @claim("6.Phif.diagonal")
 def transition_diagonal():
     """Phi_f,ii = 1."""
-    found = tuple(int(transitions()[i, i]) for i in range(LARGEST))
-    return Property(printed=(1,) * LARGEST, derived=Finding(found, "exact matrix", PROVED, scope=SCOPE))
+    found = Finding(tuple(int(transitions()[i, i]) for i in range(LARGEST)), "exact matrix", PROVED, scope=SCOPE)
+    meaning = say_entries([{(i, i): 1 for i in range(LARGEST)}])
+    return Property(printed=(1,) * LARGEST, derived=found, meaning=meaning)
 
 
 @claim("6.Phif.first_row")
 def transition_first_row():
     """Phi_f,1j = 1."""
-    found = tuple(int(x) for x in transitions()[0, :])
-    return Property(printed=(1,) * LARGEST, derived=Finding(found, "exact matrix", PROVED, scope=SCOPE))
+    found = Finding(tuple(int(x) for x in transitions()[0, :]), "exact matrix", PROVED, scope=SCOPE)
+    meaning = say_entries([{(0, j): 1 for j in range(LARGEST)}])
+    return Property(printed=(1,) * LARGEST, derived=found, meaning=meaning)
 
 
-def recurrence_holds(row_step: int) -> bool:
+def recurrence_holds(row_step: int) -> Property:
     """Phi_(i + row_step(i), j+1) = Phi_ij + Phi_(i+1)j wherever all three elements exist.
 
     row_step 1 is i + 1; 0 stands for the printed i + i.
@@ -182,8 +204,14 @@ def recurrence_holds(row_step: int) -> bool:
     def target(i: int) -> int:
         return 2 * i + 1 if row_step == 0 else i + 1
 
-    places = [(i, j) for i in range(LARGEST - 1) for j in range(LARGEST - 1) if target(i) < LARGEST]
-    return all(Phi[target(i), j + 1] == Phi[i, j] + Phi[i + 1, j] for i, j in places)
+    rows, columns = [i for i in range(LARGEST - 1) if target(i) < LARGEST], range(LARGEST - 1)
+    found = all(Phi[target(i), j + 1] == Phi[i, j] + Phi[i + 1, j] for i in rows for j in columns)
+
+    def say(i: int) -> dict:
+        before = [write_rows([Phi[i + k, j] for j in columns]) for k in (0, 1)]
+        return state(write_rows([Phi[target(i), j + 1] for j in columns]), "=", " + ".join(before))
+
+    return Property(True, Finding(found, "exact matrix", PROVED, scope=SCOPE), tuple(map(say, rows)))
 
 
 @claim(
@@ -194,13 +222,13 @@ def recurrence_holds(row_step: int) -> bool:
 )
 def recurrence_printed():
     """Phi_(i+i, j+1) = Phi_ij + Phi_(i+1)j, as it came out of the scan."""
-    return Property(printed=True, derived=Finding(recurrence_holds(0), "exact matrix", PROVED, scope=SCOPE))
+    return recurrence_holds(0)
 
 
 @claim("6.Phif.recurrence*", corrects="6.Phif.recurrence")
 def recurrence():
     """Phi_(i+1, j+1) = Phi_ij + Phi_(i+1)j: Pascal's triangle."""
-    return Property(printed=True, derived=Finding(recurrence_holds(1), "exact matrix", PROVED, scope=SCOPE))
+    return recurrence_holds(1)
 
 
 def reached(allowed) -> int:
@@ -231,14 +259,14 @@ def reached(allowed) -> int:
 def recurrence_range_printed():
     """The recurrence for i >= j determines all 10 elements above the diagonal (n = 5)."""
     found = Finding(reached(lambda i, j: i >= j), "closure of the rules", PROVED, scope="n = 5")
-    return Property(printed=10, derived=found)
+    return Property(printed=10, derived=found, unsaid="what rules reach is found by following them to the end")
 
 
 @claim("6.Phif.range*", corrects="6.Phif.range")
 def recurrence_range():
     """The recurrence for i <= j determines all 10 elements above the diagonal (n = 5)."""
     found = Finding(reached(lambda i, j: i <= j), "closure of the rules", PROVED, scope="n = 5")
-    return Property(printed=10, derived=found)
+    return Property(printed=10, derived=found, unsaid="what rules reach is found by following them to the end")
 
 
 @claim("6.Nf.elements")
@@ -246,7 +274,9 @@ def observability_elements():
     """N_f,ij = i^(j-1)."""
     found = tuple(int(x) for x in N_f(16))
     printed = tuple(i**j for i in range(1, 17) for j in range(16))
-    return Property(printed=printed, derived=Finding(found, "exact matrix", PROVED, scope="n = 16"))
+    rows = [[f"{i}**{j}" for j in range(16)] for i in range(1, 17)]
+    meaning = (state(write_rows(rows), "=", write_rows(N_f(16).tolist())),)
+    return Property(printed, Finding(found, "exact matrix", PROVED, scope="n = 16"), meaning)
 
 
 @claim("6.Nf.row_step")

@@ -6,10 +6,12 @@ enclosure of the condition number, rounded in the same format; both ends of the 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
 from functools import lru_cache
+from typing import Any
 
-from navsym.claims import CERTIFIED, REFUTED, UNDECIDED, Claim, Finding, Property
+from navsym.claims import CERTIFIED, REFUTED, UNDECIDED, Claim, Finding, Property, state
 from navsym.models.earth import observability_rows, power_rows
 from navsym.trajectory.conditioning import Enclosure, certify_condition, condition_number, state_condition
 
@@ -81,6 +83,31 @@ def ends_of(printed: str) -> tuple[Fraction, Fraction]:
 def relative_error(printed: str, found: Enclosure) -> Fraction:
     """Printed over true value, minus one."""
     return Fraction(printed) / found.lower - 1
+
+
+def say_ends(rows: list[list[Fraction]], found: Enclosure, unit: bool) -> tuple[dict[str, Any], Fraction, Fraction]:
+    """That the condition number lies between two ends of eight digits, and these ends."""
+    narrow = Fraction(1, 10**8)
+    lower, upper = map(Fraction, Enclosure(found.lower * (1 - narrow), found.upper * (1 + narrow)).decimal(10))
+    return state_condition(rows, lower, upper, equilibrate=unit), lower, upper
+
+
+#: Why the refutation of an order of condition numbers has no certificate.
+TWO_NUMBERS = "a refutation fails one statement, and the order of two condition numbers is none of one matrix"
+Said = tuple[tuple[dict[str, Any], ...], dict[str, Any]]
+
+
+def say_comparison(enclosed: Iterable[dict[str, Any]], relations: Iterable[tuple[Fraction, str, Fraction]]) -> Said:
+    """What a sentence about condition numbers says, with its certificate.
+
+    enclosed  : condition numbers between ends
+    relations : what these ends satisfy; the sentence follows from both
+    """
+    conditions, compared = [*enclosed], [state(str(x), sign, str(y)) for x, sign, y in relations]
+    balls = {"rule": "balls", "bits": 128, "cells": 0}
+    parts = [certify_condition(condition) for condition in conditions]
+    parts += [{"kind": "proof", "statement": s, "bits": 128, "witness": {}, "proofs": [balls]} for s in compared]
+    return (*conditions, *compared), {"kind": "all", "of": parts}
 
 
 def entry(n: int, step: str, column: str, printed: str) -> Property:

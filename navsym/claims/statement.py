@@ -151,15 +151,30 @@ class Property:
 
     printed : what the paper says, for example ``True``, ``3`` or ``"three instants"``
     derived : a :class:`Finding` whose value is compared with it
-    meaning : what the printed fact says, as statements that the checker reads; empty where it has no words for it
+    meaning : what the printed fact says, as statements that the checker reads (:func:`state`); empty where it has no
+              words for it
+    unsaid  : without a meaning, why: what the language of the checker lacks
     """
 
     printed: Any
     derived: Finding
     meaning: tuple[Mapping[str, Any], ...] = ()
+    unsaid: str = ""
 
     def _repr_latex_(self) -> str:
         return display_latex(rf"{latex_of(self.printed)} \overset{{?}}{{=}} {latex_of(self.derived.value)}")
 
 
 Statement = Equation | Bound | Optimum | Property
+
+
+def state(left: str, relation: str, right: str, symbols: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """One formula as a statement of the checker (docs/certificates.md), for the meaning of a property.
+
+    symbols : name -> [low, high, flags]
+
+    >>> state("x**2", ">=", "x", {"x": ["1", None, []]})["relation"]
+    '>='
+    """
+    sides = {"left": left, "relation": relation, "right": right}
+    return {**sides, "symbols": dict(symbols or {}), "exists": [], "tolerance": None}

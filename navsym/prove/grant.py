@@ -34,7 +34,7 @@ BITS = (128, 1024, 8192)
 POINTS = 18
 SHARE = "share"
 #: Kinds of certificates that give a statement its verdict.
-GRANTS = ("proof", "counterexample", "condition", "words", "sized")
+GRANTS = ("proof", "counterexample", "condition", "observability", "words", "sized")
 NUMERAL = re.compile(r"(?<![\w.])\d+(?:\.\d+)?[eE][+-]?\d+", re.ASCII)
 IDENTITY = {"rule": "identity"}
 #: The checker and its player are two modules, and each has its own class.
@@ -169,7 +169,8 @@ def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECON
     """
     documents = write_statements(statement)
     if documents is None:
-        return leave_unchecked(verdict)
+        apart = "the two sides have no common statement"
+        return leave_unchecked(verdict, statement.unsaid if isinstance(statement, Property) else apart)
     try:
         if isinstance(statement, Property) and verdict.certificate:
             return grant_finding(documents, verdict)
@@ -180,11 +181,12 @@ def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECON
         return withdraw(verdict, str(refusal)) if verdict.status.holds or verdict.status == REFUTED else verdict
 
 
-def leave_unchecked(verdict: Verdict) -> Verdict:
-    """The same verdict, with the word in its evidence when it is one that others rely on."""
+def leave_unchecked(verdict: Verdict, why: str = "") -> Verdict:
+    """The same verdict, with the word and its reason in the evidence when it is one that others rely on."""
     if verdict.status in (OPEN, CONFIRMED) or UNCHECKED in verdict.evidence:
         return verdict
-    return replace(verdict, evidence=f"{verdict.evidence}; {UNCHECKED}".removeprefix("; "))
+    words = f"{UNCHECKED} ({why})" if why else UNCHECKED
+    return replace(verdict, evidence=f"{verdict.evidence}; {words}".removeprefix("; "))
 
 
 def withdraw(verdict: Verdict, why: str) -> Verdict:

@@ -482,6 +482,28 @@ def identity(left: str, right: str) -> dict[str, Any]:
     return {"kind": "identity", "left": left, "right": right, "symbols": SYMBOLS}
 
 
+def judge_page(module: Any) -> Iterator[str]:
+    """The examples of docs/certificates.md, and limits of functions of what falls."""
+    from tests.checker.test_certificates_page import FORGED, HONEST, put
+
+    yield from (f"refused: {item}" for item in HONEST if verdict(item, module) != "")
+    for item, row in FORGED:
+        if not re.search(row["refused"], verdict(put(item, row["at"], row["put"]), module) or "accepted"):
+            yield f"not refused for {row['refused']}: {row}"
+    for text, value, other in (("atan(-2*x)", "-pi/2", "pi/2"), ("tanh(1 - x)", "-1", "1"), ("exp(2 - x)", "0", "1")):
+        claim = {"left": f"limit({text}, x, oo)", "relation": "=", "symbols": {}, "exists": [], "tolerance": None}
+        limit = {
+            "kind": "proof",
+            "bits": 128,
+            "witness": {},
+            "proofs": [{"rule": "identity"}],
+            "answers": [{"signs": []}],
+        }
+        for right, good in ((value, True), (other, False)):
+            if (verdict(limit | {"statement": claim | {"right": right}}, module) == "") != good:
+                yield f"{text} to {right}: expected {good}"
+
+
 def discrepancies(module: Any) -> Iterator[str]:
     """What a module with the checker's names answers otherwise than it must."""
     yield from proofs.discrepancies(module)
@@ -495,6 +517,7 @@ def discrepancies(module: Any) -> Iterator[str]:
     yield from (f"accepted: {text}" for text in OUTSIDE if verdict(identity(text, text), module) == "")
     yield from (f"read: {text[:30]}" for text in BROKEN if readable(text, module))
     yield from (f"enclosed: {text}" for text, series in FUNCTIONS if not enclosed(text, series, module))
+    yield from judge_page(module)
     from tests.checker.adversary import tricks  # it is made of what stands here
 
     yield from (f"accepted: {name}" for name, item in tricks() if judged(item, module) == "")

@@ -9,8 +9,20 @@ from functools import cache
 
 import pytest
 
-from navsym.claims import CERTIFIED, CONFIRMED, OPEN, REFUTED, UNDECIDED, Finding, Property, claims_of, equation_of
+from navsym.claims import (
+    CERTIFIED,
+    CONFIRMED,
+    OPEN,
+    REFUTED,
+    UNDECIDED,
+    Finding,
+    Property,
+    claims_of,
+    equation_of,
+    state,
+)
 from navsym.claims.paper import import_paper, papers_folder
+from navsym.prove.grant import UNCHECKED
 from navsym.prove.ladder import decide
 from navsym.verification.ledger import Ledger, records_about
 from tests.derivations.statements import PAPERS
@@ -114,3 +126,25 @@ def test_a_finding_says_how_strongly_it_was_decided():
 def test_a_run_confirms_and_never_refutes():
     assert decide(Property(True, Finding(True, "a run", CONFIRMED))).status == CONFIRMED
     assert decide(Property(True, Finding(False, "a run", CONFIRMED))).status == OPEN
+
+
+@pytest.mark.parametrize("name", PAPERS)
+def test_a_verdict_without_a_certificate_says_why(name):
+    bare = [record for record in records(name) if UNCHECKED in record.evidence]
+    assert all(record.certificate is None for record in bare)
+    assert not [record.id for record in bare if not re.search(re.escape(UNCHECKED) + r" \(\w.{10,}\)", record.evidence)]
+
+
+def test_what_a_fact_means_has_the_last_word():
+    """A fact that was found, and a meaning that is false, are OPEN; and so is a refutation of what is true."""
+    true, false = (state(count, "=", "product(3, k, 1, 5)") for count in ("243", "242"))
+
+    def judge(printed, found, *meaning):
+        return decide(Property(printed, Finding(found, "a count", CERTIFIED), meaning))
+
+    granted = judge(243, 243, true)
+    assert granted.status == CERTIFIED and granted.certificate["statement"] == true
+    assert judge(243, 243, false).status == judge(243, 243, true, false).status == OPEN
+    refuted = judge(242, 243, true, false)
+    assert refuted.status == REFUTED and refuted.certificate["statement"] == false
+    assert judge(242, 243, true).status == OPEN

@@ -60,9 +60,10 @@ let check_proof value =
   match get_keys "proof" [ "kind"; "statement"; "bits"; "witness"; "proofs" ] value with
   | [ _; statement; bits; witness; proofs ] ->
       at_precision (get_bits 20000 bits) (fun () ->
-          let s = read_statement statement in
-          let (_ : string -> ball) = check_values s (read_numbers "witness" witness) in
-          prove_each "proofs" (List.map (goal_of s) s.goals) (get_list "proofs" proofs))
+          let cases = read_statement statement in
+          let (_ : ((string -> ball) * statement) list) = check_cases cases (read_numbers "witness" witness) in
+          let goals = List.concat_map (fun s -> List.map (goal_of s) s.goals) cases in
+          prove_each "proofs" goals (get_list "proofs" proofs))
   | _ -> assert false
 
 let fails value (t, relation) =
@@ -80,11 +81,13 @@ let check_counterexample value =
   match get_keys "counterexample" [ "kind"; "statement"; "bits"; "point"; "zero" ] value with
   | [ _; statement; bits; point; zero ] ->
       at_precision (get_bits 200000 bits) (fun () ->
-          let s = read_statement statement in
+          let cases = read_statement statement in
           let point = read_numbers "point" point in
-          let value = check_values s point in
-          match (zero, s.goals) with
-          | Null, goals -> shown "the statement is not seen to fail" (List.exists (fails value) goals)
+          let found = check_cases cases point in
+          match (zero, List.concat_map (fun s -> s.goals) cases) with
+          | Null, _ ->
+              let fails_in (value, s) = List.exists (fails value) s.goals in
+              shown "the statement is not seen to fail" (List.exists fails_in found)
           | proof, [ (t, (Above | Unequal)) ] -> prove (alone (put point t) Equal) proof
           | _ -> refuse "the relation allows 0")
   | _ -> assert false
@@ -180,6 +183,10 @@ let rec check value =
       | "condition" -> Condition.check value ~at_precision
       | "exponential" -> check_exponential value
       | "rank" -> at_precision 128 (fun () -> check_rank value)
+      | "words" -> at_precision 128 (fun () -> Words.check value)
+      | "sized" -> at_precision 128 (fun () -> Sized.check value)
+      | "gap" | "sliver" -> Gap.check value
+      | "observability" -> Observability.check value ~get_matrix ~check_width ~determinant
       | "all" -> (
           match get_keys "all" [ "kind"; "of" ] value with
           | [ _; List (_ :: _ as l) ] -> List.iter check l

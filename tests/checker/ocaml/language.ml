@@ -1,16 +1,26 @@
 (* The language of statements: vectors, matrices, conditions and derivatives are read away, so that plain trees are left.
-   Section 9 of docs/certificates.md, without cases (where, min, max, sign), order, integrals, sums, products and limits: they are outside. *)
+   Section 9 of docs/certificates.md, without integrals, sums, products and limits: they are outside. *)
 
 open Text
 open Tree
 
 type value = Scalar of tree | Matrix of tree list list
 
+(* The signs that a tree may have *)
+type signs = { below : bool; null : bool; above : bool }
+
 type context = {
   shapes : (string * string list list) list;
   declared : string list; (* the symbols *)
   rates : (string * value option) list Lazy.t; (* by the name of a symbol or of a shape *)
   mutable said : tree list; (* all that is typed, and so has to have a value *)
+  mutable given : tree list; (* what is supposed to be >= 0 *)
+  mutable zeros : tree list; (* what is supposed to be 0 *)
+  mutable known : (tree * signs) list; (* what answers say of signs *)
+  mutable plan : bool list; (* answers to the questions that come first in this case *)
+  mutable answers : bool list; (* answers so far, the last one first *)
+  mutable quiet : bool; (* in a branch that is not taken *)
+  mutable branches : int; (* how many were read *)
 }
 
 (* Tokens *)
@@ -182,7 +192,9 @@ let matrix_function name args =
 (* Derivatives *)
 
 let say context t =
-  match t with Num _ | Sym _ -> () | _ -> if not (List.mem t context.said) then context.said <- t :: context.said
+  match t with
+  | Num _ | Sym _ -> ()
+  | _ -> if not (context.quiet || List.mem t context.said) then context.said <- t :: context.said
 
 (* f has to have a value and to be differentiable. *)
 let say_smooth context f =
@@ -223,9 +235,10 @@ let derive_by_time context f =
   Calculus.sum' (List.map share (Names.elements (symbols f)))
 
 let derive_by_symbol context s times f =
-  if List.mem_assoc s (rates_by_symbol context) then outside "diff by a symbol with a rate";
+  let has_rate = List.mem_assoc s (rates_by_symbol context) in
   let rec go n f =
     if n = 0 then f
+    else if has_rate then go (n - 1) (derive_by_time context f)
     else begin
       say_smooth context f;
       go (n - 1) (Calculus.derive s f)
@@ -233,8 +246,116 @@ let derive_by_symbol context s times f =
   in
   go times f
 
-let outside_words =
-  [ "where"; "min"; "max"; "sign"; "integral"; "sum"; "product"; "limit"; "floor"; "erf"; "expm"; "E"; "cov" ]
+let outside_words = [ "integral"; "limit"; "floor"; "erf"; "expm"; "E"; "cov" ]
+
+(* sum and product with rational ends, written out *)
+let write_out name low high term =
+  let whole what t =
+    match !constant t with
+    | Some q when is_whole q && Z.fits_int q.Q.num -> Z.to_int q.Q.num
+    | _ -> outside "%s with %s that is no whole number" name what
+  in
+  let low = whole "a low end" low and high = whole "a high end" high in
+  if high - low >= 400 then refuse "%s: more than 400 terms" name;
+  match List.init (max 0 (high - low + 1)) (fun k -> term (number (low + k))) with
+  | [] -> if name = "sum" then zero else one
+  | l -> if name = "sum" then Sum (zero :: l) else Prod (one :: l)
+
+(* Suppositions *)
+
+let join t l = if List.mem t l then l else l @ [ t ]
+let signs_of = function
+  | Equal -> { below = false; null = true; above = false }
+  | Unequal -> { below = true; null = false; above = true }
+  | AtLeast -> { below = false; null = true; above = true }
+  | Above -> { below = false; null = false; above = true }
+
+let distance a b = match (a, b) with a, Num q when Q.sign q = 0 -> a | Num q, b when Q.sign q = 0 -> negate b | _ -> subtract a b
+
+(* Supposes d relation 0. *)
+let suppose_sign context d relation =
+  say context d;
+  (match relation with
+  | Equal -> context.zeros <- join d context.zeros
+  | Unequal -> ()
+  | AtLeast | Above -> context.given <- join d context.given);
+  if relation = Above || relation = Unequal then say context (Pow (d, Num Q.minus_one))
+
+let opposite_of d = function
+  | Equal -> (d, Unequal)
+  | Unequal -> (d, Equal)
+  | Above -> (negate d, AtLeast)
+  | AtLeast -> (negate d, Above)
+
+(* A condition as d relation 0, or its opposite *)
+let read_relation mark x y =
+  match mark with
+  | "=" -> (distance x y, Equal)
+  | "!=" -> (distance x y, Unequal)
+  | ">" -> (distance x y, Above)
+  | ">=" -> (distance x y, AtLeast)
+  | "<" -> (distance y x, Above)
+  | _ -> (distance y x, AtLeast)
+
+let suppose context (x, mark, y) =
+  match (x, mark, y) with
+  | _, "=", _ ->
+      let all = combine (function [ a; b ] -> distance a b | _ -> assert false) [ x; y ] in
+      List.iter (fun d -> suppose_sign context d Equal) (entries all)
+  | Scalar x, mark, Scalar y ->
+      let d, relation = read_relation mark x y in
+      suppose_sign context d relation
+  | _ -> refuse "given: matrices have no other relation"
+
+(* Cases: the answer to the question whether d relation 0 holds *)
+
+let known_signs context d =
+  let both a b = { below = a.below && b.below; null = a.null && b.null; above = a.above && b.above } in
+  let turned s = { s with below = s.above; above = s.below } in
+  let learn found (other, signs) =
+    if Algebra.vanishes (subtract d other) then both found signs
+    else if Algebra.vanishes (Sum [ d; other ]) then both found (turned signs)
+    else found
+  in
+  List.fold_left learn { below = true; null = true; above = true } context.known
+
+let rec ask context d relation =
+  if context.quiet then true
+  else if relation = Unequal then not (ask context d Equal)
+  else begin
+    say context d;
+    let may = known_signs context d and yes = signs_of relation in
+    let implies a b = (not a) || b in
+    if implies may.below yes.below && implies may.null yes.null && implies may.above yes.above then true
+    else if not ((may.below && yes.below) || (may.null && yes.null) || (may.above && yes.above)) then false
+    else if relation = Above && not may.below then not (ask context d Equal)
+    else if relation = AtLeast && not may.above then ask context d Equal
+    else begin
+      let answer = match context.plan with [] -> true | a :: rest -> context.plan <- rest; a in
+      context.answers <- answer :: context.answers;
+      if List.length context.answers > 128 then refuse "more than 128 cases";
+      let d, relation = if answer then (d, relation) else opposite_of d relation in
+      suppose_sign context d relation;
+      (* hypotheses are no answers: they do not decide a question *)
+      context.known <- (d, signs_of relation) :: context.known;
+      answer
+    end
+  end
+
+(* The plan of the next case, if there is one: the last yes becomes a no. *)
+let rec next_plan = function [] -> None | false :: earlier -> next_plan earlier | true :: earlier -> Some (List.rev (false :: earlier))
+
+let choose context name args =
+  let chosen x y =
+    let first = ask context (subtract y x) AtLeast in
+    if (name = "min") = first then x else y
+  in
+  match (name, args) with
+  | "sign", [ x ] -> if ask context x Equal then zero else if ask context x Above then one else number (-1)
+  | ("min" | "max"), (x :: (_ :: _ as rest)) -> List.fold_left chosen x rest
+  | _ -> refuse "%s: another number of arguments" name
+
+let relation_marks = [ "="; "!="; ">"; ">="; "<"; "<=" ]
 
 let call context name args =
   match (name, args) with
@@ -337,13 +458,75 @@ and read_value context r =
       | Mark "(" ->
           if List.mem name outside_words then outside "%s in a statement" name;
           drop r;
-          call context name (List.map (typed context) (read_list context r ")"))
+          if name = "where" then read_where context r
+          else if name = "sum" || name = "product" then read_terms context name r
+          else if List.mem name [ "min"; "max"; "sign" ] then begin
+            let args = List.map (scalar name) (read_list context r ")") in
+            List.iter (say context) args;
+            context.branches <- context.branches + 1;
+            Scalar (choose context name args)
+          end
+          else begin
+            let before = context.branches in
+            let args = List.map (typed context) (read_list context r ")") in
+            if context.branches > before && List.mem name [ "diff"; "dot_" ] then refuse "a derivative of cases";
+            call context name args
+          end
       | _ when name = "pi" -> Scalar Pi
       | _ -> (
           match List.assoc_opt name context.shapes with
           | Some rows -> Matrix (List.map (List.map (fun s -> Sym s)) rows)
           | None -> Scalar (Sym name)))
   | _ -> refuse "expression: expected a number, a name or a parenthesis"
+
+(* sum(f, k, a, b): what is typed in f has to have a value for every number in the place of k. *)
+and read_terms context name r =
+  let before = context.said and branches = context.branches and quiet = context.quiet in
+  context.said <- [];
+  context.quiet <- false;
+  let f = scalar name (deeper r (read_sum context)) in
+  say context f;
+  let typed_inside = List.rev context.said in
+  context.said <- before;
+  context.quiet <- quiet;
+  take r ",";
+  let k = match next r with Name k when k <> "pi" && k <> "oo" -> drop r; k | _ -> refuse "%s: expected a variable" name in
+  if List.mem_assoc k context.shapes || List.mem_assoc k (Lazy.force context.rates) then refuse "%s: a variable that is in use" name;
+  let finish () = take r ","; scalar name (deeper r (read_sum context)) in
+  let low = finish () in
+  let high = finish () in
+  take r ")";
+  if context.branches > branches then refuse "%s: cases inside" name;
+  let term value =
+    let place = put [ (k, value) ] in
+    List.iter (fun t -> say context (place t)) typed_inside;
+    place f
+  in
+  Scalar (write_out name low high term)
+
+(* where(condition, a, b): what is read in the branch that is not taken leaves no trace. *)
+and read_where context r =
+  context.branches <- context.branches + 1;
+  let side () = match deeper r (read_sum context) with Scalar t -> say context t; t | Matrix _ -> outside "a condition of matrices" in
+  let x = side () in
+  let mark = match next r with Mark m when List.mem m relation_marks -> drop r; m | _ -> refuse "where: expected a relation" in
+  let y = side () in
+  let d, relation = read_relation mark x y in
+  let first = ask context d relation in
+  let branch taken =
+    take r ",";
+    let before = context.quiet in
+    context.quiet <- before || not taken;
+    let v = typed context (deeper r (read_sum context)) in
+    (match v with Scalar t -> say context t | Matrix _ -> ());
+    context.quiet <- before;
+    v
+  in
+  let a = branch first in
+  let b = branch (not first) in
+  take r ")";
+  if shape a <> shape b then refuse "where: different shapes";
+  if first then a else b
 
 (* Values up to a closing mark *)
 and read_list context r closing =
@@ -413,15 +596,19 @@ let read_rates context value =
     match rate with
     | Null -> (name, None)
     | v ->
-        let quiet = { context with said = []; rates = lazy [] } in
-        let rate = read_value_of quiet (get_text "rates" v) in
+        let alone = { context with said = []; rates = lazy [] } in
+        let rate = read_value_of alone (get_text "rates" v) in
+        if alone.branches > 0 then refuse "a rate of cases";
         if shape rate <> shape declared_value then refuse "rates: different shapes";
         (name, Some rate)
   in
   List.map read (get_object "rates" value)
 
-let make_context declared shapes rates =
+let make_context declared plan shapes rates =
   let shapes = read_shapes declared shapes in
-  let rec context = { shapes; declared; rates = lazy (read_rates context rates); said = [] } in
+  let rec context =
+    { shapes; declared; rates = lazy (read_rates context rates); said = []; given = []; zeros = []; known = []; plan;
+      answers = []; quiet = false; branches = 0 }
+  in
   ignore (Lazy.force context.rates);
   context

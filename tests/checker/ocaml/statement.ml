@@ -7,6 +7,7 @@ open Value
 open Goal
 open Language
 
+(* A statement, or one of the cases into which it falls *)
 type statement = {
   goals : (tree * relation) list;
   box : (string * range) list;
@@ -38,50 +39,80 @@ let read_goals left right relation tolerance =
   | "<=", None -> [ (opposite (), AtLeast) ]
   | _ -> refuse "unknown relation %S" relation
 
-(* Supposes a condition between numbers, or an equation of matrices entry by entry. *)
-let suppose s (x, mark, y) =
-  let distance a b = match (a, b) with a, Num q when Q.sign q = 0 -> a | Num q, b when Q.sign q = 0 -> negate b | _ -> subtract a b in
-  let join t l = if List.mem t l then l else l @ [ t ] in
-  let with_value s t = { s with said = join t s.said } in
-  let away s d = with_value s (Pow (d, Num Q.minus_one)) in
-  let at_least s d = { (with_value s d) with given = join d s.given } in
-  let equal_to s d = { (with_value s d) with zeros = join d s.zeros } in
-  match (x, mark, y) with
-  | _, "=", _ ->
-      let all = combine (function [ a; b ] -> distance a b | _ -> assert false) [ x; y ] in
-      List.fold_left equal_to s (entries all)
-  | Scalar x, mark, Scalar y -> (
-      match mark with
-      | "!=" -> let d = distance x y in away (with_value s d) d
-      | ">" -> let d = distance x y in away (at_least s d) d
-      | "<" -> let d = distance y x in away (at_least s d) d
-      | ">=" -> at_least s (distance x y)
-      | _ -> at_least s (distance y x))
-  | _ -> refuse "given: matrices have no other relation"
-
 let plain_keys = [ "left"; "right"; "relation"; "symbols"; "exists"; "tolerance" ]
 let more_keys = [ "shapes"; "given"; "rates" ]
 
-let read_statement value =
-  let o = get_object "statement" value in
-  if List.mem_assoc "order" o then outside "statement with order";
-  if List.mem_assoc "random" o then outside "statement with random numbers";
-  let is_long = List.exists (fun k -> List.mem_assoc k o) more_keys in
-  let values = get_keys "statement" (if is_long then plain_keys @ more_keys else plain_keys) value in
-  match values @ if is_long then [] else [ Object []; List []; Object [] ] with
+(* O(s^n): the derivatives of order 0 to n - 1 at s = 0. What is typed has to be differentiable there. *)
+let read_order box (context : context) value =
+  match get_object "order" value with
+  | [ (s, n) ] ->
+      let n = get_integer "order" 1 8 n in
+      let range = match List.assoc_opt s box with Some r -> r | None -> refuse "order: unknown symbol %s" s in
+      let ball t = number_ball "order" t in
+      let reaches t = Algebra.vanishes t || is_above (ball t) in
+      let is_limit =
+        (match range.low with None -> true | Some t -> reaches (negate t)) && match range.high with None -> true | Some t -> reaches t
+      in
+      let has_inside = match (range.low, range.high) with Some a, Some b -> is_above (ball (subtract b a)) | _ -> true in
+      shown "order: 0 is no limit of the symbol" ((not range.integer) && is_limit && has_inside);
+      let has_symbol t = Names.mem s (symbols t) in
+      if List.exists has_symbol (context.given @ context.zeros) then refuse "order: a hypothesis with the symbol";
+      (s, n)
+  | _ -> refuse "order: expected one symbol"
+
+let expand_order (context : context) (s, n) goals =
+  if context.branches > 0 then outside "cases in a statement with order";
+  let at_zero = put [ (s, zero) ] in
+  let derivatives (d, _) =
+    let rec go k d = if k = n then [] else (at_zero d, Equal) :: go (k + 1) (Calculus.derive s d) in
+    go 0 d
+  in
+  (List.concat_map derivatives goals, at_zero)
+
+let read_case values long_values order plan =
+  match values @ long_values with
   | [ left; right; relation; symbols; exists; tolerance; shapes; given; rates ] ->
       let read (name, v) = if is_name name then (name, read_range name v) else refuse "expected a name" in
       let box = List.map read (get_object "symbols" symbols) in
-      let context = make_context (List.map fst box) shapes rates in
-      let hypotheses = List.map (fun v -> read_condition context (get_text "given" v)) (get_list "given" given) in
+      let context = make_context (List.map fst box) plan shapes rates in
+      List.iter (fun v -> suppose context (read_condition context (get_text "given" v))) (get_list "given" given);
       List.iter (fun v -> ignore (read_value_of context (get_text "exists" v))) (get_list "exists" exists);
       let left = read_value_of context (get_text "left" left) in
       let right = read_value_of context (get_text "right" right) in
       let tolerance = match tolerance with Null -> None | v -> Some (get_tree "tolerance" v) in
-      let goals = read_goals left right (get_text "relation" relation) tolerance in
+      let relation = get_text "relation" relation in
+      let goals = read_goals left right relation tolerance in
       let said = entries left @ entries right @ Option.to_list tolerance @ List.rev context.said in
-      List.fold_left suppose { goals; box; said; given = []; zeros = [] } hypotheses
+      let goals, said =
+        match order with
+        | None -> (goals, said)
+        | Some value ->
+            if relation <> "=" || tolerance <> None then refuse "order goes with = only";
+            let order = read_order box context value in
+            let goals, at_zero = expand_order context order goals in
+            List.iter (say_smooth context) said;
+            (goals, List.map at_zero (said @ List.rev context.said) @ List.map fst goals)
+      in
+      (context, { goals; box; said; given = context.given; zeros = context.zeros })
   | _ -> assert false
+
+(* The cases of a statement *)
+let read_statement value =
+  let o = get_object "statement" value in
+  if List.mem_assoc "random" o then outside "statement with random numbers";
+  let is_long = List.exists (fun k -> List.mem_assoc k o) more_keys and has_order = List.mem_assoc "order" o in
+  let keys = plain_keys @ (if is_long then more_keys else []) @ if has_order then [ "order" ] else [] in
+  let values = get_keys "statement" keys value in
+  let rec split n l = if n = 0 then ([], l) else match l with x :: l -> let a, b = split (n - 1) l in (x :: a, b) | [] -> ([], []) in
+  let values, order = split (List.length values - if has_order then 1 else 0) values in
+  let long_values = if is_long then [] else [ Object []; List []; Object [] ] in
+  let order = match order with [ v ] -> Some v | _ -> None in
+  let rec go count plan =
+    if count > 128 then refuse "more than 128 cases";
+    let context, case = read_case values long_values order plan in
+    case :: match next_plan context.answers with None -> [] | Some plan -> go (count + 1) plan
+  in
+  go 1 []
 
 (* A tree of `given` that is a symbol, or -1 times a symbol, cuts the range at 0. *)
 let goal_of s (tree, relation) =
@@ -105,3 +136,10 @@ let check_values s point =
   shown "a hypothesis does not hold at the point"
     (List.for_all (fun t -> is_positive t || is_null t) s.given && List.for_all is_null s.zeros);
   value
+
+(* The values at the point, and the cases to which it belongs; there is one at least. *)
+let check_cases cases point =
+  let belongs case = match check_values case point with value -> Ok (value, case) | exception Refused why -> Error why in
+  match List.partition_map (fun c -> match belongs c with Ok x -> Either.Left x | Error why -> Either.Right why) cases with
+  | [], why :: _ -> refuse "%s" why
+  | found, _ -> found

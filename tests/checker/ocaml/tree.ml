@@ -68,6 +68,7 @@ let tail_order name =
 let arguments_of name =
   if name = "atan2" then 2
   else if List.mem name of_one || tail_order name <> None then 1
+  else if name = "erf" then outside "erf"
   else refuse "expression: unknown function %s" name
 
 (* Grammar *)
