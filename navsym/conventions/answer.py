@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from navsym.conventions.card import Card
+from navsym.conventions.converting import Conversion, convert
 from navsym.conventions.measuring import RESET_MARK
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
@@ -81,6 +82,7 @@ class Conventions(Answer):
     alternatives : other sets of as few blocks
     excluded     : the neighbours of the cards, with what excludes them; ``examined`` counts all cards
     unused       : tables of the file that say nothing about the error dynamics
+    problem      : the model and what was said about it
 
     >>> import navsym as nav
     >>> found = nav.conventions("examples/conventions.toml")
@@ -97,6 +99,26 @@ class Conventions(Answer):
     excluded: tuple[Exclusion, ...]
     examined: int
     unused: tuple[str, ...]
+    problem: Problem
+
+    def convert(self, card: Card | None = None, **changes: str) -> Conversion:
+        """The model in the errors of another card: T, F, H and G, proved on the text of the model.
+
+        card    : one of ``cards``; the first one unless it is given
+        changes : fields that define the errors, such as ``attitude_error="frame"``: also error, rotation_sign,
+                  bias_sign, angle, position_error, vector_error; everything else stays
+
+        Raises DomainError for another field, for a model without a card or with dropped blocks.
+
+        >>> import navsym as nav
+        >>> found = nav.conventions("examples/conventions.toml")
+        >>> found.convert(attitude_error="body").T[3][3:6]
+        ('c11', 'c21', 'c31')
+        """
+        if not self.cards or (card is not None and card not in self.cards):
+            message = "expected a card of the model; got none; mend the conflicts first, or take one of cards"
+            raise DomainError(message, where="convert: card")
+        return convert(self.problem, card or self.cards[0], changes)
 
     def document(self) -> dict[str, Any]:
         """The answer as plain data: the JSON document of the verb."""
@@ -171,7 +193,7 @@ def conventions(
     examined = len(cards) + sum(outcome.count for outcome in findings.excluded)
     excluded = tuple(find_neighbours(cards, findings.excluded, comparison))
     return Conventions(
-        problem.name, cards, complete, conflicts, nearest, alternatives, excluded, examined, problem.unused
+        problem.name, cards, complete, conflicts, nearest, alternatives, excluded, examined, problem.unused, problem
     )
 
 
