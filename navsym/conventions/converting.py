@@ -65,9 +65,11 @@ class Conversion:
 
 def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> Card:
     """The card to convert to; raises DomainError for what is no definition of an error, or has no transformation."""
+    curved = source.frame == "local-level" and source.earth != "none"
+    names = [n for n in CONVERTED if getattr(source, n) is not None and (curved or n != "position_error")]
     for name, word in changes.items():
-        if name not in CONVERTED or getattr(source, name, None) is None:
-            known = ", ".join(n for n in CONVERTED if getattr(source, n) is not None)
+        if name not in names:
+            known = ", ".join(names)
             message = f"expected one of {known}; got {quote(name)}; the mechanisation itself stays"
             raise DomainError(message, where="convert")
         if word not in CHOICES[name]:
@@ -191,5 +193,10 @@ def convert(problem: Problem, source: Card, changes: Mapping[str, str]) -> Conve
         pairs.append((multiply_texts(H, T), old[1]))
     if G:
         pairs.append((G, multiply_texts(T, old[2])))
-    frozen = [tuple(tuple(row) for row in M) for M in (T, inverse, rate, F, H, G)]
-    return Conversion(source, target, *frozen, converter.is_proved(pairs))  # type: ignore[arg-type]
+    frozen = (freeze(M) for M in (T, inverse, rate, F, H, G))
+    return Conversion(source, target, *frozen, proved=converter.is_proved(pairs))  # type: ignore[misc,arg-type]
+
+
+def freeze(M: Sequence[Sequence[str]]) -> Texts:
+    """A matrix that nobody changes."""
+    return tuple(tuple(row) for row in M)

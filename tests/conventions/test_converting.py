@@ -14,33 +14,29 @@ from flint import arb
 import navsym as nav
 from navsym.conventions.card import CHOICES, Card
 from navsym.conventions.converting import CONVERTED, Converter, transform
-from navsym.conventions.mechanisation import ROLES, Mechanisation
-from navsym.conventions.points import BITS
+from navsym.conventions.mechanisation import ROLES, Mechanisation, World
+from navsym.conventions.points import BITS, draw_point
 from navsym.conventions.reading import read_problem
+from navsym.conventions.search import key_of_points
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
 from tests.conventions import models
 from tests.conventions.reference import Flight
-from tests.conventions.test_generator import EXACT, random_card, world_of
+from tests.conventions.test_generator import EXACT, full_problem, random_card, world_of
 from tests.conventions.test_measuring import number, sola
 
 
 def random_pair(pick: random.Random) -> tuple[Card, Card]:
     """A card, and one with other definitions of the errors."""
     card = random_card(pick, EXACT)
-    names = [
-        name
-        for name in CONVERTED
-        if getattr(card, name) is not None and (name, card.earth) != ("position_error", "none")
-    ]
-    if card.frame != "local-level":
-        names.remove("position_error")
+    curved = card.frame == "local-level" and card.earth != "none"
+    names = [n for n in CONVERTED if getattr(card, n) is not None and (curved or n != "position_error")]
     return card, replace(card, **{name: pick.choice(CHOICES[name]) for name in names})
 
 
-def matrix_of(card: Card, target: Card, flight: Flight) -> list[list[Any]]:
-    """T at a point of a flight, as balls."""
-    signs, flows = (card.signs(), target.signs()), [Mechanisation(c, world_of(flight)) for c in (card, target)]
+def matrix_of(card: Card, target: Card, world: World) -> list[list[Any]]:
+    """T in a world of balls."""
+    signs, flows = (card.signs(), target.signs()), [Mechanisation(c, world) for c in (card, target)]
     columns = [transform(*flows, ROLES[j // 3], j % 3) for j in range(15)]
     return [
         [signs[1][ROLES[i // 3]] * signs[0][ROLES[j // 3]] * columns[j][ROLES[i // 3]][i % 3].error for j in range(15)]
@@ -54,7 +50,7 @@ def test_the_transformation_is_the_change_of_coordinates_of_the_errors():
         card, target = random_pair(pick)
         flight, other = Flight(card, seed), Flight(target, seed)
         with precision(BITS):
-            T = matrix_of(card, target, flight)
+            T = matrix_of(card, target, world_of(flight))
         x = flight.truth()
         expected = other.sensitivity(x) * flight.sensitivity(x) ** -1
         worst = max(abs(number(T[i][j]) - expected[i, j]) for i in range(15) for j in range(15))
@@ -63,12 +59,12 @@ def test_the_transformation_is_the_change_of_coordinates_of_the_errors():
 
 @pytest.mark.long
 def test_two_hundred_random_pairs_lead_back():
-    pick = random.Random(200)
+    pick, problem = random.Random(200), full_problem()
     for seed in range(200):
         card, target = random_pair(pick)
-        flight = Flight(card, seed)
         with precision(BITS):
-            there, back = matrix_of(card, target, flight), matrix_of(target, card, flight)
+            world = draw_point(problem, key_of_points(card), seed + 1).world
+            there, back = matrix_of(card, target, world), matrix_of(target, card, world)
             for i in range(15):
                 for j in range(15):
                     total = sum((arb(back[i][k] * there[k][j]) for k in range(15)), arb(0))
@@ -109,7 +105,10 @@ def test_a_wrong_conversion_is_not_granted():
     assert converter.is_proved([(F, F)]) and not converter.is_proved([(F, spoiled)])
 
 
-@pytest.mark.parametrize("changes", [{"frame": "earth"}, {"angle": "phi"}, {"error": "both"}, {"earth": "sphere"}])
+@pytest.mark.parametrize(
+    "changes",
+    [{"frame": "earth"}, {"angle": "phi"}, {"error": "both"}, {"earth": "sphere"}, {"position_error": "geodetic"}],
+)
 def test_what_is_no_definition_of_an_error_is_refused(changes):
     with pytest.raises(DomainError, match="expected"):
         nav.conventions(models.sola_local()).convert(**changes)
