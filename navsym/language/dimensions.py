@@ -18,7 +18,7 @@ from navsym.core.errors import DomainError
 from navsym.language.names import FUNCTIONS
 from navsym.language.printer import TIGHT, WHOLE, Text, Writer
 from navsym.language.shapes import Shape
-from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, SYMBOL, Tree, fold_tree, list_names, list_parts
+from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, SYMBOL, Tree, build, fold_tree, list_names, list_parts
 from navsym.language.units import Powers, combine, print_unit, read_unit
 from navsym.language.vectors import BINDERS, INFINITE, RELATIONS
 
@@ -264,6 +264,25 @@ class Inference:
     def step_sign(self, part: Tree, inner: list[Units]) -> Units:
         return [[{}]]
 
+    def step_erf(self, part: Tree, inner: list[Units]) -> Units:
+        self.plain(inner[0][0][0], part.args[0], part.head)
+        return [[{}]]
+
+    def step_cov(self, part: Tree, inner: list[Units]) -> Units:
+        return self.times(inner[0], self.step_transpose(part, inner[1:] or inner), part)
+
+    def step_expm(self, part: Tree, inner: list[Units]) -> Units:
+        """Every power of the matrix has its units; an entry that no power has is an unknown."""
+        A, square = inner[0], self.times(inner[0], inner[0], part)
+        unit = [[{} if i == j else None for j in range(len(A))] for i in range(len(A))]
+        whole = self.each(build("+", (part, part, part)), [A, square, unit], "powers of a matrix")
+        self.numbers += 1
+        name = f"expm {self.numbers}"
+        return [
+            [{("name", f"{name} {i} {j}"): Fraction(1)} if cell is None else cell for j, cell in enumerate(row)]
+            for i, row in enumerate(whole)
+        ]
+
     def step_alike(self, part: Tree, inner: list[Units]) -> Units:
         cell = self.total(((units[0][0], p) for units, p in zip(inner, part.args, strict=True)), "arguments")
         return [[{} if part.head in ONLY_ALIKE else cell]]
@@ -377,7 +396,7 @@ class Inference:
 
 
 STEPS = {
-    "T": "transpose", "@": "at", "conj": "abs", **dict.fromkeys((*ONLY_ALIKE, *ALIKE), "alike"), "floor": "sign",
+    "T": "transpose", "@": "at", "conj": "abs", **dict.fromkeys((*ONLY_ALIKE, *ALIKE), "alike"), "floor": "erf",
 }  # fmt: skip
 
 

@@ -90,6 +90,8 @@ class Unification:
             return sides if head == "cross" else None
         if head == "@":
             return self.times(part, *inner)
+        if head == "cov":
+            return (arrays[0][0], arrays[-1][0]) if arrays else None
         if head in ("T", "transpose", "inv"):
             return (arrays[0][1], arrays[0][0]) if arrays else None
         if head == "skew":
