@@ -274,7 +274,7 @@ class Inference:
     def step_expm(self, part: Tree, inner: list[Units]) -> Units:
         """Every power of the matrix has its units; an entry that no power has is an unknown."""
         A, square = inner[0], self.times(inner[0], inner[0], part)
-        unit = [[{} if i == j else None for j in range(len(A))] for i in range(len(A))]
+        unit: Units = [[{} if i == j else None for j in range(len(A))] for i in range(len(A))]
         whole = self.each(build("+", (part, part, part)), [A, square, unit], "powers of a matrix")
         self.numbers += 1
         name = f"expm {self.numbers}"

@@ -111,14 +111,8 @@ def read_text_claim(
     ranges |= read_box(block, shapes, limit, join_place(where, "box"))
     formula = make_formula(block)
     if any(shape.sizes for shape in shapes.values()) and is_of_any_size([shapes[n] for n in used], trees):
-        plain = {
-            "exists": exists,
-            "tolerance": formula.tolerance,
-            "rates": slopes,
-            "box": block.get("box"),
-            "order": order,
-        }
-        require_plain(plain, where)
+        plain = {"exists": exists, "tolerance": formula.tolerance, "rates": slopes}
+        require_plain({**plain, "box": block.get("box"), "order": order}, where)
         declared, scope = declare_any_size(shapes, used, trees, ranges, where)
         declared["given"] = [*map(clean, given)]
         documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | declared for x, sign, y in links]
