@@ -19,6 +19,7 @@ from navsym.claims import OPEN, Status, Verdict
 from navsym.core.errors import DuplicateError, UnknownSymbolError
 from navsym.language.names import quote
 from navsym.language.schema import Table, expect_keys, join_place, require_key
+from navsym.language.shapes import NOTES
 from navsym.language.tomlfile import read_toml
 
 FOLDER = Path(__file__).with_name("chapters")
@@ -54,8 +55,8 @@ class Misprint:
         return self.prove().status if kept is None else Status(kept)
 
     def prove(self, seconds: float = SECONDS) -> Verdict:
-        """The verdict on the printed form, searched and granted now."""
-        return decide(self.document, self.id, seconds)
+        """The verdict on the printed form, searched and granted now, also where its units give it away."""
+        return decide(without_units(self.document), self.id, seconds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,6 +226,15 @@ def claim_file(block: Table, name: str, document: Table) -> dict[str, Any]:
     if any("dot_(" in claim.get(side, "") for side in ("left", "right", "chain")):
         statement["rates"] = document.get("rates", {})
     return statement
+
+
+def without_units(document: Mapping[str, Any]) -> dict[str, Any]:
+    """The claim file without units and frames: what is printed wrongly is refuted, not refused."""
+    symbols = {
+        name: {key: item for key, item in value.items() if key not in NOTES} if isinstance(value, dict) else value
+        for name, value in document["symbols"].items()
+    }
+    return {**document, "symbols": symbols}
 
 
 def decide(document: Mapping[str, Any], name: str, seconds: float) -> Verdict:

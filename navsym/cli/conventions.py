@@ -39,6 +39,7 @@ FIELDS = {
     "bias_sign": "error of the biases",
     "vector_error": "vector errors",
     "position_error": "position error",
+    "innovation": "innovation",
     "earth": "Earth",
     "earth_rate": "Earth rate",
     "transport_rate": "transport rate",
@@ -93,7 +94,7 @@ def conflicts_text(data: Mapping[str, Any]) -> str:
     if not data["conflicts"]:
         return "no card, and none is near"
     head = f"no card; the fewest blocks that must change: {len(data['conflicts'])}"
-    lines = [head, table(["block", "entries of F", "change", "verdict"], [conflict_row(c) for c in data["conflicts"]])]
+    lines = [head, table(["block", "entries", "change", "verdict"], [conflict_row(c) for c in data["conflicts"]])]
     if data["alternatives"]:
         sets = ("; ".join(" by ".join(block) for block in blocks) for blocks in data["alternatives"])
         lines.append("or as few others: " + " | ".join(sets))
@@ -102,7 +103,7 @@ def conflicts_text(data: Mapping[str, Any]) -> str:
 
 def conflict_row(conflict: Mapping[str, Any]) -> list[str]:
     """One block that must change."""
-    entries = " ".join(f"[{i},{j}]" for i, j in conflict["entries"])
+    entries = " ".join(f"{conflict['matrix']}[{i},{j}]" for i, j in conflict["entries"])
     return [" by ".join(conflict["block"]), entries, conflict["change"], conflict["status"]]
 
 

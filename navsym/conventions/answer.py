@@ -8,8 +8,11 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from navsym.conventions.card import Card
+from navsym.conventions.converting import Conversion, convert
+from navsym.conventions.measuring import RESET_MARK
+from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
-from navsym.conventions.reading import Problem, read_problem
+from navsym.conventions.reading import Problem, matrix_of, read_problem
 from navsym.conventions.search import (
     SIGNS,
     Block,
@@ -22,6 +25,7 @@ from navsym.conventions.search import (
     plain_card,
 )
 from navsym.core.answers import Answer
+from navsym.core.balls import precision
 from navsym.core.errors import DomainError
 from navsym.language.files import name_file
 from navsym.language.names import quote
@@ -30,17 +34,19 @@ from navsym.language.tomlfile import read_toml
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """A block that must change: roles, entries of F that differ (from 1), the mended rows, and how that is known."""
+    """A block that must change: its sides, entries that differ (from 1), mended rows, how that is known, its matrix."""
 
     block: tuple[str, str]
     entries: tuple[tuple[int, int], ...]
     change: str
     status: str
+    matrix: str = "F"
 
     def document(self) -> dict[str, Any]:
         """The conflict as JSON data."""
         entries = [list(entry) for entry in self.entries]
-        return {"block": list(self.block), "entries": entries, "change": self.change, "status": self.status}
+        words = {"change": self.change, "status": self.status, "matrix": self.matrix}
+        return {"block": list(self.block), "entries": entries, **words}
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +82,7 @@ class Conventions(Answer):
     alternatives : other sets of as few blocks
     excluded     : the neighbours of the cards, with what excludes them; ``examined`` counts all cards
     unused       : tables of the file that say nothing about the error dynamics
+    problem      : the model and what was said about it
 
     >>> import navsym as nav
     >>> found = nav.conventions("examples/conventions.toml")
@@ -92,6 +99,26 @@ class Conventions(Answer):
     excluded: tuple[Exclusion, ...]
     examined: int
     unused: tuple[str, ...]
+    problem: Problem
+
+    def convert(self, card: Card | None = None, **changes: str) -> Conversion:
+        """The model in the errors of another card: T, F, H and G, proved on the text of the model.
+
+        card    : one of ``cards``; the first one unless it is given
+        changes : fields that define the errors, such as ``attitude_error="frame"``: also error, rotation_sign,
+                  bias_sign, angle, position_error, vector_error; everything else stays
+
+        Raises DomainError for another field, for a model without a card or with dropped blocks.
+
+        >>> import navsym as nav
+        >>> found = nav.conventions("examples/conventions.toml")
+        >>> found.convert(attitude_error="body").T[3][3:6]
+        ('c11', 'c21', 'c31')
+        """
+        if not self.cards or (card is not None and card not in self.cards):
+            message = "expected a card of the model; got none; mend the conflicts first, or take one of cards"
+            raise DomainError(message, where="convert: card")
+        return convert(self.problem, card or self.cards[0], changes)
 
     def document(self) -> dict[str, Any]:
         """The answer as plain data: the JSON document of the verb."""
@@ -151,7 +178,7 @@ def conventions(
     problem = problem_of(model, roles, quantities, known)
     prover, comparison = Prover(problem), Comparison(problem)
     findings = find_candidates(problem, comparison)
-    proved = {card: is_card_proved(card, problem, prover) for card in findings.candidates}
+    proved = {card: is_card_proved(card, comparison, prover) for card in findings.candidates}
     cards, complete = findings.candidates, all(proved.values())
     conflicts: tuple[Conflict, ...] = ()
     nearest: Card | None = None
@@ -160,13 +187,13 @@ def conventions(
         outcomes = sorted(find_nearest(problem, comparison), key=rank_outcome)
         if outcomes:
             nearest = outcomes[0].card
-            conflicts = tuple(state_conflict(outcomes[0], m, prover) for m in outcomes[0].mismatches)
+            conflicts = tuple(state_conflict(outcomes[0], m, comparison, prover) for m in outcomes[0].mismatches)
             sets = dict.fromkeys(tuple(m.block for m in outcome.mismatches) for outcome in outcomes)
             alternatives = tuple(sets)[1:]
     examined = len(cards) + sum(outcome.count for outcome in findings.excluded)
     excluded = tuple(find_neighbours(cards, findings.excluded, comparison))
     return Conventions(
-        problem.name, cards, complete, conflicts, nearest, alternatives, excluded, examined, problem.unused
+        problem.name, cards, complete, conflicts, nearest, alternatives, excluded, examined, problem.unused, problem
     )
 
 
@@ -193,15 +220,12 @@ def plain_lists(value: Any) -> Any:
     return [plain_lists(item) for item in value] if isinstance(value, tuple | list) else value
 
 
-def is_card_proved(card: Card, problem: Problem, prover: Prover) -> bool:
+def is_card_proved(card: Card, comparison: Comparison, prover: Prover) -> bool:
     """True where the prover grants every block of the card that is not dropped."""
-    signs = card.signs()
     plain = plain_card(card)
-    return all(
-        prover.is_right(plain, block, signs[block[0]] * signs[block[1]])
-        for block in list_blocks(problem)
-        if block not in card.dropped
-    )
+    with precision(BITS):
+        signs = {block: comparison.block_sign(card, block) for block in list_blocks(prover.problem)}
+    return all(prover.is_right(plain, block, sign) for block, sign in signs.items() if block not in card.dropped)
 
 
 def rank_outcome(outcome: Outcome) -> tuple[Any, ...]:
@@ -220,31 +244,39 @@ def rank_outcome(outcome: Outcome) -> tuple[Any, ...]:
     )
 
 
-def state_conflict(outcome: Outcome, mismatch: Mismatch, prover: Prover) -> Conflict:
+def state_conflict(outcome: Outcome, mismatch: Mismatch, comparison: Comparison, prover: Prover) -> Conflict:
     """The change of one block, with the checker's word that the entries differ."""
     card, block = outcome.card, mismatch.block
-    signs = card.signs()
-    row, column = block
-    rows, columns = prover.problem.roles[row], prover.problem.roles[column]
-    expected = prover.block_texts(plain_card(card), block, signs[row] * signs[column])
+    rows, columns = (prover.problem.places(side) for side in block)
+    with precision(BITS):
+        sign = comparison.block_sign(card, block)
+    expected = prover.block_texts(plain_card(card), block, sign)
     written = prover.written(block)
     places = [(rows.index(i), columns.index(j)) for i, j in mismatch.entries]
     granted = all(prover.refutes(plain_card(card), written[i][j], expected[i][j]) for i, j in places)
     entries = tuple((i + 1, j + 1) for i, j in mismatch.entries)
-    return Conflict(block, entries, describe_change(written, expected, prover, card), "PROVED" if granted else "OPEN")
+    change = describe_change(written, expected, prover, card, "1 + " * (block[0] == RESET_MARK + block[1]))
+    return Conflict(block, entries, change, "PROVED" if granted else "OPEN", matrix_of(block))
 
 
-def describe_change(written: list[list[str]], expected: list[list[str]], prover: Prover, card: Card) -> str:
-    """The change in words where it is a sign or a transposition, and the mended rows."""
+def describe_change(
+    written: list[list[str]], expected: list[list[str]], prover: Prover, card: Card, diagonal: str
+) -> str:
+    """The change in words where it is a sign or a transposition, and the mended rows.
+
+    diagonal : what stands before the diagonal of the rows, a unit for the reset
+    """
     from navsym.claims.verdict import PROVED
 
     def agrees(sign: str, turned: bool) -> bool:
         pairs = (
             (f"{sign}({written[j][i] if turned else written[i][j]})", expected[i][j])
-            for i in range(3)
+            for i in range(len(written))
             for j in range(3)
         )
-        return all(prover.compare(plain_card(card), *pair).status == PROVED for pair in pairs)
+        return (not turned or len(written) == 3) and all(
+            prover.compare(plain_card(card), *pair).status == PROVED for pair in pairs
+        )
 
     words = "write"
     for sign, turned, text in (
@@ -255,7 +287,8 @@ def describe_change(written: list[list[str]], expected: list[list[str]], prover:
         if agrees(sign, turned):
             words = f"{text}: write"
             break
-    return f"{words} [{', '.join('[' + ', '.join(row) + ']' for row in expected)}]"
+    rows = [[diagonal * (i == j) + x for j, x in enumerate(row)] for i, row in enumerate(expected)]
+    return f"{words} [{', '.join('[' + ', '.join(row) + ']' for row in rows)}]".replace("1 + 0", "1")
 
 
 def find_neighbours(cards: Sequence[Card], outcomes: Sequence[Outcome], comparison: Comparison) -> list[Exclusion]:
@@ -282,5 +315,5 @@ def exclude(outcome: Outcome, name: str, comparison: Comparison) -> Exclusion:
     mismatch = outcome.mismatches[0]
     i, j = mismatch.entries[0]
     point, written, expected = comparison.show(card, mismatch.block, mismatch.entries[0], mismatch.point)
-    why = f"F[{i + 1},{j + 1}] is {written}, and {expected} for this card"
+    why = f"{matrix_of(mismatch.block)}[{i + 1},{j + 1}] is {written}, and {expected} for this card"
     return Exclusion(card, name, mismatch.block, (i + 1, j + 1), point, why)

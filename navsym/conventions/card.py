@@ -9,6 +9,7 @@ from typing import Any
 
 ESTIMATE, TRUTH = "estimate - truth", "truth - estimate"
 KEPT, DROPPED = "kept", "dropped"
+MEASURED_LESS, PREDICTED_LESS = "measurement - prediction", "prediction - measurement"
 
 #: Words that the fields of a card may have; None where a field says nothing.
 CHOICES: Mapping[str, tuple[str, ...]] = {
@@ -28,6 +29,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "radius_variation": (KEPT, "position", DROPPED),
     "position_error": ("metres", "geodetic"),
     "vector_error": ("difference", "rotated", "body"),
+    "innovation": (MEASURED_LESS, PREDICTED_LESS),
 }
 
 
@@ -49,6 +51,7 @@ class Card:
     position_error   : ``metres`` along the axes, or ``geodetic`` (latitude, longitude, height)
     vector_error     : ``difference``; ``rotated``: the truth is turned by the attitude error first (right invariant);
                        ``body``: the difference is resolved in the body (left invariant)
+    innovation       : what H multiplies the error to; None without H
     dropped          : blocks of zeros where the full equations have small terms
     """
 
@@ -69,6 +72,7 @@ class Card:
     radius_variation: str | None = None
     position_error: str | None = None
     vector_error: str = "difference"
+    innovation: str | None = None
     dropped: tuple[tuple[str, str], ...] = ()
 
     def document(self) -> dict[str, Any]:

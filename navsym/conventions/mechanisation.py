@@ -11,7 +11,7 @@ Integrated Navigation Systems, chapter 5. The errors of a card are definitions; 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from navsym.conventions.card import DROPPED, KEPT, Card
@@ -41,7 +41,8 @@ AXES: Mapping[str | None, tuple[tuple[int, int, int], ...]] = {
     "NWU": ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
 }
 
-ROLES = ("position", "velocity", "attitude", "gyro_bias", "accelerometer_bias")
+BIASES = ("gyro_bias", "accelerometer_bias")
+ROLES = ("position", "velocity", "attitude", *BIASES)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,6 +59,8 @@ class World:
     pull             : mu/|r|^3
     gradient_radii   : words of a card -> R of its gradient
     transport        : the transport rate in the frame where it has names of its own
+    arm, seen        : lever arm in the body, known vector in the frame
+    measured         : what the rows of H show; corrections : role -> correction of the reset, if there is one
     """
 
     C: Sequence[Sequence[Any]]
@@ -77,6 +80,10 @@ class World:
     radius: Any
     gradient_radii: Mapping[str, Any]
     transport: Sequence[Any] | None = None
+    arm: Sequence[Any] = (0, 0, 0)
+    seen: Sequence[Any] = (0, 0, 0)
+    measured: tuple[str, ...] = ()
+    corrections: Mapping[str, Sequence[Any]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

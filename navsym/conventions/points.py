@@ -14,6 +14,7 @@ from typing import Any
 from flint import arb, fmpq
 
 from navsym.conventions.card import Card
+from navsym.conventions.measuring import CORRECTED
 from navsym.conventions.mechanisation import AXES, World
 from navsym.conventions.reading import Problem
 from navsym.core.balls import OPERATIONS, exact_ball, general_power, integer_power, rational_power
@@ -171,6 +172,8 @@ class Sampler:
         """The point."""
         card, given = self.card, self.problem.quantities
         level = card.frame == "local-level"
+        if "height" in self.problem.measured and not level:
+            raise ImpossibleError("a measured height")
         C = self.rotation()
         f, w, v = self.forces(C), self.vector("angular_rate"), self.vector("velocity")
         (latitude,) = self.settle("latitude", None, -1.2, 1.2)
@@ -181,9 +184,6 @@ class Sampler:
         RN, RE, third = self.radii()
         pull, gravity = self.gravitation(r, radius, level)
         earth = self.rotation_of_earth(sine, cosine, level)
-        for name, parameter in self.problem.parameters.items():
-            if name not in self.values and not self.is_transport(name):
-                self.values[name] = self.pick(parameter)
         world = World(
             C,
             f,
@@ -201,17 +201,21 @@ class Sampler:
             pull,
             radius,
             gradient_names(RN, RE, h, third, (RN * RE).sqrt()),
+            None,
+            self.settle("lever_arm") if "lever_arm" in given else (0, 0, 0),
+            self.vector("known_vector"),
+            tuple(self.problem.measured),
+            {r: self.vector(f"{r}_correction") for r in CORRECTED} if self.problem.reset else {},
         )
         transport = self.transport(world) if level and "transport_rate" in given else None
         if transport is None and "transport_rate" in given:
             self.settle("transport_rate")
         if transport is not None:
             world = replace(world, transport=transport)
+        for name, parameter in self.problem.parameters.items():
+            if name not in self.values:
+                self.values[name] = self.pick(parameter)
         return Point(world, self.values)
-
-    def is_transport(self, name: str) -> bool:
-        """True for a bare name of the transport rate."""
-        return any(t.head == SYMBOL and t.args[0] == name for t in self.problem.quantities.get("transport_rate", ()))
 
     def radii(self) -> tuple[Any, Any, Any]:
         """Meridian, prime vertical, and the radius of gravity."""

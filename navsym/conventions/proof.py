@@ -13,10 +13,11 @@ from typing import Any
 
 from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
 from navsym.conventions.card import DROPPED, Card
-from navsym.conventions.mechanisation import AXES
+from navsym.conventions.measuring import MEASURED_MARK, RESET_MARK
+from navsym.conventions.mechanisation import AXES, BIASES
 from navsym.conventions.points import BITS, Sampler, evaluate
 from navsym.conventions.reading import Problem
-from navsym.conventions.search import BIASES, Block, narrow_card
+from navsym.conventions.search import Block, narrow_card
 from navsym.conventions.symbols import HIDDEN, Formulas
 from navsym.core.balls import precision
 from navsym.language.expression import read_tree
@@ -49,7 +50,9 @@ class Prover:
     def block_texts(self, card: Card, block: Block, sign: int) -> list[list[str]]:
         """The card's block in the user's names."""
         still = card.earth == "none" and card.earth_rate in (None, DROPPED) and card.vector_error != "rotated"
-        if still:  # without gravity among the terms a flat Earth that does not turn is an inertial frame
+        if still and not block[0].startswith(
+            (MEASURED_MARK, RESET_MARK)
+        ):  # without gravity among the terms a flat Earth that does not turn is an inertial frame
             card = Card(
                 "inertial",
                 attitude_error=card.attitude_error,

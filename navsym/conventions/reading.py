@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.conventions.card import CHOICES
+from navsym.conventions.measuring import MEASURED, MEASURED_MARK, NOISE_MARK, NOISES, RESET_MARK
 from navsym.conventions.mechanisation import ROLES
 from navsym.core.errors import (
     DomainError,
@@ -29,7 +30,7 @@ from navsym.language.schema import (
     require_distinct,
     require_key,
 )
-from navsym.language.tree import Tree
+from navsym.language.tree import MINUS_ONE, ONE, ZERO, Tree, build_sum
 
 #: Quantities -> the numbers of components that they may have.
 QUANTITIES: Mapping[str, tuple[int, ...]] = {
@@ -46,19 +47,27 @@ QUANTITIES: Mapping[str, tuple[int, ...]] = {
     "gravity": (1, 3),
     "gravitational_parameter": (1,),
     "radii": (1, 2, 3),
+    "lever_arm": (3,),
+    "known_vector": (3,),
+    "attitude_correction": (3,),
+    "velocity_correction": (3,),
+    "position_correction": (3,),
 }
 
-TABLES = ("model", "parameters", "roles", "quantities", "known")
+TABLES = ("model", "parameters", "roles", "quantities", "known", "measured", "noises")
 #: Tables of a model file that say nothing about the error dynamics.
 BESIDE = ("measurement", "interval", "targets", "ranges")
+
+
+Grid = tuple[tuple[Tree, ...], ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Problem:
     """A model and what is said about it.
 
-    F          : entries as trees, one row per state
-    roles      : role -> places of its three states
+    F, H, G, reset : entries as trees, row by row; empty where they are not given
+    roles      : role -> places of its three states; measured: what H shows -> its rows; noises: noise -> columns of G
     quantities : quantity -> its components as trees
     known      : field of a card -> its value
     unused     : tables of the file that were not looked at
@@ -73,10 +82,35 @@ class Problem:
     quantities: Mapping[str, tuple[Tree, ...]]
     known: Mapping[str, str]
     unused: tuple[str, ...] = field(default=())
+    H: Grid = ()
+    G: Grid = ()
+    reset: Grid = ()
+    measured: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    noises: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+
+    def places(self, side: str) -> tuple[int, ...]:
+        """The rows or columns of a side of a block."""
+        if side.startswith(MEASURED_MARK):
+            return self.measured[side.removeprefix(MEASURED_MARK)]
+        if side.startswith(NOISE_MARK):
+            return self.noises[side.removeprefix(NOISE_MARK)]
+        return self.roles[side.removeprefix(RESET_MARK)]
 
     def block(self, row: str, column: str) -> list[list[Tree]]:
-        """The block of two roles."""
-        return [[self.F[i][j] for j in self.roles[column]] for i in self.roles[row]]
+        """The block of two sides; of the reset less the unit matrix."""
+        matrix = getattr(self, matrix_of((row, column)))
+        cells = [[matrix[i][j] for j in self.places(column)] for i in self.places(row)]
+        if row == RESET_MARK + column:
+            for k, cells_of in enumerate(cells):
+                cells_of[k] = ZERO if cells_of[k] is ONE else build_sum(cells_of[k], MINUS_ONE)
+        return cells
+
+
+def matrix_of(block: tuple[str, str]) -> str:
+    """The matrix in which a block stands: F, H, G or reset."""
+    if block[0].startswith(MEASURED_MARK):
+        return "H"
+    return "reset" if block[0].startswith(RESET_MARK) else "G" if block[1].startswith(NOISE_MARK) else "F"
 
 
 def read_problem(document: Table, where: str = "") -> Problem:
@@ -87,12 +121,14 @@ def read_problem(document: Table, where: str = "") -> Problem:
     parameters = read_parameters(declared, place)
     place = join_place(where, "model")
     model = as_table(require_key(document, "model", where), place)
-    expect_keys(model, ("name", "states", "F"), place)
+    expect_keys(model, ("name", "states", "F", "H", "G", "reset"), place)
     spot = join_place(place, "states")
     items = as_list(require_key(model, "states", place), spot, "a list of names")
     states = tuple(check_name(item, where=join_place(spot, k)) for k, item in enumerate(items))
     require_distinct((*parameters, *states), spot)
-    F = read_grid(require_key(model, "F", place), parameters, join_place(place, "F"), len(states))
+    n = len(states)
+    F = read_grid(require_key(model, "F", place), parameters, join_place(place, "F"), n, n)
+    more = read_more(document, model, parameters, n, where)
     return Problem(
         name=as_title(model.get("name", "model"), join_place(place, "name")),
         states=states,
@@ -102,8 +138,54 @@ def read_problem(document: Table, where: str = "") -> Problem:
         roles=read_roles(require_key(document, "roles", where), states, join_place(where, "roles")),
         quantities=read_quantities(document.get("quantities", {}), parameters, join_place(where, "quantities")),
         known=read_known(document.get("known", {}), join_place(where, "known")),
-        unused=tuple(name for name in BESIDE if name in document),
+        unused=tuple(name for name in BESIDE if name in document and not (name == "measurement" and "H" in more)),
+        **more,
     )
+
+
+def read_more(document: Table, model: Table, names: Mapping[str, Any], n: int, where: str) -> dict[str, Any]:
+    """H, G and the reset, and what their rows and columns are."""
+    place, found = join_place(where, "model"), dict[str, Any]()
+    labels: list[Any] = []
+    if "measured" in document:
+        blocks = document.get("measurement", [])
+        labels = [block.get("name") for block in blocks] if "H" not in model else []
+        rows = require_key(model, "H", place) if not labels else [require_key(b, "h", "measurement") for b in blocks]
+        found["H"] = read_grid(rows, names, join_place(place, "H"), None, n)
+        spot = join_place(where, "measured")
+        found["measured"] = read_places(document["measured"], MEASURED, labels, len(found["H"]), spot)
+    if "noises" in document:
+        spot, sizes = join_place(where, "noises"), dict.fromkeys(NOISES, 3)
+        found["G"] = read_grid(require_key(model, "G", place), names, join_place(place, "G"), n, None)
+        found["noises"] = read_places(document["noises"], sizes, [], len(found["G"][0]), spot)
+    for name, table in (("H", "measured"), ("G", "noises")):
+        if name in model and name not in found:
+            message = f"expected [{table}] beside {name}; got none; say what it shows, such as velocity = [1, 2, 3]"
+            raise EmptyError(message, where=join_place(where, table))
+    if "reset" in model:
+        found["reset"] = read_grid(model["reset"], names, join_place(place, "reset"), n, n)
+    return found
+
+
+def read_places(
+    value: Any, sizes: Mapping[str, int], labels: Sequence[Any], most: int, where: str
+) -> dict[str, tuple[int, ...]]:
+    """Kind -> places of its rows or columns, which count from 1 in the file, or have names there."""
+    table, found, taken = as_table(value, where), dict[str, tuple[int, ...]](), set[int]()
+    expect_keys(table, tuple(sizes), where)
+    for kind, items in table.items():
+        spot = join_place(where, kind)
+        listed = as_list(items if isinstance(items, list) else [items], spot, "a list of rows or columns")
+        places = [labels.index(item) + 1 if item in labels else item for item in listed]
+        whole = all(isinstance(k, int) and not isinstance(k, bool) and 1 <= k <= most for k in places)
+        if len(places) != sizes[kind] or not whole:
+            message = f"expected {sizes[kind]} numbers from 1 to {most}; got {quote(str(items))}; correct it"
+            raise ShapeError(message, where=spot)
+        if len({*places} - taken) < len(places):
+            raise DuplicateError(f"expected each row or column once; got {places} again; drop one", where=spot)
+        taken |= {*places}
+        found[kind] = tuple(k - 1 for k in places)
+    return found
 
 
 def read_cell(value: Any, names: Mapping[str, Any], where: str) -> Tree:
@@ -116,14 +198,16 @@ def read_cell(value: Any, names: Mapping[str, Any], where: str) -> Tree:
     return read_tree(str(value), names.keys(), where=where)
 
 
-def read_grid(value: Any, names: Mapping[str, Any], where: str, size: int) -> tuple[tuple[Tree, ...], ...]:
-    """A square matrix of entries."""
+def read_grid(value: Any, names: Mapping[str, Any], where: str, height: int | None, width: int | None) -> Grid:
+    """A matrix of entries; None for as many rows or columns as there are."""
     rows = as_list(value, where, "a list of rows")
+    width = len(as_list(rows[0], join_place(where, 0), "a list of expressions")) if width is None and rows else width
     for k, row in enumerate([rows, *rows]):
-        spot = where if k == 0 else join_place(where, k - 1)
-        if len(as_list(row, spot, "a list of expressions")) != size:
+        spot, size = (where, height or len(rows)) if k == 0 else (join_place(where, k - 1), width)
+        if len(as_list(row, spot, "a list of expressions")) != size or not row:
             got = f"{len(row)} {'rows' if k == 0 else 'entries'}"
-            raise ShapeError(f"expected {size}, one per state; got {got}; correct the matrix", where=spot)
+            message = f"expected {size}, one per {'state' if height == width else 'row or state'}; got {got}"
+            raise ShapeError(f"{message}; correct the matrix", where=spot)
     return tuple(
         tuple(read_cell(item, names, join_place(join_place(where, i), j)) for j, item in enumerate(row))
         for i, row in enumerate(rows)

@@ -12,8 +12,9 @@ from functools import cache
 from itertools import islice, product
 from typing import Any
 
-from navsym.conventions.card import CHOICES, DROPPED, ESTIMATE, TRUTH, Card, list_structures
-from navsym.conventions.mechanisation import ROLES, Mechanisation, flat_card
+from navsym.conventions.card import CHOICES, DROPPED, ESTIMATE, MEASURED_LESS, TRUTH, Card, list_structures
+from navsym.conventions.measuring import MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
+from navsym.conventions.mechanisation import BIASES, ROLES, Mechanisation, flat_card
 from navsym.conventions.points import BITS, ImpossibleError, Point, draw_point, evaluate
 from navsym.conventions.reading import Problem
 from navsym.core.balls import precision
@@ -21,8 +22,7 @@ from navsym.language.tree import list_names
 
 Block = tuple[str, str]
 
-SIGNS = ("error", "rotation_sign", "bias_sign")
-BIASES = ("gyro_bias", "accelerometer_bias")
+SIGNS = ("error", "rotation_sign", "bias_sign", "innovation")
 POINTS = 3
 
 
@@ -64,11 +64,11 @@ def plain_card(card: Card) -> Card:
 @cache
 def narrow_card(card: Card, role: str) -> Card:
     """The card without the fields that have no influence on the columns of a role (a test compares them)."""
-    plain = plain_card(card)
+    plain = replace(plain_card(card), innovation=None)
     if role == "position":
         return plain
     level = card.frame == "local-level"
-    if role in BIASES:
+    if role in BIASES or role.startswith(NOISE_MARK):
         plain = replace(plain, angle=None, earth_rate=None, transport_rate=None)
     if role == "attitude" and card.vector_error != "rotated":
         plain = replace(plain, angle=None)
@@ -88,6 +88,7 @@ class Comparison:
         self.signs = cache(self.compare)
         self.is_small = cache(self.has_small_terms)
         self.is_zero = cache(self.has_zeros)
+        self.noise_sign = cache(self.compare_noise)
 
     def draw(self, key: Card, number: int) -> Point:
         """A point for cards of this kind."""
@@ -100,7 +101,7 @@ class Comparison:
     def compute_columns(self, card: Card, role: str, number: int) -> list[dict[str, list[Any]]]:
         """The same, without looking whether they are there already."""
         world = self.point(key_of_points(card), number).world
-        return [Mechanisation(card, world).column(role, k) for k in range(3)]
+        return [full_column(Mechanisation(card, world), role, k) for k in range(3)]
 
     def evaluate_block(self, key: Card, block: Block, number: int) -> list[list[Any]]:
         """The user's block in balls."""
@@ -120,10 +121,10 @@ class Comparison:
             written = self.entries(key, block, number)
             columns = self.computed(card, column, number)
             wrong = []
-            for i, j in product(range(3), range(3)):
+            for i, j in product(range(len(written)), range(3)):
                 difference = written[i][j] - sign * columns[j][row][i]
                 if difference.is_finite() and not difference.contains(0):
-                    wrong.append((self.problem.roles[row][i], self.problem.roles[column][j]))
+                    wrong.append((self.problem.places(row)[i], self.problem.places(column)[j]))
             if wrong:
                 return Mismatch(block, tuple(wrong), number)
         return None
@@ -145,16 +146,34 @@ class Comparison:
     def show(self, card: Card, block: Block, entry: tuple[int, int], number: int) -> tuple[dict[str, str], str, str]:
         """The point in decimals, the user's entry there and the card's."""
         row, column = block
-        i, j = self.problem.roles[row].index(entry[0]), self.problem.roles[column].index(entry[1])
-        signs = card.signs()
+        i, j = self.problem.places(row).index(entry[0]), self.problem.places(column).index(entry[1])
         with precision(BITS):
             key = key_of_points(card)
             written = self.entries(key, block, number)[i][j]
             columns = self.columns(card, column, number)
-            expected = signs[row] * signs[column] * columns[j][row][i]
-            names = list_names(self.problem.F[entry[0]][entry[1]])
+            expected = self.block_sign(card, block) * columns[j][row][i]
+            names = list_names(self.problem.block(*block)[i][j])
             point = {name: in_decimals(self.point(key, number).values[name]) for name in names}
             return point, in_decimals(written), in_decimals(expected)
+
+    def block_sign(self, card: Card, block: Block) -> int:
+        """The sign by which the signs of a card scale a block; that of a noise is the one that fits more blocks."""
+        signs = card.signs()
+        row, column = block
+        if row.startswith(MEASURED_MARK):
+            return (-1 if card.innovation == MEASURED_LESS else 1) * signs[column]
+        if row.startswith(RESET_MARK):
+            return signs["attitude"]
+        if column.startswith(NOISE_MARK):
+            return signs[row] * self.noise_sign(plain_card(card), tuple(sorted(signs.items())), column)
+        return signs[row] * signs[column]
+
+    def compare_noise(self, card: Card, signs: tuple[tuple[str, int], ...], noise: str) -> int:
+        """The sign of a noise, which nothing else tells."""
+        rows = [(row, sign) for row, sign in signs if row in self.problem.roles]
+        found = {s: [self.sign(card, (row, noise), s * sign) for row, sign in rows] for s in (1, -1)}
+        wrong = {s: sum(len(m.entries) for m in mismatches if m) for s, mismatches in found.items()}
+        return 1 if wrong[1] <= wrong[-1] else -1
 
     def has_zeros(self, block: Block) -> bool:
         """True where every entry of the user's block is written as zero."""
@@ -162,6 +181,8 @@ class Comparison:
 
     def is_dropped(self, card: Card, block: Block) -> bool:
         """True where the user's block is zero and the card's has small terms only."""
+        if block[0].startswith(RESET_MARK):
+            return self.is_zero(block)
         return self.is_zero(block) and self.is_small(flat_card(plain_card(card)), block)
 
     def has_small_terms(self, card: Card, block: Block) -> bool:
@@ -186,6 +207,9 @@ def list_blocks(problem: Problem) -> list[Block]:
         ("attitude", "attitude"),
     ]
     blocks = [(row, column) for row in roles for column in roles]
+    blocks += [(MEASURED_MARK + kind, column) for kind in problem.measured for column in roles]
+    blocks += [(row, NOISE_MARK + noise) for noise in problem.noises for row in roles]
+    blocks += [(RESET_MARK + row, column) for row in roles for column in roles if problem.reset]
     return sorted(blocks, key=lambda block: main.index(block) if block in main else len(main) + ("position" in block))
 
 
@@ -194,8 +218,9 @@ def list_signs(problem: Problem) -> Iterator[dict[str, str | None]]:
     errors = (ESTIMATE, TRUTH) if {"velocity", "position"} & set(problem.roles) else (ESTIMATE,)
     attitudes: tuple[str | None, ...] = ("+", "-") if "attitude" in problem.roles else (None,)
     biases: tuple[str | None, ...] = (ESTIMATE, TRUTH) if set(BIASES) & set(problem.roles) else (None,)
-    for error, attitude, bias in product(errors, attitudes, biases):
-        yield {"error": error, "rotation_sign": attitude, "bias_sign": bias}
+    shown: tuple[str | None, ...] = CHOICES["innovation"] if problem.measured else (None,)
+    for error, attitude, bias, innovation in product(errors, attitudes, biases, shown):
+        yield {"error": error, "rotation_sign": attitude, "bias_sign": bias, "innovation": innovation}
 
 
 def examine(problem: Problem, comparison: Comparison, most: int = 0) -> Iterator[Outcome]:
@@ -236,9 +261,9 @@ def judge(
     card: Card, structure: Card, comparison: Comparison, blocks: Sequence[Block], results: Any, most: int
 ) -> Outcome:
     """A card with the blocks that exclude it, up to one more than ``most``, or with those that are dropped."""
-    signs, mismatches, dropped = card.signs(), [], []
+    mismatches, dropped = [], []
     for block in blocks:
-        mismatch = results(block, signs[block[0]] * signs[block[1]])
+        mismatch = results(block, comparison.block_sign(card, block))
         if mismatch is None:
             continue
         if comparison.is_dropped(structure, block):

@@ -15,6 +15,7 @@ from typing import Any
 from flint import fmpq_mpoly_ctx
 
 from navsym.conventions.card import Card
+from navsym.conventions.measuring import CORRECTED, full_column
 from navsym.conventions.mechanisation import Mechanisation, World
 from navsym.conventions.points import gradient_names
 from navsym.conventions.reading import Problem
@@ -28,7 +29,7 @@ NUMERAL = re.compile(r"-?\d+(/\d+)?")
 
 GENERATORS = (
     *(f"c{i}{j}" for i in range(3) for j in range(3)),
-    *(f"{name}{k}" for name in ("f", "w", "v", "r", "g", "t", "e") for k in range(3)),
+    *(f"{name}{k}" for name in ("f", "w", "v", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp") for k in range(3)),
     *("sin", "cos", "h", "RN", "RE", "third", "mean", "slope", "rate", "gravity", "pull", "radius"),
 )
 
@@ -82,12 +83,12 @@ class Formulas:
 
     def compute_columns(self, role: str) -> list[dict[str, list[Any]]]:
         """Three columns of F with every sign plus."""
-        return [Mechanisation(self.card, self.world).column(role, k) for k in range(3)]
+        return [full_column(Mechanisation(self.card, self.world), role, k) for k in range(3)]
 
     def block(self, row: str, column: str, sign: int = 1) -> list[list[str]]:
         """A block of F as texts, times a sign."""
         parts = self.columns(column)
-        return [[self.write(parts[j][row][i], sign) for j in range(3)] for i in range(3)]
+        return [[self.write(parts[j][row][i], sign) for j in range(3)] for i in range(len(parts[0][row]))]
 
     # Symbols and their texts
 
@@ -144,6 +145,10 @@ class Formulas:
             radius,
             gradient_names(RN, RE, h, third, mean),
             self.vector("t", "transport_rate") if "transport_rate" in given else None,
+            self.vector("l", "lever_arm") if "lever_arm" in given else (0, 0, 0),
+            self.vector("m", "known_vector") if self.problem.measured else (0, 0, 0),
+            tuple(self.problem.measured),
+            {r: self.vector(f"c{r[0]}", f"{r}_correction") for r in CORRECTED} if self.problem.reset else {},
         )
 
     def radii(self) -> tuple[Ratio, Ratio, Ratio]:

@@ -8,7 +8,7 @@ A matrix of any size, ``["m", "n"]``, has names of dimensions and no symbols of 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
 
@@ -18,12 +18,14 @@ from navsym.language.expression import Expr
 from navsym.language.names import NAME, RESERVED, check_name, expect_keys, quote
 from navsym.language.printer import to_text
 from navsym.language.schema import SIDE, as_list, as_table, as_text, describe_value, join_place, read_entry, require_key
+from navsym.language.units import read_unit
 
-#: What a table may say; ``unit`` and ``frame`` are notes for people.
+#: What a table may say.
 KINDS = ("vector", "matrix", "rotation", "quaternion", "integer")
 #: What a square matrix may be; positive is positive definite, nonnegative is positive semidefinite.
 PROPERTIES = ("symmetric", "positive", "nonnegative", "invertible", "orthogonal", "skew", "diagonal")
-KEYS = (*KINDS, *PROPERTIES, "function", "random", "range", "sign", "unit", "frame")
+NOTES = ("unit", "frame")
+KEYS = (*KINDS, *PROPERTIES, "function", "random", "range", "sign", *NOTES)
 MOST_RANDOM = 4  # entries of a random vector
 ORDERS = 3  # derivatives of a function of time that have symbols of their own
 INFINITY = {"oo", "-oo"}
@@ -48,6 +50,7 @@ class Shape:
     sizes     : rows and columns of a matrix of any size, numbers or names of dimensions, which has no rows
     properties : what a matrix is, words of :data:`PROPERTIES`
     random    : mean and covariance as text, and whether it is normal; such a name has no ranges
+    unit, frame : as they are declared; the frame of a rotation is ``b to n``
     """
 
     name: str
@@ -60,6 +63,8 @@ class Shape:
     sizes: tuple[int | str, int | str] | None = None
     properties: tuple[str, ...] = ()
     random: Mapping[str, Any] | None = None
+    unit: str = ""
+    frame: str = ""
 
     @property
     def size(self) -> tuple[int | str, int | str] | None:
@@ -97,9 +102,6 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
         )
         raise ShapeError(message, where=where)
     expect_keys(value, KEYS, where)
-    for note in ("unit", "frame"):
-        if note in value:
-            as_text(value[note], join_place(where, note), "a note")
     kinds = [kind for kind in KINDS if kind in value]
     if len(kinds) > 1:
         message = f"expected one of {', '.join(KINDS)}; got {' and '.join(kinds)}; keep one of them"
@@ -107,6 +109,7 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
     kind = kinds[0] if kinds else "scalar"
     properties = read_properties(kind, value, where)
     size = read_size(kind, value, where)
+    unit, frame = read_notes(kind, value, where)
     if size is not None and properties and size[0] != size[1]:
         got = f"{size[0]} x {size[1]}"
         raise ShapeError(f"expected a square matrix to be {properties[0]}; got {got}; correct it", where=where)
@@ -114,11 +117,12 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
         if "function" in value or "range" in value or "sign" in value:
             message = f"expected a constant matrix of any size; got {', '.join(value)}; give the dimensions as numbers"
             raise ShapeError(message, where=where)
-        return [Shape(name, (), kind, {}, sizes=size, properties=properties)]
+        return [Shape(name, (), kind, {}, sizes=size, properties=properties, unit=unit, frame=frame)]
     even = bool({"symmetric", "positive", "nonnegative"} & {*properties})
     rows = name_entries(name, size, even, taken)
     if "random" in value:
-        return [Shape(name, rows, kind, {}, random=read_random(value, len(rows), kind, where))]
+        random = read_random(value, len(rows), kind, where)
+        return [Shape(name, rows, kind, {}, random=random, unit=unit, frame=frame)]
     limits = read_limits(kind, value, where)
     shape = Shape(
         name,
@@ -127,6 +131,8 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
         limit_entries(rows, limits),
         (*relations_of(kind, value, name, where), *relations_of_properties(name, len(rows), properties)),
         properties=properties,
+        unit=unit,
+        frame=frame,
     )
     if "function" not in value:
         return [shape]
@@ -134,6 +140,16 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
         message = f'expected function = "t", the time; got {describe_value(value["function"])}; correct it'
         raise DomainError(message, where=join_place(where, "function"))
     return list_derivatives(shape, taken)
+
+
+def read_notes(kind: str, value: Mapping[str, Any], where: str) -> tuple[str, str]:
+    """Unit and frame; the frames of a rotation are two words, ``b to n``, or a text that says nothing about frames."""
+    notes = {note: as_text(value[note], join_place(where, note), f"a {note}") for note in NOTES if note in value}
+    if "unit" in notes:
+        read_unit(notes["unit"], join_place(where, "unit"))
+    if kind == "rotation":
+        notes.setdefault("frame", value["rotation"])
+    return notes.get("unit", ""), notes.get("frame", "")
 
 
 def read_random(value: Mapping[str, Any], n: int, kind: str, where: str) -> dict[str, Any]:
@@ -303,7 +319,7 @@ def list_derivatives(shape: Shape, taken: Collection[str]) -> list[Shape]:
     for order, name in enumerate(names):
         rate = names[order + 1] if order < ORDERS else None
         if order == 0:
-            found.append(Shape(name, shape.rows, shape.kind, shape.ranges, shape.relations, {name: rate}))
+            found.append(replace(shape, rates={name: rate}))
             continue
         rows = name_entries(name, shape.size, False, taken)
         kind = "vector" if shape.kind == "quaternion" else "matrix" if shape.kind == "rotation" else shape.kind

@@ -13,6 +13,8 @@ from typing import Any
 from navsym.claims.formula import Formula, names_of, side_text
 from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
 from navsym.language.declarations import read_range
+from navsym.language.dimensions import infer_units
+from navsym.language.frames import infer_frames
 from navsym.language.names import FUNCTIONS, expect_keys, quote, suggest_nearest
 from navsym.language.printer import to_text
 from navsym.language.schema import Table, as_list, as_table, as_text, join_place, require_key
@@ -103,19 +105,14 @@ def read_text_claim(
     require_expected(trees, shapes, where)
     used, slopes = collect_names([*texts, *exists], free, given, shapes, rates, sizes)
     require_rates(trees, slopes, where)
+    require_meaning([*trees[: len(links)], *stated], used, shapes, rates, "tolerance" in block, where)
     relations = [text for name in used for text in shapes[name].relations]
     ranges = {entry: span for name in used for entry, span in shapes[name].ranges.items()}
     ranges |= read_box(block, shapes, limit, join_place(where, "box"))
     formula = make_formula(block)
     if any(shape.sizes for shape in shapes.values()) and is_of_any_size([shapes[n] for n in used], trees):
-        plain = {
-            "exists": exists,
-            "tolerance": formula.tolerance,
-            "rates": slopes,
-            "box": block.get("box"),
-            "order": order,
-        }
-        require_plain(plain, where)
+        plain = {"exists": exists, "tolerance": formula.tolerance, "rates": slopes}
+        require_plain({**plain, "box": block.get("box"), "order": order}, where)
         declared, scope = declare_any_size(shapes, used, trees, ranges, where)
         declared["given"] = [*map(clean, given)]
         documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | declared for x, sign, y in links]
@@ -134,6 +131,25 @@ def read_text_claim(
     shown = {entry: text for name in used for entry, text in shapes[name].shown().items()}
     scope = describe_scope([shapes[n] for n in used if not shapes[n].label], ranges)
     return TextClaim(formula, tuple(documents), kinds, shown, scope)
+
+
+def require_meaning(
+    trees: Sequence[Tree], used: Sequence[str], shapes: Mapping[str, Shape], rates: Table, is_printed: bool, where: str
+) -> None:
+    """Refuse sums of different units and of vectors in different frames, as far as units and frames are declared.
+
+    is_printed : a printed number stands for a quantity in the units of its author
+    """
+    own = {name: shapes[name] for name in (*used, TIME) if name in shapes}
+    if not any(shape.unit or shape.frame for shape in own.values()):
+        return
+    if is_printed:
+        trees = [side for tree in trees for side in tree.args if list_names(side)]
+    sizes = {name: shape.size for name, shape in shapes.items()}
+    derived = any(part.head == "dot_" for part in list_parts(*trees))
+    slopes = {n: read_value(side_text(rates[n]), sizes).tree for n in rates if derived and n in own}
+    infer_units(trees, own, slopes, where=where)
+    infer_frames(trees, own, slopes, where=where)
 
 
 def read_box(

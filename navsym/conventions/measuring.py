@@ -1,0 +1,181 @@
+"""Measurement matrices, noise entry and reset Jacobians of a card, by the same exact linearisation as its F.
+
+A measurement predicted by the estimate less that of the truth is linear in the error: H with every sign plus. Noise
+adds to the output of a sensor as the error of its bias does, with the other sign. The reset takes a correction out of
+the estimate by the definition of the error: the Jacobian of what is left, to first order in the correction, from the
+product of two infinitesimals.
+
+Sources: Groves, Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems, chapter 14 (lever arms);
+Sola, Quaternion kinematics for the error-state Kalman filter, section 6 (reset).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from navsym.conventions.mechanisation import BIASES, ROLES, Mechanisation, State, flat_card
+from navsym.conventions.nilpotent import (
+    NOTHING,
+    Grid,
+    Nilpotent,
+    Vector,
+    add,
+    add_vectors,
+    apply,
+    constant,
+    cross,
+    identity,
+    multiply,
+    negate,
+    skew,
+    subtract,
+    transpose,
+)
+
+#: What a measurement shows -> the number of its rows.
+MEASURED: Mapping[str, int] = {
+    "position": 3,
+    "velocity": 3,
+    "body_velocity": 3,
+    "zero_velocity": 3,
+    "attitude": 3,
+    "vector": 3,
+    "height": 1,
+}
+#: Noises: of the sensors' outputs, and the drives of their biases.
+NOISES = ("gyro", "accelerometer", *BIASES)
+#: Roles that a reset may couple.
+CORRECTED = ("attitude", "velocity", "position")
+MEASURED_MARK, NOISE_MARK, RESET_MARK = "measured ", "noise ", "reset "
+
+
+def measure(flow: Mechanisation, kind: str, estimate: State, x: State) -> Vector:
+    """The measurement that the estimate predicts less the true one; arms are small beside the radii of the Earth."""
+    if kind == "position":
+        return measure_position(flow, estimate, x)
+    if kind == "height":
+        return [position_along(flow, estimate, x)]
+    if kind == "attitude":
+        outer = multiply(estimate.attitude, transpose(x.attitude))
+        half = Nilpotent(1 / (2 * flow.one()))
+        return [half * (outer[(k + 2) % 3][(k + 1) % 3] - outer[(k + 1) % 3][(k + 2) % 3]) for k in range(3)]
+    shown = SHOWN[kind]
+    return add_vectors(shown(flow, estimate), negate(shown(flow, x)))
+
+
+def measure_position(flow: Mechanisation, estimate: State, x: State) -> Vector:
+    """Position of the end of the lever arm, in the units of the card's position error."""
+    moved = add_vectors(estimate.position, negate(x.position))
+    arm = apply(subtract(estimate.attitude, x.attitude), constant(flow.world.arm))
+    if not flow.is_geodetic:
+        return add_vectors(moved, arm)
+    metres = flow.metres(x)
+    if flow.card.position_error == "metres":
+        along = [part * unit for part, unit in zip(moved, metres, strict=True)]
+        return add_vectors(apply(flow.turn, along), arm)
+    ned = apply(transpose(flow.turn), arm)
+    return add_vectors(moved, [part / unit for part, unit in zip(ned, metres, strict=True)])
+
+
+def position_along(flow: Mechanisation, estimate: State, x: State) -> Nilpotent:
+    """Height."""
+    moved = add_vectors(estimate.position, negate(x.position))
+    return moved[2] if flow.is_geodetic else -apply(transpose(flow.turn), moved)[2]
+
+
+def spin(flow: Mechanisation, x: State) -> Vector:
+    """Velocity of the end of the lever arm beside its origin and the Earth, in the body."""
+    w = add_vectors(constant(flow.world.w), negate(x.gyro_bias))
+    turning = apply(transpose(x.attitude), flow.earth_rate(x))
+    return cross(add_vectors(w, negate(turning)), constant(flow.world.arm))
+
+
+def show_velocity(flow: Mechanisation, x: State) -> Vector:
+    """Velocity of the end of the lever arm in the frame."""
+    return add_vectors(x.velocity, apply(x.attitude, spin(flow, x)))
+
+
+def show_body_velocity(flow: Mechanisation, x: State) -> Vector:
+    """Velocity of the end of the lever arm in the body: odometer, Doppler log, wheels that do not slip."""
+    return add_vectors(apply(transpose(x.attitude), x.velocity), spin(flow, x))
+
+
+def show_vector(flow: Mechanisation, x: State) -> Vector:
+    """A vector that is known in the frame, as the body sees it: magnetic field, gravity, a star."""
+    return apply(transpose(x.attitude), constant(flow.world.seen))
+
+
+SHOWN: Mapping[str, Callable[[Mechanisation, State], Vector]] = {
+    "velocity": show_velocity,
+    "body_velocity": show_body_velocity,
+    "zero_velocity": lambda flow, x: x.velocity,
+    "vector": show_vector,
+}
+
+
+def measured_column(flow: Mechanisation, role: str, component: int, kinds: tuple[str, ...]) -> dict[str, list[Any]]:
+    """A column of H with every sign plus: measurement -> coefficients."""
+    truth = flow.truth()
+    estimate = flow.estimate(truth, unit_error(role, component))
+    return {MEASURED_MARK + kind: [part.error for part in measure(flow, kind, estimate, truth)] for kind in kinds}
+
+
+def unit_error(role: str, component: int) -> dict[str, Vector]:
+    """An error eps in one state."""
+    error = {name: [NOTHING] * 3 for name in ROLES}
+    error[role] = [Nilpotent(0, 1 if k == component else 0) for k in range(3)]
+    return error
+
+
+def noise_column(flow: Mechanisation, noise: str, component: int) -> dict[str, list[Any]]:
+    """A column of G: the error of a bias with the other sign, or the drive of a bias."""
+    if noise in BIASES:
+        return {name: [int(name == noise and k == component) for k in range(3)] for name in ROLES}
+    column = flow.column(f"{noise}_bias", component)
+    return {name: [-x if type(x) is int else x * -1 for x in parts] for name, parts in column.items()}
+
+
+def reset_column(flow: Mechanisation, role: str, component: int) -> dict[str, list[Any]]:
+    """A column of the reset Jacobian less the unit matrix, with every sign plus: linear in the correction.
+
+    The estimate has the error eps e_j plus the correction tau c, which is taken out by the definition of the error.
+    What is left changes with eps by 1, and with eps tau by what is returned. The Earth has no part in it.
+    """
+    flow = Mechanisation(flat_card(flow.card), flow.world)
+    truth, error, given = flow.truth(), unit_error(role, component), flow.world.corrections
+    correction = {name: [Nilpotent(0, 0, x) for x in given[name]] for name in given}
+    both = {name: add_vectors(error[name], correction[name]) for name in given}
+    C, in_frame = truth.attitude, flow.card.attitude_error == "frame"
+    half = Nilpotent(1 / (2 * flow.one()))
+    square = [[half * x for x in row] for row in multiply(skew(both["attitude"]), skew(both["attitude"]))]
+    small = add(add(identity(), skew(both["attitude"])), square)
+    back = subtract(identity(), skew(correction["attitude"]))
+    before = multiply(small, C) if in_frame else multiply(C, small)
+    after = multiply(back, before) if in_frame else multiply(before, back)
+    velocity, position = (
+        take_out(flow, flow.shift(vector, both[name], C, before), correction[name], before, after)
+        for name, vector in (("velocity", truth.velocity), ("position", truth.position))
+    )
+    left = flow.compare(State(after, velocity, position, truth.gyro_bias, truth.accelerometer_bias), truth)
+    return {RESET_MARK + name: [part.mixed for part in left[name]] for name in ROLES}
+
+
+def take_out(flow: Mechanisation, estimate: Vector, correction: Vector, before: Grid, after: Grid) -> Vector:
+    """An estimated vector without its correction: the inverse of the definition of its error."""
+    if flow.card.vector_error == "body":
+        return add_vectors(estimate, negate(apply(after, correction)))
+    rest = add_vectors(estimate, negate(correction))
+    if flow.card.vector_error == "rotated":
+        return apply(multiply(after, transpose(before)), rest)
+    return rest
+
+
+def full_column(flow: Mechanisation, role: str, component: int) -> dict[str, list[Any]]:
+    """A column of F with what stands below it in H and in the reset; or a column of G."""
+    if role.startswith(NOISE_MARK):
+        return noise_column(flow, role.removeprefix(NOISE_MARK), component)
+    column = flow.column(role, component)
+    if flow.world.measured:
+        column |= measured_column(flow, role, component, flow.world.measured)
+    return column | reset_column(flow, role, component) if flow.world.corrections else column
