@@ -368,11 +368,10 @@ def variables_of_the_minimum_corrected():
 def coefficients_of_the_polynomial() -> Finding:
     """On which of z2, z3, u2, u3 the polynomial of (3.3) depends: a minimum over any other changes nothing."""
     names = sp.symbols("z2 z3 u2 u3", real=True)
-    _, _, u2, u3 = names
-    h1, h2, h3 = H()[2], H()[0], H()[1]
-    polynomial = h1 + u2 * h2 + u3 * h3
+    h1, h2, h3 = sp.symbols("H1 H2 H3", real=True)
+    polynomial = h1 + names[2] * h2 + names[3] * h3
     free = tuple(v.name for v in names if not vanishes_identically(sp.diff(polynomial, v)))
-    return Finding(free, "normal form of the derivatives", PROVED, "the functional y3, every T")
+    return Finding(free, "normal form of the derivatives", PROVED, "all H1, H2, H3, for every functional in the place of y3")
 
 
 @claim("3.4")
