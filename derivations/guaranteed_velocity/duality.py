@@ -371,7 +371,7 @@ def coefficients_of_the_polynomial() -> Finding:
     h1, h2, h3 = sp.symbols("H1 H2 H3", real=True)
     polynomial = h1 + names[2] * h2 + names[3] * h3
     free = tuple(v.name for v in names if not vanishes_identically(sp.diff(polynomial, v)))
-    return Finding(free, "normal form of the derivatives", PROVED, "all H1, H2, H3, for every functional in the place of y3")
+    return Finding(free, "normal form of the derivatives", PROVED, "all H1, H2, H3, also for other states than y3")
 
 
 @claim("3.4")

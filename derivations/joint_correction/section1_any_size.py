@@ -1,6 +1,6 @@
 """Section 1 for every n and m: what (1.5) to (1.14) state once the chains are named, as matrices of any size.
 
-The rows of A are a_1 ... a_m, those of B are b_1 ... b_(n-m); U and V are the two parts of the inverse of both together.
+The rows of A are a_1 ... a_m, those of B are b_1 ... b_(n-m); U and V are the two parts of the inverse of both.
 Definition (1.2) and the coefficients theta, phi and delta say how the chains go on: ``A G = Theta A`` and
 ``B G = Phi_x A + Phi_z B``. Their existence is 1.4.theta, 1.8.basis, 1.10.phi and 1.14.delta.
 """
@@ -58,11 +58,7 @@ def of_every_size(left: str, right: str, *given: str) -> Callable[[], Property]:
 
 
 SHIFT_A, SHIFT_B = "A @ G = Theta @ A", "B @ G = Phi_x @ A + Phi_z @ B"
-SHIFTS = (
-    "A_u @ G = F @ A_u + F_o @ A_v",
-    "A_v @ G = Theta_u @ A_u + Theta_v @ A_v",
-    "B_w @ G = D_u @ A_u + D_w @ B_w",
-)
+SHIFTS = ("A_u @ G = F @ A_u + F_o @ A_v", "A_v @ G = Theta_u @ A_u + Theta_v @ A_v", "B_w @ G = D_u @ A_u + D_w @ B_w")
 GX, GZ1, GZ2 = "C1 @ Theta @ inv(C1)", "C2 @ Phi_x @ inv(C1)", "C2 @ Phi_z @ inv(C2)"
 
 #: number, title, left side, right side, relations

@@ -171,7 +171,7 @@ def gain_is_unique():
             found,
             "the coefficients are affine in K_x with an invertible matrix",
             PROVED,
-            scope="m = 1, 2, 3, all theta and C_1",
+            scope="m = 1, 2, 3, all theta",
             assumptions=("det C_1 != 0",),
         ),
     )
@@ -224,8 +224,8 @@ def steady_kalman_gain():
 def difference_of_two_steady_solutions():
     """m = 2: D -> A_1 D + D A_2^T has the determinant (d_1 - d_2)^2 + (t_1 + t_2)(t_1 d_2 + t_2 d_1).
 
-    D is the difference of 1.6.kalman_unique.any, t the traces and d the determinants of A_i. Where both stabilise, both t
-    are negative and both d positive: the determinant is positive, and D = 0.
+    D is the difference of 1.6.kalman_unique.any, t the traces and d the determinants of A_i. Where both stabilise,
+    both t are negative and both d positive: the determinant is positive, and D = 0.
     """
     a, b = (sp.Matrix(2, 2, sp.symbols(f"{name}1:5", real=True)) for name in "ab")
     both = sp.Matrix(sp.kronecker_product(a, sp.eye(2)) + sp.kronecker_product(sp.eye(2), b))

@@ -1,14 +1,16 @@
-"""One sign flipped or one index shifted in the source of a paper, and which of its claims notice.
+"""One sign flipped or one index shifted in the source of a paper, and the claims that notice.
 
-A place is a sum, a difference, a minus or a constant index in a file of ``derivations/``; printed sides, decorators and
-experiments have none. The paper is imported once with every place watched: a claim *names* the places that its statement
-runs through. It is imported again with one of them changed, and the claims that name it are stated and decided anew.
+A place is a sum, a difference, a minus or a constant index in a file of ``derivations/``; printed sides, decorators
+and experiments have none. The paper is imported once with every place watched: a claim *names* the places that its
+statement runs through. It is imported again with one of them changed, and the claims that name it are stated and
+decided anew.
 """
 
 from __future__ import annotations
 
 import ast
 import builtins
+import copy
 import functools
 import gc
 import importlib
@@ -22,7 +24,7 @@ from numbers import Number
 
 import sympy as sp
 
-from navsym.claims import Equation, claims_of
+from navsym.claims import Claim, Equation, Statement, claims_of
 from navsym.claims.claim import PAPERS
 from navsym.claims.paper import import_paper
 from navsym.prove.ladder import decide
@@ -36,19 +38,20 @@ Place = tuple[str, int]
 class Places(ast.NodeTransformer):
     """Visits every place of a file in a fixed order; ``change`` says what stands there instead."""
 
-    def __init__(self, change: Callable[[int, ast.expr, ast.expr], ast.expr]) -> None:
+    def __init__(self, change: Callable[[int, ast.expr, ast.expr, str], ast.expr]) -> None:
         self.change = change
         self.count = 0
 
-    def put(self, node: ast.expr, changed: ast.expr) -> ast.expr:
+    def put(self, node: ast.expr, changed: ast.expr, words: str = "") -> ast.expr:
         place, self.count = self.count, self.count + 1
-        return ast.copy_location(self.change(place, node, changed), node)
+        return ast.copy_location(self.change(place, node, changed, words), node)
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
         self.generic_visit(node)
         if not isinstance(node.op, ast.Add | ast.Sub):
             return node
-        return self.put(node, ast.BinOp(node.left, ast.Sub() if isinstance(node.op, ast.Add) else ast.Add(), node.right))
+        opposite = ast.Sub() if isinstance(node.op, ast.Add) else ast.Add()
+        return self.put(node, ast.BinOp(node.left, opposite, node.right))
 
     def visit_UnaryOp(self, node: ast.UnaryOp) -> ast.expr:
         self.generic_visit(node)
@@ -59,7 +62,8 @@ class Places(ast.NodeTransformer):
         indices = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
         for number, index in enumerate(indices):
             if isinstance(index, ast.Constant) and type(index.value) is int and isinstance(node.ctx, ast.Load):
-                indices[number] = self.put(index, ast.Constant(index.value - 1 if index.value else 1))
+                changed = ast.Constant(index.value - 1 if index.value else 1)
+                indices[number] = self.put(index, changed, f"{ast.unparse(node.value)}[{ast.unparse(node.slice)}]: ")
         if not isinstance(node.slice, ast.Tuple):
             node.slice = indices[0]
         return node
@@ -127,11 +131,11 @@ def edited(paper: str, edit: Callable[[str, ast.Module], ast.Module]) -> Iterato
         sys.modules.update(before)
 
 
-def forget_values(paper: str) -> None:
-    """Empty the caches of a paper, so that each claim runs through all that it names."""
-    for wrapper in gc.get_objects():
-        if type(wrapper) is functools._lru_cache_wrapper and str(wrapper.__module__).startswith(f"{PAPERS}.{paper}"):
-            wrapper.cache_clear()
+def list_caches(paper: str) -> list:
+    """The caches of a paper; emptied between claims, so that each claim runs through all that it names."""
+    prefix = f"{PAPERS}.{paper}"
+    wrappers = [one for one in gc.get_objects() if type(one) is functools._lru_cache_wrapper]
+    return [one for one in wrappers if str(one.__module__).startswith(prefix)]
 
 
 def is_model(fullname: str) -> bool:
@@ -142,63 +146,54 @@ def is_model(fullname: str) -> bool:
 class Watched:
     """Which claims name each place, the line of each place, and the hash of every statement."""
 
-    names: dict[Place, list[str]] = field(default_factory=dict)
+    names: dict[Place, dict[str, None]] = field(default_factory=dict)
     lines: dict[Place, str] = field(default_factory=dict)
     hashes: dict[str, str] = field(default_factory=dict)
 
 
 def watch(paper: str) -> Watched:
     """Import a paper with every place watched and state all of its claims."""
-    seen = Watched()
-    running: list[str] = ["import"]
+    seen, running = Watched(), ["import"]
 
-    def at(module: str, number: int, value):
+    def note(module: str, number: int, value):
         if isinstance(value, Number | sp.Basic | sp.MatrixBase):
-            claims = seen.names.setdefault((module, number), [])
-            if running[0] not in claims:
-                claims.append(running[0])
+            seen.names.setdefault((module, number), {})[running[0]] = None
         return value
 
     def edit(fullname: str, tree: ast.Module) -> ast.Module:
-        def note(number: int, node: ast.expr, changed: ast.expr) -> ast.expr:
-            seen.lines[fullname, number] = f"{node.lineno}: {ast.unparse(node)} -> {ast.unparse(changed)}"[:160]
+        def describe(number: int, node: ast.expr, changed: ast.expr, words: str) -> ast.expr:
+            seen.lines[fullname, number] = f"{words}{ast.unparse(node)} -> {ast.unparse(changed)}"
+            return node
+
+        def surround(number: int, node: ast.expr, changed: ast.expr, words: str) -> ast.expr:
             return ast.Call(ast.Name(WATCH, ast.Load()), [ast.Constant(fullname), ast.Constant(number), node], [])
 
-        return Places(note).visit(tree) if is_model(fullname) else tree
+        if not is_model(fullname):
+            return tree
+        Places(describe).visit(copy.deepcopy(tree))
+        return Places(surround).visit(tree)
 
-    setattr(builtins, WATCH, at)
-    # the lines of nested places show the text before it is watched
-    lines = {}
-
-    def read(fullname: str, tree: ast.Module) -> ast.Module:
-        if is_model(fullname):
-
-            def keep(number: int, node: ast.expr, changed: ast.expr) -> ast.expr:
-                lines[fullname, number] = f"{node.lineno}: {ast.unparse(node)} -> {ast.unparse(changed)}"
-                return node
-
-            Places(keep).visit(ast.parse(ast.unparse(tree)) and tree)
-        return edit(fullname, tree)
-
+    setattr(builtins, WATCH, note)
     try:
-        with edited(paper, read) as claims:
+        with edited(paper, edit) as claims:
+            caches = list_caches(paper)
             for claim in claims:
                 running[0] = claim.number
-                forget_values(paper)
+                for cache in caches:
+                    cache.cache_clear()
                 seen.hashes[claim.number] = hash_statement(claim.derive(), None)
     finally:
         delattr(builtins, WATCH)
-    seen.lines = lines
     return seen
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a planted fault did: claims that fell, that say something else now, and that noticed nothing."""
+    """What a planted fault did: a claim that fell, claims that say something else now, and that noticed nothing."""
 
     place: Place
     line: str
-    fell: tuple[str, ...]
+    fell: str
     moved: tuple[str, ...]
     silent: tuple[str, ...]
 
@@ -209,34 +204,36 @@ def plant(paper: str, place: Place, seen: Watched, most: int = 5) -> Outcome:
     def edit(fullname: str, tree: ast.Module) -> ast.Module:
         if fullname != place[0]:
             return tree
-        return Places(lambda number, node, changed: changed if number == place[1] else node).visit(tree)
+        return Places(lambda number, node, changed, _: changed if number == place[1] else node).visit(tree)
 
     names = seen.names[place]
-    fell, moved, silent, held = [], [], [], []
+    moved: dict[str, tuple[Claim, Statement | None]] = {}
+    silent = []
     try:
         with edited(paper, edit) as claims:
             for claim in claims:
-                if "import" not in names and claim.number not in names:
-                    continue
-                try:
-                    statement = claim.derive()
-                except Exception:  # the source of the claim refuses its own model: noticed
-                    fell.append(claim.number)
-                    continue
-                if hash_statement(statement, None) == seen.hashes.get(claim.number):
-                    silent.append(claim.number)
-                else:
-                    moved.append(claim.number)
-                    held.append((claim, statement))
-            held.sort(key=lambda pair: not isinstance(pair[1], Equation))
-            for claim, statement in held[: 0 if fell else most]:
-                try:
-                    status = decide(statement).status
-                except Exception:
-                    status = None
-                if status != claim.expect and not (claim.either and status is not None and status.holds):
-                    fell.append(claim.number)
-                    break
+                if "import" in names or claim.number in names:
+                    statement = state(claim)
+                    if statement is None or hash_statement(statement, None) != seen.hashes.get(claim.number):
+                        moved[claim.number] = claim, statement
+                    else:
+                        silent.append(claim.number)
+            # an equation falls at a point, the quickest
+            tried = sorted(moved.values(), key=lambda pair: not isinstance(pair[1], Equation | None))[:most]
+            fell = next((claim.number for claim, statement in tried if falls(claim, statement)), "")
+    except (ValueError, ArithmeticError, LookupError, TypeError, AttributeError):
+        return Outcome(place, seen.lines[place], "the whole paper", (), ())  # it cannot even be imported
+    return Outcome(place, seen.lines[place], fell, tuple(moved), tuple(silent))
+
+
+def state(claim: Claim) -> Statement | None:
+    """The statement of a claim; None where its own source refuses the changed model."""
+    try:
+        return claim.derive()
     except Exception:
-        fell.append("import")
-    return Outcome(place, seen.lines[place], tuple(fell), tuple(moved), tuple(silent))
+        return None
+
+
+def falls(claim: Claim, statement: Statement | None) -> bool:
+    """Whether the changed statement is decided in another way than the claim declares."""
+    return statement is None or decide(statement).status != claim.expect
