@@ -105,7 +105,7 @@ def dual() -> Figure:
 
 def ladder() -> Figure:
     """Rank of the rows h, hF, hF^2, ... for each measurement of the full error model, and for all four."""
-    from navsym.models.inertial import full_model
+    from navsym_papers.joint_correction.inertial import full_model
 
     model = full_model()
     values = {s: sp.Rational(k + 3, 7) for k, s in enumerate(sorted(model.F.free_symbols, key=str))}

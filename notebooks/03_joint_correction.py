@@ -25,12 +25,12 @@ import numpy as np
 from ipywidgets import FloatSlider, interact
 
 import navsym as nav
-from navsym.models.inertial import full_model, joint_model, position_group, velocity_group
 from navsym_papers.joint_correction import section3_gains as analysis
 from navsym_papers.joint_correction import sensors
 from navsym_papers.joint_correction.experiment import ins as experiment
 from navsym_papers.joint_correction.experiment import real as aiding
 from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, SCHULER_RATE, great_circle
+from navsym_papers.joint_correction.inertial import full_model, joint_model, position_group, velocity_group
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 

@@ -26,7 +26,10 @@ import numpy as np
 import navsym as nav
 from navsym.report.notebook import explore
 from navsym.trajectory.conditioning import best_scaling
-from navsym.trajectory.inversion import (
+from navsym_papers.trajectory import table, window
+from navsym_papers.trajectory.experiment.courses import ORDER, TAU, course, measured, with_printed_gain
+from navsym_papers.trajectory.experiment.courses import experiment as rerun
+from navsym_papers.trajectory.experiment.inversion import (
     Start,
     Tuning,
     first_stage_model,
@@ -35,9 +38,6 @@ from navsym.trajectory.inversion import (
     scaled_model,
     windowed_filter,
 )
-from navsym_papers.trajectory import table, window
-from navsym_papers.trajectory.experiment.courses import ORDER, TAU, course, measured, with_printed_gain
-from navsym_papers.trajectory.experiment.courses import experiment as rerun
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 

@@ -24,9 +24,9 @@ from ipywidgets import FloatSlider, IntSlider, interact
 from matplotlib.colors import LightSource
 
 import navsym as nav
-from navsym.terrain.accuracy import accuracy_map
 from navsym.terrain.centre import information, slopes
 from navsym_papers.terrain_search.experiment import study
+from navsym_papers.terrain_search.experiment.accuracy import accuracy_map
 from navsym_papers.terrain_search.experiment.flights import Setting, course, fly, sample_terrain, terrain_from
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"

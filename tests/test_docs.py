@@ -26,10 +26,14 @@ def blocks(path):
         yield found["kind"], textwrap.dedent(found["body"])
 
 
+#: Pages that take more than five seconds of processor time.
+LONG = ("gallery",)
 RUNNING = [path for path in PAGES if any(kind in ("python", "sh", "toml") for kind, _ in blocks(path))]
 
 
-@pytest.mark.parametrize("path", RUNNING, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path", [pytest.param(p, id=p.stem, marks=[pytest.mark.long] if p.stem in LONG else []) for p in RUNNING]
+)
 def test_every_block_runs_in_order(path, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     shutil.copytree(DOCS.parent / "examples", tmp_path / "examples")

@@ -69,3 +69,45 @@ def test_the_wheel_alone_is_enough_for_a_workspace(elsewhere):
     written = {path.name for path in work.iterdir()}
     made = {"ledger.json", "certificates.json", ".navsym", "report", "code"}
     assert written == {"navsym.toml", "claims", "models", "audits", "papers"} | made
+
+
+FORMULAS = r"""\frac{P}{P + R} + \frac{R}{P + R} = 1
+\left(1 - \frac{P}{P + R}\right) P = \frac{P R}{P + R}
+\left(\frac{1}{P} + \frac{1}{R}\right)^{-1} = \frac{P R}{P + R}
+\frac{P R}{P + R} < P
+\frac{P R}{P + R} < R
+a^2 P + Q \ge Q
+\frac{P (Q + R)}{P + Q + R} > \frac{P R}{P + R}
+\left(1 - \frac{P}{P + R}\right)^2 P + \left(\frac{P}{P + R}\right)^2 R = \frac{P R}{P + R}
+\sin 2 a = 2 \sin a \cos a
+1 - \cos a = \sin^2 \frac{a}{2}""".splitlines()
+
+
+@pytest.mark.long
+def test_ten_commands_from_a_paper_of_ten_formulas_to_exported_c(elsewhere):
+    """Own paper with one misprint, own model, an audit of code with one fault, a guard, the report and C, in order."""
+    call(elsewhere, "navsym", "init", "ten", where=".")
+    work = elsewhere / "ten"
+    (work / "paper.md").write_text("\n\n".join(f"$${formula}$$" for formula in FORMULAS) + "\n")
+    (work / "symbols.toml").write_text('[symbols]\na = "real"\nP = "positive"\nQ = "positive"\nR = "positive"\n')
+    (work / "ranges.csv").write_text("t,velocity\n0,0.1\n0.5,0.2\n1,0.25\n1.5,0.3\n")
+    for name in ("yaw_jacobian.c", "yaw_jacobian.toml"):
+        (work / "audits" / name).write_bytes((ROOT / "examples" / "audit" / name).read_bytes())
+
+    def navsym(*words, status=0):
+        return call(elsewhere, "navsym", *words, status=status, where="ten")
+
+    said = navsym("read", "paper.md", "--symbols", "symbols.toml", "--out", "claims/paper.toml")
+    assert "10 of 10 formulas read" in said
+    assert "write -v * sinf(x[2]) * dt" in navsym("audit", "audits/yaw_jacobian.toml", status=1)
+    assert "CERTIFIED" in navsym("solve", "models/alignment.toml", "--target", "drift")
+    assert "2 with an estimate" in navsym("guard", "models/alignment.toml", "--data", "ranges.csv", "--target", "drift")
+    found = json.loads(navsym("verify", "--write", "--json", status=1))
+    statuses = [claim["status"] for claim in found["claims"] if claim["paper"] == "claims/paper.toml"]
+    assert statuses == ["PROVED"] * 9 + ["REFUTED"]
+    assert "At a = 1:" in navsym("explain", "claims/paper.toml:paper:19.1", status=1)
+    navsym("report", "--from", "ledger.json", status=1)
+    (sheet,) = (work / "report").glob("claims_paper*.erratum.tex")
+    assert r"\cos" in sheet.read_text(encoding="utf-8")
+    navsym("export", "claims/paper.toml:paper:15.1", "--to", "c", "--out", "code")
+    assert "REJECTED" not in navsym("check", "code") and list((work / "code" / "c").glob("*.c"))

@@ -1,6 +1,6 @@
 """Section 2, (2.1)-(2.5): error equations and corrections from the kinematics of small rotations.
 
-The derived sides come from ``navsym.models.kinematics``: Poisson's equation linearised,
+The derived sides come from ``navsym_papers.joint_correction.kinematics``: Poisson's equation linearised,
 Newton's equation solved for the rates, the velocity seen in platform axes. Terms of order
 mu^2 rho are dropped, and :func:`dropped_terms` says which.
 """
@@ -12,8 +12,8 @@ from functools import cache
 import sympy as sp
 
 from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property, claim
-from navsym.models.inertial import PHYSICAL_ORDERS, truncate
-from navsym.models.kinematics import (
+from navsym_papers.joint_correction.inertial import PHYSICAL_ORDERS, truncate
+from navsym_papers.joint_correction.kinematics import (
     ALPHA,
     BETA,
     CLIMB,
@@ -153,7 +153,7 @@ def position_error_2():
 
 def turn_of_the_computed_frame() -> sp.Matrix:
     """gamma' for a frame that turns with the computed rate, with gamma = alpha - beta put in."""
-    from navsym.models.kinematics import horizontal, rotation_rate, skew
+    from navsym_papers.joint_correction.kinematics import horizontal, rotation_rate, skew
 
     gamma = sp.Matrix(sp.symbols("gamma_1:4", real=True))
     computed = sp.Matrix([*(DELTA_P - horizontal(skew(ALPHA) * OMEGA_X)), 0])

@@ -2,7 +2,7 @@
 
 The derived sides are found by machine: the velocity information is split into its Schuler part
 and its constant part at mu = 0, the position information is differentiated, and what has the
-order mu^2 rho is dropped term by term (``navsym.models.inertial``).
+order mu^2 rho is dropped term by term (``navsym_papers.joint_correction.inertial``).
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ from functools import cache
 import sympy as sp
 
 from navsym.claims import PROVED, REFUTED, Claim, Equation, Finding, Property, claim
-from navsym.models.inertial import (
+from navsym.observability.chains import observe_jointly
+from navsym.observability.rank_drops import rank_drops
+from navsym_papers.joint_correction.inertial import (
     EARTH,
     FULL,
     MU,
@@ -34,9 +36,7 @@ from navsym.models.inertial import (
     truncate,
     velocity_group,
 )
-from navsym.models.kinematics import ALPHA, BETA, EPSILON
-from navsym.observability.chains import observe_jointly
-from navsym.observability.rank_drops import rank_drops
+from navsym_papers.joint_correction.kinematics import ALPHA, BETA, EPSILON
 
 mu = MU
 a1, a2 = ALPHA[:2]

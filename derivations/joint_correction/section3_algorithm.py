@@ -7,9 +7,9 @@ from functools import cache, partial
 import sympy as sp
 
 from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
-from navsym.models.inertial import FULL, joint_model
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
+from navsym_papers.joint_correction.inertial import FULL, joint_model
 from navsym_papers.joint_correction.section1_systems import p, polynomial_of
 from navsym_papers.joint_correction.section2_groups import mu, position, u3, velocity, w1, w2
 from navsym_papers.joint_correction.section2_groups import row as row_up_to_order

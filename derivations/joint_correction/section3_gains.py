@@ -13,8 +13,8 @@ from itertools import pairwise
 import sympy as sp
 
 from navsym.claims import CERTIFIED, PROVED, Equation, Finding, Property, claim
-from navsym.models.inertial import EARTH, MU
 from navsym.observability.splits import exact_inverse, to_lowest_terms
+from navsym_papers.joint_correction.inertial import EARTH, MU
 from navsym_papers.joint_correction.section1_systems import coefficients_of_polynomial, p, polynomial_of
 from navsym_papers.joint_correction.section2_groups import mu, position, velocity, w1, w2
 from navsym_papers.joint_correction.section3_algorithm import joint_error_matrix

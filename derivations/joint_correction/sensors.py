@@ -10,10 +10,10 @@ import flint
 import sympy as sp
 
 from navsym.claims import PROVED, Finding, Property, claim
-from navsym.models.inertial import EARTH, MU, OMEGA, full_model, joint_model
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import prove_rank
 from navsym.observability.sensors import Restoration, restore_observability
+from navsym_papers.joint_correction.inertial import EARTH, MU, OMEGA, full_model, joint_model
 
 GENERIC = "all values of mu, omega and u but those of a proper algebraic set"
 METHOD = "hidden directions that are exhibited, and minors that are not zero"

@@ -12,8 +12,7 @@ from itertools import product
 import sympy as sp
 
 from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
-from navsym.models.earth import pascal_rows
-from navsym_papers.trajectory.model import dynamics, first_state, nilpotent_exponential
+from navsym_papers.trajectory.model import dynamics, first_state, nilpotent_exponential, pascal_rows
 
 N = 3
 R = sp.Symbol("R", positive=True)

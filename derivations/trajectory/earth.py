@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, claim
-from navsym.models import earth
+from navsym_papers.trajectory import ellipsoid
 
 a = sp.Symbol("a", positive=True)  # semi-major axis
 e = sp.Symbol("e", positive=True)  # eccentricity
@@ -32,19 +32,19 @@ ROOT = sp.sqrt(1 - e**2 * sp.sin(phi_e) ** 2)
 @claim("earth.ellipse")
 def reference_point_lies_on_the_ellipse():
     """The foot of the normal satisfies the equation of the meridian ellipse."""
-    return Equation(printed=sp.Integer(1), derived=earth.ellipse_condition(phi_e, a, e), box=ELLIPSOID)
+    return Equation(printed=sp.Integer(1), derived=ellipsoid.ellipse_condition(phi_e, a, e), box=ELLIPSOID)
 
 
 @claim("earth.lambda")
 def longitudes_agree():
     """Geocentric and geodetic longitude are the same."""
-    axis, _ = earth.meridian_point(phi_e, h, a, e)
+    axis, _ = ellipsoid.meridian_point(phi_e, h, a, e)
     x, y = axis * sp.cos(lambda_e), axis * sp.sin(lambda_e)
     return Equation(printed=sp.tan(lambda_e), derived=y / x, box={**ELLIPSOID, lambda_e: LATITUDES})
 
 
 def geocentric_tangent():
-    axis, z = earth.meridian_point(phi_e, h, a, e)
+    axis, z = ellipsoid.meridian_point(phi_e, h, a, e)
     return z / axis
 
 
@@ -72,7 +72,7 @@ def geocentric_latitude():
 def geocentric_radius():
     """Distance from the centre of the Earth, squared; the printed root is the positive one."""
     inner = (a / ROOT + h) ** 2 * sp.cos(phi_e) ** 2 + (a * (1 - e**2) / ROOT + h) ** 2 * sp.sin(phi_e) ** 2
-    axis, z = earth.meridian_point(phi_e, h, a, e)
+    axis, z = ellipsoid.meridian_point(phi_e, h, a, e)
     # Lengths are equal when their squares are; the root of the sum would hide the angle from the prover.
     return Equation(printed=inner, derived=axis**2 + z**2, box=ELLIPSOID)
 
@@ -81,7 +81,7 @@ def geocentric_radius():
 
 
 def turned(row: int) -> sp.Expr:
-    return (earth.trihedron_turn(phi_e, phi) * sp.Matrix(xi))[row]
+    return (ellipsoid.trihedron_turn(phi_e, phi) * sp.Matrix(xi))[row]
 
 
 @claim("earth.rotation.xi1")
@@ -107,13 +107,13 @@ def geodetic_up():
 @claim("earth.rotation.orthogonal")
 def rotation_is_orthogonal():
     """The transformation between the trihedra is orthogonal and keeps orientation."""
-    turn = earth.trihedron_turn(phi_e, phi)
+    turn = ellipsoid.trihedron_turn(phi_e, phi)
     return Equation(printed=[*sp.eye(3), sp.Integer(1)], derived=[*(turn * turn.T), turn.det()])
 
 
 # -- rates and velocity ----------------------------------------------------------------------------
 
-POSITION, MOVING, VELOCITY = earth.moving_position()
+POSITION, MOVING, VELOCITY = ellipsoid.moving_position()
 LATITUDE, RADIUS = MOVING["latitude"], MOVING["radius"]
 RATES = [MOVING["latitude_rate"], MOVING["longitude_rate"], MOVING["radius_rate"]]
 SHELL = {LATITUDE: LATITUDES, RADIUS: (sp.Integer(1), sp.Integer(10))}
@@ -132,19 +132,19 @@ def rates_from_velocity() -> list[sp.Expr]:
 def angular_velocity_of_the_trihedron():
     """Angular velocity of the geocentric trihedron relative to the Earth, on its own axes."""
     printed = [-RATES[0], RATES[1] * sp.cos(LATITUDE), RATES[1] * sp.sin(LATITUDE)]
-    return Equation(printed=printed, derived=list(earth.angular_velocity(MOVING)))
+    return Equation(printed=printed, derived=list(ellipsoid.angular_velocity(MOVING)))
 
 
 @claim("kinematics.position")
 def position_on_own_axes():
     """The position vector on the axes of the trihedron is (0, 0, r)."""
-    axes = earth.spherical_axes(LATITUDE, MOVING["longitude"])
+    axes = ellipsoid.spherical_axes(LATITUDE, MOVING["longitude"])
     return Equation(printed=[sp.Integer(0), sp.Integer(0), RADIUS], derived=list(axes * POSITION))
 
 
 def rotation_part() -> sp.Matrix:
     omega = sp.Matrix([-RATES[0], RATES[1] * sp.cos(LATITUDE), RATES[1] * sp.sin(LATITUDE)])
-    return earth.cross(omega, sp.Matrix([0, 0, RADIUS]))
+    return ellipsoid.cross(omega, sp.Matrix([0, 0, RADIUS]))
 
 
 @claim(

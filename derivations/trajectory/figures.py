@@ -12,10 +12,10 @@ from fractions import Fraction
 import flint
 
 from navsym.claims import CERTIFIED, OPEN, UNDECIDED, Finding, Property, claim
-from navsym.models.earth import pascal_rows
 from navsym_papers.trajectory.experiment.stability import gain_stability, harmonic_lag, stationary_covariance
 from navsym_papers.trajectory.experiment_printed import TAU, ball
 from navsym_papers.trajectory.gain import PERIOD, gain_in_f
+from navsym_papers.trajectory.model import pascal_rows
 
 #: Metric gains (per metre: 1, 1/s, 1/s^2, ...) found by a search; what they do is computed below.
 WITNESSES = {

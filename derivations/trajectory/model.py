@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import sympy as sp
@@ -49,3 +50,9 @@ def norms_of_columns(matrix: sp.Matrix) -> list[sp.Expr]:
 def row_scaling(h: sp.Matrix) -> sp.Matrix:
     """D_f = diag(h): the variables in which the row h becomes (1, ..., 1)."""
     return sp.diag(*h)
+
+
+def pascal_rows(n: int) -> list[list[int]]:
+    """Phi_f as exact numbers: the binomial coefficient (j-1 over i-1), i, j = 1..n."""
+    need_order(n)
+    return [[math.comb(j, i) for j in range(n)] for i in range(n)]

@@ -193,7 +193,7 @@ class Audit(Answer):
 def audit(path: str | os.PathLike[str], /, function: str | None = None) -> Audit:
     """The formulas of source code, and the verdicts on questions about them.
 
-    path     : a file of questions (TOML); or a source in C, C++, Python or MATLAB
+    path     : a file of questions (TOML); or a source in C, C++, Python, MATLAB or Rust
     function : of a source, whose outputs are wanted as formulas of its inputs
 
     The source is read by its grammar and run on symbols, case by case. Nothing is compiled or executed. A line outside
@@ -229,7 +229,7 @@ def audit_function(path: Path, function: str) -> Audit:
     unit = load_unit(path)
     source = Source("code", unit, find_function(unit, function, "audit: function"), Names(), {}, frozenset(), ())
     source.read()
-    return Audit((describe_file(source.unit.file, [source]),), (), tuple(list_formulas(source)))
+    return Audit(describe_files([source]), (), tuple(list_formulas(source)))
 
 
 def audit_specification(path: Path, only: str | None = None) -> Audit:
@@ -237,8 +237,7 @@ def audit_specification(path: Path, only: str | None = None) -> Audit:
     sources, questions = read_specification(path)
     chosen = [question for question in questions if only in (None, question.name)]
     answers = tuple(answer_question(question, sources) for question in chosen)
-    files = {source.unit.file: [s for s in sources if s.unit.file == source.unit.file] for source in sources}
-    return Audit(tuple(describe_file(file, group) for file, group in files.items()), answers)
+    return Audit(describe_files(sources), answers)
 
 
 def read_specification(path: Path) -> tuple[list[Source], list[Question]]:
@@ -275,18 +274,23 @@ def read_blocks(document: Mapping[str, Any], key: str, where: str) -> list[Any]:
     return [as_table(block, join_place(join_place(where, key), i)) for i, block in enumerate(blocks)]
 
 
-def describe_file(file: str, sources: Sequence[Source]) -> AuditedFile:
-    """What was read of a file."""
-    met: set[tuple[int, int]] = set()
-    unread: set[tuple[int, int]] = set()
-    refused: dict[int, str] = {}
-    for source in sources:
-        reading = source.read()
-        met |= reading.met
-        unread |= reading.refused_spans
-        refused |= reading.refused
-    language = sources[0].unit.language
-    return AuditedFile(file, language, len(met), tuple(sorted(refused.items())), len(unread & met))
+def describe_files(sources: Sequence[Source]) -> tuple[AuditedFile, ...]:
+    """What was read of each file that the sources have read."""
+    units = {source.unit.file: source.unit for source in sources}
+    done = []
+    for file, unit in units.items():
+        readings = [source.read() for source in sources if source.unit.file == file]
+        met = set().union(*(reading.met for reading in readings))
+        unread = set().union(*(reading.refused_spans for reading in readings)) & met
+        refused = {line: why for reading in readings for line, why in reading.refused.items()}
+        for name in (file, *(piece[2] for piece in unit.pieces)):
+            spans = {span for span in met if unit.locate(1 + unit.source.count(b"\n", 0, span[0]))[0] == name}
+            lines = {unit.locate(line)[1]: why for line, why in refused.items() if unit.locate(line)[0] == name}
+            if name == file or spans or lines:
+                done.append(
+                    AuditedFile(name, unit.language, len(spans), tuple(sorted(lines.items())), len(unread & spans))
+                )
+    return tuple(done)
 
 
 def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQuestion:
@@ -318,7 +322,7 @@ def answer_entry(
     case = describe_case(entry)
     for cell in (entry.code, entry.expected):
         if isinstance(cell, Unread):
-            return AuditedEntry(entry.place, unit.file, cell.line, OPEN, why=f"not read: {cell.why}")
+            return AuditedEntry(entry.place, *unit.locate(cell.line), OPEN, why=f"not read: {cell.why}")
     assert not isinstance(entry.code, Unread) and not isinstance(entry.expected, Unread)
     line = entry.code.line or entry.expected.line or (entry.source.function.line if entry.source else 0)
     scope = make_scope(question.names, entry, relations)
@@ -326,7 +330,7 @@ def answer_entry(
     try:
         decision = decided[key] if key in decided else decide_entry(entry.code.tree, entry.expected.tree, scope)
     except NavsymError as error:
-        return AuditedEntry(entry.place, unit.file, line, OPEN, why=error.message)
+        return AuditedEntry(entry.place, *unit.locate(line), OPEN, why=error.message)
     decided[key] = decision
     point, suggestion = None, None
     if decision.status == REFUTED:
@@ -338,7 +342,7 @@ def answer_entry(
             line, suggestion = mend.line, mend.text
     why = decision.why or (case if decision.status == REFUTED else "")
     return AuditedEntry(
-        entry.place, unit.file, line, decision.status, decision.sense, point, decision.values, suggestion, why,
+        entry.place, *unit.locate(line), decision.status, decision.sense, point, decision.values, suggestion, why,
         decision.certificate,
     )  # fmt: skip
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, Unit
@@ -15,18 +15,18 @@ REAL = frozenset("float double real_t ftype Scalar scalar_t Real postype_t T flo
 WHOLE = re.compile(
     r"(unsigned |signed )*(int|long|short|char|size_t|(u?int\d+(_t)?)|bool|unsigned|Eigen::Index)( int)?"
 )
-VECTOR = re.compile(r"(?:\w+::)*(?:Vector([2-9])[fd]?(?:<\w+>)?|Vector<\w+,(\d+)>)")
+VECTOR = re.compile(r"(?:\w+::)*(?:(?:Sparse)?Vector([2-9]|[1-5]\d)[fd]?(?:<[\w, ]+>)?|Vector<\w+,(\d+)>)")
 MATRIX = re.compile(
-    r"(?:\w+::)*(?:Matrix([2-9])[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
+    r"(?:\w+::)*(?:(?:Square)?Matrix([2-9]|[1-5]\d)[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
 )
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
 COMPARISONS = {"<", "<=", ">", ">=", "==", "!="}
 WORDS = {"&&": "both", "||": "either", "and": "both", "or": "either"}
 
 
-def read_c(source: bytes, file: str, language: str) -> Unit:
+def read_c(source: bytes, file: str, language: str, defined: frozenset[str] | None = None) -> Unit:
     """The functions, constants and object-like macros of a source in C (``language`` "c") or C++ ("cpp")."""
-    unit = Unit(file, language, RULES[language], source)
+    unit = Unit(file, language, RULES[language], source, defined=defined)
     Reader(unit).read_file(parse_source(source, language, file))
     return unit
 
@@ -58,13 +58,21 @@ def shape_of_type(text: str) -> tuple[int, ...] | None:
 
 @dataclass(slots=True, eq=False)
 class Reader(SourceReader):
-    """Walks the syntax tree of C and C++."""
+    """Walks the syntax tree of C and C++; ``locals`` are the names that the function being read declares."""
+
+    locals: set[str] = field(default_factory=set)
 
     # -- the file --
 
     def read_file(self, root: Any) -> None:
         """Functions, constants and macros, also inside namespaces and classes."""
+        dropped: set[int] = set()
         for node in descend(root):
+            if node.id in dropped or (node.parent is not None and node.parent.id in dropped):
+                dropped.add(node.id)
+                continue
+            if (kept := self.kept_way(node)) is not None:
+                dropped |= {child.id for child in node.named_children[1:]} - {child.id for child in kept}
             if node.type == "function_definition":
                 self.read_function(node)
             elif node.type == "preproc_def":
@@ -76,6 +84,16 @@ class Reader(SourceReader):
             elif node.type == "declaration" and is_constant(node):
                 self.unit.constants += [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
         self.unit.constants.sort(key=lambda statement: statement.span)
+
+    def kept_way(self, node: Any) -> list[Any] | None:
+        """What is compiled of ``#ifdef NAME`` or ``#ifndef NAME``; None where nobody has said what is defined."""
+        if node.type != "preproc_ifdef" or self.unit.defined is None:
+            return None
+        holds = (text_of(field_of(node, "name")) in self.unit.defined) == (text_of(node).startswith("#ifdef"))
+        other = field_of(node, "alternative")
+        if not holds:
+            return [] if other is None else [other]
+        return [child for child in named(node)[1:] if other is None or child.id != other.id]
 
     def read_enumerators(self, node: Any) -> None:
         """The names of an enumeration, each one more than the one before."""
@@ -109,6 +127,9 @@ class Reader(SourceReader):
             return
         name = text_of(field_of(declarator, "declarator")).split("::")[-1]
         parameters = named(field_of(declarator, "parameters"))
+        declared = (n for n in descend(node) if n.type in ("declaration", "parameter_declaration"))
+        inner = (field_of(c, "declarator") or c for n in declared for c in n.children_by_field_name("declarator"))
+        self.locals = {text_of(n) for c in inner for n in descend(c) if n.type == "identifier"}
         arguments = tuple(self.argument(p) for p in parameters if text_of(p) != "void")
         function = Function(name, line_of(node), arguments, self.block(body))
         self.unit.functions.setdefault(name, []).append(function)
@@ -171,6 +192,12 @@ class Reader(SourceReader):
             case "return_statement":
                 values = named(node)
                 return (self.part("return", node, self.expression(values[0]) if values else None),)
+            case "throw_statement":
+                return (self.part("fail", node, "an error is thrown"),)
+            case "preproc_ifdef" if (kept := self.kept_way(node)) is not None:
+                return tuple(s for child in kept for s in self.statement(child))
+            case "preproc_else":
+                return tuple(s for child in named(node) for s in self.statement(child))
             case "static_assert_declaration" | "using_declaration" | "empty_statement" | "type_definition":
                 return ()
         return (self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})"),)
@@ -296,6 +323,8 @@ class Reader(SourceReader):
         match node.type:
             case "number_literal":
                 return self.number(node)
+            case "true" | "false":
+                return self.part("number", node, int(node.type == "true"), "int")
             case "identifier" | "field_identifier" | "qualified_identifier" | "this":
                 return self.part("name", node, text_of(node))
             case "parenthesized_expression":
@@ -321,7 +350,11 @@ class Reader(SourceReader):
                 owner = text_of(field_of(node, "argument"))
                 if not re.fullmatch(r"[\w.:\[\]()>\- ]*", owner) or re.search(r"\(\s*[^)\s]|\[[^\]\d]", owner):
                     return self.refuse(node, "a member of an expression")
-                return self.part("name", node, re.sub(r"\s", "", text_of(node)).removeprefix("this->"))
+                name = re.sub(r"\s", "", text_of(node))
+                member = name.removeprefix("this->")
+                if member != name and re.match(r"\w+", member)[0] in self.locals:  # type: ignore[index]
+                    return self.refuse(node, f"{name} beside a local name that is written alike")
+                return self.part("name", node, member)
             case "conditional_expression":
                 fields = (field_of(node, name) for name in ("condition", "consequence", "alternative"))
                 return self.part("choose", node, *map(self.expression, fields))
@@ -380,6 +413,8 @@ class Reader(SourceReader):
             base, method = self.expression(field_of(function, "argument")), text_of(field_of(function, "field"))
             if method in ("noalias", "eval") and not arguments:  # say how Eigen computes, not what
                 return base
+            if (found := re.fullmatch(r"(?:template)?at<(\d+)>", re.sub(r"\s", "", method))) and not arguments:
+                return self.part("index", node, base, (self.part("number", node, int(found[1]), "int"),))
             if (block := self.block_of(node, base, method, arguments)) is not None:
                 return block
             return self.part("method", node, base, method, arguments)
@@ -443,7 +478,9 @@ def number_of(kind: str) -> str:
     kind = re.sub(r"\b(const|static|constexpr|struct)\b", "", kind).strip()
     if WHOLE.fullmatch(kind):
         return "int"
-    is_real = kind in REAL or kind in ("auto", "long double", "") or shape_of_type(kind) is not None
+    if kind.rstrip("&* ") == "auto":
+        return "auto"
+    is_real = kind in REAL or kind in ("long double", "") or shape_of_type(kind) is not None
     return "real" if is_real else "other"
 
 

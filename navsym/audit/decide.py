@@ -103,6 +103,9 @@ def decide_entry(code: Tree, expected: Tree, scope: Scope, seconds: float = SECO
                 return Decision(PROVED, "manifold", certificate=granted)
         if granted is not None:
             return Decision(PROVED, certificate=granted)
+        dark = next((c for c in scope.conditions if c.left is None), None)
+        if dark is not None:  # nobody knows whether a point is in this case
+            return search_proof(document, seconds, f"in a case of a condition that is not read: {dark.text}")
         refuted = refute(document, code, expected, scope)
         if refuted is not None:
             return refuted
@@ -170,8 +173,8 @@ def prove_shared(code: Tree, expected: Tree, scope: Scope) -> Document | None:
         return None
 
 
-def search_proof(document: Document, seconds: float) -> Decision:
-    """What the search for a proof tree makes of the statement."""
+def search_proof(document: Document, seconds: float, why: str = "") -> Decision:
+    """What the search for a proof tree makes of the statement; ``why`` it is left open otherwise."""
     (case,), box = player.read_statement(document)
     goals, terms = case.goals, case.terms
     witness = find_witness(terms, box)
@@ -179,7 +182,7 @@ def search_proof(document: Document, seconds: float) -> Decision:
         return Decision(OPEN, why="no point was found at which both sides have a value")
     proof = find_proof(goals[0], seconds)
     if proof is None:
-        return Decision(OPEN, why="no proof and no counterexample was found")
+        return Decision(OPEN, why=why or "no proof and no counterexample was found")
     certificate = {"kind": "proof", "statement": document, "bits": BITS, "witness": witness, "proofs": [proof]}
     grant([document], certificate)
     status = CERTIFIED if "balls" in rules_of(certificate["proofs"]) else PROVED

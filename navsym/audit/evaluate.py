@@ -6,12 +6,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from navsym.audit.form import Argument, Function, Part, Unit, names_in
-from navsym.audit.functions import CONSTANTS, METHODS, call_known, is_known
+from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
+from navsym.audit.functions import CONSTANTS, METHODS, call_known, extreme_of, is_known
 from navsym.audit.values import (
     Array,
     Cell,
     Index,
+    Quaternion,
     Scalar,
     Unread,
     Unreadable,
@@ -20,11 +21,13 @@ from navsym.audit.values import (
     add,
     constant_of,
     divide,
+    join,
     map_cells,
     matrix_product,
     minus,
     multiply,
     places_of,
+    quaternion_product,
     raise_to,
 )
 from navsym.language.tree import Tree, build_number
@@ -38,7 +41,7 @@ Inputs = Callable[[str], Tree]
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """A comparison of the source, and whether it holds in this case."""
+    """A comparison of the source, and whether it holds in this case; without sides it is one that is not read."""
 
     text: str
     line: int
@@ -53,22 +56,24 @@ class Case:
     """One way through a function.
 
     variables : what its names hold at the end
-    start     : the same at the beginning, for arrays that it changes
     returned  : its value, if it has one
+    has_failed : True where it ends in an error, so that it computes nothing
     """
 
     conditions: tuple[Condition, ...]
     variables: dict[str, Variable]
     returned: Value | None
+    has_failed: bool = False
 
 
 @dataclass(slots=True, eq=False)
 class Reading:
     """A function that has been read.
 
-    cases   : every way through it
-    refused : line -> reason
-    lines   : the statements that were met, by their spans
+    cases     : every way through it
+    refused   : line -> reason
+    met       : the statements that were met, by their spans
+    valueless : assignments that are read and depend on what is not, with its reason
     """
 
     unit: Unit
@@ -77,6 +82,7 @@ class Reading:
     refused: dict[int, str] = field(default_factory=dict)
     met: set[tuple[int, int]] = field(default_factory=set)
     refused_spans: set[tuple[int, int]] = field(default_factory=set)
+    valueless: dict[tuple[int, int], str] = field(default_factory=dict)
 
 
 class Returning(Exception):
@@ -87,13 +93,19 @@ class Returning(Exception):
         self.value = value
 
 
+class Failing(Exception):
+    """The end of a run in an error of the source."""
+
+
 @dataclass(slots=True, eq=False)
 class Evaluator:
     """The state of one run, and what expressions mean in it; :class:`Machine` runs the statements.
 
     choices : the ways taken at undecided conditions; None leaves unread what depends on one
+    is_bold : True where a condition that is not read has two ways as well
     frame   : the names of the running function
     shadows : what a block's own names have hidden, one table for each block
+    outputs : what the last function of MATLAB that was read returned
     """
 
     reading: Reading
@@ -101,6 +113,7 @@ class Evaluator:
     shapes: Mapping[str, Index]
     edits: Mapping[int, Part]
     choices: list[bool] | None
+    is_bold: bool = True
     frame: dict[str, Variable] = field(default_factory=dict)
     file_names: dict[str, Variable] = field(default_factory=dict)
     globals: dict[str, Variable] = field(default_factory=dict)
@@ -112,6 +125,7 @@ class Evaluator:
     steps: int = 0
     lost: Unread | None = None
     lost_heads: dict[str, Unread] = field(default_factory=dict)
+    outputs: list[Value] = field(default_factory=list)
 
     @property
     def unit(self) -> Unit:
@@ -124,6 +138,14 @@ class Evaluator:
 
     def decide(self, test: Part) -> bool:
         """Whether a condition holds."""
+        raise NotImplementedError
+
+    def decide_known(self, test: Part) -> bool:
+        """Whether a condition holds that can be read."""
+        raise NotImplementedError
+
+    def choose(self, condition: Condition) -> bool:
+        """The way of this run at an undecided condition."""
         raise NotImplementedError
 
     def write(self, variable: Variable, value: Value, statement: Part) -> None:
@@ -142,7 +164,9 @@ class Evaluator:
             shape, head = self.shapes.get(name), head_of(name)
             if head in self.lost_heads:
                 return Variable(name, shape=shape, is_input=True, all_unread=self.lost_heads[head])
-            self.globals[name] = Variable(name, shape=shape, is_input=True, all_unread=self.lost)
+            number, sizes = self.unit.members.get(name, ("real", None))
+            shape = sizes if shape is None else shape
+            self.globals[name] = Variable(name, number, shape, is_input=True, all_unread=self.lost)
         return self.globals[name]
 
     def spell(self, name: str, place: Index) -> str:
@@ -277,10 +301,11 @@ class Evaluator:
             if kind == "method":
                 return self.method(part)
             if kind == "list":
-                items = [self.value(item) for item in part.parts[0]]
-                if self.unit.language == "matlab" and any(isinstance(item, Array) for item in items):
-                    self.require_rows(part)
-                return self.stack(items, part.line)
+                if self.unit.language == "matlab":
+                    return self.rows(part)
+                return self.stack([self.value(item) for item in part.parts[0]], part.line)
+            if kind == "compare" or (kind in ("both", "either", "not") and self.unit.rules.integer):
+                return Scalar(build_number(int(self.decide_known(part))), "int")
             if kind == "choose":
                 return self.value(part.parts[1 if self.decide(part.parts[0]) else 2])
             if kind == "cast":
@@ -307,7 +332,8 @@ class Evaluator:
             if variable.shape is None and variable.cells and () not in variable.cells:
                 raise Unreadable(part.line, f"{name} as a whole, of unknown size")
             return self.read(variable, (), part.line)
-        return Array(variable.shape, tuple(self.read(variable, p, part.line) for p in places_of(variable.shape)))
+        kind = Quaternion if variable.number == "quaternion" else Array
+        return kind(variable.shape, tuple(self.read(variable, p, part.line) for p in places_of(variable.shape)))
 
     def macro(self, name: str, line: int) -> Value:
         """An object-like macro in its place."""
@@ -328,6 +354,12 @@ class Evaluator:
             return a if isinstance(a, Unread) else b
         if sign in ("*", "@"):
             both = isinstance(a, Array) and isinstance(b, Array)
+            if isinstance(a, Quaternion) and isinstance(b, Quaternion):
+                return quaternion_product(a, b)
+            if both and (isinstance(a, Quaternion) or isinstance(b, Quaternion)):
+                raise Unreadable(line, "the product of a quaternion and a vector")
+            if both and self.unit.language == "rust" and len(a.shape) == len(b.shape) == 1:  # type: ignore[union-attr]
+                raise Unreadable(line, "the product of two columns")
             if sign == "@" and not both:
                 raise Unreadable(line, "a product of matrices of unknown size; declare them under [code.symbols]")
             return (
@@ -383,12 +415,12 @@ class Evaluator:
             return self.read(variable, places[0], part.line)
         return Array(shape, tuple(self.read(variable, place, part.line) for place in places))
 
-    def require_rows(self, part: Part) -> None:
-        """Refuse blocks in the brackets of MATLAB, where only rows of numbers are read."""
-        rows = [item.parts[0] for item in part.parts[0] if item.kind == "list"]
-        cells = [self.value(cell) for row in rows for cell in row]
-        if len(rows) != len(part.parts[0]) or any(isinstance(cell, Array) for cell in cells):
-            raise Unreadable(part.line, "a matrix of blocks")
+    def rows(self, part: Part) -> Value:
+        """The brackets of MATLAB: rows of numbers, or of blocks, in which a vector is a column."""
+        rows = [[self.value(cell) for cell in row.parts[0]] for row in part.parts[0]]
+        if any(isinstance(cell, Array) for row in rows for cell in row):
+            return join(*(join(*row, across=True) for row in rows), across=False)
+        return self.stack([self.stack(row, part.line) for row in rows], part.line)
 
     def stack(self, values: list[Value], line: int) -> Value:
         """Numbers as a vector, vectors as the rows of a matrix."""
@@ -425,6 +457,8 @@ class Evaluator:
             raise Unreadable(part.line, f"{name}: {why if isinstance(why, str) else 'a macro that is called'}")
         if name not in self.frame and name in self.unit.functions:
             return self.inline(part, wants_value)
+        if name not in self.frame and (sign := extreme_of(name, self.unit.language)) and len(arguments) == 2:
+            return self.extreme(part, sign)
         if name not in self.frame and is_known(name, self.unit.language):
             return call_known(name, [self.value(a) for a in arguments], self.unit, part.line)
         may_be_entry = name in self.frame or name in self.globals or self.unit.language in ("cpp", "matlab")
@@ -434,6 +468,21 @@ class Evaluator:
         if not arguments and wants_value and self.unit.language in ("c", "cpp"):
             return self.read(self.variable(f"{name}()"), (), part.line)
         raise Unreadable(part.line, f"the function {name}, which this file does not define")
+
+    def extreme(self, part: Part, sign: str) -> Value:
+        """The larger or the smaller of two numbers, as cases."""
+        a, b = (self.value(argument) for argument in part.parts[1])
+        if not (isinstance(a, Scalar) and isinstance(b, Scalar)):
+            if isinstance(a, Unread) or isinstance(b, Unread):
+                return a if isinstance(a, Unread) else b
+            raise Unreadable(part.line, f"{part.parts[0]} of arrays")
+        x, y = constant_of(a), constant_of(b)
+        text = " >= ".join(self.unit.text(argument) for argument in part.parts[1])
+        if x is not None and y is not None:
+            is_first = x >= y
+        else:  # one condition for both, so that the larger and the smaller of the same two are told apart together
+            is_first = self.choose(Condition(text, part.line, True, ">=", a.tree, b.tree))
+        return a if is_first == (sign == ">=") else b
 
     def is_constant(self, part: Part) -> bool:
         """True for an index that is a whole number."""
@@ -452,7 +501,7 @@ class Evaluator:
             raise Unreadable(part.line, f"the recursion of {name}" if name in self.calls else "calls nested too deep")
         function = candidates[0]
         self.require_no_structure(function, arguments, part.line)
-        frame = {a.name: self.bind(a, given) for a, given in zip(function.arguments, arguments, strict=True)}
+        frame = {a.name: self.bind(a, given, function) for a, given in zip(function.arguments, arguments, strict=True)}
         for output in function.outputs:
             frame.setdefault(output, Variable(output))
         outer, shadows = self.frame, self.shadows
@@ -466,8 +515,8 @@ class Evaluator:
             self.frame, self.shadows = outer, shadows
             self.calls.pop()
         if function.outputs and returned is None:
-            outputs = [self.whole_value(frame[output]) for output in function.outputs]
-            returned = outputs[0]
+            self.outputs = [self.whole_value(frame[output]) for output in function.outputs]
+            returned = self.outputs[0]
         if returned is None and wants_value:
             raise Unreadable(part.line, f"{name} returns no value")
         return returned if returned is not None else Unread(part.line, "no value")
@@ -489,15 +538,18 @@ class Evaluator:
             return self.read(variable, (), 0)
         return Array(variable.shape, tuple(self.read(variable, place, 0) for place in places_of(variable.shape)))
 
-    def bind(self, argument: Argument, given: Part) -> Variable:
+    def bind(self, argument: Argument, given: Part, function: Function) -> Variable:
         """A parameter of an inlined function: the caller's own variable, or a copy of a value."""
         inner = given.parts[0] if given.kind == "address" else given
         if inner.kind == "name" and (argument.shared or given.kind == "address" or argument.shape is not None):
             variable = self.variable(inner.parts[0])
             if argument.shape is not None and variable.shape is None and not variable.cells:
                 variable.shape = tuple(self.whole(size) for size in argument.shape)
-            if argument.shared or variable.shape is None or variable.shape:
+            is_copy = not argument.shared and given.kind != "address" and may_write(function, argument.name)
+            if argument.shared or ((variable.shape is None or variable.shape) and not is_copy):
                 return variable
+            if is_copy and variable.shape is None:
+                raise Unreadable(given.line, f"a copy of {variable.name}, of unknown size; declare it")
         if given.kind == "address":
             return self.linked(given, given)
         value = self.value(given)
@@ -540,6 +592,9 @@ class Evaluator:
         """``v.x()`` of a vector of two or three, and ``M(i, j)`` in the long spellings."""
         base, name, arguments = part.parts
         shape = self.variable_shape(base.parts[0]) or ()
+        if name in ("i", "j", "k", "w") and not arguments and self.variable(base.parts[0]).number == "quaternion":
+            place = Part("number", part.line, ("ijkw".index(name), "int"))
+            return self.entries(Part("index", part.line, (base, (place,)), part.span))
         if name in ("x", "y", "z") and not arguments and shape in ((2,), (3,)) and "xyz".index(name) < shape[0]:
             place = Part("number", part.line, ("xyz".index(name), "int"))
             return self.entries(Part("index", part.line, (base, (place,)), part.span))
@@ -549,6 +604,27 @@ class Evaluator:
         """The shape of a name that is known already."""
         known = self.frame.get(name) or self.file_names.get(name) or self.globals.get(name)
         return known.shape if known else self.shapes.get(name)
+
+
+def may_write(function: Function, name: str) -> bool:
+    """True for a function that may write to a parameter of its own; one that only reads it may share the caller's."""
+    for part in walk(*function.body):
+        if part.kind == "assign" and name in {*names_in(part.parts[0]), *called_in(part.parts[0])}:
+            return True
+        is_link = part.kind == "declare" and part.parts[4]
+        if (is_link or part.kind in ("do", "address", "refused", "unread")) and name in {
+            *names_in(part),
+            *called_in(part),
+        }:
+            return True
+        if part.kind == "call" and any(a.kind == "name" and a.parts[0] == name for a in part.parts[1]):
+            return True
+    return False
+
+
+def called_in(part: Part) -> set[str]:
+    """The names before parentheses: ``v`` of ``v(0)``."""
+    return {inner.parts[0] for inner in walk(part) if inner.kind == "call"}
 
 
 def head_of(name: str) -> str:

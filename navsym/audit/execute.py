@@ -2,18 +2,31 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from navsym.audit.evaluate import CASES, Case, CellView, Condition, Evaluator, Inputs, Reading, Returning, head_of
+from navsym.audit.evaluate import (
+    CASES,
+    Case,
+    CellView,
+    Condition,
+    Evaluator,
+    Failing,
+    Inputs,
+    Reading,
+    Returning,
+    head_of,
+)
 from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
-from navsym.audit.functions import HARMLESS, METHODS, is_known
+from navsym.audit.functions import HARMLESS, METHODS, PURE, is_known
 from navsym.audit.values import (
     Array,
     Cell,
     Index,
+    Quaternion,
     Scalar,
     Unread,
     Unreadable,
@@ -46,17 +59,36 @@ def read_function(
     edits  : expressions in the place of others, by ``id``
     """
     reading = Reading(unit, function)
-    given = (reading, inputs, shapes or {}, edits or {})
-    waiting: list[list[bool]] = [[]]
-    while waiting:
-        machine = Machine(*given, waiting.pop())
-        reading.cases.append(machine.run(function))
-        if len(reading.cases) + len(waiting) > CASES:
-            reading.cases, machine = [], Machine(*given, None)
-            reading.cases.append(machine.run(function))
-            return reading
-        waiting += machine.other_ways
+    start = functools.partial(Machine, reading, inputs, shapes or {}, edits or {})
+    for is_bold in (True, False):  # first with two ways for conditions that are not read
+        reading.cases = list_cases(start, reading, function, is_bold)
+        if reading.cases:
+            break
+    else:
+        reading.cases = [start(None, False).run(function)]
+    lasting = [case for case in reading.cases if not case.has_failed]
+    for case in [] if lasting else reading.cases:
+        why = Unread(function.line, f"every way through {function.name} ends in an error")
+        case.returned = why
+        for variable in case.variables.values():
+            variable.all_unread = why
+    reading.cases = lasting or reading.cases[:1]
     return reading
+
+
+def list_cases(start: Callable[..., Machine], reading: Reading, function: Function, is_bold: bool) -> list[Case]:
+    """The cases of a function; none where there are more than 32."""
+    cases: list[Case] = []
+    waiting: list[list[bool]] = [[]]
+    for table in (reading.met, reading.refused, reading.refused_spans, reading.valueless):
+        table.clear()  # type: ignore[attr-defined]
+    while waiting:
+        machine = start(waiting.pop(), is_bold)
+        cases.append(machine.run(function))
+        if len(cases) + len(waiting) > CASES:
+            return []
+        waiting += machine.other_ways
+    return cases
 
 
 @dataclass(slots=True, eq=False)
@@ -80,12 +112,14 @@ class Machine(Evaluator):
             self.frame[argument.name] = self.make_argument(argument)
         for name in function.outputs:
             self.frame.setdefault(name, Variable(name))
-        returned = None
+        returned, has_failed = None, False
         try:
             self.block(function.body)
         except Returning as end:
             returned = end.value
-        return Case(tuple(self.conditions), {**self.globals, **self.frame}, returned)
+        except Failing:
+            has_failed = True
+        return Case(tuple(self.conditions), {**self.globals, **self.frame}, returned, has_failed)
 
     def make_argument(self, argument: Argument) -> Variable:
         """A parameter of the function that is audited: an input."""
@@ -135,6 +169,8 @@ class Machine(Evaluator):
                 targets |= self.root_names(part.parts[0])
             elif part.kind in ("declare", "for"):
                 targets.add(part.parts[0])
+            elif part.kind == "several":
+                targets = targets.union(*map(self.root_names, part.parts[0]))
             elif part.kind == "unread":
                 targets.update(part.parts[1])
             elif part.kind == "address":
@@ -142,7 +178,7 @@ class Machine(Evaluator):
             elif part.kind in ("call", "method") and not self.is_plain(part):
                 targets |= {name for name in names_in(part) if not self.is_safe(name)}
             may_leave = part.kind == "refused" and part.parts[3:] == (True,)
-            if part.kind == "jump" or may_leave or (part.kind == "call" and self.may_jump(part)):
+            if part.kind in ("jump", "fail") or may_leave or (part.kind == "call" and self.may_jump(part)):
                 self.stop(unread)
             if part.kind == "unread" or self.has_effect(part):
                 self.lose(unread)
@@ -204,7 +240,8 @@ class Machine(Evaluator):
             return part.parts[1] in METHODS
         name = part.parts[0]
         is_entry = name in self.frame and not self.is_closure(name)
-        return is_entry or name in HARMLESS or is_known(name, self.unit.language)
+        is_pure = name in HARMLESS or name in PURE.get(self.unit.language, ())
+        return is_entry or is_pure or is_known(name, self.unit.language)
 
     def is_closure(self, name: str) -> bool:
         """True for a name that is called though its value is not read: it may hold a function that writes any name."""
@@ -229,6 +266,23 @@ class Machine(Evaluator):
     def run_unread(self, why: str, names: tuple[str, ...], statement: Part) -> None:
         raise Unreadable(statement.line, why)
 
+    def run_fail(self, why: str, statement: Part) -> None:
+        raise Failing(why)
+
+    def run_several(self, targets: tuple[Part, ...], call: Part, statement: Part) -> None:
+        """``[a, b] = f(x)`` of MATLAB, for a function of the file."""
+        if call.kind != "call" or call.parts[0] not in self.unit.functions or call.parts[0] in self.frame:
+            raise Unreadable(statement.line, "several names assigned at once")
+        self.outputs = []
+        self.value(call)
+        if len(self.outputs) < len(targets):
+            raise Unreadable(statement.line, "more names than values")
+        for target, value in zip(targets, self.outputs[:], strict=False):
+            self.note_unread(value, statement)
+            if target.kind != "name":
+                raise Unreadable(statement.line, "entries among several names assigned at once")
+            self.rename(target.parts[0], call, value, statement)
+
     def run_jump(self, why: str, names: tuple[str, ...], statement: Part) -> None:
         raise Unreadable(statement.line, why)
 
@@ -245,10 +299,21 @@ class Machine(Evaluator):
         result = None if value is None else self.value(value)
         if shape is None and isinstance(result, Array):
             sizes = result.shape  # auto
+        if number == "auto":
+            is_quaternion = isinstance(result, Quaternion)
+            number = "quaternion" if is_quaternion else result.number if isinstance(result, Scalar) else "real"
         variable = Variable(name, number, sizes)
         self.frame[name] = variable
         if result is not None:
+            self.note_unread(result, statement)
             self.write(variable, self.fill(result, sizes), statement)
+
+    def note_unread(self, value: Value, statement: Part) -> None:
+        """Keep in mind an assignment of what is not read."""
+        cells = value.cells if isinstance(value, Array) else (value,)
+        unread = next((cell for cell in cells if isinstance(cell, Unread)), None)
+        if unread is not None:
+            self.reading.valueless[statement.span] = unread.why
 
     def fill(self, value: Value, shape: Index) -> Value:
         """An initial value in its shape: the rest of a C initializer is zero."""
@@ -265,6 +330,7 @@ class Machine(Evaluator):
         result = self.value(value)
         if sign:
             result = self.combine(sign, self.value(target), result, statement.line)
+        self.note_unread(result, statement)
         if target.kind == "name" and self.member_of_array(target) is not None:
             raise Unreadable(statement.line, "a member of an array as a target")
         if target.kind == "name":
@@ -332,6 +398,7 @@ class Machine(Evaluator):
                 if exact is None or exact.denominator != 1:
                     raise Unreadable(statement.line, "a real number cut to an integer")
             number = variable.number if self.unit.rules.integer else cell.number
+            number = "real" if number in ("quaternion", "auto") else number
             cell = Scalar(cell.tree, number, statement.line, statement)
         variable.cells[place] = cell
         if not isinstance(variable.cells, CellView):  # which has no cells of its own
@@ -415,7 +482,17 @@ class Machine(Evaluator):
     # -- conditions --
 
     def decide(self, test: Part) -> bool:
-        """Whether a condition holds in this case."""
+        """Whether a condition holds in this case; one that is not read has two ways, of which nothing is known."""
+        try:
+            return self.decide_known(test)
+        except Unreadable as refusal:
+            if self.choices is None or not self.is_bold:
+                raise
+            self.refuse(test, Unread(refusal.line or test.line, refusal.why))
+            return self.choose(Condition(self.unit.text(test), test.line, True, f"?{len(self.conditions)}"))
+
+    def decide_known(self, test: Part) -> bool:
+        """Whether a condition holds that can be read."""
         if test.kind == "both":
             return self.decide(test.parts[0]) and self.decide(test.parts[1])
         if test.kind == "either":
@@ -433,7 +510,7 @@ class Machine(Evaluator):
             left, right = a.tree, b.tree
             if left.head == right.head == NUMBER:
                 return COMPARE[sign](left.args[0], right.args[0])
-        elif test.kind in ("name", "index"):
+        elif test.kind not in ("refused", "list"):
             value = self.value(test)
             exact = constant_of(value)
             if exact is not None:

@@ -16,10 +16,11 @@ class Part:
 
     kind  : of a statement: declare (name, number, shape, value, shared) · assign (target, sign, value) · block (body) ·
             if (test, then, else) · for (name, start, stop, step, body) · return (value) · do (call) · unread (why,
-            names) · jump (why, names); of an expression: number (value, kind) · name (text) · index (base,
-            indices) · call (name, arguments) · method (base, name, arguments) · op (sign, a, b) · minus (a) ·
-            compare (sign, a, b) · both (a, b) · either (a, b) · not (a) · list (items) · choose (test, a, b) ·
-            slice (start, stop) · first (a), which is ``*a`` · address (a) · cast (kind, a) · refused (why)
+            names) · jump (why, names) · fail (why) · several (targets, call); of an expression: number (value,
+            kind) · name (text) · index (base, indices) · call (name, arguments) · method (base, name, arguments) ·
+            op (sign, a, b) · minus (a) · compare (sign, a, b) · both (a, b) · either (a, b) · not (a) · list (items) ·
+            choose (test, a, b) · slice (start, stop) · first (a), which is ``*a`` · address (a) · cast (kind, a) ·
+            refused (why)
     line  : of the source, from 1
     span  : first byte in the source, and the one behind the last
     """
@@ -80,6 +81,9 @@ class Unit:
     constants : declarations of the file that never change, in their order
     macros    : name -> what an object-like macro stands for; a text says why it is refused
     ignored   : functions and macros that write nothing, as a mapping declares
+    pieces    : first byte, lines before it and file of every further file that was read behind this one
+    defined   : names that the preprocessor knows, as a mapping declares; None where it does not say
+    members   : member of a structure -> what it holds and its sizes, where the file says so
     """
 
     file: str
@@ -90,6 +94,16 @@ class Unit:
     constants: list[Part] = field(default_factory=list)
     macros: dict[str, Part | str] = field(default_factory=dict)
     ignored: frozenset[str] = frozenset()
+    pieces: tuple[tuple[int, int, str], ...] = ()
+    defined: frozenset[str] | None = None
+    members: dict[str, tuple[str, tuple[int, ...] | None]] = field(default_factory=dict)
+
+    def locate(self, line: int) -> tuple[str, int]:
+        """The file of a line, and its number there."""
+        for _, before, file in reversed(self.pieces):
+            if line > before:
+                return file, line - before
+        return self.file, line
 
     def text(self, part: Part) -> str:
         """The source of a part."""

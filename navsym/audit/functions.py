@@ -9,6 +9,7 @@ from fractions import Fraction
 from navsym.audit.form import Unit
 from navsym.audit.values import (
     Array,
+    Quaternion,
     Scalar,
     Unread,
     Unreadable,
@@ -19,24 +20,39 @@ from navsym.audit.values import (
     divide,
     identity_array,
     make_array,
+    map_cell,
     map_cells,
     matrix_product,
+    minus,
     multiply,
     raise_to,
     root,
     square_sum,
     transpose,
 )
-from navsym.language.tree import PI, Tree, build_call, build_number
+from navsym.language.tree import ONE, PI, ZERO, Tree, build_call, build_inverse, build_number
 
 #: Functions of one number, by their names without prefix and suffix.
 PLAIN = {
     **{name: name for name in "sin cos tan exp log sqrt asin acos atan sinh cosh tanh".split()},
     **{"fabs": "abs", "abs": "abs", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "absolute": "abs"},
 }
+#: Degrees to radians and back.
+ANGLES = {"deg2rad": Fraction(1, 180), "radians": Fraction(1, 180), "rad2deg": Fraction(180), "degrees": Fraction(180)}
 CONSTANTS: dict[str, Tree] = dict.fromkeys(("M_PI", "math.pi", "np.pi", "numpy.pi", "pi", "M_PI_F", "PI"), PI)
 CONSTANTS |= dict.fromkeys(("M_PI_2", "M_PI_2_F"), multiply(build_number(Fraction(1, 2)), PI))
 HARMLESS = frozenset(("printf", "fprintf", "print", "assert", "disp", "static_assert", "puts"))
+#: Functions without a formula that write nothing, by language.
+PURE = {
+    "c": frozenset("isnan isfinite isinf".split()),
+    "cpp": frozenset("isnan isfinite isinf std::isnan std::isfinite std::isinf".split()),
+    "python": frozenset(
+        "isinstance len hasattr callable type np.isscalar np.any np.all np.isnan np.isfinite np.shape np.ndim "
+        "np.isclose np.allclose math.isnan math.isinf".split()
+    ),
+    "matlab": frozenset("isinf isnan isempty any all numel length size strcmp strcmpi nargin ischar isfield".split()),
+    "rust": frozenset(),
+}
 PREFIX = re.compile(r"(std::|::|math\.|np\.|numpy\.|matrix::|Eigen::)")
 MAKERS = frozenset(
     "zeros ones eye identity array asarray copy diag outer cross dot matmul norm transpose linalg.norm".split()
@@ -54,13 +70,26 @@ def is_known(name: str, language: str) -> bool:
     """True for a function that has a meaning of its own in the language."""
     bare = bare_name(name)
     if language == "python":
-        known = bare in PLAIN or bare in TWO or bare in MAKERS or bare in ("arctan2", "power", "square")
+        known = bare in PLAIN or bare in TWO or bare in MAKERS or bare in ("arctan2", "power", "square", *ANGLES)
         return known and (PREFIX.match(name) is not None or name == "abs")
+    if language == "rust" and (name in NALGEBRA or bare in ("zeros", "eye")):
+        return True
     if bare in TWO or (bare in PLAIN and not bare.startswith("arc") and bare != "absolute"):
         return True
     if language == "matlab":
-        return bare in MAKERS
+        return bare in MAKERS or bare in ("deg2rad", "rad2deg")
     return language == "cpp" and (bare == "cross" or MAKE.search(name) is not None)
+
+
+def extreme_of(name: str, language: str) -> str:
+    """``>=`` for a name of the larger of two numbers, ``<=`` for one of the smaller; else nothing."""
+    known = {"c": ("fmax", "fmin"), "cpp": ("fmax", "fmin"), "matlab": ("max", "min"), "python": ("maximum", "minimum")}
+    bare = PREFIX.sub("", name, count=1)
+    known["rust"] = known["c"]
+    bare = bare.removesuffix("f") if language in ("c", "cpp") else bare
+    if name in ("std::max", "std::min") or (name in ("max", "min") and language == "python"):
+        return ">=" if name.endswith("max") else "<="
+    return dict(zip(known.get(language, ()), (">=", "<="), strict=False)).get(bare, "")
 
 
 TWO = ("pow", "atan2", "hypot")
@@ -78,6 +107,10 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
             raise Unreadable(line, "abs, which cuts to an integer in C; fabs does not")
         result = map_cells(lambda x: build_call(PLAIN[bare], x), values[0])
         return Scalar(result.tree) if isinstance(result, Scalar) else result
+    if bare in ANGLES and len(values) == 1:
+        factor = ANGLES[bare]
+        turn = multiply(build_number(factor), PI if factor < 1 else build_inverse(PI))
+        return as_real(map_cells(lambda x: multiply(turn, x), values[0]))
     if bare in ("pow", "power") and len(values) == 2:
         return as_real(map_cells(raise_to, *values))
     if bare in ("atan2", "arctan2") and len(values) == 2:
@@ -86,6 +119,8 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
         return map_cells(root, square_sum(Array((2,), tuple(values))))  # type: ignore[arg-type]
     if bare == "square" and len(values) == 1:
         return map_cells(lambda x: raise_to(x, build_number(2)), values[0])
+    if unit.language == "rust" and name in NALGEBRA:
+        return NALGEBRA[name](values, unit)
     if bare in ARRAYS and len(values) in (1, 2):
         return ARRAYS[bare](values, unit)
     if found := MAKE.search(name):
@@ -192,6 +227,47 @@ ARRAYS: dict[str, Callable[[Sequence[Value], Unit], Value]] = {
     "dot": dot_of, "matmul": multiply_arrays, "norm": norm_of, "linalg.norm": norm_of, "transpose": transpose_of,
 }  # fmt: skip
 
+
+def make_matrix(values: Sequence[Value], unit: Unit) -> Value:
+    """The entries row by row, behind the sizes."""
+    *sizes, entries = values
+    shape = sizes_of(sizes, unit)
+    if not isinstance(entries, Array) or len(entries.shape) != 1 or count_cells(shape) != len(entries.cells):
+        raise Unreadable(0, "entries that do not fit the sizes")
+    return Array(shape, entries.cells)
+
+
+def make_quaternion(values: Sequence[Value], unit: Unit) -> Value:
+    """From w, i, j and k."""
+    if len(values) != 4 or not all(isinstance(value, Scalar) for value in values):
+        raise Unreadable(0, "a quaternion of other than four numbers")
+    return Quaternion((4,), (*values[1:], values[0]))  # type: ignore[arg-type]
+
+
+def make_of_parts(values: Sequence[Value], unit: Unit) -> Value:
+    """From w and the vector."""
+    w, vector = values
+    if not isinstance(vector, Array) or vector.shape != (3,) or not isinstance(w, Scalar):
+        raise Unreadable(0, "a quaternion of other than a number and three")
+    return Quaternion((4,), (*vector.cells, w))
+
+
+def require_quaternion(values: Sequence[Value], unit: Unit) -> Value:
+    (value,) = values
+    if not isinstance(value, Quaternion):
+        raise Unreadable(0, "a quaternion made of something else")
+    return value
+
+
+#: Constructors of nalgebra; the reader of Rust writes the sizes of a type before the entries.
+NALGEBRA: dict[str, Callable[[Sequence[Value], Unit], Value]] = {
+    "Matrix::new": make_matrix, "Quaternion::new": make_quaternion, "Quaternion::from_parts": make_of_parts,
+    "Quaternion::new_unchecked": require_quaternion,
+    "Quaternion::from_quaternion": lambda values, unit: normalize(require_quaternion(values, unit), (), unit),
+    "Quaternion::new_normalize": lambda values, unit: normalize(require_quaternion(values, unit), (), unit),
+    "Quaternion::identity": lambda values, unit: Quaternion((4,), (*[Scalar(ZERO)] * 3, Scalar(ONE))),
+}  # fmt: skip
+
 Method = Callable[[Value, Sequence[Value], Unit], Value]
 
 
@@ -199,6 +275,13 @@ def normalize(value: Value, _: Sequence[Value], unit: Unit) -> Value:
     """A vector over its length."""
     length = map_cells(root, square_sum(value))
     return map_cells(divide, value, length)
+
+
+def conjugate(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+    """A quaternion with its vector turned round."""
+    if not isinstance(value, Quaternion):
+        raise Unreadable(0, "the conjugate of what is no quaternion")
+    return Quaternion((4,), (*(map_cell(minus, cell) for cell in value.cells[:3]), value.cells[3]))
 
 
 METHODS: dict[str, Method] = {
@@ -212,5 +295,7 @@ METHODS: dict[str, Method] = {
     "squaredNorm": lambda value, _, unit: square_sum(value),
     "norm_squared": lambda value, _, unit: square_sum(value),
     "normalized": normalize,
+    "normalize": normalize,
+    "conjugate": conjugate,
     "unit": normalize,
 }

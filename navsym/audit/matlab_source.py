@@ -59,6 +59,9 @@ class Reader(SourceReader):
         match node.type:
             case "assignment":
                 left, right = field_of(node, "left"), field_of(node, "right")
+                if left.type == "multioutput_variable":
+                    targets = tuple(map(self.expression, named(left)))
+                    return self.part("several", node, targets, self.expression(right))
                 if left.type not in ("identifier", "function_call", "field_expression"):
                     return self.unread(node, "several names assigned at once")
                 return self.part("assign", node, self.expression(left), "", self.expression(right))
@@ -69,6 +72,8 @@ class Reader(SourceReader):
                 return self.loop(node)
             case "return_statement":
                 return self.unread(node, "a return before the end")
+            case "function_call" if text_of(field_of(node, "name")) == "error":
+                return self.part("fail", node, "an error is raised")
             case "function_call":
                 return self.part("do", node, self.expression(node))
         return self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})")

@@ -27,7 +27,8 @@ TOLERANCE = 1e-9
 SWAPS = {"sin": "cos", "cos": "sin", "sinf": "cosf", "cosf": "sinf", "asin": "acos", "acos": "asin"}
 SWAPS |= {f"{head}{old}": f"{head}{new}" for head in ("np.", "math.", "std::") for old, new in SWAPS.items()}
 NUMBERS = ("0", "1", "2", "3", "4")
-TRANSPOSED = {"cpp": ".transpose()", "python": ".T", "matlab": "'"}
+ROOTS = {"c": "sqrt({})", "cpp": "sqrt({})", "python": "np.sqrt({})", "matlab": "sqrt({})", "rust": "{}.sqrt()"}
+TRANSPOSED = {"rust": ".transpose()", "cpp": ".transpose()", "python": ".T", "matlab": "'"}
 
 #: First byte, byte behind the last, and the text in between.
 Edit = tuple[int, int, str]
@@ -199,6 +200,8 @@ def is_right(
         return False
     for probe in probes:
         a, b = (evaluate(tree, probe) for tree in (cell.tree, expected.tree))
+        if a is None and b is None:  # neither has a value there
+            continue
         if a is None or b is None or abs(a - b) > TOLERANCE * (1 + abs(a) + abs(b)):
             return False
     return decide_entry(cell.tree, expected.tree, scope).status == PROVED
@@ -299,11 +302,17 @@ def edit_indices(source: Source, parts: list[Part]) -> Iterator[Edit]:
 
 
 def edit_calls(source: Source, parts: list[Part]) -> Iterator[Edit]:
-    """sin for cos, and the like."""
+    """sin for cos, and the like; a root less, or more."""
+    root = ROOTS[source.unit.language]
     for part in parts:
         if part.kind == "call" and part.parts[0] in SWAPS:
             low = part.span[0]
             yield low, low + len(part.parts[0]), SWAPS[part.parts[0]]
+        if part.kind == "call" and part.parts[0].endswith(("sqrt", "sqrtf")) and len(part.parts[1]) == 1:
+            yield *part.span, source.unit.text(part.parts[1][0])
+    for part in parts:
+        if part.kind in ("name", "index"):
+            yield *part.span, root.format(source.unit.text(part))
 
 
 def edit_numbers(source: Source, parts: list[Part]) -> Iterator[Edit]:
@@ -351,7 +360,7 @@ def edit_names(source: Source, parts: list[Part]) -> Iterator[Edit]:
 def nearby_names(source: Source) -> list[str]:
     """Numbers that a right side could use: locals and parameters first, then entries of inputs."""
     case = source.read().cases[0]
-    scalars = [name for name, variable in case.variables.items() if variable.shape == () and "()" not in name]
+    scalars = [name for name, variable in case.variables.items() if variable.shape == () and not {*"(@"} & {*name}]
     entries = [s for s in source.names.spellings.values() if "[" in s or "(" in s]
     return list(dict.fromkeys([*scalars, *entries]))[:MOST_NAMES]
 

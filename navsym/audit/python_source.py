@@ -97,6 +97,8 @@ class Reader(SourceReader):
                 return (self.branch(node, [*node.children_by_field_name("alternative")]),)
             case "for_statement":
                 return (self.loop(node),)
+            case "raise_statement":
+                return (self.part("fail", node, "an error is raised"),)
             case "pass_statement" | "assert_statement" | "import_statement" | "import_from_statement":
                 return ()
         return (self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})"),)
@@ -146,7 +148,11 @@ class Reader(SourceReader):
         value = self.expression(right)
         if len(targets) == 1:
             return (self.part("assign", node, self.expression(targets[0]), "", value),)
-        is_computed = value.kind in ("op", "call", "method", "minus")
+        first: tuple[Part, ...] = ()
+        if value.kind == "call":  # a, b = f(x): the call is made once, under a name that no source can have
+            once = self.part("name", right, f"several@{node.start_byte}")
+            first, value = (self.part("assign", node, once, "", value),), once
+        is_computed = value.kind in ("op", "method", "minus")
         if is_computed and {text_of(target) for target in targets} & names_in(value):
             return (self.unread(node, "names assigned from each other at once"),)
         if value.kind in ("name", "op"):  # a, b = x
@@ -159,7 +165,8 @@ class Reader(SourceReader):
                 return (self.unread(node, "names assigned from each other at once"),)
         else:
             return (self.unread(node, "several names assigned at once"),)
-        return tuple(self.part("assign", node, self.expression(t), "", v) for t, v in zip(targets, items, strict=True))
+        pairs = zip(targets, items, strict=True)
+        return (*first, *(self.part("assign", node, self.expression(t), "", v) for t, v in pairs))
 
     # -- expressions --
 

@@ -58,6 +58,10 @@ KINDS = {
 }
 
 
+class NotThereError(Exception):
+    """A local name of Python without a value in a case: there the question asks nothing."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Entry:
     """What the code computes at one place, and what it should be.
@@ -110,10 +114,16 @@ def list_entries(question: Question) -> list[Entry]:
         return list_dead(question)
     entries: list[Entry] = []
     for asking in list_askings(question):
-        asked: list[Entry] = getattr(asking, f"ask_{question.kind}")()
+        try:
+            asked: list[Entry] = getattr(asking, f"ask_{question.kind}")()
+        except NotThereError:
+            continue
         if question.kind == "symmetric":
             asked = [entry for entry in asked if entry.place[0] < entry.place[1]]
         entries += asked
+    if not entries and question.kind != "symmetric":
+        message = "expected names that have values in one case; got some that never have one together; ask for others"
+        raise DomainError(message, where=question.where)
     return entries
 
 
@@ -179,6 +189,8 @@ def is_contradictory(conditions: Sequence[Condition]) -> bool:
     """True for two sources of which one needs what the other excludes."""
     known: dict[Any, bool] = {}
     for condition in conditions:
+        if condition.left is None:  # what is not read may be two things
+            continue
         key = (condition.sign, condition.left, condition.right)
         if known.setdefault(key, condition.holds) != condition.holds:
             return True
@@ -246,6 +258,11 @@ class Asking:
                 return at_place(value, tuple(numbers), where)
             return value
         variable = case.variables.get(base)
+        if variable is None and any(base in other.variables for other in source.read().cases):
+            is_local = "." not in base and base not in {argument.name for argument in source.function.arguments}
+            if source.unit.language == "python" and is_local:  # there is no such name then
+                raise NotThereError(f"{base} has no value in this case")
+            return Unread(source.function.line, f"{base} is not assigned in a case of {source.function.name}")
         if variable is None:
             message = (
                 f"expected a name that {source.function.name} assigns; got {quote(base)}; "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -28,10 +28,14 @@ LANGUAGES = {
     **dict.fromkeys((".cpp", ".cc", ".cxx", ".hpp", ".hh", ".ino"), "cpp"),
     ".py": "python",
     ".m": "matlab",
+    ".rs": "rust",
 }
 LARGEST_SIDE = 64
 #: The keys of a block ``[[code]]``.
-KEYS = ("name", "file", "function", "lines", "relations", "symbols", "constants", "functions", "ignored", "language")
+KEYS = (
+    "name", "file", "function", "lines", "also", "defined", "relations", "symbols", "constants", "functions", "ignored",
+    "language",
+)  # fmt: skip
 
 
 @dataclass(slots=True, eq=False)
@@ -94,8 +98,16 @@ class Source:
         return [self.names.symbol(reference)]
 
 
-def load_unit(path: str | os.PathLike[str], language: str | None = None) -> Unit:
+def load_unit(
+    path: str | os.PathLike[str],
+    language: str | None = None,
+    also: Sequence[Path] = (),
+    defined: frozenset[str] | None = None,
+) -> Unit:
     """A source file in the one form; its language follows from the end of its name where none is given.
+
+    also    : further files of the language, whose functions and constants it uses
+    defined : names that the preprocessor of C knows; None reads both ways of an ``#ifdef``
 
     Raises NavsymError of kind ``missing-file``, ``syntax``, ``too-large`` or ``missing`` (no grammar on this machine).
     """
@@ -103,8 +115,19 @@ def load_unit(path: str | os.PathLike[str], language: str | None = None) -> Unit
     if language is None:
         expected = f"a source that ends in {' '.join(LANGUAGES)}"
         raise ExpressionSyntaxError(f"expected {expected}; got {quote(Path(path).name)}; rename it", where=where)
-    data = read_bytes(path, SIZE).removeprefix(b"\xef\xbb\xbf")
-    decode(data, where)
+    data, pieces = b"", list[tuple[int, int, str]]()
+    for file in (Path(path), *also):  # one text, so that each part has a place of its own
+        text = read_bytes(file, SIZE).removeprefix(b"\xef\xbb\xbf")
+        decode(text, name_file(file))
+        pieces.append((len(data), data.count(b"\n"), name_file(file)))
+        data += text + b"\n" * bool(also)
+    unit = read_unit(data, where, language, defined)
+    unit.pieces = tuple(pieces[1:])
+    return unit
+
+
+def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | None) -> Unit:
+    """A source in the one form."""
     if language == "python":
         from navsym.audit.python_source import read_python
 
@@ -113,9 +136,13 @@ def load_unit(path: str | os.PathLike[str], language: str | None = None) -> Unit
         from navsym.audit.matlab_source import read_matlab
 
         return read_matlab(data, where)
+    if language == "rust":
+        from navsym.audit.rust_source import read_rust
+
+        return read_rust(data, where)
     from navsym.audit.c_source import read_c
 
-    return read_c(data, where, language)
+    return read_c(data, where, language, defined)
 
 
 def read_expression(text: str, unit: Unit) -> Part:
@@ -128,6 +155,10 @@ def read_expression(text: str, unit: Unit) -> Part:
         from navsym.audit.matlab_source import read_matlab_expression
 
         return read_matlab_expression(text, unit)
+    if unit.language == "rust":
+        from navsym.audit.rust_source import read_rust_expression
+
+        return read_rust_expression(text, unit)
     from navsym.audit.c_source import read_c_expression
 
     return read_c_expression(text, unit)
@@ -149,22 +180,10 @@ def find_function(unit: Unit, name: str, where: str, line: int | None = None) ->
     return candidates[0]
 
 
-def read_source(block: Any, folder: Path, names: Names, where: str) -> Source:
-    """One ``[[code]]`` block."""
+def read_source(block: Any, folder: Path, names: Names, where: str, line: int | None = None) -> Source:
+    """One ``[[code]]`` block; a line tells several functions of one name apart."""
     table = as_table(block, where)
-    keys = (
-        "name",
-        "file",
-        "function",
-        "lines",
-        "relations",
-        "symbols",
-        "constants",
-        "functions",
-        "ignored",
-        "language",
-    )
-    expect_keys(table, keys, where)
+    expect_keys(table, KEYS, where)
     texts = {
         key: as_text(require_key(table, key, where), join_place(where, key), "a name")
         for key in ("name", "file", "function")
@@ -172,13 +191,14 @@ def read_source(block: Any, folder: Path, names: Names, where: str) -> Source:
     language = table.get("language")
     if language is not None:
         one_of(as_text(language, join_place(where, "language"), "a language"), LANGUAGES.values(), where)
-    unit = load_unit(folder / texts["file"], language)
+    also, defined, ignored = (read_names(table, key, where) for key in ("also", "defined", "ignored"))
+    known = None if defined is None else frozenset(defined)
+    unit = load_unit(folder / texts["file"], language, [folder / name for name in also or ()], known)
     declare_constants(unit, as_table(table.get("constants", {}), join_place(where, "constants")), where)
     declare_functions(unit, as_table(table.get("functions", {}), join_place(where, "functions")), where)
-    ignored = as_list(table["ignored"], join_place(where, "ignored")) if "ignored" in table else []
-    unit.ignored = frozenset(as_text(name, join_place(where, "ignored"), "a name") for name in ignored)
+    unit.ignored = frozenset(ignored or ())
     lines = read_lines(table["lines"], join_place(where, "lines")) if "lines" in table else None
-    function = find_function(unit, texts["function"], join_place(where, "function"), lines[0] if lines else None)
+    function = find_function(unit, texts["function"], join_place(where, "function"), lines[0] if lines else line)
     whole = function
     if lines is not None:
         function = take_lines(unit, function, *lines, join_place(where, "lines"))
@@ -199,6 +219,13 @@ def read_source(block: Any, folder: Path, names: Names, where: str) -> Source:
         read_relation(text, names, join_place(join_place(where, "relations"), i)) for i, text in enumerate(listed)
     )
     return source
+
+
+def read_names(table: Table, key: str, where: str) -> list[str] | None:
+    """A list of names, which may be empty; None where the key is not there."""
+    if key not in table or table[key] == []:
+        return table.get(key)
+    return [as_text(name, join_place(where, key), "a name") for name in as_list(table[key], join_place(where, key))]
 
 
 def list_inputs(source: Source, whole: Function) -> set[str]:
@@ -238,9 +265,10 @@ def declare_functions(unit: Unit, table: Table, where: str) -> None:
     for name, value in table.items():
         place = join_place(join_place(where, "functions"), name)
         entry = as_table(value, place)
-        expect_keys(entry, ("of", "is"), place)
-        if name in unit.functions:
-            raise DuplicateError(f"expected a function of another file; got {name} of this one; remove it", where=place)
+        expect_keys(entry, ("of", "is", "replace"), place)
+        if name in unit.functions and entry.get("replace") is not True:
+            message = f"expected a function of another file; got {name} of this one; remove it, or write replace = true"
+            raise DuplicateError(message, where=place)
         names = [as_text(n, place, "a name") for n in as_list(require_key(entry, "of", place), place)]
         meaning = read_expression(as_text(require_key(entry, "is", place), place, "an expression"), unit)
         if meaning.kind == "refused":

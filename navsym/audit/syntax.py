@@ -19,7 +19,7 @@ NODES = 400_000
 
 @functools.cache
 def load_parser(grammar: str) -> Any:
-    """The parser of a grammar: ``c``, ``cpp``, ``python``, ``matlab``; raises MissingEngineError without the wheel."""
+    """The parser of a grammar, such as ``c`` or ``rust``; raises MissingEngineError without its wheel."""
     try:
         from tree_sitter import Language, Parser
 
@@ -72,7 +72,11 @@ def line_of(node: Any) -> int:
 
 def named(node: Any) -> list[Any]:
     """The children that are more than signs; comments left out."""
-    return [child for child in node.named_children if child.type not in ("comment", "line_continuation")]
+    return [
+        child
+        for child in node.named_children
+        if child.type not in ("comment", "line_continuation", "line_comment", "block_comment")
+    ]
 
 
 def field_of(node: Any, name: str) -> Any:
@@ -110,14 +114,16 @@ def read_decimal(text: str) -> Fraction | None:
 #: Where the order of statements is left, in any of the grammars.
 JUMPS = frozenset(
     "return_statement goto_statement break_statement continue_statement throw_statement raise_statement yield "
-    "labeled_statement case_statement ERROR".split()
+    "labeled_statement case_statement ERROR return_expression break_expression continue_expression try_expression "
+    "macro_invocation await_expression".split()
 )
 
 
 #: What may write names inside an expression, in any of the grammars.
 WRITES = frozenset(
     "assignment_expression update_expression assignment augmented_assignment named_expression call_expression call "
-    "function_call lambda_expression lambda compound_statement new_expression delete_expression ERROR".split()
+    "function_call lambda_expression lambda compound_statement new_expression delete_expression ERROR "
+    "compound_assignment_expr macro_invocation closure_expression unsafe_block".split()
 )
 
 

@@ -76,6 +76,10 @@ class Array:
         return self.cells[where]
 
 
+class Quaternion(Array):
+    """The cells of a quaternion of nalgebra: i, j, k and w, in this order."""
+
+
 Value = Scalar | Array | Unread
 
 
@@ -192,7 +196,8 @@ def map_cells(step: Callable[..., Tree], *values: Value) -> Value:
         return map_cell(step, *values)  # type: ignore[arg-type]
     (shape,) = shapes
     rows = [v.cells if isinstance(v, Array) else (v,) * count_cells(shape) for v in values]
-    return Array(shape, tuple(map_cell(step, *cells) for cells in zip(*rows, strict=True)))
+    kind = Quaternion if any(isinstance(value, Quaternion) for value in values) else Array
+    return kind(shape, tuple(map_cell(step, *cells) for cells in zip(*rows, strict=True)))
 
 
 def map_cell(step: Callable[..., Tree], *cells: Cell) -> Cell:
@@ -231,6 +236,24 @@ def transpose(value: Value, column: bool) -> Value:
     return make_array((n, m), lambda i, j: value.at(j, i))
 
 
+def join(*values: Value, across: bool) -> Value:
+    """Matrices side by side, or below each other; a vector is a column, a number a matrix of one."""
+    unread = next((value for value in values if isinstance(value, Unread)), None)
+    if unread is not None:
+        return unread
+    blocks = [v if isinstance(v, Array) else Array((1, 1), (v,)) for v in values]
+    blocks = [b if len(b.shape) == 2 else Array((*b.shape, 1), b.cells) for b in blocks]
+    blocks = [b for b in blocks if b.cells]  # [] joins with everything
+    sides = {block.shape[0 if across else 1] for block in blocks}
+    if len(sides) != 1:
+        raise Unreadable(0, "blocks of different sizes side by side" if blocks else "a matrix without entries")
+    if not across:
+        return Array((sum(b.shape[0] for b in blocks), *sides), tuple(cell for b in blocks for cell in b.cells))
+    (height,) = sides
+    cells = tuple(b.at(i, j) for i in range(height) for b in blocks for j in range(b.shape[1]))
+    return Array((height, sum(b.shape[1] for b in blocks)), cells)
+
+
 def matrix_product(a: Value, b: Value) -> Value:
     """The product of matrices, rows and columns; a number goes with every cell."""
     if not (isinstance(a, Array) and isinstance(b, Array)):
@@ -266,6 +289,24 @@ def cross_product(a: Value, b: Value) -> Value:
         return map_cell(lambda p, q, r, s: add(multiply(p, q), minus(multiply(r, s))), *parts)
 
     return make_array((3,), cell)
+
+
+def quaternion_product(a: Quaternion, b: Quaternion) -> Quaternion:
+    """Hamilton's product."""
+    (i, j, k, w), (p, q, r, s) = a.cells, b.cells
+    signed = (
+        ((w, p, 1), (i, s, 1), (j, r, 1), (k, q, -1)),
+        ((w, q, 1), (i, r, -1), (j, s, 1), (k, p, 1)),
+        ((w, r, 1), (i, q, 1), (j, p, -1), (k, s, 1)),
+        ((w, s, 1), (i, p, -1), (j, q, -1), (k, r, -1)),
+    )
+
+    def cell(row: tuple[tuple[Cell, Cell, int], ...]) -> Cell:
+        products = [map_cell(multiply, x, y) for x, y, _ in row]
+        signs = [sign for *_, sign in row]
+        return map_cell(lambda *t: total([x if s > 0 else minus(x) for x, s in zip(t, signs, strict=True)]), *products)
+
+    return Quaternion((4,), tuple(map(cell, signed)))
 
 
 def square_sum(value: Value) -> Cell:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from navsym.cli.diff import read_range
-from navsym.core.errors import ExpressionSyntaxError, NavsymError
+from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError
 
 if TYPE_CHECKING:
     from navsym.audit.answer import Audit
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
 
 FUNCTION = re.compile(r"\s+--function\s+")
 RANGE = re.compile(r"\s+--range\s+")
+#: A cell with a line that begins like this is a claim file; any other has a formula on each line.
+TABLE = re.compile(r"^\s*\[+\s*(symbols|claim|rates)\b", re.M)
 
 
 def register_magics(shell: Any) -> None:
@@ -28,7 +31,7 @@ def register_magics(shell: Any) -> None:
             raise UsageError(f"{error.kind}: {error}") from None
 
     def claims(line: str, cell: str) -> Verdicts:
-        """Decide a cell of TOML, [symbols] and [[claim]] blocks; ``%%claims name`` keeps the verdicts by a name."""
+        """Decide a cell, TOML or a formula a line, also in LaTeX; ``%%claims name`` keeps the verdicts by a name."""
         try:
             verdicts = prove_cell(cell)
         except NavsymError as error:
@@ -69,9 +72,25 @@ def audit_line(line: str) -> Audit:
     return nav.audit(file.strip("\"'"), function=names[0].strip() if names else None)
 
 
+def prove_at(number: int, line: str) -> Verdict:
+    """The verdict of a line of a cell, whose id is that line."""
+    try:
+        verdict = prove_line(line.removesuffix(r"\\"))
+    except NavsymError as error:
+        raise error.at(f"cell: line {number}") from None
+    formula = verdict.formula and replace(verdict.formula, id=f"line {number}")
+    return replace(verdict, formula=formula)
+
+
 def prove_cell(text: str) -> Verdicts:
-    """The verdicts of a claim file in memory; raises NavsymError for what is none."""
+    """The verdicts of a claim file in memory, or of formulas, one a line; raises NavsymError for what is neither."""
+    from navsym.claims import Verdicts
     from navsym.language.tomlfile import parse_toml
     from navsym.prove.claimfile import claims_from, decide_claims
 
+    if TABLE.search(text) is None:
+        lines = [(number, line.strip()) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+        if not lines:
+            raise EmptyError("expected a formula or [[claim]] blocks; got nothing; write one", where="cell")
+        return Verdicts(tuple(prove_at(number, line) for number, line in lines))
     return decide_claims(claims_from(parse_toml(text, "cell"), "cell", go_on=True))

@@ -20,6 +20,7 @@ NAMES = {
     "fuzz": "every reader of files by inputs that coverage guides",
     "certificates": "altered certificates",
     "statements": "statements of known truth, judged by another arithmetic",
+    "code": "one-token mutants of C, judged by a compiler",
     "kills": "writers of the store killed at random moments",
     "disk": "full disk, read-only folder, stale lock, clock set back",
     "engines": "engines: known wrong answers",

@@ -27,6 +27,7 @@ def command(
     bound: Annotated[
         str, typer.Option(help="what sigma bounds: bounded (the error itself) or variance (its standard deviation)")
     ] = "bounded",
+    step: Annotated[str | None, typer.Option(help="time between epochs, kept in the state for navsym export")] = None,
     state: Annotated[Path | None, typer.Option(help="continue from this file where it exists, and save there")] = None,
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="value of a parameter, such as w=2; may be repeated")
@@ -44,7 +45,7 @@ def command(
 
     with called_options("Guard"):
         stream = run_stream(
-            file, data, target, bound, memory=memory, outliers=outliers, values=values_of(set_), state=state
+            file, data, target, bound, memory=memory, outliers=outliers, values=values_of(set_), step=step, state=state
         )
     for line in stream.remarks:
         remark(line)

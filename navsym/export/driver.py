@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from navsym.export.materials import functions_from
 from navsym.export.package import COUNT, LICENSE, Exported, Order, license_id, write_export
 from navsym.export.parts import ExportedFunction
 from navsym.export.ready import READY
+from navsym.export.streams import export_guard, guard_of
 
 MOST_VECTORS = 100_000
 LONGEST_UNIT = 60
@@ -41,7 +43,8 @@ def export(
     item  : id of a claim ("guaranteed_velocity:4.13.y3", "claims.toml:ratio"), regimes "A+B", a ready-made name
             ("kalman"), or a list of these; a verdict of :func:`navsym.prove`; an Estimator, as a function of its
             measurements; Phases with closed forms, as functions of the parameter; a Derivation, as Phi and the
-            regressors; a Model or its file, as F, H, Phi, Qd and the steps of a Kalman filter in Joseph's and UD form
+            regressors; a Model or its file, as F, H, Phi, Qd and steps of a Kalman filter in Joseph's and UD form; a
+            Guard with memory and step, or its file, as its streaming rule in c, cpp and python
     to    : languages: c, cpp, python, batch, javascript, rust, fortran, casadi, wasm, html, julia, octave
     out   : folder for the code; made when it is not there
     real  : "double" or "float"; force : replace files that are there
@@ -64,21 +67,20 @@ def export(
     """
     require_export_options(real, license, vectors, units)
     targets = tuple(find_targets([to] if isinstance(to, str) else to, real))
-    items = list(item) if isinstance(item, (list, tuple, Verdicts)) else [item]
-    items = [part for i in items for part in (READY.get(i, (i,)) if isinstance(i, str) else (i,))]
-    functions: list[ExportedFunction] = []
-    total = len(items) + len(targets)
-    for done, part in enumerate(items, start=1):
+    given = list(item) if isinstance(item, (list, tuple, Verdicts)) else [item]
+    guard = guard_of(given, real)
+    items = [part for i in given for part in (READY.get(i, (i,)) if isinstance(i, str) else (i,))]
+    functions, total = list[ExportedFunction](), len(items) + len(targets)
+    for done, part in enumerate([] if guard else items, start=1):
         functions += functions_from(part, real=real, allow_confirmed=allow_confirmed, units=units)
         progress(done, total, part if isinstance(part, str) else "")
     steps = iter(range(len(items) + 1, total + 1))
-    words = tuple(command) or (f"navsym.export({', '.join(f.name for f in functions)})",)
-
-    def ran(language: str) -> None:
-        progress(next(steps), total, language)
-
+    words = tuple(command) or (f"navsym.export({', '.join(f.name for f in functions) or 'guard'})",)
     order = Order(targets, license, vectors, words)
-    return write_export(functions, order, Path(out), force=force, execute=run, progress=ran)
+    write = partial(export_guard, guard) if guard else partial(write_export, functions)
+    return write(
+        order, Path(out), force=force, execute=run, progress=lambda language: progress(next(steps), total, language)
+    )
 
 
 def require_export_options(real: Any, license_: Any, vectors: Any, units: Any) -> None:

@@ -17,7 +17,7 @@ from navsym.export.algorithms.models import functions_of_model, matrix_function,
 from navsym.export.functions import RefusedError, formula_lines, function_of, material
 from navsym.export.languages.names import function_name
 from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source
-from navsym.export.ready import ALGORITHMS, READY, UNITS, algorithm
+from navsym.export.ready import READY, algorithm, is_program, units_of_paper
 from navsym.guaranteed.phases.answer import Phases, Regime
 from navsym.guaranteed.phases.driver import phases
 from navsym.guaranteed.solver import Estimator, solve
@@ -79,7 +79,7 @@ def functions_of_claim(
     text: str, real: str = "double", allow_confirmed: bool = False, units: Mapping[str, str] | None = None
 ) -> list[ExportedFunction]:
     """The functions of one claim or of regimes ``A+B+C``; ``name=A+B`` gives a name; a ready-made program has two."""
-    if text in ALGORITHMS:
+    if is_program(text):
         return algorithm(text, lambda claim: material_of_claim(claim, allow_confirmed), real)
     if text.endswith(".toml") and is_model(path := file_of_source(text)):
         return functions_of_system(Model.load(path), real, units or {})
@@ -88,7 +88,7 @@ def functions_of_claim(
     if module.endswith(".toml") and is_model(file := file_of_source(module)):
         return functions_of_target(file, target, real, units or {})
     parts = [material_of_claim(part, allow_confirmed) for part in split_regimes(claims)]
-    known = {**UNITS.get(claims.partition(":")[0], {}), **(units or {})}
+    known = {**units_of_paper(claims.partition(":")[0]), **(units or {})}
     return [function_of(parts, real=real, name=function_name(name) if name else None, layout=Layout(units=known))]
 
 

@@ -63,7 +63,9 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
         found |= {f"{target.name}/{name}": text for name, text in made.items()}
     for function in functions:
         found |= certificate_texts(function)
-    found[MANIFEST] = sealed(manifest(functions, order, found))
+    found[MANIFEST] = sealed(
+        manifest([function_record(f) for f in functions], functions[0].arithmetic.name, order, found)
+    )
     return found
 
 
@@ -112,7 +114,9 @@ def ties_of(piece: Piece) -> list[dict[str, Any]]:
 # -- manifest ---------------------------------------
 
 
-def manifest(functions: Sequence[ExportedFunction], order: Order, files: Mapping[str, str]) -> dict[str, Any]:
+def manifest(
+    functions: Sequence[Mapping[str, Any]], real: str, order: Order, files: Mapping[str, str]
+) -> dict[str, Any]:
     """What was exported from what, with which versions, and how to make it again byte for byte."""
     return {
         "navsym": __version__,
@@ -120,9 +124,9 @@ def manifest(functions: Sequence[ExportedFunction], order: Order, files: Mapping
         | {p: version(p) for p in ("sympy", "python-flint", "numpy")},
         "command": shlex.join(order.command),
         "license": order.license,
-        "real": functions[0].arithmetic.name,
+        "real": real,
         "languages": [target.name for target in order.targets],
-        "functions": [function_record(function) for function in functions],
+        "functions": functions,
         "files": {name: hashlib.sha256(text.encode()).hexdigest() for name, text in sorted(files.items())},
     }
 
@@ -175,13 +179,13 @@ class Exported(Answer):
     """Verified code in a folder.
 
     out       : the folder
-    functions : what was exported
+    functions : what was exported: name, claims, status, rounding bounds
     outcomes  : for each language, how its code did on the vectors
     files     : names of the written files
     """
 
     out: Path
-    functions: tuple[ExportedFunction, ...]
+    functions: tuple[dict[str, Any], ...]
     outcomes: tuple[Outcome, ...]
     files: tuple[str, ...]
 
@@ -189,14 +193,14 @@ class Exported(Answer):
         """The JSON document of ``navsym export``."""
         return {
             "out": str(self.out),
-            "functions": [summary_record(function) for function in self.functions],
+            "functions": list(self.functions),
             "languages": [outcome_record(outcome) for outcome in self.outcomes],
             "files": len(self.files),
         }
 
     def __repr__(self) -> str:
         said = ", ".join(f"{outcome.language} {outcome.status}" for outcome in self.outcomes)
-        return f"<export of {', '.join(f.name for f in self.functions)} to {self.out}: {said}>"
+        return f"<export of {', '.join(f['name'] for f in self.functions)} to {self.out}: {said}>"
 
 
 def write_export(
@@ -215,11 +219,25 @@ def write_export(
     Raises FailedError when a language's vectors fail, FolderError when nothing may be written.
     """
     files = files_of(functions, order)
+    outcomes = write_verified(files, order.targets, out, force=force, execute=execute, progress=progress)
+    return Exported(out, tuple(summary_record(f) for f in functions), outcomes, tuple(files))
+
+
+def write_verified(
+    files: Mapping[str, str],
+    targets: Sequence[Target],
+    out: Path,
+    *,
+    force: bool = False,
+    execute: bool = True,
+    progress: Callable[[str], None] = lambda language: None,
+) -> tuple[Outcome, ...]:
+    """Run the vectors of every language in a trial folder, and write the files to their own when they held."""
     require_free(out, files, force=force)
     with tempfile.TemporaryDirectory(prefix="navsym-export-") as trial:
         write_folder(Path(trial), files, force=True)
         outcomes = []
-        for target in order.targets:
+        for target in targets:
             asked = run_target(Path(trial) / target.name, target) if execute else None
             outcomes.append(asked or Outcome(target.name, "not executed", "not asked for", {}))
             progress(target.name)
@@ -230,7 +248,7 @@ def write_export(
             "nothing was written; leave this language out, and report the claim"
         )
     write_folder(out, files, force=force)
-    return Exported(out, tuple(functions), tuple(outcomes), tuple(files))
+    return tuple(outcomes)
 
 
 def summary_record(function: ExportedFunction) -> dict[str, Any]:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from navsym.export.algorithms import earth, kalman, observer, pulsating, terrain, trajectory, velocity
+from navsym.claims.paper import import_paper
+from navsym.export.algorithms.kalman import update
 from navsym.export.chain import Chain, Decided, Program
 from navsym.export.languages.names import identifier
 from navsym.export.parts import ExportedFunction
 
 _GV = "guaranteed_velocity"
+KALMAN = "kalman-update-9-3"
 
-#: Name -> arguments of ``navsym export``; a name of ALGORITHMS among them is one too.
+#: Name -> arguments of ``navsym export``; a name of PAPERS among them is one too.
 READY: dict[str, tuple[str, ...]] = {
     "velocity-correction": (
         f"velocity_correction_y1={_GV}:range.y1",
@@ -30,45 +32,42 @@ READY: dict[str, tuple[str, ...]] = {
     "pulsating": ("pulsating-filter",),
     "trajectory": ("trajectory-filter",),
     "terrain": ("terrain-crossing", "terrain-t-G", "terrain-t-G-extremes", "terrain-correction"),
-    "kalman": ("kalman-update-9-3",),
+    "kalman": (KALMAN,),
     "earth": ("earth-geocentric", "earth-trihedron", "earth-rates"),
 }
 
-#: Paper -> symbol or result -> unit, for claims that are exported by themselves.
-UNITS: dict[str, dict[str, str]] = {
-    _GV: velocity.UNITS
-    | {
-        "tau": "1/omega_0 (Schuler time)",
-        "z0": "any, say m/s",
-        "zm": "that of z0",
-        "zT": "that of z0",
-        "dual": "1",
-        "sigma": "unit of z",
-    }
+#: Name -> the paper whose ``programs`` have it, each a chain (one function) or a program (a first state and a step).
+PAPERS: dict[str, str] = {
+    "velocity-estimator-y1": _GV,
+    "velocity-estimator-y2": _GV,
+    "velocity-estimator-y3": _GV,
+    "two-stage-observer": "joint_correction",
+    "pulsating-filter": "multistructure",
+    "trajectory-filter": "trajectory",
+    "terrain-crossing": "terrain_search",
+    "terrain-t-G": "terrain_search",
+    "terrain-t-G-extremes": "terrain_search",
+    "terrain-correction": "terrain_search",
+    "earth-geocentric": "trajectory",
+    "earth-trihedron": "trajectory",
+    "earth-rates": "trajectory",
 }
 
-#: Name -> a chain (one function) or a program (a first state and a step).
-ALGORITHMS: dict[str, Chain | Program] = {
-    "velocity-estimator-y1": velocity.estimator("y1"),
-    "velocity-estimator-y2": velocity.estimator("y2"),
-    "velocity-estimator-y3": velocity.estimator("y3"),
-    "two-stage-observer": observer.OBSERVER,
-    "pulsating-filter": pulsating.FILTER,
-    "trajectory-filter": trajectory.FILTER,
-    "kalman-update-9-3": kalman.update(9, 3),
-    "terrain-crossing": terrain.CROSSING,
-    "terrain-t-G": terrain.DIRECTION,
-    "terrain-t-G-extremes": terrain.EXTREMES,
-    "terrain-correction": terrain.CORRECTION,
-    "earth-geocentric": earth.GEOCENTRIC,
-    "earth-trihedron": earth.TRIHEDRON,
-    "earth-rates": earth.RATES,
-}
+
+def units_of_paper(paper: str) -> dict[str, str]:
+    """Symbol or result -> unit, for claims of a paper that are exported by themselves."""
+    return dict(import_paper(f"{paper}.programs").UNITS) if paper == _GV else {}
+
+
+def is_program(name: str) -> bool:
+    """True for the name of a ready-made chain or program."""
+    return name == KALMAN or name in PAPERS
 
 
 def algorithm(name: str, decided: Decided, real: str) -> list[ExportedFunction]:
-    """The functions of one of ALGORITHMS."""
-    found, plain = ALGORITHMS[name], identifier(name)
+    """The functions of a ready-made chain or program."""
+    found: Chain | Program = update(9, 3) if name == KALMAN else import_paper(f"{PAPERS[name]}.programs").PROGRAMS[name]
+    plain = identifier(name)
     if isinstance(found, Program):
         return found.functions(plain, decided, real)
     return [found.function(plain, decided, real)]

@@ -26,8 +26,6 @@ from navsym.guaranteed.problem import GuaranteedProblem
 
 #: Programme and engine; the first that is named is the default.
 LP_SOLVERS = ("casadi:highs", "casadi:osqp", "cvxpy:HIGHS", "cvxpy:CLARABEL", "cvxpy:OSQP")
-QP_SOLVERS = ("casadi:osqp", "casadi:highs", "cvxpy:CLARABEL", "cvxpy:OSQP", "cvxpy:HIGHS")
-
 MOST_TIMES = 100_000
 
 #: What a solver says when it believes that it has succeeded.
@@ -121,16 +119,6 @@ def guaranteed_lp(problem: GridProblem, *, solver: str = LP_SOLVERS[0]) -> Conve
     lie in the range of the regressors, DomainError for an unknown solver.
     """
     return run_solver(problem, solver, LP_SOLVERS, {"casadi": lp_by_casadi, "cvxpy": lp_by_cvxpy})
-
-
-def least_squares_qp(problem: GridProblem, *, solver: str = QP_SOLVERS[0]) -> ConvexResult:
-    """min sum Phi_i^2 / spacing_i subject to sum H(t_i) Phi_i = P: least squares in continuous time.
-
-    With Phi_i = Phi(t_i) spacing_i this is the minimum of the integral of Phi^2. Its value in the result
-    is the guaranteed one, sum sigma_i |Phi_i|: what least squares yields under its own worst correlation.
-    Raises DomainError for an unknown solver, NotEstimableError when the measurements do not determine the functional.
-    """
-    return run_solver(problem, solver, QP_SOLVERS, {"casadi": qp_by_casadi, "cvxpy": qp_by_cvxpy})
 
 
 def need_estimable(problem: GridProblem) -> None:
@@ -242,17 +230,6 @@ def lp_by_casadi(problem: GridProblem, engine: str) -> RawAnswer:
     return x[:n] - x[n:], np.array(answer["lam_a"]).reshape(-1), str(solver.stats()["return_status"])
 
 
-def qp_by_casadi(problem: GridProblem, engine: str) -> RawAnswer:
-    """The quadratic programme through casadi."""
-    import casadi as ca
-
-    Q = ca.diag(ca.DM(1.0 / problem.spacing))
-    solver = conic(Q, problem.regressors, engine)
-    H, P = problem.regressors, problem.functional
-    answer = solver(h=Q, g=0.0, a=H, lba=P, uba=P, lbx=-np.inf, ubx=np.inf)
-    return np.array(answer["x"]), np.array(answer["lam_a"]), str(solver.stats()["return_status"])
-
-
 # --- cvxpy -------------------------------------------------------------------------------------------
 
 
@@ -262,15 +239,6 @@ def lp_by_cvxpy(problem: GridProblem, engine: str) -> RawAnswer:
 
     weights = cp.Variable(problem.regressors.shape[1])
     objective = cp.Minimize(problem.bounds @ cp.abs(weights))
-    return solve_by_cvxpy(problem, objective, weights, engine)
-
-
-def qp_by_cvxpy(problem: GridProblem, engine: str) -> RawAnswer:
-    """The quadratic programme through cvxpy."""
-    import cvxpy as cp
-
-    weights = cp.Variable(problem.regressors.shape[1])
-    objective = cp.Minimize(cp.sum_squares(cp.multiply(1.0 / np.sqrt(problem.spacing), weights)))
     return solve_by_cvxpy(problem, objective, weights, engine)
 
 

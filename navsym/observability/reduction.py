@@ -13,14 +13,15 @@ from dataclasses import dataclass
 from math import gcd
 from typing import Any
 
-from flint import fmpq_mpoly_ctx, fmpz_mpoly_vec
+import sympy as sp
+from flint import fmpz_mpoly_vec
 
 from navsym.core.errors import TooLargeError
+from navsym.core.rational_functions import polynomial_sum
 from navsym.observability.linear import Matrix, at_point, independent_places
 from navsym.observability.motion import Motion
 from navsym.observability.ring import Poly, Ring, gcd_all, irreducible_factors, is_divisor
-from navsym.prove.signs.exact import Sign
-from navsym.prove.signs.polynomials import Effort, VariableRange, polynomial_sign
+from navsym.prove.signs.bounds import Sign, prove_sign
 
 # Common real zeros of polynomials as a list of simple systems.
 #
@@ -34,7 +35,7 @@ System = list[Poly]
 LIMITS = (24, 120, 1000)
 BRANCHES = 40
 #: Polynomials whose sign is asked for: number of terms, and the effort of one question.
-DEFINITE_TERMS, EFFORT = 20, 200
+DEFINITE_TERMS, SECONDS = 20, 1.0
 #: Terms of the rows of one step, of a moving and of a constant model.
 MOVING_TERMS, CONSTANT_TERMS = 150, 20_000
 
@@ -130,9 +131,9 @@ def is_definite(f: Poly) -> bool:
     at_zero = terms.get((0,) * f.context().nvars(), 0)
     if at_zero == 0 or f.total_degree() % 2 or len(terms) > DEFINITE_TERMS:
         return False
-    context = fmpq_mpoly_ctx.get(f.context().names(), f.context().ordering())
-    positive = context.from_dict({powers: c if at_zero > 0 else -c for powers, c in terms.items()})
-    return polynomial_sign(positive, [VariableRange()] * f.context().nvars(), Effort(EFFORT)) == Sign.POSITIVE
+    names = [sp.Symbol(f"x{k}", real=True) for k in range(f.context().nvars())]
+    positive = polynomial_sum(names, f, 1 if at_zero > 0 else -1)
+    return prove_sign(positive, {}, Sign.POSITIVE, SECONDS).sign == Sign.POSITIVE
 
 
 def is_nowhere(system: Sequence[Poly], ring: Ring) -> bool:

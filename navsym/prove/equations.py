@@ -1,7 +1,7 @@
 """Equations: first try to break them, then to prove them.
 
-An exact point where a ball excludes equality refutes; the ways of ``equalities`` prove. What passes
-none of them but agrees at every sampled point is CONFIRMED, never more.
+An exact point where a ball excludes equality refutes; the normal form proves. What has neither but agrees at
+every sampled point is CONFIRMED, never more, until the search finds a proof.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ import sympy as sp
 from navsym.claims.statement import Equation
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
 from navsym.core.balls import UnsupportedError, enclose
-from navsym.prove.assumptions import conditions_as_written, remaining_assumptions
-from navsym.prove.identities.equalities import WAYS, Proof, first_proof
+from navsym.prove.assumptions import add_sides, conditions_as_written, remaining_assumptions
 from navsym.prove.identities.normal_form import OutsideLanguageError, UndefinedExpressionError, reduce_to_zero
+from navsym.prove.identities.numbers import is_zero
 from navsym.prove.one_symbol import decide_by_roots
 from navsym.prove.sampling.points import Sample, search_counterexample
 from navsym.prove.sampling.second_look import BITS, Look, look_again
@@ -153,10 +153,30 @@ def assumptions_of(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> t
 def prove_equal(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sample) -> Verdict:
     if sample.points == 0:  # what exists nowhere is equal to everything
         return judge_sample(sample, scope_of(printed - derived, statement.box), "equality")
-    proof = first_proof(printed, derived, statement.box, WAYS)
-    if proof is not None:
-        return grant_proof(proof, printed, derived, statement)
-    return decide_unproved(printed, derived, statement, sample)
+    try:
+        evidence = find_identity(printed, derived)
+    except OutsideLanguageError:
+        evidence = None
+    if evidence is None:
+        return decide_unproved(printed, derived, statement, sample)
+    reduction = add_sides(reduce_to_zero(printed - derived), printed, derived)
+    return Verdict(
+        PROVED,
+        method=evidence[0],
+        scope=scope_of(sp.Tuple(printed, derived), statement.box),
+        assumptions=remaining_assumptions(reduction, statement.box, statement.nonzero),
+        evidence=evidence[1],
+    )
+
+
+def find_identity(printed: sp.Expr, derived: sp.Expr) -> tuple[str, str] | None:
+    """The method and its words where printed - derived is zero by exact algebra, or is a number that is zero."""
+    reduction = reduce_to_zero(printed - derived)
+    if reduction.zero:
+        return "normal form", f"printed - derived reduces to 0 in {reduction.ring}"
+    if not (printed - derived).free_symbols and is_zero(printed - derived):
+        return "exact number", "printed - derived is exactly zero"
+    return None
 
 
 def decide_unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sample) -> Verdict:
@@ -168,12 +188,12 @@ def decide_unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sam
         return decided
     look = look_again(difference, lambda ball: not ball.contains(0), statement.box, sides)
     verdict = judge_look(look, sample, scope, "equality")
+    if verdict.status == REFUTED:
+        return verdict
     if verdict.status == CONFIRMED and not difference.has(*BENT) and reduce_to_zero(difference).complete:
         evidence = f"{verdict.evidence}, and the normal form of printed - derived is not zero"
-        return replace(verdict, status=OPEN, method="normal form", evidence=evidence)
-    if verdict.status == CONFIRMED:
-        return replace(verdict, assumptions=assumptions_of(printed, derived, statement))
-    return verdict
+        verdict = replace(verdict, status=OPEN, method="normal form", evidence=evidence)
+    return replace(verdict, assumptions=assumptions_of(printed, derived, statement))
 
 
 def judge_look(look: Look, sample: Sample, scope: str, what: str) -> Verdict:
@@ -181,16 +201,6 @@ def judge_look(look: Look, sample: Sample, scope: str, what: str) -> Verdict:
     if look.counterexample is None or look.difference is None:
         return judge_sample(sample, scope, what)
     return refute_at_point(look.counterexample, look.difference, look.exact)
-
-
-def grant_proof(proof: Proof, printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Verdict:
-    return Verdict(
-        PROVED,
-        method=proof.method,
-        scope=scope_of(sp.Tuple(printed, derived), statement.box),
-        assumptions=remaining_assumptions(proof.reduction, statement.box, statement.nonzero),
-        evidence=proof.evidence,
-    )
 
 
 def judge_sample(sample: Sample, scope: str, what: str) -> Verdict:

@@ -162,7 +162,4 @@ def prove_modulus(weight: sp.Expr, box: Box) -> sp.Expr | None:
     for value in (weight, -weight):
         if prove_sign(value, box).at_least(Sign.NONNEGATIVE):
             return value
-        product = as_product(value)
-        if product is not None and prove_sign(product, box).at_least(Sign.NONNEGATIVE):
-            return value
     return None

@@ -31,12 +31,14 @@ from navsym.prove.rooms.equations import (
 )
 from navsym.prove.rooms.forms import by_divisors, by_forms, by_hypothesis, by_roots_of_symbols, by_substitution
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Room, fails, player, sample_goal, subterms
+from navsym.prove.rooms.quadrics import by_quadrics
 from navsym.prove.rooms.signs import (
     by_bounds,
     by_concavity,
     by_cones,
     by_contacts,
     by_corners,
+    by_divided_root,
     by_few_balls,
     by_identity,
     by_logarithms,
@@ -63,8 +65,9 @@ EQUATIONS: tuple[tuple[Room, ...], ...] = (
 )  # fmt: skip
 SIGNS: tuple[tuple[Room, ...], ...] = (
     (
-        by_number, by_positive_radicand, by_identity, by_elimination, by_sums_of_hypotheses, by_range, by_roots,
-        by_bounds, by_corners, by_product, by_sum, by_few_balls, by_values, by_side, by_squares, by_cones, by_forms,
+        by_number, by_positive_radicand, by_divided_root, by_identity, by_elimination, by_sums_of_hypotheses, by_range,
+        by_roots, by_bounds, by_corners, by_product, by_sum, by_few_balls, by_values, by_side, by_squares, by_cones,
+        by_forms, by_quadrics,
     ),
     (
         by_cofactors, by_hypothesis, by_cases, by_quadratic, by_divisors, by_roots_of_symbols, by_substitution,
@@ -88,6 +91,7 @@ class Search:
     """One search: its limit of time, its depth, and the goals that were given up or found."""
 
     deadline: float
+    balls: bool = True  # whether boxes may be divided into cells
     found: dict[Any, Proof] = field(default_factory=dict)
     tries: int = 0
     most_depth: int = 0
@@ -131,7 +135,7 @@ class Search:
                 kinds = EQUATIONS if goal.relation == "=" else SIGNS
                 few = 1 if is_long(goal.term) else self.kinds
                 for room in itertools.chain(*kinds[:few]):
-                    if self.repeats(room):
+                    if self.leaves_out(room):
                         continue
                     for candidate in guard(room(goal, sample)):
                         if self.is_spent():
@@ -145,8 +149,10 @@ class Search:
                 self.depth -= 1
         return None
 
-    def repeats(self, room: Room) -> bool:
-        """Whether a room only makes goals grow that it has made already."""
+    def leaves_out(self, room: Room) -> bool:
+        """Whether a room is not asked: what it makes has been made already, or rests on many balls."""
+        if room in (by_few_balls, by_many_balls):
+            return not self.balls
         if room is by_forms:
             return self.rules[-1:] == ["equal"]  # one form of a form is one of the first
         if room in (by_squares, by_equal_squares):
@@ -182,9 +188,14 @@ def guard(candidates: Iterator[Proof]) -> Iterator[Proof]:
         return
 
 
-def find_proof(goal: Any, seconds: float = SECONDS, rounds: Sequence[tuple[int, int, int]] = ROUNDS) -> Proof | None:
-    """A proof of a goal of the checker as plain data, or None; it is still to be granted."""
-    before, search = (ctx.prec, ctx.cap), Search(time.process_time() + seconds)
+def find_proof(
+    goal: Any, seconds: float = SECONDS, rounds: Sequence[tuple[int, int, int]] = ROUNDS, balls: bool = True
+) -> Proof | None:
+    """A proof of a goal of the checker as plain data, or None; it is still to be granted.
+
+    balls : whether boxes may be divided into cells
+    """
+    before, search = (ctx.prec, ctx.cap), Search(time.process_time() + seconds, balls)
     ctx.prec = 128
     try:
         player.prove, player.prove_all = search.prove, search.prove_all

@@ -1,9 +1,9 @@
 """The erratum sheet of a paper: where it slips, what to replace by what, and how to see that it is so.
 
-Entries come from refuted claims that name a slip, each with the proved claim that corrects it; their
-wording for an editor comes from a file beside the derivation, or is made from the formulas where there
-is none. Slips of the scan, and slips that may be of either, are kept apart from slips of
-the authors. A slip that another claim only repeats is told once.
+Entries come from refuted claims that name a slip, state a numbered equation or stand in a claim file, each with
+the proved claim that corrects it; their wording for an editor comes from a file beside the derivation, or is made
+from the formulas where there is none. Slips of the scan, and slips that may be of either, are kept apart from slips
+of the authors. A slip that another claim only repeats is told once.
 """
 
 from __future__ import annotations
@@ -106,13 +106,22 @@ def erratum_of(paper: Paper, records: Sequence[Record], words: Words | None = No
     """
     words = words or {}
     corrections = {record.corrects: record for record in records if record.corrects}
-    refuted = [r for r in records if r.status == "REFUTED" and r.slip and not r.cause]
+    refuted = [r for r in records if r.status == "REFUTED" and slip_of(paper, r) and not r.cause]
     order = {pattern: place for place, pattern in enumerate(words)}
     entries = [
         entry(paper, group, corrections, words.get(pattern or ""))
         for pattern, group in sorted(grouped(refuted, words), key=lambda pair: order.get(pair[0] or "", len(order)))
     ]
     return Erratum(paper, tuple(entries))
+
+
+def slip_of(paper: Paper, record: Record) -> str:
+    """Who slipped: as declared; else the file, or nobody can tell who; empty for remarks of others on a paper."""
+    if record.slip:
+        return record.slip
+    if paper.module.endswith(".toml"):
+        return "paper"
+    return "undecidable" if equation_of(record.number, paper.equations) else ""
 
 
 def grouped(refuted: Iterable[Record], words: Words) -> list[tuple[str | None, list[Record]]]:
@@ -137,14 +146,14 @@ def entry(paper: Paper, group: Sequence[Record], corrections: Mapping[str, Recor
     return Entry(
         ids=tuple(r.id for r in group),
         place=place_of(paper, record.number),
-        slip=record.slip or "",
+        slip=slip_of(paper, record),
         words=words,
         what=record.title,
         wrong=printed_side(record),
         right=printed_side(correction) if holds and correction is not None else None,
         right_words=correction.title if holds and correction is not None else "",
         rows=tuple(row(*pair) for pair in zip(group, fixed, strict=True)) if len(group) > 1 else (),
-        reason=ended(capital(words.why if words and words.why else record.reason)),
+        reason=ended(capital(words.why if words and words.why else record.reason or "the statement is refuted")),
         check=check_of(record) if len(group) == 1 else None,
         status=correction.status if correction is not None else "",
     )

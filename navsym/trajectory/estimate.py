@@ -388,9 +388,10 @@ def word(used: int, flags: Rows) -> str:
 
 @dataclass(slots=True, eq=False)
 class FilterRun:
-    """Arrays of a run, channel first: states, gains (3, N, n+1), roots of covariances (3, N, n+1, n+1), flags (N, 3).
+    """Arrays of a run, channel first: states, gains (3, N, n+2), roots of covariances (3, N, n+2, n+2), flags (N, 3).
 
-    The last state is the coloured error of the position; the first is the position with it.
+    The last states are the coloured error of the position and the rate of its drift; the first is the position with
+    coloured error and drift.
     """
 
     states: Array
@@ -406,9 +407,9 @@ def filtered(track: Positions, noise: Noise, settings: Settings, use: Rows) -> F
     """Forward run of the three channels; every root is kept for the smoother."""
     N, n = len(track.t), settings.order
     run = FilterRun(
-        states=np.empty((3, N, n + 1)),
-        roots=np.empty((3, N, n + 1, n + 1)),
-        gains=np.empty((3, N, n + 1)),
+        states=np.empty((3, N, n + 2)),
+        roots=np.empty((3, N, n + 2, n + 2)),
+        gains=np.empty((3, N, n + 2)),
         innovations=np.empty((3, N)),
         variances=np.empty((3, N)),
         jumps=np.empty((3, N)),
@@ -419,7 +420,7 @@ def filtered(track: Positions, noise: Noise, settings: Settings, use: Rows) -> F
         z, r, b = track.position[:, c].copy(), noise.white(track, c), noise.coloured(track, c)
         out = (run.states[c], run.roots[c], run.gains[c], run.innovations[c], run.variances[c], run.jumps[c])
         flags = np.empty(N, dtype=np.int64)
-        forward(track.t, z, r, b, use, noise.model(c), spread, settings.gate, *out, flags)
+        forward(track.t, z, r, b, noise.drifting(track, c), use, noise.model(c), spread, settings.gate, *out, flags)
         run.flags[:, c] = flags
     return run
 
@@ -427,7 +428,8 @@ def filtered(track: Positions, noise: Noise, settings: Settings, use: Rows) -> F
 def smoothed(track: Positions, noise: Noise, run: FilterRun) -> None:
     """Replace the filtered states and roots of a run by the smoothed ones."""
     for c in range(3):
-        backward(track.t, noise.coloured(track, c), run.jumps[c], run.states[c], run.roots[c], noise.model(c))
+        errors = noise.coloured(track, c), noise.drifting(track, c)
+        backward(track.t, *errors, run.jumps[c], run.states[c], run.roots[c], noise.model(c))
 
 
 def variance(run: FilterRun, i: int) -> Array:
@@ -444,7 +446,7 @@ def from_states(
     The gains are those of the last row at which the first channel used its measurement.
     """
     last = int(np.flatnonzero((run.gains[0] != 0).any(axis=1))[-1])
-    n = run.states.shape[2] - 1
+    n = run.states.shape[2] - 2
     gains = {name: run.gains[c, last, :n].tolist() for c, name in enumerate(CHANNELS)}
     derivatives = [(run.states[:, :, i], variance(run, i) * factors) for i in (1, 2) if i < n]
     return turned(track, derivatives, words, gains)

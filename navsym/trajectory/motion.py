@@ -88,6 +88,8 @@ class Track(Answer):
                 "correlation_seconds": self.noise.tau.tolist(),
                 "forgetting_rate": self.noise.rate.tolist(),
                 "exponent": self.noise.exponent.tolist(),
+                "drift": self.noise.drift.tolist(),
+                "drift_seconds": self.noise.lasting.tolist(),
             },
             "nis": None if self.nis is None else self.nis.document(),
             "nees": None if self.nees is None else self.nees.document(),

@@ -85,13 +85,15 @@ class Noise:
     """Noise found from a track, East, North, Up.
 
     With the given variance v of a row and their median m, a position has a white error of variance
-    ``scale m (v/m)^exponent`` and a coloured one, of variance ``ratio`` times that and correlation exp(-dt/tau).
+    ``scale m (v/m)^exponent`` and a coloured one, of variance ``ratio`` times that and correlation exp(-dt/tau). Where
+    variances differ it may drift, at a rate of variance ``drift`` times that and correlation exp(-dt/lasting).
 
     scale    : (3,) factor on the given variances of the positions
     density  : (3,) density of the white noise in the derivative of order n, m^2 / s^(2n-1)
     rate     : (3,) 1/s, at which the last derivative forgets; 0: a polynomial driven by noise
     ratio    : (3,) coloured to white variance ; tau : (3,) s, its correlation time
     exponent : (3,) 1 where the given variances are to scale, more where bad positions are worse than they say
+    drift    : (3,) 1/s^2 ; lasting : (3,) s ; fading : (3,) 1 where it fades as coloured errors do, else 0
     """
 
     scale: Array
@@ -100,10 +102,13 @@ class Noise:
     ratio: Array = field(default_factory=lambda: three(0.0))
     tau: Array = field(default_factory=lambda: three(1.0))
     exponent: Array = field(default_factory=lambda: three(1.0))
+    drift: Array = field(default_factory=lambda: three(0.0))
+    lasting: Array = field(default_factory=lambda: three(1.0))
+    fading: Array = field(default_factory=lambda: three(0.0))
 
     def model(self, c: int) -> Array:
-        """(q, rate, tau) of a channel, for the loops."""
-        return np.array([self.density[c], self.rate[c], self.tau[c]])
+        """(q, rate, tau, lasting, fading) of a channel, for the loops."""
+        return np.array([self.density[c], self.rate[c], self.tau[c], self.lasting[c], self.fading[c]])
 
     def white(self, track: Positions, c: int) -> Array:
         """(N,) variances of the white errors of a channel."""
@@ -112,6 +117,10 @@ class Noise:
     def coloured(self, track: Positions, c: int) -> Array:
         """(N,) standard deviations of the coloured errors of a channel."""
         return np.asarray(np.sqrt(self.white(track, c) * self.ratio[c]))
+
+    def drifting(self, track: Positions, c: int) -> Array:
+        """(N,) standard deviations, m/s, of the rates at which the errors of a channel drift."""
+        return np.asarray(np.sqrt(self.white(track, c) * self.drift[c]))
 
     def total(self, track: Positions) -> Array:
         """(N, 3) variances of the positions, white and coloured."""
@@ -282,6 +291,9 @@ class Shape:
     ratio: float = 0.0
     tau: float = 1.0
     exponent: float = 1.0
+    drift: float = 0.0
+    lasting: float = 1.0
+    fading: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -302,13 +314,14 @@ class Fit:
         scale : factor of the given variances ; density : of the process noise ; gate : as in :func:`noise_of`
         """
         spread = first_spread(self.track, self.order)
-        model = np.array([density, self.shape.rate, self.shape.tau])
+        shape = self.shape
+        model = np.array([density, shape.rate, shape.tau, shape.lasting, shape.fading])
         total = np.zeros(3)
         for channel in self.channels:
             z = self.track.position[:, channel].copy()
             r = raised(self.track.variance[:, channel], self.shape.exponent) * scale
-            c = np.sqrt(r * self.shape.ratio)
-            total += misfit(self.track.t, z, r, c, self.use, model, spread, gate)
+            c, w = np.sqrt(r * shape.ratio), np.sqrt(r * shape.drift)
+            total += misfit(self.track.t, z, r, c, w, self.use, model, spread, gate)
         return float(total[0]), float(total[1]), int(total[2])
 
     def profile(self, ratio: float) -> tuple[float, float]:
@@ -363,10 +376,10 @@ def golden(f: Callable[[float], float], low: float, high: float, rounds: int) ->
 #: Rows in which shapes are sought: the most central ones of a long track.
 LONGEST_FIT = 20_000
 #: Decimal logarithms that a shape may have: coloured variance over the given one, correlation time, rate; exponents.
-COLOURS, LONGEST_TAU, RATES, EXPONENTS = (-6.0, 3.0), 2.5, (-4.0, 1.0), (0.0, 4.0)
+COLOURS, LONGEST_TAU, RATES, EXPONENTS, DRIFTS = (-6.0, 3.0), 2.5, (-4.0, 1.0), (0.0, 4.0), (-8.0, 3.0)
 #: First guesses of (coloured variance over white, tau over a step or in s, rate), and the first steps of the search.
 GUESSES = ((0.0, 10.0, 1e-3), (3.0, 30.0, 1.0))
-FIRST_STEPS = (0.7, 0.7, 0.7, 0.5, 0.8, 0.5)
+FIRST_STEPS = (0.7, 0.7, 0.7, 0.5, 0.8, 0.5, 0.7, 0.5, 0.0)
 
 
 def shaped(track: Positions, order: int, use: Rows, noise: Noise, *, gate: float, fixed_scale: bool) -> Noise:
@@ -378,7 +391,7 @@ def shaped(track: Positions, order: int, use: Rows, noise: Noise, *, gate: float
     if not SHORTEST_FIT <= usual_step(track.t) <= LONGEST_STEP or len(track.t) < 10 * order:
         return noise
     here = middle_rows(track, use)
-    found = {name: np.array(getattr(noise, name)) for name in ("scale", "density", "rate", "ratio", "tau", "exponent")}
+    found = {name: np.array(getattr(noise, name)) for name in ("scale", "density", *SHAPE)}
     for channels in ((0, 1), (2,)):
         fit = Fit(here[0], order, here[1], channels, gate, fixed_scale)
         best = search_shape(fit, float(noise.scale[channels[0]]), float(noise.density[channels[0]]))
@@ -401,18 +414,57 @@ def middle_rows(track: Positions, use: Rows) -> tuple[Positions, Rows]:
 
 def search_shape(fit: Fit, scale: float, density: float) -> dict[str, float] | None:
     """The likeliest noise with a shape, or None where the plain one does."""
-    region = region_of(fit, np.log10(scale), np.log10(density))
-    plain, count = fit.cost(np.log10(scale), np.log10(density)), fit.sums(scale, density, fit.gate)[2]
-    needed = region.free[2:].sum() * np.log(max(count, 2))
+    x, y = np.log10(scale), np.log10(density)
+    plain, count = fit.cost(x, y), max(fit.sums(scale, density, fit.gate)[2], 2)
+    region = region_of(fit, x, y)
+    found = likeliest(fit, region, plain, region.free[2:].sum() * np.log(count))
+    if not fit.fixed_scale and not (fit.track.variance == fit.track.variance[:1]).all():
+        # A drift is told from a motion only by the given variances: it is there where they are large.
+        cost = plain if found is None else cost_of_shape(fit, found)
+        needed = 2 * np.log(count) + DECISIVE
+        for fading in (0.0, 1.0):
+            drifting = likeliest(fit, region_of(fit, x, y, fading), cost, needed)
+            if drifting is not None:
+                found, cost, needed = drifting, cost_of_shape(fit, drifting), 0.0
+        found = loosest(fit, found) if found is not None and needed == 0.0 else found
+    if found is None:
+        return None
+    return {"scale": 10.0 ** found[0], "density": 10.0 ** found[1]} | vars_of(shape_at(found))
+
+
+#: Twice the logarithm of a Bayes factor that is very strong evidence (Kass and Raftery 1995).
+DECISIVE = 10.0
+#: The 95 % quantile of chi-squared with one degree of freedom: what costs less more is not excluded.
+EXCLUDED = 3.84
+
+
+def likeliest(fit: Fit, region: Region, cost: float, needed: float) -> Array | None:
+    """The point (9,) of least cost, None unless that is below ``cost`` by what is needed."""
     short = [region.descend(fit, simplex, ROUNDS[0]) for simplex in region.simplices]
     best, simplex = min(short, key=lambda result: result[0])
-    if not plain - best > needed / 4:
+    if not cost - best > needed / 4:
         return None
     best, simplex = region.descend(fit, simplex, ROUNDS[1])
-    if not plain - best > needed:
-        return None
-    at = region.whole(simplex[0])
-    return {"scale": 10.0 ** at[0], "density": 10.0 ** at[1]} | vars_of(shape_at(at))
+    return region.whole(simplex[0]) if cost - best > needed else None
+
+
+def loosest(fit: Fit, at: Array) -> Array:
+    """The point with the largest density of the motion that is not excluded, where a small one is not excluded either.
+
+    When a drift explains all that was seen, the likeliest motion is none, and its deviations would be zero.
+    """
+
+    def rise(lift: float) -> float:
+        return cost_of_shape(fit, at + lift * np.eye(9)[1]) - lowest
+
+    lowest = cost_of_shape(fit, at)
+    if rise(-1.0) > EXCLUDED:
+        return at
+    low, high = 0.0, 12.0
+    for _ in range(10):
+        middle = (low + high) / 2
+        low, high = (middle, high) if rise(middle) < EXCLUDED else (low, middle)
+    return at + low * np.eye(9)[1]
 
 
 #: Evaluations of the likelihood: first from each guess, then from the better end.
@@ -421,9 +473,9 @@ ROUNDS = (150, 500)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Region:
-    """Where a shape is sought: logarithms of scale, density, colour, tau, rate, and the exponent.
+    """Where a shape is sought: logarithms of scale, density, colour, tau, rate; exponent; of drift, lasting; fading.
 
-    free : (6,) which of them vary ; still : (6,) values of the others ; low, high : (6,) bounds
+    free : (9,) which of them vary ; still : (9,) values of the others ; low, high : (9,) bounds
     simplices : where the search starts, (k+1, k) each for k free ones
     """
 
@@ -434,7 +486,7 @@ class Region:
     simplices: list[Array]
 
     def whole(self, point: Array) -> Array:
-        """All six of a point of the free ones, within the bounds."""
+        """All nine of a point of the free ones, within the bounds."""
         at = self.still.copy()
         at[self.free] = np.clip(point, self.low[self.free], self.high[self.free])
         return at
@@ -452,40 +504,62 @@ class Region:
         return float(found.fun), np.asarray(found.final_simplex[0])
 
 
-def region_of(fit: Fit, x: float, y: float) -> Region:
-    """Where to seek a shape when the plain noise has the logarithms x of the scale and y of the density."""
-    step, found = usual_step(fit.track.t), not fit.fixed_scale
+def region_of(fit: Fit, x: float, y: float, fading: float | None = None) -> Region:
+    """Where to seek a shape about the logarithms x of the plain scale and y of the density.
+
+    fading : of a drift, 0 or 1; None for no drift
+    """
+    step, found, drift = usual_step(fit.track.t), not fit.fixed_scale, fading is not None
     varied = not (fit.track.variance == fit.track.variance[:1]).all()
     # With two states the last one is the speed, which no body forgets.
-    free = np.array([found, True, found, found, fit.order > 2, found and varied])
-    low = np.array([np.log10(SMALLEST_SCALE), y - 6, COLOURS[0], np.log10(step), RATES[0], EXPONENTS[0]])
-    high = np.array([max(x + 2, 4.0), y + 6, COLOURS[1], max(LONGEST_TAU, np.log10(3 * step)), RATES[1], EXPONENTS[1]])
+    free = np.array([found, True, found, found, fit.order > 2, found and varied, drift, drift, False])
+    low = np.array(
+        [
+            np.log10(SMALLEST_SCALE),
+            y - 6,
+            COLOURS[0],
+            np.log10(step),
+            RATES[0],
+            EXPONENTS[0],
+            DRIFTS[0],
+            np.log10(step),
+            0.0,
+        ]
+    )
+    longest = max(LONGEST_TAU, np.log10(3 * step))
+    high = np.array([max(x + 2, 4.0), y + 6, COLOURS[1], longest, RATES[1], EXPONENTS[1], DRIFTS[1], longest, 1.0])
     simplices = []
     for lift, tau, rate in GUESSES:
-        guess = np.array([x - lift / 3, y, x + lift / 6, np.log10(tau * step), np.log10(rate), 1.0 + lift / 10])
+        error, slow = x + lift / 6, np.log10(tau * step)
+        guess = np.array([x - lift / 3, y, error, slow, np.log10(rate), 1.0 + lift / 10, error - 2 * slow, slow, 0.0])
         start = np.clip(guess, low, high)[free]
         simplices.append(np.vstack([start, start + np.diag(np.array(FIRST_STEPS)[free])]))
-    return Region(free, np.array([x, y, -np.inf, 0.0, -np.inf, 1.0]), low, high, simplices)
+    return Region(free, np.array([x, y, -np.inf, 0.0, -np.inf, 1.0, -np.inf, 0.0, fading or 0.0]), low, high, simplices)
 
 
 def cost_of_shape(fit: Fit, at: Array) -> float:
-    """Minus twice the log-likelihood at logarithms of scale, density, colour, tau, rate, and the exponent."""
+    """Minus twice the log-likelihood at a point of the region."""
     return replace(fit, shape=shape_at(at)).cost(float(at[0]), float(at[1]))
 
 
+#: Names of a shape, as in :class:`Noise`.
+SHAPE = ("rate", "ratio", "tau", "exponent", "drift", "lasting", "fading")
+
+
 def shape_at(at: Array) -> Shape:
-    """The shape at such logarithms."""
-    return Shape(float(10.0 ** at[4]), float(10.0 ** (at[2] - at[0])), float(10.0 ** at[3]), float(at[5]))
+    """The shape at a point of the region."""
+    rate, ratio, tau, drift, lasting = (10.0 ** np.array([at[4], at[2] - at[0], at[3], at[6] - at[0], at[7]])).tolist()
+    return Shape(rate, ratio, tau, float(at[5]), drift, lasting, float(at[8]))
 
 
 def vars_of(shape: Shape) -> dict[str, float]:
     """A shape as a table."""
-    return {"rate": shape.rate, "ratio": shape.ratio, "tau": shape.tau, "exponent": shape.exponent}
+    return {name: getattr(shape, name) for name in SHAPE}
 
 
 def shape_of(noise: Noise, channel: int) -> Shape:
     """The shape of the noise of a channel."""
-    return Shape(*(float(getattr(noise, name)[channel]) for name in ("rate", "ratio", "tau", "exponent")))
+    return Shape(*(float(getattr(noise, name)[channel]) for name in SHAPE))
 
 
 def memory(noise: Noise, variance: Array, order: int) -> float:

@@ -20,7 +20,11 @@ def test_four_writers_killed_lose_nothing_that_was_acknowledged():
     assert found["counts"]["kills"] == 12 and found["counts"]["acknowledged"] > 0  # how many, the disk decides
 
 
-@pytest.mark.parametrize("trouble", [name for name in disks.TROUBLES if name != "full disk"])
+LONG = {"file size limit under a sweep": pytest.mark.long}
+TROUBLES = [pytest.param(name, marks=LONG.get(name, ())) for name in disks.TROUBLES if name != "full disk"]
+
+
+@pytest.mark.parametrize("trouble", TROUBLES)
 def test_trouble_is_said_and_old_results_are_intact(trouble):
     assert not disks.judge(trouble)["wrong"]
 

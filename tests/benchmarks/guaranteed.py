@@ -21,9 +21,9 @@ import sympy as sp
 from navsym.guaranteed.certificate.basis import cached_basis, make_basis
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
 from navsym.guaranteed.certificate.fixed import certify
-from navsym.guaranteed.lengths import follow_lengths, values_for_lengths
 from navsym.guaranteed.phases.family import Family, U
 from navsym.guaranteed.search.exchange import compile_loops, find_contacts
+from tests.benchmarks.lengths import follow_lengths, values_for_lengths
 
 t = sp.Symbol("t", real=True)
 

@@ -19,12 +19,12 @@ import time
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from navsym.models.inertial import FULL, full_model
 from navsym.models.linear import LinearModel, observability_matrix
 from navsym.observability.chains import chains_of, numerators, observe_jointly, prove_rank
 from navsym.observability.linear import pivot_rows
 from navsym.observability.rank_drops import chain_determinant
 from navsym.observability.ring import Ring
+from navsym_papers.joint_correction.inertial import FULL, full_model
 
 a, b, c, d, e, f = sp.symbols("a b c d e f", real=True)
 

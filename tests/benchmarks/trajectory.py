@@ -21,7 +21,7 @@ import numpy as np
 
 from navsym.models.earth import observability_rows, power_rows
 from navsym.trajectory.conditioning import condition_number
-from navsym.trajectory.inversion import (
+from navsym_papers.trajectory.experiment.inversion import (
     Start,
     SteppedModel,
     Tuning,

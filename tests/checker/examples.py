@@ -254,6 +254,43 @@ POSITIVITY = {
     "bits": 64,
     "cells": 60,
 }
+
+
+def measured(*rows):
+    """Measurements (epoch, H, z) with a bound of 1."""
+    return [{"epoch": e, "H": H.split(), "z": z, "sigma": "1"} for e, H, z in rows]
+
+
+# A line through 0 that misses 50 at epoch 2.
+EXCLUSION = {
+    "kind": "exclusion",
+    "rows": measured(
+        ("0", "1 0", "0"), ("1", "1 1", "0.5"), ("2", "1 2", "50"), ("3", "1 3", "1/2"), ("4", "1 4", "0")
+    ),
+    "most": 1,
+    "excluded": ["2"],
+    "contradictions": [[0, 1, 2], [3, 4, 2]],
+    "bits": 64,
+    "cells": 0,
+}
+WAVES = EXCLUSION | {"rows": measured(*((str(k), f"cos({k}/5) sin({k}/5)", "50" if k == 2 else "0") for k in range(5)))}
+# The row of epoch 1 has weight zero in the first contradiction, and that of epoch 0 in the second.
+APART = EXCLUSION | {
+    "rows": measured(("0", "1 0", "0"), ("1", "0 1", "0"), ("2", "1 0", "-50"), ("2", "0 1", "50")),
+    "contradictions": [[0, 1, 2], [0, 1, 3]],
+}
+ALMOST = EXCLUSION | {"rows": measured(*((str(k), f"1 {k}", "4.001" if k == 2 else "0") for k in range(5)))}
+NONE_GROSS = EXCLUSION | {"most": 0}
+SURE = APART | {"rows": [row | {"sigma": "0"} for row in APART["rows"]]}
+# Four gross errors and five contradictions without a common epoch but one: 1 + 4 + 16 + 64 + 256 sets are looked at.
+UNITS = ("1 0 0 0", "0 1 0 0", "0 0 1 0", "0 0 0 1")
+FOUR = EXCLUSION | {
+    "rows": measured(*((str(k), UNITS[k % 4], "0") for k in range(20)), ("20", "1 1 1 1", "9")),
+    "contradictions": [[4 * k, 4 * k + 1, 4 * k + 2, 4 * k + 3, 20] for k in range(5)],
+    "excluded": ["20"],
+    "most": 4,
+    "cells": 36,
+}
 # One row; and a dual that is a little off inside its box, as the bounds are not.
 ROW = RANK | {"matrix": [["a", "b"]]}
 OFFSET = (
@@ -401,6 +438,13 @@ GOOD = [
     DIGITS,
     EXPONENTIAL,
     RANK,
+    EXCLUSION,
+    WAVES,
+    APART,
+    ALMOST,
+    NONE_GROSS,
+    SURE,
+    FOUR,
     POSITIVITY,
     EDGE,
     CELLS,

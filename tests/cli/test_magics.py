@@ -49,6 +49,16 @@ def test_a_cell_of_claims_is_decided_and_kept_by_its_name(shell):
     assert prove_cell(CELL).document() == verdicts.document()
 
 
+def test_a_cell_of_formulas_as_printed_is_decided_line_by_line(shell):
+    cell = r"\cos^2\frac{a}{2} = \frac{1+\cos a}{2} \\" + "\n\nsin(T) <= T --range T=0,pi\nsin(2*a) = 2*sin(a)\n"
+    verdicts = shell.run_cell_magic("claims", "", cell)
+    assert [str(v.status) for v in verdicts] == ["PROVED", "PROVED", "REFUTED"]
+    assert verdicts["line 3"].holds and not verdicts["line 4"].holds
+    for wrong, hint in (("\n", "got nothing"), ("x = x\nx", "cell: line 2")):
+        with pytest.raises(UsageError, match=hint):
+            shell.run_cell_magic("claims", "", wrong)
+
+
 @pytest.mark.parametrize(
     ("line", "hint"), [("", "expected a relation"), ("x = x --range x", "LOWER,UPPER"), ("x", "relation")]
 )

@@ -7,10 +7,10 @@ import pytest
 import sympy as sp
 
 from navsym.claims import OPEN, PROVED, REFUTED, claims_of, compare_equations
-from navsym.models.inertial import ORDERS, lowest_order
 from navsym.prove.ladder import decide
 from navsym_papers import joint_correction
 from navsym_papers.joint_correction import section1_any_size, section1_systems, section3_gains
+from navsym_papers.joint_correction.inertial import ORDERS, lowest_order
 from navsym_papers.joint_correction.section2_groups import VELOCITY_ROWS, mu, position, row, v1, velocity
 
 CLAIMS = claims_of(joint_correction)

@@ -38,6 +38,7 @@ def test_a_batch_is_its_runs_one_by_one(models, signals, method):
         assert_allclose(logs[row], alone.log_likelihood, rtol=1e-11, atol=1e-11)
 
 
+@pytest.mark.long
 def test_the_batch_equals_stacked_numpy():
     rng = np.random.default_rng(4)
     eye = np.eye(2)

@@ -9,6 +9,7 @@ import pytest
 from navsym.checker import Refused, check, load
 from navsym.claims import REFUTED
 from navsym.claims.paper import papers_folder
+from navsym.verification.certificates import Certificates
 from navsym.verification.decide import decide_papers
 from tests.derivations.statements import PAPERS, module
 
@@ -17,7 +18,25 @@ HOLDS = {"PROVED", "CERTIFIED"}
 
 @pytest.fixture(scope="module", params=PAPERS)
 def document(request):
-    return decide_papers([module(request.param)], jobs=1).document()
+    """The claims of a paper, decided with the certificates beside the ledger, which the checker grants again."""
+    kept = Certificates(fresh=False, remark=pytest.fail)
+    try:
+        return decide_papers([module(request.param)], jobs=1, kept=kept).document()
+    finally:
+        kept.close()
+
+
+def stored_statuses(paper):
+    """Statuses of the ledger by claim id."""
+    stored = json.loads((papers_folder() / "verdicts.json").read_text(encoding="utf-8"))["claims"]
+    return {r["id"]: r["status"] for r in stored if r["paper"] == paper}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("paper", PAPERS)
+def test_a_search_without_certificates_comes_to_the_same_verdicts(paper):
+    found = decide_papers([module(paper)], jobs=1).claims
+    assert {record.id: str(record.status) for record in found} == stored_statuses(paper)
 
 
 def test_every_verdict_is_the_one_that_its_source_declares(document):
@@ -51,11 +70,8 @@ def test_what_does_not_rest_on_proof_says_so(document):
 
 
 def test_the_ledger_holds_these_verdicts(document):
-    path = papers_folder() / "verdicts.json"
-    stored = {r["id"]: r["status"] for r in json.loads(path.read_text(encoding="utf-8"))["claims"]}
-    paper = document["papers"][0]["module"]
     fresh = {r["id"]: r["status"] for r in document["claims"]}
-    assert fresh == {key: status for key, status in stored.items() if key.startswith(f"{paper}:")}
+    assert fresh == stored_statuses(document["papers"][0]["module"])
 
 
 def plain_certificates(certificate):

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 import sympy as sp
 
 from navsym.export.expression_graph import build
@@ -41,6 +42,7 @@ def bytes_of(folder: Path) -> dict[str, bytes]:
     return {p.relative_to(folder).as_posix(): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
 
 
+@pytest.mark.long
 def test_two_hash_seeds_and_the_command_of_the_manifest_give_the_same_bytes(tmp_path: Path) -> None:
     words = ["export", *WHAT, "--to", LANGUAGES, "--vectors", "4", "--unit", "T=s", "--no-run", "--out"]
     navsym([*words, "one"], tmp_path, "15")  # 15 and 16 differed once: sympy's gcd_list stops at the first 1

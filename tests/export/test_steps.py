@@ -12,17 +12,17 @@ import sympy as sp
 from numpy.testing import assert_allclose
 
 from navsym.core.errors import DomainError
-from navsym.export.algorithms import observer
 from navsym.export.chain import Chain, Link
 from navsym.export.functions import RefusedError
 from navsym.export.languages.c import files
-from navsym.models.inertial import joint_model
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.filters import run_filter
 from navsym.multimodel.kalman import correct, predict
 from navsym.terrain.centre import information
 from navsym_papers.guaranteed_velocity.model import H, T, tau
+from navsym_papers.joint_correction import programs as observer
 from navsym_papers.joint_correction.experiment.observer import hold_measurements
+from navsym_papers.joint_correction.inertial import joint_model
 from tests.benchmarks import export as benchmark
 from tests.export import programs
 

@@ -113,9 +113,9 @@ def attack(seed, count, seconds=5):
 
 
 def test_no_verdict_on_a_random_claim_is_contradicted():
-    statuses, found = attack(seed=1, count=100)
+    statuses, found = attack(seed=1, count=50)
     assert not found, found
-    assert statuses.get(PROVED, 0) > 10 and statuses.get(REFUTED, 0) > 10
+    assert statuses.get(PROVED, 0) > 5 and statuses.get(REFUTED, 0) > 5
 
 
 @pytest.mark.slow

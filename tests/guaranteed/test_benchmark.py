@@ -7,9 +7,9 @@ import pytest
 import sympy as sp
 
 from navsym.core.errors import DomainError
-from navsym.guaranteed.lengths import values_for_lengths
 from navsym.guaranteed.phases.family import Family, U
 from tests.benchmarks import guaranteed, guaranteed_campaign
+from tests.benchmarks.lengths import values_for_lengths
 
 
 def velocity(state):

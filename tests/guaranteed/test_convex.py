@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 import navsym as nav
 from navsym.core.errors import DomainError, NotEstimableError, NotFiniteError, ShapeError
-from navsym.guaranteed.convex import LP_SOLVERS, QP_SOLVERS, GridProblem, grid_problem, guaranteed_lp, least_squares_qp
+from navsym.guaranteed.convex import LP_SOLVERS, GridProblem, grid_problem, guaranteed_lp
 from navsym.guaranteed.problem import problem_of
 from navsym.models.linear import LinearModel
 
@@ -85,26 +85,6 @@ def test_every_solver_brackets_the_optimum_of_a_mild_problem(solver, unknown):
     assert_allclose(result.lower, exact, rtol=loose)
     assert result.residual < 1e-4
     assert result.status
-
-
-@pytest.mark.parametrize("solver", QP_SOLVERS)
-def test_least_squares_agrees_with_its_normal_equations(solver):
-    problem = velocity_correction(1.5, "y2")
-    H, W = problem.regressors, np.diag(problem.spacing)
-    expected = W @ H.T @ np.linalg.solve(H @ W @ H.T, problem.functional)
-    result = least_squares_qp(problem, solver=solver)
-    assert_allclose(result.weights, expected, atol=1e-5)
-    assert_allclose(result.value, np.abs(expected).sum(), rtol=1e-5)
-
-
-@settings(max_examples=10, deadline=None)
-@given(st.floats(0.3, np.pi / 2), st.sampled_from(UNKNOWNS))
-def test_least_squares_under_its_worst_correlation_is_never_better(T, unknown):
-    problem = velocity_correction(T, unknown)
-    worst = least_squares_qp(problem, solver="casadi:highs").value
-    assert worst >= optimum(T, unknown) * (1 - 1e-7)
-    if unknown != "y1":
-        assert worst > 1.2 * optimum(T, unknown)
 
 
 def test_the_weighted_problem_scales_with_its_bounds():

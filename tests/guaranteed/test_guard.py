@@ -452,6 +452,32 @@ def test_a_single_gross_error_is_excluded_and_does_not_move_the_estimate():
     )
 
 
+@pytest.mark.parametrize("most", [1, 2])
+@pytest.mark.parametrize("system", range(3))
+def test_the_certificate_of_an_exclusion_is_accepted_and_spoiled_ones_refused(system, most):
+    rng, F = np.random.default_rng(system), SYSTEMS[system]
+    n = len(F)
+    model = nav.Model([f"x{k}" for k in range(n)], F, ["x0", f"x{n - 1}"], ["1/3", "1"], targets={"goal": f"x{n - 1}"})
+    guard, seen = nav.Guard(model, "goal", outliers=most, memory=12), 0
+    for k in range(12):
+        z = [round(float(x), 3) for x in rng.uniform(-0.3, 0.3, 2)]
+        gross = k in (4, 7)[:most]
+        estimate = guard.step([100 + k if gross else z[0], z[1]], t=Fraction(k, 2))
+        why = estimate.certificate
+        assert (why is not None) == bool(estimate.excluded)
+        if why is None:
+            continue
+        assert estimate.check().accepted and [float(Fraction(t)) for t in why["excluded"]] == list(estimate.excluded)
+        innocent = next(t for row in why["rows"] if (t := row["epoch"]) not in why["excluded"])
+        spoiled = [why | {"excluded": [*why["excluded"], innocent]}, why | {"most": most + 2}]
+        spoiled += [why | {"rows": [row | {"sigma": "200"} for row in why["rows"]]}, why | {"contradictions": []}]
+        for forged in spoiled:
+            with pytest.raises(checker.Refused):
+                checker.check(checker.load(json.dumps(forged)))
+        seen += 1
+    assert seen > 2
+
+
 def test_two_suspects_are_named_and_none_is_excluded():
     guard = nav.Guard(nav.Model("b", [["0"]], ["b"]), outliers=1)
     guard.step(0, t=0)
@@ -560,3 +586,32 @@ def test_a_hundred_thousand_epochs_need_constant_memory():
             assert Fraction(radius.upper) - Fraction(radius.lower) <= GAP * Fraction(radius.upper)
             assert nav.check(last)[0].status == "ACCEPTED"
     assert peaks[-1] - peaks[0] < 5000 and guard.remembered <= 50  # kB; a row kept for each epoch would need 50 000
+
+
+# Many epochs
+
+
+def stream_long(count):
+    """A stream with gaps and changing bounds; every gap of the bounds is looked at, every thousandth epoch replayed."""
+    model = nav.Model("x v a", [["0", "1", "0"], ["0", "0", "1"], ["0", "-1", "0"]], ["x", "v"], ["1", "1/2"])
+    guard, rng, replayed = nav.Guard(model, "v", "variance", memory=16), np.random.default_rng(6), 0
+    for k in range(count):
+        z = [None if rng.random() < 0.1 else int(rng.integers(-9, 9)) for _ in range(2)]
+        sigma = {"z1": 2} if rng.random() < 0.05 else None
+        estimate = guard.step(z, t=Fraction(k, 4), sigma=sigma)
+        if estimate.radius is not None:
+            assert (estimate.high - estimate.low) <= 1e-12 * estimate.high
+        assert len(guard.memory.rows) <= 400 and len(guard.flow.memory) <= 256
+        if k % 1000 == 999:
+            assert nav.check(estimate)[0].status == "ACCEPTED"
+            replayed += 1
+    return replayed
+
+
+def test_two_thousand_epochs_keep_their_gap_and_a_constant_memory():
+    assert stream_long(2000) == 2
+
+
+@pytest.mark.slow
+def test_a_million_epochs_keep_their_gap_and_a_constant_memory():
+    assert stream_long(1_000_000) == 1000

@@ -14,8 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from navsym.models import earth
 from navsym.models.earth import ECCENTRICITY_SQUARED, SEMI_MAJOR, cartesian, local_axes, prime_vertical_radius
+from navsym_papers.trajectory import ellipsoid
 
 latitudes = st.floats(-np.pi / 2, np.pi / 2)
 longitudes = st.floats(-np.pi, np.pi)
@@ -87,9 +87,9 @@ def test_geocentric_coordinates_agree_with_the_corrected_formulas_of_the_paper(l
 
 
 def test_the_rates_of_the_trihedron_turn_its_axes():
-    _, symbols, velocity = earth.moving_position()
+    _, symbols, velocity = ellipsoid.moving_position()
     values = dict(zip(symbols.values(), map(sp.Rational, ("0.5", "1.1", "6.4", "0.03", "-0.02", "0.7")), strict=True))
-    omega = np.array(earth.angular_velocity(symbols).subs(values), dtype=float).ravel()
+    omega = np.array(ellipsoid.angular_velocity(symbols).subs(values), dtype=float).ravel()
     r = np.array([0.0, 0.0, 6.4])
     expected = np.array(velocity.subs(values), dtype=float).ravel()
     climb = np.array([0.0, 0.0, 0.7])

@@ -42,13 +42,13 @@ def test_the_determinant_of_the_first_stage_is_a_product_of_factorials(n):
 
 @pytest.mark.parametrize("n", [3, 10, 30])
 def test_rows_of_the_first_stage_follow_each_other_by_pascals_triangle(n):
-    Phi, N_f = motion.pascal_rows(n), motion.power_rows(n)
+    Phi, N_f = model.pascal_rows(n), motion.power_rows(n)
     for row, following in pairwise(N_f):
         assert [sum(row[i] * Phi[i][j] for i in range(n)) for j in range(n)] == following
 
 
 def test_leading_blocks_are_the_matrices_of_smaller_orders():
-    small, large = motion.pascal_rows(6), motion.pascal_rows(11)
+    small, large = model.pascal_rows(6), model.pascal_rows(11)
     assert small == [row[:6] for row in large[:6]]
     assert motion.power_rows(6) == [row[:6] for row in motion.power_rows(11)[:6]]
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from navsym.models import kinematics as kin
-from navsym.models.inertial import (
+from navsym_papers.joint_correction import kinematics as kin
+from navsym_papers.joint_correction.inertial import (
     FULL,
     MU,
     ORDERS,

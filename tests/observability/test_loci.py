@@ -67,7 +67,7 @@ def test_every_listed_locus_is_a_drop_and_nothing_drops_elsewhere():
 
 
 def test_the_velocity_group_breaks_at_one_value_of_the_link():
-    from navsym.models.inertial import velocity_group
+    from navsym_papers.joint_correction.inertial import velocity_group
 
     drops = rank_drops(observe_jointly(velocity_group().model(("c1", "c2"))))
     assert {d.condition for d in drops} == {"mu*u_3 + 1 = 0", "mu*u_3 - 1 = 0"}
@@ -86,7 +86,7 @@ def test_compositions_are_all_sums_within_their_caps():
 
 
 def test_the_full_error_model_of_sixteen_states_has_a_complete_list():
-    from navsym.models.inertial import full_model
+    from navsym_papers.joint_correction.inertial import full_model
 
     drops, complete = drops_and_completeness(observe_jointly(full_model()))
     assert all(complete.values())

@@ -6,11 +6,11 @@ import pytest
 import sympy as sp
 
 from navsym.core.errors import DomainError, ShapeError, UnobservableError
-from navsym.models.inertial import joint_model, position_group, velocity_group
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
 from navsym.observability.splits import best_split, choose_split, feasible_splits
 from navsym_papers.joint_correction.experiment.observer import two_stage_blocks
+from navsym_papers.joint_correction.inertial import joint_model, position_group, velocity_group
 
 a, b, c, d, w = sp.symbols("a b c d w", real=True)
 

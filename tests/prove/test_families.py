@@ -9,9 +9,6 @@ from navsym.claims import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Bound
 from navsym.core.errors import DomainError
 from navsym.prove.claimfile import claims_from, decide_claim
 from navsym.prove.ladder import decide
-from navsym.prove.sampling.points import Range
-from navsym.prove.signs.slopes import has_few_zeros
-from navsym.prove.signs.sums import cases_of_sum
 from navsym.prove.wording import write_power_of_ten
 
 UNIT = ["0", "1"]
@@ -63,13 +60,6 @@ def test_a_jump_where_the_slope_is_infinite_is_not_stepped_over():
         assert status({"x": ["0", "3"]}, left, ">=", "-1/1000") not in HOLDS
 
 
-def test_only_polynomials_with_a_number_in_front_have_few_zeros_for_sure():
-    x, y = sp.symbols("x y", real=True)
-    assert has_few_zeros(1 - x**2, x) and has_few_zeros(2 * x + sp.sin(y), x)
-    for divisor in (y * x + y, sp.sin(x), y, sp.Abs(x), sp.sqrt(x**2 + 1) - 1, x * (sp.sqrt(2) - sp.sqrt(2))):
-        assert not has_few_zeros(divisor, x)
-
-
 # -- the absolute value of a sum ---------------------------------------
 
 
@@ -105,22 +95,6 @@ def test_the_absolute_value_of_a_sum_is_a_variable_of_its_own(symbols, left, rig
 )
 def test_near_misses_about_sums_are_refuted(symbols, left, right):
     assert status(symbols, left, "<=", right) == REFUTED
-
-
-def test_the_cases_of_a_sum_hold_every_point_of_the_box():
-    """Every point is met again in a case: with the same value of the expression, inside the ranges of the case."""
-    x, y = sp.symbols("x y", real=True)
-    value = sp.Abs(2 * x - 3 * y + 1)
-    limits = {x: Range(sp.Integer(-1), sp.Integer(2)), y: Range(sp.Integer(0), None)}
-    expression = value + x**2 - 5 * y
-    for a, b in [(-1, 0), (2, 0), (2, 7), (sp.Rational(1, 3), sp.Rational(5, 9)), (1, 1)]:
-        inside = (2 * a - 3 * b + 1, -(2 * a - 3 * b + 1))
-        forms = next(f for sign, f in zip(inside, cases_of_sum(expression, value, limits), strict=True) if sign >= 0)
-        for form in forms:
-            (t,) = [s for s in form.limits if s.name == "t"]
-            point = {t: abs(inside[0]), x: a, y: b}
-            assert all(limit.contains(sp.sympify(point[s])) for s, limit in form.limits.items())
-            assert form.expression.subs(point) == expression.subs({x: a, y: b})
 
 
 def test_a_pole_under_the_sum_is_an_assumption():

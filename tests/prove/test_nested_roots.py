@@ -6,7 +6,6 @@ import pytest
 import sympy as sp
 
 from navsym.claims import PROVED, REFUTED, Equation
-from navsym.prove.identities.numbers import denest
 from navsym.prove.ladder import decide
 
 x = sp.Symbol("x", real=True)
@@ -46,13 +45,3 @@ def test_numbers_written_in_two_ways_are_proved_equal(left, right, assumed):
 )
 def test_what_differs_by_little_is_refuted(left, right):
     assert decide(Equation(left, right)).status == REFUTED
-
-
-@pytest.mark.parametrize("number", [root(2 + root(2)), root(7), root(root(2) + root(3)), root(root(2) + sp.pi), x])
-def test_what_does_not_come_apart_stays(number):
-    assert denest(number) == number
-
-
-def test_a_difference_under_the_root_keeps_its_sign():
-    assert denest(root(3 - 2 * root(2))) == root(2) - 1
-    assert denest(root(5 - 2 * root(6))) == root(3) - root(2)

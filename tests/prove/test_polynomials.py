@@ -7,10 +7,9 @@ import random
 import pytest
 import sympy as sp
 
-from navsym.prove.identities.cases import vanishes_in_all_cases
+from navsym.claims import PROVED, Equation
 from navsym.prove.identities.numbers import is_algebraic_zero, is_zero, separation_bits
-from navsym.prove.sampling.points import ranges_of
-from navsym.prove.signs.algebraic import algebraic_sign
+from navsym.prove.ladder import decide
 from navsym.prove.signs.bounds import Sign, prove_sign
 
 x, y, z = sp.symbols("x y z", real=True)
@@ -20,7 +19,8 @@ HAIR = sp.Rational(1, 10**40)
 
 
 def sign_of(expression, box=None):
-    return algebraic_sign(expression, ranges_of(sorted(expression.free_symbols, key=str), box or {})).sign
+    signs = (prove_sign(expression, box or {}, sign, seconds=0.5).sign for sign in (Sign.POSITIVE, Sign.NONNEGATIVE))
+    return next(filter(None, signs), Sign.UNKNOWN)
 
 
 TOUCHING = (
@@ -39,12 +39,6 @@ TOUCHING = (
 def test_a_touched_zero_is_nonnegative_not_positive_and_nothing_below_it_is_proved(expression):
     assert sign_of(expression) == Sign.NONNEGATIVE
     assert sign_of(expression - HAIR) == Sign.UNKNOWN
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("expression", TOUCHING)
-def test_no_way_of_proof_takes_what_lies_below_zero_by_a_hair(expression):
-    assert prove_sign(expression - HAIR, {}, budget=200).sign == Sign.UNKNOWN
 
 
 @pytest.mark.parametrize("expression", [T, 1 / T, k**2, x**2 + HAIR, x**4 + x + 1, T**2 - T + 1, k**2 + y**2])
@@ -82,7 +76,7 @@ def test_what_vanishes_somewhere_is_not_positive(expression, box):
     ],
 )
 def test_a_false_sign_is_not_proved(false):
-    assert prove_sign(false, {}, budget=300).sign == Sign.UNKNOWN
+    assert prove_sign(false, {}, seconds=1.0).sign == Sign.UNKNOWN
 
 
 def random_polynomial(source, symbols):
@@ -92,7 +86,7 @@ def random_polynomial(source, symbols):
 
 def test_no_sign_of_a_random_polynomial_is_contradicted_at_a_rational_point():
     source = random.Random(11)
-    for _ in range(60):
+    for _ in range(20):
         symbols = source.sample([x, y, T], source.randint(1, 2))
         expression = random_polynomial(source, symbols) ** source.choice([1, 2]) - source.choice([0, HAIR])
         found = sign_of(sp.expand(expression)) if expression.free_symbols else Sign.UNKNOWN
@@ -141,10 +135,13 @@ def test_a_number_that_is_not_zero_is_not_called_so(number):
 
 
 def test_absolute_values_are_taken_in_both_cases():
-    assert vanishes_in_all_cases(sp.cos(sp.Abs(x)) - sp.cos(x))
-    assert not vanishes_in_all_cases(sp.Abs(x) - x)
-    assert not vanishes_in_all_cases(sp.Abs(x + y) - sp.Abs(x) - sp.Abs(y))
-    assert not vanishes_in_all_cases(sp.sqrt(x**2 - 2 * x + 1) - (x - 1))
+    def is_proved(left, right):
+        return decide(Equation(left, right), seconds=2.0).status == PROVED
+
+    assert is_proved(sp.cos(sp.Abs(x)), sp.cos(x))
+    assert not is_proved(sp.Abs(x), x)
+    assert not is_proved(sp.Abs(x + y), sp.Abs(x) + sp.Abs(y))
+    assert not is_proved(sp.sqrt(x**2 - 2 * x + 1), x - 1)
 
 
 def test_a_bound_that_is_monotone_in_one_symbol_may_come_within_a_hair_of_zero_in_the_other():

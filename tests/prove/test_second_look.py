@@ -103,7 +103,7 @@ def test_a_bound_that_fails_by_little_around_an_irrational_point_is_refuted():
 
 
 def test_what_is_true_but_not_proved_stays_confirmed():
-    verdict = decide(Bound(sp.cosh(x), "<=", sp.exp(x**2 / 2)))
+    verdict = decide(Bound(sp.cosh(x), "<=", sp.exp(x**2 / 2)), seconds=2.0)
     assert verdict.status == CONFIRMED
 
 

@@ -113,6 +113,20 @@ def test_the_numbers_of_a_sheet_are_right_to_their_last_digit(name, figure, numb
     assert abs(float(figure) - number) <= 0.5001 * 10.0 ** -len(figure.partition(".")[2])
 
 
+@pytest.mark.parametrize(
+    ("module", "number", "slip"),
+    [("claims/own.toml", "gain", "paper"), ("own", "1", "undecidable"), ("own", "remark", None)],
+)
+def test_a_refuted_statement_without_a_slip_is_not_dropped(module, number, slip):
+    """Nobody said who slipped; only what others say about a paper is left out."""
+    record = next(r for r in LEDGER if r.status == "REFUTED" and r.slip and not r.cause)
+    card = Paper(module, "T", (), 2020, "", "", ("1",))
+    own = replace(record, id=f"{module}:{number}", paper=module, number=number, slip=None, reason="")
+    entries = erratum_of(card, [own]).entries
+    assert [entry.slip for entry in entries] == ([slip] if slip else [])
+    assert all(entry.reason == "The statement is refuted." for entry in entries)
+
+
 def test_what_covers_several_figures_becomes_a_table():
     records = [r for r in LEDGER if r.paper == "trajectory"]
     card = Paper("trajectory", "T", (), 2018, "", "", ())

@@ -63,6 +63,7 @@ def workers(address, count, folder):
     return [dask("worker", *words) for _ in range(count)]
 
 
+@pytest.mark.long
 def test_two_workers_on_a_scheduler_give_the_bits_of_one_process(scheduler, tmp_path):
     address, processes = scheduler
     processes += workers(address, 2, tmp_path)

@@ -9,10 +9,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from navsym.core.errors import DomainError
-from navsym.terrain.accuracy import accuracy_map, false_fix_bound
 from navsym.terrain.heights import TerrainMap
 from navsym.terrain.search import search_position
 from navsym.terrain.track import Hypotheses, Profile
+from navsym_papers.terrain_search.experiment.accuracy import accuracy_map, false_fix_bound
 
 
 def relief(rough=3.0):

@@ -11,7 +11,14 @@ from numpy.testing import assert_allclose
 from scipy.linalg import solve_discrete_are, solve_discrete_lyapunov
 
 from navsym.core.errors import DomainError, NotFiniteError, ShapeError, TooLargeError
-from navsym.trajectory.inversion import (
+from navsym_papers.trajectory.experiment.courses import (
+    PRINTED_GAIN,
+    course,
+    experiment,
+    metric_model,
+    scaling_changes_rounding,
+)
+from navsym_papers.trajectory.experiment.inversion import (
     CRITERIA,
     Start,
     SteppedModel,
@@ -24,13 +31,6 @@ from navsym.trajectory.inversion import (
     scaled_model,
     steady_gain,
     windowed_filter,
-)
-from navsym_papers.trajectory.experiment.courses import (
-    PRINTED_GAIN,
-    course,
-    experiment,
-    metric_model,
-    scaling_changes_rounding,
 )
 from navsym_papers.trajectory.experiment.stability import gain_stability, harmonic_lag, stationary_covariance
 from navsym_papers.trajectory.experiment.stability import metric_scale as metric_balls

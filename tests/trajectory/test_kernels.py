@@ -57,14 +57,19 @@ def smoothed_exactly(t, z, r, q, spread):
         )
 
 
-def run_of(t, z, r, q, spread, c=0.0, rate=0.0, tau=1.0):
-    """The compiled filter and smoother: states and covariances of motion and coloured error."""
+def run_of(t, z, r, q, spread, c=0.0, rate=0.0, tau=1.0, w=0.0, lasting=1.0, fading=0.0, use=1):
+    """The compiled filter and smoother: states and covariances of motion, coloured error and rate of the drift."""
     N, n = len(t), len(spread)
-    states, gains, roots = np.empty((N, n + 1)), np.empty((N, n + 1)), np.empty((N, n + 1, n + 1))
+    states, gains, roots = np.empty((N, n + 2)), np.empty((N, n + 2)), np.empty((N, n + 2, n + 2))
     rest = np.empty(N), np.empty(N), np.empty(N), np.empty(N, dtype=np.int64)
-    c, model = np.broadcast_to(c, N).astype(float), np.array([q, rate, tau])
-    forward(t, z, r, c, np.ones(N, np.int64), model, spread, 0.0, states, roots, gains, *rest)
-    backward(t, c, rest[2], states, roots, model)
+    c, w, model = (
+        np.broadcast_to(c, N).astype(float),
+        np.broadcast_to(w, N).astype(float),
+        [q, rate, tau, lasting, fading],
+    )
+    model = np.array(model)
+    forward(t, z, r, c, w, np.full(N, use), model, spread, 0.0, states, roots, gains, *rest)
+    backward(t, c, w, rest[2], states, roots, model)
     return states, np.einsum("kmi,kmj->kij", roots, roots)
 
 
@@ -138,11 +143,12 @@ def test_the_smoother_is_the_least_squares_fit_of_all_data():
     assert_allclose(covariances[:, :n, :n], blocks, atol=1e-8)
 
 
-def dense_smoother(t, z, r, q, spread, c, rate, tau):
+def dense_smoother(t, z, r, q, spread, c, rate, tau, w=0.0, lasting=1.0):
     """Mean and variance (N,) of the speed from the joint covariance of all rows: two states, no recursion.
 
     The speed is an Ornstein-Uhlenbeck process from a first spread, the position its integral; errors are white of
-    variance r and coloured with covariance c_i c_j exp(-|t_i - t_j|/tau).
+    variance r, coloured with covariance c_i c_j exp(-|t_i - t_j|/tau), and integrals from the first row of a rate with
+    covariance w^2 exp(-|t - s|/lasting).
     """
     grid = np.concatenate([np.linspace(a, b, 9)[:-1] for a, b in itertools.pairwise(t)] + [t[-1:]])
     at = np.searchsorted(grid, t)
@@ -163,6 +169,9 @@ def dense_smoother(t, z, r, q, spread, c, rate, tau):
             K[2 * i : 2 * i + 2, 2 * j : 2 * j + 2] = move @ blocks[at[j]]
             K[2 * j : 2 * j + 2, 2 * i : 2 * i + 2] = (move @ blocks[at[j]]).T
     errors = np.diag(r) + np.outer(c, c) * np.exp(-np.abs(t[:, None] - t) / tau)
+    since = (t - t[0]) / lasting
+    first, far = np.minimum(since[:, None], since), np.abs(since[:, None] - since)
+    errors += (w * lasting) ** 2 * (2 * first - 1 + np.exp(-since[:, None]) + np.exp(-since) - np.exp(-far))
     gain = np.linalg.solve(K[::2, ::2] + errors, K[::2, 1::2]).T
     return gain @ (z - z[0]), np.diag(K[1::2, 1::2] - gain @ K[::2, 1::2])
 
@@ -179,3 +188,37 @@ def test_coloured_errors_and_a_motion_that_forgets_are_smoothed_as_by_the_joint_
     assert_allclose(covariances[:, 1, 1], variance, rtol=1e-6)
     white = run_of(t, z, r, q, spread, 0.0, rate, tau)[1]
     assert (variance > 1.2 * white[:, 1, 1]).all()
+
+
+@pytest.mark.parametrize("w, lasting", [(0.7, 2.5), (3.0, 0.05), (0.2, 400.0)])
+def test_errors_that_drift_are_smoothed_as_by_the_joint_covariance(w, lasting):
+    """An integrated Markov process, short and long beside the steps; without it the variances are others."""
+    rng = np.random.default_rng(5)
+    t = np.cumsum(rng.uniform(0.3, 1.5, 14))
+    z, r, c = rng.normal(size=14), rng.uniform(0.1, 0.4, 14), rng.uniform(0.5, 2.0, 14)
+    spread, q, rate, tau = np.array([8.0, 5.0]), 0.6, 0.4, 3.0
+    states, covariances = run_of(t, z, r, q, spread, c, rate, tau, w, lasting)
+    mean, variance = dense_smoother(t, z, r, q, spread, c, rate, tau, w, lasting)
+    assert_allclose(states[:, 1], mean, atol=1e-6)
+    assert_allclose(covariances[:, 1, 1], variance, rtol=1e-6)
+    steady = run_of(t, z, r, q, spread, c, rate, tau)[1]
+    assert (variance > 1.01 * steady[:, 1, 1]).all()
+
+
+def test_the_rate_of_the_drift_has_the_deviation_of_each_row():
+    """Better positions shrink the rate at once, worse ones add to it, and no measurement is needed for either."""
+    t, w = np.cumsum(np.full(9, 0.7)), np.array([1.0, 1.0, 3.0, 0.1, 0.1, 5.0, 0.2, 0.01, 2.0])
+    covariances = run_of(t, np.zeros(9), np.ones(9), 1.0, np.array([1.0, 1.0]), 0.5, 0.2, 3.0, w, 2.0, use=0)[1]
+    assert_allclose(covariances[:, 3, 3], w**2, rtol=1e-9, atol=1e-15)
+
+
+def test_a_drift_that_fades_is_part_of_the_coloured_error():
+    """With a colour that neither forgets nor follows, both kinds are one; one that forgets bounds what has drifted."""
+    rng = np.random.default_rng(6)
+    t, spread = np.cumsum(rng.uniform(0.3, 1.5, 14)), np.array([8.0, 5.0])
+    z, r = rng.normal(size=14), rng.uniform(0.1, 0.4, 14)
+    stays, fades = (run_of(t, z, r, 0.6, spread, 1.0, 0.4, 1e9, 0.7, 2.5, kind) for kind in (0.0, 1.0))
+    assert_allclose(fades[0][:, :2], stays[0][:, :2], atol=1e-5)
+    assert_allclose(fades[1][:, :2, :2], stays[1][:, :2, :2], rtol=1e-5)
+    free = run_of(np.arange(200.0), np.zeros(200), np.ones(200), 1e-9, spread, 1.0, 0.4, 2.0, 0.7, 2.5, 1.0, use=0)[1]
+    assert free[-1, 2, 2] < 30 and np.abs(np.diff(free[100:, 2, 2])).max() < 1e-9

@@ -21,6 +21,7 @@ from navsym.trajectory.estimate import (
     estimate,
     gaps,
     least_squares,
+    marginal,
     minimum_sum,
     minimum_sum_certificate,
     minimum_sum_solution,
@@ -66,6 +67,26 @@ def simulated(seed, N=400, q=0.02, sigma=2.0, order=3, gaps=True):
         for c in range(3):
             truth[c, k] = Phi @ truth[c, k - 1] + np.linalg.cholesky(Q) @ rng.normal(size=order)
     return t, truth, truth[:, :, 0].T + sigma * rng.normal(size=(N, 3))
+
+
+def drifting(seed, rate, N=600, dt=0.2):
+    """Motion with accelerations of 0.5 m/s^2 over 3 s; every other 12 s errors drift at a rate (m/s), and go again.
+
+    White errors are 5 mm and 3 cm, the given deviations 1 cm and 30 cm: as of positions fixed and float.
+    """
+    rng, t, bad = np.random.default_rng(seed), dt * np.arange(N), (np.arange(N) // 60) % 2 == 1
+    kept = np.exp(-dt / 3)
+    a, v, p, d, e, z = (np.zeros((N, 3)) for _ in range(6))
+    for k in range(N):
+        fresh = np.sqrt(1 - kept**2) * rng.normal(size=(2, 3))
+        a[k] = kept * a[k - 1] + 0.5 * fresh[0]
+        v[k] = v[k - 1] + dt * a[k]
+        p[k] = p[k - 1] + dt * (v[k] + v[k - 1]) / 2
+        d[k] = (kept * d[k - 1] + rate * fresh[1]) * bad[k]
+        e[k] = (e[k - 1] + dt * d[k]) * bad[k]
+        z[k] = p[k] + e[k] + (0.03 if bad[k] else 0.005) * rng.normal(size=3)
+    variance = np.repeat(np.where(bad, 0.3, 0.01)[:, None] ** 2, 3, axis=1)
+    return v, bad, Positions(t, z, variance, np.broadcast_to(np.eye(3), (N, 3, 3)))
 
 
 # -- weights -------------------------------------------------------------------------------------------
@@ -198,6 +219,21 @@ def test_with_known_noise_the_errors_lie_in_the_95_per_cent_range(method, order)
     squares = np.concatenate(errors) ** 2
     low, high = chi2.ppf([0.025, 0.975], squares.size) / squares.size
     assert low < squares.mean() < high
+
+
+@pytest.mark.long
+def test_errors_that_drift_where_deviations_are_large_are_no_motion():
+    """Deviations hold with the drift, and are far too small without; what does not drift is not said to."""
+    speed, bad, track = drifting(0, 0.5)
+    found, noise = estimate(track, Settings())
+    squares = ((found.velocity - speed) / found.velocity_sd) ** 2
+    assert 0.7 < squares.mean() < 1.5 and (noise.drift > 0).all()
+    deviation = noise.drifting(track, 0)[bad][0]
+    assert 0.35 < deviation < 0.75 and 1.5 < noise.lasting[0] < 6.0
+    plain = noise_of(track, 3, np.ones(600, dtype=np.int64), gate=5.0)
+    without = marginal(track, plain, Settings(), np.ones(600, dtype=np.int64))
+    assert (((without.velocity - speed) / without.velocity_sd) ** 2).mean() > 3
+    assert (estimate(drifting(0, 0.0)[2], Settings())[1].drift == 0).all()
 
 
 def test_the_noise_of_a_track_is_found():

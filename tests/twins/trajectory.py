@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from navsym.core.arrays import Array
-from navsym.trajectory.inversion import AdaptiveRun, Start, SteppedModel, Tuning
+from navsym_papers.trajectory.experiment.inversion import AdaptiveRun, Start, SteppedModel, Tuning
 
 
 def candidates(q: Array, step: float) -> list[Array]:

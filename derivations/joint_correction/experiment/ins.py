@@ -17,7 +17,8 @@ import numpy as np
 import sympy as sp
 
 from navsym.core.arrays import Array, freeze
-from navsym.models.inertial import (
+from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, SCHULER_RATE, Flight
+from navsym_papers.joint_correction.inertial import (
     EARTH,
     FULL,
     JOINT,
@@ -29,7 +30,6 @@ from navsym.models.inertial import (
     position_variables,
     velocity_variables,
 )
-from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, SCHULER_RATE, Flight
 
 
 class Situation(StrEnum):

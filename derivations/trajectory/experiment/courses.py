@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from navsym.core.arrays import Array
 from navsym.core.errors import DomainError
-from navsym.trajectory.inversion import (
+from navsym_papers.trajectory.experiment.inversion import (
     Start,
     SteppedModel,
     Tuning,

@@ -16,7 +16,7 @@ from fractions import Fraction
 import flint
 
 from navsym.core.errors import DomainError, TooLargeError
-from navsym.models.earth import pascal_rows
+from navsym_papers.trajectory.model import pascal_rows
 
 BITS = 160
 LARGEST_BOXES = 20000

@@ -8,14 +8,14 @@ solve linear systems with exact entries, and the pair goes to the ladder of proo
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
 import sympy as sp
 
-from navsym.claims import OPEN, PROVED, Equation, Optimum, Verdict
+from navsym.claims import OPEN, Equation, Optimum, Verdict
 from navsym.core.balls import enclose
 from navsym.core.exact import to_fraction, to_rational
 from navsym.core.sandbox import Exhausted, run_limited
@@ -27,7 +27,7 @@ from navsym.guaranteed.phases.patterns import Pattern, PatternInterval, contact_
 from navsym.guaranteed.phases.recognise import middle_of_constant, recognise_place
 from navsym.prove.equations import decide_equation, weakest_verdict
 from navsym.prove.ladder import DEFAULT_MEGABYTES, search_verdict
-from navsym.prove.optimum import SHARE, decide_constraints, decide_feasibility, decide_times, decide_values
+from navsym.prove.optimum import decide_feasibility, decide_times, decide_values
 from navsym.prove.signs.products import as_product
 
 # Closed forms for monomials on [0, T]: shares of the interval, powers of T, and Lagrange's weights.
@@ -396,8 +396,6 @@ def decide_pair(family: Family, guess: ClosedForm, lower: sp.Expr, upper: sp.Exp
         )
         for row, sigma, ends in zip(family.rows, family.sigma, family.panels, strict=True)
     ]
-    if len(statements) == 1 and family.growing and has_polynomial_dual(statements[0]):
-        return decide_polynomial(statements[0])
     done = run_limited(decide_jointly, (statements, guess.panels), seconds, DEFAULT_MEGABYTES)
     return Verdict(OPEN, "none", evidence="stopped") if isinstance(done, Exhausted) else done
 
@@ -442,65 +440,3 @@ def decide_jointly(statements: Sequence[Optimum], panels: Sequence[int]) -> Verd
 def own(places: Sequence[sp.Expr], panels: Sequence[int], k: int) -> tuple[sp.Expr, ...]:
     """Those of the places that lie on panel k."""
     return tuple(at for at, panel in zip(places, panels, strict=True) if panel == k)
-
-
-# -- polynomials, where the share of the interval is the only variable ----------------------------
-
-
-def has_polynomial_dual(statement: Optimum) -> bool:
-    """True when the dual polynomial in the share v = t/T has rational coefficients and contains no other symbol."""
-    T = statement.interval[1]
-    f = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.S.Zero)
-    scaled = sp.expand(f.subs(statement.variable, T * SHARE))
-    return (
-        scaled.is_polynomial(SHARE)
-        and scaled.free_symbols <= {SHARE}
-        and all(c.is_Rational for c in sp.Poly(scaled, SHARE).coeffs())
-    )
-
-
-def decide_polynomial(statement: Optimum) -> Verdict:
-    """The four conditions, dual feasibility by Sturm's count on the square-free factors."""
-    T = statement.interval[1]
-    f = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.S.Zero)
-    scaled = sp.expand(f.subs(statement.variable, T * SHARE))
-    sides = [sp.Poly(1 - scaled, SHARE), sp.Poly(1 + scaled, SHARE)]
-    if not all(is_nonnegative_on_unit(side) for side in sides):
-        return Verdict(OPEN, "Sturm", evidence="the dual polynomial leaves its bound")
-    unit = {T: sp.S.One}  # places that scale with T: prove them at T = 1
-    shares = decide_shares(statement, unit)
-    return weakest_verdict(
-        [
-            Verdict(PROVED, "Sturm's theorem on square-free factors"),
-            decide_constraints(statement),
-            shares if shares.status is PROVED else decide_times(statement),
-            decide_values(statement),
-        ]
-    )
-
-
-def is_nonnegative_on_unit(polynomial: sp.Poly) -> bool:
-    """p >= 0 on [0, 1], exactly: factors of odd multiplicity have no root inside, and p > 0 somewhere."""
-    if polynomial.is_zero:
-        return True
-    _, factors = polynomial.sqf_list()
-    for factor, multiplicity in factors:
-        inner = factor
-        for end in (0, 1):
-            while inner.degree() > 0 and inner.eval(end) == 0:
-                inner = sp.quo(inner, sp.Poly(SHARE - end, SHARE))
-        if multiplicity % 2 and inner.degree() > 0 and inner.count_roots(0, 1):
-            return False
-    points = (sp.Rational(k, 997) for k in range(1, 997))
-    return bool(next(v for v in (polynomial.eval(p) for p in points) if v != 0) > 0)
-
-
-def decide_shares(statement: Optimum, unit: Mapping[sp.Symbol, sp.Expr]) -> Verdict:
-    """Places c T with constants c between 0 and 1, by balls, ends exactly."""
-    for place in statement.support:
-        c = place.subs(unit)
-        linear = sp.expand(place - c * statement.interval[1]) == 0
-        inside = c in (0, 1) or (bool(enclose(c) > 0) and bool(enclose(1 - c) > 0))
-        if not linear or not inside:
-            return Verdict(OPEN, "balls", evidence=f"instant {place} is not shown to lie inside")
-    return Verdict(PROVED, "exact shares")

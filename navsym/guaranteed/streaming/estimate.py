@@ -16,7 +16,7 @@ from navsym.core.exact import decimal, lower_end, to_fmpq, upper_end
 from navsym.core.numbers import Number
 from navsym.guaranteed.streaming.flow import BITS, Flow
 from navsym.guaranteed.streaming.memory import Row
-from navsym.guaranteed.streaming.numbers import middle, to_float
+from navsym.guaranteed.streaming.numbers import middle, to_float, write_rational
 from navsym.language.names import quote
 
 #: Digits of radii and duals.
@@ -58,6 +58,24 @@ class Plan:
         return sum((w * arb(self.rows[i].z) for i, w in pairs), arb(0))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Exclusion:
+    """Why no set of at most ``most`` epochs explains the data without those excluded.
+
+    rows           : measurements that contradict each other
+    contradictions : places among them: m independent rows, and one that depends on these
+    excluded       : times of the epochs
+    """
+
+    flow: Flow
+    now: fmpq
+    rows: Sequence[Row]
+    columns: Sequence[int]
+    contradictions: Sequence[Sequence[int]]
+    excluded: Sequence[fmpq]
+    most: int
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Estimate(Answer):
     """The target at the time of one epoch.
@@ -87,6 +105,7 @@ class Estimate(Answer):
     low: arb | None = field(default=None)
     high: arb | None = field(default=None)
     plan: Plan | None = field(default=None)
+    exclusion: Exclusion | None = field(default=None)
 
     @cached_property
     def radius(self) -> Number | None:
@@ -121,9 +140,13 @@ class Estimate(Answer):
     def certificate(self) -> Mapping[str, Any] | None:
         """Plain data that the independent checker replays: kind ``gap``, one panel for each measurement in memory.
 
-        On a panel regressor and bound are constant, so that the optimum over panels is that over measurements. None
-        while the target is not estimable, for "outliers", and where exp(F t) has no formula.
+        On a panel regressor and bound are constant, so that the optimum over panels is that over measurements. For
+        "outliers" the kind is ``exclusion``: at most so many epochs with gross errors cannot explain the data without
+        those excluded. None while the target is not estimable, where nothing is excluded, and where exp(F t) has no
+        formula.
         """
+        if self.exclusion is not None:
+            return write_exclusion(self.exclusion)
         return write_certificate(self.plan) if self.plan is not None and self.plan.whole else None
 
     def certificates(self) -> list[Mapping[str, Any]]:
@@ -172,6 +195,36 @@ def enclose_radius(low: arb, high: arb) -> Number:
     below, above = to_fmpq(low.lower()), to_fmpq(high.upper())
     lower = decimal(below - abs(below) * margin, DIGITS, -1)
     return Number(lower, decimal(above + abs(above) * margin, DIGITS, 1))
+
+
+def write_exclusion(why: Exclusion) -> dict[str, Any] | None:
+    """The certificate of kind exclusion; None where a regressor has no formula."""
+    flow, rows = why.flow, []
+    with precision(BITS):
+        exact = [flow.exact_row(row.j, row.t, why.now) for row in why.rows]
+        for row, numbers in zip(why.rows, exact, strict=True):
+            known = numbers is not None and None not in exact
+            texts = [write_rational(e) for e in numbers] if known else flow.row_text(row.j, row.t, why.now)  # type: ignore[union-attr]
+            if texts is None:
+                return None
+            bound = upper_end(row.sigma, DIGITS) if row.own is None else write_rational(row.own)
+            rows.append(
+                {
+                    "epoch": write_rational(row.t),
+                    "H": [texts[k] for k in why.columns],
+                    "z": write_rational(row.z),
+                    "sigma": bound,
+                }
+            )
+    return {
+        "kind": "exclusion",
+        "rows": rows,
+        "most": why.most,
+        "excluded": [write_rational(t) for t in why.excluded],
+        "contradictions": [list(places) for places in why.contradictions],
+        "bits": BITS + 64,
+        "cells": min(len(why.excluded) * len(why.columns) ** why.most + 1000, 20_000),
+    }
 
 
 def write_certificate(plan: Plan) -> dict[str, Any] | None:

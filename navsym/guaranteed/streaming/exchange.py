@@ -106,7 +106,9 @@ class Optimum:
 
 def exchange(cloud: Cloud, target: arb_mat, basis: Sequence[int], signs: Sequence[int] = ()) -> Optimum | None:
     """The optimum from a start; None where the rows are not seen to be independent, or the limit is met."""
-    found = solve_basis(cloud, target, list(basis), list(signs))
+    found = solve_basis(cloud, target, *rehearse(cloud, to_doubles(target), list(basis), list(signs)))
+    if found is None:
+        found = solve_basis(cloud, target, list(basis), list(signs))
     for count in range(MOST_EXCHANGES):
         if found is None:
             return None
@@ -120,6 +122,45 @@ def exchange(cloud: Cloud, target: arb_mat, basis: Sequence[int], signs: Sequenc
         found.basis[leave], found.signs[leave] = entering
         found = solve_basis(cloud, target, found.basis, found.signs)
     return None
+
+
+def to_doubles(row: arb_mat) -> Array:
+    """The middles of a row of balls."""
+    return np.array([float(e.mid()) for e in row.entries()])
+
+
+def rehearse(cloud: Cloud, target: Array, basis: list[int], signs: list[int]) -> tuple[list[int], list[int]]:
+    """The same exchange in doubles: a better start, or the same where doubles do not see the way."""
+    rows, first = cloud.scaled, cloud.first
+    places = np.array(basis) - first
+    side = np.array(signs or [1] * len(basis), dtype=float)
+    try:
+        inverse = np.linalg.inv(rows[places])
+    except np.linalg.LinAlgError:
+        return basis, signs
+    for _ in range(4 * len(basis) + 8):
+        weights = target @ inverse
+        side = np.where(weights == 0.0, side, np.sign(weights))
+        f = rows @ (inverse @ (side if cloud.shifted is None else side + cloud.shifted[places]))
+        if cloud.shifted is not None:
+            f -= cloud.shifted
+        size = np.abs(f) if cloud.active is None else np.abs(f) * cloud.active
+        enter = int(size.argmax())
+        if not size[enter] < np.inf:
+            return basis, signs
+        if size[enter] <= 1.0 + 1e-9 or enter in places:
+            break
+        along, towards = rows[enter] @ inverse, 1.0 if f[enter] > 0.0 else -1.0
+        slopes = side * along * towards
+        rising = slopes > 1e-9
+        if not rising.any():
+            break
+        leave = int(np.where(rising, np.abs(weights) / np.where(rising, slopes, 1.0), np.inf).argmin())
+        pivot = along[leave]
+        along[leave] -= 1.0
+        inverse -= np.outer(inverse[:, leave] / pivot, along)  # Sherman and Morrison
+        places[leave], side[leave] = enter, towards
+    return [int(k) + first for k in places], [int(s) for s in side]
 
 
 def solve_basis(cloud: Cloud, target: arb_mat, basis: list[int], signs: list[int]) -> Optimum | None:

@@ -31,7 +31,8 @@ class Search:
     epoch    : (N,) the epoch of each row in memory
     upper    : bound of the target that no explanation exceeds
     reached  : a value that one explanation takes
-    explained, refuted : sets of epochs; the former explain the data, the latter do not
+    explained : sets of epochs that explain the data
+    refuted   : those that do not, with m independent rows and one more, which contradict each other
     open     : whether some set stays undecided, so that no bound is known
     """
 
@@ -60,7 +61,7 @@ class Search:
             return
         if found.ray is not None:
             rows = [i for i, w in found.ray.items() if not w.is_zero()]
-            self.refuted[excluded] = rows
+            self.refuted[excluded] = [*found.basis, list(found.ray)[-1]]
         else:
             rows = [i for i, w in zip(found.basis, found.weights.entries(), strict=True) if not w.is_zero()]
             self.note(excluded, found)
@@ -87,11 +88,13 @@ class Explanations:
 
     low, high : enclosures of the ends of its values; None while they are not bounded
     sets      : the smallest sets of epochs (places in memory) that explain the data
+    contradictions : rows that contradict each other, see Search
     """
 
     low: tuple[arb, arb] | None
     high: tuple[arb, arb] | None
     sets: tuple[Epochs, ...]
+    contradictions: tuple[Sequence[int], ...] = ()
 
     @property
     def excluded(self) -> list[int]:
@@ -126,7 +129,7 @@ def explain_data(memory: Memory, most: int, basis: Sequence[int], signs: Sequenc
     assert up.upper is not None and down.upper is not None
     high = (up.reached if up.reached is not None else arb("-inf"), up.upper)
     low = (-down.upper, -down.reached if down.reached is not None else arb("inf"))
-    return Explanations(low, high, tuple(smallest))
+    return Explanations(low, high, tuple(smallest), tuple({**up.refuted, **down.refuted}.values()))
 
 
 def contradiction(memory: Memory, epoch: Any, rows: Sequence[int], most: int) -> InconsistentError:

@@ -13,7 +13,7 @@ from navsym.core.balls import precision
 from navsym.core.errors import DomainError, DuplicateError, NavsymError, ShapeError, UnknownSymbolError
 from navsym.core.exact import decimal, to_fmpq
 from navsym.core.numbers import Number
-from navsym.guaranteed.streaming.estimate import Estimate, Plan
+from navsym.guaranteed.streaming.estimate import Estimate, Exclusion, Plan
 from navsym.guaranteed.streaming.exchange import (
     Cloud,
     Optimum,
@@ -21,6 +21,7 @@ from navsym.guaranteed.streaming.exchange import (
     exchange,
     price_basis,
     solve_basis,
+    to_doubles,
     violated_row,
 )
 from navsym.guaranteed.streaming.explanations import contradiction, explain_data
@@ -280,7 +281,8 @@ class Guard:
                 self.solved, self.signs = found, found.signs
                 return self.make_plan(at, found)
         start = shifted_basis(self.basis, fresh if kept else memory.first - min(self.basis, default=0), end)
-        found = exchange_from_better(cloud, target, found, start)
+        support = cheaper_start(cloud, target, [self.basis if kept else [], start])
+        found = exchange(cloud, target, support) if support else None
         if found is None:
             start = cloud.start() or []
             found = exchange(cloud, target, start) if start else None
@@ -386,15 +388,26 @@ class Guard:
             return Estimate(to_float(at), self.target, None, "outliers")
         times = [to_float(t) for t in memory.times[memory.oldest :]]
         (low, low_inner), (high_inner, high) = found.low, found.high
+        excluded = [memory.times[memory.oldest + e] for e in found.excluded]
         return Estimate(
             to_float(at),
             self.target,
             middle((low + high) / 2),
             "outliers",
-            excluded=tuple(times[e] for e in found.excluded),
+            excluded=tuple(map(to_float, excluded)),
             others=tuple(tuple(times[e] for e in s) for s in found.others),
             low=((high_inner - low_inner) / 2).max(arb(0)),
             high=(high - low) / 2,
+            exclusion=self.prepare_exclusion(at, excluded, found.contradictions) if excluded else None,
+        )
+
+    def prepare_exclusion(self, at: fmpq, excluded: list[fmpq], contradictions: Sequence[Sequence[int]]) -> Exclusion:
+        """What the certificate of the excluded epochs is made of, when it is asked for."""
+        places = sorted({i for rows in contradictions for i in rows})
+        renamed = {i: k for k, i in enumerate(places)}
+        found = [[renamed[i] for i in rows] for rows in contradictions]
+        return Exclusion(
+            self.flow, at, [self.memory.rows[i] for i in places], self.flow.columns, found, excluded, self.outliers
         )
 
 
@@ -423,18 +436,18 @@ def shifted_basis(basis: Sequence[int], shift: int, end: int) -> list[int]:
     return moved if len(set(moved)) == len(moved) else []
 
 
-def exchange_from_better(cloud: Cloud, target: arb_mat, found: Optimum | None, start: list[int]) -> Optimum | None:
-    """The optimum from the last support, or from that moved on with time, whichever costs less."""
-    moved = solve_basis(cloud, target, start, []) if start else None
-    if found is not None and (moved is None or rough_cost(cloud, found) <= rough_cost(cloud, moved)):
-        moved = found
-    return None if moved is None else exchange(cloud, target, moved.basis, moved.signs)
-
-
-def rough_cost(cloud: Cloud, found: Optimum) -> float:
-    """``sum sigma |w|`` in doubles."""
-    pairs = zip(found.basis, found.weights.entries(), strict=True)
-    return sum(middle(cloud.sigma[i]) * abs(middle(w)) for i, w in pairs)
+def cheaper_start(cloud: Cloud, target: arb_mat, starts: Sequence[Sequence[int]]) -> Sequence[int]:
+    """The support that costs least, as doubles see it; empty where none is independent."""
+    functional, best, least = to_doubles(target), starts[0][:0], np.inf
+    for start in starts:
+        try:
+            weights = np.linalg.solve(cloud.scaled[np.array(start) - cloud.first].T, functional) if start else np.inf
+        except np.linalg.LinAlgError:
+            continue
+        cost = np.abs(weights).sum()
+        if cost < least:
+            best, least = start, cost
+    return best
 
 
 def whole_number(value: Any, low: int, high: int, where: str) -> int:

@@ -51,11 +51,12 @@ def run_stream(
     memory: int | None,
     outliers: int,
     values: Mapping[str, Any] | None,
+    step: str | None,
     state: str | os.PathLike[str] | None,
 ) -> Stream:
     """Every epoch of a CSV through a guard, which comes from a state where there is one and is saved there."""
     model = Model.load(file).with_values(**dict(values or {}))
-    guard = Guard(model, target, bound, memory=memory, outliers=outliers)
+    guard = Guard(model, target, bound, memory=memory, outliers=outliers, step=step)
     if state is not None and Path(state).exists():
         guard = continue_guard(guard, state)
     epochs = list(read_epochs(data, guard.flow.names))
@@ -82,9 +83,9 @@ def run_stream(
 def continue_guard(fresh: Guard, state: str | os.PathLike[str]) -> Guard:
     """The guard of a state, where it is one of the same question."""
     kept = Guard.load(state)
-    for what in ("model", "target", "bound", "length", "outliers"):
+    for what in ("model", "target", "bound", "length", "outliers", "pace"):
         if getattr(kept, what) != getattr(fresh, what):
-            name = "memory" if what == "length" else what
+            name = {"length": "memory", "pace": "step"}.get(what, what)
             message = f"expected the state of the same question; got one with another {name}; name another file"
             raise DomainError(message, where=name_file(state))
     return kept

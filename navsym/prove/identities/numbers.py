@@ -152,24 +152,6 @@ def is_zero(number: sp.Expr, depth: int = DEPTH) -> bool:
     return is_formally_zero(spread) or (depth > 0 and is_zero_by_inverses(number, depth))
 
 
-def denest(root: sp.Expr) -> sp.Expr:
-    """sqrt(a + sqrt(b)) = sqrt((a + d)/2) + sqrt((a - d)/2) for d**2 = a**2 - b, and the same with minus.
-
-    The root as it was where d is not rational, or where the two are not proved to be the same number.
-    """
-    if not root.is_Pow or root.exp != sp.S.Half or not root.base.is_Add:
-        return root
-    a, surd = root.base.as_two_terms()
-    if not (a.is_Rational and a > 0 and (surd**2).is_Rational and surd**2 > 0):
-        return root
-    d = sp.sqrt(a**2 - surd**2)
-    if not d.is_Rational:
-        return root
-    sign = 1 if exact_ball(surd) > 0 else -1
-    simpler = sp.sqrt((a + d) / 2) + sign * sp.sqrt((a - d) / 2)
-    return simpler if is_zero(root - simpler) else root
-
-
 def is_formally_zero(number: sp.Expr) -> bool:
     """Zero by the normal form; false where the number lies outside its language."""
     try:

@@ -13,7 +13,7 @@ from math import lcm
 import sympy as sp
 
 from navsym.core.exact import to_rational
-from navsym.prove.identities.ingredients import PI, linear_terms, single_function
+from navsym.prove.identities.ingredients import linear_terms, single_function
 from navsym.prove.identities.normal_form import vanishes_identically
 
 MOST_POWERS = 400
@@ -70,31 +70,6 @@ def replace_by_definition(atom: sp.Expr, value: sp.Expr) -> Solution:
     y, x = atom.args
     along = x * sp.cos(value) + y * sp.sin(value)
     return Solution(atom, x * sp.sin(value), y * sp.cos(value), (sp.pi - value,), (sp.pi + value, along))
-
-
-#: Principal ranges in half turns: the ends, and whether each is left out.
-RANGES: dict[type, tuple[tuple[sp.Rational, bool], tuple[sp.Rational, bool]]] = {
-    sp.asin: ((-sp.S.Half, False), (sp.S.Half, False)),
-    sp.acos: ((sp.S.Zero, False), (sp.S.One, False)),
-    sp.atan: ((-sp.S.Half, True), (sp.S.Half, True)),
-    sp.atan2: ((-sp.S.One, True), (sp.S.One, False)),
-}
-
-
-def least_principal_value(value: sp.Expr) -> tuple[sp.Rational, bool]:
-    """A lower bound of a sum of inverse functions in half turns, and whether it is left out; or -infinity."""
-    total, left_out = sp.S.Zero, False
-    for monomial, coefficient in linear_terms(value).items():
-        share = to_rational(coefficient)
-        atom = single_function(monomial, tuple(RANGES))
-        if monomial == PI:
-            total += share
-        elif atom is not None:
-            end, open_end = RANGES[type(atom)][0 if share > 0 else 1]
-            total, left_out = total + share * end, left_out or open_end
-        else:
-            return sp.S.NegativeInfinity, False
-    return total, left_out
 
 
 # Logarithms of products and powers, written out: log(p**2 q/4) = 2 log p + log q - 2 log 2 for positive p, q.

@@ -31,7 +31,10 @@ def draw_special_points(
     plain = [*draw_points(box, count)]
     for k in range(count):
         if not zeros:
-            yield plain[k] if k < len(plain) and k % 2 else {n: draw_number(r, generator) for n, r in box.items()}
+            drawn = {n: draw_number(r, generator) for n, r in box.items()}
+            if k % 4 == 2:  # near 0, where hypotheses such as |u| <= 1 hold
+                drawn = {n: v / 16 if is_whole_line(box[n]) else v for n, v in drawn.items()}
+            yield plain[k] if k < len(plain) and k % 2 else drawn
             continue
         point = dict(plain[k % len(plain)]) if plain and k % 2 == 0 else {}
         for name, limit in box.items():
@@ -49,6 +52,11 @@ def draw_special_points(
         for zero in zeros:
             solve_for_one(zero, point, fixed)
         yield point
+
+
+def is_whole_line(limit: Any) -> bool:
+    """Whether all real numbers are in a range."""
+    return limit.low is None and limit.high is None and not limit.integer
 
 
 def draw_number(limit: Any, generator: random.Random) -> fmpq:

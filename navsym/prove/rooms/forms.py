@@ -53,6 +53,17 @@ def complete_square(expression: sp.Expr) -> sp.Expr | None:
     return None
 
 
+def halve_angle(expression: sp.Expr) -> sp.Expr | None:
+    """c - c cos(u) as 2 c sin(u/2)**2, and c + c cos(u) as 2 c cos(u/2)**2, beside the other terms of a sum."""
+    number, rest = expression.as_coeff_Add()
+    for term in sp.Add.make_args(rest) if number > 0 else ():
+        share, wave = term.as_coeff_Mul()
+        if wave.func is sp.cos and abs(share) == number:
+            half = (sp.cos if share > 0 else sp.sin)(wave.args[0] / 2)
+            return rest - term + 2 * number * half**2
+    return None
+
+
 FORMS: tuple[Callable[[sp.Expr], sp.Expr | None], ...] = (
     as_product,
     factor,
@@ -60,7 +71,8 @@ FORMS: tuple[Callable[[sp.Expr], sp.Expr | None], ...] = (
     lambda e: sp.expand(e),
     lambda e: sp.expand(TR8(sp.expand(e))) if e.has(sp.sin, sp.cos) else None,
     lambda e: factor(sp.expand_trig(e)) if e.has(sp.atan, sp.asin, sp.acos) else None,
-    lambda e: complete_square(e),
+    halve_angle,
+    complete_square,
 )
 
 
@@ -123,7 +135,7 @@ def by_root(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
 
 def by_tangent(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
     """u = tan(x/(2 d)) for the one angle of which all others are multiples."""
-    waves = expression.atoms(sp.sin, sp.cos)
+    waves = {node for node in expression.atoms(sp.sin, sp.cos) if node.free_symbols}
     symbols = {s for node in waves for s in node.free_symbols}
     if len(symbols) != 1:
         return

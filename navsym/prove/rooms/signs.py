@@ -27,7 +27,6 @@ from navsym.prove.rooms.goals import (
     values_of,
     write_term,
 )
-from navsym.prove.signs.polynomials import choose_pair
 
 CELLS = (120, 2500)
 #: Comparisons of variables in one proof by cones.
@@ -302,6 +301,29 @@ def split_cone(polynomial: fmpq_mpoly, budget: list[int], depth: int) -> Any:
     return [*pair, *parts]
 
 
+def choose_pair(terms: dict[Any, Any], negative: dict[Any, Any], depth: int) -> tuple[int, int] | None:
+    """The two variables to compare; None when a negative term has only one, so that nothing can mend it.
+
+    Best are y_i, y_j with a negative term between two positive ones, as in y_i**2 - y_i y_j + y_j**2.
+    """
+    scores: dict[tuple[int, int], Any] = {}
+    for exponents, value in negative.items():
+        places = [i for i, e in enumerate(exponents) if e]
+        if len(places) < 2:
+            return None
+        for pair in itertools.combinations(places, 2):
+            framed = all(terms.get(shift_power(exponents, i, j), 0) > 0 for i, j in (pair, pair[::-1]))
+            scores[pair] = scores.get(pair, 0) - (value if framed else 0)
+    best = max(scores.values())
+    ranked = sorted(pair for pair, score in scores.items() if score == best)
+    return ranked[depth % len(ranked)]
+
+
+def shift_power(exponents: Any, i: int, j: int) -> tuple[int, ...]:
+    """One power moved from y_j to y_i."""
+    return tuple(int(e) + (k == i) - (k == j) for k, e in enumerate(exponents))
+
+
 def by_contacts(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """A zero inside the range: the parts beside it one by one."""
     for name in sorted(player.symbols_of(goal.term)):
@@ -334,3 +356,15 @@ def by_positive_radicand(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     body: Proof = {"rule": "squares", "left": write_term(goal.term), "right": "0", "sign": 1, "defined": Holes()}
     body |= {"proofs": [square, {"rule": "product", "factors": [None]}]}
     yield body if goal.relation == ">" else {"rule": "side", "sign": 1, "proof": body}
+
+
+def by_divided_root(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """u > 0 where something is divided by sqrt(u): u sqrt(u)**(-4) = sqrt(u)**(-2)."""
+    if goal.relation not in (">", "!="):
+        return
+    for relation, root in player.set_union(map(player.conditions, goal.exists)):
+        if relation == "!=" and root[0] == "sqrt" and player.is_identity(player.subtract(goal.term, root[1])):
+            powers = [write_term(("^", root, player.number(-n))) for n in (4, 2)]
+            product: Proof = {"rule": "product", "factors": [None]}
+            shorter: Proof = {"rule": "equal", "to": powers[1], "defined": Holes(), "proof": product}
+            yield {"rule": "multiply", "by": powers[0], "defined": Holes(), "positive": product, "proof": shorter}

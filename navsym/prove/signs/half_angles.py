@@ -13,9 +13,6 @@ from math import lcm
 import sympy as sp
 
 from navsym.prove.identities.ingredients import PI, TRIGONOMETRIC, Monomial, linear_terms
-from navsym.prove.sampling.points import Range
-from navsym.prove.signs.exact import Limits, Sign, constant_sign, corner_values
-from navsym.prove.signs.products import monomial_expression
 
 MOST_TURNS = 12
 Pair = tuple[sp.Expr, sp.Expr]
@@ -25,21 +22,14 @@ Pair = tuple[sp.Expr, sp.Expr]
 class HalfAngles:
     """One t for every angle monomial, at the common denominator of its coefficients."""
 
-    limits: Limits
     denominators: dict[Monomial, int] = field(default_factory=dict)
     tangents: dict[Monomial, sp.Symbol] = field(default_factory=dict)
-    ranges: dict[sp.Symbol, Range] = field(default_factory=dict)
     pairs: dict[sp.Expr, Pair] = field(default_factory=dict)
 
-    @property
-    def endless(self) -> bool:
-        """True when some angle may reach pi, where t is infinite."""
-        return any(limit.upper is None for limit in self.ranges.values())
 
-
-def replace_angles(expression: sp.Expr, limits: Limits) -> tuple[sp.Expr, HalfAngles] | None:
+def replace_angles(expression: sp.Expr) -> tuple[sp.Expr, HalfAngles] | None:
     """The expression with all sines and cosines written in the t; None where an angle has another form."""
-    angles = HalfAngles(limits)
+    angles = HalfAngles()
     nodes = sorted(expression.atoms(*TRIGONOMETRIC), key=sp.default_sort_key)
     for node in nodes:
         if node.args[0].has(*TRIGONOMETRIC):
@@ -90,7 +80,7 @@ def multiply_angle(monomial: Monomial, coefficient: Fraction, angles: HalfAngles
     count = int(coefficient * share)
     if abs(count) > MOST_TURNS:
         raise OverflowError("an angle is taken too many times")
-    t = tangent(monomial, share, angles)
+    t = tangent(monomial, angles)
     once: Pair = ((1 - t**2) / (1 + t**2), sp.sign(count) * 2 * t / (1 + t**2))
     pair: Pair = (sp.Integer(1), sp.Integer(0))
     for _ in range(abs(count)):
@@ -103,27 +93,8 @@ def add_angles(first: Pair, second: Pair) -> Pair:
     return (first[0] * second[0] - first[1] * second[1], first[1] * second[0] + first[0] * second[1])
 
 
-def tangent(monomial: Monomial, share: int, angles: HalfAngles) -> sp.Symbol:
+def tangent(monomial: Monomial, angles: HalfAngles) -> sp.Symbol:
+    """The t of an angle."""
     if monomial not in angles.tangents:
-        symbol = sp.Dummy(f"t{len(angles.tangents)}", real=True)
-        angles.tangents[monomial] = symbol
-        angles.ranges[symbol] = tangent_range(monomial_expression(monomial) / share, angles.limits)
+        angles.tangents[monomial] = sp.Dummy(f"t{len(angles.tangents)}", real=True)
     return angles.tangents[monomial]
-
-
-def tangent_range(angle: sp.Expr, limits: Limits) -> Range:
-    """[0, 1], [-1, 1] or [0, oo) when the exact range of the angle allows it, else all numbers."""
-    values = corner_values(angle, limits)
-    if values is None:
-        return Range(None, None)
-
-    def within(lower: sp.Expr, upper: sp.Expr) -> bool:
-        margins = [m for value in values for m in (value - lower, upper - value)]
-        return all(constant_sign(margin).sign != Sign.UNKNOWN for margin in margins)
-
-    zero, one, half = sp.Integer(0), sp.Integer(1), sp.pi / 2
-    if within(zero, half):
-        return Range(zero, one)
-    if within(-half, half):
-        return Range(-one, one)
-    return Range(zero, None) if within(zero, sp.pi) else Range(None, None)

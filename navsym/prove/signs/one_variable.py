@@ -18,7 +18,6 @@ from flint import fmpq
 from navsym.core.balls import UnsupportedError
 from navsym.core.exact import to_rational
 from navsym.prove.sampling.points import Range
-from navsym.prove.signs.exact import Limits, Sign, SignProof
 from navsym.prove.signs.real_roots import (
     RealNumber,
     UndecidedError,
@@ -184,23 +183,3 @@ def symbol_at_root(root: RealNumber, piece: Interval) -> sp.Expr | None:
         if is_at_end(root, place):
             return end
     return None if root.value is None else piece.back(root.value)
-
-
-# -- what the search for signs asks ---------------------------------------
-
-
-def root_sign(expression: sp.Expr, limits: Limits) -> SignProof | None:
-    """The sign of an expression in one symbol wherever it exists; unknown when it has another one somewhere.
-
-    None where that is not decided here.
-    """
-    ((symbol, limit),) = limits.items() if len(limits) == 1 else ((None, None),)
-    if symbol is None or limit is None or expression.free_symbols != {symbol}:
-        return None
-    found = survey_signs(expression, limit)
-    if found is None:
-        return None
-    if found.below:
-        return SignProof(Sign.UNKNOWN)
-    sign = Sign.NONNEGATIVE if found.zeros else Sign.POSITIVE
-    return SignProof(sign, f"exact signs between {found.roots} real roots", exact=True)

@@ -74,7 +74,7 @@ def substitute_one_number(expressions: Sequence[sp.Expr], symbol: sp.Symbol, lim
     if not whole.free_symbols <= {symbol} or whole.has(*BENT) or largest_exponent(whole) > MOST_DEGREE:
         return None
     try:
-        found = replace_angles(whole, {symbol: limit})
+        found = replace_angles(whole)
         if found is None or found[0].has(sp.zoo, sp.nan, sp.oo):
             return None
         rational, angles = found

@@ -7,8 +7,11 @@ forgets at a rate a >= 0, du = -a u dt + dw; the others integrate it (Singer 197
     g_n-1(s) = exp(-a s),    g_i' = g_i+1,    g_i(0) = 0.
 
 A position is measured with a white error of variance r and a coloured one, b(k+1) = f c(k+1)/c(k) b(k) + noise with
-f = exp(-dt/tau), whose deviation is c(k) at row k. The first state is what is measured without its white error,
-position + b, the last one is b: the loops then correct by the first state alone, and Phi stays upper triangular.
+f = exp(-dt/tau), whose deviation is c(k) at row k, and with an error that drifts at a rate d, a first-order Markov
+process of time constant ``lasting`` whose deviation is w(k). The first state is what is measured without its white
+error, position + b + drift; the last two are b and d: the loops then correct by the first state alone, and Phi stays
+upper triangular. Where w falls, d falls with it; where it grows, fresh noise makes up the difference. What has drifted
+stays (``fading`` 0), or becomes part of b, which forgets and follows c (``fading`` 1).
 
 Forward filter with bounded influence; Rauch, Tung and Striebel's smoother backwards (Maybeck, vol. 2, ch. 8).
 An innovation beyond ``gate`` standard deviations is not cut off but believed less: its variance is raised until it
@@ -107,16 +110,32 @@ def noise_root(dt: float, rate: float, rows: Array, g: Array) -> None:
 
 
 @njit()
-def colour(dt: float, tau: float, c0: float, c1: float, Phi: Array, root: Array) -> None:
-    """Write what the coloured error adds to Phi and root (n+1, n+1): its own entry, and its share of the first."""
-    n = Phi.shape[0] - 1
-    kept = np.exp(-dt / tau)
-    for i in range(n):
+def colour(dt: float, model: Array, c0: float, c1: float, w0: float, w1: float, Phi: Array, root: Array) -> None:
+    """Write what the errors add to Phi (n+2, n+2) and root (n+3, n+2): their entries, and their shares of the first.
+
+    model : (q, rate, tau, lasting, fading) ; c0, c1, w0, w1 : deviations of coloured error and drift at both ends
+    """
+    n = Phi.shape[0] - 2
+    for i in range(n + 2):
         Phi[n, i], Phi[i, n], root[n, i], root[i, n] = 0.0, 0.0, 0.0, 0.0
+        Phi[n + 1, i], Phi[i, n + 1], root[n + 1, i], root[i, n + 1], root[n + 2, i] = 0.0, 0.0, 0.0, 0.0, 0.0
+    kept = np.exp(-dt / model[2])
     ratio = kept * c1 / c0 if c0 > 0.0 else 0.0
-    fresh = c1 * np.sqrt(-np.expm1(-2.0 * dt / tau))
+    fresh = c1 * np.sqrt(-np.expm1(-2.0 * dt / model[2]))
     Phi[n, n], Phi[0, n] = ratio, ratio - 1.0
     root[n, 0], root[n, n] = fresh, fresh
+    if w0 == 0.0 and w1 == 0.0:
+        return
+    lasting, fading = model[3], model[4]
+    kept = np.exp(-dt / lasting)
+    ratio = kept if w1 >= w0 else kept * w1 / w0
+    fresh = np.sqrt(max(w1 * w1 - ratio * ratio * w0 * w0, 0.0))
+    Phi[n + 1, n + 1], Phi[0, n + 1], Phi[n, n + 1] = ratio, lasting * (1.0 - kept), fading * lasting * (1.0 - kept)
+    half = np.tanh(dt / (2.0 * lasting))
+    share = lasting * half * fresh
+    root[n + 1, 0], root[n + 1, n], root[n + 1, n + 1] = share, fading * share, fresh
+    rest = w1 * lasting * np.sqrt(max(2.0 * (dt / lasting - 2.0 * half), 0.0))
+    root[n + 2, 0], root[n + 2, n] = rest, fading * rest
 
 
 @njit()
@@ -160,7 +179,7 @@ def move(Phi: Array, x: Array, out: Array) -> None:
 
 @njit()
 def stack(U: Array, Phi: Array, root: Array, W: Array) -> None:
-    """Write U Phi^T above root into the first n columns of W (2n, ...): a root of Phi P Phi^T + Q."""
+    """Write U Phi^T above root into the first n columns of W (2n+1, ...): a root of Phi P Phi^T + Q."""
     n = U.shape[0]
     for i in range(n):
         for j in range(n):
@@ -168,16 +187,18 @@ def stack(U: Array, Phi: Array, root: Array, W: Array) -> None:
             for k in range(max(i, j), n):
                 total += U[i, k] * Phi[j, k]
             W[i, j] = total
+    for i in range(n + 1):
+        for j in range(n):
             W[n + i, j] = root[i, j]
 
 
 @njit()
 def step_of(
-    dt: float, last: float, model: Array, c0: float, c1: float, Phi: Array, root: Array, rows: Array, g: Array
+    dt: float, last: float, model: Array, c: Array, w: Array, k: int, Phi: Array, root: Array, rows: Array, g: Array
 ) -> None:
-    """Write Phi and root (n+1, n+1) of a step of length dt after one of length ``last``, whose motion may stay.
+    """Write Phi and root of the step dt from row k-1 to k, after one of length ``last``, whose motion may stay.
 
-    model : (q, rate, tau); rows (ROWS, n) keeps the root at q = 1 from step to step, g (n,) is scratch
+    model : (q, rate, tau, lasting, fading); rows (ROWS, n) keeps the root at q = 1 from step to step, g (n,) is scratch
     """
     n = g.shape[0]
     if dt != last:
@@ -186,12 +207,12 @@ def step_of(
         for i in range(n):
             for j in range(n):
                 root[i, j] = np.sqrt(model[0]) * rows[i, j]
-    colour(dt, model[2], c0, c1, Phi, root)
+    colour(dt, model, c[k - 1], c[k], w[k - 1], w[k], Phi, root)
 
 
 @njit()
 def predict(y: Array, U: Array, Phi: Array, root: Array, W: Array) -> None:
-    """y <- Phi y and U <- the triangular root of Phi P Phi^T + Q, in place; W (2 m, m) is scratch."""
+    """y <- Phi y and U <- the triangular root of Phi P Phi^T + Q, in place; W (2 m + 1, m) is scratch."""
     m = y.shape[0]
     move(Phi, y, y)
     stack(U, Phi, root, W)
@@ -218,8 +239,8 @@ def correct(y: Array, U: Array, gain: Array, innovation: float, S: float, noise:
 
 
 @njit()
-def begin(first: float, spread: Array, c: float, y: Array, U: Array) -> None:
-    """The state before the first measurement: at its position, at rest, with deviations ``spread`` and colour c."""
+def begin(first: float, spread: Array, c: float, w: float, y: Array, U: Array) -> None:
+    """The state before the first measurement: at its position, at rest; deviations ``spread``, colour c, drift w."""
     n = spread.shape[0]
     y[:], U[:] = 0.0, 0.0
     for i in range(n):
@@ -228,6 +249,7 @@ def begin(first: float, spread: Array, c: float, y: Array, U: Array) -> None:
     # Position and coloured error are independent, their sum and the error are not.
     U[0, 0] = np.hypot(spread[0], c)
     U[0, n], U[n, n] = c * c / U[0, 0], c * spread[0] / U[0, 0]
+    U[n + 1, n + 1] = w
 
 
 @njit()
@@ -240,11 +262,11 @@ def believed(innovation: float, S: float, gate: float) -> float:
 
 @njit()
 def leap(U: Array, excess: float, W: Array) -> None:
-    """U after a jump of the coloured error of variance ``excess``: a root of P + excess d d^T, d = (1, 0, ..., 1)."""
+    """U after a jump of the coloured error of variance ``excess``: root of P + excess d d^T, d = (1, 0, ..., 1, 0)."""
     m = U.shape[0]
     W[: m + 1, :m] = 0.0
     W[:m, :m] = U
-    W[m, 0], W[m, m - 1] = np.sqrt(excess), np.sqrt(excess)
+    W[m, 0], W[m, m - 2] = np.sqrt(excess), np.sqrt(excess)
     triangularise(W[: m + 1, :m], m)
     for i in range(m):
         for j in range(i, m):
@@ -257,6 +279,7 @@ def forward(
     z: Array,
     r: Array,
     c: Array,
+    w: Array,
     use: Flags,
     model: Array,
     spread: Array,
@@ -271,21 +294,22 @@ def forward(
 ) -> None:
     """Filter one channel.
 
-    t, z, r, c (N,): times, measurements, variances of white and deviations of coloured errors; use (N,): zero leaves
-    the measurement out; model : (q, rate, tau) ; spread (n,) : standard deviations of the first state
+    t, z, r, c, w (N,): times, measurements, variances of white, deviations of coloured errors and of their drift;
+    w is zero in all rows or in none; use (N,): zero leaves the measurement out; model : (q, rate, tau, lasting, fading)
+    spread (n,) : standard deviations of the first state
     gate : largest |innovation| in sigmas, 0 for none
-    states, gains (N, n+1); roots (N, n+1, n+1) of the covariances; innovations, variances, flags (N,) are filled, and
+    states, gains (N, n+2); roots (N, n+2, n+2) of the covariances; innovations, variances, flags (N,) are filled, and
     jumps (N,): variances of jumps of the coloured error, to which wild innovations are put down where there is one
     """
     N, m = states.shape
-    Phi, root, W, rows = np.zeros((m, m)), np.zeros((m, m)), np.empty((2 * m, m)), np.empty((ROWS, m - 1))
-    y, U, gain, g = np.empty(m), np.empty((m, m)), np.empty(m), np.empty(m - 1)
-    begin(z[0], spread, c[0], y, U)
+    Phi, root, W, rows = np.zeros((m, m)), np.zeros((m + 1, m)), np.empty((2 * m + 1, m)), np.empty((ROWS, m - 2))
+    y, U, gain, g = np.empty(m), np.empty((m, m)), np.empty(m), np.empty(m - 2)
+    begin(z[0], spread, c[0], w[0], y, U)
     last = -1.0
     for k in range(N):
         if k > 0:
             dt = t[k] - t[k - 1]
-            step_of(dt, last, model, c[k - 1], c[k], Phi, root, rows, g)
+            step_of(dt, last, model, c, w, k, Phi, root, rows, g)
             predict(y, U, Phi, root, W)
             last = dt
         before = U[0, 0] * U[0, 0]
@@ -318,23 +342,23 @@ def gain_and_rest(W: Array, back: Array) -> None:
 
 
 @njit()
-def backward(t: Array, c: Array, jumps: Array, states: Array, roots: Array, model: Array) -> None:
-    """Smooth in place: states (N, n+1) and roots (N, n+1, n+1) of the filter become those given all data.
+def backward(t: Array, c: Array, w: Array, jumps: Array, states: Array, roots: Array, model: Array) -> None:
+    """Smooth in place: states (N, n+2) and roots (N, n+2, n+2) of the filter become those given all data.
 
     Turning [[U Phi^T, U], [root of Q, 0]] into [[A, B], [0, D]] gives the gain C^T = A^-1 B, and D is a root of
     what the next state leaves unknown; with the next root V the new one is the triangle of [D; V C^T].
     """
     N, n = states.shape
-    Phi, root, back = np.zeros((n, n)), np.zeros((n, n)), np.empty((n, n))
-    W, V, ahead = np.empty((2 * n, 2 * n)), np.empty((2 * n, n)), np.empty(n)
-    rows, g, last = np.empty((ROWS, n - 1)), np.empty(n - 1), -1.0
+    Phi, root, back = np.zeros((n, n)), np.zeros((n + 1, n)), np.empty((n, n))
+    W, V, ahead = np.empty((2 * n + 1, 2 * n)), np.empty((2 * n + 1, n)), np.empty(n)
+    rows, g, last = np.empty((ROWS, n - 2)), np.empty(n - 2), -1.0
     for k in range(N - 2, -1, -1):
         dt = t[k + 1] - t[k]
-        step_of(dt, last, model, c[k], c[k + 1], Phi, root, rows, g)
+        step_of(dt, last, model, c, w, k + 1, Phi, root, rows, g)
         last = dt
         if jumps[k + 1] > 0.0:
-            fresh = np.sqrt(root[n - 1, 0] ** 2 + jumps[k + 1])
-            root[n - 1, 0], root[n - 1, n - 1] = fresh, fresh
+            fresh = np.sqrt(root[n - 2, 0] ** 2 + jumps[k + 1])
+            root[n - 2, 0], root[n - 2, n - 2] = fresh, fresh
         stack(roots[k], Phi, root, W)
         W[:n, n:] = roots[k]
         W[n:, n:] = 0.0
@@ -349,6 +373,7 @@ def backward(t: Array, c: Array, jumps: Array, states: Array, roots: Array, mode
                 for j in range(m, n):
                     total += roots[k + 1, m, j] * back[j, i]
                 V[n + m, i] = total
+            V[2 * n, i] = W[2 * n, n + i]
         triangularise(V, n)
         for i in range(n):
             roots[k, i, :i] = 0.0
@@ -357,22 +382,22 @@ def backward(t: Array, c: Array, jumps: Array, states: Array, roots: Array, mode
 
 @njit()
 def misfit(
-    t: Array, z: Array, r: Array, c: Array, use: Flags, model: Array, spread: Array, gate: float
+    t: Array, z: Array, r: Array, c: Array, w: Array, use: Flags, model: Array, spread: Array, gate: float
 ) -> tuple[float, float, int]:
     """Sums over the innovations after the first n: of log S, of innovation^2 / S, and their number.
 
     With a gate the variance of a wild innovation is raised as in :func:`forward`.
     """
     n = spread.shape[0]
-    m = n + 1
-    Phi, root, W, rows = np.zeros((m, m)), np.zeros((m, m)), np.empty((2 * m, m)), np.empty((ROWS, n))
+    m = n + 2
+    Phi, root, W, rows = np.zeros((m, m)), np.zeros((m + 1, m)), np.empty((2 * m + 1, m)), np.empty((ROWS, n))
     y, U, gain, g = np.empty(m), np.empty((m, m)), np.empty(m), np.empty(n)
-    begin(z[0], spread, c[0], y, U)
+    begin(z[0], spread, c[0], w[0], y, U)
     logs, squares, count, seen, last = 0.0, 0.0, 0, 0, -1.0
     for k in range(t.shape[0]):
         if k > 0:
             dt = t[k] - t[k - 1]
-            step_of(dt, last, model, c[k - 1], c[k], Phi, root, rows, g)
+            step_of(dt, last, model, c, w, k, Phi, root, rows, g)
             predict(y, U, Phi, root, W)
             last = dt
         if use[k] == 0:

@@ -8,7 +8,7 @@ from typing import Any
 
 from navsym.core.store import default_path, open_store
 from navsym.verification.papers import load_papers
-from tests.attacks.campaigns import cases, certificates, disks, fuzz, kills, mutants, parser, statements
+from tests.attacks.campaigns import cases, certificates, code, disks, fuzz, kills, mutants, parser, statements
 from tests.attacks.campaigns.batches import Batch, run_campaign
 from tests.attacks.campaigns.words import as_text as as_text
 from tests.attacks.campaigns.words import markdown_row as markdown_row
@@ -61,5 +61,5 @@ def prepare_campaign(name: str, papers: Sequence[str], share: float, inputs: int
         return certificates.make_batches(certificates.honest_certificates(), inputs, seed), certificates.judge
     if name == "disk":
         return disks.make_batches(), disks.judge
-    campaign = {"parser": parser, "kills": kills, "statements": statements}[name]
+    campaign = {"parser": parser, "kills": kills, "statements": statements, "code": code}[name]
     return campaign.make_batches(inputs, seed), campaign.judge

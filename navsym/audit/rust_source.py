@@ -1,0 +1,351 @@
+"""Rust: functions of numbers, arrays, and what nalgebra has of matrices and quaternions; all else is refused."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+from navsym.audit.form import Argument, Function, Part, Rules, Unit
+from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, parse_source, read_decimal, text_of
+
+RULES = Rules(integer=True, matrix=True, entry=("{}[{}]", "{}[{}][{}]"))
+REAL = ("f32", "f64", "N", "T", "R", "Real", "Self")
+WHOLE = re.compile(r"[iu](8|16|32|64|128|size)|bool")
+VECTOR = re.compile(r"(?:\w+::)*(?:S?Vector(\d)(?:<\w+>)?|SVector<\w+,(\d+)>|Point([23])<\w+>)")
+MATRIX = re.compile(r"(?:\w+::)*(?:Matrix(\d)(?:x(\d))?(?:<\w+>)?|SMatrix<\w+,(\d+),(\d+)>)")
+ARRAY = re.compile(r"\[(.+);(\d+)\]")
+QUATERNION = re.compile(r"(?:\w+::)*(Unit)?Quaternion(?:<\w+>)?")
+SIGNS = ("+", "-", "*", "/", "%")
+COMPARISONS = ("<", "<=", ">", ">=", "==", "!=")
+WORDS = {"&&": "both", "||": "either"}
+#: Methods of numbers that are functions in the other languages.
+NUMBERS = dict.fromkeys("sin cos tan asin acos atan sinh cosh tanh exp sqrt atan2 hypot".split(), "") | {
+    "ln": "log", "abs": "fabs", "powf": "pow", "powi": "pow", "max": "fmax", "min": "fmin"
+}  # fmt: skip
+#: Methods that give what they are called on.
+SAME = ("clone", "as_ref", "to_owned", "into_inner", "into", "quaternion", "as_vector", "copied", "eval", "coords")
+QUIET = (
+    "println",
+    "eprintln",
+    "debug_assert",
+    "debug_assert_eq",
+    "assert",
+    "assert_eq",
+    "trace",
+    "debug",
+    "info",
+    "warn",
+)
+
+
+def read_rust(source: bytes, file: str) -> Unit:
+    """The functions and constants of a source in Rust, and the fields of its structures."""
+    unit = Unit(file, "rust", RULES, source)
+    Reader(unit).read_file(parse_source(source, "rust", file))
+    return unit
+
+
+def read_rust_expression(text: str, unit: Unit) -> Part:
+    """One expression; its spans count from its own beginning."""
+    head = "const A: f64 = "
+    root = parse_source(f"{head}{text};".encode(), "rust", unit.file)
+    if root.has_error or len(root.children) != 1 or root.children[0].type != "const_item":
+        return Part("refused", 1, ("no expression",))
+    return Reader(unit, -len(head), {*unit.functions}).expression(field_of(root.children[0], "value"))
+
+
+def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
+    """What a type holds ("int", "real", "quaternion", "other"), and its sizes."""
+    bare = re.sub(r"\s|&|'\w+\b|\bmut\b", "", text)
+    if QUATERNION.fullmatch(bare):
+        return "quaternion", (4,)
+    if found := VECTOR.fullmatch(bare):
+        return "real", (int(found[1] or found[2] or found[3]),)
+    if found := MATRIX.fullmatch(bare):
+        rows = int(found[1] or found[3])
+        return "real", (rows, int(found[2] or found[4] or rows))
+    if found := ARRAY.fullmatch(bare):
+        kind, inner = type_of(found[1])
+        return kind, None if inner is None or kind == "quaternion" else (int(found[2]), *inner)
+    if WHOLE.fullmatch(bare):
+        return "int", ()
+    return ("real", ()) if bare in REAL and bare != "Self" else ("other", None)
+
+
+@dataclass(slots=True, eq=False)
+class Reader(SourceReader):
+    """Walks the syntax tree of Rust; ``own`` are the functions of the file."""
+
+    own: set[str] = field(default_factory=set)
+
+    def read_file(self, root: Any) -> None:
+        """Functions, constants and fields, also inside modules and implementations."""
+        nodes = [*descend(root)]
+        self.own = {text_of(field_of(node, "name")) for node in nodes if node.type == "function_item"}
+        for node in nodes:
+            if node.type == "function_item":
+                self.read_function(node)
+            elif node.type == "const_item" and field_of(node, "value") is not None:
+                name, kind = (text_of(field_of(node, key)) for key in ("name", "type"))
+                number, shape = type_of(kind)
+                value = self.expression(field_of(node, "value"))
+                self.unit.constants.append(
+                    self.part("declare", node, name, number, self.sizes(node, shape), value, False)
+                )
+            elif node.type == "field_declaration":
+                self.read_field(node)
+        self.unit.constants.sort(key=lambda statement: statement.span)
+
+    def read_field(self, node: Any) -> None:
+        """A field of a structure as a member of ``self``; one that two structures have differently stays unknown."""
+        number, shape = type_of(text_of(field_of(node, "type")))
+        name, known = f"self.{text_of(field_of(node, 'name'))}", (number, shape)
+        is_new = name not in self.unit.members or self.unit.members[name] == known
+        self.unit.members[name] = known if is_new else ("other", None)
+
+    def read_function(self, node: Any) -> None:
+        name, arguments = text_of(field_of(node, "name")), []
+        for child in named(field_of(node, "parameters")):
+            if child.type != "parameter":
+                continue
+            kind = text_of(field_of(child, "type"))
+            number, shape = type_of(kind)
+            label = text_of(field_of(child, "pattern")).removeprefix("mut ")
+            arguments.append(Argument(label, number, self.sizes(child, shape), "&mut" in kind.replace(" ", "")))
+        body = tuple(self.body(field_of(node, "body")))
+        self.unit.functions.setdefault(name, []).append(Function(name, line_of(node), tuple(arguments), body))
+
+    def sizes(self, node: Any, shape: tuple[int, ...] | None) -> tuple[Part, ...] | None:
+        return None if shape is None else tuple(self.part("number", node, n, "int") for n in shape)
+
+    # -- statements --
+
+    def body(self, node: Any) -> list[Part]:
+        """The statements of a function; an expression at its end is its value."""
+        nodes = [child for child in named(node) if child.type != "attribute_item"]
+        done = [s for child in nodes[:-1] for s in self.statement(child)]
+        if not nodes:
+            return done
+        last = nodes[-1]
+        inner = named(last)[0] if last.type == "expression_statement" and not text_of(last).endswith(";") else last
+        if inner.type == "if_expression":
+            return [*done, self.branch(inner, self.body)]
+        is_value = not inner.type.endswith(("statement", "declaration", "_item")) and inner.type not in LOOPS
+        return done + ([self.ending(inner)] if is_value else [*self.statement(last)])
+
+    def ending(self, node: Any) -> Part:
+        """A returned value; ``Err`` is an end without one, ``Ok`` a value."""
+        if node.type == "call_expression" and text_of(field_of(node, "function")) == "Err":
+            return self.part("fail", node, "an error is returned")
+        if node.type in ("return_expression", "assignment_expression", "compound_assignment_expr", "macro_invocation"):
+            return next(iter(self.effect(node)), self.part("return", node, None))
+        return self.part("return", node, None if node.type == "unit_expression" else self.expression(node))
+
+    def block(self, node: Any) -> list[Part]:
+        """The statements of a block that is no value."""
+        return [] if node is None else [s for child in named(node) for s in self.statement(child)]
+
+    def statement(self, node: Any) -> tuple[Part, ...]:
+        if node.has_error and node.type not in ("if_expression", "for_expression", "block", "expression_statement"):
+            return (self.unread(node, "a syntax error"),)
+        match node.type:
+            case "expression_statement":
+                return tuple(s for child in named(node) for s in self.effect(child))
+            case "let_declaration":
+                return self.declaration(node)
+            case "attribute_item" | "empty_statement" | "use_declaration":
+                return ()
+        return self.effect(node)
+
+    def effect(self, node: Any) -> tuple[Part, ...]:
+        """What an expression that stands alone does."""
+        match node.type:
+            case "assignment_expression":
+                left, right = (self.expression(field_of(node, side)) for side in ("left", "right"))
+                return (self.part("assign", node, left, "", right),)
+            case "compound_assignment_expr" if text_of(field_of(node, "operator"))[:-1] in SIGNS:
+                left, right = (self.expression(field_of(node, side)) for side in ("left", "right"))
+                return (self.part("assign", node, left, text_of(field_of(node, "operator"))[:-1], right),)
+            case "if_expression":
+                return (self.branch(node, self.block),)
+            case "for_expression":
+                return (self.loop(node),)
+            case "block":
+                return (self.part("block", node, tuple(self.block(node))),)
+            case "return_expression":
+                return (self.ending(named(node)[0]) if named(node) else self.part("return", node, None),)
+            case "call_expression":
+                return (self.part("do", node, self.expression(node)),)
+            case "macro_invocation" if text_of(field_of(node, "macro")) in QUIET:
+                return ()
+            case "macro_invocation" if text_of(field_of(node, "macro")) in ("panic", "unreachable", "todo"):
+                return (self.part("fail", node, "a panic"),)
+        return (self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})"),)
+
+    def declaration(self, node: Any) -> tuple[Part, ...]:
+        """``let``; with ``else`` only for a vector that is normalized where it has a length."""
+        pattern, given, value = (field_of(node, key) for key in ("pattern", "type", "value"))
+        if (other := field_of(node, "alternative")) is not None:
+            return self.normalized_or_left(node, text_of(pattern), value, other)
+        number, shape = type_of(text_of(given)) if given is not None else ("auto", None)
+        if pattern.type != "identifier":
+            return (self.unread(node, "a pattern"),)
+        is_link = value is not None and any(child.type == "mutable_specifier" for child in value.children)  # &mut x
+        start = None if value is None else self.expression(value)
+        sizes = self.sizes(node, shape) if shape is not None or number == "auto" else None
+        if start is None and shape is None:
+            return (self.unread(node, "a name without a type that is known"),)
+        number = "auto" if shape is None else number
+        return (self.part("declare", node, text_of(pattern), number, sizes, start, is_link),)
+
+    def normalized_or_left(self, node: Any, pattern: str, value: Any, other: Any) -> tuple[Part, ...]:
+        """``let Some(u) = v.try_normalize(least) else { .. }``."""
+        found, function = re.fullmatch(r"Some\((\w+)\)", pattern), field_of(value, "function")
+        is_vector = function is not None and function.type == "field_expression"
+        if not found or not is_vector or text_of(field_of(function, "field")) != "try_normalize":
+            return (self.unread(node, "a let that may fail"),)
+        vector, least = (
+            self.expression(field_of(function, "value")),
+            self.expression(named(field_of(value, "arguments"))[0]),
+        )
+        length = self.part("method", value, vector, "norm", ())
+        test = self.part("compare", value, ">", length, least)
+        start = self.part("method", value, vector, "normalize", ())
+        return (self.part("if", value, test, (), tuple(self.block(other))),
+                self.part("declare", node, found[1], "auto", None, start, False))  # fmt: skip
+
+    def branch(self, node: Any, reading: Any) -> Part:
+        """``if``; ``reading`` says whether an expression at the end of a block is a value."""
+        test = field_of(node, "condition")
+        if test.type in ("let_condition", "let_chain"):
+            return self.unread(node, "a condition with a pattern")
+        then, other = field_of(node, "consequence"), field_of(node, "alternative")
+        inner = named(other)[0] if other is not None else None
+        if inner is not None and inner.type == "if_expression":
+            rest: tuple[Part, ...] = (self.branch(inner, reading),)
+        else:
+            rest = tuple(reading(inner)) if inner is not None else ()
+        return self.part("if", node, self.expression(test), tuple(reading(then)), rest)
+
+    def loop(self, node: Any) -> Part:
+        """``for i in 0..n``."""
+        name, source = field_of(node, "pattern"), field_of(node, "value")
+        ends = named(source) if source.type == "range_expression" else []
+        if name.type != "identifier" or len(ends) != 2:
+            return self.unread(node, "a loop over something else than a range")
+        start, stop = map(self.expression, ends)
+        one = self.part("number", node, 1, "int")
+        if any(text_of(child) == "..=" for child in source.children):
+            stop = self.part("op", source, "+", stop, one)
+        return self.part("for", node, text_of(name), start, stop, one, tuple(self.block(field_of(node, "body"))))
+
+    # -- expressions --
+
+    def expression(self, node: Any) -> Part:
+        match node.type:
+            case "integer_literal" | "float_literal":
+                text = text_of(node).replace("_f", "f").replace("_", "")
+                bare = re.sub(r"(f32|f64|[iu](8|16|32|64|128|size))$", "", text)
+                value = None if re.match(r"0[xob]", bare) else read_decimal(bare.removesuffix(".") or "x")
+                is_real = node.type == "float_literal" or text.endswith(("f32", "f64"))
+                if value is None:
+                    return self.refuse(node, f"the number {text_of(node)[:20]}")
+                return self.part("number", node, value, "real" if is_real else "int")
+            case "boolean_literal":
+                return self.part("number", node, int(text_of(node) == "true"), "int")
+            case "identifier" | "self":
+                return self.part("name", node, text_of(node))
+            case "scoped_identifier":
+                last = text_of(field_of(node, "name"))
+                return self.part("name", node, "M_PI" if last == "PI" else "".join(text_of(node).split()))
+            case "parenthesized_expression" | "reference_expression":
+                return self.expression(field_of(node, "value") or named(node)[-1])
+            case "unary_expression":
+                value_, sign = self.expression(named(node)[-1]), text_of(node)[0]
+                return value_ if sign == "*" else self.part("minus" if sign == "-" else "not", node, value_)
+            case "binary_expression":
+                return self.binary(node)
+            case "index_expression":
+                base, place = named(node)
+                places = named(place) if place.type == "tuple_expression" else [place]
+                return self.part("index", node, self.expression(base), tuple(map(self.expression, places)))
+            case "field_expression":
+                if re.fullmatch(r"[A-Za-z_][\w.]*", text_of(node)):
+                    return self.part("name", node, text_of(node))
+            case "array_expression" if not any(text_of(child) == ";" for child in node.children):
+                return self.part("list", node, tuple(map(self.expression, named(node))))
+            case "type_cast_expression":
+                number, _ = type_of(text_of(field_of(node, "type")))
+                return self.part("cast", node, number, self.expression(field_of(node, "value")))
+            case "if_expression":
+                return self.choice(node)
+            case "call_expression":
+                return self.call(node)
+        return self.refuse(node, f"an expression outside the language of audit ({node.type.replace('_', ' ')})")
+
+    def binary(self, node: Any) -> Part:
+        left, right = (self.expression(field_of(node, side)) for side in ("left", "right"))
+        sign = text_of(field_of(node, "operator"))
+        if sign in SIGNS:
+            return self.part("op", node, sign, left, right)
+        if sign in COMPARISONS:
+            return self.part("compare", node, sign, left, right)
+        return self.part(WORDS[sign], node, left, right) if sign in WORDS else self.refuse(node, f"the operator {sign}")
+
+    def choice(self, node: Any) -> Part:
+        """``if a { x } else { y }`` as a value."""
+        test, then, other = (field_of(node, key) for key in ("condition", "consequence", "alternative"))
+        blocks = [named(then), named(named(other)[0]) if other is not None else []]
+        is_chain = other is not None and named(other)[0].type == "if_expression"
+        if is_chain or any(len(b) != 1 or b[0].type.endswith(("statement", "declaration")) for b in blocks):
+            return self.refuse(node, "a choice between more than two expressions")
+        if test.type in ("let_condition", "let_chain"):
+            return self.refuse(node, "a condition with a pattern")
+        return self.part("choose", node, *map(self.expression, (test, blocks[0][0], blocks[1][0])))
+
+    def call(self, node: Any) -> Part:
+        """A function, a method of a number as a function, a constructor as a list."""
+        function = field_of(node, "function")
+        arguments = tuple(map(self.expression, named(field_of(node, "arguments"))))
+        if function.type == "generic_function":
+            function = field_of(function, "function")
+        if function.type == "field_expression":
+            return self.method(node, function, arguments)
+        name = re.sub(r"::<[^:]*>(?=::|$)|<[^:]*>(?=::|$)|\s", "", text_of(function))
+        head, _, last = name.rpartition("::")
+        if not head or head == "Self":
+            return arguments[0] if name in ("Ok", "Some") and arguments else self.part("call", node, last, arguments)
+        if QUATERNION.fullmatch(head):
+            return self.part("call", node, f"Quaternion::{last}", arguments)
+        if last in ("convert", "from", "from_f64", "new_unchecked") and len(arguments) == 1:
+            return arguments[0]
+        if last in ("zero", "one") and not arguments:
+            return self.part("number", node, int(last == "one"), "auto")
+        shape = type_of(head)[1]
+        if shape and last == "from_row_slice" and arguments and arguments[0].kind == "list":
+            last, arguments = "new", arguments[0].parts[0]
+        if shape and last == "new" and arguments:
+            sides = (self.part("number", node, n, "int") for n in shape)
+            return self.part("call", node, "Matrix::new", (*sides, self.part("list", node, arguments)))
+        if shape and last in ("zeros", "identity", "zero") and not arguments:
+            sizes = tuple(self.part("number", node, n, "int") for n in shape)
+            return self.part("call", node, "eye" if last == "identity" else "zeros", sizes)
+        if head in ("f64", "f32") and last in NUMBERS:
+            return self.part("call", node, NUMBERS[last] or last, arguments)
+        return self.part("call", node, name, arguments)
+
+    def method(self, node: Any, function: Any, arguments: tuple[Part, ...]) -> Part:
+        base, name = self.expression(field_of(function, "value")), text_of(field_of(function, "field"))
+        if base.kind == "name" and base.parts[0] == "self":
+            return self.part("call", node, name, arguments)
+        if name in self.own:
+            return self.refuse(node, f"the method {name} of this file on another value")
+        if name in SAME and not arguments:
+            return base
+        if name in NUMBERS and len(arguments) < 2:
+            return self.part("call", node, NUMBERS[name] or name, (base, *arguments))
+        return self.part("method", node, base, name, arguments)
+
+
+LOOPS = ("for_expression", "while_expression", "loop_expression", "match_expression", "block", "unsafe_block")

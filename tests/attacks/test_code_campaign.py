@@ -1,0 +1,38 @@
+"""One-token mutants of C: a few in every run, thousands by ``python -m tests.attacks.campaigns.code``."""
+
+from __future__ import annotations
+
+import shutil
+
+import pytest
+
+from tests.attacks.campaigns.code import Subject, is_same, judge, list_mutants, list_subjects, make_batches
+
+needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
+SUM = Subject(
+    "sum", "double f(double a, const double v[2], double y[1])\n{\n    y[0] = a + v[1];\n    return a;\n}\n", "f"
+)
+
+
+def test_a_subject_knows_its_parameters_and_every_token_has_its_turn():
+    assert SUM.parameters() == [("a", 0, False), ("v", 2, False), ("y", 1, True)] and SUM.outputs() == ["y", "return"]
+    mutants = list_mutants(SUM)
+    assert len({*mutants}) == len(mutants) > 10 and SUM.text not in mutants
+    assert any("a - v[1]" in mutant for mutant in mutants) and any("v[0]" in mutant for mutant in mutants)
+
+
+def test_a_batch_repeats_no_mutant_of_another():
+    batches = make_batches(500, seed=3)
+    assert len({batch.name for batch in batches}) == len(batches) == 5
+
+
+def test_only_numbers_are_compared():
+    assert is_same([1.0], [1.0]) and not is_same([1.0], [1.1]) and is_same([1.0], [float("nan")]) is None
+
+
+@needs_compiler
+@pytest.mark.parametrize("name", ["gravity_sign", "horizontal_field"])
+def test_no_mutant_is_proved_equal_that_computes_something_else(name):
+    assert name in {subject.name for subject in list_subjects()}
+    found = judge((name, 0, 10, 1))
+    assert not found["wrong"] and found["counts"].get("REFUTED and another", 0) >= 3

@@ -1,0 +1,211 @@
+"""A guard as code: the C and its twin do the same, their bounds hold for the doubles that they return."""
+
+from __future__ import annotations
+
+import json
+import random
+import subprocess
+from fractions import Fraction
+
+import pytest
+
+import navsym as nav
+from navsym.cli.main import run
+from navsym.export.streaming_rule import StreamingRule
+from navsym.export.streams import Rule
+
+
+def chain(n):
+    """x_i' = x_(i+1)."""
+    return [["1" if j == i + 1 else "0" for j in range(n)] for i in range(n)]
+
+
+OSCILLATOR = [["0", "1"], ["-1", "0"]]
+
+
+def guard_of(F, H, sigma, memory, step, **options):
+    """A guard of the last state."""
+    states = " ".join(f"x{k}" for k in range(len(F)))
+    return nav.Guard(
+        nav.Model(states, F, H, sigma, targets={"goal": f"x{len(F) - 1}"}), memory=memory, step=step, **options
+    )
+
+
+def twin(guard):
+    rule = Rule(guard)
+    table, functional, tiny = rule.numbers
+    return StreamingRule(table, functional, rule.sigma, tiny, guard.length)
+
+
+def stream(count, sensors, seed=1):
+    """Measurements with gaps and bounds that change."""
+    generator = random.Random(seed)
+    for _ in range(count):
+        z = [generator.uniform(-3, 3) if generator.random() < 0.7 else None for _ in range(sensors)]
+        yield z, [generator.choice((0.5, 1.0, 3.0)) for _ in range(sensors)]
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory):
+    """A guard and its folder."""
+    out = tmp_path_factory.mktemp("guard") / "code"
+    guard = guard_of(OSCILLATOR, ["x0", "x1"], ["1", "1/3"], 12, "1/4")
+    return guard, out, nav.export(guard, ["c", "cpp", "python"], out, vectors=20)
+
+
+def test_a_guard_is_exported_compiled_and_replayed(exported):
+    _, out, answer = exported
+    assert [outcome.status for outcome in answer.outcomes] == ["verified"] * 3
+    assert (
+        all(row.status == "ACCEPTED" for row in nav.check(out))
+        and "12 epochs" in (out / "c" / "model_goal_guard.h").read_text()
+    )
+    assert nav.Guard.load(out / "guard.json").length == 12
+
+
+def test_no_memory_is_allocated(exported):
+    source = (exported[1] / "c" / "model_goal_guard.c").read_text()
+    assert not any(word in source for word in ("malloc", "calloc", "alloca", "free(")) and "nv_table" in source
+
+
+PROGRAM = r"""
+#include "model_goal_guard.h"
+#include <stdio.h>
+int main(void)
+{
+    static model_goal_guard_state state;
+    double z[2], s[2];
+    model_goal_guard_start(&state);
+    while (scanf("%lf %lf %lf %lf", &z[0], &z[1], &s[0], &s[1]) == 4) {
+        model_goal_guard_estimate e = {0.0, 0.0, 0.0};
+        const int status = (int)model_goal_guard_step(&state, z, s, &e);
+        printf("%d %.17g %.17g %.17g\n", status, e.estimate, e.radius, e.least);
+    }
+    return 0;
+}
+"""
+
+
+def test_the_c_and_its_twin_agree_bit_for_bit(exported, tmp_path):
+    guard, out, _ = exported
+    (tmp_path / "program.c").write_text(PROGRAM)
+    code = str(out / "c")
+    command = ["gcc", "-std=c99", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror", "-pedantic", f"-I{code}"]
+    subprocess.run([*command, "program.c", f"{code}/model_goal_guard.c", "-o", "run", "-lm"], cwd=tmp_path, check=True)
+    epochs, rule = list(stream(300, 2)), twin(guard)
+    lines = [" ".join("nan" if x is None else repr(x) for x in (*z, *sigma)) for z, sigma in epochs]
+    done = subprocess.run([tmp_path / "run"], input="\n".join(lines), capture_output=True, text=True, check=True)
+    seen = 0
+    for line, (z, sigma) in zip(done.stdout.splitlines(), epochs, strict=True):
+        status, *numbers = line.split()
+        expected = rule.step(z, sigma)
+        assert int(status) == expected[0]
+        if expected[0] == 0:
+            assert [float(x) for x in numbers] == list(expected[1:])
+            seen += 1
+    assert seen > 290
+
+
+@pytest.mark.parametrize("F, H", [(chain(1), ["x0"]), (chain(3), ["x0", "x0 + x2"]), (OSCILLATOR, ["x0"])])
+def test_the_bounds_enclose_the_radius_of_the_guard(F, H):
+    guard, seen = guard_of(F, H, ["1"] * len(H), 9, "1/2"), 0
+    rule, exact = twin(guard), guard_of(F, H, ["1"] * len(H), 9, "1/2", bound="variance")
+    for z, sigma in stream(60, len(H)):
+        status, _, radius, least = rule.step(z, sigma)
+        known = exact.step(z, sigma={name: s for name, s in zip(exact.flow.names, sigma, strict=True)}).radius
+        if status == 0:
+            assert Fraction(least) <= Fraction(known.upper) and Fraction(radius) >= Fraction(known.lower)
+            assert radius - least <= 1e-11 * radius
+            seen += 1
+    assert seen > 40
+
+
+def exact_errors(scale, sigma, drop=0.0):
+    """(error, radius) in exact arithmetic of a polynomial of degree 4 seen through doubles; errors of at most sigma.
+
+    drop : part of the radius that is left out
+    """
+    n, step = 5, Fraction(1, 8)
+    rule = twin(guard_of(chain(n), ["x0"], [sigma], 20, step))
+    generator = random.Random(3)
+    state = [Fraction(generator.randint(-9, 9)) * scale for _ in range(n)]
+    factorials = [1, 1, 2, 6, 24]
+    bound = Fraction(rule.sigma[0])
+    for k in range(60):
+        t = k * step
+        true = sum(x * t**i / factorials[i] for i, x in enumerate(state))
+        z = float(true + bound * Fraction(generator.randint(-999, 999), 1000))
+        near = abs(Fraction(z) - true) <= bound  # or no double is
+        status, value, radius, _ = rule.step([z if near else None])
+        if status == 0:
+            yield abs(Fraction(value) - state[-1]), Fraction(radius) * Fraction(1 - drop)
+
+
+def test_rounding_is_part_of_the_radius():
+    errors = list(exact_errors(10**6, "1/100000000"))
+    assert len(errors) > 20 and all(error <= radius for error, radius in errors)
+    assert any(error > radius for error, radius in exact_errors(10**6, "1/100000000", drop=0.9999))
+
+
+@pytest.mark.parametrize(
+    "place, old, new",
+    [
+        ("test_main.c", "model_goal_guard_start(&state);", ""),
+        ("model_goal_guard.c", "out->radius = (cost", "out->radius = (0.99 * cost"),
+        ("model_goal_guard.c", "(value / f->ratio)", "value * 1.01"),
+        ("model_goal_guard.c", "state->newest + 1) < NV_N", "state->newest + 2) < NV_N"),
+        ("model_goal_guard.c", "best = k;", "best = 0;"),
+        ("model_goal_guard.c", "const double sure = ", "const double sure = 0.5 * "),
+    ],
+)
+def test_spoiled_code_fails_on_its_vectors(exported, tmp_path, place, old, new):
+    folder = exported[1] / "c"
+    for file in folder.glob("*.[ch]"):
+        text = file.read_text()
+        (tmp_path / file.name).write_text(text.replace(old, new) if file.name == place else text)
+    assert old in (folder / place).read_text()
+    subprocess.run("gcc -std=c99 -O1 *.c -o run -lm", shell=True, cwd=tmp_path, check=True)
+    done = subprocess.run([tmp_path / "run"], capture_output=True, text=True)
+    assert done.returncode == 1 and " wrong 0 " not in done.stdout
+
+
+def test_names_of_a_model_do_not_become_code(tmp_path):
+    model = nav.Model("b", [["0"]], ["b"], targets={"b':*": "b"})
+    answer = nav.export(nav.Guard(model, memory=2, step=1), ["c", "python"], tmp_path / "x", vectors=5)
+    assert [outcome.status for outcome in answer.outcomes] == ["verified"] * 2
+    assert (tmp_path / "x" / "c" / "model_b____guard.h").is_file()
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        ({"memory": 5}, "no step"),
+        ({"step": 1}, "no memory"),
+        ({"memory": 5, "step": 1, "outliers": 1}, "outliers=1"),
+        ({"memory": 1, "step": 1}, "longer memory"),
+    ],
+)
+def test_what_has_no_rule_is_refused(options, words, tmp_path):
+    guard = nav.Guard(nav.Model("x v", chain(2), ["x"], targets={"v": "v"}), **options)
+    with pytest.raises(nav.NavsymError, match=words):
+        nav.export(guard, "c", tmp_path / "x")
+    assert not (tmp_path / "x").exists()
+
+
+def test_regressors_of_time_and_other_languages_are_refused(tmp_path):
+    basis = nav.Guard(nav.Model.from_basis(["1", "s"]), "c1", memory=5, step=1)
+    with pytest.raises(nav.NavsymError, match="do not depend on time"):
+        nav.export(basis, "c", tmp_path / "x")
+    guard = guard_of(chain(1), ["x0"], "1", 3, 1)
+    with pytest.raises(nav.NavsymError, match="rust"):
+        nav.export(guard, "rust", tmp_path / "x")
+    with pytest.raises(nav.NavsymError, match="float"):
+        nav.export(guard, "c", tmp_path / "x", real="float")
+
+
+def test_the_file_of_a_guard_is_exported_by_the_verb(tmp_path, capsys):
+    guard_of(chain(2), ["x0"], "1", 6, "1/2").save(tmp_path / "guard.json")
+    options = ["--to", "python", "--out", str(tmp_path / "code"), "--vectors", "6", "--json"]
+    assert run(["export", str(tmp_path / "guard.json"), *options]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["languages"][0]["status"] == "verified" and document["functions"][0]["status"] == ["CERTIFIED"]
