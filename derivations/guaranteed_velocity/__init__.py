@@ -37,17 +37,19 @@ PAPER = Paper(
     },
     beside="2.7.name 3.2.contacts 3.2.theorem 4.2.identity-of-channels 4.6.same-instants",
     remarks=(
-        "1.3.spectrum 1.9.root-cause 1.observable 1.quarter-period.minute 3.1.terms 3.2.consistent 4.1.order "
+        "1.3.spectrum 1.9.root-cause 1.observable 1.quarter-period.minute 3.1.terms 3.2.consistent 3.3.back 4.1.order "
         "4.3.unique 4.4.closed-form 4.5.positive 4.6.stationary 4.6.weights 4.8.signs 4.14.y2.bias unique.*"
     ),
-    beyond="4.11.nonzero-beyond range.*",
+    beyond="4.11.nonzero-beyond range.* position.*",
     causes={"4.4": "4.3.u2"},
     left_out={
         "after (1.1): all y_i are of one order": "no figures of the errors are given",
-        "section 3: position correction has l = m, hence unique algorithms": "a result of [9], model not printed",
+        "section 3: position correction has l = m, hence unique algorithms": "a result of [9], whose model and range "
+        "of T are not printed; position.y2 has l = 3 for m = 4 and T >= 2 pi",
         "section 4.1: S0 satisfies the lemma of [9]": "the lemma is not printed; 4.4* proves the optimum without it",
         "section 3: steps 1 to 4 of the algorithm": "taken step by step by 4.1 to 4.13; for any system by no claim",
-        "(2.5): the part Phi_H of the weight": "2.5, 2.6 and 2.D treat impulses only",
-        "(3.1): both problems have one value; the converse of (3.4)": "proved for this system alone, by 4.13 and 3.4",
+        "(2.5): Phi_H as any piecewise continuous function": "2.6.piecewise, 2.D.piecewise, 3.1.piecewise take "
+        "polynomials of degree 2 on two pieces",
+        "(3.1): both problems have one value, for every system": "proved for this one and every T, by 4.13 and range.*",
     },
 )

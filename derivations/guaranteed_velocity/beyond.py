@@ -12,6 +12,8 @@ from collections.abc import Callable
 import sympy as sp
 
 from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, Statement, claim
+from navsym.models.linear import LinearModel
+from navsym.models.transition.exponential import regressors
 from navsym_papers.guaranteed_velocity.model import INSTANTS, H, T, alternating, tau, weights
 
 UNITS = {"y1": (1, 0, 0), "y2": (0, 1, 0), "y3": (0, 0, 1)}
@@ -257,7 +259,53 @@ def drift_touches_half_a_period_apart():
     return contacts((1, 0, 1), 2 * sp.sin(s / 2) ** 2, 2 * sp.cos(s / 2) ** 2)
 
 
-@claim("range.repeats")
-def measurements_repeat():
-    """H repeats after 2 pi: from T = 2 pi (y1, y3) and 5 pi/2 (y2) on other times serve as well: no longer unique."""
-    return Equation(printed=list(H(tau - 2 * sp.pi)), derived=list(H(tau)))
+def twins(state: str, dual: tuple, times: tuple, weights_: tuple, start: sp.Expr) -> Callable[[], Statement]:
+    """The optimum of a state on other times than those of its regime, for T >= start."""
+
+    def derive() -> Statement:
+        return solution(state, dual, times, weights_, sp.Integer(1), start, None)
+
+    derive.__module__ = __name__
+    return derive
+
+
+HALF = (sp.Rational(1, 2), -sp.Rational(1, 2))
+#: H repeats after 2 pi, so that one time of the last regime may move back by a period as soon as it lies in [0, T].
+TWINS: tuple[Claim, ...] = tuple(
+    claim(f"range.{state}.twin", title=f"{state}, T >= {start}: other times give the same error: no longer unique.")(
+        twins(state, dual, times, weights_, start)
+    )
+    for state, dual, times, weights_, start in (
+        ("y1", (1, 0, 0), (T - 2 * sp.pi,), (sp.Integer(1),), 2 * sp.pi),
+        ("y2", (0, 1, 0), (T - 5 * sp.pi / 2, T - 3 * sp.pi / 2), HALF, 5 * sp.pi / 2),
+        ("y3", (1, 0, 1), (T - 2 * sp.pi, T - sp.pi), HALF, 2 * sp.pi),
+    )
+)
+
+
+# -- position correction ---------------------------------------
+
+#: Position error before the three states of a channel; z = y0 + w.
+POSITION = LinearModel(
+    F=[[0, 1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1], [0, 0, -1, 0]],
+    H=[[1, 0, 0, 0]],
+    states=("y0", "y1", "y2", "y3"),
+    measurements=("position",),
+)
+
+
+@claim("position.y2")
+def tilt_from_positions():
+    """Position correction, y2, T >= 2 pi: l = 3 times serve m = 4 states, where [9] is quoted with l = m."""
+    quarter = sp.Rational(1, 4)
+    return Optimum(
+        regressors=tuple(regressors(POSITION, T, tau).matrix),
+        functional=(0, 0, 1, 0),
+        variable=tau,
+        interval=(sp.Integer(0), T),
+        dual=(1, 0, 1, 0),
+        support=(T, T - sp.pi, T - 2 * sp.pi),
+        weights=(quarter, -2 * quarter, quarter),
+        value=sp.Integer(1),
+        box={T: (2 * sp.pi, None)},
+    )

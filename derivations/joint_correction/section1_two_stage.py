@@ -263,7 +263,7 @@ def second_gain_is_unique():
             found,
             "the coefficients are affine in K_z with an invertible matrix",
             PROVED,
-            scope="n - m = 1, 2, 3, all phi and C_2",
+            scope="n - m = 1, 2, 3, all phi",
             assumptions=("det C_2 != 0",),
         ),
         unsaid="that a map is affine and invertible is said of all its values at once",

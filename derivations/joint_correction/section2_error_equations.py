@@ -265,6 +265,13 @@ def where_great_circles_are_not_stationary():
     )
 
 
+@claim("2.assumption1.orthodrome.much", expect=CERTIFIED)
+def great_circles_are_not_always_much_below():
+    """Read with <<: at 250 m/s, course constant -0.538, a thousandth beside the vertex, left over right is 0.637."""
+    left, right = stationarity(250 / (EARTH_RATE * EARTH_RADIUS), sp.Rational(-538, 1000), sp.Rational(1, 1000))
+    return Equation(sp.Rational(637, 1000), sp.sqrt(left / right), tolerance=sp.Rational(1, 2000))
+
+
 @claim("2.scale.mu", expect=CERTIFIED)
 def mu_is_small():
     """mu <= 0.1 for every latitude and heading up to 250 m/s."""

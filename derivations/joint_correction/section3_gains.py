@@ -180,16 +180,14 @@ def coupled_system_is_stable_inside():
     counts = tuple(
         poles_on_the_right(sp.Integer(1), value) for value in (sp.Integer(0), sp.Rational(1, 2), sp.Integer(2))
     )
-    no_other = parts_never_vanish_together()
-    found = counts[0] == counts[1] == 0 and counts[2] > 0 and no_other
     return Property(
-        True,
+        (0, 0, 2, True),
         Finding(
-            found,
+            (*counts, parts_never_vanish_together()),
             "no crossing of the axis, Routh's table at one point of every region",
             PROVED,
             scope="all lambda_c > 0, all real kappa",
-            evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}",
+            evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}; the parts have no common zero",
         ),
         unsaid="roots of a polynomial with free coefficients are counted by regions",
     )

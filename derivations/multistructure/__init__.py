@@ -37,8 +37,8 @@ PAPER = Paper(
     ),
     remarks=(
         "1.arguments 2.form 2.drift.across 2.drift.equation 3.inertial 5.prediction 6.gaussian 8.joseph 11.parts "
-        "12.selection 13.densities 13.every 17.first 17.fold 17.same 21.prior 21.start K.second K.series near.* "
-        "accumulate.all"
+        "12.selection 13.densities 13.every 17.first 17.fold 17.same 21.prior 21.start K.second K.third K.series "
+        "near.* accumulate.all"
     ),
     beyond="10.forgets* 10.error* 17.error* K.exact K.fold K.longer",
     left_out={

@@ -250,16 +250,16 @@ def width_in_the_figure():
 
 
 def width_of_an_example():
-    """Width over n for one slope along x at the start and one along y at the end."""
-    points = [(1, 0), *[(0, 0)] * 9, (0, 1)]
+    """Width over n for one slope along (1, 2) at the start and one across it at the end."""
+    points = [(1, 2), *[(0, 0)] * 9, (2, -1)]
     A2, A1, A0 = form_sums(moment(points, 0), moment(points, 1))
     return sp.sqrt(A1**2 - 4 * A2 * A0) / moment(points, 0).det() / 10
 
 
 @claim(
     "interval.whole",
-    reason="the tenth of the track is printed for figure 4 only; where the terrain slopes along x in one part of the "
-    "track and along y in the other, [t_min, t_max] is the whole track",
+    reason="the tenth of the track is printed for figure 4 only; where the terrain slopes one way in one part of the "
+    "track and across it in the other, [t_min, t_max] is the whole track",
 )
 def width():
     """On other terrain the interval [t_min, t_max] may be the whole track."""

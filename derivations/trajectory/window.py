@@ -136,13 +136,15 @@ s = sp.Symbol("s", positive=True)  # rho tau
 def closed_form_for_two_states():
     """n = 2: mu(N_s) = 3 + sqrt(10), mu(N_f) = (7 + 3 sqrt(5))/2, exactly.
 
-    mu + 1/mu of a (2, 2) matrix is its sum of squares over the size of its determinant.
+    mu + 1/mu of a (2, 2) matrix is its sum of squares over the size of its determinant; that mu - 1/mu is the positive
+    root of its square less four chooses mu above one.
     """
     plain = N_f(2)
     lengths = [plain[:, k].dot(plain[:, k]) for k in range(2)]
     squares = [sum(lengths) / sp.Abs(plain.det()), 2 / sp.sqrt(plain.det() ** 2 / (lengths[0] * lengths[1]))]
     found = [(7 + 3 * sp.sqrt(5)) / 2, 3 + sp.sqrt(10)]
-    return Equation([mu + 1 / mu for mu in found], squares)
+    above_one = [sp.sqrt(total**2 - 4) for total in squares]
+    return Equation([mu + s / mu for s in (1, -1) for mu in found], [*squares, *above_one])
 
 
 @claim("table.n2.best")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, claims_of, compare_equations
+from navsym.claims import OPEN, PROVED, REFUTED, claims_of, compare_equations
 from navsym.prove.ladder import decide
 from navsym_papers import joint_correction
-from navsym_papers.joint_correction import section1_systems, section3_gains
+from navsym_papers.joint_correction import section1_any_size, section1_systems, section3_gains
 from navsym_papers.joint_correction.inertial import ORDERS, lowest_order
 from navsym_papers.joint_correction.section2_groups import VELOCITY_ROWS, mu, position, row, v1, velocity
 
@@ -67,3 +68,11 @@ def test_every_dropped_term_is_on_record_with_its_order():
         for dropped in group.dropped:
             for term in dropped:
                 assert term.order == lowest_order(term.term, ORDERS) >= 2
+
+
+@pytest.mark.parametrize("number", [one[0] for one in section1_any_size.STATEMENTS])
+def test_twice_the_right_side_is_not_proved_for_matrices_of_any_size(number):
+    _, _, left, right, *given = next(one for one in section1_any_size.STATEMENTS if one[0] == number)
+    assert section1_any_size.of_every_size(left, right, *given)().derived.value is True
+    spoiled = section1_any_size.of_every_size(left, f"2*({right})", *given)().derived
+    assert spoiled.value is False or spoiled.status == OPEN

@@ -1,0 +1,68 @@
+"""Signs flipped and indices shifted in the sources of papers: no claim that names the changed quantity stays silent.
+
+Ten places of the shortest paper by default, 40 of the five papers in a long run, 200 in a slow one.
+"""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from navsym.core.sandbox import run_many
+from tests.derivations.planted import Outcome, plant, watch
+
+FIVE = ("guaranteed_velocity", "joint_correction", "multistructure", "terrain_search", "trajectory")
+SEED, SECONDS = 1, 150
+
+#: Claims that a fault leaves as they are, with the reason: the changed formula says the same there.
+SAME: dict[tuple[str, str], str] = {
+    ("guaranteed_velocity:4.11.N13*", "N()[(0, 2)]: 2 -> 1"): "all three entries of the first row are 1",
+    (
+        "guaranteed_velocity:1.3.spectrum",
+        "lam * sp.eye(3) - sp.Matrix(CHANNEL.F) -> lam * sp.eye(3) + sp.Matrix(CHANNEL.F)",
+    ): "lambda^3 + lambda is odd: F and -F have the same spectrum",
+    ("guaranteed_velocity:3.3.min", "h1 + names[2] * h2 -> h1 - names[2] * h2"): "it asks which names occur",
+    (
+        "multistructure:2.growth.every",
+        "sp.sin(2 * sp.pi) - sp.sin(0) -> sp.sin(2 * sp.pi) + sp.sin(0)",
+    ): "the sine of 0 is 0: after a whole turn the course is the same",
+    ("multistructure:near.cumulant", "-mean -> mean"): "only its second and fourth powers enter",
+    ("terrain_search:sequential.below", "-1 -> 1"): "the best hypotheses lie at 0 and 1",
+    (
+        "terrain_search:roots.both",
+        "A2 * u * u + A1 * u * v -> A2 * u * u - A1 * u * v",
+    ): "u v = 0 along the axes, where the roots are",
+    ("terrain_search:interval.whole", "-1 -> 1"): "two slopes of different directions serve as well",
+}
+
+
+def outcomes(paper: str, count: int) -> list[Outcome]:
+    """What faults at some places do, each planted in a process of its own."""
+    seen = watch(paper)
+    places = random.Random(SEED).sample(sorted(seen.names), count)
+    found = [one.value for one in run_many(lambda place: plant(paper, place, seen), places, 1, SECONDS)]
+    assert all(isinstance(one, Outcome) for one in found), found
+    return found
+
+
+def require_noticed(found: list[Outcome]) -> None:
+    silent = [one for one in found if not one.moved and not one.fell]
+    assert not [one for one in silent if (f"{one.place[0].split('.')[1]}:{one.silent[0]}", one.line) not in SAME]
+    assert sum(bool(one.fell) for one in found) >= 0.7 * len(found), [one for one in found if not one.fell]
+
+
+def test_a_fault_in_a_model_does_not_stay_silent():
+    require_noticed(outcomes("alpha_beta_filter", 10))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("paper", FIVE)
+def test_eight_faults_in_a_paper_do_not_stay_silent(paper):
+    require_noticed(outcomes(paper, 8))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("paper", FIVE)
+def test_forty_faults_in_a_paper_do_not_stay_silent(paper):
+    require_noticed(outcomes(paper, 40))
