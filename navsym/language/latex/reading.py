@@ -296,6 +296,9 @@ def read_relation(relation: Relation, places: list[int], notation: Notation, lin
     try:
         if relation.trouble is not None:
             raise relation.trouble
+        if relation.index and not is_whole(notation, relation.index):
+            remedy = f'declare {relation.index} = {{ integer = ["1", "oo"] }}'
+            raise Refusal(relation.at, "a whole number that runs through the list", relation.index, remedy)
         texts, names = read_sides(relation, notation, unknown)
         return ReadFormula(
             lines.name, row, column, source, "READ", None, texts[0], relation.sign, texts[1], names, latex
@@ -305,6 +308,12 @@ def read_relation(relation: Relation, places: list[int], notation: Notation, lin
         why = f"line {spot[0]}, column {spot[1]}: {refusal}"
         pairs = tuple(dict.fromkeys((str(u.args[0]), str(u.args[1])) for u in unknown))
         return ReadFormula(lines.name, row, column, source, "REFUSED", why, None, None, None, (), latex, spot, pairs)
+
+
+def is_whole(notation: Notation, name: str) -> bool:
+    """True for a name that is declared a whole number."""
+    declaration = notation.written.get(name)
+    return isinstance(declaration, Mapping) and "integer" in declaration
 
 
 def read_sides(relation: Relation, notation: Notation, unknown: list[Part]) -> tuple[tuple[str, str], tuple[str, ...]]:
