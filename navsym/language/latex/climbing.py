@@ -7,18 +7,38 @@ from __future__ import annotations
 
 import re
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import prod
 from typing import Any
 
-from navsym.language.latex.notation import ACCENTS, CALLS, COMMANDS, DOTS, GREEK, Notation
+from navsym.language.latex.notation import (
+    ACCENTS,
+    CALLS,
+    COMMANDS,
+    CONDITIONS,
+    DOTS,
+    GREEK,
+    IF,
+    REST,
+    Notation,
+)  # fmt: skip
 from navsym.language.latex.parts import Part, Refusal
 from navsym.language.latex.tokens import Token, clean, match_brace, plain_word, split_tokens, underscore
 
 FRACTIONS = (r"\frac", r"\dfrac", r"\tfrac")
-CLOSING = {"(": ")", "[": "]", "|<": ">|", "||<": ">||", "|": "|", "||": "||", "floor<": ">floor"}
-MARKS = {r"\cdot": ".", r"\times": "x", r"\otimes": "ox", "/": "/"}
+CLOSING = {
+    "(": ")",
+    "[": "]",
+    "|<": ">|",
+    "||<": ">||",
+    "|": "|",
+    "||": "||",
+    "floor<": ">floor",
+    "angle<": ">angle",
+    "cases<": ">cases",
+}
+MARKS = {r"\cdot": ".", r"\times": "x", r"\otimes": "ox", "/": "/", "*": "*", r"\ast": "*"}
 TRANSPOSES = {r"\top": "top", r"\intercal": "top", "T": "T"}
 
 
@@ -123,12 +143,12 @@ class Climber:
             self.refuse("a factor")
         entry = self.entry()
         if entry is not None:
-            name, found, bare = entry
+            name, found, power = entry
             if name in CALLS and name not in self.notation:
                 return self.function(CALLS[name], found[-1])
             at = found[0].base[0].at if found[0].base else self.tokens[self.place].at
             self.place = found[-1].after
-            return self.raised(Part("name", (name,), at), found[-1].sup if bare else None)
+            return self.raised(Part("name", (name,), at), power)
         if token in CLOSING:
             return self.enclosed()
         if token.isdigit() or token == ".":
@@ -155,7 +175,10 @@ class Climber:
             if one.after == stop and double:
                 return
             bracketed = inner[0].text in CLOSING and self.closing(self.place + 1) == stop - 1
-            if one.after != stop and not bracketed:
+            bold = self.tokens[self.place].bold and not any(
+                t.text in CLOSING or t.text in CLOSING.values() for t in inner
+            )
+            if one.after != stop and not bracketed and not bold:
                 self.refuse("a script on one symbol")
             del self.tokens[stop], self.tokens[self.place]
 
@@ -210,10 +233,12 @@ class Climber:
                     raise Refusal(self.tokens[place].at, "a name before its primes", "'", "write the name in [latex]")
                 scripts["^"], place = self.tokens[place:stop], stop
                 continue
-            if side in scripts:
+            primes = side == "^" and all(t.text == "'" for t in scripts.get("^", (Token("", 0, 0),)))
+            if side in scripts and not primes:
                 raise Refusal(self.tokens[place].at, "one script of a kind", "two", "use braces")
             bare = self.look_at(place + 1).isdigit()
-            scripts[side], after = self.group(place + 1)
+            script, after = self.group(place + 1)
+            scripts[side] = [*scripts[side], *script] if primes else script
             if bare and self.look_at(after).isdigit() and self.tokens[after].at == self.tokens[after - 1].end:
                 raise Refusal(self.tokens[place].at, "a script in braces", "two digits", "use braces")
             place = after
@@ -234,8 +259,8 @@ class Climber:
             end += 2
         return Cluster(self.tokens[start:after], sub, sup, end)
 
-    def entry(self) -> tuple[str, list[Cluster], bool] | None:
-        """A spelling of ``[latex]`` at this place, the longest; True where the last superscript is not part of it."""
+    def entry(self) -> tuple[str, list[Cluster], list[Token] | None] | None:
+        """A spelling of ``[latex]`` at this place, the longest, with the superscript that is no part of it."""
         for name, wanted in self.entries:
             found: list[Cluster] = []
             place = self.place
@@ -245,12 +270,15 @@ class Climber:
                     place = found[-1].after
             except Refusal:
                 continue
-            bare = wanted[-1].sup is None
-            if len(found) == len(wanted) and all(
-                is_spelled(w, f, bare and place == len(wanted) - 1)
-                for place, (w, f) in enumerate(zip(wanted, found, strict=True))
-            ):
-                return name, found, bare
+            if len(found) != len(wanted):
+                continue
+            rest = split_power(wanted[-1], found[-1])
+            pairs = list(zip(wanted, found, strict=True))
+            if all(is_spelled(w, f) for w, f in pairs[:-1]) and is_spelled(wanted[-1], rest[0]):
+                return name, found, rest[1]
+            turned = turn_value(wanted, found)
+            if turned is not None:
+                return name, found, turned
         return None
 
     def symbol(self) -> Part:
@@ -265,6 +293,8 @@ class Climber:
             return self.repeated("sum" if command == "sum" else "product", here)
         if command == "int":
             return self.integral(here)
+        if command == "lim":
+            return self.limit(here)
         if command in DOTS:
             return self.dotted(here, DOTS[command])
         if command == "sqrt":
@@ -391,15 +421,26 @@ class Climber:
         bars = [s for s in outer if s in ("|", "||")]
         if opening in ("|", "||") and bars:
             self.refuse("bars that are not nested", at)
+        if opening == "cases<":
+            return self.braced_cases(at)
         self.stops = [opening] if opening in ("|", "||") else []
-        inner = self.climb(0)
-        self.stops = outer
+        items = [self.climb(0)]
+        while opening in ("(", "[", "angle<") and self.look() == ",":
+            self.place += 1
+            items.append(self.climb(0))
+        self.stops, inner = outer, items[0]
         crossed = self.look() == r"\times"
         self.place += crossed
         if self.look() != CLOSING[opening]:
             self.refuse(CLOSING[opening])
         sub, sup, self.place = self.cluster_scripts(self.place + 1)
         subscript = [t.text for t in sub or ()]
+        if len(items) > 1 or opening == "angle<":
+            if crossed or sub or (opening == "angle<" and len(items) != 2):
+                self.refuse("a list or an inner product", at)
+            head = Part("inner", tuple(items), at) if opening == "angle<" else Part("list", (opening, *items), at)
+            return self.raised(head, sup)
+        crossed |= opening == "floor<" and sub is None and self.notation.has_skew_floor
         if (crossed or subscript == [r"\times"]) and opening in ("(", "[", "floor<"):
             return self.raised(Part("skew", (inner,), at), sup)
         if crossed or (sub and not (subscript == ["2"] and opening[:2] == "||")):
@@ -407,6 +448,47 @@ class Climber:
         kinds = {"|": "abs", "|<": "abs", "||": "norm", "||<": "norm", "floor<": "floor"}
         part = Part(kinds[opening], (inner,), at) if opening in kinds else Part("()", (opening, inner), at)
         return self.raised(part, sup)
+
+    def braced_cases(self, at: int) -> Part:
+        """Behind a brace: an array of cases, and the mark of no bracket."""
+        if not self.look().startswith(r"\begin"):
+            self.refuse("an array of cases", at)
+        part = self.table()
+        if part.head != "cases" or self.look() != ">cases":
+            self.refuse("cases", at)
+        sup, self.place = self.cluster_scripts(self.place + 1)[1:]
+        return self.raised(part, sup)
+
+    def list_cases(self, rows: list[list[list[Token]]], at: int) -> Part:
+        """Values and conditions, the last one for all the rest."""
+        parts: list[Part] = []
+        if any(len(row) != 2 or not all(row) for row in rows):
+            self.refuse("a value and its condition in each row", at)
+        for value, words in rows:
+            parts.append(self.part_of(value[:-1] if value[-1].text == "," else value))
+            words = words[:-1] if words[-1].text in (".", ",") else words
+            if [t.text for t in words if t.word and t.text in REST] and len(words) == 1:
+                break
+            words = words[1:] if words and words[0].word and words[0].text in IF else words
+            parts.append(self.comparison(words, at))
+        if len(parts) != 2 * len(rows) - 1 or len(rows) < 2:
+            self.refuse("a last row for all the rest", at)
+        return Part("cases", tuple(parts), at)
+
+    def comparison(self, tokens: list[Token], at: int) -> Part:
+        """A comparison of two or three sides."""
+        args: list[Any] = []
+        rest: list[Token] = []
+        for token in [*tokens, Token("", at, at)]:
+            sign = CONDITIONS.get(token.text.lstrip("\\")) if not token.word else None
+            if sign or not token.text:
+                args += [self.part_of(rest), *([sign] if sign else [])]
+                rest = []
+            else:
+                rest.append(token)
+        if len(args) not in (3, 5) or (len(args) == 5 and (args[1][0] != args[3][0] or args[1][0] not in "<>")):
+            self.refuse("one comparison", at)
+        return Part("cond", tuple(args), at)
 
     def numeral(self) -> Part:
         """Digits side by side."""
@@ -550,8 +632,9 @@ class Climber:
     def split_variable(self, tokens: list[Token]) -> tuple[Part, int]:
         """The variable of a derivative and its order."""
         power = 1
-        raised = [at for at, t in enumerate(tokens) if t.text == "^"]
-        if raised:
+        raised = [at for at, t in enumerate(tokens) if t.text == "^" and at]
+        behind = [t.text for t in tokens[raised[-1] + 1 :] if t.text not in "{}"] if raised else []
+        if len(behind) == 1 and behind[0].isdigit():
             power, rest = self.split_order([tokens[0], *tokens[raised[-1] :]])
             tokens = tokens[: raised[-1]] + rest
         if not tokens:
@@ -585,6 +668,25 @@ class Climber:
         self.bound = outer
         return Part("sum", (name, body, index, start, end), at)
 
+    def limit(self, here: Cluster) -> Part:
+        """A limit."""
+        at, sub = here.base[0].at, here.sub or []
+        arrows = [place for place, token in enumerate(sub) if token.text in (r"\to", r"\rightarrow")]
+        name = plain_word(sub[0]) if sub else None
+        if name is None or len(arrows) != 1 or here.sup or any(t.text in ("^", "'") for t in sub[: arrows[0]]):
+            self.refuse("a limit with its point", at)
+            raise AssertionError
+        script = sub[2 : arrows[0]] if sub[1].text == "_" else []
+        name += underscore([t for t in script if t.text not in "{}"])
+        if arrows[0] != 1 and not script:
+            self.refuse("one name that moves", at)
+        end = self.part_of(sub[arrows[0] + 1 :])
+        self.place = here.after
+        outer, self.bound = self.bound, self.bound.union((name,))
+        body = self.climb(1)
+        self.bound = outer
+        return Part("limit", (body, name, end), at)
+
     def integral(self, here: Cluster) -> Part:
         """An integral with both ends."""
         at = here.base[0].at
@@ -615,8 +717,13 @@ class Climber:
         if opening == "array":
             body = body[match_brace(body, 0) + 1 :]
         rows = [split_tokens(row, "&") for row in split_tokens(body, "\\\\")]
-        rows = rows[:-1] if rows[-1] == [[]] else rows
-        cells = [[t for t in cell if t.text != r"\hline"] for row in rows for cell in row]
+        rows = [[[t for t in cell if t.text != r"\hline"] for cell in row] for row in rows]
+        rows = [row for row in rows if any(row)]
+        cells = [cell for row in rows for cell in row]
+        if opening == "cases" or (opening == "array" and self.look_at(self.place - 1) == "cases<"):
+            part = self.list_cases(rows, at)
+            sup, self.place = self.cluster_scripts(stop + 3 + len(opening))[1:]
+            return self.raised(part, sup)
         if len({len(row) for row in rows}) != 1 or not all(cells):
             self.refuse("a whole matrix", at)
         known = ("matrix", "pmatrix", "bmatrix", "vmatrix", "smallmatrix", "array")
@@ -635,10 +742,34 @@ class Climber:
         return "".join(t.text for t in self.tokens[place + 2 : stop])
 
 
-def is_spelled(wanted: Cluster, found: Cluster, bare: bool) -> bool:
+def is_spelled(wanted: Cluster, found: Cluster) -> bool:
     """True when a symbol is written as an entry of ``[latex]`` says."""
-    pairs = [(wanted.base, found.base), (wanted.sub, found.sub)] + ([] if bare else [(wanted.sup, found.sup)])
-    return all(is_alike(w, f) for w, f in pairs)
+    return all(is_alike(getattr(wanted, side), getattr(found, side)) for side in ("base", "sub", "sup"))
+
+
+def split_power(wanted: Cluster, found: Cluster) -> tuple[Cluster, list[Token] | None]:
+    """The last symbol of a name without the power behind it: all of its superscript, or what follows its primes."""
+    count = len(wanted.sup or ())
+    texts = [token.text for token in found.sup or ()]
+    if any(token.text != "'" for token in wanted.sup or ()) or texts[:count] != ["'"] * count or "'" in texts[count:]:
+        return (found, None) if wanted.sup else (replace(found, sup=None), found.sup)
+    own, power = (found.sup or [])[:count], (found.sup or [])[count:]
+    return replace(found, sup=own or None), power or None
+
+
+def turn_value(wanted: list[Cluster], found: list[Cluster]) -> list[Token] | None:
+    r"""The T of ``h^T(x)`` for the entry ``h(x)``."""
+    if len(wanted) < 4 or wanted[0].sup or not found[0].sup or found[-1].sup:
+        return None
+    texts = [t.text for t in found[0].sup if t.text not in "{}"]
+    mark = texts[-1:] == ["T"] if len(texts) == 1 or texts[:-1] == [r"\mathsf"] else False
+    if not (mark or texts in ([r"\top"], [r"\intercal"])) or (wanted[1].base[0].text, wanted[-1].base[0].text) != (
+        "(",
+        ")",
+    ):
+        return None
+    pairs = zip(wanted, [replace(found[0], sup=None), *found[1:]], strict=True)
+    return found[0].sup if all(is_spelled(w, f) for w, f in pairs) else None
 
 
 def is_alike(wanted: list[Token] | None, found: list[Token] | None) -> bool:

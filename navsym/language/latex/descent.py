@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import re
 from copy import copy
+from itertools import pairwise
 from math import factorial
 from typing import Any
 
-from navsym.language.latex.mathlists import MATRICES, Noad, is_same, list_noads, list_spelling
-from navsym.language.latex.notation import CALLS, COMMANDS, DOTS, GREEK, Notation
+from navsym.language.latex.mathlists import MATRICES, Noad, is_same, is_same_list, list_noads, list_spelling
+from navsym.language.latex.notation import CALLS, COMMANDS, CONDITIONS, DOTS, GREEK, IF, REST, SENTENCE, Notation
 from navsym.language.latex.parts import Part, Refusal, join_factors, join_terms
 
-PAIRS = {"(": ")", "[": "]", "|": "|", "||": "||", "floor": "floor", "{": "}"}
+PAIRS = {"cases": "cases", "(": ")", "[": "]", "|": "|", "||": "||", "floor": "floor", "{": "}", "langle": "langle"}
 POWER = re.compile(r"(.*)\^(?:\{[^{}]*\}|\\[a-z]+|.)(?=(?:_.*)?$)", re.S)
 BIG = {"sum": "sum", "prod": "product"}
+COMMANDED = ("frac", "sqrt", *CALLS)
+LEAD = re.compile(r"^(?:\\[,;:! ]|\\q?quad(?![A-Za-z])|~|\s)+")
 
 
 def descend(text: str, notation: Notation, faces: dict[str, set[bool]] | None = None) -> Part:
@@ -104,8 +107,8 @@ class Descent:
         noad = self.noad
         if noad is None or noad.has_scripts:
             return ""
-        marks = {"cdot": ".", "times": "x", "otimes": "ox"}
-        mark = marks.get(noad.value, "") if noad.kind == "cmd" else "/" if noad.is_sign("/") else ""
+        marks = {"cdot": ".", "times": "x", "otimes": "ox", "ast": "*"}
+        mark = marks.get(noad.value, "") if noad.kind == "cmd" else noad.value if noad.is_sign("/", "*") else ""
         if mark == "x" and self.place + 1 < len(self.noads) and self.noads[self.place + 1].kind == "close":
             return None
         self.place += bool(mark)
@@ -127,7 +130,7 @@ class Descent:
             return self.number()
         if noad.kind == "env":
             self.place += 1
-            return self.power(self.matrix(noad), noad)
+            return self.power(self.cases(noad) if noad.value[0] == "cases" else self.matrix(noad), noad)
         if noad.kind == "arg":
             return self.command(noad)
         if noad.kind == "cmd":
@@ -142,6 +145,12 @@ class Descent:
         """A name that stands in ``[latex]``, the longest; a subscript behind it would be another name."""
         for name, wanted in self.spelled:
             found = self.noads[self.place : self.place + len(wanted)]
+            turned = transposed_value(wanted, found)
+            if turned is not None:
+                self.place += len(wanted)
+                if not any(w.bold for w in wanted):
+                    self.faces.setdefault(name, set()).add(found[0].bold)
+                return Part("name", (name,), found[0].at), turned
             if len(found) == len(wanted) and all(
                 is_same(w, f, last=w is wanted[-1]) for w, f in zip(wanted, found, strict=True)
             ):
@@ -152,13 +161,19 @@ class Descent:
                 last = found[-1]
                 if not any(w.bold for w in wanted):
                     self.faces.setdefault(name, set()).add(found[0].bold)
-                rest = Noad(last.kind, last.value, last.at, last.end, sup=None if wanted[-1].sup else last.sup)
+                behind = (last.sup or [])[len(wanted[-1].sup or ()) :] or None
+                rest = Noad(last.kind, last.value, last.at, last.end, sup=behind)
                 return Part("name", (name,), found[0].at), rest
         return None
 
     def name(self, noad: Noad) -> Part:
         """A letter, a Greek letter or a word with its subscript; letters side by side may be one name."""
         word = self.base(noad)
+        if noad.kind == "word" and noad.value in SENTENCE and not noad.has_scripts and word not in self.notation:
+            self.refuse("a formula without words", "write the words outside")
+        value = self.value(noad)
+        if value is not None:
+            return value
         if word is None or noad.before != (None, None):
             return self.unknown(noad)
         if noad.is_sign("e") and noad.sup and not noad.sub and "e" not in self.notation:
@@ -177,6 +192,25 @@ class Descent:
                 part = Part(head, (whole,) if head == "name" else (whole, spelled), noad.at)
                 return self.power(part, run[-1])
         return self.single(noad, word)
+
+    def value(self, noad: Noad) -> Part | None:
+        r"""A value such as ``f(x, y)``, ``h(\cdot)`` or ``f(x)`` of an undeclared name: one name of its own."""
+        closing = find_closing(self.noads, self.place + 1)
+        turned = noad.sup is not None and len(noad.sup) == 1 and transpose_mark(noad.sup[0]) != ""
+        named = self.base(noad) is not None or noad.kind == "arg"
+        if closing < 0 or not named or (noad.sup and not turned and not self.is_index(noad.sup)):
+            return None
+        inner = self.noads[self.place + 2 : closing]
+        dotted = len(inner) == 1 and inner[0].is_command("cdot")
+        single = len(inner) == 1 and (self.base(inner[0]) is not None or inner[0].kind == "arg")
+        if len(split_noads(inner, ",")) < 2 and not dotted and (not single or self.is_known(self.place)):
+            return None
+        head = self.text[noad.at if noad.shown < 0 else noad.shown : noad.end]
+        head = self.balance(POWER.sub(r"\1", head) if turned else head, noad)
+        spelled = head + self.text[noad.end : self.noads[closing].end]
+        self.place = closing + 1
+        part = Part("unknown", (suggest_name(spelled), spelled), noad.at)
+        return self.power(part, noad if turned else self.noads[closing])
 
     def single(self, noad: Noad, word: str) -> Part:
         """One letter with its subscript."""
@@ -263,14 +297,25 @@ class Descent:
         if noad.kind == "word" and self.base(noad) is None:
             self.refuse("a formula without words", "write the words outside")
         self.place += 1
-        spelled = self.text[noad.at if noad.shown < 0 else noad.shown : noad.end]
+        start = noad.at if noad.shown < 0 else noad.shown
+        following = self.noad
+        if noad.is_command("Delta", "delta") and not noad.has_scripts and following and self.can_differ(following):
+            self.place += 1
+            noad = following
+        spelled = self.text[start : noad.end]
         if noad.sup and is_power(noad.sup):
             spelled = POWER.sub(r"\1", spelled)
-        spelled = self.balance(spelled, noad)
+        spelled = LEAD.sub("", self.balance(spelled, noad))
+        if following is noad:
+            return self.power(Part("unknown", (suggest_name(spelled), spelled), start), noad)
         word, flat = self.base(noad), self.flat_subscript(noad)
         if word and (flat or noad.sub is None) and noad.before == (None, None):
             return self.power(Part("unknown", (word + flat, spelled), noad.at), noad)
         return Part("unknown", (suggest_name(spelled), spelled), noad.at)
+
+    def can_differ(self, noad: Noad) -> bool:
+        r"""True for a name behind ``\Delta``."""
+        return (noad.kind in ("arg", "word") and noad.value not in COMMANDED) or self.base(noad) is not None
 
     def balance(self, spelled: str, noad: Noad) -> str:
         """The LaTeX of a name with the braces that it needs."""
@@ -341,7 +386,10 @@ class Descent:
             self.bars.append(opening.value)
         kept, self.integrals = self.integrals, 0
         outer, self.bars = self.bars, self.bars if is_bar and opening.kind == "bar" else []
-        inner = self.expression()
+        items = [self.cases(self.noads[self.place])] if self.opens_cases(opening) else [self.expression()]
+        while opening.value in ("(", "[", "langle") and self.noad is not None and self.noad.is_sign(","):
+            self.place += 1
+            items.append(self.expression())
         self.bars, self.integrals = outer, kept
         if is_bar:
             self.bars.pop()
@@ -352,11 +400,24 @@ class Descent:
             self.refuse(f"the bracket that closes {self.text[opening.at : opening.end]}", "close it")
             raise AssertionError
         self.place += 1
-        return self.close(opening, inner, closing, crossed)
+        if len(items) > 1 or opening.value == "langle":
+            return self.close_list(opening, items, closing, crossed)
+        if opening.value == "cases":
+            return self.power(items[0], closing)
+        return self.close(opening, items[0], closing, crossed)
+
+    def close_list(self, opening: Noad, items: list[Part], closing: Noad, crossed: bool) -> Part:
+        """Entries with commas between them: a column, or an inner product."""
+        if crossed or closing.sub or (opening.value == "langle" and len(items) != 2):
+            raise Refusal(opening.at, "a list without subscript, or an inner product of two", "others", "write entries")
+        if opening.value == "langle":
+            return self.power(Part("inner", tuple(items), opening.at), closing)
+        return self.power(Part("list", (opening.value, *items), opening.at), closing)
 
     def close(self, opening: Noad, inner: Part, closing: Noad, crossed: bool) -> Part:
         """A group by its bracket and by the subscript of the closing one."""
         kind = opening.value
+        crossed |= kind == "floor" and closing.sub is None and self.notation.has_skew_floor
         crossed |= (
             bool(closing.sub) and len(closing.sub or ()) == 1 and (closing.sub or [closing])[0].is_command("times")
         )
@@ -394,6 +455,10 @@ class Descent:
             size = self.sizes(last.sub)
             if text == "0" and last.bold and len(size) == 2:
                 return self.power(Part("zeros", tuple(size), start.at), last)
+            if text in ("0", "1") and last.bold:
+                spelled = self.balance(self.text[start.at if start.shown < 0 else start.shown : last.end], last)
+                spelled = POWER.sub(r"\1", spelled) if last.sup and is_power(last.sup) else spelled
+                return self.power(Part("unknown", (suggest_name(spelled), spelled), start.at), last)
             raise Refusal(start.at, "a number without subscript", self.text[start.at : last.end], "name it in [latex]")
         return self.power(Part("num", (text,), start.at), last)
 
@@ -414,6 +479,8 @@ class Descent:
             return self.big(noad, BIG[name])
         if name == "int":
             return self.integral(noad)
+        if name == "lim":
+            return self.limit(noad)
         return self.name(noad)
 
     def call(self, name: str) -> Part:
@@ -515,12 +582,22 @@ class Descent:
         """``d^n f / d x^n``, or the operator before what it is applied to."""
         above, below = noad.args
         order = self.order(above[0].sup, noad)
+        plain = len(below) == 2 and self.base(below[1]) is not None and below[1].before == (None, None)
+        if len(below) > 1 and not plain and order == 1 and not below[0].sup:
+            by = self.inside(below[1:])
+            if by.head not in ("name", "unknown"):
+                raise Refusal(noad.at, "one variable and one order", "others", "write one derivative after the other")
+            return self.apply_derivative(noad, by, order, letter)
         variable = below[1] if len(below) == 2 else None
         name = self.base(variable) if variable else None
         if variable is None or name is None or self.order(variable.sup, noad) != order or below[0].sup:
             raise Refusal(noad.at, "one variable and one order", "others", "write one derivative after the other")
         found = self.resolve(variable, name)
-        by = found or self.variable(variable, name)
+        return self.apply_derivative(noad, found or self.variable(variable, name), order, letter)
+
+    def apply_derivative(self, noad: Noad, by: Part, order: int, letter: str) -> Part:
+        """The derivative of what stands above the line, or behind it."""
+        above = noad.args[0]
         if len(above) > 1:
             return Part("diff", (self.inside(above[1:]), by, order, letter, True), noad.at)
         if self.ends():
@@ -554,6 +631,20 @@ class Descent:
         body = self.term()
         self.bound = kept
         return Part("sum", (name, body, index, start, end), noad.at)
+
+    def limit(self, noad: Noad) -> Part:
+        """A limit of all factors behind it."""
+        pieces = split_noads(noad.sub or [], "to" if any(n.is_command("to") for n in noad.sub or ()) else "rightarrow")
+        name = self.base(pieces[0][0]) if len(pieces) == 2 and len(pieces[0]) == 1 else None
+        if name is None or noad.sup or any(n.sup for piece in pieces for n in piece[:1]):
+            raise Refusal(noad.at, r"a limit with its point, such as \lim_{x \to 0}", "another", "write the point")
+        end = self.inside(pieces[1])
+        self.place += 1
+        kept, name = self.bound, name + self.flat_subscript(pieces[0][0])
+        self.bound = (*kept, name)
+        body = self.term()
+        self.bound = kept
+        return Part("limit", (body, name, end), noad.at)
 
     def integral(self, noad: Noad) -> Part:
         """An integral with both ends, up to its differential."""
@@ -596,6 +687,48 @@ class Descent:
         part = Part("matrix", (len(widths), *cells), noad.at)
         return Part("call", ("det", None, True, part), noad.at) if kind == "vmatrix" else part
 
+    def opens_cases(self, opening: Noad) -> bool:
+        """True for a brace and one array in it."""
+        if opening.value != "cases":
+            return False
+        noad = self.noad
+        if noad is None or noad.kind != "env" or noad.value[0] != "array" or noad.has_scripts:
+            self.refuse("an array of cases behind the brace", "write the cases as rows of an array")
+        return True
+
+    def cases(self, noad: Noad) -> Part:
+        """Values with their conditions, the last one for all the rest."""
+        self.place += noad is self.noad
+        widths = noad.value[1]
+        if set(widths) != {2} or len(widths) < 2 or not all(noad.args):
+            raise Refusal(noad.at, "rows of a value and its condition", "others", "write both")
+        parts: list[Part] = []
+        for place in range(0, len(noad.args), 2):
+            value, words = noad.args[place], noad.args[place + 1]
+            value = value[:-1] if value[-1].is_sign(",") else value
+            words = words[:-1] if words[-1].is_sign(".", ",") else words
+            last = place + 2 == len(noad.args)
+            rest = len(words) == 1 and words[0].kind == "word" and words[0].value in REST
+            if last != rest:
+                expected = r"a last row for all the rest, and no other: \text{otherwise}"
+                raise Refusal(noad.at, expected, "others", "write it, or the cases as formulas of their own")
+            parts.append(self.inside(value))
+            if not last:
+                parts.append(self.condition(words[1:] if words[0].kind == "word" and words[0].value in IF else words))
+        return Part("cases", tuple(parts), noad.at)
+
+    def condition(self, noads: list[Noad]) -> Part:
+        """A comparison, or two in one direction."""
+        marks = [n for n in noads if n.kind in ("sym", "cmd") and n.value in CONDITIONS and not n.has_scripts]
+        signs = [CONDITIONS[str(n.value)] for n in marks]
+        if not 0 < len(marks) < 3 or (len(marks) == 2 and {s[0] for s in signs} not in ({"<"}, {">"})):
+            at = noads[0].at if noads else 0
+            raise Refusal(at, "one comparison, or two in one direction", "another condition", "write such a one")
+        places = [-1, *(noads.index(mark) for mark in marks), len(noads)]
+        sides = [self.inside(noads[a + 1 : b]) for a, b in pairwise(places)]
+        args = [sides[0], *(piece for pair in zip(signs, sides[1:], strict=True) for piece in pair)]
+        return Part("cond", tuple(args), sides[0].at)
+
 
 def transpose_mark(noad: Noad) -> str:
     """``T`` for the letter, ``top`` for what is nothing but a transpose."""
@@ -606,6 +739,31 @@ def transpose_mark(noad: Noad) -> str:
     if noad.kind == "arg" and noad.value == "mathsf" and [n.value for n in noad.args[0]] == ["T"]:
         return "top"
     return "T" if noad.is_sign("T") else ""
+
+
+def find_closing(noads: list[Noad], place: int) -> int:
+    """Place of the parenthesis that closes the plain one here; -1 where there is none."""
+    if place >= len(noads) or noads[place].kind != "open" or noads[place].value != "(" or noads[place].has_scripts:
+        return -1
+    depth = 0
+    for at in range(place, len(noads)):
+        depth += (noads[at].kind == "open") - (noads[at].kind == "close")
+        if depth == 0:
+            return at
+    return -1
+
+
+def transposed_value(wanted: tuple[Noad, ...], found: list[Noad]) -> Noad | None:
+    r"""The closing parenthesis with the T of ``h^T(x)``, for the entry ``h(x)``."""
+    if len(found) != len(wanted) or len(wanted) < 4 or wanted[0].sup or not found[0].sup or found[-1].has_scripts:
+        return None
+    if (wanted[1].kind, wanted[-1].kind) != ("open", "close") or len(found[0].sup) != 1:
+        return None
+    if not transpose_mark(found[0].sup[0]) or not is_same(wanted[0], found[0], last=True):
+        return None
+    rest = found[-1]
+    whole = is_same_list(list(wanted[1:]), found[1:])
+    return Noad(rest.kind, rest.value, rest.at, rest.end, sup=found[0].sup) if whole else None
 
 
 def is_power(sup: list[Noad]) -> bool:

@@ -17,9 +17,9 @@ from navsym.language.latex.climbing import climb
 from navsym.language.latex.descent import descend
 from navsym.language.latex.documents import ENDINGS, Block, hide_comments, list_blocks
 from navsym.language.latex.macros import Macro, expand_macros, list_macros
-from navsym.language.latex.meaning import explain, fit_sides
+from navsym.language.latex.meaning import explain, fit_sides, list_columns
 from navsym.language.latex.notation import Notation, build_notation, read_notation
-from navsym.language.latex.parts import Part, Refusal, list_unknown
+from navsym.language.latex.parts import Part, Refusal, list_names, list_unknown
 from navsym.language.latex.rows import Relation, Side, split_relations
 from navsym.language.names import NAME, RESERVED, quote
 from navsym.language.tomlfile import toml_text
@@ -338,10 +338,11 @@ def read_sides(relation: Relation, notation: Notation, unknown: list[Part]) -> t
         question = f"{both[0]} in bold and plain type: one name or two?"
         raise Refusal(relation.left.start, "one type for a name", question, r"write \mathbf in [latex]")
     terms = []
-    for side, part in zip((relation.left, relation.right), parts, strict=True):
+    columns = list_columns(parts, notation)
+    for side, part, as_column in zip((relation.left, relation.right), parts, columns, strict=True):
         with shifted(side.start):
             compare_readings(part, side.text, notation)
-            terms.append(explain(part, notation))
+            terms.append(explain(part, notation, as_column))
     first_term, second_term = fit_sides(terms[0], terms[1], relation.right.start)
     if (first_term.shape or second_term.shape) and relation.sign not in ("=", "!="):
         raise Refusal(relation.right.start, "scalars on both sides of an order", "vectors", "compare entries")
@@ -368,13 +369,6 @@ def compare_readings(part: Part, text: str, notation: Notation) -> None:
     other = climb(text, notation)
     if other != part:
         raise Refusal(part.at, "two readings that agree", "two that differ", "write it in parts, with parentheses")
-
-
-def list_names(part: Part) -> list[str]:
-    """The names in a part, in the order of writing."""
-    if part.head in ("name", "index"):
-        return [str(part.args[0])]
-    return [name for inner in part.args if isinstance(inner, Part) for name in list_names(inner)]
 
 
 def plain_spelling(spelled: str) -> str:

@@ -190,14 +190,16 @@ def list_pieces(text: str) -> list[Piece]:
     pieces: list[Piece] = []
     runs = {found.start(): found.end() for found in RUN.finditer(text)}
     start = depth = skip = 0
+    token = ""
     for found in TOKEN.finditer(text):
-        token = found[0]
+        before, token = token, found[0]
         if depth == 0 and found.start() in runs and re.fullmatch(SPACE, text[start : found.start()]):
             skip = runs[found.start()]
         if found.start() < skip:
             continue
         opens = token in ("{", "(", "[", r"\{", r"\begin", r"\lfloor", r"\langle")
         closes = token in ("}", ")", "]", r"\}", r"\end", r"\rfloor", r"\rangle")
+        closes |= (before, token) == (r"\right", ".")
         depth = max(0, depth + opens - closes)
         kind = sort_mark(text, found) if depth == 0 else ""
         if kind:
@@ -283,5 +285,5 @@ def cut(text: str, piece: Piece) -> Side:
     if spaced := re.match(r"(?:\s|\\q?quad(?![A-Za-z])|~|\\[,;:! ])*", body):
         lead = spaced.end()
     body = body[lead:].rstrip()
-    body = re.sub(r"(?:\s|\\q?quad(?![A-Za-z])|~|\\[,;:! ]|(?<!\\)[.,;:])+$", "", body)
+    body = re.sub(r"(?:\s|\\q?quad(?![A-Za-z])|~|\\[,;:! ]|(?<!\\)(?<!\\right)[.,;:])+$", "", body)
     return Side(body, piece.start + lead)

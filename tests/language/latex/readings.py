@@ -280,7 +280,7 @@ REFUSED = {
     "f(x)": (1, "undeclared"),
     "a(x)": (2, "function"),
     "C(v)": (2, "function"),
-    "a(x, y)": (4, "closes"),
+    "a(x, y)": (1, "undeclared"),
     "a^{(k)}": (1, "undeclared"),
     "a^{[1]}": (1, "undeclared"),
     "a'": (1, "undeclared"),
