@@ -672,20 +672,20 @@ class Climber:
         """A limit."""
         at, sub = here.base[0].at, here.sub or []
         arrows = [place for place, token in enumerate(sub) if token.text in (r"\to", r"\rightarrow")]
-        name = plain_word(sub[0]) if sub else None
-        if name is None or len(arrows) != 1 or here.sup or any(t.text in ("^", "'") for t in sub[: arrows[0]]):
+        if len(arrows) != 1 or arrows[0] == 0 or here.sup:
             self.refuse("a limit with its point", at)
-            raise AssertionError
-        script = sub[2 : arrows[0]] if sub[1].text == "_" else []
-        name += underscore([t for t in script if t.text not in "{}"])
-        if arrows[0] != 1 and not script:
+        moving, outer = sub[: arrows[0]], self.bound
+        name = plain_word(moving[0])
+        script = [t for t in moving[2:] if t.text not in "{}"] if len(moving) > 2 and moving[1].text == "_" else []
+        if name is not None and (len(moving) == 1 or underscore(script)):
+            self.bound = outer.union((name + underscore(script),))
+        by, end = self.part_of(moving), self.part_of(sub[arrows[0] + 1 :])
+        if by.head != "name":
             self.refuse("one name that moves", at)
-        end = self.part_of(sub[arrows[0] + 1 :])
         self.place = here.after
-        outer, self.bound = self.bound, self.bound.union((name,))
         body = self.climb(1)
         self.bound = outer
-        return Part("limit", (body, name, end), at)
+        return Part("limit", (body, by, end), at)
 
     def integral(self, here: Cluster) -> Part:
         """An integral with both ends."""

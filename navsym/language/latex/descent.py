@@ -188,7 +188,8 @@ class Descent:
             if not known:
                 self.place += len(run)
                 head = "name" if whole in self.notation else "unknown"
-                spelled = self.text[noad.at : run[-1].end]
+                letters, flat = "".join(str(n.value) for n in run), self.flat_subscript(run[-1])
+                spelled = (rf"\mathbf{{{letters}}}" if noad.bold else letters) + (f"_{{{flat[1:]}}}" if flat else "")
                 part = Part(head, (whole,) if head == "name" else (whole, spelled), noad.at)
                 return self.power(part, run[-1])
         return self.single(noad, word)
@@ -205,9 +206,8 @@ class Descent:
         single = len(inner) == 1 and (self.base(inner[0]) is not None or inner[0].kind == "arg")
         if len(split_noads(inner, ",")) < 2 and not dotted and (not single or self.is_known(self.place)):
             return None
-        head = self.text[noad.at if noad.shown < 0 else noad.shown : noad.end]
-        head = self.balance(POWER.sub(r"\1", head) if turned else head, noad)
-        spelled = head + self.text[noad.end : self.noads[closing].end]
+        opening = self.noads[self.place + 1]
+        spelled = LEAD.sub("", self.spell(noad)) + self.text[opening.at : self.noads[closing].end]
         self.place = closing + 1
         part = Part("unknown", (suggest_name(spelled), spelled), noad.at)
         return self.power(part, noad if turned else self.noads[closing])
@@ -297,25 +297,34 @@ class Descent:
         if noad.kind == "word" and self.base(noad) is None:
             self.refuse("a formula without words", "write the words outside")
         self.place += 1
-        start = noad.at if noad.shown < 0 else noad.shown
-        following = self.noad
-        if noad.is_command("Delta", "delta") and not noad.has_scripts and following and self.can_differ(following):
-            self.place += 1
-            noad = following
-        spelled = self.text[start : noad.end]
-        if noad.sup and is_power(noad.sup):
-            spelled = POWER.sub(r"\1", spelled)
-        spelled = LEAD.sub("", self.balance(spelled, noad))
-        if following is noad:
-            return self.power(Part("unknown", (suggest_name(spelled), spelled), start), noad)
+        if noad.is_command("Delta", "delta", "nabla") and not noad.has_scripts and self.noad is not None:
+            following = self.noad
+            if (following.kind in ("arg", "word") and following.value not in COMMANDED) or self.base(following):
+                self.place += 1
+                return self.power(self.unknown_from(noad.at, following), following)
+        spelled = LEAD.sub("", self.spell(noad))
         word, flat = self.base(noad), self.flat_subscript(noad)
         if word and (flat or noad.sub is None) and noad.before == (None, None):
             return self.power(Part("unknown", (word + flat, spelled), noad.at), noad)
         return Part("unknown", (suggest_name(spelled), spelled), noad.at)
 
-    def can_differ(self, noad: Noad) -> bool:
-        r"""True for a name behind ``\Delta``."""
-        return (noad.kind in ("arg", "word") and noad.value not in COMMANDED) or self.base(noad) is not None
+    def spell(self, noad: Noad) -> str:
+        """The LaTeX of a name without its power."""
+        spelled = noad.spelled or self.text[noad.at if noad.shown < 0 else noad.shown : noad.end]
+        if noad.sup and (is_power(noad.sup) or transpose_mark(noad.sup[-1])):
+            spelled = POWER.sub(r"\1", spelled)
+        return spelled if noad.spelled else self.balance(spelled, noad)
+
+    def unknown_from(self, start: int, noad: Noad) -> Part:
+        r"""``\Delta t`` and ``\nabla f(x)`` as one name."""
+        closing = find_closing(self.noads, self.place)
+        value = closing > 0 and not noad.sup and not noad.spelled and not self.is_known(self.place - 1)
+        end = self.noads[closing].end if value else noad.at
+        self.place = closing + 1 if value else self.place
+        spelled = self.text[start:end] if value else self.text[start : noad.at if noad.shown < 0 else noad.shown]
+        spelled = spelled.partition("{")[0].rpartition("\\")[0] if noad.spelled else spelled
+        spelled += "" if value else self.spell(noad)
+        return Part("unknown", (suggest_name(spelled), spelled), start)
 
     def balance(self, spelled: str, noad: Noad) -> str:
         """The LaTeX of a name with the braces that it needs."""
@@ -365,7 +374,10 @@ class Descent:
         first, last = sup[0], sup[-1]
         if len(sup) == 1 and (transpose_mark(last) or last.is_sign("*") or last.is_command("ast", "times", "wedge")):
             return False
-        return (len(sup) == 1 and not self.is_operand(last)) or first.kind == "open" or first.is_command("prime")
+        listed = any(n.is_sign(",") for n in sup)
+        return (
+            listed or (len(sup) == 1 and not self.is_operand(last)) or first.kind == "open" or first.is_command("prime")
+        )
 
     def is_operand(self, noad: Noad) -> bool:
         """True for what may be a power alone."""
@@ -606,8 +618,9 @@ class Descent:
 
     def variable(self, noad: Noad, name: str) -> Part:
         """A variable that nobody declared."""
-        spelled = self.balance(self.text[noad.at : noad.end].split("^")[0], noad)
-        return Part("unknown", (name + self.flat_subscript(noad), spelled), noad.at)
+        flat = self.flat_subscript(noad)
+        spelled = LEAD.sub("", self.spell(noad))
+        return Part("unknown", (name + flat if flat or noad.sub is None else suggest_name(spelled), spelled), noad.at)
 
     def order(self, sup: list[Noad] | None, noad: Noad) -> int:
         """The order of a derivative."""
@@ -635,16 +648,18 @@ class Descent:
     def limit(self, noad: Noad) -> Part:
         """A limit of all factors behind it."""
         pieces = split_noads(noad.sub or [], "to" if any(n.is_command("to") for n in noad.sub or ()) else "rightarrow")
-        name = self.base(pieces[0][0]) if len(pieces) == 2 and len(pieces[0]) == 1 else None
-        if name is None or noad.sup or any(n.sup for piece in pieces for n in piece[:1]):
+        if len(pieces) != 2 or not pieces[0] or noad.sup or any(n.is_sign("^", "+", "-") for n in pieces[0]):
             raise Refusal(noad.at, r"a limit with its point, such as \lim_{x \to 0}", "another", "write the point")
-        end = self.inside(pieces[1])
+        kept, moving = self.bound, pieces[0][0]
+        name = self.base(moving) if len(pieces[0]) == 1 and moving.before == (None, None) and not moving.sup else None
+        self.bound = (*kept, f"{name}{self.flat_subscript(moving)}") if name else kept
+        by, end = self.inside(pieces[0]), self.inside(pieces[1])
+        if by.head not in ("name", "unknown"):
+            raise Refusal(noad.at, "one name that moves", "others", r"write it in [latex]")
         self.place += 1
-        kept, name = self.bound, name + self.flat_subscript(pieces[0][0])
-        self.bound = (*kept, name)
         body = self.term()
         self.bound = kept
-        return Part("limit", (body, name, end), noad.at)
+        return Part("limit", (body, by, end), noad.at)
 
     def integral(self, noad: Noad) -> Part:
         """An integral with both ends, up to its differential."""

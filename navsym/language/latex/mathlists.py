@@ -37,6 +37,7 @@ class Noad:
     sup: list[Noad] | None = None
     before: tuple[list[Noad] | None, list[Noad] | None] = (None, None)
     shown: int = -1  # where it begins with the command of bold type before it
+    spelled: str = ""  # its LaTeX, where that is no stretch of the text
 
     def is_command(self, *names: str) -> bool:
         """True for one of these commands without arguments."""
@@ -193,13 +194,19 @@ class Builder:
         if noad.kind != "group":
             return [noad]
         inner = noad.args[0]
+        if noad.bold and len(inner) > 1:
+            for one in inner:
+                one.spelled = rf"\mathbf{{{self.text[one.at : one.end]}}}" if one.kind in ("sym", "cmd") else ""
         if not noad.has_scripts:
             if noad.bold and len(inner) == 1:
                 inner[0].end, inner[0].shown = noad.end, noad.at
             return inner
         last = inner[-1]
-        if noad.bold:
-            last.end, inner[0].shown = noad.end, noad.at
+        if noad.bold and len(inner) == 1:
+            last.end, last.shown = noad.end, noad.at
+        elif noad.bold:
+            behind = self.text[self.text.find("}", last.end) + 1 : noad.end]
+            last.spelled, last.end = f"{last.spelled}{behind}", noad.end
         if len(inner) == 1 and any(getattr(noad, side) and getattr(last, side) for side in ("sub", "sup")):
             closing = Noad("close", "}", noad.end, noad.end, sub=noad.sub, sup=noad.sup)
             return [Noad("open", "{", noad.at, noad.at + 1), last, closing]

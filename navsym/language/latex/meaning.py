@@ -403,7 +403,8 @@ class Explainer:
         return Term(f"diff({inner.text}, {by.text}{behind})", WHOLE, shape)
 
     def explain_limit(self, part: Part) -> Term:
-        body, name, end = part.args
+        body, by, end = part.args
+        name = self.scalar(by, "that moves").text
         self.require_free(body, name, part.at)
         return Term(f"limit({self.explain(body).text}, {name}, {self.scalar(end, 'as point').text})", WHOLE,
                     self.explain(body).shape)  # fmt: skip

@@ -144,7 +144,7 @@ class Reading(Answer):
             safe = f"{safe}1" if safe.endswith("_") else safe
             if NAME.fullmatch(safe) and safe not in symbols:
                 symbols[safe] = "real"
-                if re.fullmatch("[A-Za-z]{2,}", spelled):
+                if re.fullmatch(r"[A-Za-z]{2,}|\\mathbf\{[A-Za-z]{2,}\}", spelled):
                     questions += f"# Is {spelled} a product or a name? For a product, declare its letters.\n"
                 if plain_spelling(spelled) != safe:
                     latex[safe] = spelled
