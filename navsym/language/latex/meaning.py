@@ -87,6 +87,16 @@ def may_be_same(one: Shape, other: Shape) -> bool:
     return len(one) == len(other) and all(a == b or "?" in (a, b) for a, b in zip(one, other, strict=True))
 
 
+def is_space_vector(shape: Shape) -> bool:
+    """True for a column of three, or of open size."""
+    return shape in (("3", "1"), ("?", "1"))
+
+
+def fits(one: str, other: str) -> bool:
+    """True for sizes that agree; an open size is not taken for 1, which would make another product."""
+    return one == other or ("?" in (one, other) and "1" not in (one, other))
+
+
 def say(shape: Shape) -> str:
     """A shape in words."""
     return "a scalar" if not shape else f"a vector of {shape[0]}" if shape[1] == "1" else f"{shape[0]} by {shape[1]}"
@@ -269,7 +279,7 @@ class Explainer:
             return Term(f"{base.inside(WHOLE)}.T", WHOLE, base.shape[::-1], column)
         if kind == "*" and base.is_quaternion:
             return Term(f"conj({base.text})", WHOLE, base.shape, "", True, base.is_unit)
-        if kind == "skew" and may_be_same(base.shape, ("3", "1")):
+        if kind == "skew" and is_space_vector(base.shape):
             return Term(f"skew({base.text})", WHOLE, ("3", "3"))
         raise Refusal(
             mark.at, "a transpose, a conjugate of a quaternion or a power", "another mark", "name it in [latex]"
@@ -327,7 +337,7 @@ class Explainer:
 
     def explain_skew(self, part: Part) -> Term:
         inner = self.explain(part.args[0])
-        if not may_be_same(inner.shape, ("3", "1")):
+        if not is_space_vector(inner.shape):
             raise Refusal(part.at, "the cross matrix of a vector of three", say(inner.shape), "declare { vector = 3 }")
         return Term(f"skew({inner.text})", WHOLE, ("3", "3"))
 
@@ -350,14 +360,14 @@ class Explainer:
     def apply(self, name: str, arguments: list[Term], part: Part) -> Term:
         """A function of the language at its arguments."""
         shapes, text = [a.shape for a in arguments], ", ".join(a.text for a in arguments)
-        square = len(shapes) == 1 and len(shapes[0]) == 2 and may_be_same(shapes[0], shapes[0][::-1])
+        square = len(shapes) == 1 and len(shapes[0]) == 2 and fits(*shapes[0])
         if name in ("log_2", "log_10") and shapes == [SCALAR]:
             return Term(f"log({text})/log({name[4:]})", PRODUCT)
         if name in ("det", "trace") and square:
             return Term(f"{name}({text})")
         if name in ("exp", "expm") and square:
             return Term(f"expm({text})", WHOLE, shapes[0])
-        if name == "skew" and len(shapes) == 1 and may_be_same(shapes[0], ("3", "1")):
+        if name == "skew" and len(shapes) == 1 and is_space_vector(shapes[0]):
             return Term(f"skew({text})", WHOLE, ("3", "3"))
         if name == "diag" and not any(shapes):
             return Term(f"diag({text})", WHOLE, (str(len(shapes)),) * 2)
@@ -378,7 +388,7 @@ class Explainer:
         sizes = [[term.shape or ("1", "1") for term in row] for row in rows]
         for row in sizes:
             for size, first in zip(row, sizes[0], strict=True):
-                if not may_be_same(size, (row[0][0], first[1])):
+                if not fits(size[0], row[0][0]) or not fits(size[1], first[1]):
                     raise Refusal(part.at, "blocks that fit", "others", r"write zeros as \mathbf{0}_{3\times 3}")
         return Term(text, WHOLE, (add(row[0][0] for row in sizes), add(size[1] for size in sizes[0])))
 
@@ -505,7 +515,7 @@ def scale(whole: Term, above: list[Term], below: list[Term]) -> Term:
 def chain(factors: list[Term], at: int) -> Term:
     """A product of matrices; a row that is a transposed column, up to the next column, is a dot product."""
     for one, other in pairwise(factors):
-        if not may_be_same(one.shape[1:], other.shape[:1]):
+        if not fits(one.shape[1], other.shape[0]):
             got = f"{say(one.shape)} and {say(other.shape)}"
             raise Refusal(at, "factors that fit", f"{got}: dot, cross or outer product?", r"write \cdot, \times or ^T")
     scalars: list[Term] = []
