@@ -28,7 +28,7 @@ def register_magics(shell: Any) -> None:
             raise UsageError(f"{error.kind}: {error}") from None
 
     def claims(line: str, cell: str) -> Verdicts:
-        """Decide a cell of TOML, [symbols] and [[claim]] blocks; ``%%claims name`` keeps the verdicts by a name."""
+        """Decide a cell of [symbols] and [[claim]] blocks, or of formulas in LaTeX; ``%%claims name`` keeps the verdicts."""
         try:
             verdicts = prove_cell(cell)
         except NavsymError as error:
@@ -70,8 +70,25 @@ def audit_line(line: str) -> Audit:
 
 
 def prove_cell(text: str) -> Verdicts:
-    """The verdicts of a claim file in memory; raises NavsymError for what is none."""
+    """The verdicts of a claim file in memory, or of LaTeX below its tables; raises NavsymError for what is neither."""
+    from navsym.language.latex.reading import DELIMITED
     from navsym.language.tomlfile import parse_toml
     from navsym.prove.claimfile import claims_from, decide_claims
 
+    formulas = None if "[[claim]]" in text else DELIMITED.search(text)
+    text = read_cell(text, formulas.start()) if formulas else text
     return decide_claims(claims_from(parse_toml(text, "cell"), "cell", go_on=True))
+
+
+def read_cell(text: str, start: int) -> str:
+    """The claim file of formulas in LaTeX, behind ``[symbols]`` and ``[latex]`` where these are given."""
+    from navsym.language.latex.reading import read_with_reals
+    from navsym.language.tomlfile import parse_toml
+
+    tables = parse_toml(text[:start], "cell")
+    blank = re.sub(r"[^\n]", " ", text[:start])
+    reading = read_with_reals(blank + text[start:], tables.get("symbols", {}), tables.get("latex"))
+    refused = next((formula for formula in reading.formulas if formula.status != "READ"), None)
+    if refused is not None:
+        raise ExpressionSyntaxError(str(refused.why), where="cell")
+    return reading.claims()

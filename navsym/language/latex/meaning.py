@@ -54,10 +54,9 @@ def list_columns(parts: list[Part], notation: Notation) -> list[bool]:
     """For both sides, whether a row or a list of entries stands for a column, because the other side is one."""
     rows = [is_row(part) for part in parts]
     if all(rows):
-        blocks = any(
-            part.head == "list" or any(explain(cell, notation).shape for cell in part.args[1:]) for part in parts
-        )
-        return [blocks, blocks]
+        heads = {part.head for part in parts}
+        blocks = heads == {"matrix"} and any(explain(c, notation).shape for part in parts for c in part.args[1:])
+        return [blocks or len(heads) == 2] * 2
     if not any(rows):
         return rows
     other = explain(parts[rows.index(False)], notation).shape

@@ -241,6 +241,15 @@ def open_source(source: Any) -> tuple[str, str, str]:
     return text, "", "tex" if DELIMITED.search(text) else ""
 
 
+def read_with_reals(source: str, symbols: Mapping[str, Any], latex: Mapping[str, Any] | None = None) -> Reading:
+    """The formulas of a text in which a letter without a declaration is real; letters side by side stay a question."""
+    reading = read(source, symbols=symbols, latex=latex)
+    unknown = {name: spelled for formula in reading.formulas for name, spelled in formula.unknown}
+    if not unknown or any(re.fullmatch("[A-Za-z]{2,}", spelled) for spelled in unknown.values()):
+        return reading
+    return read(source, symbols=dict(symbols) | dict.fromkeys(unknown, "real"), latex=latex)
+
+
 @dataclass(frozen=True, slots=True)
 class Lines:
     """A document: its name, its text and where its lines begin."""
