@@ -7,9 +7,9 @@ The sections stand in the order of trust: each rests on those before it, and eve
    all numbers in the balls, gives NaN where one does not exist, and solves no system that may be singular.
 2. Reading. A certificate is a JSON object with a kind and exactly the keys of this kind. Numbers are decimals or
    fractions in strings; floats are refused. Expressions are texts of + - * / **, pi, symbols, sin cos tan cot sec csc
-   sinh cosh tanh exp log atan asin acos sqrt abs, atan2(y, x), and the entire functions f_k(x) = (f(x) - its Taylor
-   polynomial of degree < k)/x**k of f = exp, sin, cos for k = 0 .. 99 (by balls: |x| <= 1 only). A power x**y whose
-   exponent is not seen to be a rational number is exp(y*log(x)), so that it exists for x > 0 only.
+   sinh cosh tanh exp log atan asin acos sqrt abs erf, atan2(y, x), and the entire functions f_k(x) = (f(x) - its
+   Taylor polynomial of degree < k)/x**k of f = exp, sin, cos for k = 0 .. 99 (by balls: |x| <= 1 only). A power x**y
+   whose exponent is not seen to be a rational number is exp(y*log(x)), so that it exists for x > 0 only.
 3. Functions of a parameter, and 4. expressions, both in balls. 5. Exact algebra, which decides that numbers are equal.
 6. The kinds identity, exponential and rank, by exact algebra. 7. The kinds positivity, by balls, and all.
 8. The optimum of guaranteed estimation: the kinds gap and sliver, touch and range. 9. The kinds proof and
@@ -24,8 +24,8 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache, reduce
-from itertools import pairwise, product, repeat, zip_longest
-from math import factorial, prod
+from itertools import combinations, pairwise, product, repeat, zip_longest
+from math import factorial, isqrt, prod
 from operator import add, mul
 from typing import Any, NamedTuple
 
@@ -263,7 +263,7 @@ DEFINITIONS = {"tan": "sin(x)/cos(x)", "cot": "cos(x)/sin(x)", "sec": "1/cos(x)"
 DEFINITIONS |= {"sinh": "(exp(x) - exp(-x))/2", "cosh": "(exp(x) + exp(-x))/2", "tanh": "1 - 2/(exp(2*x) + 1)"}
 DEFINITIONS |= {"sqrt": "x**(1/2)", "abs": "(x*x)**(1/2)"}
 DERIVATIVES = {"exp": "exp(x)", "sin": "cos(x)", "cos": "-sin(x)", "log": "1/x", "atan": "1/(x*x + 1)"}
-DERIVATIVES |= {"asin": "(1 - x*x)**(-1/2)", "acos": "-(1 - x*x)**(-1/2)"}
+DERIVATIVES |= {"asin": "(1 - x*x)**(-1/2)", "acos": "-(1 - x*x)**(-1/2)", "erf": "2*exp(-x*x)*pi**(-1/2)"}
 # Derivatives at 0, which repeat after four, and the number of terms of f_k that are summed.
 AT_ZERO, TERMS = {"exp": (1, 1, 1, 1), "sin": (0, 1, 0, -1), "cos": (1, 0, -1, 0)}, 60
 
@@ -482,6 +482,10 @@ class Exact:
             ((monomial, c),) = self
             return Exact([(frozenset((atom, e * q) for atom, e in monomial), c ** int(q))])
         require(not self.is_zero(), "division by zero, or a root of it")
+        if q.q == 1 and q < 0 and all(atom == TURN for m in self.terms for atom, _ in m):
+            square = (self * self).divide_turns()
+            if set(square.terms) == {frozenset()}:  # 1/x = x/r where x x = r, as for the root of a prime
+                return prod([self * (1 / square.terms[frozenset()])] * int(-q), start=Exact(1))
         ((monomial, c),) = self if len(self.terms) == 1 else [(frozenset(), fmpq(0))]
         if len(monomial) > 1 and c == 1 and all(fmpq(e).q == 1 and int(e) % 2 == 0 for _, e in monomial):
             squares = (Exact([(frozenset({(atom, 2)}), fmpq(1))]).make_atom("sum", q * e / 2) for atom, e in monomial)
@@ -495,7 +499,8 @@ class Exact:
 
     def exp(self, kind: str = "exp", sign: int = 1) -> Exact:
         """exp of a sum is a product; exp(x), or exp(i sign x) for the kind "cis"."""
-        return prod((self.exp_of(kind, m, c * sign) for m, c in self), start=Exact(1))
+        x = self.divide_turns() if any(atom == TURN for m in self.terms for atom, _ in m) else self
+        return prod((self.exp_of(kind, m, c * sign) for m, c in x), start=Exact(1))
 
     @staticmethod
     def exp_of(kind: str, monomial: Any, c: fmpq) -> Exact:
@@ -522,6 +527,13 @@ class Exact:
         if c != 1 or not monomial or any(kind != "exp" for (_, kind, _), _ in monomial):
             return self.make_atom("log")
         return Exact((m, d * q) for (_, _, content), q in monomial for m, d in content)
+
+    def erf(self) -> Exact:
+        """An odd function: an atom of x or of -x, by the sign of the coefficient that is looked at first."""
+        if not self.terms:
+            return self
+        sign = fmpq(1 if self.terms[min(self.terms, key=hash)] > 0 else -1)
+        return (self * sign).make_atom("erf") * sign
 
     def cos(self) -> Exact:
         """Euler: cos x = (exp(i x) + exp(-i x))/2."""
@@ -551,12 +563,17 @@ class Exact:
 
     def is_zero_at_roots_of_unity(self) -> bool:
         """A rational polynomial vanishes at exp(i pi/n) if and only if the cyclotomic polynomial 2 n divides it."""
+        return not self.divide_turns().terms
+
+    def divide_turns(self) -> Exact:
+        """The same number with polynomials in a root of unity as remainders of their division by its polynomial."""
         rows = self.split_powers(TURN)
         n = int(fmpq_poly([q for _, q, _ in rows]).denom())
         require(n <= 5040, "roots of a high order")
         divisor = fmpq_poly(fmpz_poly.cyclotomic(2 * n))
         sums = collect((m, fmpq_poly([0] * (int(q * n) % (2 * n)) + [c])) for m, q, c in rows)
-        return all(part % divisor == 0 for part in sums.values())
+        parts = ((m, k, c) for m, part in sums.items() for k, c in enumerate((part % divisor).coeffs()))
+        return Exact((m | ({(TURN, fmpq(k, n))} if k else frozenset()), c) for m, k, c in parts)
 
 
 def has_branch(content: Any) -> bool:
@@ -1014,6 +1031,26 @@ class Case(NamedTuple):
     terms: tuple[Term, ...]
     given: tuple[Term, ...]
     zeros: tuple[Term, ...]
+    fractions: tuple[tuple[str, Term], ...] = ()
+
+    def complete(self, place: dict[str, Term]) -> dict[str, Term]:
+        """A point with the fractions u - floor(u) of the case."""
+        for name, u in self.fractions:
+            value = substitute(u, place)
+            place = place | {name: subtract(value, find_whole(value))}
+        return place
+
+
+def find_whole(u: Term) -> Term:
+    """The whole n with n <= u < n + 1, for a term without symbols."""
+    near = value_of(u, {})
+    require(near.is_finite(), "a number that may not exist")
+    for n in (int(near.mid().floor().unique_fmpz() or 0) + k for k in (0, 1, -1)):
+        rest = subtract(u, number(n))
+        value = value_of(rest, {})
+        if value < 1 and (value >= 0 or is_identity(rest)):
+            return number(n)
+    raise Refused("a number whose whole part is not known")
 
 
 SIGNS = {"=": (1, "="), "!=": (1, "!="), ">": (1, ">"), ">=": (1, ">="), "<": (-1, ">"), "<=": (-1, ">=")}
@@ -1025,31 +1062,36 @@ def read_statement(item: Any, answers: Answers | None = None) -> tuple[list[Case
 
     ``shapes`` has names in the place of the entries of vectors and matrices, ``given`` hypotheses, and ``rates`` the
     derivatives by time. One condition after the other is taken to hold, then to fail; each case has goals of its own.
-    ``answers`` say what integrals, sums, products and limits are; ``order`` is that of an equation up to small terms.
+    ``answers`` say what integrals, sums, products and limits are; ``order`` is that of an equation up to small terms;
+    ``random`` has the means and covariances of random numbers and vectors.
     """
     more = " shapes given rates" if isinstance(item, dict) and "given" in item else ""
-    more += " order" if isinstance(item, dict) and "order" in item else ""
+    more += "".join(f" {key}" for key in ("order", "random") if isinstance(item, dict) and key in item)
     left, relation, right, symbols, exists, tolerance, *rest = read_fields(
         item, f"left relation right symbols exists tolerance{more}"
     )
+    random = rest.pop() if "random" in more else {}
     small = rest.pop() if "order" in more else None
     require(isinstance(symbols, dict), "expected ranges by symbol")
     box = {name: read_range(symbols[name]) for name in read_symbols([*symbols])}
     shapes, given, rates = rest or ({}, [], {})
-    names = read_shapes(shapes, box)
+    require(isinstance(random, dict) and not set(random) & set(box), "expected random names without a range")
+    names = read_shapes(shapes, box, random)
     limit = None if tolerance is None else parse(tolerance)
     require(relation in SIGNS, "an unknown relation")
     cases: list[Case] = []
     choices: list[bool] | None = []
     while choices is not None:
         require(len(cases) < MOST_CASES, "too many cases")
-        reader = Reader(names, rates, choices)
+        reader = Reader(names, rates, choices, box)
+        reader.read_chances(random)
         for text in read_list(given, str):
             reader.assume(text)
         for text in read_list(exists, str):
             reader.need(*list_entries(reader.read(text)))
         goals = state_goals(reader.read(left), relation, reader.read(right), limit)
         goals = settle_questions(reader, goals, box, answers or Answers([]))
+        require(small is None or not reader.fractions, "an order of a floor")
         goals = goals if small is None else expand_goals(reader, goals, small, box)
         cases.append(reader.make_case(goals, box))
         choices = next_choices(reader.choices)
@@ -1057,14 +1099,18 @@ def read_statement(item: Any, answers: Answers | None = None) -> tuple[list[Case
     return cases, box
 
 
-def read_shapes(shapes: Any, box: dict[str, Range]) -> dict[str, Value]:
-    """The vectors and matrices by name: entries are symbols of the box, and a symbol may stand in several places."""
+def read_shapes(shapes: Any, box: dict[str, Range], random: Any) -> dict[str, Value]:
+    """The vectors and matrices by name: entries are symbols of the box, and a symbol may stand in several places.
+
+    The entries of random ones have no range.
+    """
     require(isinstance(shapes, dict) and not {"pi", *shapes} & set(box), "a name given twice, or pi")
     names: dict[str, Value] = {}
     for name in [*shapes]:
         require(matches("[A-Za-z][A-Za-z0-9_]*", name) and name != "pi", "expected names")
         rows = read_list(shapes[name], lambda row: read_list(row, lambda e: ("symbol", e)))
-        require(all(entry[1] in box for row in rows for entry in row), "an entry without a range")
+        known = all((entry[1] in box) != (name in random) for row in rows for entry in row)
+        require(known, "an entry without a range, or a random one with a range")
         names[name] = Matrix(rows)
     return names
 
@@ -1252,14 +1298,15 @@ CALLS: dict[str, tuple[range, Callable[..., Value]]] = {
     "conj": (range(1, 2), conjugate),
     "rot": (range(1, 2), rotation_of),
 }
+FRACTION = "fraction__"  # names of u - floor(u), which no text has
 MARKS = re.compile(r" *([0-9]+(?:\.[0-9]+)?|[A-Za-z][A-Za-z0-9_]*|\*\*|[<>!]=|[-+*/(),@.\[\]<>=])")
 
 
 class Reader:
     """Reads the texts of one case: the conditions that it meets get the choices, and then they are taken to hold."""
 
-    def __init__(self, names: dict[str, Value], rates: Any, choices: list[bool]):
-        self.names, self.rates, self.wanted = names, rates, choices
+    def __init__(self, names: dict[str, Value], rates: Any, choices: list[bool], box: dict[str, Range] | None = None):
+        self.names, self.rates, self.wanted, self.box = names, rates, choices, box or {}
         require(isinstance(rates, dict) and len(rates) <= 64, "expected rates by name")
         self.choices: list[bool] = []
         self.met: dict[tuple[str, Term], bool] = {}
@@ -1267,6 +1314,9 @@ class Reader:
         self.dead = self.conditions = 0
         self.exists, self.given, self.zeros = (dict[Term, None]() for _ in range(3))
         self.questions: list[Question] = []
+        self.fractions: dict[str, Term] = {}
+        self.floors: dict[Term, None] = {}
+        self.chances: dict[str, Chance] = {}
 
     def read(self, text: Any) -> Value:
         """The value of a text."""
@@ -1340,17 +1390,123 @@ class Reader:
     def make_case(self, goals: list[tuple[Term, str, tuple[Term, ...]]], box: dict[str, Range]) -> Case:
         """The goals of this case on its box."""
         terms = tuple(dict.fromkeys((*(t for goal in goals for t in goal[2]), *self.exists)))
+        box = box | dict.fromkeys(self.fractions, Range(ZERO, ONE, open_high=True))
         require(
             set().union(*map(symbols_of, (*terms, *self.zeros, *self.given))) <= set(box), "a symbol without a range"
         )
         own = tuple(t for t in terms if conditions(t)) if len(terms) > 8 else terms
         given, zeros = tuple(self.given), tuple(self.zeros)
         stated = [cut_box(Goal(term, relation, box, own, given, zeros)) for term, relation, _ in goals]
-        return Case(stated, (*terms, *zeros), given, zeros)
+        return Case(stated, (*terms, *zeros), given, zeros, tuple(self.fractions.items()))
+
+    def require_plain(self, term: Term, what: str) -> None:
+        """Refuse a term with the symbol of a question or of a fraction, which depends on others."""
+        require(not is_asked(term), f"{what} of an integral, sum, product or limit")
+        require(not symbols_of(term) & set(self.fractions), f"{what} of a floor")
+
+    def find_floor(self, x: Term) -> Term:
+        """floor(x) as x - f with a symbol f, 0 <= f < 1; floor(n + u) = n + floor(u) for what is seen to be whole.
+
+        A goal that holds for all such f holds for the fraction of x. Equal numbers have one fraction.
+        """
+        self.need(x)
+        terms = self.list_parts(x)
+        whole = [t for t in terms if is_integral(t, self.box, self.floors)]
+        rest = [t for t in terms if t not in whole]
+        if self.dead or not rest:
+            return x
+        u = make_sum(*rest)
+        if not symbols_of(u):
+            return make_sum(*whole, find_whole(u))
+        name = next((f for f, v in self.fractions.items() if is_identity(subtract(u, v))), None)
+        if name is None:
+            name = f"{FRACTION}{len(self.fractions) + 1}"
+            require(name not in self.box, "a name that is in use")
+            self.fractions[name] = u
+        value = subtract(u, ("symbol", name))
+        self.floors[value] = None
+        return make_sum(*whole, value)
+
+    def list_parts(self, x: Term) -> list[Term]:
+        """The terms of a sum; a floor is one of them."""
+        is_sum = x[0] == "+" and x not in self.floors
+        return [t for part in x[1:] for t in self.list_parts(part)] if is_sum else [x]
+
+    def read_chances(self, random: Any) -> None:
+        """Random numbers and vectors, independent of one another: means, and covariances, which are symmetric and >= 0.
+
+        Sylvester: a symmetric matrix is >= 0 just where all its principal minors are.
+        """
+        for group, item in random.items():
+            mean, covariance, normal = read_fields(item, "mean cov normal")
+            entries = [entry[1] for entry in list_entries(self.names.get(group, ("symbol", group)))]
+            m, c = list_entries(self.read(mean)), self.read(covariance)
+            rows = c.rows if isinstance(c, Matrix) else [[c]]
+            sizes = {len(entries), len(m), len(rows), len(rows[0])}
+            require(len(sizes) == 1 and len(m) <= 4, "expected a mean and a covariance for up to 4 numbers")
+            require(type(normal) is bool and not set(entries) & {*self.chances, *self.box}, "a name given twice")
+            self.need(*m)
+            for k in range(1, len(m) + 1):
+                for chosen in combinations(range(len(m)), k):
+                    self.suppose(">=", determinant([[rows[i][j] for j in chosen] for i in chosen]))
+            for i, j in combinations(range(len(m)), 2):
+                self.suppose("=", ZERO if rows[i][j] == rows[j][i] else subtract(rows[i][j], rows[j][i]))
+            for entry, middle, row in zip(entries, m, rows, strict=True):
+                self.chances[entry] = Chance(group, middle, dict(zip(entries, row, strict=True)), normal)
+
+    def expect(self, term: Term) -> Term:
+        """The expectation of a polynomial in random numbers, by linearity: a sum of moments."""
+        self.require_plain(term, "an expectation")
+        chances = set(self.chances)
+        for relation, t in conditions(term):
+            require(not symbols_of(t) & chances, "a random number below a line or in a function")
+            self.need(EXISTING[relation](t))
+        parts = [*dict.fromkeys(list_generators(term))]
+        fixed = [part[0] != "symbol" or part[1] not in chances for part in parts]
+        own = [part for part, known in zip(parts, fixed, strict=True) if known]
+        require(not any(symbols_of(part) & chances for part in own), "a random number in a function")
+        ring = fmpq_mpoly_ctx.get([f"x{k}" for k in range(len(parts))], Ordering.degrevlex)
+        top, bottom = to_quotient(term, dict(zip(parts, ring.gens(), strict=True)), ring)
+
+        def write(polynomial: fmpq_mpoly) -> Term:
+            rows = []
+            for powers, c in polynomial.to_dict().items():
+                pairs = [*zip(parts, map(int, powers), fixed, strict=True)]
+                factors = [("^", part, number(n)) for part, n, known in pairs if known and n]
+                word = [part[1] for part, n, known in pairs if not known for _ in range(n)]
+                rows.append(("*", number(c), *factors, self.find_moment(word)))
+            return ("+", ZERO, *rows)
+
+        require(not any(n for p in bottom.to_dict() for n, known in zip(p, fixed, strict=True) if not known), "below")
+        return ("*", write(top), ("^", write(bottom), MINUS_ONE))
+
+    def find_moment(self, word: Sequence[str]) -> Term:
+        """The expectation of a product of random numbers.
+
+        Independent factors have the product of their expectations. Theorem (Stein): E x f = m E f + sum_j c_j E df/dx_j
+        for normal numbers with E x = m and cov(x, x_j) = c_j; for any numbers if f has degree 1.
+        """
+        if not word:
+            return ONE
+        own = self.chances[word[0]]
+        rest = [name for name in word[1:] if self.chances[name].group == own.group]
+        others = [name for name in word[1:] if self.chances[name].group != own.group]
+        require(len(word) <= 8 and (own.normal or len(rest) < 2), "a moment that is not declared")
+        pairs = [("*", own.row[x], self.find_moment(rest[:k] + rest[k + 1 :])) for k, x in enumerate(rest)]
+        return ("*", ("+", ("*", own.mean, self.find_moment(rest)), *pairs), self.find_moment(others))
+
+    def find_covariance(self, x: Value, y: Value | None = None) -> Value:
+        """E (x - E x)(y - E y)'."""
+        u, v = (change_entries(lambda t: subtract(t, self.expect(t)), z) for z in (x, x if y is None else y))
+        if isinstance(u, Matrix) and isinstance(v, Matrix):
+            to_column(u), to_column(v)
+            return change_entries(self.expect, multiply_matrices(u, v.transpose()))
+        return self.expect(("*", to_number(u), to_number(v)))
 
     def differentiate(self, x: Value, name: str) -> Value:
         """The derivative by a symbol, where there is one; by time t it is that of all that has a rate."""
-        require(not any(map(is_asked, list_entries(x))), "a derivative of an integral, sum, product or limit")
+        for entry in list_entries(x):
+            self.require_plain(entry, "a derivative")
         self.need(*(t for entry in list_entries(x) for t in (entry, *smoothness(entry))))
         if name == "t" and "t" in self.rates:
             return change_entries(self.differentiate_by_time, x)
@@ -1358,7 +1514,7 @@ class Reader:
 
     def differentiate_by_time(self, term: Term) -> Term:
         """The chain rule: the sum of df/ds ds/dt over the symbols that have a rate; the others are constant."""
-        require(not is_asked(term), "a derivative of an integral, sum, product or limit")
+        self.require_plain(term, "a derivative")
         slopes = self.slopes = self.slopes or self.list_rates()
         rows = [(name, slopes[name]) for name in sorted(symbols_of(term)) if name in slopes]
         require(all(rate is not None for _, rate in rows), "no rate is known")
@@ -1378,6 +1534,15 @@ class Reader:
             slopes |= dict(pairs)
         require(before == self.conditions, "a rate of cases")
         return slopes
+
+
+class Chance(NamedTuple):
+    """A random number: what it is not independent of, its mean, its covariances with these, whether they are normal."""
+
+    group: str
+    mean: Term
+    row: dict[str, Term]
+    normal: bool
 
 
 def take_off(x: Term, y: Term) -> Term:
@@ -1484,6 +1649,7 @@ class Formula(Parser):
         if word[:1].isalpha():
             if self.take("("):
                 return self.read_call(word)
+            require(not word.startswith(FRACTION), "a name that is in use")
             return ("pi",) if word == "pi" else self.reader.names.get(word, ("symbol", word))
         require(word == "(", "not an expression")
         inside = self.read_sum()
@@ -1514,7 +1680,7 @@ class Formula(Parser):
         return relation, change_entries(take_off, x, y) if sign == 1 else change_entries(take_off, y, x)
 
     def read_call(self, name: str) -> Any:
-        """A function of values; where, min, max and sign are cases, diff and dot_ derivatives."""
+        """A function of values; where, min, max and sign are cases, diff and dot_ derivatives, E and cov moments."""
         if name == "where":
             return self.read_where()
         if name in QUESTIONS:
@@ -1528,6 +1694,13 @@ class Formula(Parser):
         if name in ("diff", "dot_"):
             require(before == self.reader.conditions, "a derivative of cases")
             return self.differentiate(name, *arguments)
+        if name in ("E", "cov"):
+            require(len(arguments) in (1, 1 + (name == "cov")), f"a wrong number of arguments of {name}")
+            reader = self.reader
+            return change_entries(reader.expect, *arguments) if name == "E" else reader.find_covariance(*arguments)
+        if name == "expm":
+            require(len(arguments) == 1, "expected expm of 1 argument")
+            return self.ask_exponential(to_square(arguments[0], 16))
         if name in CALLS:
             require(len(arguments) in CALLS[name][0], f"a wrong number of arguments of {name}")
             require(name != "transpose" or isinstance(arguments[0], Matrix), "expected a matrix")
@@ -1535,8 +1708,9 @@ class Formula(Parser):
                 self.reader.need(*list_entries(arguments[0]))
             return CALLS[name][1](*arguments)
         terms = [*map(to_number, arguments)]
-        if name == "sign":
-            return self.find_sign(*terms)
+        if name in ("sign", "floor"):
+            require(len(terms) == 1, f"expected {name} of 1 argument")
+            return self.find_sign(*terms) if name == "sign" else self.reader.find_floor(*terms)
         known = name in ("atan2", *DEFINITIONS, *DERIVATIVES) or matches("(exp|sin|cos)_[0-9]{1,2}", name)
         require(known, f"unknown function {name}")
         expected = 2 if name == "atan2" else 1
@@ -1571,6 +1745,7 @@ class Formula(Parser):
             ends.append(to_number(self.read_sum()))
         require(self.take(")") and len(ends) == 2 - (kind == "limit"), f"expected the ends of {kind}, and )")
         require(before == reader.conditions, f"{kind} of cases")
+        require(not reader.fractions, f"{kind} beside a floor")
         if reader.dead:
             return ZERO
         reader.need(*(t for t in needs if name not in symbols_of(t)))
@@ -1590,6 +1765,20 @@ class Formula(Parser):
         reader.questions[first:] = [q._replace(within=(*q.within, question)) for q in inner]
         reader.questions.append(question)
         return ("symbol", question.value)
+
+    def ask_exponential(self, rows: list[list[Term]]) -> Value:
+        """expm(A): symbols in the place of its entries."""
+        reader, entries, n = self.reader, [entry for row in rows for entry in row], len(rows)
+        reader.need(*entries)
+        for entry in entries:
+            reader.require_plain(entry, "an exponential")
+        if reader.dead:
+            return Matrix(rows)
+        own = f"s__{len(reader.questions) + 1}"
+        require(own not in set(reader.box).union(*map(symbols_of, entries)), "a name that is in use")
+        value = f"value {len(reader.questions) + 1}"
+        reader.questions.append(Question("expm", value, own, ("matrix", *entries), ZERO, ONE, (), ()))
+        return Matrix([("symbol", f"{value} {i} {j}") for j in range(n)] for i in range(n))
 
     def write_out(self, kind: str, name: str, term: Term, needs: list[Term], ends: list[Term]) -> Term:
         """A sum or product with numbers as ends; one of no terms is 0 or 1."""
@@ -2238,6 +2427,7 @@ SPANS: dict[str, tuple[Term, Term, bool]] = {
     "sin": (ZERO, ONE, False),
     "cos": (ZERO, ONE, False),
     "tanh": (ZERO, ONE, True),
+    "erf": (ZERO, ONE, True),
     "atan": (ZERO, HALF_TURN, True),
     "asin": (ZERO, HALF_TURN, False),
     "acos": (HALF_TURN, HALF_TURN, False),
@@ -2700,7 +2890,10 @@ def settle_questions(reader: Reader, goals: Parts, box: dict[str, Range], answer
             q, goal = q.change(lambda t: at_point(t, point)), Goal(ZERO, "=", {})
         for outer in q.within:
             goal = bind(outer, goal)
-        values[q.value] = answers.settle(q, goal)
+        value = answers.settle(q, goal)
+        n = isqrt(len(value) - 1)
+        places = [f"{q.value} {i} {j}" for i in range(n) for j in range(n)] if q.kind == "expm" else [q.value]
+        values.update(zip(places, value[1:] if q.kind == "expm" else [value], strict=True))
     for part in (reader.exists, reader.given, reader.zeros):
         rows = dict.fromkeys(substitute(t, values) for t in part)
         part.clear()
@@ -2817,13 +3010,15 @@ def answer_sum(entry: Any, q: Question, goal: Goal) -> Term:
     return subtract(last, first) if q.kind == "sum" else ("*", last, needed)
 
 
-def is_integral(term: Term, box: dict[str, Range]) -> bool:
-    """Whether a term is seen to be whole: sums and products of whole numbers and whole symbols."""
+def is_integral(term: Term, box: dict[str, Range], floors: Iterable[Term] = ()) -> bool:
+    """Whether a term is seen to be whole: sums and products of whole numbers, whole symbols and floors."""
+    if term in floors:
+        return True
     match term:
         case ("symbol", name):
             return name in box and box[name].integer
         case ("+" | "*", *parts):
-            return all(is_integral(part, box) for part in parts)
+            return all(is_integral(part, box, floors) for part in parts)
     return term[0] == "number" and term[1].q == 1
 
 
@@ -2872,8 +3067,28 @@ def answer_limit(entry: Any, q: Question, goal: Goal) -> Term:
     return ("*", value, ("^", divisor, MINUS_ONE))
 
 
+def answer_expm(entry: Any, q: Question, goal: Goal) -> Term:
+    """The entries of X(1), where dX/ds = A X for s from 0 to 1 and X(0) is the unit matrix.
+
+    Theorem (Picard, Lindelöf): a linear equation has one solution with a given start, and exp(s A) is one.
+    """
+    rows, smooth, equal, start = read_fields(entry, "rows smooth equal start")
+    n, s = isqrt(len(q.term) - 1), q.variable
+    X = read_list(rows, lambda row: read_list(row, parse, n), n)
+    places = [(i, j) for i in range(n) for j in range(n)]
+    whole = goal._replace(box=goal.box | {s: Range(ZERO, ONE)})
+    prove_defined(smooth, whole, *(x for row in X for x in row), level=2)
+    for (i, j), slope, first in zip(places, *(read_list(p, lambda e: e, n * n) for p in (equal, start)), strict=True):
+        image = make_sum(*(("*", q.term[1 + n * i + k], X[k][j]) for k in range(n)))
+        change = subtract(differentiate(X[i][j], s), image)
+        prove_vanishing(slope, whole, change, change)
+        begin = subtract(substitute(X[i][j], {s: ZERO}), ONE if i == j else ZERO)
+        prove_vanishing(first, goal, begin, begin)
+    return ("matrix", *(substitute(X[i][j], {s: ONE}) for i, j in places))
+
+
 ANSWERS: dict[str, Callable[[Any, Question, Goal], Term]] = {
-    "integral": answer_integral, "sum": answer_sum, "product": answer_sum, "limit": answer_limit,
+    "integral": answer_integral, "sum": answer_sum, "product": answer_sum, "limit": answer_limit, "expm": answer_expm,
 }  # fmt: skip
 
 
@@ -2943,7 +3158,9 @@ def grow_function(name: str, d: fmpq, c: Term | None, sign: Callable[[Term], int
     if name == "log":
         require(c is not None and sign(c) == 1, "a logarithm that may have no value")
         return (SLOW, None) if d != 0 else (zero, ("log", c))
-    require(name in ("exp", "sin", "cos", "atan", "tanh"), "no growth is known")
+    require(name in ("exp", "sin", "cos", "atan", "tanh", "erf"), "no growth is known")
+    if d < 0 and name == "erf":
+        return d, None if c is None else ("*", number(2), ("^", ("pi",), number(-HALF)), c)
     if d < 0:
         return (zero, ONE) if name in ("exp", "cos") else (d, c)
     if d == 0:
@@ -3004,6 +3221,7 @@ def read_point(point: Any, box: dict[str, Range]) -> dict[str, Term]:
 
 def lies_in(case: Case, place: dict[str, Term]) -> bool:
     """Whether a point is shown to belong to a case: all of it has a value, and its conditions hold."""
+    place = case.complete(place)
     balls = {name: evaluate(value, {}, arb) for name, value in place.items()}
     if not all(value_of(t, balls).is_finite() for t in case.terms):
         return False
@@ -3040,16 +3258,17 @@ def check_counterexample(item: Any) -> None:
     there = {name: parse(text) for name, text in point.items()}
     cases, box = read_statement(statement, Answers(rest[0] if rest else [], there))
     place = read_point(point, box)
-    goals = [goal for case in cases if lies_in(case, place) for goal in case.goals]
+    inside = [case for case in cases if lies_in(case, place)]
+    goals = [goal for case in inside for goal in case.goals]
     require(goals, "the statement may have no value at the point")
-    balls = {name: evaluate(value, {}, arb) for name, value in place.items()}
     if zero is not None:
-        (goal,) = goals
+        (goal,), place = goals, inside[0].complete(place)
         at = reduce(lambda t, name: replace(t, ("symbol", name), place[name]), place, goal.term)
         require(goal.relation in (">", "!="), "the statement allows 0")
         prove(zero, Goal(at, "=", {}))
         return
-    values = [(goal.relation, value_of(goal.term, balls)) for goal in goals]
+    balls = [{name: evaluate(value, {}, arb) for name, value in case.complete(place).items()} for case in inside]
+    values = [(g.relation, value_of(g.term, b)) for case, b in zip(inside, balls, strict=True) for g in case.goals]
     require(any(FAILURES[relation](value) for relation, value in values), "the statement is not seen to fail there")
 
 

@@ -161,7 +161,21 @@ class Book(Mapping[str, Entry]):
         return f"<book: {len(self)} entries>"
 
     def search(self, words: str = "") -> list[Entry]:
-        """Entries in which every word occurs, in id, chapter, title, LaTeX, statement or source."""
+        """Entries in which every word occurs, in id, chapter, title, LaTeX, statement or source; or by a formula.
+
+        A formula finds what is the same up to the names of symbols and the order of terms: first the entries that state
+        it, then those with it as a side, then those with it as a part.
+
+        Raises ExpressionSyntaxError for what looks like a formula and is none.
+
+        >>> import navsym as nav
+        >>> [entry.id for entry in nav.book.search("skew(p) @ q = cross(p, q)")]
+        ['skew-is-cross']
+        """
+        from navsym.book.search import find_formula, is_formula
+
+        if is_formula(words):
+            return find_formula(words, self)
         wanted = words.lower().split()
         return [entry for entry in self.values() if all(word in text_of(entry) for word in wanted)]
 

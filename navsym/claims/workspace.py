@@ -32,6 +32,7 @@ from navsym.language.tomlfile import read_toml
 FILE = "navsym.toml"
 #: What a workspace lists, and how the names of these files end.
 ENDINGS = {"claims": ".toml", "models": ".toml", "audits": ".toml", "papers": ".py"}
+SCHEMAS = Path(__file__).parent.parent / "schemas"
 WILD = re.compile(r"[*?\[]")
 
 
@@ -185,6 +186,14 @@ def read_patterns(value: Any, kind: str, where: str) -> tuple[str, ...]:
     return tuple(value)
 
 
+def editor_files() -> dict[str, str]:
+    """JSON schemas of the files, and the list of them in the form in which editors look for it."""
+    texts = {f"schemas/{path.name}": path.read_text(encoding="utf-8") for path in sorted(SCHEMAS.glob("*.json"))}
+    rules = [(f'"{kind}/*.toml"', kind) for kind in ("claims", "models", "audits")] + [(f'"{FILE}"', "workspace")]
+    blocks = [f'[[rule]]\ninclude = [{files}]\nschema.path = "schemas/{kind}.schema.json"\n' for files, kind in rules]
+    return {**texts, ".taplo.toml": "\n".join(blocks)}
+
+
 def init(folder: str | os.PathLike[str] = ".") -> Workspace:
     """Make a workspace: ``navsym.toml``, and folders for claims, models, audits and papers with a small example each.
 
@@ -197,13 +206,13 @@ def init(folder: str | os.PathLike[str] = ".") -> Workspace:
     <workspace drive: claims/baro.toml, models/alignment.toml, pendulum>
     """
     root = Path(folder).absolute()
-    files = {FILE: MANIFEST, **EXAMPLES}
+    files = {FILE: MANIFEST, **EXAMPLES, **editor_files()}
     for name in files:
         if os.path.lexists(root / name):
             message = "expected a folder without a workspace; got one with this file; choose another or remove it"
             raise DuplicateError(message, where=str(root / name))
     try:
-        for kind in ENDINGS:
+        for kind in (*ENDINGS, "schemas"):
             (root / kind).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         message = f"expected a folder that can be written; got '{error.strerror}'; choose another"

@@ -28,7 +28,7 @@ def register_magics(shell: Any) -> None:
             raise UsageError(f"{error.kind}: {error}") from None
 
     def claims(line: str, cell: str) -> Verdicts:
-        """Decide a cell of [symbols] and [[claim]] blocks, or of formulas in LaTeX; ``%%claims name`` keeps the verdicts."""
+        """Decide a cell of [symbols] and [[claim]] blocks, or of LaTeX; ``%%claims name`` keeps the verdicts."""
         try:
             verdicts = prove_cell(cell)
         except NavsymError as error:

@@ -13,12 +13,14 @@ if TYPE_CHECKING:
 
 
 def command(
-    search: Annotated[str, typer.Argument(help="words that all occur in id, title, formula or source")] = "",
+    search: Annotated[
+        str, typer.Argument(help="words that all occur in id, title, formula or source; or a formula, in any names")
+    ] = "",
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
-    """Search the formulas of the book. Status 1 when no entry has all words.
+    """Search the formulas of the book, by words or by a formula in any names. Status 1 when nothing is found.
 
-    Example: navsym book "transport rate"
+    Example: navsym book "a/sqrt(1 - e**2*sin(x)**2)"
     """
     import navsym as nav
 

@@ -17,14 +17,16 @@ from navsym.language.declarations import SIGNS, read_range
 from navsym.language.expression import Expr
 from navsym.language.names import NAME, RESERVED, check_name, expect_keys, quote
 from navsym.language.printer import to_text
-from navsym.language.schema import SIDE, as_list, as_text, describe_value, join_place, read_entry
+from navsym.language.schema import SIDE, as_list, as_table, as_text, describe_value, join_place, read_entry, require_key
 
 #: What a table may say; ``unit`` and ``frame`` are notes for people.
 KINDS = ("vector", "matrix", "rotation", "quaternion", "integer")
 #: What a square matrix may be; positive is positive definite, nonnegative is positive semidefinite.
 PROPERTIES = ("symmetric", "positive", "nonnegative", "invertible", "orthogonal", "skew", "diagonal")
-KEYS = (*KINDS, *PROPERTIES, "function", "range", "sign", "unit", "frame")
+KEYS = (*KINDS, *PROPERTIES, "function", "random", "range", "sign", "unit", "frame")
+MOST_RANDOM = 4  # entries of a random vector
 ORDERS = 3  # derivatives of a function of time that have symbols of their own
+INFINITY = {"oo", "-oo"}
 RANGES: dict[str, list[Any]] = {
     "real": [None, None, []],
     "positive": ["0", None, ["open-low"]],
@@ -45,6 +47,7 @@ class Shape:
     label     : how a derivative is written, ``dot_(x)``; empty for what is declared
     sizes     : rows and columns of a matrix of any size, numbers or names of dimensions, which has no rows
     properties : what a matrix is, words of :data:`PROPERTIES`
+    random    : mean and covariance as text, and whether it is normal; such a name has no ranges
     """
 
     name: str
@@ -56,6 +59,7 @@ class Shape:
     label: str = ""
     sizes: tuple[int | str, int | str] | None = None
     properties: tuple[str, ...] = ()
+    random: Mapping[str, Any] | None = None
 
     @property
     def size(self) -> tuple[int | str, int | str] | None:
@@ -113,6 +117,8 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
         return [Shape(name, (), kind, {}, sizes=size, properties=properties)]
     even = bool({"symmetric", "positive", "nonnegative"} & {*properties})
     rows = name_entries(name, size, even, taken)
+    if "random" in value:
+        return [Shape(name, rows, kind, {}, random=read_random(value, len(rows), kind, where))]
     limits = read_limits(kind, value, where)
     shape = Shape(
         name,
@@ -128,6 +134,25 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
         message = f'expected function = "t", the time; got {describe_value(value["function"])}; correct it'
         raise DomainError(message, where=join_place(where, "function"))
     return list_derivatives(shape, taken)
+
+
+def read_random(value: Mapping[str, Any], n: int, kind: str, where: str) -> dict[str, Any]:
+    """Mean and covariance of a random number or vector, and whether it is normal."""
+    if set(value) - {"random", "vector", "unit", "frame"} or n > MOST_RANDOM:
+        got = f"a {kind} of {n} entries" if n > MOST_RANDOM else ", ".join(value)
+        message = f"expected a random number, or a random vector of at most {MOST_RANDOM}; got {got}"
+        raise ShapeError(f"{message}; declare it so", where=where)
+    place = join_place(where, "random")
+    table = as_table(value["random"], place)
+    expect_keys(table, ("mean", "cov", "law"), place)
+    law = table.get("law", "any")
+    if law not in ("any", "normal"):
+        message = f'expected law = "normal", or none; got {describe_value(law)}; correct it'
+        raise DomainError(message, where=join_place(place, "law"))
+    nothing = "0" if kind == "scalar" else f"zeros({n}, 1)"
+    mean = str(table.get("mean", "0"))
+    covariance = str(require_key(table, "cov", place))
+    return {"mean": nothing if mean == "0" else mean, "cov": covariance, "normal": law == "normal"}
 
 
 def read_properties(kind: str, value: Mapping[str, Any], where: str) -> tuple[str, ...]:
@@ -200,6 +225,8 @@ def read_limits(kind: str, value: Mapping[str, Any], where: str) -> list[Any]:
         low, high = (read_end(end, join_place(where, "integer")) for end in ends)
         return [low, high, ["integer"]]
     if "range" in value and kind == "scalar":
+        if INFINITY & {str(end) for end in as_list(value["range"], place)}:
+            return read_long_range(value["range"], place)
         low, high = read_range(value["range"], place)
         return [to_text(low), to_text(high), []]
     if "range" in value:
@@ -209,6 +236,14 @@ def read_limits(kind: str, value: Mapping[str, Any], where: str) -> list[Any]:
         message = f"expected one of {', '.join(SIGNS)}; got {quote(word)}; correct it"
         raise ExpressionSyntaxError(message, where=where)
     return RANGES[word]
+
+
+def read_long_range(value: Any, where: str) -> list[Any]:
+    """A range with oo as an end."""
+    ends = as_list(value, where, "a range of two ends")
+    if len(ends) != 2 or ends[0] == "oo" or ends[1] == "-oo":
+        raise ShapeError(f'expected a range such as ["0", "oo"]; got {describe_value(value)}; correct it', where=where)
+    return [*(None if end in INFINITY else to_text(read_entry(end, {}, where)) for end in ends), []]
 
 
 def read_end(value: Any, where: str) -> str | None:

@@ -24,7 +24,7 @@ from navsym.language.tree import MINUS_ONE, NUMBER, POWER, PRODUCT, SUM, SYMBOL,
 Size = tuple[Any, Any] | None  # rows and columns, whole numbers or names of dimensions; None for a number
 
 RELATIONS = ("=", "!=", "<", "<=", ">", ">=")
-MOST_INVERSE, MOST_DETERMINANT, MOST_ORDER = 4, 5, 8
+MOST_INVERSE, MOST_DETERMINANT, MOST_ORDER, MOST_EXPONENT = 4, 5, 8, 16
 #: What each function takes, in words, and how many arguments.
 TAKES: dict[str, tuple[str, int, int]] = {
     "cross": ("two vectors of three", 2, 2),
@@ -47,6 +47,11 @@ TAKES: dict[str, tuple[str, int, int]] = {
     "sign": ("a number", 1, 1),
     "diff": ("a value, a symbol and how many times", 2, 3),
     "dot_": ("a value", 1, 1),
+    "floor": ("a number", 1, 1),
+    "erf": ("a number", 1, 1),
+    "expm": (f"a square matrix of at most {MOST_EXPONENT} rows", 1, 1),
+    "E": ("a value", 1, 1),
+    "cov": ("one or two numbers or vectors", 1, 2),
 }
 #: Functions with a variable of their own, in words, and how many arguments.
 BINDERS = {
@@ -56,9 +61,7 @@ BINDERS = {
     "limit": ("a number, its variable and a point", 3),
 }
 INFINITE = "oo"
-#: Words of the language of files that nothing decides yet.
-UNDECIDED = ("floor", "erf", "expm", "E", "cov")
-WIDE = re.compile(r"[@\[\]]|\.\s*T\b|\b(?:" + "|".join((*TAKES, *BINDERS, *UNDECIDED)) + r")\s*\(")
+WIDE = re.compile(r"[@\[\]]|\.\s*T\b|\b(?:" + "|".join((*TAKES, *BINDERS)) + r")\s*\(")
 
 
 def is_wide(text: str) -> bool:
@@ -121,6 +124,7 @@ class ValueReader(Reader):
         """The shape of a function of vectors and matrices."""
         name, first = part.head, sizes[0]
         second = sizes[1] if len(sizes) > 1 else None
+        last = sizes[-1]
         square = first is not None and first[0] == first[1]
         vector = first is not None and first[1] == 1
         fits: dict[str, tuple[bool, Callable[[], Size]]] = {
@@ -141,6 +145,12 @@ class ValueReader(Reader):
             "where": (first is None and second == sizes[-1], lambda: second),
             "diff": (second is None and part.args[-1].head in (SYMBOL, NUMBER, "index"), lambda: first),
             "dot_": (True, lambda: first),
+            "expm": (square and self.is_small(first, MOST_EXPONENT), lambda: first),
+            "E": (True, lambda: first),
+            "cov": (
+                not any(sizes) or (vector and last is not None and last[1] == 1),
+                lambda: (first[0], last[0]) if any(sizes) and (first[0], last[0]) != (1, 1) else None,  # type: ignore[index]
+            ),
         }
         good, result = fits.get(name, (not any(sizes), lambda: None))
         if not good:
@@ -289,9 +299,6 @@ class ValueReader(Reader):
             return self.call(at, token)
         if called and token in BINDERS and token not in (self.names or ()):
             return self.bind(at, token)
-        if called and token in UNDECIDED and token not in (self.names or ()):
-            remedy = "state the claim without it"
-            self.fail(at, "a construct that claims are decided for", f"{token}(...)", remedy)
         return super(ValueReader, self).name(at, token)
 
     def call(self, at: int, name: str) -> Tree:
@@ -474,6 +481,7 @@ FORMS = {
     "skew": r"\left[{0} \times\right]",
     "qmul": r"{0} \otimes {1}",
     "dot_": r"\frac{{d}}{{dt}} {0}",
+    "floor": r"\left\lfloor {0} \right\rfloor",
 }
 
 
@@ -501,7 +509,7 @@ class ValueWriter(LatexWriter):
             sign = {"!=": r"\ne", "<=": r"\le", ">=": r"\ge"}.get(part.head, part.head)
             return Text(f"{texts[0]} {sign} {texts[1]}", LOOSE)
         if part.head in FORMS:
-            closed = part.head in ("norm", "skew")
+            closed = part.head in ("norm", "skew", "floor")
             written = FORMS[part.head].format(*(self.enclose(text, LOOSE if closed else RAISED) for text in inner))
             return Text(written, WHOLE if closed else TIGHT)
         if part.head == "eye":

@@ -64,7 +64,7 @@ class Symbols:
     @classmethod
     def read(cls, table: Any, where: str, rates: Any = None) -> Symbols:
         """The declarations of a ``[symbols]`` table, and of ``[rates]``."""
-        whole = as_table(table, where)
+        whole = {name: widen_range(value) for name, value in as_table(table, where).items()}
         scalars = {name: value for name, value in whole.items() if not isinstance(value, dict)}
         slopes = as_table({} if rates is None else rates, where)
         parameters = read_parameters(scalars, where)
@@ -91,6 +91,14 @@ class Symbols:
         box = box_of(self.parameters) | read_box({name: ends}, self.parameters, place.rpartition(".")[0])
         own = self.parameters[name].symbol
         return write_range(ranges_of([own], box)[own])
+
+
+def widen_range(value: Any) -> Any:
+    """A range up to infinity as a word, or as a table."""
+    if not isinstance(value, (list, tuple)) or not {"oo", "-oo"} & {str(end) for end in value}:
+        return value
+    word = {"0 oo": "nonnegative", "-oo oo": "real"}.get(" ".join(map(str, value)))
+    return word or {"range": [*value]}
 
 
 def is_derived(sides: tuple[Side, ...]) -> bool:

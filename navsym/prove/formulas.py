@@ -148,7 +148,8 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
     slopes = {name: write_entries(rate, f"prove: rates.{name}") for name, rate in dict(beside["rates"]).items()}
     texts = (left, right, exists, *map(str, hypotheses), *slopes.values())
     dimensions = {side for value in given.values() for side in list_dimensions(value)} - given.keys()
-    words = dict.fromkeys(sorted((symbols_in(texts, given) - dimensions) | slopes.keys()), "real")
+    moments = [text for value in given.values() for text in list_moments(value)]
+    words = dict.fromkeys(sorted((symbols_in((*texts, *moments), given) - dimensions) | slopes.keys()), "real")
     words |= read_assumptions((sides.left, sides.right, *existing), "prove")
     declared = {name: write_declaration(value, f"prove: {name}") for name, value in given.items()}
     for name in declared.keys() - words.keys():
@@ -175,6 +176,12 @@ def list_dimensions(value: Any) -> list[str]:
     sizes = (value.get("matrix"), value.get("vector")) if isinstance(value, Mapping) else ()
     sides = [side for size in sizes for side in (size if isinstance(size, (list, tuple)) else [size])]
     return [side for side in sides if isinstance(side, str)]
+
+
+def list_moments(value: Any) -> list[str]:
+    """The texts of mean and covariance in a declaration such as ``{"random": {"mean": "0", "cov": "s"}}``."""
+    table = value.get("random") if isinstance(value, Mapping) else None
+    return [str(table[key]) for key in ("mean", "cov") if key in table] if isinstance(table, Mapping) else []
 
 
 def require_options(box: Any, seconds: Any, jobs: Any) -> None:
@@ -253,8 +260,8 @@ def symbols_in(sides: Iterable[Any], given: Mapping[str, Any]) -> set[str]:
     ``e`` and ``ln`` count where the caller declares them; the reader says of the others what to write instead.
     """
     from navsym.language.advice import FOREIGN
-    from navsym.language.vectors import BINDERS, INFINITE, TAKES, UNDECIDED
+    from navsym.language.vectors import BINDERS, INFINITE, TAKES
 
     called = {name for side in sides for name in re.findall(r"([A-Za-z]\w*)\s*\(", side_text(side))}
-    functions = called & {*TAKES, *BINDERS, *UNDECIDED} | ({INFINITE} if called & set(BINDERS) else set())
+    functions = called & {*TAKES, *BINDERS} | ({INFINITE} if called & set(BINDERS) else set())
     return set().union(*map(names_of, sides)) - RESERVED - ((FOREIGN.keys() | functions) - given.keys())

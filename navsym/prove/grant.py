@@ -245,7 +245,7 @@ def answer_at_point(document: Document, point: Mapping[str, str]) -> Document:
     from navsym.language.vectors import BINDERS
     from navsym.prove.calculus.answers import read_with_answers
 
-    if not any(f"{name}(" in json.dumps(document) for name in BINDERS):
+    if not any(f"{name}(" in json.dumps(document) for name in (*BINDERS, "expm")):
         return {}
     place = {name: player.parse(text) for name, text in point.items()}
     answers = read_with_answers(document, point=place)[2]

@@ -37,6 +37,7 @@ from navsym.prove.rooms.signs import (
     by_cones,
     by_contacts,
     by_corners,
+    by_divided_root,
     by_few_balls,
     by_identity,
     by_logarithms,
@@ -63,8 +64,9 @@ EQUATIONS: tuple[tuple[Room, ...], ...] = (
 )  # fmt: skip
 SIGNS: tuple[tuple[Room, ...], ...] = (
     (
-        by_number, by_positive_radicand, by_identity, by_elimination, by_sums_of_hypotheses, by_range, by_roots,
-        by_bounds, by_corners, by_product, by_sum, by_few_balls, by_values, by_side, by_squares, by_cones, by_forms,
+        by_number, by_positive_radicand, by_divided_root, by_identity, by_elimination, by_sums_of_hypotheses, by_range,
+        by_roots, by_bounds, by_corners, by_product, by_sum, by_few_balls, by_values, by_side, by_squares, by_cones,
+        by_forms,
     ),
     (
         by_cofactors, by_hypothesis, by_cases, by_quadratic, by_divisors, by_roots_of_symbols, by_substitution,

@@ -172,12 +172,17 @@ class PaperView:
 
 
 def pages(
-    ledger: Ledger, words: Mapping[str, Words] | None = None, *, progress: Callable[[str], None] = lambda claim: None
+    ledger: Ledger,
+    words: Mapping[str, Words] | None = None,
+    *,
+    book: bool = False,
+    progress: Callable[[str], None] = lambda claim: None,
 ) -> Iterator[tuple[str, str]]:
     """The files of the report, name and text, as they are made; the index comes last.
 
     ledger   : the verdicts; a paper whose card is not in it is shown without its matrix of equations
     words    : wording of erratum sheets by module
+    book     : whether the pages of the book come too, ``book.html`` and one for each chapter
     progress : called with the id of each claim that is set in type
 
     Files: ``certificates/*.json``, ``verdicts.json``, ``MODULE.html``, ``MODULE.erratum.html`` and
@@ -197,8 +202,12 @@ def pages(
         yield f"{paper.file}.erratum.tex", env.get_template("erratum.tex").render(paper=paper)
     places = {claim.record.id: f"{paper.file}.html#{claim.anchor}" for paper in papers for claim in paper.claims}
     yield "trust.html", env.get_template("trust.html").render(shared, trust=trust_of(ledger), places=places)
+    if book:
+        from navsym.report.book_pages import book_pages
+
+        yield from book_pages(env.get_template, shared)
     papers.sort(key=lambda paper: not paper.erratum.entries)  # those with something to correct come first
-    yield "index.html", env.get_template("index.html").render(shared, papers=papers, total=total(papers))
+    yield "index.html", env.get_template("index.html").render(shared, papers=papers, total=total(papers), book=book)
 
 
 def environment() -> jinja2.Environment:

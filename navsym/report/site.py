@@ -57,7 +57,8 @@ def report(
 ) -> Site:
     """Write static HTML pages of verdicts, erratum sheets and certificates into a folder.
 
-    The pages need neither a network nor a script. Every certificate is a file that ``navsym check`` replays.
+    The pages need neither a network nor a script. Every certificate is a file that ``navsym check`` replays. The report
+    of all papers has the book, too.
 
     papers   : names of derivation modules; all when none is given
     out      : the folder, by default ``report``, in the workspace if there is one; made when it is not there
@@ -88,7 +89,8 @@ def report(
     if changed := list_changed(ledger.papers, chosen):
         remark(f"the text of {', '.join(changed)} has changed since its verdicts were written: decided now")
         ledger = run(*changed).merge(ledger)
-    return write_pages(folder, Ledger(ledger.claims, ledger.papers, ledger.unsaved, cards), progress)
+    whole = not papers and find_workspace() is None
+    return write_pages(folder, Ledger(ledger.claims, ledger.papers, ledger.unsaved, cards), progress, book=whole)
 
 
 def report_folder() -> Path:
@@ -106,8 +108,8 @@ def make_folder(out: Path) -> None:
         raise OutputError(message, where=str(out)) from error
 
 
-def write_pages(out: Path, ledger: Ledger, progress: Callable[[int, int, str], None]) -> Site:
-    """Write the files of the report as they are made, each whole or not at all."""
+def write_pages(out: Path, ledger: Ledger, progress: Callable[[int, int, str], None], *, book: bool = False) -> Site:
+    """Write the files of the report as they are made, each whole or not at all; with the book or without."""
     names: list[str] = []
     done = 0
 
@@ -120,7 +122,7 @@ def write_pages(out: Path, ledger: Ledger, progress: Callable[[int, int, str], N
     home = papers_folder() if workspace is None else workspace.root
     files = sorted((home / "errata").glob("*.toml"))  # wording of the erratum sheets, by module
     wordings = {path.stem: read_wording(read_text(path, LARGEST), path.name) for path in files}
-    for name, text in pages(ledger, wordings, progress=step):
+    for name, text in pages(ledger, wordings, book=book, progress=step):
         write_text(out / name, text, durable=False)
         names.append(name)
     return Site(out, tuple(names), ledger)

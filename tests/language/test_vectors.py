@@ -97,7 +97,7 @@ def test_the_checker_reads_the_entries_that_numpy_computes(text):
         ("[[x], [1, 2]]", "shape", "rows of one length"),
         ("where(x, 1, 2)", "syntax", "one of = != < <= > >="),
         ("diff(x, x + y)", "syntax", "a symbol as the second argument"),
-        ("erf(x)", "syntax", "a construct that claims are decided for"),
+        ("erf(u)", "shape", "erf of a number; got a vector of 3"),
         ("nobody @ u", "unknown-symbol", "a declared name"),
         ("u.t", "syntax", "T behind the point"),
         ("[1, 2", "syntax", "behind an entry"),

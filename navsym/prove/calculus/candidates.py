@@ -13,8 +13,18 @@ from sympy.integrals.manualintegrate import manualintegrate
 from sympy.simplify.fu import TR8
 
 from navsym.core.errors import NavsymError
-from navsym.language.printer import to_text
-from navsym.prove.rooms.goals import SHARES, Hole, Holes, inner_point, player, subterms, to_sympy, write_term
+from navsym.prove.calculus.exponentials import list_exponentials
+from navsym.prove.rooms.goals import (
+    SHARES,
+    Hole,
+    Holes,
+    from_sympy,
+    inner_point,
+    player,
+    subterms,
+    to_sympy,
+    write_term,
+)
 
 Entry = dict[str, Any]
 MOST_ORDER = 6
@@ -36,6 +46,7 @@ def list_candidates(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
         "sum": list_sums,
         "product": list_products,
         "limit": list_limits,
+        "expm": list_exponentials,
     }
     return makers[question.kind](question, goal)
 
@@ -97,7 +108,7 @@ def list_cuts(question: Any, goal: Any) -> Iterator[list[Any]]:
         zeros |= set(found) if isinstance(found, sp.FiniteSet) else set()
     inside = [z for z in zeros if lies_between(z, question)]
     if inside:
-        yield [player.parse(to_text(z)) for z in sorted(inside, key=lambda z: float(z) if z.is_number else 0.0)]
+        yield [player.parse(from_sympy(z)) for z in sorted(inside, key=lambda z: float(z) if z.is_number else 0.0)]
     yield []
 
 
@@ -139,7 +150,7 @@ def list_antiderivatives(question: Any, goal: Any, pair: Any, signs: list[int]) 
             if found is None:
                 continue
             form = turn_logarithms(choose_branch(found).subs(back), question, goal, pair)
-            text = to_text(form)
+            text = from_sympy(form)
         except (NavsymError, *TROUBLE):
             continue
         if text not in seen:
@@ -161,7 +172,7 @@ def turn_logarithms(form: Any, question: Any, goal: Any, pair: Any) -> Any:
     """The form with log(-u) for log(u) where u is negative at a point of the range."""
     found = {}
     for part in form.atoms(sp.log):
-        term = player.parse(to_text(part.args[0]))
+        term = player.parse(from_sympy(part.args[0]))
         if sign_at_middle(term, question, goal, pair) < 0:
             found[part] = sp.log(-part.args[0])
     return form.xreplace(found)
@@ -249,7 +260,7 @@ def list_sums(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
     for method in (telescope_parts, telescope):
         try:
             found = method(f, k)
-            text = None if found is None else to_text(found.subs(k, to_sympy(("symbol", question.variable))))
+            text = None if found is None else from_sympy(found.subs(k, to_sympy(("symbol", question.variable))))
         except (NavsymError, *TROUBLE):
             continue
         if text is not None and text not in seen:
@@ -331,7 +342,7 @@ def list_products(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
         form *= sp.prod(factors)
     if roots[1] or share.has(k):
         return
-    text = to_text(form * share**k if share != 1 else form)
+    text = from_sympy(form * share**k if share != 1 else form)
     for plain in (True, False):
         yield functools.partial(make_sum, text, plain, player.is_infinite(question.high))
 
@@ -354,7 +365,7 @@ def list_limits(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
     orders = [order_of_zero(to_sympy(t), x, a) for t in around]
     order = order_of_zero(bottom, x, a)
     yield lambda: {
-        "top": to_text(top), "bottom": to_text(bottom), "order": order, "defined": Holes(), "zeros": Holes(),
+        "top": from_sympy(top), "bottom": from_sympy(bottom), "order": order, "defined": Holes(), "zeros": Holes(),
         "pole": Holes(), "around": orders, "signs": Signs(),
     }  # fmt: skip
 

@@ -119,7 +119,7 @@ def list_points(claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]) 
     kinds = {name: kind for name, kind in claim.kinds.items() if {e for row in kind[1] for e in row} <= set(box)}
     count = max(8, min(POINTS, 8 * POINTS // len(cases))) if box else 1
     for case in cases:
-        for point in draw_special_points(case.goals[0].box, case.zeros, kinds, count):
+        for point in draw_special_points({n: case.goals[0].box[n] for n in box}, case.zeros, kinds, count):
             place = {name: player.number(value) for name, value in point.items()}
             try:
                 if all(player.is_inside(place[name], box[name]) for name in box) and player.lies_in(case, place):
@@ -131,10 +131,16 @@ def list_points(claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]) 
 def find_failure(points: Sequence[tuple[dict[str, Any], Any]]) -> dict[str, Any] | None:
     """A point at which a goal of its case fails."""
     for point, case in points:
-        balls = {name: player.Jet(arb(value)) for name, value in point.items()}
+        balls = evaluate_point(case, point)
         if any(player.FAILURES[goal.relation](player.value_of(goal.term, balls)) for goal in case.goals):
             return point
     return None
+
+
+def evaluate_point(case: Any, point: Mapping[str, Any]) -> dict[str, Any]:
+    """A point, with the fractions of the case, for the evaluation in balls."""
+    place = case.complete({name: player.number(value) for name, value in point.items()})
+    return {name: player.evaluate(value, {}, arb) for name, value in place.items()}
 
 
 def refute(claim: TextClaim, document: Document, point: Mapping[str, Any]) -> Verdict:
@@ -170,9 +176,9 @@ def refute_at_points(claim: TextClaim, document: Document) -> Verdict | None:
 def difference_at(document: Document, point: Mapping[str, Any]) -> Any:
     """An enclosure of left - right at the point, of the entry that differs most visibly."""
     place = {name: player.number(value) for name, value in point.items()}
-    balls = {name: player.Jet(arb(value)) for name, value in point.items()}
     cases, _, _ = read_with_answers({**document, "relation": "=", "tolerance": None}, SECONDS, place)
-    values = [player.value_of(goal.term, balls) for case in cases if player.lies_in(case, place) for goal in case.goals]
+    inside = [(case, evaluate_point(case, point)) for case in cases if player.lies_in(case, place)]
+    values = [player.value_of(goal.term, balls) for case, balls in inside for goal in case.goals]
     far = [value for value in values if value.is_finite()]
     return decimal_ends(max(far, key=lambda value: abs(float(value.mid())))) if far else None
 

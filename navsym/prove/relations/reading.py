@@ -17,7 +17,7 @@ from navsym.language.names import FUNCTIONS, expect_keys, quote, suggest_nearest
 from navsym.language.printer import to_text
 from navsym.language.schema import Table, as_list, as_table, as_text, join_place, require_key
 from navsym.language.shapes import RANGES, Shape, read_shape
-from navsym.language.tree import Tree, list_names, list_parts
+from navsym.language.tree import Tree, fold_tree, list_names, list_parts
 from navsym.language.vectors import (
     RELATIONS,
     Size,
@@ -100,15 +100,12 @@ def read_text_claim(
     order = read_order(block, shapes, join_place(where, "order"))
     trees += stated
     free = set(order).union(*map(list_free_names, trees))
+    require_expected(trees, shapes, where)
     used, slopes = collect_names([*texts, *exists], free, given, shapes, rates, sizes)
     require_rates(trees, slopes, where)
     relations = [text for name in used for text in shapes[name].relations]
     ranges = {entry: span for name in used for entry, span in shapes[name].ranges.items()}
-    for name, ends in as_table(block.get("box", {}), join_place(where, "box")).items():
-        place = join_place(join_place(where, "box"), name)
-        if name not in shapes:
-            expect_keys({name: ends}, tuple(shapes), join_place(where, "box"))
-        ranges[name] = limit(name, ends, place)
+    ranges |= read_box(block, shapes, limit, join_place(where, "box"))
     formula = make_formula(block)
     if any(shape.sizes for shape in shapes.values()) and is_of_any_size([shapes[n] for n in used], trees):
         plain = {
@@ -123,15 +120,61 @@ def read_text_claim(
         declared["given"] = [*map(clean, given)]
         documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | declared for x, sign, y in links]
         return TextClaim(formula, tuple(documents), scope=scope)
-    common: Document = {"symbols": ranges, "exists": [*map(clean, exists)], "tolerance": formula.tolerance}
+    common: Document = {
+        "symbols": ranges,
+        "exists": [*map(clean, exists)],
+        "tolerance": formula.tolerance and clean(formula.tolerance),
+    }
     common |= {"shapes": {n: [[*row] for row in shapes[n].rows] for n in used if shapes[n].size}}
     common |= {"given": [*map(clean, (*given, *relations))], "rates": slopes}
     common |= {"order": order} if order else {}
+    common |= read_random([shapes[name] for name in used], sizes)
     documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | common for x, sign, y in links]
     kinds = {name: (kind_of(shapes[name]), shapes[name].rows) for name in used if shapes[name].size}
     shown = {entry: text for name in used for entry, text in shapes[name].shown().items()}
     scope = describe_scope([shapes[n] for n in used if not shapes[n].label], ranges)
     return TextClaim(formula, tuple(documents), kinds, shown, scope)
+
+
+def read_box(
+    block: Table, shapes: Mapping[str, Shape], limit: Callable[[str, Sequence[Any], str], list[Any]], where: str
+) -> dict[str, list[Any]]:
+    """The ranges of the claim itself."""
+    found = {}
+    for name, ends in as_table(block.get("box", {}), where).items():
+        if name not in shapes:
+            expect_keys({name: ends}, tuple(shapes), where)
+        found[name] = limit(name, ends, join_place(where, name))
+    return found
+
+
+def read_random(shapes: Iterable[Shape], sizes: Mapping[str, Size]) -> Document:
+    """Means and covariances of the random names in the words of the checker; nothing where there are none."""
+    found: Document = {}
+    for shape in shapes:
+        known, place, n = shape.random, join_place(join_place("symbols", shape.name), "random"), len(shape.rows)
+        if known is None:
+            continue
+        for key, size in (("mean", shape.size), ("cov", shape.size and (n, n))):
+            own = read_value(known[key], sizes, where=join_place(place, key)).size
+            if own != size:
+                message = f"expected {describe_size(size)}; got {describe_size(own)}; correct it"
+                raise ShapeError(message, where=join_place(place, key))
+        found[shape.name] = {**known, "mean": clean(known["mean"]), "cov": clean(known["cov"])}
+    return {"random": found} if found else {}
+
+
+def require_expected(trees: Sequence[Tree], shapes: Mapping[str, Shape], where: str) -> None:
+    """Refuse a random name outside of an expectation or covariance."""
+
+    def collect(part: Tree, inner: list[frozenset[str]]) -> frozenset[str]:
+        if part.head == "symbol":
+            return frozenset(name for name in part.args if name in shapes and shapes[name].random)
+        return frozenset() if part.head in ("E", "cov") else frozenset().union(*inner)
+
+    for name in sorted(frozenset().union(*(fold_tree(tree, collect) for tree in trees))):
+        message = f"expected the random {name} inside E(...) or cov(...); got it outside; state what is expected of it"
+        raise DomainError(message, where=where)
 
 
 def kind_of(shape: Shape) -> str:
@@ -297,6 +340,9 @@ def collect_names(
         if name in used:
             continue
         used.add(name)
+        if shapes[name].random:
+            moments = [(shapes[name].random or {})[key] for key in ("mean", "cov")]
+            waiting += [n for text in moments for n in names_of(text) & set(shapes)]
         if not derived:
             continue
         own = dict(shapes[name].rates or {})
@@ -332,7 +378,10 @@ def describe_scope(shapes: Sequence[Shape], ranges: Mapping[str, Sequence[Any]])
     """The quantifier in words."""
     words = []
     for shape in shapes:
-        if shape.kind == "scalar":
+        if shape.random:
+            law = "normal " if shape.random["normal"] else "random "
+            words.append(f"{law}{shape.name} of mean {shape.random['mean']} and covariance {shape.random['cov']}")
+        elif shape.kind == "scalar":
             words.append(describe_range(shape.name, ranges[shape.name]))
         elif shape.sizes or shape.properties:
             kind = f"{' '.join(shape.properties)} " if shape.properties else ""

@@ -15,6 +15,7 @@ from navsym import checker
 from navsym.core.exact import to_fmpq, to_rational
 from navsym.core.rational_functions import factor_exactly, polynomial_sum
 from navsym.language.expression import parse, symbol
+from navsym.language.printer import to_text
 
 Term = tuple[Any, ...]
 Proof = dict[str, Any]
@@ -83,7 +84,21 @@ def write_number(q: fmpq) -> str:
 @functools.lru_cache(maxsize=4096)
 def to_sympy(term: Term) -> sp.Expr:
     """The term for the algebra system, all symbols real: a source of candidates."""
-    return parse(write_term(term), {name: symbol(name) for name in player.symbols_of(term)})
+    known = {part: f"erf__{k}" for k, part in enumerate(dict.fromkeys(subterms(term))) if part[0] == "erf"}
+    for part in [*reversed(known)]:  # the outer ones first
+        term = player.replace(term, part, ("symbol", known[part]))
+    result = parse(write_term(term), {name: symbol(name) for name in player.symbols_of(term)})
+    values = {symbol(name): sp.erf(to_sympy(part[1])) for part, name in known.items()}
+    return result.xreplace({letter: value for letter, value in values.items() if result.has(letter)})
+
+
+def from_sympy(expression: sp.Expr) -> str:
+    """The text of a candidate; erf is no function of files of numbers."""
+    known = {part: symbol(f"erf__{k}") for k, part in enumerate(expression.atoms(sp.erf))}
+    text = to_text(expression.xreplace(known)) if known else to_text(expression)
+    for part, letter in known.items():
+        text = text.replace(str(letter), f"erf({from_sympy(part.args[0])})")
+    return text
 
 
 def factor(expression: sp.Expr) -> sp.Expr:

@@ -334,3 +334,15 @@ def by_positive_radicand(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     body: Proof = {"rule": "squares", "left": write_term(goal.term), "right": "0", "sign": 1, "defined": Holes()}
     body |= {"proofs": [square, {"rule": "product", "factors": [None]}]}
     yield body if goal.relation == ">" else {"rule": "side", "sign": 1, "proof": body}
+
+
+def by_divided_root(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """u > 0 where something is divided by sqrt(u): u sqrt(u)**(-4) = sqrt(u)**(-2)."""
+    if goal.relation not in (">", "!="):
+        return
+    for relation, root in player.set_union(map(player.conditions, goal.exists)):
+        if relation == "!=" and root[0] == "sqrt" and player.is_identity(player.subtract(goal.term, root[1])):
+            powers = [write_term(("^", root, player.number(-n))) for n in (4, 2)]
+            product: Proof = {"rule": "product", "factors": [None]}
+            shorter: Proof = {"rule": "equal", "to": powers[1], "defined": Holes(), "proof": product}
+            yield {"rule": "multiply", "by": powers[0], "defined": Holes(), "positive": product, "proof": shorter}

@@ -168,3 +168,11 @@ def sentence_latex(text: str) -> str:
 def latex_math(source: str) -> str:
     """Words that plain LaTeX knows under another name."""
     return re.sub(r"\\(diag|tr|arctan)\b", r"\\operatorname{\1}", source)
+
+
+def convert_own(source: str) -> Markup | None:
+    """LaTeX of the project's own writing, such as that of the book, as MathML; None where the converter gives up."""
+    try:
+        return Markup(convert(source, display="block"))
+    except Exception:  # it raises whatever comes of a command that it does not know; the LaTeX is shown instead
+        return None

@@ -192,18 +192,18 @@ let cyclotomic n =
   let pick sign = List.filter (fun d -> mu (n / d) 2 = sign) divisors in
   List.fold_left over_binomial (List.fold_left times_binomial [| Z.one |] (pick 1)) (pick (-1))
 
-(* True when the monic polynomial divides the other one. *)
-let divides phi p =
+(* The remainder of the division by a monic polynomial *)
+let remainder phi p =
   let p = Array.copy p and degree = Array.length phi - 1 in
   for j = Array.length p - 1 downto degree do
     let c = p.(j) in
     if Q.sign c <> 0 then
       Array.iteri (fun k f -> if Z.sign f <> 0 then p.(j - degree + k) <- Q.sub p.(j - degree + k) (Q.mul c (Q.of_bigint f))) phi
   done;
-  Array.for_all (fun c -> Q.sign c = 0) p
+  p
 
-(* Without roots: the coefficients are polynomials in z = exp(i pi/n), with z^n = -1. *)
-let vanishes_on_the_circle (a : form) =
+(* Without roots: the coefficients are polynomials in z = exp(i pi/n), with z^n = -1, and so their remainders. *)
+let reduce_on_the_circle (a : form) : form =
   let turn = intern (Cis (circle ())) in
   let n = Terms.fold (fun m _ n -> Z.lcm n (exponent_of turn m).Q.den) a Z.one in
   if Z.gt n (Z.of_int 5040) then refuse "an angle of more than 5040 parts of pi";
@@ -218,10 +218,27 @@ let vanishes_on_the_circle (a : form) =
   in
   let sums = Terms.fold sort a Terms.empty in
   let all_zero p = Array.for_all (fun c -> Q.sign c = 0) p in
-  Terms.for_all (fun _ p -> all_zero p) sums
-  ||
-  let phi = cyclotomic (2 * n) in
-  Terms.for_all (fun _ p -> divides phi p) sums
+  if Terms.for_all (fun _ p -> all_zero p) sums then nothing
+  else
+    let phi = cyclotomic (2 * n) in
+    let write rest p form =
+      let put form k c =
+        if Q.sign c = 0 then form
+        else multiply (Terms.singleton rest c) (of_monomial (if k = 0 then [] else [ (turn, Q.of_ints k n) ])) |> add form
+      in
+      snd (Array.fold_left (fun (k, form) c -> (k + 1, put form k c)) (0, form) (remainder phi p))
+    in
+    Terms.fold write sums nothing
+
+let vanishes_on_the_circle a = Terms.is_empty (reduce_on_the_circle a)
+
+let is_on_the_circle (m : Monomial.t) =
+  let turn = intern (Cis (circle ())) in
+  List.for_all (fun (i, _) -> i = turn) m
+
+let meets_the_circle (a : form) =
+  let turn = intern (Cis (circle ())) in
+  Terms.exists (fun m _ -> List.exists (fun (i, _) -> i = turn) m) a
 
 let rec is_zero (a : form) =
   Terms.is_empty a
@@ -309,12 +326,19 @@ let content (a : form) =
 
 let is_even_whole (_, e) = is_even e
 
+(* The rational number that the square of a number on the circle is *)
+let rational_square (a : form) =
+  if not (Terms.for_all (fun m _ -> is_on_the_circle m) a) then None
+  else match key (reduce_on_the_circle (multiply a a)) with [ ([], r) ] -> Some r | _ -> None
+
 let power (a : form) q =
   if is_whole q && Q.sign q >= 0 then whole_power a q.Q.num
   else
     match key a with
     | k when (match k with [ _ ] -> false | _ -> is_zero a) -> refuse "a power of 0"
     | [ (m, c) ] when is_whole q -> Terms.singleton (power_monomial m q) (rational_power c q.Q.num)
+    | _ when is_whole q && rational_square a <> None ->
+        whole_power (scale (Q.inv (Option.get (rational_square a))) a) (Z.neg q.Q.num)
     | [ (m, c) ] when Q.equal c Q.one && List.length m >= 2 && List.for_all is_even_whole m ->
         let one_factor p (i, e) =
           multiply p (root_of (of_monomial [ (i, Q.of_int 2) ]) (Q.mul q (Q.div e (Q.of_int 2))))
@@ -328,7 +352,9 @@ let power (a : form) q =
 
 let single (m : Monomial.t) = match m with [ (i, q) ] when Q.equal q Q.one -> Some (Hashtbl.find atoms i) | _ -> None
 
-let product_of_terms f (a : form) = Terms.fold (fun m c p -> multiply p (f m c)) a unit_form
+let product_of_terms f (a : form) =
+  let a = if meets_the_circle a then reduce_on_the_circle a else a in
+  Terms.fold (fun m c p -> multiply p (f m c)) a unit_form
 
 let exp_form =
   product_of_terms (fun m c ->

@@ -233,7 +233,8 @@ let derive_by_symbol context s times f =
   in
   go times f
 
-let outside_words = [ "where"; "min"; "max"; "sign"; "integral"; "sum"; "product"; "limit" ]
+let outside_words =
+  [ "where"; "min"; "max"; "sign"; "integral"; "sum"; "product"; "limit"; "floor"; "erf"; "expm"; "E"; "cov" ]
 
 let call context name args =
   match (name, args) with

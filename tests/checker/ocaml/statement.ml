@@ -65,6 +65,7 @@ let more_keys = [ "shapes"; "given"; "rates" ]
 let read_statement value =
   let o = get_object "statement" value in
   if List.mem_assoc "order" o then outside "statement with order";
+  if List.mem_assoc "random" o then outside "statement with random numbers";
   let is_long = List.exists (fun k -> List.mem_assoc k o) more_keys in
   let values = get_keys "statement" (if is_long then plain_keys @ more_keys else plain_keys) value in
   match values @ if is_long then [] else [ Object []; List []; Object [] ] with
