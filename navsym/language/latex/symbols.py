@@ -84,6 +84,8 @@ class SymbolReader:
         value = self.value(noad)
         if value is not None:
             return value
+        if noad.kind == "word":
+            self.refuse_operator(noad)
         if word is None or noad.before != (None, None):
             return self.unknown(noad)
         if noad.is_sign("e") and noad.sup and not noad.sub and "e" not in self.notation:
@@ -202,6 +204,7 @@ class SymbolReader:
 
     def unknown(self, noad: Noad) -> Part:
         """A symbol that nobody declared, with the name that it might have."""
+        self.refuse_operator(noad)
         prefix = noad.is_command("Delta", "delta", "nabla") and not noad.has_scripts
         if (
             noad.kind in ("sym", "cmd")
@@ -222,6 +225,13 @@ class SymbolReader:
         if word and (flat or noad.sub is None) and noad.before == (None, None):
             return self.power(Part("unknown", (word + flat, spelled), noad.at), noad)
         return Part("unknown", (suggest_name(spelled), spelled), noad.at)
+
+    def refuse_operator(self, noad: Noad) -> None:
+        r"""Refuse ``\mathbb{E}[x + y]`` and words before parentheses: they are functions, no factors."""
+        following = self.noads[self.place + 1] if self.place + 1 < len(self.noads) else None
+        operator = (noad.kind == "word" and len(noad.value) > 1) or noad.value in ("mathbb", "mathcal", "mathscr")
+        if operator and not noad.has_scripts and following is not None and following.kind == "open":
+            self.refuse("a function of the language", "write its value as a name in [latex]")
 
     def spell(self, noad: Noad) -> str:
         """The LaTeX of a name without its power."""

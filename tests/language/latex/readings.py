@@ -279,6 +279,8 @@ READ |= {
 #: Line -> column of the trouble, and a word of the reason.
 REFUSED = {
     "(a, b)": (1, "a list"),
+    r"\mathbb{E}[a + b]": (1, "a function of the language"),
+    r"\mathrm{vex}(C - C^T)": (1, "a function of the language"),
     "(a, C)^T": (1, "a matrix"),
     "u * v": (5, "which product"),
     r"\langle a, b \rangle": (1, "two columns"),
