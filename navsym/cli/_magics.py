@@ -31,7 +31,7 @@ def register_magics(shell: Any) -> None:
             raise UsageError(f"{error.kind}: {error}") from None
 
     def claims(line: str, cell: str) -> Verdicts:
-        """Decide a cell, TOML or a formula a line, also in LaTeX; ``%%claims name`` keeps the verdicts by a name."""
+        """Decide a cell of TOML, of a formula a line, or of LaTeX; ``%%claims name`` keeps the verdicts by a name."""
         try:
             verdicts = prove_cell(cell)
         except NavsymError as error:
@@ -83,14 +83,34 @@ def prove_at(number: int, line: str) -> Verdict:
 
 
 def prove_cell(text: str) -> Verdicts:
-    """The verdicts of a claim file in memory, or of formulas, one a line; raises NavsymError for what is neither."""
+    """The verdicts of a claim file in memory, of formulas one a line, or of LaTeX below its tables.
+
+    Raises NavsymError for what is none of these.
+    """
     from navsym.claims import Verdicts
+    from navsym.language.latex.reading import DELIMITED
     from navsym.language.tomlfile import parse_toml
     from navsym.prove.claimfile import claims_from, decide_claims
 
-    if TABLE.search(text) is None:
+    formulas = None if "[[claim]]" in text else DELIMITED.search(text)
+    if formulas is None and TABLE.search(text) is None:
         lines = [(number, line.strip()) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
         if not lines:
             raise EmptyError("expected a formula or [[claim]] blocks; got nothing; write one", where="cell")
         return Verdicts(tuple(prove_at(number, line) for number, line in lines))
+    text = read_cell(text, formulas.start()) if formulas else text
     return decide_claims(claims_from(parse_toml(text, "cell"), "cell", go_on=True))
+
+
+def read_cell(text: str, start: int) -> str:
+    """The claim file of formulas in LaTeX, behind ``[symbols]`` and ``[latex]`` where these are given."""
+    from navsym.language.latex.reading import read_with_reals
+    from navsym.language.tomlfile import parse_toml
+
+    tables = parse_toml(text[:start], "cell")
+    blank = re.sub(r"[^\n]", " ", text[:start])
+    reading = read_with_reals(blank + text[start:], tables.get("symbols", {}), tables.get("latex"))
+    refused = next((formula for formula in reading.formulas if formula.status != "READ"), None)
+    if refused is not None:
+        raise ExpressionSyntaxError(str(refused.why), where="cell")
+    return reading.claims()

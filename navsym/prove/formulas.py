@@ -237,12 +237,9 @@ def is_outside_brackets(text: str, at: int) -> bool:
 
 def read_latex(statement: str, given: Mapping[str, Any]) -> Sides:
     """The two sides of a formula in LaTeX; a letter without a declaration is real."""
-    from navsym.language.latex.reading import read
+    from navsym.language.latex.reading import read_with_reals
 
-    reading = read(statement, symbols=given)
-    unknown = {name: spelled for formula in reading.formulas for name, spelled in formula.unknown}
-    if unknown and not any(re.fullmatch("[A-Za-z]{2,}", spelled) for spelled in unknown.values()):
-        reading = read(statement, symbols=dict(given) | dict.fromkeys(unknown, "real"))
+    reading = read_with_reals(statement, given)
     refused = next((formula for formula in reading.formulas if formula.status != "READ"), None)
     if refused is not None:
         raise ExpressionSyntaxError(str(refused.why).partition(": ")[2], where=f"prove: statement, line {refused.line}")

@@ -11,6 +11,7 @@ from IPython.core.interactiveshell import InteractiveShell
 from nbclient import NotebookClient
 
 from navsym.cli._magics import prove_cell
+from navsym.core.errors import NavsymError
 
 YAW = Path(__file__).parents[2] / "examples" / "audit" / "yaw_jacobian"
 CELL = """[symbols]
@@ -77,6 +78,27 @@ def test_questions_about_source_code_are_decided_on_a_line(shell):
 def test_a_wrong_line_of_audit_is_an_error_without_a_traceback(shell, line):
     with pytest.raises(UsageError, match="expected"):
         shell.run_line_magic("audit", line)
+
+
+LATEX = r"""[symbols]
+v = { vector = 3 }
+T = "positive"
+
+[latex]
+v = '\mathbf{v}'
+
+\[ \langle \mathbf{v}, \mathbf{v} \rangle = \|\mathbf{v}\|^2, \quad \lim_{x \to 0} \frac{\sin x}{x} = 1 \]
+where $\sum_{k=1}^3 k a = 6 a$ and $|x| = \begin{cases} x & \text{if } x > 1 \\ -x & \text{otherwise} \end{cases}$
+"""
+
+
+def test_a_cell_of_latex_is_decided_behind_its_tables():
+    assert [verdict.status for verdict in prove_cell(LATEX)] == ["PROVED", "PROVED", "PROVED", "REFUTED"]
+
+
+def test_a_refused_formula_of_a_cell_names_its_line():
+    with pytest.raises(NavsymError, match=r"line 9.*divisor"):
+        prove_cell(LATEX.replace("6 a", "6/a a"))
 
 
 def test_a_wrong_cell_names_its_line(shell):

@@ -7,29 +7,37 @@ from __future__ import annotations
 
 import re
 from copy import copy
-from dataclasses import dataclass
-from functools import lru_cache
 from math import prod
 from typing import Any
 
-from navsym.language.latex.notation import ACCENTS, CALLS, COMMANDS, DOTS, GREEK, Notation
+from navsym.language.latex.clusters import FRACTIONS, Cluster, ClusterReader, entry_rank, list_clusters
+from navsym.language.latex.notation import (
+    ACCENTS,
+    CALLS,
+    COMMANDS,
+    CONDITIONS,
+    DOTS,
+    GREEK,
+    IF,
+    REST,
+    Notation,
+)  # fmt: skip
 from navsym.language.latex.parts import Part, Refusal
 from navsym.language.latex.tokens import Token, clean, match_brace, plain_word, split_tokens, underscore
 
-FRACTIONS = (r"\frac", r"\dfrac", r"\tfrac")
-CLOSING = {"(": ")", "[": "]", "|<": ">|", "||<": ">||", "|": "|", "||": "||", "floor<": ">floor"}
-MARKS = {r"\cdot": ".", r"\times": "x", r"\otimes": "ox", "/": "/"}
+CLOSING = {
+    "(": ")",
+    "[": "]",
+    "|<": ">|",
+    "||<": ">||",
+    "|": "|",
+    "||": "||",
+    "floor<": ">floor",
+    "angle<": ">angle",
+    "cases<": ">cases",
+}
+MARKS = {r"\cdot": ".", r"\times": "x", r"\otimes": "ox", "/": "/", "*": "*", r"\ast": "*"}
 TRANSPOSES = {r"\top": "top", r"\intercal": "top", "T": "T"}
-
-
-@dataclass(slots=True)
-class Cluster:
-    """A symbol with the tokens of its scripts; ``after`` is the place behind it."""
-
-    base: list[Token]
-    sub: list[Token] | None
-    sup: list[Token] | None
-    after: int
 
 
 def climb(text: str, notation: Notation) -> Part:
@@ -41,37 +49,15 @@ def climb(text: str, notation: Notation) -> Part:
     return part
 
 
-@lru_cache(10_000)
-def list_clusters(latex: str) -> list[Cluster]:
-    """An entry of ``[latex]`` as symbols; nobody changes them."""
-    other = object.__new__(Climber)
-    other.tokens, other.end, found, place = clean(latex), len(latex), [], 0
-    while place < len(other.tokens):
-        found.append(other.cluster(place))
-        place = found[-1].after
-    return found
-
-
-class Climber:
+class Climber(ClusterReader):
     """The tokens, and the place among them."""
 
     def __init__(self, tokens: list[Token], notation: Notation, end: int) -> None:
-        self.tokens, self.notation, self.end = tokens, notation, end
+        entries = [(name, list_clusters(latex)) for name, latex in notation.spellings]
+        super().__init__(tokens, end, sorted(entries, key=lambda entry: entry_rank(entry[1]), reverse=True))
+        self.notation = notation
         self.bound: frozenset[str] = frozenset()
-        self.place = 0
         self.stops: list[str] = []
-        self.entries = [(name, list_clusters(latex)) for name, latex in notation.spellings]
-        self.entries.sort(key=lambda entry: entry_rank(entry[1]), reverse=True)
-
-    def look(self, ahead: int = 0) -> str:
-        """The text of a token, nothing behind the end."""
-        at = self.place + ahead
-        return self.tokens[at].text if at < len(self.tokens) else ""
-
-    def refuse(self, expected: str, at: int | None = None) -> Any:
-        """Refuse the token at hand."""
-        here = self.tokens[self.place].at if self.place < len(self.tokens) else self.end
-        raise Refusal(here if at is None else at, expected, self.look()[:40] or "the end", "write it another way")
 
     def part_of(self, tokens: list[Token]) -> Part:
         """An argument, read to its end."""
@@ -123,12 +109,12 @@ class Climber:
             self.refuse("a factor")
         entry = self.entry()
         if entry is not None:
-            name, found, bare = entry
+            name, found, power = entry
             if name in CALLS and name not in self.notation:
                 return self.function(CALLS[name], found[-1])
             at = found[0].base[0].at if found[0].base else self.tokens[self.place].at
             self.place = found[-1].after
-            return self.raised(Part("name", (name,), at), found[-1].sup if bare else None)
+            return self.raised(Part("name", (name,), at), power)
         if token in CLOSING:
             return self.enclosed()
         if token.isdigit() or token == ".":
@@ -155,103 +141,14 @@ class Climber:
             if one.after == stop and double:
                 return
             bracketed = inner[0].text in CLOSING and self.closing(self.place + 1) == stop - 1
-            if one.after != stop and not bracketed:
+            bold = self.tokens[self.place].bold and not any(
+                t.text in CLOSING or t.text in CLOSING.values() for t in inner
+            )
+            if one.after != stop and not bracketed and not bold:
                 self.refuse("a script on one symbol")
             del self.tokens[stop], self.tokens[self.place]
 
-    def look_at(self, place: int) -> str:
-        return self.tokens[place].text if place < len(self.tokens) else ""
-
     # -- symbols ---------------------------------------------------------------------------
-
-    def group(self, place: int) -> tuple[list[Token], int]:
-        """The tokens of an argument, and the place behind it."""
-        if place >= len(self.tokens):
-            raise Refusal(self.end, "an argument", "the end", "write it")
-        text = self.tokens[place].text
-        if text == "{":
-            stop = match_brace(self.tokens, place)
-            return self.tokens[place + 1 : stop], stop + 1
-        if text in ("_", "^", "}"):
-            raise Refusal(self.tokens[place].at, "an argument", text, "write it")
-        after = self.behind_base(place)
-        return self.tokens[place:after], after
-
-    def behind_base(self, place: int) -> int:
-        """The place behind a symbol without its scripts: a command has its arguments with it."""
-        text = self.tokens[place].text
-        if self.tokens[place].word:
-            return place + 1
-        if text == "{":
-            return match_brace(self.tokens, place) + 1
-        if text in FRACTIONS:
-            return self.group(self.group(place + 1)[1])[1]
-        if text[:1] == "\\" and (text[1:] in ACCENTS or text[1:] in DOTS):
-            return self.group(place + 1)[1]
-        if text == r"\sqrt":
-            if self.look_at(place + 1) == "[":
-                stops = [at for at in range(place, len(self.tokens)) if self.tokens[at].text == "]"]
-                if not stops:
-                    raise Refusal(self.tokens[place].at, "] behind the order of the root", "the end", "close it")
-                place = stops[0]
-            return self.group(place + 1)[1]
-        return place + 1
-
-    def cluster_scripts(self, place: int) -> tuple[list[Token] | None, list[Token] | None, int]:
-        """Subscript, superscript and the place behind them."""
-        scripts: dict[str, list[Token]] = {}
-        while self.look_at(place) in ("_", "^", "'"):
-            side = self.tokens[place].text
-            if side == "'":
-                stop = place
-                while self.look_at(stop) == "'":
-                    stop += 1
-                if "^" in scripts:
-                    raise Refusal(self.tokens[place].at, "a name before its primes", "'", "write the name in [latex]")
-                scripts["^"], place = self.tokens[place:stop], stop
-                continue
-            if side in scripts:
-                raise Refusal(self.tokens[place].at, "one script of a kind", "two", "use braces")
-            bare = self.look_at(place + 1).isdigit()
-            scripts[side], after = self.group(place + 1)
-            if bare and self.look_at(after).isdigit() and self.tokens[after].at == self.tokens[after - 1].end:
-                raise Refusal(self.tokens[place].at, "a script in braces", "two digits", "use braces")
-            place = after
-        return scripts.get("_"), scripts.get("^"), place
-
-    def cluster(self, place: int) -> Cluster:
-        """The symbol at a place with its scripts, those before it as part of its base."""
-        start = place
-        while (self.look_at(place) == "{" and self.look_at(place + 1) == "}") or self.look_at(place) in ("_", "^"):
-            if self.tokens[place].text == "{":
-                place += 2
-            place = self.cluster_scripts(place)[2]
-        if place >= len(self.tokens):
-            raise Refusal(self.end, "a symbol beside its scripts", "the end", "write it")
-        after = self.behind_base(place)
-        sub, sup, end = self.cluster_scripts(after)
-        while self.look_at(end) == "{" and self.look_at(end + 1) == "}" and self.look_at(end + 2) not in ("_", "^"):
-            end += 2
-        return Cluster(self.tokens[start:after], sub, sup, end)
-
-    def entry(self) -> tuple[str, list[Cluster], bool] | None:
-        """A spelling of ``[latex]`` at this place, the longest; True where the last superscript is not part of it."""
-        for name, wanted in self.entries:
-            found: list[Cluster] = []
-            place = self.place
-            try:
-                while len(found) < len(wanted) and place < len(self.tokens) and self.tokens[place].text != "}":
-                    found.append(self.cluster(place))
-                    place = found[-1].after
-            except Refusal:
-                continue
-            bare = wanted[-1].sup is None
-            if len(found) == len(wanted) and all(
-                is_spelled(w, f, bare and place == len(wanted) - 1)
-                for place, (w, f) in enumerate(zip(wanted, found, strict=True))
-            ):
-                return name, found, bare
-        return None
 
     def symbol(self) -> Part:
         """A name, a function, a sum, or a command with arguments."""
@@ -265,6 +162,8 @@ class Climber:
             return self.repeated("sum" if command == "sum" else "product", here)
         if command == "int":
             return self.integral(here)
+        if command == "lim":
+            return self.limit(here)
         if command in DOTS:
             return self.dotted(here, DOTS[command])
         if command == "sqrt":
@@ -391,15 +290,26 @@ class Climber:
         bars = [s for s in outer if s in ("|", "||")]
         if opening in ("|", "||") and bars:
             self.refuse("bars that are not nested", at)
+        if opening == "cases<":
+            return self.braced_cases(at)
         self.stops = [opening] if opening in ("|", "||") else []
-        inner = self.climb(0)
-        self.stops = outer
+        items = [self.climb(0)]
+        while opening in ("(", "[", "angle<") and self.look() == ",":
+            self.place += 1
+            items.append(self.climb(0))
+        self.stops, inner = outer, items[0]
         crossed = self.look() == r"\times"
         self.place += crossed
         if self.look() != CLOSING[opening]:
             self.refuse(CLOSING[opening])
         sub, sup, self.place = self.cluster_scripts(self.place + 1)
         subscript = [t.text for t in sub or ()]
+        if len(items) > 1 or opening == "angle<":
+            if crossed or sub or (opening == "angle<" and len(items) != 2):
+                self.refuse("a list or an inner product", at)
+            head = Part("inner", tuple(items), at) if opening == "angle<" else Part("list", (opening, *items), at)
+            return self.raised(head, sup)
+        crossed |= opening == "floor<" and sub is None and self.notation.has_skew_floor
         if (crossed or subscript == [r"\times"]) and opening in ("(", "[", "floor<"):
             return self.raised(Part("skew", (inner,), at), sup)
         if crossed or (sub and not (subscript == ["2"] and opening[:2] == "||")):
@@ -407,6 +317,47 @@ class Climber:
         kinds = {"|": "abs", "|<": "abs", "||": "norm", "||<": "norm", "floor<": "floor"}
         part = Part(kinds[opening], (inner,), at) if opening in kinds else Part("()", (opening, inner), at)
         return self.raised(part, sup)
+
+    def braced_cases(self, at: int) -> Part:
+        """Behind a brace: an array of cases, and the mark of no bracket."""
+        if not self.look().startswith(r"\begin"):
+            self.refuse("an array of cases", at)
+        part = self.table()
+        if part.head != "cases" or self.look() != ">cases":
+            self.refuse("cases", at)
+        sup, self.place = self.cluster_scripts(self.place + 1)[1:]
+        return self.raised(part, sup)
+
+    def list_cases(self, rows: list[list[list[Token]]], at: int) -> Part:
+        """Values and conditions, the last one for all the rest."""
+        parts: list[Part] = []
+        if any(len(row) != 2 or not all(row) for row in rows):
+            self.refuse("a value and its condition in each row", at)
+        for value, words in rows:
+            parts.append(self.part_of(value[:-1] if value[-1].text == "," else value))
+            words = words[:-1] if words[-1].text in (".", ",") else words
+            if [t.text for t in words if t.word and t.text in REST] and len(words) == 1:
+                break
+            words = words[1:] if words and words[0].word and words[0].text in IF else words
+            parts.append(self.comparison(words, at))
+        if len(parts) != 2 * len(rows) - 1 or len(rows) < 2:
+            self.refuse("a last row for all the rest", at)
+        return Part("cases", tuple(parts), at)
+
+    def comparison(self, tokens: list[Token], at: int) -> Part:
+        """A comparison of two or three sides."""
+        args: list[Any] = []
+        rest: list[Token] = []
+        for token in [*tokens, Token("", at, at)]:
+            sign = CONDITIONS.get(token.text.lstrip("\\")) if not token.word else None
+            if sign or not token.text:
+                args += [self.part_of(rest), *([sign] if sign else [])]
+                rest = []
+            else:
+                rest.append(token)
+        if len(args) not in (3, 5) or (len(args) == 5 and (args[1][0] != args[3][0] or args[1][0] not in "<>")):
+            self.refuse("one comparison", at)
+        return Part("cond", tuple(args), at)
 
     def numeral(self) -> Part:
         """Digits side by side."""
@@ -550,8 +501,9 @@ class Climber:
     def split_variable(self, tokens: list[Token]) -> tuple[Part, int]:
         """The variable of a derivative and its order."""
         power = 1
-        raised = [at for at, t in enumerate(tokens) if t.text == "^"]
-        if raised:
+        raised = [at for at, t in enumerate(tokens) if t.text == "^" and at]
+        behind = [t.text for t in tokens[raised[-1] + 1 :] if t.text not in "{}"] if raised else []
+        if len(behind) == 1 and behind[0].isdigit():
             power, rest = self.split_order([tokens[0], *tokens[raised[-1] :]])
             tokens = tokens[: raised[-1]] + rest
         if not tokens:
@@ -585,6 +537,25 @@ class Climber:
         self.bound = outer
         return Part("sum", (name, body, index, start, end), at)
 
+    def limit(self, here: Cluster) -> Part:
+        """A limit."""
+        at, sub = here.base[0].at, here.sub or []
+        arrows = [place for place, token in enumerate(sub) if token.text in (r"\to", r"\rightarrow")]
+        if len(arrows) != 1 or arrows[0] == 0 or here.sup:
+            self.refuse("a limit with its point", at)
+        moving, outer = sub[: arrows[0]], self.bound
+        name = plain_word(moving[0])
+        script = [t for t in moving[2:] if t.text not in "{}"] if len(moving) > 2 and moving[1].text == "_" else []
+        if name is not None and (len(moving) == 1 or underscore(script)):
+            self.bound = outer.union((name + underscore(script),))
+        by, end = self.part_of(moving), self.part_of(sub[arrows[0] + 1 :])
+        if by.head != "name":
+            self.refuse("one name that moves", at)
+        self.place = here.after
+        body = self.climb(1)
+        self.bound = outer
+        return Part("limit", (body, by, end), at)
+
     def integral(self, here: Cluster) -> Part:
         """An integral with both ends."""
         at = here.base[0].at
@@ -615,8 +586,13 @@ class Climber:
         if opening == "array":
             body = body[match_brace(body, 0) + 1 :]
         rows = [split_tokens(row, "&") for row in split_tokens(body, "\\\\")]
-        rows = rows[:-1] if rows[-1] == [[]] else rows
-        cells = [[t for t in cell if t.text != r"\hline"] for row in rows for cell in row]
+        rows = [[[t for t in cell if t.text != r"\hline"] for cell in row] for row in rows]
+        rows = [row for row in rows if any(row)]
+        cells = [cell for row in rows for cell in row]
+        if opening == "cases" or (opening == "array" and self.look_at(self.place - 1) == "cases<"):
+            part = self.list_cases(rows, at)
+            sup, self.place = self.cluster_scripts(stop + 3 + len(opening))[1:]
+            return self.raised(part, sup)
         if len({len(row) for row in rows}) != 1 or not all(cells):
             self.refuse("a whole matrix", at)
         known = ("matrix", "pmatrix", "bmatrix", "vmatrix", "smallmatrix", "array")
@@ -633,47 +609,3 @@ class Climber:
         r"""The name behind ``\begin`` or ``\end``."""
         stop = match_brace(self.tokens, place + 1)
         return "".join(t.text for t in self.tokens[place + 2 : stop])
-
-
-def is_spelled(wanted: Cluster, found: Cluster, bare: bool) -> bool:
-    """True when a symbol is written as an entry of ``[latex]`` says."""
-    pairs = [(wanted.base, found.base), (wanted.sub, found.sub)] + ([] if bare else [(wanted.sup, found.sup)])
-    return all(is_alike(w, f) for w, f in pairs)
-
-
-def is_alike(wanted: list[Token] | None, found: list[Token] | None) -> bool:
-    """The same tokens, braces apart; bold where that is wanted. Scripts before a symbol come in either order."""
-    if wanted is None or found is None:
-        return wanted is found
-    left, right = canonical(wanted), canonical(found)
-    return len(left) == len(right) and all(
-        w.text == f.text and w.word == f.word and (f.bold or not w.bold) for w, f in zip(left, right, strict=True)
-    )
-
-
-def canonical(tokens: list[Token]) -> list[Token]:
-    """Tokens with subscripts before superscripts, every script in braces and no other braces."""
-    other = object.__new__(Climber)
-    other.tokens, other.end = tokens, 0
-    done: list[Token] = []
-    place = 0
-    while place < len(tokens):
-        text = tokens[place].text
-        if text in ("_", "^"):
-            sub, sup, place = other.cluster_scripts(place)
-            for side, script in (("_", sub), ("^", sup)):
-                inner = canonical(script) if script else []
-                done += (
-                    [Token(side, 0, 0, True), Token("{", 0, 0, True), *inner, Token("}", 0, 0, True)] if inner else []
-                )
-            continue
-        if text not in "{}":
-            done.append(tokens[place])
-        place += 1
-    return done
-
-
-def entry_rank(clusters: list[Cluster]) -> tuple[int, int]:
-    """Longer spellings first, then those with more scripts and bold type."""
-    marks = [c.base[0].bold + (c.sub is not None) + (c.sup is not None) for c in clusters]
-    return (len(clusters), sum(marks))

@@ -3,16 +3,16 @@ r"""The first reader: recursive descent over lists of symbols with scripts."""
 from __future__ import annotations
 
 import re
-from copy import copy
+from itertools import pairwise
 from math import factorial
 from typing import Any
 
-from navsym.language.latex.mathlists import MATRICES, Noad, is_same, list_noads, list_spelling
-from navsym.language.latex.notation import CALLS, COMMANDS, DOTS, GREEK, Notation
+from navsym.language.latex.mathlists import MATRICES, Noad, list_noads
+from navsym.language.latex.notation import CALLS, COMMANDS, CONDITIONS, DOTS, IF, REST, Notation
 from navsym.language.latex.parts import Part, Refusal, join_factors, join_terms
+from navsym.language.latex.symbols import POWER, SymbolReader, is_power, split_noads, suggest_name, transpose_mark
 
-PAIRS = {"(": ")", "[": "]", "|": "|", "||": "||", "floor": "floor", "{": "}"}
-POWER = re.compile(r"(.*)\^(?:\{[^{}]*\}|\\[a-z]+|.)(?=(?:_.*)?$)", re.S)
+PAIRS = {"cases": "cases", "(": ")", "[": "]", "|": "|", "||": "||", "floor": "floor", "{": "}", "langle": "langle"}
 BIG = {"sum": "sum", "prod": "product"}
 
 
@@ -29,41 +29,8 @@ def descend(text: str, notation: Notation, faces: dict[str, set[bool]] | None = 
     return part
 
 
-class Descent:
+class Descent(SymbolReader):
     """A list of symbols, and the place in it."""
-
-    def __init__(self, text: str, notation: Notation, noads: list[Noad], faces: dict[str, set[bool]]) -> None:
-        self.text, self.notation, self.noads, self.faces = text, notation, noads, faces
-        self.bound: tuple[str, ...] = ()
-        self.place, self.integrals = 0, 0
-        self.bars: list[str] = []
-        spelled = [(name, list_spelling(latex)) for name, latex in notation.spellings]
-        self.spelled = sorted(spelled, key=lambda pair: spelling_rank(pair[1]), reverse=True)
-
-    def start(self, noads: list[Noad]) -> Descent:
-        """A reader of a list of its own: the argument of a command."""
-        reader = copy(self)
-        reader.noads, reader.place, reader.bars, reader.integrals = noads, 0, [], 0
-        return reader
-
-    def inside(self, noads: list[Noad]) -> Part:
-        """The whole of such a list."""
-        reader = self.start(noads)
-        part = reader.expression()
-        if reader.place < len(noads):
-            reader.refuse("an operator or the end", "remove it")
-        return part
-
-    @property
-    def noad(self) -> Noad | None:
-        return self.noads[self.place] if self.place < len(self.noads) else None
-
-    def refuse(self, expected: str, remedy: str) -> Any:
-        """Refuse the symbol at hand."""
-        noad = self.noad
-        at = noad.at if noad else self.noads[-1].end if self.noads else len(self.text)
-        got = self.text[noad.at : noad.end][:40] if noad else "the end"
-        raise Refusal(at, expected, got, remedy)
 
     def expression(self) -> Part:
         """Terms with their signs."""
@@ -104,8 +71,8 @@ class Descent:
         noad = self.noad
         if noad is None or noad.has_scripts:
             return ""
-        marks = {"cdot": ".", "times": "x", "otimes": "ox"}
-        mark = marks.get(noad.value, "") if noad.kind == "cmd" else "/" if noad.is_sign("/") else ""
+        marks = {"cdot": ".", "times": "x", "otimes": "ox", "ast": "*"}
+        mark = marks.get(noad.value, "") if noad.kind == "cmd" else noad.value if noad.is_sign("/", "*") else ""
         if mark == "x" and self.place + 1 < len(self.noads) and self.noads[self.place + 1].kind == "close":
             return None
         self.place += bool(mark)
@@ -127,7 +94,7 @@ class Descent:
             return self.number()
         if noad.kind == "env":
             self.place += 1
-            return self.power(self.matrix(noad), noad)
+            return self.power(self.cases(noad) if noad.value[0] == "cases" else self.matrix(noad), noad)
         if noad.kind == "arg":
             return self.command(noad)
         if noad.kind == "cmd":
@@ -138,163 +105,7 @@ class Descent:
 
     # -- names ----------------------------------------------------------------------------
 
-    def spelling(self) -> tuple[Part, Noad] | None:
-        """A name that stands in ``[latex]``, the longest; a subscript behind it would be another name."""
-        for name, wanted in self.spelled:
-            found = self.noads[self.place : self.place + len(wanted)]
-            if len(found) == len(wanted) and all(
-                is_same(w, f, last=w is wanted[-1]) for w, f in zip(wanted, found, strict=True)
-            ):
-                if name in CALLS and name not in self.notation:
-                    self.place += len(wanted) - 1
-                    return self.call(CALLS[name]), Noad("group", None, 0, 0)
-                self.place += len(wanted)
-                last = found[-1]
-                if not any(w.bold for w in wanted):
-                    self.faces.setdefault(name, set()).add(found[0].bold)
-                rest = Noad(last.kind, last.value, last.at, last.end, sup=None if wanted[-1].sup else last.sup)
-                return Part("name", (name,), found[0].at), rest
-        return None
-
-    def name(self, noad: Noad) -> Part:
-        """A letter, a Greek letter or a word with its subscript; letters side by side may be one name."""
-        word = self.base(noad)
-        if word is None or noad.before != (None, None):
-            return self.unknown(noad)
-        if noad.is_sign("e") and noad.sup and not noad.sub and "e" not in self.notation:
-            self.place += 1
-            return Part("call", ("exp", None, True, self.inside(noad.sup)), noad.at)
-        run = self.run()
-        if len(run) > 1:
-            whole = "".join(str(n.value) for n in run) + self.flat_subscript(run[-1])
-            known = all(self.is_known(place) for place in range(self.place, self.place + len(run)))
-            if known and whole in self.notation:
-                self.refuse("one meaning", f"say in [latex] whether {whole} is a product or a name")
-            if not known:
-                self.place += len(run)
-                head = "name" if whole in self.notation else "unknown"
-                spelled = self.text[noad.at : run[-1].end]
-                part = Part(head, (whole,) if head == "name" else (whole, spelled), noad.at)
-                return self.power(part, run[-1])
-        return self.single(noad, word)
-
-    def single(self, noad: Noad, word: str) -> Part:
-        """One letter with its subscript."""
-        found = self.resolve(noad, word)
-        if found is None:
-            return self.unknown(noad)
-        self.place += 1
-        return self.power(found, noad)
-
-    def base(self, noad: Noad) -> str | None:
-        """The name of a symbol without its scripts."""
-        if noad.kind == "sym" and noad.value.isascii() and noad.value.isalpha():
-            return str(noad.value)
-        if noad.kind == "cmd" and noad.value in GREEK:
-            return str(noad.value)
-        if noad.kind == "word" and re.fullmatch(r"[A-Za-z][A-Za-z0-9]*", noad.value):
-            return str(noad.value)
-        return None
-
-    def resolve(self, noad: Noad, word: str) -> Part | None:
-        """What a symbol with its subscript means; None where nobody declared it."""
-        flat = self.flat_subscript(noad)
-        name = word + flat
-        if (flat or noad.sub is None) and (name in self.notation or name in self.bound):
-            self.faces.setdefault(name, set()).add(noad.bold)
-            return Part("name", (name,), noad.at)
-        if noad.sub and word in self.notation and self.notation.shapes[word]:
-            indices = [self.index(piece) for piece in split_noads(noad.sub, ",")]
-            wanted = 1 if self.notation.is_vector(word) else 2
-            if len(indices) == wanted and all(indices):
-                return Part("index", (word, *indices), noad.at)
-        if word == "I" and noad.bold and noad.sub and "I" not in self.notation:
-            size = self.sizes(noad.sub)
-            if size and size[0] == size[-1]:
-                return Part("eye", (size[0],), noad.at)
-        return None
-
-    def flat_subscript(self, noad: Noad) -> str:
-        """``_eS`` for a subscript of plain symbols, nothing for others."""
-        pieces = [self.base(n) or (n.value if n.is_sign(*"0123456789") else None) for n in noad.sub or ()]
-        if not pieces or None in pieces or any(n.has_scripts for n in noad.sub or ()):
-            return ""
-        return "_" + "".join(map(str, pieces))
-
-    def index(self, noads: list[Noad]) -> str:
-        """An index: digits, or the index of a sum."""
-        text = "".join(str(n.value) for n in noads)
-        plain = all(n.kind == "sym" and not n.has_scripts for n in noads)
-        return text if plain and ((text.isdigit() and text[:1] != "0") or text in self.bound) else ""
-
-    def sizes(self, noads: list[Noad]) -> list[str]:
-        r"""Rows and columns of ``_{3 \times 3}`` or ``_3``."""
-        pieces = split_noads(noads, "times")
-        texts = ["".join(str(n.value) for n in piece) for piece in pieces]
-        return texts if len(texts) <= 2 and all(re.fullmatch("[1-9][0-9]?|[a-z]", t) for t in texts) else []
-
-    def is_known(self, place: int) -> bool:
-        """True when the symbol at a place has a meaning of its own."""
-        kept, self.place = self.place, place
-        try:
-            noad = self.noads[place]
-            if noad.is_sign("e") and noad.sup and "e" not in self.notation:
-                return True
-            return self.spelling() is not None or self.resolve(noad, str(noad.value)) is not None
-        finally:
-            self.place = kept
-
-    def run(self) -> list[Noad]:
-        """Letters side by side, without a space between them."""
-        run: list[Noad] = []
-        for noad in self.noads[self.place :]:
-            letter = noad.kind == "sym" and noad.value.isascii() and noad.value.isalpha()
-            if not letter or (run and (run[-1].has_scripts or run[-1].end != noad.at or run[-1].bold != noad.bold)):
-                break
-            if run and self.integrals and noad.value == "d" and "d" not in self.notation:
-                break
-            run.append(noad)
-        return run
-
-    def unknown(self, noad: Noad) -> Part:
-        """A symbol that nobody declared, with the name that it might have."""
-        if noad.kind in ("sym", "cmd") and self.base(noad) is None:
-            self.refuse("a symbol of the language", "write it otherwise, or as a name in [latex]")
-        if noad.kind == "word" and self.base(noad) is None:
-            self.refuse("a formula without words", "write the words outside")
-        self.place += 1
-        spelled = self.text[noad.at if noad.shown < 0 else noad.shown : noad.end]
-        if noad.sup and is_power(noad.sup):
-            spelled = POWER.sub(r"\1", spelled)
-        spelled = self.balance(spelled, noad)
-        word, flat = self.base(noad), self.flat_subscript(noad)
-        if word and (flat or noad.sub is None) and noad.before == (None, None):
-            return self.power(Part("unknown", (word + flat, spelled), noad.at), noad)
-        return Part("unknown", (suggest_name(spelled), spelled), noad.at)
-
-    def balance(self, spelled: str, noad: Noad) -> str:
-        """The LaTeX of a name with the braces that it needs."""
-        missing = spelled.count("}") - spelled.count("{")
-        start, end = noad.at if noad.shown < 0 else noad.shown, noad.end
-        while missing > 0 and start > 0:
-            start -= 1
-            missing -= (self.text[start] == "{") - (self.text[start] == "}")
-            spelled = self.text[start] + spelled
-        while missing < 0 and end < len(self.text):
-            missing += (self.text[end] == "}") - (self.text[end] == "{")
-            spelled, end = spelled + self.text[end], end + 1
-        return spelled
-
     # -- powers and brackets --------------------------------------------------------------
-
-    def power(self, base: Part, noad: Noad) -> Part:
-        """The base with the superscript of the symbol: a power, or a mark such as the T of a transpose."""
-        if noad.sup is None:
-            return base
-        if base.head in ("name", "index", "unknown") and self.is_index(noad.sup):
-            spelled = self.text[noad.at if noad.shown < 0 else noad.shown : noad.end]
-            return Part("unknown", (suggest_name(spelled), spelled), base.at)
-        return Part("^", (base, self.exponent(noad.sup)), base.at)
 
     def exponent(self, sup: list[Noad]) -> Part:
         """A superscript."""
@@ -313,24 +124,6 @@ class Descent:
             raise Refusal(first.at, "a power", "an index", "write the name with its index in [latex]")
         return self.inside(sup)
 
-    def is_index(self, sup: list[Noad]) -> bool:
-        """True for a superscript that can only be part of a name."""
-        if not sup:
-            return False
-        first, last = sup[0], sup[-1]
-        if len(sup) == 1 and (transpose_mark(last) or last.is_sign("*") or last.is_command("ast", "times", "wedge")):
-            return False
-        return (len(sup) == 1 and not self.is_operand(last)) or first.kind == "open" or first.is_command("prime")
-
-    def is_operand(self, noad: Noad) -> bool:
-        """True for what may be a power alone."""
-        return (
-            noad.kind in ("arg", "word", "bar")
-            or noad.is_sign(*"0123456789")
-            or self.base(noad) is not None
-            or (noad.is_command("pi"))
-        )
-
     def bracket(self, opening: Noad) -> Part:
         """What stands in brackets or bars, with its powers."""
         self.place += 1
@@ -341,7 +134,10 @@ class Descent:
             self.bars.append(opening.value)
         kept, self.integrals = self.integrals, 0
         outer, self.bars = self.bars, self.bars if is_bar and opening.kind == "bar" else []
-        inner = self.expression()
+        items = [self.cases(self.noads[self.place])] if self.opens_cases(opening) else [self.expression()]
+        while opening.value in ("(", "[", "langle") and self.noad is not None and self.noad.is_sign(","):
+            self.place += 1
+            items.append(self.expression())
         self.bars, self.integrals = outer, kept
         if is_bar:
             self.bars.pop()
@@ -352,11 +148,24 @@ class Descent:
             self.refuse(f"the bracket that closes {self.text[opening.at : opening.end]}", "close it")
             raise AssertionError
         self.place += 1
-        return self.close(opening, inner, closing, crossed)
+        if len(items) > 1 or opening.value == "langle":
+            return self.close_list(opening, items, closing, crossed)
+        if opening.value == "cases":
+            return self.power(items[0], closing)
+        return self.close(opening, items[0], closing, crossed)
+
+    def close_list(self, opening: Noad, items: list[Part], closing: Noad, crossed: bool) -> Part:
+        """Entries with commas between them: a column, or an inner product."""
+        if crossed or closing.sub or (opening.value == "langle" and len(items) != 2):
+            raise Refusal(opening.at, "a list without subscript, or an inner product of two", "others", "write entries")
+        if opening.value == "langle":
+            return self.power(Part("inner", tuple(items), opening.at), closing)
+        return self.power(Part("list", (opening.value, *items), opening.at), closing)
 
     def close(self, opening: Noad, inner: Part, closing: Noad, crossed: bool) -> Part:
         """A group by its bracket and by the subscript of the closing one."""
         kind = opening.value
+        crossed |= kind == "floor" and closing.sub is None and self.notation.has_skew_floor
         crossed |= (
             bool(closing.sub) and len(closing.sub or ()) == 1 and (closing.sub or [closing])[0].is_command("times")
         )
@@ -394,6 +203,10 @@ class Descent:
             size = self.sizes(last.sub)
             if text == "0" and last.bold and len(size) == 2:
                 return self.power(Part("zeros", tuple(size), start.at), last)
+            if text in ("0", "1") and last.bold:
+                spelled = self.balance(self.text[start.at if start.shown < 0 else start.shown : last.end], last)
+                spelled = POWER.sub(r"\1", spelled) if last.sup and is_power(last.sup) else spelled
+                return self.power(Part("unknown", (suggest_name(spelled), spelled), start.at), last)
             raise Refusal(start.at, "a number without subscript", self.text[start.at : last.end], "name it in [latex]")
         return self.power(Part("num", (text,), start.at), last)
 
@@ -414,6 +227,8 @@ class Descent:
             return self.big(noad, BIG[name])
         if name == "int":
             return self.integral(noad)
+        if name == "lim":
+            return self.limit(noad)
         return self.name(noad)
 
     def call(self, name: str) -> Part:
@@ -515,12 +330,22 @@ class Descent:
         """``d^n f / d x^n``, or the operator before what it is applied to."""
         above, below = noad.args
         order = self.order(above[0].sup, noad)
+        plain = len(below) == 2 and self.base(below[1]) is not None and below[1].before == (None, None)
+        if len(below) > 1 and not plain and order == 1 and not below[0].sup:
+            by = self.inside(below[1:])
+            if by.head not in ("name", "unknown"):
+                raise Refusal(noad.at, "one variable and one order", "others", "write one derivative after the other")
+            return self.apply_derivative(noad, by, order, letter)
         variable = below[1] if len(below) == 2 else None
         name = self.base(variable) if variable else None
         if variable is None or name is None or self.order(variable.sup, noad) != order or below[0].sup:
             raise Refusal(noad.at, "one variable and one order", "others", "write one derivative after the other")
         found = self.resolve(variable, name)
-        by = found or self.variable(variable, name)
+        return self.apply_derivative(noad, found or self.variable(variable, name), order, letter)
+
+    def apply_derivative(self, noad: Noad, by: Part, order: int, letter: str) -> Part:
+        """The derivative of what stands above the line, or behind it."""
+        above = noad.args[0]
         if len(above) > 1:
             return Part("diff", (self.inside(above[1:]), by, order, letter, True), noad.at)
         if self.ends():
@@ -529,8 +354,9 @@ class Descent:
 
     def variable(self, noad: Noad, name: str) -> Part:
         """A variable that nobody declared."""
-        spelled = self.balance(self.text[noad.at : noad.end].split("^")[0], noad)
-        return Part("unknown", (name + self.flat_subscript(noad), spelled), noad.at)
+        flat = self.flat_subscript(noad)
+        spelled = self.spell(noad)
+        return Part("unknown", (name + flat if flat or noad.sub is None else suggest_name(spelled), spelled), noad.at)
 
     def order(self, sup: list[Noad] | None, noad: Noad) -> int:
         """The order of a derivative."""
@@ -554,6 +380,22 @@ class Descent:
         body = self.term()
         self.bound = kept
         return Part("sum", (name, body, index, start, end), noad.at)
+
+    def limit(self, noad: Noad) -> Part:
+        """A limit of all factors behind it."""
+        pieces = split_noads(noad.sub or [], "to" if any(n.is_command("to") for n in noad.sub or ()) else "rightarrow")
+        if len(pieces) != 2 or not pieces[0] or noad.sup or any(n.is_sign("^", "+", "-") for n in pieces[0]):
+            raise Refusal(noad.at, r"a limit with its point, such as \lim_{x \to 0}", "another", "write the point")
+        kept, moving = self.bound, pieces[0][0]
+        name = self.base(moving) if len(pieces[0]) == 1 and moving.before == (None, None) and not moving.sup else None
+        self.bound = (*kept, f"{name}{self.flat_subscript(moving)}") if name else kept
+        by, end = self.inside(pieces[0]), self.inside(pieces[1])
+        if by.head not in ("name", "unknown"):
+            raise Refusal(noad.at, "one name that moves", "others", r"write it in [latex]")
+        self.place += 1
+        body = self.term()
+        self.bound = kept
+        return Part("limit", (body, by, end), noad.at)
 
     def integral(self, noad: Noad) -> Part:
         """An integral with both ends, up to its differential."""
@@ -596,43 +438,44 @@ class Descent:
         part = Part("matrix", (len(widths), *cells), noad.at)
         return Part("call", ("det", None, True, part), noad.at) if kind == "vmatrix" else part
 
+    def opens_cases(self, opening: Noad) -> bool:
+        """True for a brace and one array in it."""
+        if opening.value != "cases":
+            return False
+        noad = self.noad
+        if noad is None or noad.kind != "env" or noad.value[0] != "array" or noad.has_scripts:
+            self.refuse("an array of cases behind the brace", "write the cases as rows of an array")
+        return True
 
-def transpose_mark(noad: Noad) -> str:
-    """``T`` for the letter, ``top`` for what is nothing but a transpose."""
-    if noad.has_scripts:
-        return ""
-    if noad.is_command("top", "intercal") or (noad.kind == "word" and noad.value == "T"):
-        return "top"
-    if noad.kind == "arg" and noad.value == "mathsf" and [n.value for n in noad.args[0]] == ["T"]:
-        return "top"
-    return "T" if noad.is_sign("T") else ""
+    def cases(self, noad: Noad) -> Part:
+        """Values with their conditions, the last one for all the rest."""
+        self.place += noad is self.noad
+        widths = noad.value[1]
+        if set(widths) != {2} or len(widths) < 2 or not all(noad.args):
+            raise Refusal(noad.at, "rows of a value and its condition", "others", "write both")
+        parts: list[Part] = []
+        for place in range(0, len(noad.args), 2):
+            value, words = noad.args[place], noad.args[place + 1]
+            value = value[:-1] if value[-1].is_sign(",") else value
+            words = words[:-1] if words[-1].is_sign(".", ",") else words
+            last = place + 2 == len(noad.args)
+            rest = len(words) == 1 and words[0].kind == "word" and words[0].value in REST
+            if last != rest:
+                expected = r"a last row for all the rest, and no other: \text{otherwise}"
+                raise Refusal(noad.at, expected, "others", "write it, or the cases as formulas of their own")
+            parts.append(self.inside(value))
+            if not last:
+                parts.append(self.condition(words[1:] if words[0].kind == "word" and words[0].value in IF else words))
+        return Part("cases", tuple(parts), noad.at)
 
-
-def is_power(sup: list[Noad]) -> bool:
-    """True for a superscript that is no part of a name: a number, or the mark of a transpose."""
-    rest = sup[1:] if sup[0].is_sign("-") else sup
-    return bool(rest) and (all(n.is_sign(*"0123456789") for n in rest) or transpose_mark(rest[0]) != "")
-
-
-def split_noads(noads: list[Noad], mark: str) -> list[list[Noad]]:
-    """A list cut at a mark."""
-    pieces: list[list[Noad]] = [[]]
-    for noad in noads:
-        if noad.is_sign(mark) or noad.is_command(mark):
-            pieces.append([])
-        else:
-            pieces[-1].append(noad)
-    return pieces
-
-
-def spelling_rank(noads: tuple[Noad, ...]) -> tuple[int, int]:
-    """Longer spellings first, and of the same length those with more scripts and bold type."""
-    return (len(noads), sum(n.bold + (n.sub is not None) + (n.sup is not None) for n in noads))
-
-
-def suggest_name(spelled: str) -> str:
-    """A name for a symbol that is written with more than letters."""
-    words = re.sub(r"\\(mathbf|boldsymbol|bm|mathrm|text|mathcal|left|right)\b", "", spelled)
-    words = words.replace("'", "_prime").replace("+", "p").replace("-", "m").replace("|", "_")
-    name = re.sub(r"[^A-Za-z0-9]+", "_", words).strip("_")[:60]
-    return name if name[:1].isalpha() else f"s_{name}" if name else "symbol"
+    def condition(self, noads: list[Noad]) -> Part:
+        """A comparison, or two in one direction."""
+        marks = [n for n in noads if n.kind in ("sym", "cmd") and n.value in CONDITIONS and not n.has_scripts]
+        signs = [CONDITIONS[str(n.value)] for n in marks]
+        if not 0 < len(marks) < 3 or (len(marks) == 2 and {s[0] for s in signs} not in ({"<"}, {">"})):
+            at = noads[0].at if noads else 0
+            raise Refusal(at, "one comparison, or two in one direction", "another condition", "write such a one")
+        places = [-1, *(noads.index(mark) for mark in marks), len(noads)]
+        sides = [self.inside(noads[a + 1 : b]) for a, b in pairwise(places)]
+        args = [sides[0], *(piece for pair in zip(signs, sides[1:], strict=True) for piece in pair)]
+        return Part("cond", tuple(args), sides[0].at)

@@ -13,9 +13,9 @@ from navsym.core.errors import MissingEngineError
 from navsym.language.latex.notation import ACCENTS, BOLD, DOTS, SETTINGS, SIZES, SPACES, WORDS
 from navsym.language.latex.parts import DEPTH, Refusal
 
-MATRICES = ("matrix", "pmatrix", "bmatrix", "Bmatrix", "vmatrix", "smallmatrix", "array")
-OPENERS = {"lvert": "|", "lVert": "||", "lfloor": "floor", "lbrack": "[", "lparen": "("}
-CLOSERS = {"rvert": "|", "rVert": "||", "rfloor": "floor", "rbrack": "]", "rparen": ")"}
+MATRICES = ("matrix", "pmatrix", "bmatrix", "Bmatrix", "vmatrix", "smallmatrix", "array", "cases")
+OPENERS = {"lvert": "|", "lVert": "||", "lfloor": "floor", "lbrack": "[", "lparen": "(", "langle": "langle"}
+CLOSERS = {"rvert": "|", "rVert": "||", "rfloor": "floor", "rbrack": "]", "rparen": ")", "rangle": "langle"}
 BRACKETS = {"(": ("open", "("), ")": ("close", ")"), "[": ("open", "["), "]": ("close", "]"), "|": ("bar", "|")}
 
 
@@ -37,6 +37,7 @@ class Noad:
     sup: list[Noad] | None = None
     before: tuple[list[Noad] | None, list[Noad] | None] = (None, None)
     shown: int = -1  # where it begins with the command of bold type before it
+    spelled: str = ""  # its LaTeX, where that is no stretch of the text
 
     def is_command(self, *names: str) -> bool:
         """True for one of these commands without arguments."""
@@ -56,7 +57,12 @@ def is_same(wanted: Noad, found: Noad, last: bool = False) -> bool:
     if (wanted.kind, wanted.value) != (found.kind, found.value) or (wanted.bold and not found.bold):
         return False
     pairs = [(wanted.sub, found.sub), *zip(wanted.before, found.before, strict=True)]
-    pairs += [] if last and wanted.sup is None else [(wanted.sup, found.sup)]
+    primes = wanted.sup is None or all(n.is_command("prime") for n in wanted.sup)
+    behind = found.sup if wanted.sup is None or not found.sup else found.sup[len(wanted.sup) :]
+    if last and primes and behind is not found.sup and not (behind and behind[0].is_command("prime")):
+        pairs.append((wanted.sup, (found.sup or [])[: len(wanted.sup or ())]))
+    elif not (last and wanted.sup is None):
+        pairs.append((wanted.sup, found.sup))
     if len(wanted.args) != len(found.args):
         return False
     return all(is_same_list(w, f) for w, f in [*pairs, *zip(wanted.args, found.args, strict=True)])
@@ -150,14 +156,17 @@ class Builder:
 
     def attach(self, noad: Noad, side: str, unit: Noad, following: list[Noad]) -> None:
         """A script: one symbol, or a group."""
-        if getattr(noad, side) is not None:
+        given = getattr(noad, side)
+        primed = side == "sup" and given and all(n.is_command("prime") for n in given)
+        if given is not None and not primed:
             raise Refusal(unit.at, "one subscript and one superscript", "two", "put the first part in braces")
         digit = unit.kind == "sym" and unit.value.isdigit()
         if digit and following and following[0].is_sign(*"0123456789") and following[0].at == unit.end:
             raise Refusal(unit.at, "a script in braces", "two digits without", "write ^{12} or a product")
         if unit.is_sign("^", "_"):
             raise Refusal(unit.at, "a script behind ^ or _", unit.value, "write it")
-        setattr(noad, side, unit.args[0] if unit.kind == "group" and unit.args else [unit])
+        script = unit.args[0] if unit.kind == "group" and unit.args else [unit]
+        setattr(noad, side, [*given, *script] if primed else script)
         noad.end = unit.end
 
     def place_prescripts(self, noads: list[Noad]) -> list[Noad]:
@@ -185,19 +194,26 @@ class Builder:
         if noad.kind != "group":
             return [noad]
         inner = noad.args[0]
+        if noad.bold and len(inner) > 1:
+            for one in inner:
+                one.spelled = rf"\mathbf{{{self.text[one.at : one.end]}}}" if one.kind in ("sym", "cmd") else ""
         if not noad.has_scripts:
             if noad.bold and len(inner) == 1:
                 inner[0].end, inner[0].shown = noad.end, noad.at
             return inner
         last = inner[-1]
-        if noad.bold:
-            last.end, inner[0].shown = noad.end, noad.at
+        if noad.bold and len(inner) == 1:
+            last.end, last.shown = noad.end, noad.at
+        elif noad.bold:
+            behind = self.text[self.text.find("}", last.end) + 1 : noad.end]
+            last.spelled, last.end = f"{last.spelled}{behind}", noad.end
         if len(inner) == 1 and any(getattr(noad, side) and getattr(last, side) for side in ("sub", "sup")):
             closing = Noad("close", "}", noad.end, noad.end, sub=noad.sub, sup=noad.sup)
             return [Noad("open", "{", noad.at, noad.at + 1), last, closing]
         closed = len(inner) > 1 and inner[0].kind == "open" and last.kind == "close" and not closes_early(inner)
         twice = any(getattr(noad, side) and getattr(last, side) for side in ("sub", "sup"))
-        if (len(inner) > 1 and not closed) or twice:
+        opens = any(n.kind in ("open", "close", "bar") for n in inner)
+        if (len(inner) > 1 and not closed and (not noad.bold or opens)) or twice:
             raise Refusal(noad.at, "a script on one symbol or on parentheses", "on braces", "write parentheses")
         last.sub, last.sup, last.end = noad.sub or last.sub, noad.sup or last.sup, noad.end
         return inner
@@ -268,7 +284,7 @@ class Builder:
     def make_environment(self, node: Any, at: int, end: int) -> Noad:
         """A matrix: its entries as lists, and the length of each row as its value."""
         if node.environmentname not in MATRICES:
-            raise Refusal(at, "a matrix", node.environmentname, "write the cases as formulas of their own")
+            raise Refusal(at, "a matrix or cases", node.environmentname, "write the parts as formulas of their own")
         rows: list[list[list[Any]]] = [[[]]]
         for inner in node.nodelist:
             kind = type(inner).__name__
@@ -288,7 +304,7 @@ class Builder:
             else:
                 rows[-1][-1].append(inner)
         built = [[self.build(cell, False) for cell in row] for row in rows]
-        built = built[:-1] if built[-1] == [[]] else built
+        built = [row for row in built if any(row)]
         widths = tuple(len(row) for row in built)
         return Noad("env", (node.environmentname, widths), at, end, False, tuple(c for row in built for c in row))
 
@@ -299,6 +315,9 @@ def merge_sides(units: list[Noad]) -> list[Noad]:
     for unit in units:
         if done and done[-1].kind == "side":
             side = done.pop()
+            brace = side.value == "left" and unit.is_command("{")
+            if brace or (side.value == "right" and unit.is_sign(".")):
+                unit.kind, unit.value = ("open", "cases") if brace else ("close", "cases")
             if unit.kind not in ("open", "close", "bar"):
                 raise Refusal(unit.at, f"a bracket behind \\{side.value}", "another symbol", "write ( ) [ ] or |")
             unit.kind, unit.at = ("open" if side.value == "left" else "close"), side.at

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import Any
 
 from navsym.language.latex.notation import Notation, Shape
-from navsym.language.latex.parts import Part, Refusal
+from navsym.language.latex.parts import Part, Refusal, list_names
 from navsym.language.names import FUNCTIONS
 
 #: How tightly a text binds.
@@ -41,9 +41,31 @@ class Term:
         return self.text if self.level >= floor else f"({self.text})"
 
 
-def explain(part: Part, notation: Notation) -> Term:
-    """The text that the parts mean. Raises Refusal where they have no meaning, or two."""
-    return Explainer(notation).explain(part)
+def explain(part: Part, notation: Notation, as_column: bool = False) -> Term:
+    """The text that the parts mean. Raises Refusal where they have no meaning, or two.
+
+    as_column : True for a row of entries beside a column: its entries below each other
+    """
+    explainer = Explainer(notation)
+    return explainer.stack(part) if as_column else explainer.explain(part)
+
+
+def list_columns(parts: list[Part], notation: Notation) -> list[bool]:
+    """For both sides, whether a row or a list of entries stands for a column, because the other side is one."""
+    rows = [is_row(part) for part in parts]
+    if all(rows):
+        heads = {part.head for part in parts}
+        blocks = heads == {"matrix"} and any(explain(c, notation).shape for part in parts for c in part.args[1:])
+        return [blocks or len(heads) == 2] * 2
+    if not any(rows):
+        return rows
+    other = explain(parts[rows.index(False)], notation).shape
+    return [row and other[1:] == ("1",) and other[0] != "1" for row in rows]
+
+
+def is_row(part: Part) -> bool:
+    """True for several entries beside each other."""
+    return part.head == "list" or (part.head == "matrix" and part.args[0] == 1 and len(part.args) > 2)
 
 
 def fit_sides(left: Term, right: Term, at: int) -> tuple[Term, Term]:
@@ -64,6 +86,16 @@ def may_be_same(one: Shape, other: Shape) -> bool:
     return len(one) == len(other) and all(a == b or "?" in (a, b) for a, b in zip(one, other, strict=True))
 
 
+def is_space_vector(shape: Shape) -> bool:
+    """True for a column of three, or of open size."""
+    return shape in (("3", "1"), ("?", "1"))
+
+
+def fits(one: str, other: str) -> bool:
+    """True for sizes that agree; an open size is not taken for 1, which would make another product."""
+    return one == other or ("?" in (one, other) and "1" not in (one, other))
+
+
 def say(shape: Shape) -> str:
     """A shape in words."""
     return "a scalar" if not shape else f"a vector of {shape[0]}" if shape[1] == "1" else f"{shape[0]} by {shape[1]}"
@@ -81,6 +113,8 @@ class Explainer:
             "call": self.explain_call, "matrix": self.explain_matrix, "skew": self.explain_skew,
             "dot": self.explain_dot, "diff": self.explain_derivative, "integral": self.explain_integral,
             "sum": self.explain_series, "num": self.explain_number, "name": self.explain_name,
+            "limit": self.explain_limit, "inner": self.explain_inner, "cases": self.explain_cases,
+            "list": self.explain_list,
         }  # fmt: skip
 
     def explain(self, part: Part) -> Term:
@@ -141,6 +175,8 @@ class Explainer:
         factors, marks = [self.explain(factor) for factor in args[::2]], ["", *args[1::2]]
         places = [place for place, factor in enumerate(factors) if factor.shape]
         for place, mark in enumerate(marks):
+            if mark == "*" and places:
+                raise Refusal(args[2 * place].at, "scalars beside *", "others: which product?", r"write \cdot or none")
             if mark == "/" and factors[place].shape:
                 raise Refusal(args[2 * place].at, "a scalar as divisor", say(factors[place].shape), "use an inverse")
         if not places:
@@ -188,8 +224,23 @@ class Explainer:
             return Term(f"dot({factors[0].text}, {factors[1].text})")
         return chain(factors, at)
 
+    def explain_list(self, part: Part) -> Term:
+        """Entries with commas, which are a column beside a declared one only."""
+        raise Refusal(part.at, "one value in parentheses", "a list: a vector or what?", r"write \begin{bmatrix}, or ^T")
+
+    def stack(self, part: Part) -> Term:
+        """The entries of a row or a list below each other: scalars and columns."""
+        terms = [self.explain(cell) for cell in part.args[1:]]
+        if any(term.shape and term.shape[1] != "1" for term in terms):
+            raise Refusal(part.at, "scalars and columns as entries", "a matrix", r"write \begin{bmatrix} in blocks")
+        sizes = [term.shape[0] if term.shape else "1" for term in terms]
+        return Term("[" + ", ".join(f"[{term.text}]" for term in terms) + "]", WHOLE, (add(sizes), "1"))
+
     def explain_power(self, part: Part) -> Term:
         """A power, or a mark in its place."""
+        mark = part.args[1].args[0] if part.args[1].head == "mark" else ""
+        if part.args[0].head == "list" and mark in ("T", "top"):
+            return self.stack(part.args[0])
         base, exponent = self.explain(part.args[0]), part.args[1]
         if exponent.head == "mark":
             return self.explain_mark(base, exponent)
@@ -227,7 +278,7 @@ class Explainer:
             return Term(f"{base.inside(WHOLE)}.T", WHOLE, base.shape[::-1], column)
         if kind == "*" and base.is_quaternion:
             return Term(f"conj({base.text})", WHOLE, base.shape, "", True, base.is_unit)
-        if kind == "skew" and may_be_same(base.shape, ("3", "1")):
+        if kind == "skew" and is_space_vector(base.shape):
             return Term(f"skew({base.text})", WHOLE, ("3", "3"))
         raise Refusal(
             mark.at, "a transpose, a conjugate of a quaternion or a power", "another mark", "name it in [latex]"
@@ -248,6 +299,30 @@ class Explainer:
 
     # -- functions ---------------------------------------------------------------------------
 
+    def explain_inner(self, part: Part) -> Term:
+        """The inner product of two columns."""
+        one, other = map(self.explain, part.args)
+        if one.shape[1:] != ("1",) or not may_be_same(one.shape, other.shape):
+            raise Refusal(part.at, "two columns of one length", f"{say(one.shape)} and {say(other.shape)}", WRITE)
+        return Term(f"dot({one.text}, {other.text})")
+
+    def explain_cases(self, part: Part) -> Term:
+        """``where`` in the order of the rows; two comparisons in a row stand inside each other."""
+        *rows, last = part.args
+        whole = self.explain(last)
+        for value, condition in reversed(list(zip(rows[::2], rows[1::2], strict=True))):
+            term = self.explain(value)
+            if not may_be_same(term.shape, whole.shape):
+                raise Refusal(
+                    value.at, "values of one shape", f"{say(term.shape)} and {say(whole.shape)}", "correct one"
+                )
+            sides = [self.scalar(side, "in a condition").text for side in condition.args[::2]]
+            for place in reversed(range(len(sides) - 1)):
+                compared = f"{sides[place]} {condition.args[2 * place + 1]} {sides[place + 1]}"
+                term = Term(f"where({compared}, {term.text}, {whole.text})", WHOLE, whole.shape)
+            whole = term
+        return whole
+
     def explain_length(self, part: Part) -> Term:
         inner = self.explain(part.args[0])
         if not inner.shape and part.head == "abs":
@@ -261,7 +336,7 @@ class Explainer:
 
     def explain_skew(self, part: Part) -> Term:
         inner = self.explain(part.args[0])
-        if not may_be_same(inner.shape, ("3", "1")):
+        if not is_space_vector(inner.shape):
             raise Refusal(part.at, "the cross matrix of a vector of three", say(inner.shape), "declare { vector = 3 }")
         return Term(f"skew({inner.text})", WHOLE, ("3", "3"))
 
@@ -284,14 +359,14 @@ class Explainer:
     def apply(self, name: str, arguments: list[Term], part: Part) -> Term:
         """A function of the language at its arguments."""
         shapes, text = [a.shape for a in arguments], ", ".join(a.text for a in arguments)
-        square = len(shapes) == 1 and len(shapes[0]) == 2 and may_be_same(shapes[0], shapes[0][::-1])
+        square = len(shapes) == 1 and len(shapes[0]) == 2 and fits(*shapes[0])
         if name in ("log_2", "log_10") and shapes == [SCALAR]:
             return Term(f"log({text})/log({name[4:]})", PRODUCT)
         if name in ("det", "trace") and square:
             return Term(f"{name}({text})")
         if name in ("exp", "expm") and square:
             return Term(f"expm({text})", WHOLE, shapes[0])
-        if name == "skew" and len(shapes) == 1 and may_be_same(shapes[0], ("3", "1")):
+        if name == "skew" and len(shapes) == 1 and is_space_vector(shapes[0]):
             return Term(f"skew({text})", WHOLE, ("3", "3"))
         if name == "diag" and not any(shapes):
             return Term(f"diag({text})", WHOLE, (str(len(shapes)),) * 2)
@@ -312,7 +387,7 @@ class Explainer:
         sizes = [[term.shape or ("1", "1") for term in row] for row in rows]
         for row in sizes:
             for size, first in zip(row, sizes[0], strict=True):
-                if not may_be_same(size, (row[0][0], first[1])):
+                if not fits(size[0], row[0][0]) or not fits(size[1], first[1]):
                     raise Refusal(part.at, "blocks that fit", "others", r"write zeros as \mathbf{0}_{3\times 3}")
         return Term(text, WHOLE, (add(row[0][0] for row in sizes), add(size[1] for size in sizes[0])))
 
@@ -336,8 +411,26 @@ class Explainer:
         behind = f", {order}" if order > 1 else ""
         return Term(f"diff({inner.text}, {by.text}{behind})", WHOLE, shape)
 
+    def explain_limit(self, part: Part) -> Term:
+        body, by, end = part.args
+        name = self.scalar(by, "that moves").text
+        self.require_free(body, name, part.at)
+        return Term(f"limit({self.explain(body).text}, {name}, {self.scalar(end, 'as point').text})", WHOLE,
+                    self.explain(body).shape)  # fmt: skip
+
+    def require_free(self, body: Part, index: str, at: int) -> None:
+        """Refuse a name whose LaTeX depends on the bound letter while its text is a constant."""
+        for name in list_names(body):
+            if name == index or self.notation.functions.get(name) == index:
+                continue
+            if index in list_letters(dict(self.notation.spellings).get(name, ""), name):
+                question = f"{name}, which depends on {index} as it is printed"
+                raise Refusal(at, f"names that do not depend on {index}, or entries of a vector", question,
+                              f'declare {{ function = "{index}" }}, or a vector for its entries')  # fmt: skip
+
     def explain_integral(self, part: Part) -> Term:
         body, variable, start, end = part.args
+        self.require_free(body, str(variable.args[0]), part.at)
         inner, by = self.explain(body), self.scalar(variable, "under d")
         ends = [self.scalar(piece, "as end of the integral").text for piece in (start, end)]
         return Term(f"integral({inner.text}, {by.text}, {ends[0]}, {ends[1]})", WHOLE, inner.shape)
@@ -346,11 +439,24 @@ class Explainer:
         name, body, index, start, end = part.args
         if self.notation.shapes.get(index):
             raise Refusal(part.at, "a scalar as the index", f"the vector or matrix {index}", "rename it")
+        self.require_free(body, index, part.at)
         inner = self.explain(body)
         ends = [self.scalar(piece, "as end of the sum").text for piece in (start, end)]
         if name == "product" and inner.shape:
             raise Refusal(part.at, "a product of scalars", "matrices", "write the factors")
         return Term(f"{name}({inner.text}, {index}, {ends[0]}, {ends[1]})", WHOLE, inner.shape)
+
+
+def list_letters(latex: str, name: str) -> set[str]:
+    """The names in the LaTeX of a name, words apart; without LaTeX those in its subscript."""
+    if not latex:
+        pieces = name.split("_")[1:]
+        return {letter for piece in pieces for letter in (piece, *(piece if len(piece) < 3 else ""))}
+    text = re.sub(r"\\(?:mathrm|text|textrm|operatorname)\s*\{[^{}]*\}", " ", latex)
+    plain = re.sub(r"\\(?:mathbf|boldsymbol|bm|left|right)(?![A-Za-z])|[{}\s]", " ", text)
+    found = re.findall(r"\\([A-Za-z]+)|([A-Za-z])(?: *_ *([A-Za-z0-9]))?", plain)
+    letters = {piece for pieces in found for piece in pieces if piece}
+    return letters | {f"{one}_{other}" for _, one, other in found if other}
 
 
 def refuse_doubtful(args: tuple[Any, ...]) -> None:
@@ -408,7 +514,7 @@ def scale(whole: Term, above: list[Term], below: list[Term]) -> Term:
 def chain(factors: list[Term], at: int) -> Term:
     """A product of matrices; a row that is a transposed column, up to the next column, is a dot product."""
     for one, other in pairwise(factors):
-        if not may_be_same(one.shape[1:], other.shape[:1]):
+        if not fits(one.shape[1], other.shape[0]):
             got = f"{say(one.shape)} and {say(other.shape)}"
             raise Refusal(at, "factors that fit", f"{got}: dot, cross or outer product?", r"write \cdot, \times or ^T")
     scalars: list[Term] = []

@@ -45,6 +45,13 @@ CALLS: Mapping[str, str] = {
 #: Commands of LaTeX that are functions; other names of functions stand in ``\operatorname`` or ``\mathrm``.
 COMMANDS = frozenset("sin cos tan cot sec csc exp ln log sinh cosh tanh arcsin arccos arctan det min max".split())
 
+#: Words of a sentence that stand beside a formula; they are no names.
+SENTENCE = frozenset("if for when otherwise else and or where with such that as is are by of in on the to".split())
+#: Words in rows of cases: before a condition, and for all the rest.
+IF, REST = ("if", "for", "when"), ("otherwise", "else", "elsewhere")
+#: Relations inside the conditions of cases.
+CONDITIONS = {"<": "<", ">": ">", "=": "=", "le": "<=", "leq": "<=", "ge": ">=", "geq": ">=", "ne": "!=", "neq": "!="}
+
 DECLARATIONS = ("vector", "rotation", "quaternion", "matrix", "function", "integer", "random")
 COMPANIONS = ("unit", "frame", "range", *PROPERTIES)
 
@@ -69,6 +76,12 @@ class Notation:
 
     def __contains__(self, name: object) -> bool:
         return name in self.shapes
+
+    @property
+    def has_skew_floor(self) -> bool:
+        r"""True where the entry ``skew = '\lfloor\cdot\rfloor'`` says that these brackets are cross matrices."""
+        plain = [(name, re.sub(r"\\left|\\right|\s+", "", latex)) for name, latex in self.spellings]
+        return ("skew", r"\lfloor\cdot\rfloor") in plain
 
     def is_vector(self, name: str) -> bool:
         """True for a declared column."""

@@ -14,7 +14,7 @@ class Part:
     """A piece of a formula.
 
     head : ``num name unknown + - * ^ mark () frac sqrt abs norm floor call matrix skew dot diff integral sum index``,
-           ``eye`` and ``zeros``
+           ``limit inner list cases cond``, ``eye`` and ``zeros``
     args : parts and texts; a product has its marks between its factors: ``(a, "", b, "/", c)``
     at   : where it begins; two readings are compared without it
     """
@@ -49,3 +49,10 @@ def list_unknown(part: Part) -> list[Part]:
         if isinstance(inner, Part):
             found += list_unknown(inner)
     return found
+
+
+def list_names(part: Part) -> list[str]:
+    """The names in a part, in the order of writing."""
+    if part.head in ("name", "index"):
+        return [str(part.args[0])]
+    return [name for inner in part.args if isinstance(inner, Part) for name in list_names(inner)]

@@ -17,9 +17,9 @@ from navsym.language.latex.climbing import climb
 from navsym.language.latex.descent import descend
 from navsym.language.latex.documents import ENDINGS, Block, hide_comments, list_blocks
 from navsym.language.latex.macros import Macro, expand_macros, list_macros
-from navsym.language.latex.meaning import explain, fit_sides
+from navsym.language.latex.meaning import explain, fit_sides, list_columns
 from navsym.language.latex.notation import Notation, build_notation, read_notation
-from navsym.language.latex.parts import Part, Refusal, list_unknown
+from navsym.language.latex.parts import Part, Refusal, list_names, list_unknown
 from navsym.language.latex.rows import Relation, Side, split_relations
 from navsym.language.names import NAME, RESERVED, quote
 from navsym.language.tomlfile import toml_text
@@ -144,7 +144,7 @@ class Reading(Answer):
             safe = f"{safe}1" if safe.endswith("_") else safe
             if NAME.fullmatch(safe) and safe not in symbols:
                 symbols[safe] = "real"
-                if re.fullmatch("[A-Za-z]{2,}", spelled):
+                if re.fullmatch(r"[A-Za-z]{2,}|\\mathbf\{[A-Za-z]{2,}\}", spelled):
                     questions += f"# Is {spelled} a product or a name? For a product, declare its letters.\n"
                 if plain_spelling(spelled) != safe:
                     latex[safe] = spelled
@@ -241,6 +241,15 @@ def open_source(source: Any) -> tuple[str, str, str]:
     return text, "", "tex" if DELIMITED.search(text) else ""
 
 
+def read_with_reals(source: str, symbols: Mapping[str, Any], latex: Mapping[str, Any] | None = None) -> Reading:
+    """The formulas of a text in which a letter without a declaration is real; letters side by side stay a question."""
+    reading = read(source, symbols=symbols, latex=latex)
+    unknown = {name: spelled for formula in reading.formulas for name, spelled in formula.unknown}
+    if not unknown or any(re.fullmatch("[A-Za-z]{2,}", spelled) for spelled in unknown.values()):
+        return reading
+    return read(source, symbols=dict(symbols) | dict.fromkeys(unknown, "real"), latex=latex)
+
+
 @dataclass(frozen=True, slots=True)
 class Lines:
     """A document: its name, its text and where its lines begin."""
@@ -296,6 +305,9 @@ def read_relation(relation: Relation, places: list[int], notation: Notation, lin
     try:
         if relation.trouble is not None:
             raise relation.trouble
+        if relation.index and not is_whole(notation, relation.index):
+            remedy = f'declare {relation.index} = {{ integer = ["1", "oo"] }}'
+            raise Refusal(relation.at, "a whole number that runs through the list", relation.index, remedy)
         texts, names = read_sides(relation, notation, unknown)
         return ReadFormula(
             lines.name, row, column, source, "READ", None, texts[0], relation.sign, texts[1], names, latex
@@ -305,6 +317,12 @@ def read_relation(relation: Relation, places: list[int], notation: Notation, lin
         why = f"line {spot[0]}, column {spot[1]}: {refusal}"
         pairs = tuple(dict.fromkeys((str(u.args[0]), str(u.args[1])) for u in unknown))
         return ReadFormula(lines.name, row, column, source, "REFUSED", why, None, None, None, (), latex, spot, pairs)
+
+
+def is_whole(notation: Notation, name: str) -> bool:
+    """True for a name that is declared a whole number."""
+    declaration = notation.written.get(name)
+    return isinstance(declaration, Mapping) and "integer" in declaration
 
 
 def read_sides(relation: Relation, notation: Notation, unknown: list[Part]) -> tuple[tuple[str, str], tuple[str, ...]]:
@@ -329,10 +347,11 @@ def read_sides(relation: Relation, notation: Notation, unknown: list[Part]) -> t
         question = f"{both[0]} in bold and plain type: one name or two?"
         raise Refusal(relation.left.start, "one type for a name", question, r"write \mathbf in [latex]")
     terms = []
-    for side, part in zip((relation.left, relation.right), parts, strict=True):
+    columns = list_columns(parts, notation)
+    for side, part, as_column in zip((relation.left, relation.right), parts, columns, strict=True):
         with shifted(side.start):
             compare_readings(part, side.text, notation)
-            terms.append(explain(part, notation))
+            terms.append(explain(part, notation, as_column))
     first_term, second_term = fit_sides(terms[0], terms[1], relation.right.start)
     if (first_term.shape or second_term.shape) and relation.sign not in ("=", "!="):
         raise Refusal(relation.right.start, "scalars on both sides of an order", "vectors", "compare entries")
@@ -359,13 +378,6 @@ def compare_readings(part: Part, text: str, notation: Notation) -> None:
     other = climb(text, notation)
     if other != part:
         raise Refusal(part.at, "two readings that agree", "two that differ", "write it in parts, with parentheses")
-
-
-def list_names(part: Part) -> list[str]:
-    """The names in a part, in the order of writing."""
-    if part.head in ("name", "index"):
-        return [str(part.args[0])]
-    return [name for inner in part.args if isinstance(inner, Part) for name in list_names(inner)]
 
 
 def plain_spelling(spelled: str) -> str:

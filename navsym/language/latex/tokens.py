@@ -12,6 +12,7 @@ TOKEN = re.compile(r"\\(?:operatorname\*|[A-Za-z]+|.)|\s+|[^\\]", re.S)
 DELIMITERS = {
     r"\lvert": "|<", r"\rvert": ">|", r"\lVert": "||<", r"\rVert": ">||", r"\|": "||", r"\Vert": "||", r"\vert": "|",
     r"\lfloor": "floor<", r"\rfloor": ">floor", r"\lbrack": "[", r"\rbrack": "]", r"\lparen": "(", r"\rparen": ")",
+    r"\langle": "angle<", r"\rangle": ">angle",
 }  # fmt: skip
 
 
@@ -51,6 +52,8 @@ def clean(text: str) -> list[Token]:
         if side:
             if token.text in ("|", "||"):
                 token.text = f"{token.text}<" if side == "left" else f">{token.text}"
+            elif (side, token.text) in (("left", r"\{"), ("right", ".")):
+                token.text = "cases<" if side == "left" else ">cases"
             elif token.text not in "()[]" and "<" not in token.text and ">" not in token.text:
                 raise Refusal(token.at, f"a bracket behind \\{side}", token.text, "write one")
             side = ""

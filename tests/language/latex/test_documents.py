@@ -89,6 +89,41 @@ def test_doxygen_has_formulas_between_its_own_marks(tmp_path):
     assert texts(nav.read(path, symbols=ABC)) == [(1, "a = b"), (2, "b = c"), (4, "x = y"), (5, "x = a")]
 
 
+ROWS = {
+    r"a &= b \\ & \le c \\ &= d": ["a = b", "a <= c", "c = d"],
+    r"a &= b \\ & \approx c \\ &= d": ["a = b", None, "c = d"],
+    r"a = b \in \mathbb{R}": ["a = b", None],
+    r"\Rightarrow a = b": ["a = b"],
+    r"a = b \Rightarrow c = d": [None],
+    r"\boxed{a = b}": ["a = b"],
+    r"a = \underbrace{b + c}_{x} d": ["a = (b + c)*d"],
+    r"a = b \text{ where } c = d": ["a = b", "c = d"],
+    r"a = b \text{ if } c = d": [None, None],
+    r"a = b \quad \forall x": ["a = b"],
+    r"a = b \quad \forall x > 0": [None],
+    r"a = 1, b = 2": ["a = 1", "b = 2"],
+    r"a = b, \quad k = 1, 2, \ldots, 2n": ["a = b", "1 <= k", "k <= 2*n"],
+    r"a = b \quad \text{for} \quad k=1\ldots4": ["a = b", "1 <= k", "k <= 4"],
+    r"k = 1, 3, \ldots, n": [None],
+    r"x = 1, 2, \ldots, n": [None, None],
+    r"x = \left\{\begin{array}{ll} a & x > 0 \\ b & \mathrm{otherwise} \end{array}\right., \quad a = b":
+        ["x = where(x > 0, a, b)", "a = b"],
+    r"x = (a, b)": [None],
+    r"(v, v) = (v, v)": [None],
+    r"v = (a, b, c)": ["v = [[a], [b], [c]]"],
+    r"w = \begin{bmatrix} a & v \end{bmatrix}": ["w = [[a], [v]]"],
+    r"v = w w": [None],
+    r"v = [v^T\; v^T]^T": [None],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", ROWS)
+def test_rows_and_lists_are_read_in_their_parts(text):
+    symbols = ABC | {n: {"integer": ["1", "oo"]} for n in "kn"} | {"v": {"vector": 3}, "w": {"vector": "?"}}
+    formulas = nav.read(f"$${text}$$", symbols=symbols).formulas
+    assert [f"{f.left} {f.relation} {f.right}" if f.status == "READ" else None for f in formulas] == ROWS[text]
+
+
 BESIDE = ["a = b, c", "a = 1, 2, 3", r"a = b \quad c", r"a = b, \quad t \in [0, 1]", r"a = b \\ c"]
 
 
@@ -154,6 +189,9 @@ def test_hostile_text_ends_soon_and_is_refused(place, form):
 
 
 PIECES = [
+    r"\begin{cases}", r"\end{cases}", r"\left\{", r"\right.", r"\langle", r"\rangle", r"\lim_{x \to 0}",
+    "f(x, y)", r"\Delta",
+    r"\text{otherwise}", "&", r"\\", "<", "!", "*", r"\mathbf{ab}",
     *"abcxyd123+-=()[]{}|_^'/,.& ", r"\frac", r"\sqrt", r"\sin", r"\cdot", r"\times", r"\left", r"\right",
     r"\mathbf", r"\hat",
     r"\int", r"\sum", r"\begin{bmatrix}", r"\end{bmatrix}", r"\\", r"\,", r"\top", r"\|", r"\dot", r"\omega",
