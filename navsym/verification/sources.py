@@ -79,11 +79,13 @@ def claim_of_block(name: str, path: Path, claim: FileClaim | TextClaim) -> Claim
 def property_of_text(claim: TextClaim) -> Property:
     """Whether a claim with vectors, cases, derivatives or hypotheses holds."""
     verdict = decide_claim(claim)
+    said = claim.documents if verdict.certificate else ()
     if verdict.status != REFUTED:
-        return Property(True, Finding(True, **{name: getattr(verdict, name) for name in FOUND}))
+        return Property(True, Finding(True, **{name: getattr(verdict, name) for name in FOUND}), meaning=said)
     point = ", ".join(f"{name} = {value}" for name, value in (verdict.counterexample or {}).items())
     evidence = f"{verdict.evidence}: {point}"
-    return Property(True, Finding(False, verdict.method, PROVED, verdict.scope, (), evidence, verdict.certificate))
+    finding = Finding(False, verdict.method, PROVED, verdict.scope, (), evidence, verdict.certificate)
+    return Property(True, finding, meaning=said)
 
 
 def place_of_line(name: str, path: Path, pattern: str) -> str:
