@@ -68,7 +68,7 @@ def test_the_wheel_alone_is_enough_for_a_workspace(elsewhere):
     call(elsewhere, "navsym", "show", "alpha_beta_filter:12.stable")
     written = {path.name for path in work.iterdir()}
     made = {"ledger.json", "certificates.json", ".navsym", "report", "code"}
-    assert written == {"navsym.toml", "claims", "models", "audits", "papers"} | made
+    assert written == {"navsym.toml", "claims", "models", "audits", "papers", "schemas", ".taplo.toml"} | made
 
 
 FORMULAS = r"""\frac{P}{P + R} + \frac{R}{P + R} = 1

@@ -103,6 +103,7 @@ class Evaluator:
 
     choices : the ways taken at undecided conditions; None leaves unread what depends on one
     is_bold : True where a condition that is not read has two ways as well
+    is_split : True where a minimum or maximum has two ways; else it is not read
     frame   : the names of the running function
     shadows : what a block's own names have hidden, one table for each block
     outputs : what the last function of MATLAB that was read returned
@@ -114,6 +115,7 @@ class Evaluator:
     edits: Mapping[int, Part]
     choices: list[bool] | None
     is_bold: bool = True
+    is_split: bool = True
     frame: dict[str, Variable] = field(default_factory=dict)
     file_names: dict[str, Variable] = field(default_factory=dict)
     globals: dict[str, Variable] = field(default_factory=dict)
@@ -481,6 +483,8 @@ class Evaluator:
         if x is not None and y is not None:
             is_first = x >= y
         else:  # one condition for both, so that the larger and the smaller of the same two are told apart together
+            if not self.is_split:
+                raise Unreadable(part.line, f"a minimum or maximum beside more than {CASES} cases")
             is_first = self.choose(Condition(text, part.line, True, ">=", a.tree, b.tree))
         return a if is_first == (sign == ">=") else b
 

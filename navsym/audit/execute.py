@@ -60,8 +60,8 @@ def read_function(
     """
     reading = Reading(unit, function)
     start = functools.partial(Machine, reading, inputs, shapes or {}, edits or {})
-    for is_bold in (True, False):  # first with two ways for conditions that are not read
-        reading.cases = list_cases(start, reading, function, is_bold)
+    for ways in ((True, True), (False, True), (False, False)):  # first two ways for all that is undecided
+        reading.cases = list_cases(start, reading, function, *ways)
         if reading.cases:
             break
     else:
@@ -76,14 +76,16 @@ def read_function(
     return reading
 
 
-def list_cases(start: Callable[..., Machine], reading: Reading, function: Function, is_bold: bool) -> list[Case]:
+def list_cases(
+    start: Callable[..., Machine], reading: Reading, function: Function, is_bold: bool, is_split: bool
+) -> list[Case]:
     """The cases of a function; none where there are more than 32."""
     cases: list[Case] = []
     waiting: list[list[bool]] = [[]]
     for table in (reading.met, reading.refused, reading.refused_spans, reading.valueless):
         table.clear()  # type: ignore[attr-defined]
     while waiting:
-        machine = start(waiting.pop(), is_bold)
+        machine = start(waiting.pop(), is_bold, is_split)
         cases.append(machine.run(function))
         if len(cases) + len(waiting) > CASES:
             return []

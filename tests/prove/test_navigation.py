@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from navsym.claims import PROVED, REFUTED
+from navsym.claims import REFUTED
 from navsym.prove.claimfile import claims_from, decide_claim
 from tests.prove.navigation import GROUPS, SYMBOLS
 
@@ -16,7 +16,7 @@ ROWS = [(group, place) for group, rows in GROUPS.items() for place in range(len(
 def decided(group: str, left: object, right: object):
     document = {"symbols": SYMBOLS[group], "claim": [{"id": "one", "left": left, "right": right}]}
     claim = claims_from(document).claims[0]
-    return decide_claim(claim, seconds=2.0) if left in NOT_YET else decide_claim(claim)
+    return decide_claim(claim, seconds=2.0) if str(left) in NOT_YET else decide_claim(claim)
 
 
 def test_there_are_a_hundred_and_fifty_of_them():
@@ -27,7 +27,7 @@ def test_there_are_a_hundred_and_fifty_of_them():
 def test_the_formula_is_proved(group, place):
     left, right, _ = GROUPS[group][place]
     verdict = decided(group, left, right)
-    assert verdict.status == PROVED or (left in NOT_YET and verdict.status != REFUTED), verdict
+    assert verdict.status.holds or (str(left) in NOT_YET and verdict.status != REFUTED), verdict
 
 
 @pytest.mark.parametrize(("group", "place"), ROWS)
