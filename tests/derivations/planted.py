@@ -1,9 +1,9 @@
 """One sign flipped or one index shifted in the source of a paper, and the claims that notice.
 
 A place is a sum, a difference, a minus or a constant index in a file of ``derivations/``; printed sides, decorators,
-experiments and programs for export have none. The paper is imported once with every place watched: a claim *names* the places that its
-statement runs through. It is imported again with one of them changed, and the claims that name it are stated and
-decided anew.
+experiments and programs for export have none. The paper is imported once with every place watched: a claim *names* the
+places that its statement runs through. It is imported again with one of them changed, and the claims that name it are
+stated and decided anew.
 """
 
 from __future__ import annotations
