@@ -21,6 +21,8 @@ from navsym.prove.rooms.equations import (
     by_algebra,
     by_cases,
     by_equal_squares,
+    by_exponents,
+    by_factors_of_roots,
     by_gradient,
     by_inverse,
     by_logarithms_of_products,
@@ -29,7 +31,7 @@ from navsym.prove.rooms.equations import (
     by_values,
     by_values_of_constants,
 )
-from navsym.prove.rooms.forms import by_divisors, by_forms, by_hypothesis, by_roots_of_symbols, by_substitution
+from navsym.prove.rooms.forms import by_divisors, by_forms, by_hypothesis, by_one_angle, by_roots_of_symbols, by_substitution
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Room, fails, player, sample_goal, subterms
 from navsym.prove.rooms.quadrics import by_quadrics
 from navsym.prove.rooms.signs import (
@@ -58,8 +60,8 @@ from navsym.prove.rooms.signs import (
 #: The rooms in the order of their cost: cheap ones, those that think longer, those of the last resort.
 EQUATIONS: tuple[tuple[Room, ...], ...] = (
     (
-        by_algebra, by_cofactors, by_elimination, by_modulus, by_values, by_values_of_constants, by_inverse,
-        by_equal_squares,
+        by_algebra, by_one_angle, by_cofactors, by_elimination, by_modulus, by_values, by_values_of_constants,
+        by_factors_of_roots, by_exponents, by_inverse, by_equal_squares,
     ),
     (by_sums_of_hypotheses, by_logarithms_of_products, by_sides_of_zero, by_gradient),
 )  # fmt: skip

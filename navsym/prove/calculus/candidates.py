@@ -144,7 +144,7 @@ def list_antiderivatives(question: Any, goal: Any, pair: Any, signs: list[int]) 
     known = {to_sympy(("symbol", n)): sp.Symbol(n, positive=True) for n, r in goal.box.items() if is_positive(r)}
     back = {value: key for key, value in known.items()}
     seen: set[str] = set()
-    for method in (integrate_waves, integrate_quotient_of_cosine, manualintegrate, integrate_slowly):
+    for method in (integrate_waves, integrate_bells, integrate_quotient_of_cosine, manualintegrate, integrate_slowly):
         try:
             found = method(f.subs(known), x)
             if found is None:
@@ -230,6 +230,27 @@ def integrate_wave(term: Any, x: Any) -> Any:
         return re * sp.exp(inside)
     wave = re * sp.cos(phase) - im * sp.sin(phase) if kind == "cos" else re * sp.sin(phase) + im * sp.cos(phase)
     return wave * sp.exp(inside)
+
+
+def integrate_bells(f: Any, x: Any) -> Any:
+    """A sum of polynomials times exp(-a x**2 + b x + c): by parts from the error function."""
+    total = sp.Integer(0)
+    for term in sp.Add.make_args(sp.expand(f, power_exp=False)):
+        share, rest = term.as_independent(x, as_Add=False)
+        bells = [factor for factor in sp.Mul.make_args(rest) if isinstance(factor, sp.exp)]
+        exponent = sp.Poly(sp.Add(*(bell.args[0] for bell in bells)), x)
+        powers = sp.Poly(rest / sp.Mul(*bells), x)
+        if exponent.degree() != 2:
+            return None
+        a, b, c = (sp.factor(q) for q in (-exponent.nth(2), exponent.nth(1), exponent.nth(0)))
+        bell = sp.exp(sp.cancel(-a * x**2 + b * x + c))
+        top = sp.exp(sp.cancel(c + b**2 / (4 * a)))
+        parts = [sp.sqrt(sp.pi) / (2 * sp.sqrt(a)) * top * sp.erf(sp.sqrt(a) * (x - b / (2 * a)))]
+        for n in range(1, powers.degree() + 1):  # (x**(n - 1) bell)' = ((n - 1) x**(n - 2) - 2 a x**n + b x**(n - 1)) bell
+            lower = (n - 1) * parts[n - 2] if n > 1 else 0
+            parts.append((lower + b * parts[n - 1] - x ** (n - 1) * bell) / (2 * a))
+        total += share * sum(powers.nth(n) * part for n, part in enumerate(parts))
+    return total
 
 
 def integrate_quotient_of_cosine(f: Any, x: Any) -> Any:

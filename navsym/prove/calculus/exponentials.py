@@ -135,16 +135,22 @@ def list_basis(
     signs = values_of(goal._replace(zeros=()), term) if square.free_symbols else [player.value_of(term, {})]
     if not signs or not (all(v > 0 for v in signs) or all(v < 0 for v in signs)):
         return None
-    omega, decay = name(find_root(square if signs[0] > 0 else -square)), name(-b / 2) if b != 0 else sp.S.Zero
+    omega, decay = name(find_root(square if signs[0] > 0 else -square, goal)), name(-b / 2) if b != 0 else sp.S.Zero
     functions = (sp.cos, sp.sin) if signs[0] > 0 else (sp.cosh, sp.sinh)
     return [sp.exp(decay * s) * f(omega * s) for f in functions]
 
 
-def find_root(square: sp.Expr) -> sp.Expr:
-    """A root, up to its sign, without a radical where the number is a square."""
-    content, factors = sp.factor_list(sp.numer(square))
-    other, below = sp.factor_list(sp.denom(square))
-    if all(times % 2 == 0 for _, times in (*factors, *below)) and sp.sqrt(content / other).is_Rational:
-        top = sp.prod(f ** (times // 2) for f, times in factors)
-        return sp.sqrt(content / other) * top / sp.prod(f ** (times // 2) for f, times in below)
-    return sp.sqrt(square)
+def find_root(square: sp.Expr, goal: Any) -> sp.Expr:
+    """A root, up to its sign, with no more below the radical than has to stand there."""
+    root, rest = sp.S.One, sp.S.One
+    for part, sign in zip(sp.fraction(square), (1, -1), strict=True):
+        content, factors = sp.factor_list(part)
+        root *= sp.sqrt(abs(content)) ** sign
+        rest *= sp.sign(content)
+        for f, times in factors:
+            root *= f ** (sign * (times // 2))
+            low = values_of(goal._replace(zeros=()), player.parse(to_text(f))) if times % 2 else []
+            alone = bool(low) and all(v > 0 for v in low)
+            root *= sp.sqrt(f) ** sign if alone else 1
+            rest *= 1 if alone or not times % 2 else f**sign
+    return root * sp.sqrt(rest)

@@ -56,7 +56,7 @@ def by_modulus(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] in ("sqrt", "abs", "^")):
         if part[0] == "^" and not (player.constant_of(part[2]) or fmpq(1)).q > 1:
             continue
-        inside = to_sympy(part[1])
+        inside = join_squares(to_sympy(part[1]))
         power = sp.Integer(1) if part[0] == "abs" else sp.Rational(1, 2)
         power = power if part[0] != "^" else sp.Rational(str(player.constant_of(part[2])))
         root = inside if part[0] == "abs" else sp.powdenest(sp.sqrt(factor(inside)) ** (2 * power), force=True)
@@ -66,6 +66,23 @@ def by_modulus(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         for value in (text, f"-({text})"):
             if not is_below(values_of(goal, player.parse(value))):
                 yield rewrite_atom(write_term(part), value)
+
+
+def by_factors_of_roots(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A root of a product as the product of the roots of its positive factors."""
+    for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] in ("sqrt", "^") and is_root(p)):
+        exponent = "1/2" if part[0] == "sqrt" else write_term(part[2])
+        factors = factor(to_sympy(part[1])).as_powers_dict()
+        texts = [f"(({to_text(base)})**({exponent}))**({power})" for base, power in factors.items()]
+        if len(texts) > 1 and not any(is_below(values_of(goal, player.parse(to_text(base)))) for base in factors):
+            yield rewrite_atom(write_term(part), "*".join(texts))
+            return
+
+
+def join_squares(inside: sp.Expr) -> sp.Expr:
+    """A short sum with sines and cosines as algebra has it by sin(x)**2 + cos(x)**2 = 1."""
+    is_short = inside.has(sp.sin, sp.cos) and sp.count_ops(inside) < 60
+    return sp.trigsimp(factor(inside)) if is_short else inside
 
 
 def rewrite_atom(atom: str, value: str) -> Proof:
@@ -107,10 +124,25 @@ def by_logarithms_of_products(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 INVERSES = (sp.asin, sp.acos, sp.atan, sp.log, sp.atan2)
 
 
+def by_exponents(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Every exponent as one fraction, and one exponential in each term: exponents that are equal are then alike."""
+    proof = Hole()
+    for exponent in dict.fromkeys(p[1] for p in subterms(goal.term) if p[0] == "exp"):
+        plain = to_text(sp.cancel(to_sympy(exponent)))
+        if player.parse(plain) != exponent:
+            proof = rewrite_atom(write_term(exponent), plain) | {"equal": {"rule": "identity"}, "proof": proof}
+    if not proof:
+        form = to_text(sp.powsimp(to_sympy(goal.term), combine="exp"))
+        proof = {"rule": "equal", "to": form, "defined": Holes(), "proof": proof} if "exp" in form else proof
+    if proof:
+        yield proof
+
+
 def by_values_of_constants(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """An inverse function or a nested root of a number as what the algebra system makes of it: acos(0) = pi/2."""
     for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] in ("asin", "acos", "atan", "log", "atan2")):
-        value = sp.S.NaN if player.symbols_of(part) else to_sympy(part)
+        own = to_sympy(part)
+        value = own.func(*map(sp.expand, own.args))  # atan(0*x) has a symbol and is a number
         rest = [f for f in INVERSES if f is not sp.atan or part[0] != "atan2"]
         if value.is_number and value.is_finite and not value.has(*rest):
             yield rewrite_atom(write_term(part), to_text(value))

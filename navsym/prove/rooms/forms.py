@@ -76,6 +76,19 @@ FORMS: tuple[Callable[[sp.Expr], sp.Expr | None], ...] = (
 )
 
 
+def by_one_angle(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Sines and cosines of multiples of x/d by those of x/d alone, where hypotheses are to be divided by."""
+    expression = to_sympy(goal.term) if goal.zeros else sp.S.Zero
+    for x in sorted(expression.free_symbols, key=str):
+        angles = {node.args[0] for node in expression.atoms(sp.sin, sp.cos, sp.tan, sp.cot) if node.has(x)}
+        shares = {sp.expand(angle / x) for angle in angles}
+        if len(shares) > 1 and all(share.is_Rational for share in shares):
+            d = sp.ilcm(*(share.q for share in shares))
+            form = sp.expand_trig(expression.subs(x, d * x)).subs(x, x / d)
+            form = form.replace(sp.cot, lambda u: sp.cos(u) / sp.sin(u)).replace(sp.tan, lambda u: sp.sin(u) / sp.cos(u))
+            yield {"rule": "equal", "to": to_text(form), "defined": Holes(), "proof": Hole()}
+
+
 def by_substitution(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """One number u in the place of an exponential, a root, or the tangent of a half angle."""
     expression = to_sympy(goal.term)
