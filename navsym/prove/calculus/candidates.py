@@ -28,7 +28,10 @@ from navsym.prove.rooms.goals import (
 
 Entry = dict[str, Any]
 MOST_ORDER = 6
-TROUBLE = (ValueError, TypeError, NotImplementedError, ArithmeticError, AttributeError, KeyError, RecursionError)
+TROUBLE = (
+    ValueError, TypeError, NotImplementedError, ArithmeticError, AttributeError, KeyError, RecursionError,
+    sp.polys.polyerrors.BasePolynomialError,
+)  # fmt: skip
 
 
 class Signs(list[Any]):
@@ -237,11 +240,12 @@ def integrate_bells(f: Any, x: Any) -> Any:
     total = sp.Integer(0)
     for term in sp.Add.make_args(sp.expand(f, power_exp=False)):
         share, rest = term.as_independent(x, as_Add=False)
-        bells = [factor for factor in sp.Mul.make_args(rest) if isinstance(factor, sp.exp)]
-        exponent = sp.Poly(sp.Add(*(bell.args[0] for bell in bells)), x)
-        powers = sp.Poly(rest / sp.Mul(*bells), x)
-        if exponent.degree() != 2:
+        factors = sp.Mul.make_args(rest)
+        inside = sp.Add(*(factor.args[0] for factor in factors if isinstance(factor, sp.exp)))
+        beside = sp.Mul(*(factor for factor in factors if not isinstance(factor, sp.exp)))
+        if not (inside.is_polynomial(x) and beside.is_polynomial(x) and sp.degree(inside, x) == 2):
             return None
+        exponent, powers = sp.Poly(inside, x), sp.Poly(beside, x)
         a, b, c = (sp.factor(q) for q in (-exponent.nth(2), exponent.nth(1), exponent.nth(0)))
         bell = sp.exp(sp.cancel(-a * x**2 + b * x + c))
         top = sp.exp(sp.cancel(c + b**2 / (4 * a)))
