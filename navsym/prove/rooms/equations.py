@@ -139,12 +139,12 @@ def by_exponents(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def by_values_of_constants(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """An inverse function or a nested root of a number as what the algebra system makes of it: acos(0) = pi/2."""
+    """What the algebra system makes of inverse functions and nested roots: acos(0) = pi/2, asin(-x) = -asin(x)."""
     for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] in ("asin", "acos", "atan", "log", "atan2")):
         own = to_sympy(part)
         value = own.func(*map(sp.expand, own.args))  # atan(0*x) has a symbol and is a number
         rest = [f for f in INVERSES if f is not sp.atan or part[0] != "atan2"]
-        if value.is_number and value.is_finite and not value.has(*rest):
+        if (value.is_number and value.is_finite and not value.has(*rest)) or own.is_Mul:
             yield rewrite_atom(write_term(part), to_text(value))
             return
     for part in dict.fromkeys(p for p in subterms(goal.term) if is_root(p) and p[0] != "abs"):

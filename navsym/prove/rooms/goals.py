@@ -208,7 +208,8 @@ def draw_points(box: Any, count: int) -> Iterator[dict[str, fmpq]]:
             if k < count // 3:
                 point[name] = simple_point(limit, (k + 2 * i * k) % 6)
             elif limit.low is None and limit.high is None and not limit.integer:
-                point[name] = fmpq(sp.prime(i + 2) + k, 1 + (k + i) % 7)
+                number = fmpq(sp.prime(i + 2) + k, 1 + (k + i) % 7)
+                point[name] = (number, 1 / number, -number, -1 / number)[(k + i // 2) % 4]
             else:
                 point[name] = short_number(inner_point(limit, k, i), limit)
         if all(player.is_inside(player.number(value), box[name]) for name, value in point.items()):

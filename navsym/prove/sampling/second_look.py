@@ -195,7 +195,10 @@ def put_in_numbers(expression: sp.Expr, point: Point) -> sp.Expr | None:
     turned = [node.args[0] for node in expression.atoms(sp.exp) if node.has(sp.log)]  # exp(y log x) becomes x**y
     exponents += [argument.replace(sp.log, lambda *_: sp.Integer(1)) for argument in turned]
     sizes = (abs(value_at(tape(exponent), point)) for exponent in exponents)
-    return expression.subs(point) if all(size < MOST_EXPONENT for size in sizes) else None
+    try:
+        return expression.subs(point) if all(size < MOST_EXPONENT for size in sizes) else None
+    except OverflowError:  # roots of numbers with hundreds of digits
+        return None
 
 
 def is_zero_at(difference: sp.Expr, point: Point) -> bool:
