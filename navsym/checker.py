@@ -489,6 +489,10 @@ class Exact:
             square = (self * self).divide_turns()
             if set(square.terms) == {frozenset()}:  # 1/x = x/r where x x = r, as for the root of a prime
                 return prod([self * (1 / square.terms[frozenset()])] * int(-q), start=Exact(1))
+        if any(atom == TURN for m in self.terms for atom, _ in m):
+            plain = self.divide_turns()
+            if plain.terms != self.terms:
+                return plain**q
         ((monomial, c),) = self if len(self.terms) == 1 else [(frozenset(), fmpq(0))]
         if len(monomial) > 1 and c == 1 and all(fmpq(e).q == 1 and int(e) % 2 == 0 for _, e in monomial):
             squares = (Exact([(frozenset({(atom, 2)}), fmpq(1))]).make_atom("sum", q * e / 2) for atom, e in monomial)

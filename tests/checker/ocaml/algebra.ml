@@ -331,7 +331,7 @@ let rational_square (a : form) =
   if not (Terms.for_all (fun m _ -> is_on_the_circle m) a) then None
   else match key (reduce_on_the_circle (multiply a a)) with [ ([], r) ] -> Some r | _ -> None
 
-let power (a : form) q =
+let rec power (a : form) q =
   if is_whole q && Q.sign q >= 0 then whole_power a q.Q.num
   else
     match key a with
@@ -339,6 +339,7 @@ let power (a : form) q =
     | [ (m, c) ] when is_whole q -> Terms.singleton (power_monomial m q) (rational_power c q.Q.num)
     | _ when is_whole q && rational_square a <> None ->
         whole_power (scale (Q.inv (Option.get (rational_square a))) a) (Z.neg q.Q.num)
+    | k when meets_the_circle a && key (reduce_on_the_circle a) <> k -> power (reduce_on_the_circle a) q
     | [ (m, c) ] when Q.equal c Q.one && List.length m >= 2 && List.for_all is_even_whole m ->
         let one_factor p (i, e) =
           multiply p (root_of (of_monomial [ (i, Q.of_int 2) ]) (Q.mul q (Q.div e (Q.of_int 2))))
