@@ -69,14 +69,28 @@ def by_modulus(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def by_factors_of_roots(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """A root of a product as the product of the roots of its positive factors."""
+    """A root of a product: whole powers before it, then as the product of the roots of what has one sign."""
     for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] in ("sqrt", "^") and is_root(p)):
-        exponent = "1/2" if part[0] == "sqrt" else write_term(part[2])
+        exponent = sp.Rational(1, 2) if part[0] == "sqrt" else sp.Rational(str(player.constant_of(part[2])))
         factors = factor(to_sympy(part[1])).as_powers_dict()
-        texts = [f"(({to_text(base)})**({exponent}))**({power})" for base, power in factors.items()]
-        if len(texts) > 1 and not any(is_below(values_of(goal, player.parse(to_text(base)))) for base in factors):
-            yield rewrite_atom(write_term(part), "*".join(texts))
-            return
+        whole = {base: power for base, power in factors.items() if (power * exponent).is_Integer}
+        rest = {sp.Mul(*(base**power for base, power in factors.items() if base not in whole)): 1}
+        for rows in ({**whole, **rest} if whole else {}, factors):
+            text = write_roots(goal, rows, exponent)
+            if len(rows) > 1 and text is not None:
+                yield rewrite_atom(write_term(part), text)
+
+
+def write_roots(goal: Any, factors: dict[sp.Expr, Any], exponent: sp.Rational) -> str | None:
+    """The product of the roots of factors, or of what is opposite to them; None where a factor changes its sign."""
+    texts, sign = [], 1
+    for base, power in factors.items():
+        values = values_of(goal, player.parse(to_text(base)))
+        if is_below(values) and is_below(values, -1):
+            return None
+        sign *= (-1) ** int(power) if is_below(values) else 1
+        texts.append(f"(({to_text(-base if is_below(values) else base)})**({exponent}))**({power})")
+    return "*".join(texts) if sign > 0 else None
 
 
 def join_squares(inside: sp.Expr) -> sp.Expr:
@@ -144,7 +158,8 @@ def by_values_of_constants(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         own = to_sympy(part)
         value = own.func(*map(sp.expand, own.args))  # atan(0*x) has a symbol and is a number
         rest = [f for f in INVERSES if f is not sp.atan or part[0] != "atan2"]
-        if (value.is_number and value.is_finite and not value.has(*rest)) or own.is_Mul:
+        is_other = part[0] in ("asin", "acos", "atan") and player.parse(to_text(value)) != part
+        if (value.is_number and value.is_finite and not value.has(*rest)) or is_other:
             yield rewrite_atom(write_term(part), to_text(value))
             return
     for part in dict.fromkeys(p for p in subterms(goal.term) if is_root(p) and p[0] != "abs"):
