@@ -10,7 +10,7 @@ import re
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import islice
+from itertools import chain, islice
 from typing import Any
 
 from flint import arb
@@ -20,7 +20,7 @@ from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Verdict
 from navsym.core.errors import NavsymError
 from navsym.prove.calculus.answers import MOST_POINTS, SECONDS, read_with_answers
 from navsym.prove.grant import BITS, IDENTITY, REFUSALS, Document, grant, refute_document, withdraw, write_point
-from navsym.prove.relations.points import Rows, draw_special_points
+from navsym.prove.relations.points import Rows, draw_corner_points, draw_special_points
 from navsym.prove.rooms.goals import player, to_sympy, write_term
 from navsym.prove.search import find_proof, rules_of
 from navsym.prove.wording import decimal_ends, expression_text
@@ -119,7 +119,9 @@ def list_points(claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]) 
     kinds = {name: kind for name, kind in claim.kinds.items() if {e for row in kind[1] for e in row} <= set(box)}
     count = max(8, min(POINTS, 8 * POINTS // len(cases))) if box else 1
     for case in cases:
-        for point in draw_special_points({n: case.goals[0].box[n] for n in box}, case.zeros, kinds, count):
+        here = {n: case.goals[0].box[n] for n in box}
+        corners = draw_corner_points(here, kinds) if box else iter(())
+        for point in chain(draw_special_points(here, case.zeros, kinds, count), corners):
             place = {name: player.number(value) for name, value in point.items()}
             try:
                 if all(player.is_inside(place[name], box[name]) for name in box) and player.lies_in(case, place):

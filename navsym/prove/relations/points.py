@@ -54,6 +54,22 @@ def draw_special_points(
         yield point
 
 
+def draw_corner_points(box: Mapping[str, Any], kinds: Mapping[str, tuple[str, Rows]]) -> Iterator[Point]:
+    """Equal numbers, with unit and half turns: where bounds are attained, or missed, that no random point meets."""
+    for value in (0, 1, -1, 50, -50):
+        point = {name: fmpq(value) for name in box}
+        for kind, rows in kinds.values():
+            n, entries = len(rows), [name for row in rows for name in row]
+            if kind in ("rotation", "orthogonal", "positive"):
+                turned = value if kind == "rotation" and n == 3 else 0
+                size = fmpq(1, 10**9) if kind == "positive" and value < 0 else fmpq(1)
+                diagonal = [-size if turned and i != turned % 3 else size for i in range(n)]
+                point.update({rows[i][j]: fmpq(diagonal[i] if i == j else 0) for i in range(n) for j in range(n)})
+            elif kind == "quaternion" or (kind == "vector" and value):
+                point.update({name: fmpq((value or 1) * (k == (value < 0))) for k, name in enumerate(entries)})
+        yield point
+
+
 def is_whole_line(limit: Any) -> bool:
     """Whether all real numbers are in a range."""
     return limit.low is None and limit.high is None and not limit.integer

@@ -156,7 +156,9 @@ def read_line(line: str) -> Statement:
     text = f"{write(slope(antiderivative, variable[1]))} = {write(plain(integrand))}"
     if len(text) > LONGEST:
         raise UnreadableError("too long")
-    return Statement(text, None, dict.fromkeys(sorted(names_of(integrand) | names_of(antiderivative)), "real"))
+    written = set(re.findall(r"[A-Za-z_]\w*", text))
+    names = (names_of(integrand) | names_of(antiderivative)) & written  # some cancel while the slope is taken
+    return Statement(text, None, dict.fromkeys(sorted(names), "real"))
 
 
 def read_entries(checkout: Path) -> Iterator[tuple[str, Statement | None]]:
