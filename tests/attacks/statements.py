@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
-from tests.attacks.evaluator import PRECISIONS, UnsureError, judge_at, judge_text
+from tests.attacks.evaluator import PRECISIONS, UnsureError, evaluate, judge_at, judge_text, sign_of
 from tests.attacks.trees import Tree, UnreadableError, names_in, read, read_relation
 
 POINTS = 24
@@ -226,7 +226,9 @@ def foreign_statement(statement: Statement, verdict: Any) -> str:
     if (read(said["left"]), said["relation"], read(said["right"])) != (left, relation, right):
         return f"certificate of another statement: {said['left']} {said['relation']} {said['right']}"
     for name, (low, high, flags) in said["symbols"].items():
-        if "box" not in statement.beside and [low, high, flags] != range_of(statement.declared(name)):
+        own = range_of(statement.declared(name))
+        alike = flags == own[2] and is_same_end(low, own[0]) and is_same_end(high, own[1])
+        if "box" not in statement.beside and not alike:
             return f"certificate with other declarations: {name} from {low} to {high} {flags}"
     if not statement.names() <= set(said["symbols"]):
         return f"certificate without a declaration: {sorted(said['symbols'])}"
@@ -234,6 +236,13 @@ def foreign_statement(statement: Statement, verdict: Any) -> str:
     wanted = (None if tolerance is None else read(tolerance)), [read(exists)] if exists else []
     given = (None if said["tolerance"] is None else read(said["tolerance"])), [read(text) for text in said["exists"]]
     return "" if wanted == given else f"certificate with other conditions: {said['tolerance']}, {said['exists']}"
+
+
+def is_same_end(written: str | None, declared: str | None) -> bool:
+    """Whether two texts are one number, as far as intervals tell: -(1/10) is written -1/10."""
+    if written is None or declared is None:
+        return written is declared
+    return sign_of(evaluate(read(f"({written}) - ({declared})"), {}, PRECISIONS[-1])) in (0, None)
 
 
 def range_of(declared: Any) -> list[Any]:
