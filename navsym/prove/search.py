@@ -31,7 +31,14 @@ from navsym.prove.rooms.equations import (
     by_values,
     by_values_of_constants,
 )
-from navsym.prove.rooms.forms import by_divisors, by_forms, by_hypothesis, by_one_angle, by_roots_of_symbols, by_substitution
+from navsym.prove.rooms.forms import (
+    by_divisors,
+    by_forms,
+    by_hypothesis,
+    by_one_angle,
+    by_roots_of_symbols,
+    by_substitution,
+)
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Room, fails, player, sample_goal, subterms
 from navsym.prove.rooms.quadrics import by_quadrics
 from navsym.prove.rooms.signs import (

@@ -250,7 +250,9 @@ def integrate_bells(f: Any, x: Any) -> Any:
         bell = sp.exp(sp.cancel(-a * x**2 + b * x + c))
         top = sp.exp(sp.cancel(c + b**2 / (4 * a)))
         parts = [sp.sqrt(sp.pi) / (2 * sp.sqrt(a)) * top * sp.erf(sp.sqrt(a) * (x - b / (2 * a)))]
-        for n in range(1, powers.degree() + 1):  # (x**(n - 1) bell)' = ((n - 1) x**(n - 2) - 2 a x**n + b x**(n - 1)) bell
+        for n in range(
+            1, powers.degree() + 1
+        ):  # (x**(n - 1) bell)' = ((n - 1) x**(n - 2) - 2 a x**n + b x**(n - 1)) bell
             lower = (n - 1) * parts[n - 2] if n > 1 else 0
             parts.append((lower + b * parts[n - 1] - x ** (n - 1) * bell) / (2 * a))
         total += share * sum(powers.nth(n) * part for n, part in enumerate(parts))

@@ -74,22 +74,27 @@ def by_factors_of_roots(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         exponent = sp.Rational(1, 2) if part[0] == "sqrt" else sp.Rational(str(player.constant_of(part[2])))
         factors = factor(to_sympy(part[1])).as_powers_dict()
         whole = {base: power for base, power in factors.items() if (power * exponent).is_Integer}
-        rest = {sp.Mul(*(base**power for base, power in factors.items() if base not in whole)): 1}
-        for rows in ({**whole, **rest} if whole else {}, factors):
+        rest = sp.expand(sp.Mul(*(base**power for base, power in factors.items() if base not in whole)))
+        for rows in (whole | ({rest: 1} if rest != 1 else {}) if whole else {}, factors):
             text = write_roots(goal, rows, exponent)
-            if len(rows) > 1 and text is not None:
+            if text is not None and [*rows.values()] not in ([], [1]):
                 yield rewrite_atom(write_term(part), text)
+            elif text is None and rows is not factors:
+                yield from by_sides_of_zero(goal, sample)
 
 
 def write_roots(goal: Any, factors: dict[sp.Expr, Any], exponent: sp.Rational) -> str | None:
     """The product of the roots of factors, or of what is opposite to them; None where a factor changes its sign."""
     texts, sign = [], 1
     for base, power in factors.items():
-        values = values_of(goal, player.parse(to_text(base)))
+        where_defined = ("*", player.ZERO, goal.term)
+        values = values_of(goal, ("+", player.parse(to_text(base)), where_defined))
         if is_below(values) and is_below(values, -1):
             return None
         sign *= (-1) ** int(power) if is_below(values) else 1
-        texts.append(f"(({to_text(-base if is_below(values) else base)})**({exponent}))**({power})")
+        positive = to_text(-base if is_below(values) else base)
+        is_whole = (power * exponent).is_Integer
+        texts.append(f"({positive})**({power * exponent})" if is_whole else f"(({positive})**({exponent}))**({power})")
     return "*".join(texts) if sign > 0 else None
 
 

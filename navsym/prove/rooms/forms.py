@@ -85,7 +85,9 @@ def by_one_angle(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         if len(shares) > 1 and all(share.is_Rational for share in shares):
             d = sp.ilcm(*(share.q for share in shares))
             form = sp.expand_trig(expression.subs(x, d * x)).subs(x, x / d)
-            form = form.replace(sp.cot, lambda u: sp.cos(u) / sp.sin(u)).replace(sp.tan, lambda u: sp.sin(u) / sp.cos(u))
+            form = form.replace(sp.cot, lambda u: sp.cos(u) / sp.sin(u)).replace(
+                sp.tan, lambda u: sp.sin(u) / sp.cos(u)
+            )
             yield {"rule": "equal", "to": to_text(form), "defined": Holes(), "proof": Hole()}
 
 
