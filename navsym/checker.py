@@ -2431,6 +2431,15 @@ def prove_given(proof: Any, goal: Goal) -> None:
     require(is_identity(subtract(goal.term, total)), "the term is another one")
 
 
+def prove_empty(proof: Any, goal: Goal) -> None:
+    """A hypothesis h >= 0 with h < 0, or h = 0 with h != 0, at all points of the goal: it has none."""
+    _, k, premise = read_fields(proof, "rule hypothesis proof")
+    place = read_integer(k, 0, len(goal.given) + len(goal.zeros) - 1)
+    signs = [*((negate(h), ">") for h in goal.given), *((h, "!=") for h in goal.zeros)]
+    term, relation = signs[place]
+    prove(premise, remember(goal, term)._replace(relation=relation))
+
+
 def prove_modulo(proof: Any, goal: Goal) -> None:
     """f = g + sum c_k h_k, where the hypotheses say h_k = 0: at all points of the goal f is g."""
     _, text, cofactors, defined, premise = read_fields(proof, "rule to cofactors defined proof")
@@ -3251,9 +3260,9 @@ RULES: dict[str, Callable[[Any, Goal], None]] = {
     for rule in (
         prove_equal, prove_rewrite, prove_multiply, prove_exponential, prove_side, prove_cases, prove_split,
         prove_integers, prove_abstract, prove_dense, prove_identity, prove_zero, prove_between, prove_solve,
-        prove_squares, prove_derivative, prove_balls, prove_given, prove_modulo, prove_range, prove_angle,
-        prove_bounded, prove_corners, prove_product, prove_sum, prove_slope, prove_concave, prove_cones,
-        prove_quadratic, prove_roots,
+        prove_squares, prove_derivative, prove_balls, prove_given, prove_empty, prove_modulo, prove_range,
+        prove_angle, prove_bounded, prove_corners, prove_product, prove_sum, prove_slope, prove_concave,
+        prove_cones, prove_quadratic, prove_roots,
     )
 }  # fmt: skip
 

@@ -20,6 +20,7 @@ from navsym.prove.relations.cofactors import by_cofactors, by_elimination, by_su
 from navsym.prove.rooms.equations import (
     by_algebra,
     by_cases,
+    by_empty_case,
     by_equal_squares,
     by_exponents,
     by_factors_of_roots,
@@ -48,6 +49,7 @@ from navsym.prove.rooms.signs import (
     by_contacts,
     by_corners,
     by_divided_root,
+    by_divided_term,
     by_few_balls,
     by_identity,
     by_logarithms,
@@ -67,14 +69,14 @@ from navsym.prove.rooms.signs import (
 #: The rooms in the order of their cost: cheap ones, those that think longer, those of the last resort.
 EQUATIONS: tuple[tuple[Room, ...], ...] = (
     (
-        by_algebra, by_one_angle, by_cofactors, by_elimination, by_modulus, by_values, by_values_of_constants,
+        by_algebra, by_empty_case, by_one_angle, by_cofactors, by_elimination, by_modulus, by_values, by_values_of_constants,
         by_factors_of_roots, by_exponents, by_inverse, by_equal_squares,
     ),
     (by_sums_of_hypotheses, by_logarithms_of_products, by_sides_of_zero, by_gradient),
 )  # fmt: skip
 SIGNS: tuple[tuple[Room, ...], ...] = (
     (
-        by_number, by_positive_radicand, by_divided_root, by_identity, by_elimination, by_sums_of_hypotheses, by_range,
+        by_empty_case, by_number, by_positive_radicand, by_divided_root, by_divided_term, by_identity, by_elimination, by_sums_of_hypotheses, by_range,
         by_roots, by_bounds, by_corners, by_product, by_sum, by_few_balls, by_values, by_side, by_squares, by_cones,
         by_forms, by_quadrics,
     ),
@@ -138,6 +140,8 @@ class Search:
             return None
         self.lost[key] = left  # a goal among its own premises is none of them
         sample = sample_goal(goal)
+        if any(fails(goal.relation, value) for value in sample):
+            sample = sample_goal(goal, is_strict=True)
         if not any(fails(goal.relation, value) for value in sample):
             self.depth += 1
             try:
@@ -166,6 +170,8 @@ class Search:
             return self.rules[-1:] == ["equal"]  # one form of a form is one of the first
         if room in (by_squares, by_equal_squares):
             return self.rules.count("squares") > 1
+        if room is by_empty_case:
+            return "empty" in self.rules
         return room is by_gradient and "derivative" in self.rules
 
     def is_spent(self) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.checker.proofs import LINE, X0, X1, XY, I, modulo, stated
+from tests.checker.proofs import LINE, X0, X1, XY, I, by, modulo, stated
 
 ONES = {f"{n}_{i}_0": str(i + k) for k, n in enumerate("uvw") for i in range(3)}
 TWOS = {f"{n}_{i}_{j}": str(2 * i + 3 * j + k) for k, n in enumerate("AB") for i in range(2) for j in range(2)}
@@ -99,6 +99,14 @@ LANGUAGE = [
         {"x": "1"},
         [modulo("0", I, "-1"), I, I],
         {"x": LINE},
+    ),
+    (
+        ("where(x = 0, 1, 2)", "=", "2"),
+        ("1",),
+        "",
+        {"x": "1"},
+        [by("empty", by("side", by("range", symbol="x", end=0, share="1"), sign=1), hypothesis=0), I],
+        {"x": ["0", None, ["open-low"]]},
     ),
     (("sign(x)", "=", "-sign(-x)"), ("sign(-x)", "1"), "", {"x": "1"}, [I] * 3, {"x": LINE}),
     (("diff(x**3, x, 2)", "=", "6*x"), ("3*x**2", "6"), "", {"x": "1"}, [I], {"x": LINE}),

@@ -104,6 +104,10 @@ def given(*weights):
     return by("given", weights=list(weights))
 
 
+def empty(place, proof):
+    return by("empty", proof, hypothesis=place)
+
+
 def span(end, share="1", symbol="x"):
     return by("range", symbol=symbol, end=end, share=share)
 
@@ -230,6 +234,8 @@ TRUE = [
     ("given", state("abs(x)", ">=", x=LINE), X0, cases("x", given("1"), given("1"))),
     ("given", state("abs(x)*2 + abs(y)", ">=", x=LINE, y=LINE), XY, cases("x", *[cases("y", *[given("2",
      "1")] * 2)] * 2)),
+    ("empty", state("abs(x)", "=", "x", x=["0", None, ["open-low"]]), X1, cases("x", I, empty(0, span(0)))),
+    ("empty", state("abs(x)", "<", "2", x=["-1", "0", ["open-high"]]), XB, cases("x", empty(0, span(1)), B)),
     ("range", state("x - 1", ">=", x=TWO), X1, span(0)),
     ("range", state("2*pi - 2*x", ">", x=["0", "pi", ["open-high"]]), X1, span(1, "2")),
     ("range", state("x", ">", x=["0", "1", [HOLED]]), X1, span(0)),
@@ -519,6 +525,11 @@ HOSTILE = [
     ("given", state("abs(x) - 1", ">=", x=LINE), X1, cases("x", given("1"), given("1")), "another one"),
     ("given", MINUS, X0, given(), "another one"),
     ("given", state("-abs(x)", ">=", x=LINE), X0, cases("x", given(), given()), "expected 1 entries"),
+    ("empty", state("abs(x)", "=", "x", x=UP), X1, cases("x", I, empty(0, span(0))), "the end belongs"),
+    ("empty", state("abs(x)", "=", "x", x=BOTH), X1, cases("x", I, empty(0, B)), "not shown"),
+    ("empty", state("abs(x)", "=", "-x", x=["0", None, ["open-low"]]), X1, cases("x", empty(0, span(0)), I), "another"),
+    ("empty", state("abs(x)", "=", "x", x=TWO), X1, cases("x", I, empty(1, span(0))), "expected an integer"),
+    ("empty", state("x", "=", "1", x=TWO), X1, empty(0, B), "expected an integer"),
     ("range", state("x", ">", x=UNIT), X1, span(0), "the end belongs"),
     ("range", state("1 - x", ">", x=UNIT), X0, span(1), "the end belongs"),
     ("range", state("x", ">", x=["0", "1", ["open-high"]]), XH, span(0), "the end belongs"),

@@ -31,6 +31,15 @@ def by_algebra(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     yield {"rule": "identity"}
 
 
+def by_empty_case(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A hypothesis that no point of the goal meets, as x <= 0 for a positive x."""
+    for k, h in enumerate(() if sample else (*goal.given, *goal.zeros)):
+        proof: Proof = Hole()
+        if k < len(goal.given):
+            proof = {"rule": "equal", "to": to_text(-to_sympy(h)), "defined": Holes(), "proof": proof}
+        yield {"rule": "empty", "hypothesis": k, "proof": proof}
+
+
 def by_values(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """An absolute value by its two cases; two that are compared have squares, which take no cases."""
     if goal.relation == "=" or not is_comparison(goal.term):

@@ -141,10 +141,11 @@ def join(terms: Sequence[Term]) -> Term:
 # Samples
 
 
-def sample_goal(goal: Any) -> list[arb]:
-    """Balls of the term at some points of the box at which all has a value and the hypotheses hold.
+def sample_goal(goal: Any, is_strict: bool = False) -> list[arb]:
+    """Balls of the term at some points of the box at which it has a value and the hypotheses hold.
 
-    None where something has to be 0: points of the box hardly meet that.
+    None where something has to be 0: points of the box hardly meet that. ``is_strict`` leaves out ends that do not
+    belong to a range, and points at which something else has no value.
     """
     if goal.zeros:
         return []
@@ -158,9 +159,21 @@ def sample_goal(goal: Any) -> list[arb]:
         if any(not player.value_of(t, place) >= 0 for t in goal.given):
             continue
         value = player.value_of(goal.term, place)
-        if value.is_finite():
+        if value.is_finite() and not (is_strict and is_outside(goal, place)):
             values.append(value)
     return values
+
+
+def is_outside(goal: Any, place: dict[str, Any]) -> bool:
+    """Whether a point lies at an open end, or something has no value there."""
+    for name, point in place.items():
+        limit, value = goal.box[name], point.parts[0]
+        ends = ((limit.low, limit.open_low), (limit.high, limit.open_high), (player.ZERO, limit.nonzero))
+        if any(is_open and end is not None and value == player.value_of(end, {}) for end, is_open in ends):
+            return True
+    known = set(place)
+    parts = (t for t in goal.exists if player.symbols_of(t) <= known)
+    return not all(player.value_of(t, place).is_finite() for t in parts)
 
 
 def values_of(goal: Any, term: Term) -> list[arb]:

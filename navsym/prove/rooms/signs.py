@@ -368,3 +368,30 @@ def by_divided_root(goal: Any, sample: list[arb]) -> Iterator[Proof]:
             product: Proof = {"rule": "product", "factors": [None]}
             shorter: Proof = {"rule": "equal", "to": powers[1], "defined": Holes(), "proof": product}
             yield {"rule": "multiply", "by": powers[0], "defined": Holes(), "positive": product, "proof": shorter}
+
+
+def by_divided_term(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """u > 0 where something is divided by u, and u >= 0: u**2 u**(-4) = u**(-2)."""
+    for relation, u in player.set_union(map(player.conditions, goal.exists if goal.relation == ">" else ())):
+        if relation != "!=" or not player.symbols_of(u):
+            continue
+        if any(player.is_identity(player.subtract(goal.term, own)) for own in (u, player.negate(u))):
+            powers = [write_term(("^", u, player.number(-n))) for n in (4, 2)]
+            product: Proof = {"rule": "product", "factors": [None]}
+            shorter: Proof = {"rule": "equal", "to": powers[1], "defined": Holes(), "proof": product}
+            above: Proof = {
+                "rule": "multiply",
+                "by": powers[0],
+                "defined": Holes(),
+                "positive": product,
+                "proof": shorter,
+            }
+            body: Proof = {
+                "rule": "squares",
+                "left": write_term(goal.term),
+                "right": "0",
+                "sign": 1,
+                "defined": Holes(),
+            }
+            yield body | {"proofs": [above, Hole()]}
+            return

@@ -33,6 +33,13 @@ let rec prove goal value =
       | "squares" -> prove_squares goal value
       | "balls" -> prove_balls goal value
       | "given" -> prove_given goal value
+      | "empty" -> (
+          match rule_keys value [ "hypothesis"; "proof" ] with
+          | [ k; proof ] ->
+              let signs = List.map (fun h -> (negate h, Above)) goal.given @ List.map (fun h -> (h, Unequal)) goal.zeros in
+              let tree, relation = List.nth signs (get_integer "hypothesis" 0 (List.length signs - 1) k) in
+              prove (remember goal tree relation) proof
+          | _ -> assert false)
       | "range" -> prove_range goal value
       | "angle" -> prove_angle goal value
       | "bounded" -> prove_bounded goal value
