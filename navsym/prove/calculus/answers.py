@@ -15,8 +15,8 @@ from navsym.prove.grant import REFUSALS, Document
 from navsym.prove.rooms.goals import Hole, player, values_of
 from navsym.prove.search import find_filled
 
-SECONDS = 6.0
-SHARE = 1.5  # seconds for one candidate
+SECONDS = 8.0
+SHARE = 4.0  # seconds for one candidate
 TROUBLE = (*REFUSALS, ArithmeticError, ValueError, TypeError, KeyError, RecursionError)
 MOST_POINTS = 3
 
