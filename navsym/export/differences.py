@@ -389,10 +389,12 @@ def entries_by_place(claim: FileClaim) -> dict[str, Formula]:
 
 def of_model(path: Path) -> dict[str, Formula]:
     """Entries of F and of the measurement rows, by their places."""
-    from navsym.models.modelfile import ModelFile, read_model
+    from navsym.models.modelfile import ModelFile, need_fixed, read_model
 
     model = read_model(path)
     if isinstance(model, ModelFile):
+        if not model.pieces:
+            need_fixed(model, str(path))
         matrices = {f"F{k + 1 if len(model.pieces) > 1 else ''}": p.F for k, p in enumerate(model.pieces)}
         rows = [list(m.h) for m in model.measurements]
     else:

@@ -20,14 +20,16 @@ def model_along_motion(found: ModelFile, piece: Piece | None = None) -> LinearMo
     """``dx/dt = F x, z = H x`` of a file, or of one of its pieces, with the rates of all that moves.
 
     A nonlinear model is linearised along its own motion: F = df/dx, H = dz/dx, and the states have the rates f.
-    The relations of a manifold are measurements ``relation 1``, ... that are known to be zero.
+    The relations of a manifold are measurements ``relation 1``, ... that are known to be zero. Of a model in steps
+    F is the matrix Phi of one step.
 
     Raises DomainError for relations that the motion does not keep, or that are not solved by the square of a state.
     """
     rates = {found.parameters[name].symbol: rate for name, rate in found.rates.items()}
     names = tuple(measurement.name for measurement in found.measurements)
     if not found.dynamics:
-        F = (piece or found.pieces[0]).F
+        # The rows H, H Phi, H Phi^2, ... of a model in steps are those of a constant F with the entries of Phi.
+        F = found.Phi if found.Phi is not None else (piece or found.pieces[0]).F
         rows = [list(measurement.h) for measurement in found.measurements]
         return LinearModel(F, None, rows or None, found.states, names, found.time, rates)
     states = [symbol(name) for name in found.states]

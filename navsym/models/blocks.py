@@ -161,8 +161,9 @@ class Writer:
         names = [entry for _, entries in self.sizes for entry in entries]
         done["parameters"] = self.parameters
         done["model"] = own = dict(model) | {"states": names}
-        if "F" in model:
-            own["F"] = self.square(model["F"], join_place(where, "F"))
+        for key in ("F", "Phi"):
+            if key in model:
+                own[key] = self.square(model[key], join_place(where, key))
         if "dynamics" in model:
             own["dynamics"] = self.column(model["dynamics"], join_place(where, "dynamics"))
         if "relations" in model:

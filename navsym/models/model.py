@@ -51,6 +51,7 @@ class Model:
     measurements : p names, by default z1, z2, ...
     pieces       : (from, to, F) in order, where F differs from piece to piece
     dynamics     : f, one formula per state, in place of F: ``dx/dt = f(x)``; H then holds formulas z of the states
+    Phi          : (n, n) in place of F: a model in steps, ``x_(k+1) = Phi x_k``; for ``observe`` only
     relations    : equations between the states that hold always, such as ``q0**2 + q1**2 = 1``; with dynamics
     rates        : parameter -> its derivative by the time, for parameters that move; for ``observe`` only
     ranges       : state, parameter or ``dt`` -> two ends, what the inputs of exported code may be; for ``export`` only
@@ -93,6 +94,7 @@ class Model:
         measurements: str | Sequence[str] | None = None,
         pieces: Sequence[Any] | None = None,
         dynamics: Any = None,
+        Phi: Any = None,
         relations: Any = None,
         rates: Mapping[str, Any] | None = None,
         ranges: Mapping[str, Any] | None = None,
@@ -102,11 +104,12 @@ class Model:
     ):
         with places_of_arguments():
             names = name_list(states, "Model: states")
-            formulas = (F, H, sigma, interval, targets, pieces, dynamics, rates)
+            formulas = (F, H, sigma, interval, targets, pieces, dynamics, rates, Phi)
             declarations = declarations_of(parameters, declared, formulas, {*names, "t"})
             document: dict[str, Any] = {"model": {"name": name, "states": names}}
-            if F is not None:
-                document["model"]["F"] = write_entries(F, "Model: F")
+            for key, value in (("F", F), ("Phi", Phi)):
+                if value is not None:
+                    document["model"][key] = write_entries(value, f"Model: {key}")
             for key, value in (("dynamics", dynamics), ("relations", relations)):
                 if value is not None:
                     document["model"][key] = value if key == "relations" else write_entries(value, f"Model: {key}")
@@ -609,6 +612,8 @@ def document_of(contents: ModelFile | BasisFile) -> dict[str, Any]:
         tables["model"]["dynamics"] = [to_text(entry) for entry in contents.dynamics]
         if contents.relations:
             tables["model"]["relations"] = [f"{to_text(value)} = 0" for value in contents.relations]
+    elif contents.Phi is not None:
+        tables["model"]["Phi"] = write_entries(contents.Phi, "Phi")
     elif len(contents.pieces) == 1 and contents.pieces[0].end in (None, contents.T):
         tables["model"]["F"] = write_entries(contents.F, "F")
     else:
@@ -663,7 +668,7 @@ def equations_latex(contents: ModelFile | BasisFile) -> list[str]:
     if contents.dynamics:
         column, z = sp.ImmutableMatrix(contents.dynamics), sp.ImmutableMatrix([m.z for m in contents.measurements])
         return [rf"\frac{{d}}{{dt}} x = {latex_of(column)}", rf"z = {latex_of(z)} + r"]
-    lines = []
+    lines = [] if contents.Phi is None else [rf"x_{{k+1}} = {latex_of(contents.Phi)} x_k"]
     for piece in contents.pieces:
         where = ""
         if len(contents.pieces) > 1:

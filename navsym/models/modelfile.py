@@ -70,7 +70,7 @@ class Piece:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ModelFile:
-    """``dx/dt = F x``, or ``dx/dt = f(x)``, with scalar measurements on [0, T].
+    """``dx/dt = F x``, ``dx/dt = f(x)`` or ``x_(k+1) = Phi x_k``, with scalar measurements on [0, T].
 
     time         : the symbol t, which F and h may contain
     states       : n names
@@ -80,6 +80,7 @@ class ModelFile:
     rates        : parameter -> its derivative by the time; the others are constant
     dynamics     : f, one entry per state, of a nonlinear model; there are no pieces then
     relations    : functions of the states that are zero on the manifold on which they move
+    Phi          : matrix of one step of a discrete-time model; there are no pieces then
     ranges       : state, parameter or ``dt`` (the step of a filter) -> its ends, for exported code
     """
 
@@ -94,6 +95,7 @@ class ModelFile:
     rates: Mapping[str, Expr] = field(default_factory=dict)
     dynamics: tuple[Expr, ...] = ()
     relations: tuple[Expr, ...] = ()
+    Phi: Matrix | None = None
     ranges: Mapping[str, tuple[Expr, Expr]] = field(default_factory=dict)
 
     def _repr_latex_(self) -> str:
@@ -140,7 +142,9 @@ class BasisFile:
 
 
 def need_fixed(found: ModelFile | BasisFile, where: str) -> None:
-    """Refuse what only observability is asked about: nonlinear dynamics, and parameters that move."""
+    """Refuse what only observability is asked about: steps, nonlinear dynamics, and parameters that move."""
+    if isinstance(found, ModelFile) and found.Phi is not None:
+        raise DomainError("expected a model in continuous time with F; got steps Phi; ask observe", where=where)
     if isinstance(found, ModelFile) and (found.dynamics or found.rates):
         got = "nonlinear dynamics" if found.dynamics else f"the rate of {next(iter(found.rates))}"
         message = f"expected a linear model with constant parameters; got {got}; ask observe, or write F as F(t)"
@@ -296,11 +300,13 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
     expect_keys(document, (*(key for key in TABLES if key != "basis"), *BESIDE), where)
     place = join_place(where, "model")
     model = as_table(document["model"], place)
-    expect_keys(model, ("name", "states", "F", "dynamics", "relations"), place)
+    expect_keys(model, ("name", "states", "F", "Phi", "dynamics", "relations"), place)
     states = read_names(require_key(model, "states", place), join_place(place, "states"))
     require_distinct((*known, "t", *states), join_place(place, "states"))
     time = symbol("t")
     moving = {**known, "t": time}
+    if "Phi" in model:
+        return read_discrete(document, where, parameters, known, states)
     if "dynamics" in model or "relations" in model:
         return read_nonlinear(document, where, parameters, moving | {name: symbol(name) for name in states}, states)
     T = read_interval(document, known, join_place(where, "interval"))
@@ -315,6 +321,31 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
         targets=read_targets(document, known, states, where),
         rates=read_rates(document, moving, parameters, where),
         ranges=read_ranges(document, (*states, *parameters, STEP), where),
+    )
+
+
+def read_discrete(
+    document: Table, where: str, parameters: Mapping[str, Parameter], known: Known, states: tuple[str, ...]
+) -> ModelFile:
+    """A model in steps, ``x_(k+1) = Phi x_k, z_k = H x_k``: what belongs to continuous time is refused beside it."""
+    place = join_place(where, "model")
+    model = as_table(document["model"], place)
+    foreign = [(key, model, place) for key in ("F", "dynamics", "relations")]
+    foreign += [(key, document, where) for key in ("piece", "rates", "interval", "targets", "ranges")]
+    for key, table, outer in foreign:
+        if key in table:
+            message = f"expected Phi or {key}; got both; remove one of them"
+            raise DuplicateError(message, where=join_place(outer, key))
+    return ModelFile(
+        name=as_title(model.get("name", "model"), join_place(place, "name")),
+        parameters=parameters,
+        states=states,
+        time=symbol("t"),
+        pieces=(),
+        measurements=read_measurements(document, known, len(states), where),
+        T=None,
+        targets={},
+        Phi=read_square(model["Phi"], known, join_place(place, "Phi"), len(states), "one per state"),
     )
 
 

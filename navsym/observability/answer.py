@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from html import escape
 from typing import Any
 
@@ -53,7 +53,7 @@ class Observability(Answer):
     joint               : chains, dimensions and the staircase of all measurements
     rank_drops          : where a dimension drops for special parameters
     rank_drops_complete : subspace -> whether the list of its drops is proved to hold all of them
-    kind                : "constant", "varying", "nonlinear" or "pieces"
+    kind                : "constant", "discrete", "varying", "nonlinear" or "pieces"
     frozen_rank         : of a varying model, the rank that it has with F and h frozen at one time: another question
     rank_drops_open     : subspace -> conditions under which nothing was decided when the search ended
     pieces              : of a model in pieces, from, to and the rank of each by itself
@@ -189,13 +189,14 @@ def observe(
     values: Mapping[str, Any] | None = None,
     **parameters: Any,
 ) -> Observability:
-    """Exact observability of a model: ``dx/dt = F x, z = H x``, or ``dx/dt = f(x), z = h(x)``.
+    """Exact observability of a model: ``dx/dt = F x``, ``dx/dt = f(x)`` or ``x_(k+1) = Phi x_k``, with ``z = h(x)``.
 
     Ranks are those of ``H, H F, ..., H F^(n-1)`` for generic parameters (Kalman); what each measurement observes is
     spanned by its chain ``a_1 = h, a_(j+1) = F^T a_j`` (Kalenova et al. 1979, (1.2), (1.4)). Where F and H hold
     the time or parameters with rates it is ``a_(j+1) = a_j' + F^T a_j`` (Silverman and Meadows 1967): the rank
     over an interval. A nonlinear model is linearised along its own motion, so that the rows are gradients of Lie
-    derivatives (Hermann and Krener 1977): the local rank at a generic state. Pieces are stacked.
+    derivatives (Hermann and Krener 1977): the local rank at a generic state. Pieces are stacked. Of a model in steps
+    the rows are ``H, H Phi, ..., H Phi^(n-1)``: the first state from n steps or more.
 
     model      : a :class:`navsym.Model`, a LinearModel, or the path of a model file
     split      : (i, j), vectors taken from each of two measurements; by default (m, n - m)
@@ -223,12 +224,8 @@ def observe(
         if not isinstance(contents, ModelFile):
             message = "expected a [model] with F and h; got a [basis] of regressors; give the system"
             raise DomainError(message, where="observe: model")
-        if (contents.dynamics or len(contents.pieces) > 1) and (
-            split is not None or poles is not None or restore or candidates
-        ):
-            got = "dynamics" if contents.dynamics else f"{len(contents.pieces)} pieces"
-            message = f"expected one constant F for splits, poles and candidates; got {got}; leave them out"
-            raise DomainError(message, where="observe: model")
+        if split is not None or poles is not None or restore or candidates:
+            need_one_matrix(contents)
         if len(contents.pieces) > 1:
             first, joint, pieces = observe_pieces(contents)
             return Observability(contents.name, first, joint, (), {"joint": False}, kind="pieces", pieces=pieces)
@@ -237,7 +234,25 @@ def observe(
         rows = read_candidate_rows(candidates or {}, contents)
         asked = restore or bool(candidates)
         chosen = rows if asked else None
-        return observe_linear(model_along_motion(contents), contents.name, request, polynomials, chosen, contents.box)
+        found = observe_linear(model_along_motion(contents), contents.name, request, polynomials, chosen, contents.box)
+        # A two-stage split is a statement on dx/dt = F x.
+        if contents.Phi is not None:
+            return replace(found, kind="discrete", splits=(), best_split=None, split=None)
+        return found
+
+
+def need_one_matrix(contents: ModelFile) -> None:
+    """Refuse splits, poles and candidates beside anything but one matrix F."""
+    if contents.dynamics or len(contents.pieces) > 1 or contents.Phi is not None:
+        got = (
+            "dynamics"
+            if contents.dynamics
+            else "steps Phi"
+            if contents.Phi is not None
+            else f"{len(contents.pieces)} pieces"
+        )
+        message = f"expected one constant F for splits, poles and candidates; got {got}; leave them out"
+        raise DomainError(message, where="observe: model")
 
 
 def observe_linear(

@@ -53,7 +53,7 @@ def instant_data(answer: Observability, certifier: Certifier | None) -> dict[str
 
     Over an interval the rank is lost where the parameters are such that a drop lasts; at an instant also in passing.
     """
-    if answer.kind in ("constant", "pieces"):
+    if answer.kind in ("constant", "discrete", "pieces"):
         return None
     passing = [drop_data(drop, certifier) for drop in answer.rank_drops if not drop.lasting]
     return {"rank": answer.rank, "rank_drops": passing, "frozen_rank": answer.frozen_rank}

@@ -131,6 +131,16 @@ def stacked(F, H, n, times):
     return rows
 
 
+def rank_of_steps(Phi, H):
+    """Rank of H, H Phi, H Phi^2, ... over n + 2 steps."""
+    with mpmath.workdps(DIGITS):
+        rows, whole = [], mpmath.eye(len(Phi))
+        for _ in range(len(Phi) + 2):
+            rows += (mpmath.matrix(H) * whole).tolist()
+            whole = mpmath.matrix(Phi) * whole
+        return numerical_rank(rows)
+
+
 def rank_of_pieces(matrices, ends, H):
     """Rank of H Phi(t, 0) over constant pieces that end at the given times, by matrix exponentials."""
     n = len(H[0])

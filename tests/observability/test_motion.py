@@ -12,9 +12,11 @@ import sympy as sp
 import navsym as nav
 from navsym.core.errors import DomainError, DuplicateError, UnknownSymbolError
 from navsym.core.rational_functions import factor_exactly
+from navsym.export.differences import of_model
 from navsym.models.linear import LinearModel
+from navsym.observability.certificates import is_granted
 from navsym.observability.chains import prove_rank
-from tests.observability.flows import rank_in_time, rank_of_flow, rank_of_pieces
+from tests.observability.flows import rank_in_time, rank_of_flow, rank_of_pieces, rank_of_steps
 
 TIMES = [Fraction(k, 40) for k in range(1, 13)]
 
@@ -64,6 +66,17 @@ def check_pieces(seed):
     assert answer.rank == rank_of_pieces(matrices, ends, H), seed
 
 
+def check_steps(seed):
+    source = random.Random(seed)
+    n = source.choice([2, 3, 4, 5])
+    Phi = [[source.choice([0, 0, 0, 1, -1, 2]) for _ in range(n)] for _ in range(n)]
+    H = [[source.choice([0, 0, 1, -1]) for _ in range(n)] for _ in range(source.choice([1, 1, 2]))]
+    H = [row if any(row) else [1, *row[1:]] for row in H]
+    answer = nav.observe(nav.Model([f"x{k}" for k in range(n)], Phi=Phi, H=H))
+    assert answer.rank == rank_of_steps(Phi, H), seed
+    assert answer.document()["checked"], seed
+
+
 def check_nonlinear(seed):
     source = random.Random(seed)
     n = source.choice([2, 3, 4])
@@ -89,17 +102,62 @@ def check_nonlinear(seed):
     assert answer.rank == rank_of_flow(f, z, start, TIMES), seed
 
 
-@pytest.mark.parametrize("check", [check_in_time, check_pieces, check_nonlinear])
+@pytest.mark.parametrize("check", [check_in_time, check_pieces, check_nonlinear, check_steps])
 def test_the_rank_is_that_of_the_flow(check):
     for seed in range(35):
         check(seed)
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("check", [check_in_time, check_pieces, check_nonlinear])
+@pytest.mark.parametrize("check", [check_in_time, check_pieces, check_nonlinear, check_steps])
 def test_the_rank_is_that_of_the_flow_for_many_models(check):
     for seed in range(1000, 1100):
         check(seed)
+
+
+# Models in steps
+
+
+def sampled(**changes):
+    arguments = {"states": "x v", "Phi": [["cos(a)", "sin(a)"], ["-sin(a)", "cos(a)"]], "H": ["x"], "a": "real"}
+    return nav.Model(**{**arguments, **changes})
+
+
+def test_an_oscillation_sampled_twice_in_its_period_is_lost_and_the_checker_grants_it():
+    answer = nav.observe(sampled())
+    a = sp.Symbol("a", real=True)
+    assert (answer.rank, answer.kind, answer.split, answer.splits) == (2, "discrete", None, ())
+    assert {drop.zeros for drop in answer.rank_drops} == {(sp.sin(a),)}
+    assert nav.observe(sampled(), a="pi").rank == rank_of_steps([[-1, 0], [0, -1]], [[1, 0]]) == 1
+    assert all(drop["checked"] for drop in answer.document()["rank_drops"])
+
+
+def test_a_certificate_of_steps_falls_for_another_step():
+    answer = nav.observe(nav.Model("x y z", Phi=[[1, 2, 0], [0, 1, 0], [0, 3, 1]], H=["x"]))
+    (item,) = answer.certificates()
+    assert is_granted(item) and answer.unobservable == ("z",)
+    spoiled = {**item, "statement": {**item["statement"], "F": [["1", "2", "1"], ["0", "1", "0"], ["0", "3", "1"]]}}
+    assert not is_granted(spoiled)
+
+
+def test_a_model_of_steps_survives_its_file_and_is_no_model_in_continuous_time(tmp_path):
+    sampled().save(tmp_path / "steps.toml")
+    assert nav.observe(tmp_path / "steps.toml").document() == nav.observe(sampled()).document()
+    for verb in (nav.derive, nav.solve, lambda model: model.linear(), lambda model: nav.observe(model, poles="p + 1")):
+        with pytest.raises(DomainError, match="steps Phi"):
+            verb(sampled())
+    with pytest.raises(DomainError, match="steps Phi"):
+        of_model(tmp_path / "steps.toml")
+
+
+@pytest.mark.parametrize(
+    "foreign", [{"F": [[0, 1], [0, 0]]}, {"interval": 1}, {"targets": {"x": "x"}}, {"rates": {"a": "1"}}]
+)
+def test_what_belongs_to_continuous_time_is_refused_beside_steps(foreign):
+    with pytest.raises(DuplicateError, match="expected Phi or"):
+        sampled(**foreign)
+    with pytest.raises(UnknownSymbolError):
+        sampled(Phi=[["t", "0"], ["0", "1"]])
 
 
 # Models in time
