@@ -101,6 +101,9 @@ def compare(
     'sampled'
     """
     box, names = tuple(read_box(ranges).values()), tuple(ranges)
+    if not callable(function):
+        message = f"expected a function of numbers; got {type(function).__name__}; give a callable, such as math.sin"
+        raise DomainError(message, where="compare: function")
     if not isinstance(points, int) or isinstance(points, bool) or points < 2:
         raise DomainError(f"expected 2 points or more; got {points!r}; correct it", where="compare: points")
     prove(formula, "=", formula, seconds=seconds, **ranges)  # the reader's errors, and a range of no name of it

@@ -174,6 +174,11 @@ def test_bad_input_is_refused(formula, ranges, kind):
     assert kind is None or caught.value.kind == kind
 
 
+def test_what_cannot_be_called_is_refused():
+    with pytest.raises(nav.NavsymError, match="expected a function of numbers; got int; give a callable"):
+        nav.compare(3, "x", x=("0", "1"))
+
+
 def test_the_answer_is_plain_data():
     document = nav.compare(sine_over_argument, "sin(x)/x", x=("1", "2"), points=10).document()
     assert set(document) == {"how", "bound", "worst", "deviation", "evidence", "points"} and document["points"] == 10

@@ -212,3 +212,9 @@ def test_a_chain_holds_when_all_of_its_links_do(chain, status):
 def test_a_chain_in_latex_is_a_chain():
     assert nav.prove(r"\sin(2a) = 2\sin a\cos a \le 1").status == nav.PROVED
     assert nav.prove(r"\sin(2a) = 2\sin a\cos a \le \frac12").status == nav.REFUTED
+
+
+def test_a_scope_names_the_hypotheses_and_the_small_number_of_an_order():
+    assert nav.prove("x = 1", x="real", given=["x = 1"]).scope == "all real x with x = 1"
+    projection = nav.prove("P @ P @ P = P", P={"matrix": ["n", "n"]}, given=["P @ P = P"])
+    assert projection.scope == "all P in R^(n x n) with P @ P = P"

@@ -154,9 +154,21 @@ def refute(claim: TextClaim, document: Document, point: Mapping[str, Any]) -> Ve
         certificate = refute_document(claim.documents, document, written)
     except REFUSALS as refusal:
         return withdraw(verdict, str(refusal))
+    if "order" in document:
+        return replace(verdict, certificate=certificate, **describe_lost_order(document, point, shown))
     difference = difference_at(document, point)
     words = "the text fails at an exact point"
     return replace(verdict, evidence=words, certificate=certificate, difference=difference)
+
+
+def describe_lost_order(document: Document, point: Mapping[str, Any], shown: Mapping[str, str]) -> dict[str, Any]:
+    """What a refuted order says: the lowest derivative that differs at 0. Its value is no left - right."""
+    ((name, order),) = document["order"].items()
+    (case, *_), _, _ = read_with_answers(document, SECONDS, {n: player.number(value) for n, value in point.items()})
+    values = [player.value_of(goal.term, evaluate_point(case, point)) for goal in case.goals]
+    low = min(i % order for i, value in enumerate(values) if player.FAILURES["="](value))
+    words = f"left - right is no O({name}**{order}): both sides differ in the derivative of order {low} at {name} = 0"
+    return {"method": f"derivative of order {low} at 0", "evidence": words, "counterexample": {**shown, name: "0"}}
 
 
 def refute_at_points(claim: TextClaim, document: Document) -> Verdict | None:

@@ -116,7 +116,7 @@ def read_text_claim(
         declared, scope = declare_any_size(shapes, used, trees, ranges, where)
         declared["given"] = [*map(clean, given)]
         documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | declared for x, sign, y in links]
-        return TextClaim(formula, tuple(documents), scope=scope)
+        return TextClaim(formula, tuple(documents), scope=limit_scope(scope, given, {}))
     common: Document = {
         "symbols": ranges,
         "exists": [*map(clean, exists)],
@@ -129,8 +129,8 @@ def read_text_claim(
     documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | common for x, sign, y in links]
     kinds = {name: (kind_of(shapes[name]), shapes[name].rows) for name in used if shapes[name].size}
     shown = {entry: text for name in used for entry, text in shapes[name].shown().items()}
-    scope = describe_scope([shapes[n] for n in used if not shapes[n].label], ranges)
-    return TextClaim(formula, tuple(documents), kinds, shown, scope)
+    scope = describe_scope([shapes[n] for n in used if not (shapes[n].label or n in order)], ranges)
+    return TextClaim(formula, tuple(documents), kinds, shown, limit_scope(scope, given, order))
 
 
 def require_meaning(
@@ -410,6 +410,12 @@ def describe_scope(shapes: Sequence[Shape], ranges: Mapping[str, Sequence[Any]])
             rows, columns = shape.size or (1, 1)
             words.append(f"{shape.name} in R^{rows}" if columns == 1 else f"{shape.name} in R^({rows} x {columns})")
     return "all " + ", ".join(words) if words else "numbers"
+
+
+def limit_scope(scope: str, given: Sequence[str], order: Mapping[str, int]) -> str:
+    """The scope with what limits it: hypotheses, and the small number of an order."""
+    small = "".join(f", up to O({name}**{power}) for {name} to 0" for name, power in order.items())
+    return scope + (f" with {', '.join(map(clean, given))}" if given else "") + small
 
 
 def describe_range(name: str, limits: Sequence[Any]) -> str:

@@ -35,6 +35,15 @@ def test_a_textbook_formula_is_proved_and_its_false_variant_refuted(formula):
     assert decide(formula, "wrong").status == REFUTED
 
 
+def test_a_refuted_order_names_the_derivative_that_differs_and_no_difference_of_the_sides():
+    block = {"id": "1", "left": "sin(a)", "right": "a", "order": {"a": 4}}
+    verdict = decide_claim(read_claim(block, Symbols.read({"a": "real"}, "symbols"), "claim"), SECONDS)
+    assert (verdict.status, verdict.counterexample, verdict.difference) == (REFUTED, {"a": "0"}, None)
+    assert "derivative of order 3 at a = 0" in verdict.evidence
+    proved = decide_claim(read_claim(block | {"order": {"a": 3}}, Symbols.read({"a": "real"}, "symbols"), "1"), SECONDS)
+    assert (proved.status, proved.scope) == (PROVED, "numbers, up to O(a**3) for a to 0")
+
+
 @pytest.mark.parametrize(("kind", "text", "more"), [(k, *row) for k, rows in TRAPS.items() for row in rows])
 @pytest.mark.slow
 def test_a_trap_is_never_proved(kind, text, more):
