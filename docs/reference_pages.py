@@ -32,7 +32,7 @@ def write_reference(folder: Path) -> None:
 
 def python_page() -> str:
     """Every public name with its signature and its docstring, methods below their class."""
-    names = [name for name in dir(nav) if not name.startswith("__")]
+    names = [name for name in nav.__all__ if not name.startswith("__")]
     sections = (section(f"## {name}", f"nav.{name}", getattr(nav, name)) for name in names)
     return "# The names of Python\n\nThese names come with `import navsym as nav`.\n\n" + "".join(sections)
 

@@ -94,6 +94,12 @@ _HOMES = {
 
 __all__ = ["__version__", *sorted(_HOMES)]
 
+#: Types of answers, for annotations. ``dir(navsym)`` leaves them out, so that it lists what one calls.
+_ANSWERS = {
+    *("Comparison", "Conventions", "Derivation", "Estimate", "Estimator", "Formulation", "Ledger", "Observability"),
+    *("Phases", "Reading", "Verdict", "Verdicts"),
+}
+
 if TYPE_CHECKING:
     from navsym.audit.answer import audit as audit
     from navsym.book.entries import book as book
@@ -182,7 +188,7 @@ def load_ipython_extension(shell: Any) -> None:
 
 
 def __dir__() -> list[str]:
-    return list(__all__)
+    return [name for name in __all__ if name not in _ANSWERS]
 
 
 sys.modules[__name__].__class__ = _FrontDoor

@@ -14,7 +14,7 @@ import pytest
 
 import navsym as nav
 
-NAMES = [name for name in dir(nav) if not name.startswith("__")]
+NAMES = [name for name in nav.__all__ if not name.startswith("__")]
 #: Values rather than functions or classes: they have the documentation of their type.
 VALUES = {"PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"}
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
