@@ -93,7 +93,7 @@ def prove(
     >>> nav.prove("sin(T) <= T", T=("0", "pi")).status
     <Status.PROVED: 'PROVED'>
     >>> nav.prove("cross(u, cross(v, u)) = v - u*dot(u, v)", given="dot(u, u) = 1", u={"vector": 3}, v={"vector": 3})
-    <PROVED: cross(u, cross(v, u)) = v - u*dot(u, v); proof tree; all u in R^3, v in R^3>
+    <PROVED: cross(u, cross(v, u)) = v - u*dot(u, v); proof tree; all u in R^3, v in R^3 with dot(u, u) = 1>
     >>> nav.prove("inv(A @ B) = inv(B) @ inv(A)", A={"matrix": ["n", "n"]}, B={"matrix": ["n", "n"]}).assumptions
     ('A @ B invertible', 'B invertible', 'A invertible')
     >>> nav.prove(0.5, "=", "1/2")
