@@ -188,8 +188,8 @@ def read_patterns(value: Any, kind: str, where: str) -> tuple[str, ...]:
 def example_files() -> dict[str, str]:
     """The list of a new workspace, and a small example of each kind; the paper is kept as text, which nobody runs."""
     folder = Path(__file__).with_name("example")
-    texts = {path.relative_to(folder).as_posix(): path.read_text("utf-8") for path in sorted(folder.rglob("*.*"))}
-    return {name.removesuffix(".txt"): text for name, text in texts.items()}
+    paths = [folder / FILE, *sorted(folder.glob("*/*"))]
+    return {path.relative_to(folder).as_posix().removesuffix(".txt"): path.read_text("utf-8") for path in paths}
 
 
 def editor_files() -> dict[str, str]:
