@@ -16,8 +16,9 @@ from typing import Any
 
 from navsym.core.errors import DomainError
 
+WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-pedantic", "-Werror")
 WORDS = {
-    "{strict}": "-Wall -Wextra -Wconversion -Wdouble-promotion -pedantic -Werror".split(),
+    "{strict}": WARNINGS,
     "{headless}": """--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking
     --disable-component-update --disable-sync --virtual-time-budget=20000""".split(),
 }
