@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from navsym.claims.examples import EXAMPLES, MANIFEST
 from navsym.core.answers import Answer
 from navsym.core.errors import (
     DomainError,
@@ -186,6 +185,13 @@ def read_patterns(value: Any, kind: str, where: str) -> tuple[str, ...]:
     return tuple(value)
 
 
+def example_files() -> dict[str, str]:
+    """The list of a new workspace, and a small example of each kind; the paper is kept as text, which nobody runs."""
+    folder = Path(__file__).with_name("example")
+    paths = [folder / FILE, *sorted(folder.glob("*/*"))]
+    return {path.relative_to(folder).as_posix().removesuffix(".txt"): path.read_text("utf-8") for path in paths}
+
+
 def editor_files() -> dict[str, str]:
     """JSON schemas of the files, and the list of them in the form in which editors look for it."""
     texts = {f"schemas/{path.name}": path.read_text(encoding="utf-8") for path in sorted(SCHEMAS.glob("*.json"))}
@@ -206,7 +212,7 @@ def init(folder: str | os.PathLike[str] = ".") -> Workspace:
     <workspace drive: claims/baro.toml, models/alignment.toml, pendulum>
     """
     root = Path(folder).absolute()
-    files = {FILE: MANIFEST, **EXAMPLES, **editor_files()}
+    files = {**example_files(), **editor_files()}
     for name in files:
         if os.path.lexists(root / name):
             message = "expected a folder without a workspace; got one with this file; choose another or remove it"

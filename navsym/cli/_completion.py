@@ -122,34 +122,7 @@ VALUES: dict[str, Callable[[], Iterable[str]]] = {
     "--policy": lambda: ("strict", "repair"),
 }
 
-
-# -- scripts -----------------------------------------------------------------------------------
-
-#: Claim ids hold colons, at which bash ends a word: what stands before the last one is cut off again.
-BASH = r"""# completion of navsym for bash
-_navsym() {
-    local line="${COMP_LINE:0:COMP_POINT}" word prefix
-    local last="${line##*[[:space:]]}"
-    COMPREPLY=()
-    prefix=""
-    if [[ "$last" == *:* && "$COMP_WORDBREAKS" == *:* ]]; then prefix="${last%"${last##*:}"}"; fi
-    while IFS= read -r word; do COMPREPLY+=("${word#"$prefix"}"); done < <(navsym completion words "$line" 2>/dev/null)
-}
-complete -o default -F _navsym navsym
-"""
-ZSH = r"""#compdef navsym
-# completion of navsym for zsh
-_navsym() {
-    local -a found
-    found=("${(@f)$(navsym completion words "${(j: :)words[1,CURRENT]}" 2>/dev/null)}")
-    if [[ -n "${found[1]}" ]]; then compadd -- "${found[@]}"; else _files; fi
-}
-compdef _navsym navsym
-"""
-FISH = r"""# completion of navsym for fish
-complete -c navsym -a '(navsym completion words (commandline -cp) 2>/dev/null)'
-"""
-SCRIPTS = {"bash": BASH, "zsh": ZSH, "fish": FISH}
+#: Where the script of each shell, ``completion.SHELL`` in this folder, is installed below the home of the user.
 PLACES = {
     "bash": ".local/share/bash-completion/completions/navsym",
     "zsh": ".zfunc/_navsym",

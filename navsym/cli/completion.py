@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from navsym.cli._completion import PLACES, SCRIPTS, SHELLS
+from navsym.cli._completion import PLACES, SHELLS
 from navsym.cli.output import OutputError, emit, write_text
 from navsym.core.choice import one_of
 
@@ -23,8 +23,9 @@ def command(
     Example: eval "$(navsym completion bash)"        (this shell only)
     """
     one_of(shell, SHELLS, "completion")
+    script = Path(__file__).with_suffix(f".{shell}").read_text("utf-8")
     if not install:
-        emit({"shell": shell, "script": SCRIPTS[shell]}, as_json=json_, text=SCRIPTS[shell])
+        emit({"shell": shell, "script": script}, as_json=json_, text=script)
         return
     path = Path.home() / PLACES[shell]
     try:
@@ -32,6 +33,6 @@ def command(
     except OSError as error:
         message = f"expected a folder that can be made; got '{error.strerror}'; print the script and place it yourself"
         raise OutputError(message, where=str(path)) from error
-    write_text(path, SCRIPTS[shell])
+    write_text(path, script)
     hint = "; add  fpath+=~/.zfunc  before compinit in ~/.zshrc" if shell == "zsh" else ""
     emit({"shell": shell, "path": str(path)}, as_json=json_, text=f"{path}: open a new shell{hint}")

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -57,90 +58,9 @@ class Dataset:
         return f"{self.repository} at commit {self.commit}, {self.source}; {self.licence}"
 
 
-PUBLIC_DOMAIN = "NASA and USGS, public domain"
-KINEMATIC = "examples/data/kinematic"
-SUZUKI = ("taroz/MatRTKLIB", "69bcbd3faebc")
 DATASETS: Mapping[str, Dataset] = {
-    known.name: known
-    for known in (
-        Dataset(
-            "srtm",
-            "dem/N44W072_srtm3.hgt",
-            "elevation, 1201 x 1201, 3 arc seconds, 44 to 45 N, 72 to 71 W",
-            "tkrajina/srtm.py",
-            "aac72b36d105",
-            "test_files/N44W072.hgt",
-            "893b68e241df5f8a8a89fe067c629b78591313f571c77ab610f65efe85b458fa",
-            PUBLIC_DOMAIN,
-        ),
-        Dataset(
-            "nasadem",
-            "dem/N44W072_nasadem3.hgt",
-            "the same tile from another product",
-            "JayKickliter/geoprof",
-            "4a45442c964f",
-            "data/nasadem/3arcsecond/N44W072.hgt",
-            "03548a0306d409a90d2d6fbf94ec1ca8d67d1e2e918d21637bbe40f60f9a30f2",
-            "NASA, no restriction",
-        ),
-        Dataset(
-            "nagoya-reference",
-            "gnss_ins/nagoya_reference.csv",
-            "a car in a city, reference INS at 5 Hz",
-            *SUZUKI,
-            f"{KINEMATIC}/reference.csv",
-            "e9fef1bf3f2293bc671e3cbfa3ec5ef075f8438bf2da0f1ffb7a9cc883641a99",
-            "MIT, (c) 2023 Taro Suzuki",
-        ),
-        Dataset(
-            "nagoya-rtk",
-            "gnss_ins/nagoya_rover_rtk.pos",
-            "the same run, RTK positions at 5 Hz",
-            *SUZUKI,
-            f"{KINEMATIC}/rover_rtk.pos",
-            "4cf4ce278e0c399ee26056bcf3b13b17e63543f709332859bbed8ffb32cdb83b",
-            "MIT, (c) 2023 Taro Suzuki",
-        ),
-        Dataset(
-            "nagoya-spp",
-            "gnss_ins/nagoya_rover_1Hz_spp.pos",
-            "the same run, single-point positions at 1 Hz",
-            *SUZUKI,
-            f"{KINEMATIC}/rover_1Hz_spp.pos",
-            "879c05b1c86c6352dd41b3f2857dc22b9d5bb33278429ac1dccb50ec32ffc6e8",
-            "MIT, (c) 2023 Taro Suzuki",
-        ),
-        Dataset(
-            "pyins",
-            "gnss_ins/pyins_gnss.csv",
-            "positions and velocities at 1 Hz, 800 s",
-            "nmayorov/pyins",
-            "8377edecff8e",
-            "examples/data/gnss.csv",
-            "cb3564245bc62f501e34c1ee9c616539533a1d8f3763b87687d563df5f20e7ee",
-            "MIT, (c) 2023 Nikolay Mayorov",
-        ),
-        Dataset(
-            "thor-flight75",
-            "gnss_ins/umn_thor_flight75.mat",
-            "a small aircraft, IMU at 50 Hz and GPS at 1 Hz",
-            "NorthStarUAS/insgnss_tools",
-            "0b5f6b16f009",
-            "flight_data/thor_flight75_WaypointTracker_150squareWaypointNew_2012_10_10.mat",
-            "d87340d8a5ab2bbc0121e73521bb68bfc9042786c78329d965c5aca6d0431675",
-            "MIT",
-        ),
-        Dataset(
-            "geodtest",
-            "geodesy/GeodTest-100.dat",
-            "first 100 lines of C. Karney's set of geodesics",
-            "georust/geographiclib-rs",
-            "c5e906d94a46",
-            "test_fixtures/GeodTest-100.dat",
-            "558f579c8c7322650bc87a2408b616b7fa6eecab515878758dae423540863f1b",
-            "MIT",
-        ),
-    )
+    name: Dataset(name, **row)
+    for name, row in tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8")).items()
 }
 
 

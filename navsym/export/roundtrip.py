@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from navsym.export.folder import is_plain
-from navsym.export.languages.targets import SANITIZERS, TARGETS, Target
+from navsym.export.languages.targets import SANITIZERS, TARGETS, WORDS, Target
 from navsym.export.processes import run
 from navsym.export.tools import misra
 
@@ -61,7 +61,11 @@ def run_target(folder: Path, target: Target, *, sanitize: bool = False) -> Outco
 
 def steps_of(target: Target, folder: Path, tool: str, build: str, sanitize: bool) -> list[list[str]]:
     """The commands with their places filled in."""
-    table = {"{tool}": [tool], "{python}": [sys.executable], "{c}": [p.name for p in sorted(folder.glob("*.c"))]}
+    table = WORDS | {
+        "{tool}": [tool],
+        "{python}": [sys.executable],
+        "{c}": [p.name for p in sorted(folder.glob("*.c"))],
+    }
     made = []
     for step in target.steps:
         command = [w for word in step.split() for w in table.get(word, [word.replace("{build}", build)])]

@@ -118,6 +118,17 @@ def share_of_pi(value: float) -> tuple[int, int] | None:
     return None
 
 
+Operator = Callable[["Traced", Any], "Traced"]
+
+
+def noted_operator(op: str) -> tuple[Operator, Operator]:
+    """The methods of an operator: with the traced number on its left, and on its right."""
+    return (
+        lambda traced, other: traced.notes.apply(op, (traced, other)),
+        lambda traced, other: traced.notes.apply(op, (other, traced)),
+    )
+
+
 class Traced:
     """A number that notes what is done with it."""
 
@@ -126,35 +137,11 @@ class Traced:
     def __init__(self, notes: Notes, place: int) -> None:
         self.notes, self.place = notes, place
 
-    def __add__(self, other: Any) -> Traced:
-        return self.notes.apply("add", (self, other))
-
-    def __radd__(self, other: Any) -> Traced:
-        return self.notes.apply("add", (other, self))
-
-    def __sub__(self, other: Any) -> Traced:
-        return self.notes.apply("sub", (self, other))
-
-    def __rsub__(self, other: Any) -> Traced:
-        return self.notes.apply("sub", (other, self))
-
-    def __mul__(self, other: Any) -> Traced:
-        return self.notes.apply("mul", (self, other))
-
-    def __rmul__(self, other: Any) -> Traced:
-        return self.notes.apply("mul", (other, self))
-
-    def __truediv__(self, other: Any) -> Traced:
-        return self.notes.apply("div", (self, other))
-
-    def __rtruediv__(self, other: Any) -> Traced:
-        return self.notes.apply("div", (other, self))
-
-    def __pow__(self, other: Any) -> Traced:
-        return self.notes.apply("pow", (self, other))
-
-    def __rpow__(self, other: Any) -> Traced:
-        return self.notes.apply("pow", (other, self))
+    __add__, __radd__ = noted_operator("add")
+    __sub__, __rsub__ = noted_operator("sub")
+    __mul__, __rmul__ = noted_operator("mul")
+    __truediv__, __rtruediv__ = noted_operator("div")
+    __pow__, __rpow__ = noted_operator("pow")
 
     def __neg__(self) -> Traced:
         return self.notes.apply("neg", (self,))

@@ -52,11 +52,11 @@ OPERATORS: dict[type[ast.operator], type[ast.operator]] = {
 def mutants(source: str) -> Iterator[tuple[str, int, int]]:
     """Name (change and line, numbered when there are several alike), place of the node, number of the change."""
     seen: dict[str, int] = {}
-    tree = ast.parse(source)
+    tree, lines = ast.parse(source), source.splitlines()
     silent = set(map(id, silent_nodes(tree)))
     for place, node in enumerate(ast.walk(tree)):
         for number, what in enumerate(() if id(node) in silent else changes(node)):
-            line = source.splitlines()[node.lineno - 1].strip()
+            line = lines[node.lineno - 1].strip()
             key = f"{what} | {line}"
             seen[key] = seen.get(key, 0) + 1
             yield f"{key} | {seen[key]}", place, number
@@ -160,10 +160,12 @@ def explained() -> set[str]:
     return {line for line in lines if line and not line.startswith(("#", "    "))}
 
 
-@pytest.mark.parametrize(
-    ("name", "place", "number"),
-    [pytest.param(*mutant, id=mutant[0]) for mutant in mutants(SOURCE.read_text(encoding="utf-8"))],
-)
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """One case for each mutant, listed only where this file itself is run."""
+    every = [pytest.param(*mutant, id=mutant[0]) for mutant in mutants(SOURCE.read_text(encoding="utf-8"))]
+    metafunc.parametrize(("name", "place", "number"), every)
+
+
 def test_a_mutant_is_noticed_or_explained(name, place, number):
     if noticed(SOURCE.read_text(encoding="utf-8"), place, number):
         return

@@ -13,7 +13,7 @@ import sympy as sp
 from navsym.claims import PROVED, REFUTED, Equation
 from navsym.core.sandbox import Exhausted, run_many
 from navsym.prove.equations import decide_equation, list_entries
-from tests.attacks.campaigns.edits import list_mutants
+from tests.attacks.campaigns.edits import list_mutants, sample_mutants
 from tests.derivations.statements import claims
 
 #: Paper -> how many entries are changed, and in how many ways each.
@@ -38,8 +38,7 @@ def sides(name):
 def cases(some_sides, most, source):
     """(id, mutant, printed entry, derived entry, box) for some of the mutants of every side."""
     for identity, printed, derived, box in some_sides:
-        found = list_mutants(printed)
-        for mutant in source.sample(found, min(most, len(found))):
+        for mutant in sample_mutants(printed, most, source):
             yield identity, mutant, printed, derived, box
 
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import re
+import tomllib
 import unicodedata
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 
 import sympy as sp
 
@@ -13,43 +15,9 @@ from navsym.export.atoms import expm1
 from navsym.export.holes import Part, T
 from navsym.prove.wording import expression_text
 
-#: Keywords, functions of the C library, and words of our own, that no target may see as a variable.
-TAKEN = frozenset(
-    """
-    abs acos and as asin asm assert async atan atan2 auto await begin bool break call case catch cbrt ceil
-    char class const continue copysign cos cosh def default defer del delete do double e else elif elseif end
-    endif enum erf erfc except exec exp exp2 expm1 export extends extern fabs false finally float floor fma
-    fmax fmin fmod fn for from function gamma global goto i if impl implicit import in inline int integer
-    interface intent is j j0 j1 jn lambda let lgamma list local log log10 log1p log2 long loop match math
-    max min mod module move mut namespace nan new nil none nonlocal not null operator or out parameter pass
-    pi pow print private program protected pub public pure raise real ref register remainder restrict result
-    return round self short signed sin sinh sizeof sqrt static status struct subroutine super switch tan tanh
-    template tgamma this throw trait true try type typedef typeof union unless unsigned use using var virtual
-    void volatile where while with y0 y1 yield yn
-    eof err errno every here huge infinity left linux np number ok shape some std stderr stdin stdout unix
-    all ans arguments classdef end_try_catch end_unwind_protect endclassdef endenumeration endevents endfor
-    endfunction endmethods endparfor endproperties endswitch endwhile enumeration eps events inf isfinite methods
-    na nargin nargout otherwise parfor persistent properties realmax spmd until unwind_protect
-    unwind_protect_cleanup varargin varargout
-    """.split()
-)
-#: Functions of C, POSIX, Octave and MATLAB, programs and variables of our own, and files that Windows does not have.
-FUNCTIONS = frozenset(
-    """
-    abort access acosh alarm angle any arrayfun asinh atanh atexit atof atoi atol aux axis beta binomial bsearch calloc
-    cell cellfun chol circshift clear clock close com1 complex con cond conj conv cot cov cross csc cumprod cumsum date
-    deal det diff difftime disp display div dot drem dual dup eig erfinv error eval exit expm eye factorial fclose
-    fdim feval fft fgetl fgets fieldnames figure filter find finite fix fopen fprintf free fscanf fzero gcd getc getenv
-    help hypot ifft ilogb imag index info init instants integral interp1 inv isa iscell ischar isempty isequal isfield
-    isinf isnan isnormal isnumeric isreal isstruct kron labs lcm ldiv length link linspace logb lrint lu main malloc
-    mat2cell mean median memcmp memcpy memmove memset mktime mode modf nchoosek ndims nearbyint norm nul num2str numel
-    ode45 ones open path pause perror pinv pipe plot poly polyfit polyval primes printf prn prod putc puts qr qsort quad
-    quit rand randn random rank read realloc regexp rem remove rename repmat reshape rindex rint roots rotate scalbn
-    scanf sec select shift sign signal signbit significand size sleep snprintf sort sprintf squeeze srand std step
-    str2double strcat strcmp strcpy strlen strrep strsplit strtod strtrim sum svd sync system table test test_main
-    test_vectors tic time toc trace trapz trunc truncate unique unlink value var wait weights who write zeros
-    """.split()
-)
+WORDS: dict[str, str] = tomllib.loads(Path(__file__).with_name("words.toml").read_text("utf-8"))
+#: What no target may see as a variable, and what it may not see as a function.
+TAKEN, FUNCTIONS = (frozenset(WORDS[kind].split()) for kind in ("taken", "functions"))
 #: Numbers that the headers of C define, such as M_PI and DBL_MAX.
 MACRO = re.compile(r"(?:M|DBL|FLT|LDBL|FP|MATH|HUGE|DECIMAL|INT|LONG|SIZE|CHAR|UINT)_[A-Z0-9_]+")
 #: A name of our own would hide the temporaries t0, t1, … of a function body.

@@ -8,12 +8,20 @@ import importlib.util
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 from navsym.core.errors import DomainError
 
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-pedantic", "-Werror")
+WORDS = {
+    "{strict}": WARNINGS,
+    "{headless}": """--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking
+    --disable-component-update --disable-sync --virtual-time-budget=20000""".split(),
+}
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 
@@ -21,9 +29,10 @@ SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 class Target:
     """One language.
 
-    writer  : "module:function" that makes the files of the folder
+    writer  : "module:function" of this folder that makes the files
     tool    : program that must be there to run the vectors; "" when Python itself is enough
-    steps   : commands, run in the folder; their words "{tool}", "{python}" and "{c}", and {build}, are replaced
+    steps   : commands, run in the folder; their words "{tool}", "{python}", "{c}" and those of ``WORDS``, and {build},
+              are replaced
     library : accuracy of sin, cos, exp, … in ulps, as taken for the bounds
     reals   : types that the target can be written in
     widen   : factor on the rounding error, where the order of operations is not ours
@@ -31,8 +40,8 @@ class Target:
 
     name: str
     writer: str
-    tool: str
     steps: tuple[str, ...]
+    tool: str = ""
     library: int = 1
     reals: tuple[str, ...] = ("double",)
     widen: int = 1
@@ -41,7 +50,7 @@ class Target:
     def files(self) -> Callable[..., dict[str, str]]:
         """The function that makes the files, imported when it is first needed."""
         module, _, name = self.writer.partition(":")
-        found: Callable[..., dict[str, str]] = getattr(importlib.import_module(module), name)
+        found: Callable[..., dict[str, str]] = getattr(importlib.import_module(f"{__package__}.{module}"), name)
         return found
 
     def executable(self) -> str | None:
@@ -71,77 +80,13 @@ def answers(path: str) -> bool:
     return done.returncode == 0
 
 
-BOTH = ("double", "float")
-HEADLESS = """--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking
-    --disable-component-update --disable-sync --virtual-time-budget=20000"""
-PYTHON = "{python} -B test_vectors.py"
-RUN = "{build}/run"
-STRICT = " ".join(WARNINGS)
-WRITERS = "navsym.export.languages"
-TARGETS = {
-    target.name: target
-    for target in (
-        Target(
-            "c",
-            f"{WRITERS}.c:files",
-            "gcc",
-            (f"{{tool}} -std=c99 -O2 -ffp-contract=off {STRICT} {{c}} -o {RUN} -lm", RUN),
-            reals=BOTH,
-        ),
-        Target(
-            "cpp",
-            f"{WRITERS}.cpp:files",
-            "g++",
-            (f"{{tool}} -std=c++17 -O1 -ffp-contract=off {STRICT} test_main.cpp -o {RUN}", RUN),
-            reals=BOTH,
-        ),
-        Target("python", f"{WRITERS}.python:files", "", (PYTHON,), library=4, reals=BOTH),
-        Target("javascript", f"{WRITERS}.javascript:files", "node", ("{tool} test_vectors.mjs",)),
-        Target(
-            "rust",
-            f"{WRITERS}.rust:files",
-            "rustc",
-            (f"{{tool}} --edition=2021 -D warnings test_main.rs -o {RUN}", RUN),
-            reals=BOTH,
-        ),
-        Target("casadi", f"{WRITERS}.casadi:files", "", (PYTHON,), widen=64, modules=("casadi",)),
-        Target("batch", f"{WRITERS}.batch:files", "gcc", (PYTHON,), library=4, reals=BOTH),
-        Target(
-            "fortran",
-            f"{WRITERS}.fortran:files",
-            "gfortran",
-            (f"{{tool}} -std=f2008 -Wall -J {{build}} navsym_functions.f90 test_vectors.f90 -o {RUN}", RUN),
-            library=2,
-        ),
-        Target("julia", f"{WRITERS}.julia:files", "julia", ("{tool} --startup-file=no test_vectors.jl",)),
-        Target(
-            "wasm",
-            f"{WRITERS}.wasm:wasm_files",
-            "",
-            (
-                f"{{python}} -m ziglang cc -target wasm32-wasi -O2 -std=c99 -ffp-contract=off {STRICT} {{c}} "
-                f"-o {RUN}.wasm -lm",
-                f"{{python}} -B run_wasi.py {RUN}.wasm",
-            ),
-            modules=("ziglang", "wasmtime"),
-            reals=BOTH,
-        ),
-        Target(
-            "html",
-            f"{WRITERS}.wasm:page_files",
-            "chromium",
-            (f"{{tool}} {HEADLESS} --user-data-dir={{build}}/profile --dump-dom index.html",),
-            reals=BOTH,
-        ),
-        Target(
-            "octave",
-            f"{WRITERS}.octave:files",
-            "octave-cli",
-            ("{tool} --norc --no-history --quiet --eval test_vectors",),
-            library=2,
-        ),
-    )
-}
+def read_row(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row of the table with its lists as tuples."""
+    return {key: tuple(value) if isinstance(value, list) else value for key, value in row.items()}
+
+
+TABLE: Mapping[str, Mapping[str, Any]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
+TARGETS = {name: Target(name, **read_row(row)) for name, row in TABLE.items()}
 ALIASES = {"js": "javascript", "numpy": "python", "c++": "cpp", "matlab": "octave"}
 
 

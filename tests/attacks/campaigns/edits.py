@@ -7,6 +7,7 @@ of them, equivalent ones included; ``rearrange`` and ``widen`` change the order 
 
 from __future__ import annotations
 
+import random
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
@@ -106,6 +107,18 @@ def list_mutants(expression: sp.Expr) -> list[sp.Expr]:
     expression = sp.sympify(expression, strict=True)
     found = (apply_edit(expression, edit) for edit in list_edits(expression))
     return list(dict.fromkeys(mutant for mutant in found if mutant != expression and is_formula(mutant)))
+
+
+def sample_mutants(expression: sp.Expr, most: int, source: random.Random) -> list[sp.Expr]:
+    """At most so many different formulas one token away, drawn at random; only those drawn are built."""
+    edits = list(list_edits(expression))
+    source.shuffle(edits)
+    mutants = (apply_edit(expression, edit) for edit in edits)
+    kept = (mutant for mutant in mutants if mutant != expression and is_formula(mutant))
+    found: dict[sp.Expr, None] = {}
+    while len(found) < most and (mutant := next(kept, None)) is not None:
+        found[mutant] = None
+    return list(found)
 
 
 def is_formula(mutant: sp.Basic) -> bool:
