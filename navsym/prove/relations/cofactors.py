@@ -1,6 +1,6 @@
-"""A term as a sum of hypotheses with cofactors, by linear algebra of bounded degree: f = sum c_k h_k.
+"""A term as a sum of hypotheses with cofactors: f = sum c_k h_k, by division or by linear algebra of bounded degree.
 
-The monomials of f are the first ones; every product of a monomial and a hypothesis of which a term is among them is an
+Division by one hypothesis after the other is tried first. Else the monomials of f are the first ones; every product of a monomial and a hypothesis of which a term is among them is an
 unknown, and brings its other terms along. The system is solved modulo a prime and its solution guessed as fractions;
 the checker multiplies out.
 """
@@ -100,7 +100,9 @@ def list_own_relations(parts: Sequence[Term], generators: Any, ring: Any) -> Ite
 def find_cofactors(
     target: fmpq_mpoly, relations: Sequence[fmpq_mpoly], most: int = MOST_UNKNOWNS
 ) -> Iterator[list[Polynomial]]:
-    """Cofactors of the relations with sum c_k h_k = target, with more and more unknowns."""
+    """Cofactors of the relations with sum c_k h_k = target: by division, then with more and more unknowns."""
+    if (divided := divide(target, relations)) is not None:
+        yield divided
     wanted = read_terms(target)
     tables = [read_terms(h) for h in relations]
     monomials, columns = dict.fromkeys(wanted), dict[tuple[int, Exponents], Polynomial]()
@@ -121,6 +123,15 @@ def find_cofactors(
             yield [{m: c for (j, m), c in solution.items() if j == k} for k in range(len(relations))]
         if not fresh:
             return
+
+
+def divide(target: fmpq_mpoly, relations: Sequence[fmpq_mpoly]) -> list[Polynomial] | None:
+    """The quotients by one relation after the other; None where a rest is left."""
+    cofactors, rest = [0 * target for _ in relations], target
+    for k, relation in [*enumerate(relations)] * 2:
+        quotient, rest = divmod(rest, relation)
+        cofactors[k] += quotient
+    return [read_terms(c) for c in cofactors] if rest == 0 else None
 
 
 def read_terms(polynomial: fmpq_mpoly) -> Polynomial:
