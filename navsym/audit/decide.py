@@ -43,7 +43,8 @@ Point = dict[str, fmpq]
 class Decision:
     """The verdict on one entry.
 
-    sense  : "exact", or "manifold" where the declared relations were used
+    sense  : "exact", or "manifold" where the declared relations were used; weaker ones are put in by audit.senses
+    weaker : of an entry that does not hold, a sense in which the whole question would
     point  : of REFUTED, symbol -> exact number
     values : of REFUTED, the code's value and the expected one there
     """
@@ -54,6 +55,7 @@ class Decision:
     values: tuple[str, str] | None = None
     why: str = ""
     certificate: Mapping[str, Any] | None = None
+    weaker: str | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
