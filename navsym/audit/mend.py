@@ -20,13 +20,18 @@ from navsym.language.printer import print_tree
 from navsym.language.tree import MINUS_ONE, NUMBER, POWER, SYMBOL, Tree, build, build_call, fold_tree, list_names
 from navsym.prove.rooms.goals import player
 
-PER_ENTRY = 3000  # changes that are tried, of a short function
-PER_QUESTION = 6000
+PER_ENTRY = 5000  # changes that are tried, of a short function
+PER_QUESTION = 10_000
 SHORT = 40  # statements of one
 MOST_NAMES = 24
 TOLERANCE = 1e-9
-SWAPS = {"sin": "cos", "cos": "sin", "sinf": "cosf", "cosf": "sinf", "asin": "acos", "acos": "asin"}
-SWAPS |= {f"{head}{old}": f"{head}{new}" for head in ("np.", "math.", "std::") for old, new in SWAPS.items()}
+FAMILIES = (("sin", "cos", "tan", "sqrt"), ("asin", "acos", "atan"), ("exp", "log"))
+SWAPS = {
+    f"{head}{name}{tail}": [f"{head}{other}{tail}" for other in family if other != name]
+    for head, tail in (("", ""), ("", "f"), ("np.", ""), ("math.", ""), ("std::", ""))
+    for family in FAMILIES
+    for name in family
+}
 NUMBERS = ("0", "1", "2", "3", "4")
 ROOTS = {"c": "sqrt({})", "cpp": "sqrt({})", "python": "np.sqrt({})", "matlab": "sqrt({})", "rust": "{}.sqrt()"}
 TRANSPOSED = {"rust": ".transpose()", "cpp": ".transpose()", "python": ".T", "matlab": "'"}
@@ -123,7 +128,7 @@ class Place:
         """The mend with a text in the place of the expression, where it is one."""
         part = read_mend(text, self.source.unit)
         if part is not None and text != self.source.unit.text(self.part):
-            whole, source = whole_side(self.statement), self.source.unit.source
+            whole, source = whole_side(self.statement) or self.part, self.source.unit.source
             before, behind = (
                 cut(source, whole.span[0], self.part.span[0]),
                 cut(source, self.part.span[1], whole.span[1]),
@@ -170,7 +175,7 @@ def list_places(source: Source) -> list[Place]:
         fresh = [f for name in called for f in source.unit.functions.get(name, [])]
         functions += [f for f in dict.fromkeys(fresh) if f not in functions]
         at += 1
-    kinds = ("assign", "declare", "return", "do")
+    kinds = ("assign", "declare", "return", "do", "for")
     return [
         Place(source, function, statement, part)
         for function in functions
@@ -195,11 +200,14 @@ def list_arrays(function: Function) -> set[str]:
 
 def whole_side(statement: Part) -> Any:
     """The right side of a statement, the returned value or the call; None where there is none."""
-    return statement.parts[{"assign": 2, "declare": 3, "return": 0, "do": 0}[statement.kind]]
+    at = {"assign": 2, "declare": 3, "return": 0, "do": 0}.get(statement.kind)
+    return None if at is None else statement.parts[at]
 
 
 def right_sides(statement: Part) -> list[Part]:
-    """The expressions of a statement that may be wrong: the items of a list one by one."""
+    """The expressions of a statement that may be wrong: the items of a list one by one, the bounds of a loop."""
+    if statement.kind == "for":
+        return [bound for bound in statement.parts[1:4] if bound.span[0] < bound.span[1]]
     value = whole_side(statement)
     if value is None:
         return []
@@ -245,6 +253,8 @@ def is_right(mend: Mend, entry: Entry, source: Source, scope: Scope, probes: lis
     except NavsymError:
         return False
     if not isinstance(cell, Scalar) or not isinstance(expected, Scalar):
+        return False
+    if not {*list_names(cell.tree, expected.tree)} <= {*scope.ranges}:  # a name that has no value
         return False
     for probe in probes:
         a, b = (evaluate(tree, probe) for tree in (cell.tree, expected.tree))
@@ -347,7 +357,8 @@ def edit_calls(place: Place, parts: list[Part]) -> Iterator[Edit]:
                     yield part.span[0], part.span[0] + len(part.parts[0]), name
         if part.kind == "call" and part.parts[0] in SWAPS:
             low = part.span[0]
-            yield low, low + len(part.parts[0]), SWAPS[part.parts[0]]
+            for name in SWAPS[part.parts[0]]:
+                yield low, low + len(part.parts[0]), name
         if part.kind == "call" and part.parts[0].endswith(("sqrt", "sqrtf")) and len(part.parts[1]) == 1:
             yield *part.span, place.source.unit.text(part.parts[1][0])
     for part in parts:
@@ -382,13 +393,13 @@ def edit_factors(place: Place, parts: list[Part]) -> Iterator[Edit]:
 
 
 def edit_names(place: Place, parts: list[Part]) -> Iterator[Edit]:
-    """Another name of the function in the place of one, arrays for arrays; another entry or number for one."""
+    """Another name of the function in the place of one, first arrays for arrays; another entry or number for one."""
     arrays = list_arrays(place.function)
     known = sorted(arrays | names_in(*place.function.body) | {a.name for a in place.function.arguments})
-    for part in parts:
-        if part.kind == "name":
-            for name in known:
-                if (name in arrays) == (part.parts[0] in arrays) and name != part.parts[0]:
+    for is_like in (True, False):
+        for part in parts:
+            for name in known if part.kind == "name" else ():
+                if ((name in arrays) == (part.parts[0] in arrays)) is is_like and name != part.parts[0]:
                     yield *part.span, name
     for part in parts:
         if part.kind in ("name", "index"):

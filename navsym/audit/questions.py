@@ -406,13 +406,14 @@ class Asking:
         by = self.inputs(self.question.keys["by"], "by")
         given = self.resolve(self.question.keys["is"], "is")
         shape = (len(of), len(by))
-        if isinstance(given, Array) and len(given.cells) != len(of) * len(by):
-            message = f"expected {len(of)} rows and {len(by)} columns; got {list(given.shape)}; correct of or by"
+        if isinstance(given, Unread):
+            given = Array(shape, (given,) * (len(of) * len(by)))
+        if len(cells_of(given)) != len(of) * len(by):
+            got = list(given.shape) if isinstance(given, Array) else "a number"
+            message = f"expected {len(of)} rows and {len(by)} columns; got {got}; correct of or by"
             raise ShapeError(message, where=self.place("is"))
         expected = make_array(shape, lambda i, j: derivative(of[i], by[j]))
-        if not isinstance(given, Array):
-            given = Array((1, 1), (given,))
-        return self.pair(Array(shape, given.cells), expected, "is")
+        return self.pair(Array(shape, cells_of(given)), expected, "is")
 
     def ask_covariance(self) -> list[Entry]:
         F, Q, new = (self.matrix(key) for key in ("F", "Q", "is"))
