@@ -91,10 +91,11 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     for mend in itertools.chain(
         budget.known,
         (mend for place in places for mend in place.change(SMALL_EDITS)),
-        (mend for place in places for mend in place.change_target()),
         (mend for place in places for mend in place.change([edit_names])),
         (mend for place in near for mend in place.change([add_names, wrap])),
+        (mend for place in near or places for mend in place.change_target()),
         (mend for place in near for text in rewrite(source, entry.expected.tree) for mend in place.put(text)),
+        (mend for place in places for mend in place.change_target()),
     ):
         if (mend.line, mend.text) in tried:
             continue
