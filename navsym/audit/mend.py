@@ -10,10 +10,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.decide import Scope, decide_entry, draw_points
+from navsym.audit.evaluate import spell_entry
 from navsym.audit.form import Function, Part, Unit, names_in, walk
+from navsym.audit.names import squeeze
 from navsym.audit.questions import Entry
 from navsym.audit.sources import Source, read_expression
-from navsym.audit.values import Scalar
+from navsym.audit.values import Scalar, Unread
 from navsym.claims.verdict import PROVED
 from navsym.core.errors import NavsymError
 from navsym.language.printer import print_tree
@@ -86,20 +88,22 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     near = [place for place in places if place.statement is own]
     near = [place for place in near if place.part is value] or near
     places = near + [place for place in places if place not in near]
-    price, tried = 1 + len(source.read().met) // SHORT, set[tuple[int, str]]()
+    price, tried = 1 + len(source.read().met) // SHORT, set[tuple[Any, ...]]()
     probes = list_probes(entry, scope)
     for mend in itertools.chain(
         budget.known,
         (mend for place in places for mend in place.change(SMALL_EDITS)),
+        (mend for place in places if place.statement.kind == "declare" for mend in place.change_target()),
         (mend for place in places for mend in place.change([edit_names])),
         (mend for place in near for mend in place.change([add_names, wrap])),
         (mend for place in near or places for mend in place.change_target()),
         (mend for place in near for text in rewrite(source, entry.expected.tree) for mend in place.put(text)),
         (mend for place in places for mend in place.change_target()),
     ):
-        if (mend.line, mend.text) in tried:
+        key = (*mend.edits, mend.text)
+        if key in tried:
             continue
-        tried.add((mend.line, mend.text))
+        tried.add(key)
         if not budget.spend(price):
             return None
         if is_right(mend, entry, source, scope, probes):
@@ -150,11 +154,20 @@ class Place:
             parts = [inner for inner in walk(target) if low <= inner.span[0] < inner.span[1] <= high]
             edits = [*edit_indices(self, parts), *edit_names(self, parts)]
             texts = [f"{cut(unit.source, low, start)}{new}{cut(unit.source, end, high)}" for start, end, new in edits]
-            targets = [(text, part) for text in texts if (part := read_mend(text, unit)) is not None]
+            free = [text for text in texts if squeeze(text) not in self.list_taken()]
+            targets = [(text, part) for text in free if (part := read_mend(text, unit)) is not None]
         for text, part in targets:
             edited = Part(statement.kind, statement.line, (part, *rest), statement.span)
             sign = statement.parts[1] if statement.kind == "assign" else ""
             yield Mend(statement.line, " ".join(f"{text} {sign}= {side}".split()), {id(statement): edited})
+
+    def list_taken(self) -> set[str]:
+        """The entries that other statements assign."""
+        variables = self.source.read().cases[0].variables.items()
+        cells = [(name, at, cell) for name, variable in variables for at, cell in variable.cells.items()]
+        is_other = [isinstance(c, Unread) or (c.line and c.origin is not self.statement) for *_, c in cells]
+        spelled = [squeeze(spell_entry(self.source.unit, name, at)) for name, at, _ in cells]
+        return {text for text, other in zip(spelled, is_other, strict=True) if other}
 
 
 def cut(source: bytes, start: int, end: int) -> str:
