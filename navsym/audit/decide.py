@@ -6,6 +6,8 @@ the point, goes to the checker as text. Nothing else makes an entry PROVED or RE
 
 from __future__ import annotations
 
+import functools
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -148,8 +150,7 @@ def prove_shared(code: Tree, expected: Tree, scope: Scope) -> Document | None:
     if short is None:
         return None
     inputs = short.inputs()
-    limits = [player.read_range(scope.ranges[name]) for name in inputs]
-    numbers = [simple_point(limit, i % 2) for i, limit in enumerate(limits)]
+    numbers = [simple_number(json.dumps(scope.ranges[name]), i % 2) for i, name in enumerate(inputs)]
     point = {name: Fraction(int(q.p), int(q.q)) for name, q in zip(inputs, numbers, strict=True)}
     document: Document = {
         "left": print_tree(short.left),
@@ -168,6 +169,12 @@ def prove_shared(code: Tree, expected: Tree, scope: Scope) -> Document | None:
         return certificate if grant([document], certificate) == "HOLDS" else None
     except REFUSALS:
         return None
+
+
+@functools.cache
+def simple_number(limits: str, trial: int) -> fmpq:
+    """A simple number of a range that is written down."""
+    return simple_point(player.read_range(json.loads(limits)), trial)
 
 
 def search_proof(document: Document, scope: Scope, seconds: float, why: str = "") -> Decision:

@@ -42,7 +42,7 @@ from navsym.audit.values import (
 from navsym.core.errors import TooLargeError
 from navsym.language.tree import NUMBER, build_number
 
-STEPS = 60_000
+STEPS = 250_000
 
 
 def read_function(

@@ -208,6 +208,7 @@ def list_arrays(function: Function) -> set[str]:
     """The names of a function that have entries."""
     parts = [*walk(*function.body)]
     bases = {name for p in parts if p.kind == "index" for name in names_in(p.parts[0])}
+    bases |= {p.parts[0] for p in parts if p.kind == "call" and p.parts[0] in function.outputs}
     declared = {p.parts[0] for p in parts if p.kind == "declare" and p.parts[2]}
     return bases | declared | {argument.name for argument in function.arguments if argument.shape}
 
@@ -328,7 +329,7 @@ def edit_signs(place: Place, parts: list[Part]) -> Iterator[Edit]:
             at = find_sign(place.source.unit, a, b, sign)
             if at is None:
                 continue
-            for other in {"+": "-", "-": "+", "*": "/", "/": "*"}.get(sign, ""):
+            for other in {"+": "-*/", "-": "+*/", "*": "/+-", "/": "*-+"}.get(sign, ""):
                 yield at, at + len(sign), other
         elif part.kind == "minus":
             yield part.span[0], part.parts[0].span[0], ""
@@ -385,9 +386,9 @@ def edit_numbers(place: Place, parts: list[Part]) -> Iterator[Edit]:
     for part in parts:
         if part.kind == "number":
             text = place.source.unit.text(part)
-            tail = ".0" if "." in text else ""
+            sign, tail = "-" * text.startswith("-"), ".0" if "." in text else ""
             for number in (*NUMBERS, "0.5", "0.25"):
-                yield *part.span, number if "." in number else number + tail
+                yield *part.span, sign + number + tail * ("." not in number)
             yield *part.span, f"2*{text}"
 
 
@@ -415,8 +416,12 @@ def edit_names(place: Place, parts: list[Part]) -> Iterator[Edit]:
             for name in known if part.kind == "name" else ():
                 if ((name in arrays) == (part.parts[0] in arrays)) is is_like and name != part.parts[0]:
                     yield *part.span, name
+        for part in parts:
+            if part.kind == "call" and (part.parts[0] in arrays) is is_like:
+                for name in sorted(arrays - {part.parts[0]}):
+                    yield part.span[0], part.span[0] + len(part.parts[0]), name
     for part in parts:
-        if part.kind in ("name", "index"):
+        if part.kind in ("name", "index", "number"):
             for name in nearby_names(place.source):
                 yield *part.span, name
 
