@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from navsym.audit.sources import Source
 
 MOST = 200  # questions of a file
-SENSES = ("exact", "manifold")
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +56,8 @@ class AuditedEntry:
     counterexample : of REFUTED, spelling of an input -> exact number
     values         : of REFUTED, the code's value and the expected one there
     suggestion     : of REFUTED, the mended right side of the assignment; the mended entry is proved
-    why            : of OPEN, the reason; of a case, its conditions
+    why            : of OPEN, the reason; of a case, its conditions; of a weaker sense, what it says
+    weaker         : of an entry that does not hold, a sense in which the whole question would hold
     """
 
     entry: tuple[int, int]
@@ -70,6 +70,7 @@ class AuditedEntry:
     suggestion: str | None = None
     why: str = ""
     certificate: Mapping[str, Any] | None = None
+    weaker: str | None = None
 
     def document(self) -> dict[str, Any]:
         """The entry as plain data."""
@@ -111,18 +112,26 @@ class AuditedQuestion:
     @property
     def sense(self) -> str:
         """The weakest sense that was needed."""
+        from navsym.audit.questions import SENSES
+
         return max((entry.sense for entry in self.entries), key=SENSES.index, default="exact")
 
+    @property
+    def weaker(self) -> str | None:
+        """The strongest sense in which the question would hold if it admitted it; None where there is none."""
+        return next((entry.weaker for entry in self.entries if entry.weaker), None)
+
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """The certificates of the entries, each once."""
+        several = [entry.certificate for entry in self.entries if entry.certificate is not None]
+        parts = [part for whole in several for part in (whole["of"] if whole["kind"] == "all" else [whole])]
+        return [*{id(part): part for part in parts}.values()]
+
     def document(self, every: bool = False) -> dict[str, Any]:
-        """The question as plain data; entries that are PROVED only on demand."""
+        """The question as plain data; entries that are PROVED only on demand, ``weaker`` only where there is one."""
         entries = [entry.document() for entry in self.entries if every or entry.status != PROVED]
-        return {
-            "name": self.name,
-            "kind": self.kind,
-            "status": str(self.status),
-            "sense": self.sense,
-            "entries": entries,
-        }
+        document = {"name": self.name, "kind": self.kind, "status": str(self.status), "sense": self.sense}
+        return {**document, **({"weaker": self.weaker} if self.weaker else {}), "entries": entries}
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +175,7 @@ class Audit(Answer):
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """The certificates of all entries that have one."""
-        return [e.certificate for q in self.questions for e in q.entries if e.certificate is not None]
+        return [certificate for question in self.questions for certificate in question.certificates()]
 
     def list_failures(self) -> list[str]:
         """``file:line: message`` for every entry that is REFUTED or OPEN."""
@@ -297,53 +306,61 @@ def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQue
     """The verdicts on the entries of a question; of several cases the worst stands for the entry."""
     from navsym.audit.mend import Budget
     from navsym.audit.questions import list_entries
+    from navsym.audit.senses import weaken
 
-    relations = tuple(relation for source in sources for relation in source.relations)
-    worst: dict[tuple[int, int], AuditedEntry] = {}
+    relations, entries = question.relations(), list_entries(question)
+    scopes = [make_scope(question.names, entry, relations) for entry in entries]
     decided: dict[Any, Decision] = {}
+    decisions = [decide_cells(entry, scope, decided) for entry, scope in zip(entries, scopes, strict=True)]
+    weaken(question, entries, decisions, scopes)
+    worst: dict[tuple[int, int], AuditedEntry] = {}
     budget = Budget()
     order = (PROVED, CERTIFIED, OPEN, REFUTED)
-    for entry in list_entries(question):
-        answer = answer_entry(question, entry, relations, decided, budget)
+    for entry, scope, decision in zip(entries, scopes, decisions, strict=True):
+        answer = write_answer(question, entry, scope, decision, budget)
         known = worst.get(entry.place)
         if known is None or order.index(answer.status) > order.index(known.status):
             worst[entry.place] = answer
     return AuditedQuestion(question.name, question.kind, tuple(worst.values()))
 
 
-def answer_entry(
-    question: Question, entry: Entry, relations: tuple[Any, ...], decided: dict[Any, Decision], budget: Budget
-) -> AuditedEntry:
-    """The verdict on one entry in one case."""
-    from navsym.audit.decide import decide_entry
+def decide_cells(entry: Entry, scope: Scope, decided: dict[Any, Decision]) -> Decision:
+    """The verdict on one entry in one case, as it stands."""
+    from navsym.audit.decide import Decision, decide_entry
+    from navsym.audit.values import Unread
+
+    code, expected = entry.code, entry.expected
+    if isinstance(code, Unread) or isinstance(expected, Unread):
+        unread = code if isinstance(code, Unread) else expected
+        return Decision(OPEN, why=f"not read: {unread.why if isinstance(unread, Unread) else ''}")
+    key = (code.tree, expected.tree, entry.conditions)
+    if key not in decided:
+        try:
+            decided[key] = decide_entry(code.tree, expected.tree, scope)
+        except NavsymError as error:
+            return Decision(OPEN, why=error.message)
+    return decided[key]
+
+
+def write_answer(question: Question, entry: Entry, scope: Scope, decision: Decision, budget: Budget) -> AuditedEntry:
+    """The verdict on one entry with its line, and with a mend where it is refuted."""
+    from navsym.audit.mend import suggest
     from navsym.audit.values import Unread
 
     unit = entry.source.unit if entry.source else next(iter(question.sources.values())).unit
-    case = describe_case(entry)
-    for cell in (entry.code, entry.expected):
-        if isinstance(cell, Unread):
-            return AuditedEntry(entry.place, *unit.locate(cell.line), OPEN, why=f"not read: {cell.why}")
-    assert not isinstance(entry.code, Unread) and not isinstance(entry.expected, Unread)
-    line = entry.code.line or entry.expected.line or (entry.source.function.line if entry.source else 0)
-    scope = make_scope(question.names, entry, relations)
-    key = (entry.code.tree, entry.expected.tree, entry.conditions)
-    try:
-        decision = decided[key] if key in decided else decide_entry(entry.code.tree, entry.expected.tree, scope)
-    except NavsymError as error:
-        return AuditedEntry(entry.place, *unit.locate(line), OPEN, why=error.message)
-    decided[key] = decision
-    point, suggestion = None, None
+    line = next((cell.line for cell in (entry.code, entry.expected) if isinstance(cell, Unread)), None)
+    if line is None:
+        line = entry.code.line or entry.expected.line or (entry.source.function.line if entry.source else 0)
+    point, suggestion, why = None, None, decision.why
     if decision.status == REFUTED:
-        from navsym.audit.mend import suggest
-
         point = {question.names.spellings.get(n, n): value for n, value in (decision.point or {}).items()}
         mend = suggest(entry, scope, budget)
         if mend is not None:
             line, suggestion = mend.line, mend.text
-    why = decision.why or (case if decision.status == REFUTED else "")
+        why = "; ".join(filter(None, (describe_case(entry), why)))
     return AuditedEntry(
         entry.place, *unit.locate(line), decision.status, decision.sense, point, decision.values, suggestion, why,
-        decision.certificate,
+        decision.certificate, decision.weaker,
     )  # fmt: skip
 
 

@@ -1,17 +1,19 @@
 """One entry decided: what the code computes beside what it should be, granted by the checker.
 
-Search finds cofactors of the declared relations or a point; the statement with its proof, or the point, goes to the
-checker as text. Nothing else makes an entry PROVED or REFUTED.
+Search finds a proof, below the declared relations where they are needed, or a point; the statement with its proof, or
+the point, goes to the checker as text. Nothing else makes an entry PROVED or REFUTED.
 """
 
 from __future__ import annotations
 
+import functools
+import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import fmpq
 
 from navsym.audit.evaluate import Condition
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
@@ -20,22 +22,8 @@ from navsym.language.domains import rational_value
 from navsym.language.expression import read_tree
 from navsym.language.polynomials import to_polynomial
 from navsym.language.printer import print_tree
-from navsym.language.tree import (
-    NUMBER,
-    POWER,
-    PRODUCT,
-    SUM,
-    SYMBOL,
-    ZERO,
-    Tree,
-    build_number,
-    build_symbol,
-    fold_tree,
-    list_names,
-    negate,
-    parts_of,
-    replace,
-)
+from navsym.language.tree import ZERO, Tree, build_number, build_sum, build_symbol, fold_tree, list_names, negate
+from navsym.language.tree import replace as replace_parts
 from navsym.prove.grant import IDENTITY, REFUSALS, find_witness, grant, refute_document
 from navsym.prove.rooms.goals import player, simple_point
 from navsym.prove.search import find_proof, rules_of
@@ -57,7 +45,8 @@ Point = dict[str, fmpq]
 class Decision:
     """The verdict on one entry.
 
-    sense  : "exact", or "manifold" where the declared relations were used
+    sense  : "exact", or "manifold" where the declared relations were used; weaker ones are put in by audit.senses
+    weaker : of an entry that does not hold, a sense in which the whole question would
     point  : of REFUTED, symbol -> exact number
     values : of REFUTED, the code's value and the expected one there
     """
@@ -68,6 +57,7 @@ class Decision:
     values: tuple[str, str] | None = None
     why: str = ""
     certificate: Mapping[str, Any] | None = None
+    weaker: str | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,11 +67,13 @@ class Scope:
     ranges     : symbol -> its range in the words of the checker
     relations  : polynomials of the symbols that are zero
     conditions : of the case in which the code is
+    order      : a small symbol -> n, where the sides have to be equal up to O(symbol**n) only
     """
 
     ranges: Mapping[str, Any]
     relations: tuple[Tree, ...] = ()
     conditions: tuple[Condition, ...] = ()
+    order: Mapping[str, int] = field(default_factory=dict)
 
 
 def decide_entry(code: Tree, expected: Tree, scope: Scope, seconds: float = SECONDS) -> Decision:
@@ -93,23 +85,22 @@ def decide_entry(code: Tree, expected: Tree, scope: Scope, seconds: float = SECO
             return Decision(PROVED, certificate=granted)
     if length > LONGEST:
         return Decision(OPEN, why="a formula of more than 200,000 characters")
-    document = write_document(code, expected, scope)
+    document = write_document(code, expected, replace(scope, relations=()))
     try:
         granted = prove_document(document)
-        if granted is None and scope.relations:
-            lifted = lift(code, expected, scope.relations)
-            granted = None if lifted is None else prove_document(write_document(code, lifted, scope))
-            if granted is not None:
-                return Decision(PROVED, "manifold", certificate=granted)
         if granted is not None:
             return Decision(PROVED, certificate=granted)
         dark = next((c for c in scope.conditions if c.left is None), None)
-        if dark is not None:  # nobody knows whether a point is in this case
-            return search_proof(document, seconds, f"in a case of a condition that is not read: {dark.text}")
-        refuted = refute(document, code, expected, scope)
+        refuted = refute(document, code, expected, scope) if dark is None else None
         if refuted is not None:
             return refuted
-        return search_proof(document, seconds)
+        if scope.relations:
+            lower = search_proof(write_document(code, expected, scope), scope, seconds)
+            if lower.status.holds:
+                return replace(lower, sense="manifold")
+        # of a case of a condition that is not read nobody knows whether a point is in it
+        why = "" if dark is None else f"in a case of a condition that is not read: {dark.text}"
+        return search_proof(document, scope, seconds, why)
     except REFUSALS as refusal:
         return Decision(OPEN, why=f"not granted: {refusal}")
 
@@ -120,9 +111,9 @@ def measure(tree: Tree) -> int:
 
 
 def write_document(code: Tree, expected: Tree, scope: Scope) -> Document:
-    """The statement in the words of the checker."""
-    names = list_names(code, expected)
-    return {
+    """The statement in the words of the checker, with the relations as hypotheses."""
+    names = list_names(code, expected, *scope.relations, *map(build_symbol, scope.order))
+    document: Document = {
         "left": print_tree(code),
         "relation": "=",
         "right": print_tree(expected),
@@ -130,17 +121,25 @@ def write_document(code: Tree, expected: Tree, scope: Scope) -> Document:
         "exists": [],
         "tolerance": None,
     }
+    if scope.relations:
+        given = [f"{print_tree(relation)} = 0" for relation in scope.relations]
+        document |= {"shapes": {}, "given": given, "rates": {}}
+    return document | ({"order": dict(scope.order)} if scope.order else {})
 
 
 def prove_document(document: Document) -> Document | None:
     """The certificate of an identity that the checker has granted; None where it has not."""
     (case,), box = player.read_statement(document)
-    goals, terms = case.goals, case.terms
-    witness = find_witness(terms, box)
-    if witness is None or not player.is_identity(goals[0].term):
+    witness = find_witness(case.terms, box)
+    if witness is None or not all(player.is_identity(goal.term) for goal in case.goals):
         return None
-    certificate = {"kind": "proof", "statement": document, "bits": BITS, "witness": witness, "proofs": [IDENTITY]}
+    certificate = write_proof(document, witness, [IDENTITY for _ in case.goals])
     return certificate if grant([document], certificate) == "HOLDS" else None
+
+
+def write_proof(document: Document, witness: Mapping[str, str], proofs: list[Any]) -> Document:
+    """The certificate of a statement with a proof for each of its goals."""
+    return {"kind": "proof", "statement": document, "bits": BITS, "witness": witness, "proofs": proofs}
 
 
 def prove_shared(code: Tree, expected: Tree, scope: Scope) -> Document | None:
@@ -151,8 +150,7 @@ def prove_shared(code: Tree, expected: Tree, scope: Scope) -> Document | None:
     if short is None:
         return None
     inputs = short.inputs()
-    limits = [player.read_range(scope.ranges[name]) for name in inputs]
-    numbers = [simple_point(limit, i % 2) for i, limit in enumerate(limits)]
+    numbers = [simple_number(json.dumps(scope.ranges[name]), i % 2) for i, name in enumerate(inputs)]
     point = {name: Fraction(int(q.p), int(q.q)) for name, q in zip(inputs, numbers, strict=True)}
     document: Document = {
         "left": print_tree(short.left),
@@ -166,103 +164,40 @@ def prove_shared(code: Tree, expected: Tree, scope: Scope) -> Document | None:
         "rates": {},
     }
     witness = {name: str(value) for name, value in short.complete(point).items()}
-    certificate = {"kind": "proof", "statement": document, "bits": BITS, "witness": witness, "proofs": [IDENTITY]}
+    certificate = write_proof(document, witness, [IDENTITY])
     try:
         return certificate if grant([document], certificate) == "HOLDS" else None
     except REFUSALS:
         return None
 
 
-def search_proof(document: Document, seconds: float, why: str = "") -> Decision:
-    """What the search for a proof tree makes of the statement; ``why`` it is left open otherwise."""
+@functools.cache
+def simple_number(limits: str, trial: int) -> fmpq:
+    """A simple number of a range that is written down."""
+    return simple_point(player.read_range(json.loads(limits)), trial)
+
+
+def search_proof(document: Document, scope: Scope, seconds: float, why: str = "") -> Decision:
+    """What the search for proof trees makes of the statement; ``why`` it is left open otherwise."""
     (case,), box = player.read_statement(document)
-    goals, terms = case.goals, case.terms
-    witness = find_witness(terms, box)
+    witness = find_witness(case.terms, box) if "given" not in document else find_related(case.terms, box, scope)
     if witness is None:
         return Decision(OPEN, why="no point was found at which both sides have a value")
-    proof = find_proof(goals[0], seconds)
-    if proof is None:
+    proofs = [find_proof(goal, seconds) for goal in case.goals]
+    if None in proofs:
         return Decision(OPEN, why=why or "no proof and no counterexample was found")
-    certificate = {"kind": "proof", "statement": document, "bits": BITS, "witness": witness, "proofs": [proof]}
+    certificate = write_proof(document, witness, proofs)
     grant([document], certificate)
-    status = CERTIFIED if "balls" in rules_of(certificate["proofs"]) else PROVED
-    return Decision(status, certificate=certificate)
+    return Decision(CERTIFIED if "balls" in rules_of(proofs) else PROVED, certificate=certificate)
 
 
-# Relations
-
-
-def lift(code: Tree, expected: Tree, relations: Sequence[Tree]) -> Tree | None:
-    """``expected + sum of cofactor * relation``, equal to the code as it stands; None where division leaves a rest."""
-    atoms: dict[Tree, Tree] = {}
-    difference = name_atoms(code, atoms), name_atoms(expected, atoms)
-    names = sorted({*list_names(*difference, *relations)})
-    ring = fmpq_mpoly_ctx.get(names, Ordering.degrevlex)
-    try:
-        first, second, *zeros = (in_ring(to_polynomial(tree, names), ring) for tree in (*difference, *relations))
-    except (DomainError, TooLargeError):
-        return None
-    rest, terms = first - second, [expected]
-    for _ in range(2):
-        for relation, zero in zip(relations, zeros, strict=True):
-            cofactor, rest = divmod(rest, zero)
-            if cofactor != 0:
-                written = read_tree(f"({write_polynomial(cofactor)})", set(names))
-                back = {symbol: atom for atom, symbol in atoms.items()}
-                terms.append(product_of(replace(written, back), relation))
-    return sum_of(terms) if rest == 0 else None
-
-
-def in_ring(polynomial: fmpq_mpoly, ring: fmpq_mpoly_ctx) -> fmpq_mpoly:
-    """The same polynomial with another order of its monomials."""
-    return ring.from_dict(polynomial.to_dict())
-
-
-def write_polynomial(polynomial: fmpq_mpoly) -> str:
-    """A polynomial as text of the language."""
-    return str(polynomial).replace("^", "**")
-
-
-def sum_of(trees: Sequence[Tree]) -> Tree:
-    """The sum, each term as it is."""
-    from navsym.language.tree import build_sum
-
-    return build_sum(*trees)
-
-
-def product_of(a: Tree, b: Tree) -> Tree:
-    """The product, each factor as it is."""
-    from navsym.language.tree import build_product
-
-    return build_product(a, b)
-
-
-def name_atoms(tree: Tree, atoms: dict[Tree, Tree]) -> Tree:
-    """The tree with a letter for each part that is no sum, product or whole power."""
-
-    def step(part: Tree, inner: list[Tree]) -> Tree:
-        if part.head in (NUMBER, SYMBOL):
-            return part
-        if part.head == POWER and inner[0].head == NUMBER and (exact := rational_value(part)) is not None:
-            return build_number(exact)
-        if part.head in (SUM, PRODUCT) or (part.head == POWER and is_count(part.args[1])):
-            by = {old: new for old, new in zip(parts_of(part), inner, strict=True) if old is not new}
-            return replace_parts(part, by)
-        return atoms.setdefault(part, build_symbol(f"atom{len(atoms) + 1}x"))
-
-    return fold_tree(tree, step)
-
-
-def replace_parts(part: Tree, by: Mapping[Tree, Tree]) -> Tree:
-    """The part with others in the place of its own parts."""
-    from navsym.language.tree import build
-
-    return build(part.head, tuple(by.get(inner, inner) for inner in part.args))
-
-
-def is_count(exponent: Tree) -> bool:
-    """True for a whole exponent from 0 to 64."""
-    return exponent.head == NUMBER and exponent.args[0].denominator == 1 and 0 <= exponent.args[0] <= 64
+def find_related(terms: Sequence[Any], box: Mapping[str, Any], scope: Scope) -> dict[str, str] | None:
+    """A point at which the relations hold and all terms have a value."""
+    for point in draw_points(box, scope):
+        place = {name: player.Jet(player.arb(value)) for name, value in point.items()}
+        if all(player.value_of(term, place).is_finite() for term in terms):
+            return {name: write_fraction(value) for name, value in point.items()}
+    return None
 
 
 # Counterexamples
@@ -271,23 +206,24 @@ def is_count(exponent: Tree) -> bool:
 def refute(document: Document, code: Tree, expected: Tree, scope: Scope) -> Decision | None:
     """REFUTED by a point of the scope, with both values; None where none is found."""
     (case,), box = player.read_statement(document)
-    goals, terms = case.goals, case.terms
     others = list_names(*scope.relations, *(t for c in scope.conditions for t in (c.left, c.right) if t is not None))
     whole = {**box, **{n: player.read_range(scope.ranges[n]) for n in others if n not in box}}
     for point in draw_points(whole, scope):
         place = {name: player.Jet(player.arb(value)) for name, value in point.items()}
         if not all(holds_at(condition, place) for condition in scope.conditions):
             continue
-        value = player.value_of(goals[0].term, place)
-        if not all(player.value_of(t, place).is_finite() for t in terms) or not (value > 0 or value < 0):
+        values = [player.value_of(goal.term, place) for goal in case.goals]
+        if not all(player.value_of(t, place).is_finite() for t in case.terms) or not any(
+            v > 0 or v < 0 for v in values
+        ):
             continue
         texts = {name: write_fraction(value) for name, value in point.items()}
         try:
             certificate = refute_document([document], document, {n: texts[n] for n in document["symbols"]})
         except REFUSALS:
             continue
-        values = tuple(value_text(tree, point) for tree in (code, expected))
-        return Decision(REFUTED, point=texts, values=(values[0], values[1]), certificate=certificate)
+        both = value_text(code, point), value_text(expected, point)
+        return Decision(REFUTED, point=texts, values=both, certificate=certificate)
     return None
 
 
@@ -340,14 +276,14 @@ def meet(relation: Tree, point: Point, box: Mapping[str, Any]) -> bool:
 def value_at(tree: Tree, point: Point) -> Fraction | None:
     """The exact value of a rational formula at a point; None for others."""
     by = {build_symbol(name): build_number(Fraction(int(v.p), int(v.q))) for name, v in point.items()}
-    return rational_value(replace(tree, by))
+    return rational_value(replace_parts(tree, by))
 
 
 def holds_at(condition: Condition, place: Mapping[str, Any]) -> bool:
     """True where a condition of the case surely is as the case says."""
     if condition.left is None or condition.right is None:
         return True
-    term = player.parse(print_tree(sum_of([condition.left, negate(condition.right)])))
+    term = player.parse(print_tree(build_sum(condition.left, negate(condition.right))))
     ball = player.value_of(term, dict(place))
     if not ball.is_finite():
         return False

@@ -42,7 +42,7 @@ from navsym.audit.values import (
 from navsym.core.errors import TooLargeError
 from navsym.language.tree import NUMBER, build_number
 
-STEPS = 60_000
+STEPS = 250_000
 
 
 def read_function(
@@ -56,7 +56,7 @@ def read_function(
 
     inputs : source spelling of an input -> its symbol
     shapes : sizes of inputs that the source does not say
-    edits  : expressions in the place of others, by ``id``
+    edits  : expressions and statements in the place of others, by ``id``
     """
     reading = Reading(unit, function)
     start = functools.partial(Machine, reading, inputs, shapes or {}, edits or {})
@@ -149,6 +149,7 @@ class Machine(Evaluator):
 
     def statement(self, statement: Part) -> None:
         """One statement; what cannot be read leaves its names unread."""
+        statement = self.edits.get(id(statement), statement)  # a mended one, while a mend is sought
         self.steps += 1
         if self.steps > STEPS:
             message = f"expected at most {STEPS} steps; got more; ask for a smaller function"

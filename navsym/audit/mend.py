@@ -5,27 +5,35 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.decide import Scope, decide_entry, draw_points
-from navsym.audit.form import Part, Unit, walk
+from navsym.audit.evaluate import spell_entry
+from navsym.audit.form import Function, Part, Unit, names_in, walk
+from navsym.audit.names import squeeze
 from navsym.audit.questions import Entry
 from navsym.audit.sources import Source, read_expression
-from navsym.audit.values import Scalar
+from navsym.audit.values import Scalar, Unread
 from navsym.claims.verdict import PROVED
 from navsym.core.errors import NavsymError
 from navsym.language.printer import print_tree
 from navsym.language.tree import MINUS_ONE, NUMBER, POWER, SYMBOL, Tree, build, build_call, fold_tree, list_names
 from navsym.prove.rooms.goals import player
 
-PER_ENTRY = 1000  # changes that are tried
-PER_QUESTION = 2000
+PER_ENTRY = 5000  # changes that are tried, of a short function
+PER_QUESTION = 10_000
+SHORT = 40  # statements of one
 MOST_NAMES = 24
 TOLERANCE = 1e-9
-SWAPS = {"sin": "cos", "cos": "sin", "sinf": "cosf", "cosf": "sinf", "asin": "acos", "acos": "asin"}
-SWAPS |= {f"{head}{old}": f"{head}{new}" for head in ("np.", "math.", "std::") for old, new in SWAPS.items()}
+FAMILIES = (("sin", "cos", "tan", "sqrt"), ("asin", "acos", "atan"), ("exp", "log"))
+SWAPS = {
+    f"{head}{name}{tail}": [f"{head}{other}{tail}" for other in family if other != name]
+    for head, tail in (("", ""), ("", "f"), ("np.", ""), ("math.", ""), ("std::", ""))
+    for family in FAMILIES
+    for name in family
+}
 NUMBERS = ("0", "1", "2", "3", "4")
 ROOTS = {"c": "sqrt({})", "cpp": "sqrt({})", "python": "np.sqrt({})", "matlab": "sqrt({})", "rust": "{}.sqrt()"}
 TRANSPOSED = {"rust": ".transpose()", "cpp": ".transpose()", "python": ".T", "matlab": "'"}
@@ -36,10 +44,14 @@ Edit = tuple[int, int, str]
 
 @dataclass(frozen=True, slots=True)
 class Mend:
-    """The line of the assignment that is mended, and its new right side."""
+    """A change of one statement: parts in the place of others by ``id``, its line, and its new right side as text.
+
+    Where the left side changes the text is the whole assignment.
+    """
 
     line: int
     text: str
+    edits: Mapping[int, Part]
 
 
 @dataclass(slots=True)
@@ -48,20 +60,20 @@ class Budget:
 
     entry: int = PER_ENTRY
     question: int = PER_QUESTION
-    known: list[tuple[Part, str]] = field(default_factory=list)
+    known: list[Mend] = field(default_factory=list)
 
     def start_entry(self) -> None:
         """A new entry may try its share."""
         self.entry = min(PER_ENTRY, self.question)
 
-    def spend(self) -> bool:
+    def spend(self, price: int) -> bool:
         """True when one more change may be tried."""
-        self.entry, self.question = self.entry - 1, self.question - 1
+        self.entry, self.question = self.entry - price, self.question - price
         return self.entry >= 0
 
 
 def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
-    """The smallest change of one right side with which the entry is proved; None where none is found.
+    """The smallest change of one statement with which the entry is proved; None where none is found.
 
     First the statement that assigns the entry is edited, then the others, also in functions that it calls.
     """
@@ -71,82 +83,146 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     assert isinstance(entry.code, Scalar)
     budget.start_entry()
     own = entry.code.origin
+    places = list_places(source)
     value = None if own is None else right_side(own, entry.place)
-    wholes = {id(part): whole_side(s) for s in list_statements(source) for part in right_sides(s)}
-    search = Search(source, entry, scope, list_probes(entry, scope), budget, wholes)
-    texts = () if value is None else rewrite(source, entry.expected.tree)
-    others = [p for s in list_statements(source) if s is not own for p in right_sides(s)]
-    rounds = itertools.chain(
-        ((part, iter([text])) for part, text in budget.known),
-        ((part, search.list_edits(part, nearby=False)) for part in ([] if value is None else [value]) + others),
-        () if value is None else ((value, search.list_edits(value, nearby=True)), (value, texts)),
-    )
-    for part, changes in rounds:
-        if (mend := search.try_texts(part, changes)) is not None:
-            budget.known.append((part, mend.text))
+    near = [place for place in places if place.statement is own]
+    near = [place for place in near if place.part is value] or near
+    places = near + [place for place in places if place not in near]
+    price, tried = 1 + len(source.read().met) // SHORT, set[tuple[Any, ...]]()
+    probes = list_probes(entry, scope)
+    for mend in itertools.chain(
+        budget.known,
+        (mend for place in places for mend in place.change(SMALL_EDITS)),
+        (mend for place in places if place.statement.kind == "declare" for mend in place.change_target()),
+        (mend for place in places for mend in place.change([edit_names])),
+        (mend for place in near for mend in place.change([add_names, wrap])),
+        (mend for place in near or places for mend in place.change_target()),
+        (mend for place in near for text in rewrite(source, entry.expected.tree) for mend in place.put(text)),
+        (mend for place in places for mend in place.change_target()),
+    ):
+        key = (*mend.edits, mend.text)
+        if key in tried:
+            continue
+        tried.add(key)
+        if not budget.spend(price):
+            return None
+        if is_right(mend, entry, source, scope, probes):
+            budget.known.append(mend)
             return mend
     return None
 
 
 @dataclass(frozen=True, slots=True)
-class Search:
-    """What a change has to achieve."""
+class Place:
+    """An expression on the right of a statement, which may be wrong, in its function."""
 
     source: Source
-    entry: Entry
-    scope: Scope
-    probes: list[dict[str, float]]
-    budget: Budget
-    wholes: Mapping[int, Part]
+    function: Function
+    statement: Part
+    part: Part
 
-    def list_edits(self, value: Part, *, nearby: bool) -> Iterator[str]:
-        """The edits of a right side; with names from nearby, or without."""
-        return list_edits(self.source, value, self.source.unit.text(value), nearby=nearby)
+    def change(self, kinds: Sequence[Callable[[Place, list[Part]], Iterator[Edit]]]) -> Iterator[Mend]:
+        """The mends by edits of some kinds."""
+        (low, high), text = self.part.span, self.source.unit.source
+        parts = [inner for inner in walk(self.part) if low <= inner.span[0] < inner.span[1] <= high]
+        for kind in kinds:
+            for start, end, new in kind(self, parts):
+                yield from self.put(f"{cut(text, low, start)}{new}{cut(text, end, high)}")
 
-    def try_texts(self, value: Part, texts: Iterable[str]) -> Mend | None:
-        """The first text that is right in the place of a right side."""
-        tried = {self.source.unit.text(value)}
-        for text in texts:
-            if text in tried:
-                continue
-            tried.add(text)
-            if not self.budget.spend():
-                return None
-            if is_right(text, value, self.entry, self.source, self.scope, self.probes):
-                return Mend(value.line, self.write_whole(value, text))
-        return None
+    def put(self, text: str) -> Iterator[Mend]:
+        """The mend with a text in the place of the expression, where it is one."""
+        part = read_mend(text, self.source.unit)
+        if part is not None and text != self.source.unit.text(self.part):
+            whole, source = whole_side(self.statement) or self.part, self.source.unit.source
+            before, behind = (
+                cut(source, whole.span[0], self.part.span[0]),
+                cut(source, self.part.span[1], whole.span[1]),
+            )
+            yield Mend(self.part.line, " ".join(f"{before}{text}{behind}".split()), {id(self.part): part})
 
-    def write_whole(self, value: Part, text: str) -> str:
-        """The whole right side, with the text in the place of the part that is mended."""
-        whole = self.wholes.get(id(value), value)
-        source = self.source.unit.source
-        before, behind = source[whole.span[0] : value.span[0]], source[value.span[1] : whole.span[1]]
-        return " ".join(f"{before.decode('utf-8', 'replace')}{text}{behind.decode('utf-8', 'replace')}".split())
+    def change_target(self) -> Iterator[Mend]:
+        """The mends by another name or index on the left."""
+        statement, unit = self.statement, self.source.unit
+        if statement.kind not in ("assign", "declare"):
+            return
+        side = unit.text(whole_side(statement))
+        target, *rest = statement.parts
+        if statement.kind == "declare":
+            targets = [(name, name) for name in sorted(list_orphans(self.function))]
+        else:
+            low, high = target.span
+            parts = [inner for inner in walk(target) if low <= inner.span[0] < inner.span[1] <= high]
+            edits = [*edit_indices(self, parts), *edit_names(self, parts)]
+            texts = [f"{cut(unit.source, low, start)}{new}{cut(unit.source, end, high)}" for start, end, new in edits]
+            free = [text for text in texts if squeeze(text) not in self.list_taken()]
+            targets = [(text, part) for text in free if (part := read_mend(text, unit)) is not None]
+        for text, part in targets:
+            edited = Part(statement.kind, statement.line, (part, *rest), statement.span)
+            sign = statement.parts[1] if statement.kind == "assign" else ""
+            yield Mend(statement.line, " ".join(f"{text} {sign}= {side}".split()), {id(statement): edited})
+
+    def list_taken(self) -> set[str]:
+        """The entries that other statements assign."""
+        variables = self.source.read().cases[0].variables.items()
+        cells = [(name, at, cell) for name, variable in variables for at, cell in variable.cells.items()]
+        is_other = [isinstance(c, Unread) or (c.line and c.origin is not self.statement) for *_, c in cells]
+        spelled = [squeeze(spell_entry(self.source.unit, name, at)) for name, at, _ in cells]
+        return {text for text, other in zip(spelled, is_other, strict=True) if other}
 
 
-def list_statements(source: Source) -> list[Part]:
-    """The statements of a function, the last one first, and those of the functions that it calls."""
+def cut(source: bytes, start: int, end: int) -> str:
+    """A piece of a source."""
+    return source[start:end].decode("utf-8", "replace")
+
+
+def read_mend(text: str, unit: Unit) -> Part | None:
+    """A text as an expression of a language; None where it is none."""
+    part = read_expression(text, unit)
+    return None if any(inner.kind == "refused" for inner in walk(part)) else part
+
+
+def list_places(source: Source) -> list[Place]:
+    """The right sides of a function, of its last statement first, and those of the functions that it calls."""
     functions, at = [source.function], 0
     while at < len(functions):
         called = [p.parts[0] for p in walk(*functions[at].body) if p.kind == "call"]
         fresh = [f for name in called for f in source.unit.functions.get(name, [])]
         functions += [f for f in dict.fromkeys(fresh) if f not in functions]
         at += 1
-    kinds = ("assign", "declare", "return", "do")
+    kinds = ("assign", "declare", "return", "do", "for")
     return [
-        p
+        Place(source, function, statement, part)
         for function in functions
-        for p in sorted((p for p in walk(*function.body) if p.kind in kinds), key=lambda p: -p.line)
+        for statement in sorted((p for p in walk(*function.body) if p.kind in kinds), key=lambda p: -p.line)
+        for part in right_sides(statement)
     ]
+
+
+def list_orphans(function: Function) -> set[str]:
+    """The names that a function reads, and that nobody has declared."""
+    declared = {p.parts[0] for p in walk(*function.body) if p.kind in ("declare", "for")}
+    return names_in(*function.body) - declared - {argument.name for argument in function.arguments}
+
+
+def list_arrays(function: Function) -> set[str]:
+    """The names of a function that have entries."""
+    parts = [*walk(*function.body)]
+    bases = {name for p in parts if p.kind == "index" for name in names_in(p.parts[0])}
+    bases |= {p.parts[0] for p in parts if p.kind == "call" and p.parts[0] in function.outputs}
+    declared = {p.parts[0] for p in parts if p.kind == "declare" and p.parts[2]}
+    return bases | declared | {argument.name for argument in function.arguments if argument.shape}
 
 
 def whole_side(statement: Part) -> Any:
     """The right side of a statement, the returned value or the call; None where there is none."""
-    return statement.parts[{"assign": 2, "declare": 3, "return": 0, "do": 0}[statement.kind]]
+    at = {"assign": 2, "declare": 3, "return": 0, "do": 0}.get(statement.kind)
+    return None if at is None else statement.parts[at]
 
 
 def right_sides(statement: Part) -> list[Part]:
-    """The expressions of a statement that may be wrong: the items of a list one by one."""
+    """The expressions of a statement that may be wrong: the items of a list one by one, the bounds of a loop."""
+    if statement.kind == "for":
+        return [bound for bound in statement.parts[1:4] if bound.span[0] < bound.span[1]]
     value = whole_side(statement)
     if value is None:
         return []
@@ -180,15 +256,10 @@ def right_side(statement: Part, place: tuple[int, int]) -> Part | None:
     return None if value.kind == "list" else value
 
 
-def is_right(
-    text: str, value: Part, entry: Entry, source: Source, scope: Scope, probes: list[dict[str, float]]
-) -> bool:
-    """True when the entry is proved with this text in the place of the right side."""
-    part = read_expression(text, source.unit)
-    if any(inner.kind == "refused" for inner in walk(part)):
-        return False
+def is_right(mend: Mend, entry: Entry, source: Source, scope: Scope, probes: list[dict[str, float]]) -> bool:
+    """True when the entry is proved with this mend."""
     try:
-        cases = source.read({id(value): part}).cases
+        cases = source.read(mend.edits).cases
         texts = [(c.text, c.holds) for c in entry.conditions]
         case = next((c for c in cases if all((x.text, x.holds) in texts for x in c.conditions)), None)
         if case is None or entry.again is None:
@@ -197,6 +268,8 @@ def is_right(
     except NavsymError:
         return False
     if not isinstance(cell, Scalar) or not isinstance(expected, Scalar):
+        return False
+    if not {*list_names(cell.tree, expected.tree)} <= {*scope.ranges}:  # a name that has no value
         return False
     for probe in probes:
         a, b = (evaluate(tree, probe) for tree in (cell.tree, expected.tree))
@@ -248,28 +321,16 @@ def evaluate(tree: Tree, point: dict[str, float]) -> float | None:
 # Edits of a text
 
 
-def list_edits(source: Source, value: Part, text: str, nearby: bool) -> Iterator[str]:
-    """The text with one edit, small ones first; with names from nearby only on demand."""
-    start = value.span[0]
-    parts = [part for part in walk(value) if value.span[0] <= part.span[0] < part.span[1] <= value.span[1]]
-    kinds = [edit_signs, edit_indices, edit_calls, edit_numbers, edit_factors, edit_shapes]
-    for edits in [edit_names] if nearby else kinds:
-        for low, high, new in edits(source, parts):
-            yield text[: low - start] + new + text[high - start :]
-    if nearby:
-        yield from wrap(source, value, text)
-
-
-def edit_signs(source: Source, parts: list[Part]) -> Iterator[Edit]:
+def edit_signs(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """Another sign before a term, or another operator."""
     for part in parts:
         if part.kind == "op":
             sign, a, b = part.parts
-            place = find_sign(source.unit, a, b, sign)
-            if place is None:
+            at = find_sign(place.source.unit, a, b, sign)
+            if at is None:
                 continue
-            for other in {"+": "-", "-": "+", "*": "/", "/": "*"}.get(sign, ""):
-                yield place, place + len(sign), other
+            for other in {"+": "-*/", "-": "+*/", "*": "/+-", "/": "*-+"}.get(sign, ""):
+                yield at, at + len(sign), other
         elif part.kind == "minus":
             yield part.span[0], part.parts[0].span[0], ""
     for part in parts:
@@ -283,7 +344,7 @@ def find_sign(unit: Unit, a: Part, b: Part, sign: str) -> int | None:
     return None if place < 0 else a.span[1] + place
 
 
-def edit_indices(source: Source, parts: list[Part]) -> Iterator[Edit]:
+def edit_indices(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """Another index, or two of them exchanged."""
     for part in parts:
         if part.kind not in ("index", "call"):
@@ -293,40 +354,45 @@ def edit_indices(source: Source, parts: list[Part]) -> Iterator[Edit]:
         if part.kind == "index" and inner.kind == "index":
             indices = [p for p in inner.parts[1] if p.kind == "number"] + indices
         if len(indices) == 2:
-            (a, b), texts = indices, [source.unit.text(i) for i in indices]
-            middle = source.unit.source[a.span[1] : b.span[0]].decode()
+            (a, b), texts = indices, [place.source.unit.text(i) for i in indices]
+            middle = place.source.unit.source[a.span[1] : b.span[0]].decode()
             yield a.span[0], b.span[1], f"{texts[1]}{middle}{texts[0]}"
         for index in indices:
-            for other in range(source.unit.rules.first, 8 + source.unit.rules.first):
+            for other in range(place.source.unit.rules.first, 8 + place.source.unit.rules.first):
                 yield *index.span, str(other)
 
 
-def edit_calls(source: Source, parts: list[Part]) -> Iterator[Edit]:
+def edit_calls(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """sin for cos, and the like; a root less, or more."""
-    root = ROOTS[source.unit.language]
+    root, functions = ROOTS[place.source.unit.language], place.source.unit.functions
     for part in parts:
+        if part.kind == "call":
+            for name in sorted(functions):
+                if name != part.parts[0] and len(functions[name][0].arguments) == len(part.parts[1]):
+                    yield part.span[0], part.span[0] + len(part.parts[0]), name
         if part.kind == "call" and part.parts[0] in SWAPS:
             low = part.span[0]
-            yield low, low + len(part.parts[0]), SWAPS[part.parts[0]]
+            for name in SWAPS[part.parts[0]]:
+                yield low, low + len(part.parts[0]), name
         if part.kind == "call" and part.parts[0].endswith(("sqrt", "sqrtf")) and len(part.parts[1]) == 1:
-            yield *part.span, source.unit.text(part.parts[1][0])
+            yield *part.span, place.source.unit.text(part.parts[1][0])
     for part in parts:
         if part.kind in ("name", "index"):
-            yield *part.span, root.format(source.unit.text(part))
+            yield *part.span, root.format(place.source.unit.text(part))
 
 
-def edit_numbers(source: Source, parts: list[Part]) -> Iterator[Edit]:
+def edit_numbers(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """Another small number, a half or the double."""
     for part in parts:
         if part.kind == "number":
-            text = source.unit.text(part)
-            tail = ".0" if "." in text else ""
+            text = place.source.unit.text(part)
+            sign, tail = "-" * text.startswith("-"), ".0" if "." in text else ""
             for number in (*NUMBERS, "0.5", "0.25"):
-                yield *part.span, number if "." in number else number + tail
+                yield *part.span, sign + number + tail * ("." not in number)
             yield *part.span, f"2*{text}"
 
 
-def edit_factors(source: Source, parts: list[Part]) -> Iterator[Edit]:
+def edit_factors(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """A factor or term less, a square in the place of a factor, and the other way round."""
     for part in parts:
         if part.kind == "op":
@@ -335,22 +401,37 @@ def edit_factors(source: Source, parts: list[Part]) -> Iterator[Edit]:
             yield a.span[0], b.span[0], ""
     for part in parts:
         if part.kind in ("name", "index", "call"):
-            text = source.unit.text(part)
+            text = place.source.unit.text(part)
             yield *part.span, f"({text}*{text})"
             for factor in ("2", "0.5"):
                 yield *part.span, f"{factor}*{text}"
 
 
-def edit_names(source: Source, parts: list[Part]) -> Iterator[Edit]:
-    """Another name of the function in the place of one."""
-    names = nearby_names(source)
+def edit_names(place: Place, parts: list[Part]) -> Iterator[Edit]:
+    """Another name of the function in the place of one, first arrays for arrays; another entry or number for one."""
+    arrays = list_arrays(place.function)
+    known = sorted(arrays | names_in(*place.function.body) | {a.name for a in place.function.arguments})
+    for is_like in (True, False):
+        for part in parts:
+            for name in known if part.kind == "name" else ():
+                if ((name in arrays) == (part.parts[0] in arrays)) is is_like and name != part.parts[0]:
+                    yield *part.span, name
+        for part in parts:
+            if part.kind == "call" and (part.parts[0] in arrays) is is_like:
+                for name in sorted(arrays - {part.parts[0]}):
+                    yield part.span[0], part.span[0] + len(part.parts[0]), name
     for part in parts:
-        if part.kind in ("name", "index"):
-            for name in names:
+        if part.kind in ("name", "index", "number"):
+            for name in nearby_names(place.source):
                 yield *part.span, name
+
+
+def add_names(place: Place, parts: list[Part]) -> Iterator[Edit]:
+    """One more name of the function, as a factor or a term."""
+    names = nearby_names(place.source)
     for part in parts:
         if part.kind in ("name", "index", "call"):
-            text = source.unit.text(part)
+            text = place.source.unit.text(part)
             for name in names:
                 yield *part.span, f"{text}*{name}"
                 yield *part.span, f"({text} + {name})"
@@ -365,9 +446,9 @@ def nearby_names(source: Source) -> list[str]:
     return list(dict.fromkeys([*scalars, *entries]))[:MOST_NAMES]
 
 
-def edit_shapes(source: Source, parts: list[Part]) -> Iterator[Edit]:
+def edit_shapes(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """A transposition more or less, and factors exchanged."""
-    mark = TRANSPOSED.get(source.unit.language)
+    mark = TRANSPOSED.get(place.source.unit.language)
     for part in parts:
         if mark and part.kind == "name":
             yield part.span[1], part.span[1], mark
@@ -376,25 +457,30 @@ def edit_shapes(source: Source, parts: list[Part]) -> Iterator[Edit]:
         pair = part.parts[1:] if part.kind == "op" else part.parts[1][:2] if part.kind == "call" else ()
         if len(pair) == 2:
             a, b = pair
-            middle = source.unit.source[a.span[1] : b.span[0]].decode("utf-8", "replace")
-            yield a.span[0], b.span[1], f"{source.unit.text(b)}{middle}{source.unit.text(a)}"
+            middle = place.source.unit.source[a.span[1] : b.span[0]].decode("utf-8", "replace")
+            yield a.span[0], b.span[1], f"{place.source.unit.text(b)}{middle}{place.source.unit.text(a)}"
 
 
-def wrap(source: Source, value: Part, text: str) -> Iterator[str]:
-    """The whole right side with a factor."""
-    inside = f"({text})" if value.kind == "op" and value.parts[0] in "+-" else text
-    for factor in ("2", "0.5", *nearby_names(source)):
-        yield f"{factor}*{inside}"
-    for name in nearby_names(source):
-        yield f"{inside}/{name}"
-        yield f"{text} + {name}"
-        yield f"{text} - {name}"
+SMALL_EDITS = (edit_signs, edit_indices, edit_calls, edit_numbers, edit_factors, edit_shapes)
+
+
+def wrap(place: Place, parts: list[Part]) -> Iterator[Edit]:
+    """The whole right side with a factor or a term."""
+    source, (low, high) = place.source, place.part.span
+    text = source.unit.text(place.part)
+    inside = f"({text})" if place.part.kind == "op" and place.part.parts[0] in "+-" else text
+    names = nearby_names(source)
+    for factor in ("2", "0.5", *names):
+        yield low, high, f"{factor}*{inside}"
+    for name in names:
+        for new in (f"{inside}/{name}", f"{text} + {name}", f"{text} - {name}"):
+            yield low, high, new
     product = "@" if source.unit.language == "python" else "*"
     mark = TRANSPOSED.get(source.unit.language)
     shapes = {name: variable.shape for name, variable in source.read().cases[0].variables.items()}
     for name in [name for name, shape in shapes.items() if mark and shape and len(shape) == 2]:
-        yield f"{name} {product} ({text})"
-        yield f"{name}{mark} {product} ({text})"
+        yield low, high, f"{name} {product} ({text})"
+        yield low, high, f"{name}{mark} {product} ({text})"
 
 
 def rewrite(source: Source, expected: Tree) -> Iterator[str]:

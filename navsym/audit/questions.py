@@ -33,7 +33,7 @@ from navsym.audit.values import (
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, ShapeError, UnknownSymbolError
 from navsym.language.expression import read_tree
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
-from navsym.language.schema import as_list, as_table, as_text, as_title, require_key
+from navsym.language.schema import Table, as_list, as_table, as_text, as_title, require_key
 from navsym.language.tree import ONE, SYMBOL, Tree, list_parts, replace
 
 MOST_CASES = 64
@@ -43,6 +43,11 @@ MATRIX_KEYS = ("F", "G", "H", "Q", "R")
 
 #: What is said about a question in a workspace, as about a claim.
 NOTES = ("title", "expect", "corrects", "reason")
+#: In which sense two formulas are equal, the strongest first; a question admits others than the first two.
+SENSES = ("exact", "manifold", "tangent", "order", "approximation", "noise-sign", "renamed")
+#: The keys of questions about the entries of matrices, and of all that are equations, beside their own.
+MATRIX_SENSES = ("by", "noise")
+SENSE_KEYS = ("senses", "order")
 #: The keys of each kind of question.
 KINDS = {
     "jacobian": ("of", "by", "is"),
@@ -71,6 +76,7 @@ class Entry:
     conditions : of the case in which both hold
     source     : of the code
     again      : both formulas in another case, for code that is read again with a mend
+    asking     : the question in this case, and the key of it that the matrix belongs to
     """
 
     place: tuple[int, int]
@@ -79,6 +85,8 @@ class Entry:
     conditions: tuple[Condition, ...]
     source: Source | None = None
     again: Callable[[Case], tuple[Cell, Cell]] | None = None
+    asking: Asking | None = None
+    key: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,6 +101,10 @@ class Question:
     names: Names
     folder: Path
 
+    def relations(self) -> tuple[Tree, ...]:
+        """What is zero by the mappings of all sources."""
+        return tuple(dict.fromkeys(relation for source in self.sources.values() for relation in source.relations))
+
 
 def read_question(block: Any, sources: Mapping[str, Source], names: Names, folder: Path, where: str) -> Question:
     """One ``[[question]]`` block."""
@@ -101,11 +113,58 @@ def read_question(block: Any, sources: Mapping[str, Source], names: Names, folde
     if kind not in KINDS:
         message = f"expected one of {' '.join(KINDS)}; got {quote(kind)}; correct it: {suggest_nearest(kind, KINDS)}"
         raise ExpressionSyntaxError(message, where=join_place(where, "kind"))
-    expect_keys(table, ("name", "kind", *NOTES, *KINDS[kind]), where)
+    expect_keys(table, ("name", "kind", *NOTES, *KINDS[kind], *more_keys(kind)), where)
     for key in KINDS[kind] if kind != "model" else ("file",):
         require_key(table, key, where)
     name = as_title(table.get("name", kind), join_place(where, "name"))
-    return Question(name, kind, table, where, sources, names, folder)
+    question = Question(name, kind, table, where, sources, names, folder)
+    read_senses(question)
+    return question
+
+
+def more_keys(kind: str) -> tuple[str, ...]:
+    """The keys that say in which sense the sides have to be equal."""
+    if kind == "dead":
+        return ()
+    return (*SENSE_KEYS, *(MATRIX_SENSES if kind in ("jacobian", "equal", "claim", "model") else ()))
+
+
+def read_senses(question: Question) -> None:
+    """Refuse a sense that a kind of question does not have, or that lacks what it needs."""
+    keys, where = question.keys, join_place(question.where, "senses")
+    noise = keys.get("noise", "any")
+    if noise not in ("any", "independent"):
+        message = f'expected "any" or "independent"; got {quote(noise)}; correct it'
+        raise ExpressionSyntaxError(message, where=join_place(question.where, "noise"))
+    if "order" in keys:
+        read_order_key(
+            as_table(keys["order"], join_place(question.where, "order")), join_place(question.where, "order")
+        )
+    needs = {
+        "order": ("order" in keys, "order = { of, up_to }"),
+        "approximation": (any(s.approximations for s in question.sources.values()), "approximations below [[code]]"),
+        "tangent": ("by" in keys and bool(question.relations()), "by, and relations below [[code]]"),
+        "noise-sign": ("noise" in keys, 'noise = "any" or "independent"'),
+        "renamed": (True, ""),
+    }
+    known = [*needs][: 2 if "noise" not in more_keys(question.kind) else None]
+    for sense in as_list(keys["senses"], where) if "senses" in keys else ():
+        if sense not in known:
+            raise ExpressionSyntaxError(
+                f"expected one of {' '.join(known)}; got {quote(sense)}; correct it", where=where
+            )
+        is_there, what = needs[sense]
+        if not is_there:
+            raise DomainError(f"expected {what} for the sense {sense}; got none; declare it", where=where)
+
+
+def read_order_key(table: Table, where: str) -> None:
+    """``{ of = ["model:dt"], up_to = 2 }``."""
+    expect_keys(table, ("of", "up_to"), where)
+    require_key(table, "of", where)
+    if type(require_key(table, "up_to", where)) is not int or not 0 <= table["up_to"] <= 7:
+        message = f"expected an order from 0 to 7; got {quote(table['up_to'])}; correct it"
+        raise DomainError(message, where=join_place(where, "up_to"))
 
 
 def list_entries(question: Question) -> list[Entry]:
@@ -296,7 +355,7 @@ class Asking:
         """Entries of two values of one shape."""
         if isinstance(code, Unread) or isinstance(expected, Unread):
             is_, should = (v if isinstance(v, Unread) else Scalar(ONE) for v in (code, expected))
-            return [Entry((1, 1), is_, should, self.conditions)]
+            return [Entry((1, 1), is_, should, self.conditions, asking=self, key=key)]
         shapes = [v.shape if isinstance(v, Array) else () for v in (code, expected)]
         if isinstance(expected, Array) and isinstance(code, Array) and len(code.cells) == len(expected.cells):
             shapes[1] = shapes[0]
@@ -309,7 +368,8 @@ class Asking:
             if upper and len(place) == 2 and place[0] > place[1] and isinstance(is_, Unread):
                 continue  # the lower half of a symmetric matrix, which the code leaves alone
             row = (place[0] + 1, place[1] + 1) if len(place) == 2 else (place[0] + 1, 1) if place else (1, 1)
-            entries.append(Entry(row, is_, should, self.conditions, *self.repeat(key, number, should)))
+            again = self.repeat(key, number, should)
+            entries.append(Entry(row, is_, should, self.conditions, *again, self, key))
         return entries
 
     def repeat(
@@ -346,13 +406,14 @@ class Asking:
         by = self.inputs(self.question.keys["by"], "by")
         given = self.resolve(self.question.keys["is"], "is")
         shape = (len(of), len(by))
-        if isinstance(given, Array) and len(given.cells) != len(of) * len(by):
-            message = f"expected {len(of)} rows and {len(by)} columns; got {list(given.shape)}; correct of or by"
+        if isinstance(given, Unread):
+            given = Array(shape, (given,) * (len(of) * len(by)))
+        if len(cells_of(given)) != len(of) * len(by):
+            got = list(given.shape) if isinstance(given, Array) else "a number"
+            message = f"expected {len(of)} rows and {len(by)} columns; got {got}; correct of or by"
             raise ShapeError(message, where=self.place("is"))
         expected = make_array(shape, lambda i, j: derivative(of[i], by[j]))
-        if not isinstance(given, Array):
-            given = Array((1, 1), (given,))
-        return self.pair(Array(shape, given.cells), expected, "is")
+        return self.pair(Array(shape, cells_of(given)), expected, "is")
 
     def ask_covariance(self) -> list[Entry]:
         F, Q, new = (self.matrix(key) for key in ("F", "Q", "is"))

@@ -21,7 +21,7 @@ from navsym.language.expression import read_tree
 from navsym.language.files import decode, name_file, read_bytes
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
 from navsym.language.schema import Table, as_list, as_table, as_text, require_key
-from navsym.language.tree import ONE, ZERO, Tree, build_sum, negate
+from navsym.language.tree import NUMBER, ONE, POWER, PRODUCT, SUM, ZERO, Tree, build_sum, negate
 
 LANGUAGES = {
     **dict.fromkeys((".c", ".h"), "c"),
@@ -33,8 +33,8 @@ LANGUAGES = {
 LARGEST_SIDE = 64
 #: The keys of a block ``[[code]]``.
 KEYS = (
-    "name", "file", "function", "lines", "also", "defined", "relations", "symbols", "constants", "functions", "ignored",
-    "language",
+    "name", "file", "function", "lines", "also", "defined", "relations", "approximations", "symbols", "constants",
+    "functions", "ignored", "language",
 )  # fmt: skip
 
 
@@ -46,6 +46,7 @@ class Source:
     symmetric : names of matrices whose lower half is the upper one
     relations : polynomials of the inputs that are zero
     starts    : spelling of an entry -> the number that it holds at the beginning
+    approximations : what may be put for what in the sense of that name
     """
 
     name: str
@@ -58,6 +59,7 @@ class Source:
     reading: Reading | None = None
     mirrored: dict[str, str] | None = None
     starts: Mapping[str, Tree] = field(default_factory=dict)
+    approximations: tuple[tuple[Tree, Tree], ...] = ()
 
     def symbol(self, spelling: str) -> Tree:
         """The symbol of an input; of a symmetric matrix that of the upper half."""
@@ -214,10 +216,13 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
     }
     source = Source(texts["name"], unit, function, names, shapes, symmetric, (), starts=starts)
     names.inputs |= list_inputs(source, whole)
-    listed = as_list(table["relations"], join_place(where, "relations")) if "relations" in table else []
-    source.relations = tuple(
-        read_relation(text, names, join_place(join_place(where, "relations"), i)) for i, text in enumerate(listed)
-    )
+    relations, approximations = (read_equations(table, key, names, where) for key in ("relations", "approximations"))
+    source.relations = tuple(build_sum(left, negate(right)) for left, right in relations)
+    for left, right in approximations:
+        if left.head in (NUMBER, SUM, PRODUCT, POWER, "pi") or left is right:
+            message = "expected a name or a function on the left; got something else; write sin(a) = a, or w1 = w0"
+            raise DomainError(message, where=join_place(where, "approximations"))
+    source.approximations = tuple(approximations)
     return source
 
 
@@ -310,10 +315,14 @@ def read_start(declaration: Table, where: str) -> bool:
     return "start" in declaration and bool({"matrix", "vector"} & {*declaration})
 
 
-def read_relation(text: Any, names: Names, where: str) -> Tree:
-    """``left = right`` as the polynomial left - right."""
-    sides = as_text(text, where, "a relation").split("=")
-    if len(sides) != 2:
-        raise ExpressionSyntaxError(f"expected one = in a relation; got {quote(text)}; correct it", where=where)
-    left, right = (read_tree(names.translate(side, where), names.declarations, where=where) for side in sides)
-    return build_sum(left, negate(right))
+def read_equations(table: Table, key: str, names: Names, where: str) -> list[tuple[Tree, Tree]]:
+    """A list of ``left = right`` as pairs."""
+    pairs, place = list[tuple[Tree, Tree]](), join_place(where, key)
+    for i, text in enumerate(as_list(table[key], place) if key in table else ()):
+        own = join_place(place, i)
+        sides = as_text(text, own, "an equation").split("=")
+        if len(sides) != 2:
+            raise ExpressionSyntaxError(f"expected one = in an equation; got {quote(text)}; correct it", where=own)
+        left, right = (read_tree(names.translate(side, own), names.declarations, where=own) for side in sides)
+        pairs.append((left, right))
+    return pairs

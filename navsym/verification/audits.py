@@ -116,5 +116,7 @@ def write_finding(question: AuditedQuestion) -> dict[str, Any]:
     remarks = [
         f"[{e.entry[0]},{e.entry[1]}] {e.status} at {Path(e.file).name}:{e.line}: {e.remark()}" for e in failed[:SHOWN]
     ]
-    certificates = [entry.certificate for entry in question.entries if entry.certificate is not None]
-    return {"status": str(question.status), "evidence": "; ".join([counted, *remarks]), "certificates": certificates}
+    if question.status.holds and question.sense != "exact":
+        counted += f" in the sense {question.sense}"
+    evidence = "; ".join([counted, *remarks])
+    return {"status": str(question.status), "evidence": evidence, "certificates": question.certificates()}

@@ -8,7 +8,7 @@ import pytest
 from jsonschema import Draft7Validator
 
 import navsym as nav
-from navsym.audit.questions import KINDS, NOTES
+from navsym.audit.questions import KINDS, NOTES, more_keys
 from navsym.claims import Status
 from navsym.claims.workspace import ENDINGS, SCHEMAS
 from navsym.language import shapes
@@ -50,7 +50,8 @@ def test_the_schemas_have_the_keys_that_the_readers_have():
     assert set(schema("models")["properties"]) == {*modelfile.TABLES, *modelfile.BESIDE}
     question = schema("audits")["properties"]["question"]["items"]["properties"]
     assert set(question["kind"]["enum"]) == set(KINDS)
-    assert set(question) == {"name", "kind", *NOTES, *(key for keys in KINDS.values() for key in keys)}
+    own = {key for kind, keys in KINDS.items() for key in (*keys, *more_keys(kind))}
+    assert set(question) == {"name", "kind", *NOTES, *own}
     assert set(schema("workspace")["properties"]["workspace"]["properties"]) == set(ENDINGS)
 
 

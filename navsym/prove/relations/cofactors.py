@@ -1,8 +1,8 @@
-"""A term as a sum of hypotheses with cofactors, by linear algebra of bounded degree: f = sum c_k h_k.
+"""A term as a sum of hypotheses with cofactors: f = sum c_k h_k, by division or by linear algebra of bounded degree.
 
-The monomials of f are the first ones; every product of a monomial and a hypothesis of which a term is among them is an
-unknown, and brings its other terms along. The system is solved modulo a prime and its solution guessed as fractions;
-the checker multiplies out.
+Division by one hypothesis after the other is tried first. Then the monomials of f are the first ones; every product of
+a monomial and a hypothesis of which a term is among them is an unknown, and brings its other terms along. The system is
+solved modulo a prime and its solution guessed as fractions; the checker multiplies out.
 """
 
 from __future__ import annotations
@@ -41,9 +41,10 @@ def by_cofactors(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     own = [*relations, *list_own_relations(parts, generators, ring)]
     roots = [k for k, part in enumerate(parts) if part[0] == "sqrt"]
     most = FEW_UNKNOWNS if any(m[k] % 2 for m in read_terms(top) for k in roots) else MOST_UNKNOWNS
+    divisors = write_divisors(bottom, goal, generators, ring)
     for found in find_cofactors(top - rest * bottom, own, most):
         shares = [
-            write_share(c, down, bottom, parts) if c else "0"
+            write_share(c, down, divisors, parts) if c else "0"
             for c, (_, down) in zip(found, quotients[1:], strict=False)
         ]
         yield {"rule": "modulo", "to": str(rest), "cofactors": shares, "defined": Holes(), "proof": Hole()}
@@ -100,7 +101,9 @@ def list_own_relations(parts: Sequence[Term], generators: Any, ring: Any) -> Ite
 def find_cofactors(
     target: fmpq_mpoly, relations: Sequence[fmpq_mpoly], most: int = MOST_UNKNOWNS
 ) -> Iterator[list[Polynomial]]:
-    """Cofactors of the relations with sum c_k h_k = target, with more and more unknowns."""
+    """Cofactors of the relations with sum c_k h_k = target: by division, then with more and more unknowns."""
+    if (divided := divide(target, relations)) is not None:
+        yield divided
     wanted = read_terms(target)
     tables = [read_terms(h) for h in relations]
     monomials, columns = dict.fromkeys(wanted), dict[tuple[int, Exponents], Polynomial]()
@@ -121,6 +124,15 @@ def find_cofactors(
             yield [{m: c for (j, m), c in solution.items() if j == k} for k in range(len(relations))]
         if not fresh:
             return
+
+
+def divide(target: fmpq_mpoly, relations: Sequence[fmpq_mpoly]) -> list[Polynomial] | None:
+    """The quotients by one relation after the other; None where a rest is left."""
+    cofactors, rest = [0 * target for _ in relations], target
+    for k, relation in [*enumerate(relations)] * 2:
+        quotient, rest = divmod(rest, relation)
+        cofactors[k] += quotient
+    return [read_terms(c) for c in cofactors] if rest == 0 else None
 
 
 def read_terms(polynomial: fmpq_mpoly) -> Polynomial:
@@ -163,13 +175,20 @@ def guess_fraction(residue: int) -> fmpq | None:
     return fmpq(s, u) if u and abs(u) < 1 << 30 else None
 
 
-def write_share(cofactor: Polynomial, above: fmpq_mpoly, below: fmpq_mpoly, parts: Sequence[Term]) -> str:
+def write_share(cofactor: Polynomial, above: fmpq_mpoly, divisors: str, parts: Sequence[Term]) -> str:
     """c D_k/D as text: h_k is H_k/D_k, and f is N/D."""
-    text = write_polynomial(cofactor, parts)
-    for mark, polynomial in (("*", above), ("/", below)):
-        if polynomial != 1:
-            text = f"({text}){mark}({write_polynomial(read_terms(polynomial), parts)})"
-    return text
+    text = f"({write_polynomial(cofactor, parts)}){divisors}"
+    return text if above == 1 else f"{text}*({write_polynomial(read_terms(above), parts)})"
+
+
+def write_divisors(bottom: fmpq_mpoly, goal: Any, generators: dict[Term, fmpq_mpoly], ring: Any) -> str:
+    """A division by a polynomial: by the goal's own divisors, known to be != 0, as far as they are factors."""
+    text, rest = "", bottom
+    for _, part in player.conditions(goal.term):
+        own, below = player.to_quotient(part, generators, ring)
+        while below == 1 and not own.is_constant() and divmod(rest, own)[1] == 0:
+            rest, text = divmod(rest, own)[0], f"{text}/({write_term(part)})"
+    return text if rest == 1 else f"{text}/({write_polynomial(read_terms(rest), [*generators])})"
 
 
 def write_polynomial(terms: Polynomial, parts: Sequence[Term]) -> str:

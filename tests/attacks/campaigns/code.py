@@ -35,10 +35,12 @@ GALLERY = Path(__file__).resolve().parents[3] / "examples" / "audit" / "gallery"
 CLAIMS = ("alpha_beta_filter:5", "alpha_beta_filter:4")
 TOKEN = re.compile(r"[A-Za-z_]\w*|\d+\.?\d*(?:[eE][+-]?\d+)?f?|[-+*/]=?|\S")
 BODY = re.compile(r"^[a-z][\w ]* \w+\([^)]*\)\s*\{(.*?)^\}", re.MULTILINE | re.DOTALL)
-SIGNS = {"+": "-", "-": "+", "*": "/", "/": "*", "+=": "-=", "-=": "+="}
+SIGNS = {sign: [*"+-*/"] for sign in "+-*/"} | {"+=": ["-="], "-=": ["+="]}
+NUMBERS = ("0.0", "1.0", "2.0", "3.0", "0.5", "0.25")
 CALLS = {"sin": "cos", "cos": "sin", "sinf": "cosf", "cosf": "sinf", "sqrt": "cos", "tan": "sin"}
 #: Every how many of the refuted mutants a mend is sought.
 MENDED = 50
+SIDES = ("before", "after")
 POINTS = 4
 #: What a compiled function may take.
 SECONDS = 2.0
@@ -80,8 +82,8 @@ class Subject:
 
 @functools.cache
 def list_subjects() -> list[Subject]:
-    """The functions ``after`` of the gallery, and exported ones."""
-    texts = [(path.stem, path.read_text(), "after") for path in sorted(GALLERY.glob("*.c"))]
+    """The functions ``before`` and ``after`` of the gallery, and exported ones."""
+    texts = [(f"{path.stem}.{f}", path.read_text(), f) for path in sorted(GALLERY.glob("*.c")) for f in SIDES]
     with tempfile.TemporaryDirectory() as folder:
         for claim in CLAIMS:
             try:
@@ -102,7 +104,8 @@ def plain_c(text: str) -> str:
 
 def list_mutants(subject: Subject) -> list[str]:
     """The source with one token of the function, or of what it calls, replaced: all that there are."""
-    bodies = [body.span(1) for body in BODY.finditer(subject.text) if not re.search(r"\bbefore\(", body[0])]
+    other = next((side for side in SIDES if side != subject.function), "")
+    bodies = [body.span(1) for body in BODY.finditer(subject.text) if not re.search(rf"\b{other}\(", body[0])]
     return [mutant for body in bodies for mutant in mutate_body(subject.text, *body)]
 
 
@@ -120,13 +123,15 @@ def mutate_body(text: str, start: int, end: int) -> list[str]:
 
 def list_changes(token: str, names: list[str]) -> list[str]:
     """What may stand in the place of a token."""
-    if token in SIGNS or token in CALLS:
-        return [(SIGNS | CALLS)[token]]
+    if token in CALLS:
+        return [CALLS[token]]
     if re.fullmatch(r"\d+", token):
-        return [str(n) for n in range(4) if str(n) != token]
-    if token[0].isdigit():
-        return ["2.0", "0.5", "3.0", "1.0"]
-    return [name for name in names if name != token] if token in names else []
+        others = [str(n) for n in range(6)]
+    elif token[0].isdigit():
+        others = [*NUMBERS]
+    else:
+        others = SIGNS.get(token, [*names, *NUMBERS[:3]] if token in names else [])
+    return [other for other in others if other != token]
 
 
 # What a compiler says

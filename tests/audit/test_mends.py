@@ -1,0 +1,93 @@
+"""Faults of one token are mended: each kind of fault by its own correction, and random ones nearly always."""
+
+from __future__ import annotations
+
+import random
+import shutil
+from collections import Counter
+
+import pytest
+
+import navsym as nav
+from tests.attacks.campaigns.code import decide_mutant, list_mutants, list_subjects
+
+HEAD = "#include <math.h>\nstatic double product(double a, double b)\n{\n    return a - 2*b;\n}\n"
+START = "void f(const double x[3], double dt, double s, double c, double y[3])\n{\n"
+ORIGINAL = [
+    "const double r = s*x[0] - c*x[1];",
+    "const double k = dt*dt*x[2];",
+    "y[0] = 1.0; y[1] = dt;",
+    "for (int i = 0; i < 2; i++) { y[0] += r*x[i] + c; }",
+    "y[2] = product(r, k) + sqrt(x[0]*x[0] + 4.0)*dt;",
+]
+LAST = "product(r, k) + sqrt(x[0]*x[0] + 4.0)*dt"
+#: Kind of fault: the line, what stands there, what a fault makes of it, and what the mend says.
+FAULTS = {
+    "sign": (0, "- c*x[1]", "+ c*x[1]", "s*x[0] - c*x[1]"),
+    "index": (0, "s*x[0]", "s*x[2]", "s*x[0] - c*x[1]"),
+    "factor": (4, "4.0", "2.0", LAST),
+    "power": (1, "dt*dt*", "dt*", "(dt*dt)*x[2]"),
+    "missing term": (3, " + c;", ";", "r*x[i] + c"),
+    "operator": (1, "dt*dt*", "dt/dt*", "dt*dt*x[2]"),
+    "swapped argument": (4, "product(r, k)", "product(k, r)", LAST),
+    "function": (4, "sqrt(x", "cos(x", LAST),
+    "name": (0, "- c*", "- dt*", "s*x[0] - c*x[1]"),
+    "array": (3, "r*x[i]", "r*y[i]", "r*x[i] + c"),
+    "target": (4, "y[2] =", "y[0] =", f"y[2] = {LAST}"),
+    "declared name": (1, "double k", "double r", "k = dt*dt*x[2]"),
+    "bound of a loop": (3, "i < 2", "i < 1", "2"),
+}
+
+
+def audit_fault(folder, line, old, new):
+    """The question whether the code with a fault computes the same as the code without."""
+    lines = [*ORIGINAL]
+    assert lines[line].count(old) == 1
+    lines[line] = lines[line].replace(old, new)
+    for name, body in (("right", ORIGINAL), ("wrong", lines)):
+        (folder / f"{name}.c").write_text("\n    ".join([HEAD + START, *body, "\n}\n"]))
+    spec = "".join(f'[[code]]\nname = "{n}"\nfile = "{n}.c"\nfunction = "f"\n' for n in ("right", "wrong"))
+    question = '[[question]]\nname = "same"\nkind = "equal"\nleft = "wrong:y"\nright = "right:y"\n'
+    (folder / "spec.toml").write_text(spec + question)
+    return nav.audit(folder / "spec.toml")["same"]
+
+
+@pytest.mark.parametrize("kind", FAULTS)
+def test_each_kind_of_fault_is_mended(kind, tmp_path):
+    line, old, new, mend = FAULTS[kind]
+    question = audit_fault(tmp_path, line, old, new)
+    refuted = [entry for entry in question.entries if entry.status == nav.REFUTED]
+    assert refuted and all(entry.suggestion for entry in refuted)
+    assert mend.replace(" ", "") in {entry.suggestion.replace(" ", "") for entry in refuted}
+
+
+def test_a_fault_of_two_places_is_not_mended_by_one_and_no_suggestion_is_made_up(tmp_path):
+    lines = ["const double r = s*x[0] - c*x[1];", "const double k = dt*dt*x[2];"]
+    wrong = (
+        HEAD
+        + START
+        + "\n".join([lines[0].replace("-", "+"), lines[1].replace("dt*dt*", ""), "y[0] = sin(r + k);\n}\n"])
+    )
+    right = HEAD + START + "\n".join([*lines, "y[0] = sin(r + k);\n}\n"])
+    for name, text in (("right", right), ("wrong", wrong)):
+        (tmp_path / f"{name}.c").write_text(text)
+    spec = "".join(f'[[code]]\nname = "{n}"\nfile = "{n}.c"\nfunction = "f"\n' for n in ("right", "wrong"))
+    question = '[[question]]\nname = "same"\nkind = "equal"\nleft = "wrong:y[0]"\nright = "right:y[0]"\n'
+    (tmp_path / "spec.toml").write_text(spec + question)
+    (entry,) = nav.audit(tmp_path / "spec.toml")["same"].entries
+    assert entry.status == nav.REFUTED
+    assert entry.suggestion is None or "dt" in entry.suggestion  # the whole formula, written at the place of the entry
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
+def test_random_faults_of_one_token_are_mended_nearly_always(tmp_path):
+    chosen, counts = random.Random(2026), Counter()
+    subjects = [s for s in list_subjects() if s.function in ("before", "after")]
+    while counts.total() < 12:
+        subject = chosen.choice(subjects)
+        counts.update(
+            [mended]
+            if (mended := decide_mutant(subject, chosen.choice(list_mutants(subject)), tmp_path, True)[1])
+            else []
+        )
+    assert counts["mended"] >= 11
