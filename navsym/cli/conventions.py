@@ -13,6 +13,9 @@ from navsym.cli.output import emit, table
 
 def command(
     file: Annotated[Path, typer.Argument(help="conventions file (TOML) with [model], [roles] and [quantities]")],
+    card: Annotated[
+        Path | None, typer.Option(help="file with the table [card]: is this the card of the model?")
+    ] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Find all conventions under which an error model is right. Status 1 when there are none.
@@ -21,7 +24,7 @@ def command(
     """
     import navsym as nav
 
-    answer = nav.conventions(file)
+    answer = nav.conventions(file, card=card)
     emit(answer.document(), as_json=json_, text=lambda: as_text(answer.document()))
     return 0 if answer.cards else 1
 
