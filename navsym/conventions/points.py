@@ -259,7 +259,8 @@ class Sampler:
             fields = {"central": [-pull * x for x in r], "normal": [self.pick(None, 0.5, 3.0) * x for x in normal]}
             wanted = fields.get(self.card.gravity_gradient)
             return pull, self.settle("gravity", wanted)
-        size_of = self.settle("gravity", None, 0.5, 3.0)[0]
+        parameter = self.card.gravity_gradient == "central" and "gravitational_parameter" in self.problem.quantities
+        size_of = self.settle("gravity", [pull * radius] if parameter else None, 0.5, 3.0)[0]
         if size == 1 and "gravitational_parameter" not in self.problem.quantities:
             pull = size_of / radius
         return pull, [-size_of * x / radius for x in r]

@@ -152,6 +152,8 @@ class Formulas:
             self.derived = {self.texts[f"r{k}"]: r[k] for k in range(3)}
         squares = " + ".join(f"({self.texts[f'r{k}']})**2" for k in range(3))
         radius = self.symbol("radius", f"sqrt({squares})")
+        if self.derived and RN is RE:
+            radius = RN + h
         pull, gravity = self.gravitation(r, radius)
         mean = self.symbol("mean", f"sqrt(({self.texts['RN']})*({self.texts.get('RE', self.texts['RN'])}))")
         return World(
@@ -197,6 +199,7 @@ class Formulas:
     def gravitation(self, r: list[Ratio], radius: Ratio) -> tuple[Ratio, list[Ratio]]:
         """mu/|r|^3, and gravity in the frame or along down."""
         size = len(self.problem.quantities.get("gravity", ()))
+        central = self.card.gravity_gradient == "central"
         if self.card.frame == "local-level":
             down = self.down() if size == 3 else self.symbol("gravity", self.text("gravity"))
             return self.symbol("pull", None), [down]
@@ -205,8 +208,9 @@ class Formulas:
         else:
             pull = self.symbol("pull", None)
         if size == 3:
-            central = self.card.gravity_gradient == "central"
             return pull, [pull * x * -1 for x in r] if central else self.vector("g", "gravity")
+        if central and "gravitational_parameter" in self.problem.quantities:
+            return pull, [pull * x * -1 for x in r]
         scalar = self.symbol("gravity", self.text("gravity"))
         if size == 1 and "gravitational_parameter" not in self.problem.quantities:
             pull = scalar / radius
