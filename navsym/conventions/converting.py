@@ -78,7 +78,12 @@ def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> C
     moved = source
     if frame != source.frame and frame in CHOICES["frame"]:
         words = {"frame": frame, **changes}
-        sizes = len(given.get("radii", ())), "height" in given, "earth_rate" in given
+        sizes = (
+            len(given.get("radii", ())),
+            "height" in given,
+            "earth_rate" in given,
+            "velocity" in problem.roles and "position" not in problem.roles,
+        )
         moved = change_frame(source, words, *sizes)
     curved = moved.frame == "local-level" and moved.earth != "none"
     names = [n for n in CONVERTED if getattr(moved, n) is not None and (curved or n != "position_error")]

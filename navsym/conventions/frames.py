@@ -199,14 +199,16 @@ def turn_state(A: Grid, x: State, is_geodetic: bool) -> State:
 # The card in another frame
 
 
-def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool, turning: bool) -> Card:
+def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool, turning: bool, alone: bool) -> Card:
     """The card of the same motion in another frame; raises DomainError where no card has its gravity.
 
     words   : frame, and axes and angle of a local level
     radii   : how many radii of the Earth the model has; height : True where it has the height
     turning : True where the model has the rate of the Earth
+    alone   : True for velocities without positions, whose errors would drive them in another frame
     """
     frame = words["frame"]
+    refuse(alone, "position among the roles")
     if LEVEL in (frame, card.frame):
         plain = {"angle": "phi", "vector_error": "difference"}
         for name, word in plain.items():
