@@ -22,6 +22,7 @@ from navsym.conventions.proof import Prover
 from navsym.conventions.reading import Problem
 from navsym.conventions.search import Comparison, change, plain_card
 from navsym.conventions.symbols import Formulas
+from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
 from navsym.language.names import quote
@@ -36,7 +37,7 @@ Texts = tuple[tuple[str, ...], ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Conversion:
+class Conversion(Answer):
     """The same model in the errors of another card.
 
     source, target : the cards
@@ -44,6 +45,7 @@ class Conversion:
     rate           : dT/dt along the true flow
     F, H, G, reset : of the target; empty where the model has none; Q and R stay. In other axes or another frame a
                      measurement stays as it was resolved; the corrections of the reset are those of the target
+    problem        : the model that was converted; ``export`` writes T and its inverse as code
     proved         : True where the checker grants F_to T = T F + T', T inverse = E, H_to T = H and G_to = T G
     """
 
@@ -167,8 +169,8 @@ class Converter:
         """True where the checker grants that formulas are equal, or exact algebra where they are long."""
         if len(x) + len(y) > LONG:
             left, right = self.formulas.read(x), self.formulas.read(y)
-            if left is not None and right is not None:
-                return self.formulas.write(left - right) == "0"
+            if left is not None and right is not None and self.formulas.write(left - right) == "0":
+                return True
         return self.prover.compare(plain_card(self.source), x, y).status == PROVED
 
 
