@@ -184,3 +184,34 @@ def list_curved(flat: Card, radii: int, height: bool) -> Iterator[Card]:
             radius_variation=slope,
             position_error=position,
         )
+
+
+# For people
+
+#: Field -> its heading in the table of cards; fields that say the same for all cards stand above the table.
+HEADINGS: Mapping[str, str] = {
+    "frame": "frame",
+    "axes": "axes",
+    "error": "error of velocity and position",
+    "attitude_error": "attitude error in the",
+    "rotation_sign": "sign of its rotation",
+    "angle": "angle",
+    "bias_sign": "error of the biases",
+    "vector_error": "vector errors",
+    "position_error": "position error",
+    "innovation": "innovation",
+    "earth": "Earth",
+    "earth_rate": "Earth rate",
+    "transport_rate": "transport rate",
+    "gravity_gradient": "gravity gradient",
+    "gravity_radius": "its radius",
+    "centrifugal": "centrifugal term",
+    "height_variation": "change of radii with height",
+    "radius_variation": "change of radii with latitude",
+}
+
+
+def attitude_formula(card: Mapping[str, Any]) -> str:
+    """The definition of the attitude error of a card as JSON data."""
+    small = f"(E {card['rotation_sign']} [p x])"
+    return f"C_est = {small} C" if card["attitude_error"] == "frame" else f"C_est = C {small}"

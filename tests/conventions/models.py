@@ -308,6 +308,7 @@ def navego() -> dict[str, Any]:
     }  # fmt: skip
     return document("avpgb", blocks, quantities, rS="positive", **declared(quantities))
 
+
 def inertial_model(order: str, blocks: Mapping[str, Grid], known: Mapping[str, str] | None = None) -> dict[str, Any]:
     """A model of a flat world with the quantities of a visual-inertial filter."""
     quantities = {"specific_force_body": F_B, "angular_rate": W_B, "rotation": C}
@@ -361,32 +362,29 @@ def gps_imu_fusion_fed_back() -> dict[str, Any]:
 
 
 def openvins() -> dict[str, Any]:
-    """OpenVINS, documentation of its propagation: error of the rotation from the global frame to the body, on its left."""
+    """OpenVINS, documentation of its propagation: error on the left of the rotation from the world to the body."""
     return inertial_model("apvgb", LOCAL, {"error": "truth - estimate"})
 
 
-def navego_2014(gyro: Grid = neg(C), accelerometer: Grid = C) -> dict[str, Any]:
-    """rodralez/NaveGo 04c75bf, F_update.m: Titterton and Weston's (12.28) with one radius and without a gravity gradient."""
+def navego_2014(opposite: bool = False) -> dict[str, Any]:
+    """rodralez/NaveGo 04c75bf, F_update.m, after Titterton and Weston: one radius, no gradient of gravity."""
     document = navego()
     states, F = document["model"]["states"], [list(row) for row in document["model"]["F"]]
     row, column = states.index("x_v2"), states.index("x_p2")
     F[row][column] = "(vN**2 + vE**2)/R**2"
     quantities = {**document["quantities"], "radii": ["R"]}
+    gyro, accelerometer = (C, neg(C)) if opposite else (neg(C), C)
     for side, other, block in (("a", "g", gyro), ("v", "b", accelerometer)):
         for i in range(3):
             for j in range(3):
                 F[states.index(f"x_{side}{i}")][states.index(f"x_{other}{j}")] = block[i][j]
     parameters = {k: v for k, v in document["parameters"].items() if k != "rS"}
-    return document | {
-        "model": {"states": states, "F": F},
-        "quantities": quantities,
-        "parameters": parameters,
-    }
+    return document | {"model": {"states": states, "F": F}, "quantities": quantities, "parameters": parameters}
 
 
 def navego_107() -> dict[str, Any]:
     """The same with the bias blocks that issue 107 of NaveGo quotes: +C for gyros and -C for accelerometers."""
-    return navego_2014(C, neg(C))
+    return navego_2014(opposite=True)
 
 
 def vins_mono() -> dict[str, Any]:
@@ -395,7 +393,7 @@ def vins_mono() -> dict[str, Any]:
 
 
 def pyins() -> dict[str, Any]:
-    """nmayorov/pyins 13e0599, pyins/error_model.py: ENU, velocity error beside the turned velocity, positions in metres."""
+    """nmayorov/pyins 13e0599, pyins/error_model.py: ENU, velocity beside the turned one, position in metres."""
     quantities = {**NED, "velocity": ["vE", "vN", "vU"], "radii": ["RN", "RE", "R0"]}
     m, n = "(RN + h)", "(RE + h)"
     R = [["0", f"-1/{m}", "0"], [f"1/{n}", "0", "0"], [f"tan(L)/{n}", "0", "0"]]
