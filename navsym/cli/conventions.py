@@ -9,10 +9,13 @@ from typing import Annotated, Any
 import typer
 
 from navsym.cli.output import emit, table
+from navsym.conventions.card import HEADINGS, attitude_formula
 
 
 def command(
     file: Annotated[Path, typer.Argument(help="conventions file (TOML) with [model], [roles] and [quantities]")],
+    card: Annotated[Path | None, typer.Option(help="file with a table [card]: is the model right under it?")] = None,
+    html: Annotated[Path | None, typer.Option(help="page to write: cards, and what excludes their neighbours")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Find all conventions under which an error model is right. Status 1 when there are none.
@@ -21,34 +24,17 @@ def command(
     """
     import navsym as nav
 
-    answer = nav.conventions(file)
+    answer = nav.conventions(file, card=card)
+    if html is not None:
+        from navsym.language.files import write_text
+        from navsym.report.conventions_page import conventions_page
+
+        write_text(html, conventions_page(answer))
     emit(answer.document(), as_json=json_, text=lambda: as_text(answer.document()))
     return 0 if answer.cards else 1
 
 
 # Text for people
-
-#: Field -> its heading in the table of cards; fields that say the same for all cards stand above the table.
-FIELDS = {
-    "frame": "frame",
-    "axes": "axes",
-    "error": "error of velocity and position",
-    "attitude_error": "attitude error in the",
-    "rotation_sign": "sign of its rotation",
-    "angle": "angle",
-    "bias_sign": "error of the biases",
-    "vector_error": "vector errors",
-    "position_error": "position error",
-    "innovation": "innovation",
-    "earth": "Earth",
-    "earth_rate": "Earth rate",
-    "transport_rate": "transport rate",
-    "gravity_gradient": "gravity gradient",
-    "gravity_radius": "its radius",
-    "centrifugal": "centrifugal term",
-    "height_variation": "change of radii with height",
-    "radius_variation": "change of radii with latitude",
-}
 
 
 def as_text(data: Mapping[str, Any]) -> str:
@@ -56,7 +42,7 @@ def as_text(data: Mapping[str, Any]) -> str:
     blocks = [cards_text(data["cards"])] if data["cards"] else [conflicts_text(data)]
     if data["excluded"]:
         rows = [
-            (FIELDS[item["field"]], str(item["card"][item["field"]]), item["why"], place_text(item["point"]))
+            (HEADINGS[item["field"]], str(item["card"][item["field"]]), item["why"], place_text(item["point"]))
             for item in data["excluded"]
         ]
         blocks.append(table(["neighbour with another", "namely", "is excluded", "at"], rows))
@@ -68,25 +54,19 @@ def as_text(data: Mapping[str, Any]) -> str:
 
 def cards_text(cards: Sequence[Mapping[str, Any]]) -> str:
     """What all cards share, the formula of the attitude error, and a table of what differs."""
-    shared = [name for name in FIELDS if len({card[name] for card in cards}) == 1 and cards[0][name] is not None]
-    lines = [f"{FIELDS[name]}: {cards[0][name]}" for name in shared]
+    shared = [name for name in HEADINGS if len({card[name] for card in cards}) == 1 and cards[0][name] is not None]
+    lines = [f"{HEADINGS[name]}: {cards[0][name]}" for name in shared]
     if {"attitude_error", "rotation_sign"} <= set(shared):
         lines.append(f"that is: {attitude_formula(cards[0])}")
     dropped = {tuple(map(tuple, card["dropped"])) for card in cards}
     if len(dropped) == 1 and next(iter(dropped)):
         lines.append("dropped: " + "; ".join(f"{row} by {column}" for row, column in next(iter(dropped))))
-    free = [name for name in FIELDS if len({card[name] for card in cards}) > 1]
+    free = [name for name in HEADINGS if len({card[name] for card in cards}) > 1]
     count = "one card" if len(cards) == 1 else f"{len(cards)} cards, that differ in"
     if not free:
         return "\n".join([count, *lines])
     rows = [[str(card[name] or "") for name in free] for card in cards]
-    return "\n".join([*lines, "", count, table([FIELDS[name] for name in free], rows)])
-
-
-def attitude_formula(card: Mapping[str, Any]) -> str:
-    """The definition of the attitude error."""
-    small = f"(E {card['rotation_sign']} [p x])"
-    return f"C_est = {small} C" if card["attitude_error"] == "frame" else f"C_est = C {small}"
+    return "\n".join([*lines, "", count, table([HEADINGS[name] for name in free], rows)])
 
 
 def conflicts_text(data: Mapping[str, Any]) -> str:

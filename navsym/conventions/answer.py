@@ -8,7 +8,8 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from navsym.conventions.card import Card
-from navsym.conventions.converting import Conversion, convert
+from navsym.conventions.converting import Conversion, convert, written
+from navsym.conventions.generating import fill_model
 from navsym.conventions.measuring import RESET_MARK
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
@@ -29,6 +30,7 @@ from navsym.core.balls import precision
 from navsym.core.errors import DomainError
 from navsym.language.files import name_file
 from navsym.language.names import quote
+from navsym.language.schema import require_key
 from navsym.language.tomlfile import read_toml
 
 
@@ -120,6 +122,17 @@ class Conventions(Answer):
             raise DomainError(message, where="convert: card")
         return convert(self.problem, card or self.cards[0], changes)
 
+    def model(self) -> dict[str, Any]:
+        """F, and H, G and reset where there are any, as the table [model] of a file.
+
+        >>> import navsym as nav
+        >>> nav.conventions("examples/card.toml").model()["F"][0][3:6]
+        ['0', '-f3', 'f2']
+        """
+        names = [name for name in ("F", "H", "G", "reset") if getattr(self.problem, name)]
+        matrices = {name: written(getattr(self.problem, name)) for name in names}
+        return {"name": self.name, "states": list(self.problem.states), **matrices}
+
     def document(self) -> dict[str, Any]:
         """The answer as plain data: the JSON document of the verb."""
         return {
@@ -131,6 +144,7 @@ class Conventions(Answer):
             "excluded": [exclusion.document() for exclusion in self.excluded],
             "examined": self.examined,
             "unused": list(self.unused),
+            "model": self.model(),
         }
 
     def __repr__(self) -> str:
@@ -149,6 +163,7 @@ def conventions(
     roles: Mapping[str, Sequence[str]] | None = None,
     quantities: Mapping[str, Any] | None = None,
     known: Mapping[str, str] | None = None,
+    card: Card | Mapping[str, str] | str | os.PathLike[str] | None = None,
 ) -> Conventions:
     """All cards of conventions under which the error dynamics of a model are right.
 
@@ -159,6 +174,8 @@ def conventions(
     roles      : role (position, velocity, attitude, gyro_bias, accelerometer_bias) -> names of its three states
     quantities : quantity (specific_force, rotation, latitude, velocity, radii, ...) -> names or expressions
     known      : parts of the card that are certain, such as ``{"frame": "inertial"}``
+    card       : a card, its words, or the path of a file with the table [card], as the table of a model's file. Without
+                 F the model of the card is derived, and the answer has all cards that are equal to it
 
     With no card the answer names the fewest blocks that must change. Raises a NavsymError for bad input: roles that are
     no states, unknown quantities, wrong numbers of components, a matrix that is no rotation.
@@ -175,7 +192,7 @@ def conventions(
     >>> [(card.attitude_error, card.rotation_sign) for card in answer.cards], answer.complete
     ([('frame', '+')], True)
     """
-    problem = problem_of(model, roles, quantities, known)
+    problem = problem_of(model, roles, quantities, known, card)
     prover, comparison = Prover(problem), Comparison(problem)
     findings = find_candidates(problem, comparison)
     proved = {card: is_card_proved(card, comparison, prover) for card in findings.candidates}
@@ -197,20 +214,29 @@ def conventions(
     )
 
 
-def problem_of(model: Any, roles: Any, quantities: Any, known: Any) -> Problem:
+def problem_of(model: Any, roles: Any, quantities: Any, known: Any, card: Any) -> Problem:
     """The problem that the arguments mean."""
     from navsym.models.model import Model
 
     extra = {"roles": roles, "quantities": quantities, "known": known}
     given = {name: plain_lists(value) for name, value in extra.items() if value is not None}
+    where = name_file(model) if isinstance(model, str | os.PathLike) else "conventions"
     if isinstance(model, str | os.PathLike):
-        return read_problem({**read_toml(model), **given}, name_file(model))
+        model = read_toml(model)
     if isinstance(model, Model):
         model = model.document()
     if not isinstance(model, Mapping):
         message = f"expected a model, a document or the path of a file; got {quote(model)}; give one of these"
         raise DomainError(message, where="conventions: model")
-    return read_problem({**model, **given}, "conventions")
+    document = {**model, **given, **({} if card is None else {"card": words_of(card)})}
+    return read_problem(fill_model(document, where) if "card" in document else document, where)
+
+
+def words_of(card: Any) -> Any:
+    """A card as the table of a file."""
+    if isinstance(card, str | os.PathLike):
+        return require_key(read_toml(card), "card", name_file(card))
+    return card.words() if isinstance(card, Card) else card
 
 
 def plain_lists(value: Any) -> Any:

@@ -23,7 +23,8 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "earth": ("none", "sphere", "ellipsoid"),
     "earth_rate": (KEPT, DROPPED),
     "transport_rate": (KEPT, DROPPED),
-    "gravity_gradient": ("none", "central", "radial", "vertical"),
+    "gravity_gradient": ("none", "central", "radial", "normal", "vertical"),
+    "gravity_radius": tuple(n + h for n in ("R", "RN", "RE", "sqrt(RN*RE)", "third radius") for h in (" + h", "")),
     "centrifugal": (KEPT, DROPPED),
     "height_variation": (KEPT, DROPPED),
     "radius_variation": (KEPT, "position", DROPPED),
@@ -46,7 +47,8 @@ class Card:
     earth            : shape; ``none`` is flat, with constant gravity
     earth_rate, transport_rate, centrifugal, height_variation : terms that are kept or dropped
     radius_variation : dRN/dL and dRE/dL: kept, dropped, or kept in the equations of the position only
-    gravity_gradient : ``central``: of -mu r/|r|^3; ``radial``: -2 g r'/(|r| R); ``vertical``: -2 g/R along down
+    gravity_gradient : ``central``: of -mu r/|r|^3; ``radial``: -2 g r'/(|r| R); ``vertical``: -2 g/R along down;
+                       ``normal``: the same in another frame, where gravity also turns with the normal of the Earth
     gravity_radius   : R of the vertical gradient, in words
     position_error   : ``metres`` along the axes, or ``geodetic`` (latitude, longitude, height)
     vector_error     : ``difference``; ``rotated``: the truth is turned by the attitude error first (right invariant);
@@ -79,6 +81,10 @@ class Card:
         """The card as JSON data."""
         return {**asdict(self), "dropped": [list(block) for block in self.dropped]}
 
+    def words(self) -> dict[str, str]:
+        """What the card says, as the table [card] of a file."""
+        return {name: word for name, word in asdict(self).items() if name in CHOICES and word is not None}
+
     def signs(self) -> dict[str, int]:
         """Role -> +1 where the state is estimate minus truth (for an attitude: the sign of its rotation), else -1."""
         error = 1 if self.error == ESTIMATE else -1
@@ -93,36 +99,46 @@ class Card:
         }
 
 
-def list_structures(roles: frozenset[str], radii: int, frames: tuple[str, ...], height: bool = True) -> Iterator[Card]:
+def list_structures(
+    roles: frozenset[str], radii: int, frames: tuple[str, ...], height: bool = True, placed: bool = False
+) -> Iterator[Card]:
     """Every card without its signs, for a model of these roles.
 
     radii  : how many radii of the Earth are given: with one it is a sphere, with more an ellipsoid, with none either
     frames : the frames to list
     height : False where radii contain the height
+    placed : True where latitude and longitude are given, so that gravity may follow the normal
     """
     vectors = CHOICES["vector_error"] if {"attitude", "velocity"} <= roles else ("difference",)
     sides = CHOICES["attitude_error"] if "attitude" in roles else ("frame",)
     for frame in frames:
         level = frame == "local-level"
-        cards = list(list_level(frame, roles, radii, height) if level else list_cartesian(frame, roles))
+        cards = list(
+            list_level(frame, roles, radii, height) if level else list_cartesian(frame, roles, radii * placed, height)
+        )
         for side, vector in product(sides, vectors):
             for card in cards:
                 yield replace(card, attitude_error=side, vector_error=vector)
 
 
-def list_cartesian(frame: str, roles: frozenset[str]) -> Iterator[Card]:
+def list_cartesian(frame: str, roles: frozenset[str], radii: int = 0, height: bool = True) -> Iterator[Card]:
     """Cards of the inertial frame and of the frame that turns with the Earth."""
     metres = "metres" if "position" in roles else None
-    gradients = {"none": "none", "central": "sphere", "radial": "ellipsoid"} if metres else {"none": "none"}
+    gradients: list[tuple[str, str, str | None]] = [("none", "none", None)]
+    if metres:
+        gradients += [("central", "sphere", None), ("radial", "ellipsoid", None)]
+        shape = "sphere" if radii == 1 else "ellipsoid"
+        gradients += [("normal", shape, name) for name in list_radii(shape, radii, height)] if radii else []
     rates: tuple[str | None, ...] = (KEPT, DROPPED) if frame == "earth" else (None,)
-    for gradient, rate in product(gradients, rates):
+    for (gradient, shape, radius), rate in product(gradients, rates):
         centrifugal: tuple[str | None, ...] = (KEPT, DROPPED) if rate == KEPT and metres else (None,)
         for kept in centrifugal:
             yield Card(
                 frame,
-                earth=gradients[gradient],
+                earth=shape,
                 earth_rate=rate,
                 gravity_gradient=gradient,
+                gravity_radius=radius,
                 centrifugal=kept,
                 position_error=metres,
             )
@@ -140,15 +156,18 @@ def list_level(frame: str, roles: frozenset[str], radii: int, height: bool) -> I
             yield from list_curved(replace(flat, earth=shape), radii, height)
 
 
+def list_radii(shape: str, radii: int, height: bool) -> list[str | None]:
+    """None, and what the radius of the gradient of gravity may be, in words."""
+    names = ("third radius",) if radii == 3 else ("R",) if shape == "sphere" else ("sqrt(RN*RE)", "RN", "RE")
+    return [None, *(name + end for name in names for end in ((" + h", "") if height else ("",)))]
+
+
 def list_curved(flat: Card, radii: int, height: bool) -> Iterator[Card]:
     """The ways to keep and to drop terms over a curved Earth."""
     rates = product((KEPT, DROPPED), repeat=2)
     has_position = flat.position_error is not None
-    radius = {"sphere": ("R",), "ellipsoid": ("sqrt(RN*RE)", "RN", "RE")}[flat.earth]
-    radius = ("third radius",) if radii == 3 else radius
-    gradients: list[tuple[str, str | None]] = [("none", None)]
-    if has_position:
-        gradients += [("vertical", name + end) for name in radius for end in ((" + h", "") if height else ("",))]
+    gradients = [("vertical" if name else "none", name) for name in list_radii(flat.earth, radii, height)]
+    gradients = gradients if has_position else gradients[:1]
     both = (KEPT, DROPPED) if has_position else (KEPT,)
     slopes: tuple[str | None, ...] = (None,)
     if flat.earth == "ellipsoid":
@@ -165,3 +184,34 @@ def list_curved(flat: Card, radii: int, height: bool) -> Iterator[Card]:
             radius_variation=slope,
             position_error=position,
         )
+
+
+# For people
+
+#: Field -> its heading in the table of cards; fields that say the same for all cards stand above the table.
+HEADINGS: Mapping[str, str] = {
+    "frame": "frame",
+    "axes": "axes",
+    "error": "error of velocity and position",
+    "attitude_error": "attitude error in the",
+    "rotation_sign": "sign of its rotation",
+    "angle": "angle",
+    "bias_sign": "error of the biases",
+    "vector_error": "vector errors",
+    "position_error": "position error",
+    "innovation": "innovation",
+    "earth": "Earth",
+    "earth_rate": "Earth rate",
+    "transport_rate": "transport rate",
+    "gravity_gradient": "gravity gradient",
+    "gravity_radius": "its radius",
+    "centrifugal": "centrifugal term",
+    "height_variation": "change of radii with height",
+    "radius_variation": "change of radii with latitude",
+}
+
+
+def attitude_formula(card: Mapping[str, Any]) -> str:
+    """The definition of the attitude error of a card as JSON data."""
+    small = f"(E {card['rotation_sign']} [p x])"
+    return f"C_est = {small} C" if card["attitude_error"] == "frame" else f"C_est = C {small}"

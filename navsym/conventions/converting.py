@@ -1,7 +1,8 @@
 """From one card to another: the transformation of the errors, and the model in them, proved on the user's own texts.
 
-Both errors are defined for the same estimate and truth. The error of one card is put into an estimate and read by the
-definition of the other: T, and along the flow its rate T'. Then F_to T = T F + T', H_to T = H and G_to = T G.
+Both errors are defined for the same estimate and truth. The error of one card is put into an estimate, which is
+carried over where axes or frames differ, and read by the definition of the other: T, and along the flow its rate T'.
+Then F_to T = T F + T', H_to T = H and G_to = T G.
 """
 
 from __future__ import annotations
@@ -12,32 +13,39 @@ from typing import Any
 
 from navsym.claims.verdict import PROVED
 from navsym.conventions.card import CHOICES, Card
-from navsym.conventions.measuring import MEASURED_MARK, NOISE_MARK, RESET_MARK, unit_error
-from navsym.conventions.mechanisation import BIASES, ROLES, Mechanisation
+from navsym.conventions.frames import Passage, change_frame, same_motion
+from navsym.conventions.generating import require_names, write_blocks
+from navsym.conventions.measuring import NOISE_MARK, RESET_MARK, unit_error
+from navsym.conventions.mechanisation import ROLES, Mechanisation
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
 from navsym.conventions.reading import Problem
 from navsym.conventions.search import Comparison, change, plain_card
 from navsym.conventions.symbols import Formulas
+from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
 from navsym.language.names import quote
+from navsym.language.printer import print_tree
 
-#: What a conversion may change: the definition of the errors, not the mechanisation.
+#: What a conversion may change: the definition of the errors, and where they are resolved; not what is kept.
 CONVERTED = (
-    "error", "attitude_error", "angle", "rotation_sign", "bias_sign", "position_error", "vector_error",
+    "error", "attitude_error", "angle", "rotation_sign", "bias_sign", "position_error", "vector_error", "axes", "frame",
 )  # fmt: skip
+LONG = 400  # letters of a statement that are too many for the checker
 Texts = tuple[tuple[str, ...], ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Conversion:
+class Conversion(Answer):
     """The same model in the errors of another card.
 
     source, target : the cards
     T, inverse     : x_to = T x and x = inverse x_to, in the order of the states; P_to = T P T'
     rate           : dT/dt along the true flow
-    F, H, G        : of the target; H and G are empty where the model has none; Q and R stay
+    F, H, G, reset : of the target; empty where the model has none; Q and R stay. In other axes or another frame a
+                     measurement stays as it was resolved; the corrections of the reset are those of the target
+    problem        : the model that was converted; ``export`` writes T and its inverse as code
     proved         : True where the checker grants F_to T = T F + T', T inverse = E, H_to T = H and G_to = T G
     """
 
@@ -49,11 +57,13 @@ class Conversion:
     F: Texts
     H: Texts
     G: Texts
+    reset: Texts
     proved: bool
+    problem: Problem
 
     def document(self) -> dict[str, Any]:
         """The conversion as JSON data."""
-        names = ("T", "inverse", "rate", "F", "H", "G")
+        names = ("T", "inverse", "rate", "F", "H", "G", "reset")
         matrices = {name: [list(row) for row in getattr(self, name)] for name in names}
         return {"from": self.source.document(), "to": self.target.document(), **matrices, "proved": self.proved}
 
@@ -65,8 +75,20 @@ class Conversion:
 
 def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> Card:
     """The card to convert to; raises DomainError for what is no definition of an error, or has no transformation."""
-    curved = source.frame == "local-level" and source.earth != "none"
-    names = [n for n in CONVERTED if getattr(source, n) is not None and (curved or n != "position_error")]
+    given = problem.quantities
+    frame = changes.get("frame", source.frame)
+    moved = source
+    if frame != source.frame and frame in CHOICES["frame"]:
+        words = {"frame": frame, **changes}
+        sizes = (
+            len(given.get("radii", ())),
+            "height" in given,
+            "earth_rate" in given,
+            "velocity" in problem.roles and "position" not in problem.roles,
+        )
+        moved = change_frame(source, words, *sizes)
+    curved = moved.frame == "local-level" and moved.earth != "none"
+    names = [n for n in CONVERTED if getattr(moved, n) is not None and (curved or n != "position_error")]
     for name, word in changes.items():
         if name not in names:
             known = ", ".join(names)
@@ -79,18 +101,18 @@ def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> C
     if dropped:
         got = "; ".join(f"zeros in {row} by {column}" for row, column in dropped)
         raise DomainError(f"expected a model without dropped blocks; got {got}; write them out", where="convert")
-    target = change(source, changes)
+    target = change(moved, changes)
     if "position" in problem.measured and target.position_error != source.position_error:
         message = "expected a measured position in the units of the error; got another unit; convert without it"
         raise DomainError(message, where="convert: position_error")
     return target
 
 
-def transform(source: Mechanisation, target: Mechanisation, role: str, component: int) -> dict[str, list[Any]]:
+def transform(way: Passage, role: str, component: int) -> dict[str, list[Any]]:
     """A column of T and of its rate with every sign plus: role -> nilpotents whose error and mixed part they are."""
-    truth = source.truth()
-    later = truth.advance(source.rate(truth))
-    error = target.compare(source.estimate(later, unit_error(role, component)), later)
+    truth = way.source.truth()
+    later = truth.advance(way.source.rate(truth))
+    error = way.target.compare(*way.carry(way.source.estimate(later, unit_error(role, component)), later))
     return {name: error[name] for name in ROLES}
 
 
@@ -101,55 +123,55 @@ class Converter:
         self.problem, self.source, self.target = problem, source, target
         self.prover, self.comparison = Prover(problem), Comparison(problem)
         self.n = len(problem.states)
+        self.formulas = Formulas(problem, plain_card(source))
 
-    def transformation(self, source: Card, target: Card) -> tuple[list[list[str]], list[list[str]]]:
-        """T and its rate; states without a role stay as they are."""
+    def transformation(self, way: Passage, back: bool = False) -> tuple[list[list[str]], list[list[str]]]:
+        """T and its rate, or its inverse; states without a role stay as they are."""
         T = [["1" if i == j else "0" for j in range(self.n)] for i in range(self.n)]
         rate = [["0"] * self.n for _ in range(self.n)]
-        formulas = Formulas(self.problem, plain_card(source))
-        flows = [Mechanisation(plain_card(card), formulas.world) for card in (source, target)]
-        signs = [card.signs() for card in (source, target)]
+        way = Passage(way.target, way.source) if back else way
+        signs = [self.source.signs(), self.target.signs()]
         for column, places in self.problem.roles.items():
             for k, j in enumerate(places):
-                parts = transform(flows[0], flows[1], column, k)
+                parts = transform(way, column, k)
                 for row, rows in self.problem.roles.items():
-                    sign = signs[1][row] * signs[0][column]
+                    sign = signs[not back][row] * signs[back][column]
                     for i, part in zip(rows, parts[row], strict=True):
-                        T[i][j], rate[i][j] = (formulas.write(x, sign) for x in (part.error, part.mixed))
+                        T[i][j], rate[i][j] = (self.formulas.write(x, sign) for x in (part.error, part.mixed))
         return T, rate
 
-    def matrices(self) -> tuple[list[list[str]], list[list[str]], list[list[str]]]:
-        """F, H and G of the target."""
-        from navsym.language.printer import print_tree
+    def matrices(self, way: Passage, inverse: list[list[str]]) -> list[list[list[str]]]:
+        """F, H, G and the reset of the target."""
+        problem, signs, own = self.problem, self.target.signs(), self.source.signs()
+        matrices = {name: written(getattr(problem, name)) for name in ("F", "H", "G", "reset")}
+        moves = (self.source.frame, self.source.axes) != (self.target.frame, self.target.axes)
 
-        problem, card = self.problem, plain_card(self.target)
-        written = [[[print_tree(x) for x in row] for row in M] for M in (problem.F, problem.H, problem.G)]
-        F, H, G = ([row[:] for row in M] for M in written)
-        signs = self.target.signs()
-        sides = list(problem.roles)
-        blocks = [(F, row, column) for row in sides for column in sides if not {row, column} <= {*BIASES}]
-        blocks += [(H, MEASURED_MARK + kind, column) for kind in problem.measured for column in sides]
-        blocks += [(G, row, NOISE_MARK + noise) for row in sides for noise in problem.noises]
-        for matrix, row, column in blocks:
-            sign = self.comparison.block_sign(self.target, (row, column))
-            if column.startswith(NOISE_MARK):  # the sign of a noise is that of the model as it was
-                own = self.source.signs()
-                sign = signs[row] * own[row] * self.comparison.block_sign(self.source, (row, column))
-            texts = self.prover.block_texts(card, (row, column), sign)
-            for i, line in zip(problem.places(row), texts, strict=True):
-                for j, text in zip(problem.places(column), line, strict=True):
-                    matrix[i][j] = text
-        return F, H, G
+        def sign(block: tuple[str, str]) -> int:
+            if block[1].startswith(NOISE_MARK):  # the sign of a noise is that of the model as it was
+                return signs[block[0]] * own[block[0]] * self.comparison.block_sign(self.source, block)
+            return self.comparison.block_sign(self.target, block)
+
+        write_blocks(problem, way.target, self.formulas, sign, matrices, shown=not moves)
+        if moves and matrices["H"]:
+            matrices["H"] = multiply_texts(matrices["H"], inverse)
+        return list(matrices.values())
 
     def is_proved(self, pairs: Sequence[tuple[list[list[str]], list[list[str]]]]) -> bool:
-        """True where the prover grants that matrices are equal, entry by entry."""
-        card = plain_card(self.target)
+        """True where matrices are equal, entry by entry."""
         return all(
-            x == y or self.prover.compare(card, x, y).status == PROVED
+            x == y or self.is_equal(x, y)
             for left, right in pairs
             for rows in zip(left, right, strict=True)
             for x, y in zip(*rows, strict=True)
         )
+
+    def is_equal(self, x: str, y: str) -> bool:
+        """True where the checker grants that formulas are equal, or exact algebra where they are long."""
+        if len(x) + len(y) > LONG:
+            left, right = self.formulas.read(x), self.formulas.read(y)
+            if left is not None and right is not None and self.formulas.write(left - right) == "0":
+                return True
+        return self.prover.compare(plain_card(self.source), x, y).status == PROVED
 
 
 def multiply_texts(A: Sequence[Sequence[str]], B: Sequence[Sequence[str]]) -> list[list[str]]:
@@ -178,23 +200,30 @@ def add_texts(A: list[list[str]], B: list[list[str]]) -> list[list[str]]:
 
 def convert(problem: Problem, source: Card, changes: Mapping[str, str]) -> Conversion:
     """The model of a problem, which is right under ``source``, in the errors of another card."""
-    from navsym.language.printer import print_tree
-
     target = read_target(source, changes, problem)
     converter = Converter(problem, source, target)
-    T, rate = converter.transformation(source, target)
-    inverse, _ = converter.transformation(target, source)
+    flow = Mechanisation(plain_card(source), converter.formulas.world)
+    way = Passage(flow, same_motion(flow, plain_card(target)))
+    (T, rate), (inverse, _) = converter.transformation(way), converter.transformation(way, back=True)
     with precision(BITS):
-        F, H, G = converter.matrices()
-    old = [[[print_tree(x) for x in row] for row in M] for M in (problem.F, problem.H, problem.G)]
+        F, H, G, reset = converter.matrices(way, inverse)
+    require_names("convert", T, inverse, rate, F, H, G, reset)
     unit = [["1" if i == j else "0" for j in range(len(T))] for i in range(len(T))]
-    pairs = [(multiply_texts(T, inverse), unit), (multiply_texts(F, T), add_texts(multiply_texts(T, old[0]), rate))]
+    pairs = [
+        (multiply_texts(T, inverse), unit),
+        (multiply_texts(F, T), add_texts(multiply_texts(T, written(problem.F)), rate)),
+    ]
     if H:
-        pairs.append((multiply_texts(H, T), old[1]))
+        pairs.append((multiply_texts(H, T), written(problem.H)))
     if G:
-        pairs.append((G, multiply_texts(T, old[2])))
-    frozen = (freeze(M) for M in (T, inverse, rate, F, H, G))
-    return Conversion(source, target, *frozen, proved=converter.is_proved(pairs))  # type: ignore[misc,arg-type]
+        pairs.append((G, multiply_texts(T, written(problem.G))))
+    frozen = (freeze(M) for M in (T, inverse, rate, F, H, G, reset))
+    return Conversion(source, target, *frozen, proved=converter.is_proved(pairs), problem=problem)  # type: ignore[misc,arg-type]
+
+
+def written(M: Sequence[Sequence[Any]]) -> list[list[str]]:
+    """A matrix of trees as texts."""
+    return [[print_tree(x) for x in row] for row in M]
 
 
 def freeze(M: Sequence[Sequence[str]]) -> Texts:

@@ -17,6 +17,7 @@ from typing import Any
 from navsym.conventions.card import DROPPED, KEPT, Card
 from navsym.conventions.nilpotent import (
     NOTHING,
+    ONE,
     Grid,
     Nilpotent,
     Vector,
@@ -30,6 +31,7 @@ from navsym.conventions.nilpotent import (
     negate,
     skew,
     subtract,
+    times,
     total,
     transpose,
 )
@@ -61,6 +63,7 @@ class World:
     transport        : the transport rate in the frame where it has names of its own
     arm, seen        : lever arm in the body, known vector in the frame
     measured         : what the rows of H show; corrections : role -> correction of the reset, if there is one
+    meridian, angle  : sine and cosine of the longitude, and of the angle of the Earth beside inertial space
     """
 
     C: Sequence[Sequence[Any]]
@@ -84,6 +87,8 @@ class World:
     seen: Sequence[Any] = (0, 0, 0)
     measured: tuple[str, ...] = ()
     corrections: Mapping[str, Sequence[Any]] = field(default_factory=dict)
+    meridian: tuple[Any, Any] = (0, 1)
+    angle: tuple[Any, Any] = (0, 1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -204,8 +209,8 @@ class Mechanisation:
     def pull_change(self, moved: Vector) -> Vector:
         """First-order change of gravitation with the position."""
         kind, world = self.card.gravity_gradient, self.world
-        if kind == "none":
-            return [NOTHING] * 3
+        if kind in ("none", "normal"):
+            return [NOTHING] * 3 if kind == "none" else self.normal_change(moved)
         r = constant(world.r)
         square = total([x * x for x in r])
         along = total([x * y for x, y in zip(r, moved, strict=True)])
@@ -215,6 +220,20 @@ class Mechanisation:
         distance, radius = (Nilpotent(x) for x in (world.radius, world.gradient_radii["radial"]))
         factor = Nilpotent(-2) * along / (distance * radius)
         return [factor * g for g in constant(world.gravity)]
+
+    def normal_change(self, moved: Vector) -> Vector:
+        """The same for gravity along the normal of the Earth, by its curvature and its gradient along the normal."""
+        world = self.world
+        level = level_rows(*constant((world.sin, world.cos, *world.meridian)))
+        if self.card.frame == "inertial":
+            level = multiply(rotate_about_pole(world.angle), level)
+        north, east, sunk = apply(transpose(level), moved)
+        down = apply(transpose(level), constant(world.gravity))[2]
+        meridian, across = (Nilpotent(plus_height(radius, world.h)) for radius in (world.RN, world.RE))
+        grown = NOTHING
+        if self.card.gravity_radius:
+            grown = Nilpotent(2) * down * sunk / Nilpotent(world.gradient_radii[self.card.gravity_radius])
+        return apply(level, [-down * north / meridian, -down * east / across, grown])
 
     def position_rate(self, x: State) -> Vector:
         """Rate of the position."""
@@ -237,10 +256,20 @@ class Mechanisation:
         """Rotation from the true frame to that in which the errors are resolved: another one for psi."""
         if self.card.angle != "psi" or not self.is_geodetic:
             return identity()
+        return subtract(identity(), skew(self.tilt(x, moved)))
+
+    def tilt(self, x: State, moved: Vector) -> Vector:
+        """The small rotation, in the axes, by which a change of the position turns the local level."""
         sine, cosine = self.trigonometry(x)
         latitude, longitude, _ = moved
-        turned = apply(self.turn, [longitude * cosine, -latitude, -longitude * sine])
-        return subtract(identity(), skew(turned))
+        return apply(self.turn, [longitude * cosine, -latitude, -longitude * sine])
+
+    def level(self, x: State) -> Grid:
+        """Rotation from the axes of the local level at the state to the frame of the Earth."""
+        sine, cosine = self.trigonometry(x)
+        east, ahead = constant(self.world.meridian)
+        east, ahead = east + ahead * x.position[1], ahead - east * x.position[1]
+        return multiply(level_rows(sine, cosine, east, ahead), transpose(self.turn))
 
     def estimate(self, x: State, error: Mapping[str, Vector]) -> State:
         """The estimate that has this error; every sign is plus."""
@@ -317,6 +346,18 @@ class Mechanisation:
         estimate = self.estimate(truth, error)
         after = self.compare(estimate.advance(self.rate(estimate)), truth.advance(self.rate(truth)))
         return {name: [part.mixed for part in vector] for name, vector in after.items()}
+
+
+def level_rows(sine: Nilpotent, cosine: Nilpotent, east: Nilpotent, ahead: Nilpotent) -> Grid:
+    """Rotation from north, east, down to the frame of the Earth, by sines and cosines of latitude and longitude."""
+    return [[-sine * ahead, -east, -cosine * ahead], [-sine * east, ahead, -cosine * east], [cosine, NOTHING, -sine]]
+
+
+def rotate_about_pole(angle: Sequence[Any], rate: Any = 0) -> Grid:
+    """Rotation from the frame of the Earth to the inertial one, which moves on by ``rate``."""
+    sine, cosine = angle
+    s, c = Nilpotent(sine, 0, times(cosine, rate)), Nilpotent(cosine, 0, times(-1, times(sine, rate)))
+    return [[c, -s, NOTHING], [s, c, NOTHING], [NOTHING, NOTHING, ONE]]
 
 
 def plus_height(radius: Any, height: Any) -> Any:

@@ -14,6 +14,7 @@ from typing import Any
 from flint import arb, fmpq
 
 from navsym.conventions.card import Card
+from navsym.conventions.frames import place
 from navsym.conventions.measuring import CORRECTED
 from navsym.conventions.mechanisation import AXES, World
 from navsym.conventions.reading import Problem
@@ -179,10 +180,16 @@ class Sampler:
         (latitude,) = self.settle("latitude", None, -1.2, 1.2)
         sine, cosine = latitude.sin(), latitude.cos()
         h: Any = self.settle("height", None, 0.25, 1.0)[0] if "height" in given else 0
-        r = self.vector("position")
-        radius = sum((x * x for x in r), arb(0)).sqrt()
         RN, RE, third = self.radii()
-        pull, gravity = self.gravitation(r, radius, level)
+        meridian, angle = self.circle("longitude"), self.circle("earth_angle")
+        normal, r = [arb(0)] * 3, None
+        if {"latitude", "longitude", "radii"} <= set(given) and not level:
+            turn = angle if card.frame == "inertial" else (arb(0), arb(1))
+            normal = about_pole(turn, (-cosine * meridian[1], -cosine * meridian[0], -sine))
+            r = about_pole(turn, place(sine, cosine, meridian, h, RN, RE)) if "position" in given else None
+        r = self.vector("position") if r is None else self.settle("position", r)
+        radius = sum((x * x for x in r), arb(0)).sqrt()
+        pull, gravity = self.gravitation(r, radius, level, normal)
         earth = self.rotation_of_earth(sine, cosine, level)
         world = World(
             C,
@@ -196,7 +203,7 @@ class Sampler:
             h,
             RN,
             RE,
-            self.pick(None),
+            self.settle("radius_slope")[0],
             gravity,
             pull,
             radius,
@@ -206,6 +213,8 @@ class Sampler:
             self.vector("known_vector"),
             tuple(self.problem.measured),
             {r: self.vector(f"{r}_correction") for r in CORRECTED} if self.problem.reset else {},
+            meridian,
+            angle,
         )
         transport = self.transport(world) if level and "transport_rate" in given else None
         if transport is None and "transport_rate" in given:
@@ -217,6 +226,11 @@ class Sampler:
                 self.values[name] = self.pick(parameter)
         return Point(world, self.values)
 
+    def circle(self, name: str) -> tuple[Any, Any]:
+        """Sine and cosine of an angle; those of zero where it is not given."""
+        angle = self.settle(name)[0] if name in self.problem.quantities else arb(0)
+        return angle.sin(), angle.cos()
+
     def radii(self) -> tuple[Any, Any, Any]:
         """Meridian, prime vertical, and the radius of gravity."""
         found = self.settle("radii", None, 3.0, 6.0)
@@ -225,7 +239,7 @@ class Sampler:
             return found[0], found[0] if sphere else self.pick(None, 3.0, 6.0), found[0]
         return found[0], found[1], found[-1]
 
-    def gravitation(self, r: list[Any], radius: Any, level: bool) -> tuple[Any, list[Any]]:
+    def gravitation(self, r: list[Any], radius: Any, level: bool, normal: list[Any]) -> tuple[Any, list[Any]]:
         """mu/|r|^3, and gravity in the frame or along down."""
         if "gravitational_parameter" in self.problem.quantities:
             pull = self.settle("gravitational_parameter", None, 0.5, 3.0)[0] / radius**3
@@ -242,9 +256,11 @@ class Sampler:
                 self.settle("gravity", self.turned([arb(0), arb(0), scalar]))
             return pull, [scalar]
         if size == 3:
-            wanted = [-pull * x for x in r] if self.card.gravity_gradient == "central" else None
+            fields = {"central": [-pull * x for x in r], "normal": [self.pick(None, 0.5, 3.0) * x for x in normal]}
+            wanted = fields.get(self.card.gravity_gradient)
             return pull, self.settle("gravity", wanted)
-        size_of = self.settle("gravity", None, 0.5, 3.0)[0]
+        parameter = self.card.gravity_gradient == "central" and "gravitational_parameter" in self.problem.quantities
+        size_of = self.settle("gravity", [pull * radius] if parameter else None, 0.5, 3.0)[0]
         if size == 1 and "gravitational_parameter" not in self.problem.quantities:
             pull = size_of / radius
         return pull, [-size_of * x / radius for x in r]
@@ -276,6 +292,12 @@ class Sampler:
         meridian, across = world.RN + world.h, world.RE + world.h
         wanted = self.turned([east / across, -north / meridian, -east * world.sin / (across * world.cos)])
         return self.settle("transport_rate", wanted)
+
+
+def about_pole(angle: Sequence[Any], u: Sequence[Any]) -> list[Any]:
+    """A vector of the Earth in the inertial frame, by sine and cosine of the angle between them."""
+    sine, cosine = angle
+    return [cosine * u[0] - sine * u[1], sine * u[0] + cosine * u[1], u[2]]
 
 
 def gradient_names(RN: Any, RE: Any, h: Any, third: Any, mean: Any) -> dict[str, Any]:

@@ -135,9 +135,29 @@ class Prover:
             )
         if card.frame == "local-level":
             self.bind_level(card, texts, bind)
-        elif card.gravity_gradient == "central" and len(given.get("gravity", ())) == 3 and "position" in texts:
-            bind("gravity", [f"-{HIDDEN}pull*({x})" for x in texts["position"]])
+        else:
+            normal = self.bind_place(card, texts, bind)
+            if card.gravity_gradient == "central" and len(given.get("gravity", ())) == 3 and "position" in texts:
+                position = [result.get(x, x) for x in texts["position"]]
+                bind("gravity", [f"-{HIDDEN}pull*({x})" for x in position])
+            if card.gravity_gradient == "normal":
+                bind("gravity", [f"{HIDDEN}gravity*({x})" for x in normal])
         return result
+
+    def bind_place(self, card: Card, texts: Mapping[str, list[str]], bind: Any) -> list[str]:
+        """The position by latitude, longitude and radii; returns the direction of the normal, downwards."""
+        if not {"latitude", "longitude", "radii"} <= set(texts):
+            return []
+        (latitude,), (longitude,), radii = texts["latitude"], texts["longitude"], texts["radii"]
+        turn = f" + ({texts['earth_angle'][0]})" if "earth_angle" in texts and card.frame == "inertial" else ""
+        h = f" + ({texts['height'][0]})" if "height" in texts else ""
+        south, cosine = f"sin({latitude})", f"cos({latitude})"
+        east, ahead = f"sin(({longitude}){turn})", f"cos(({longitude}){turn})"
+        share = f"({radii[0]})*{cosine}**2/(({radii[1]}) - ({radii[0]})*{south}**2)" if len(radii) > 1 else "1"
+        prime = radii[min(1, len(radii) - 1)]
+        across, up = f"(({prime}){h})*{cosine}", f"(({prime})*{share}{h})"
+        bind("position", [f"{across}*{ahead}", f"{across}*{east}", f"{up}*{south}"])
+        return [f"-{cosine}*{ahead}", f"-{cosine}*{east}", f"-{south}"]
 
     def bind_level(self, card: Card, texts: Mapping[str, list[str]], bind: Any) -> None:
         """The rates of the Earth and of the local level."""

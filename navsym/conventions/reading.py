@@ -31,6 +31,7 @@ from navsym.language.schema import (
     require_key,
 )
 from navsym.language.tree import MINUS_ONE, ONE, ZERO, Tree, build_sum
+from navsym.models.modelfile import STEP, read_ranges
 
 #: Quantities -> the numbers of components that they may have.
 QUANTITIES: Mapping[str, tuple[int, ...]] = {
@@ -41,12 +42,15 @@ QUANTITIES: Mapping[str, tuple[int, ...]] = {
     "velocity": (3,),
     "position": (3,),
     "latitude": (1,),
+    "longitude": (1,),
+    "earth_angle": (1,),
     "height": (1,),
     "earth_rate": (1, 3),
     "transport_rate": (3,),
     "gravity": (1, 3),
     "gravitational_parameter": (1,),
     "radii": (1, 2, 3),
+    "radius_slope": (1,),
     "lever_arm": (3,),
     "known_vector": (3,),
     "attitude_correction": (3,),
@@ -70,6 +74,7 @@ class Problem:
     roles      : role -> places of its three states; measured: what H shows -> its rows; noises: noise -> columns of G
     quantities : quantity -> its components as trees
     known      : field of a card -> its value
+    ranges     : name -> exact ends of an input of exported code
     unused     : tables of the file that were not looked at
     """
 
@@ -87,6 +92,7 @@ class Problem:
     reset: Grid = ()
     measured: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     noises: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    ranges: Mapping[str, tuple[Any, Any]] = field(default_factory=dict)
 
     def places(self, side: str) -> tuple[int, ...]:
         """The rows or columns of a side of a block."""
@@ -139,6 +145,7 @@ def read_problem(document: Table, where: str = "") -> Problem:
         quantities=read_quantities(document.get("quantities", {}), parameters, join_place(where, "quantities")),
         known=read_known(document.get("known", {}), join_place(where, "known")),
         unused=tuple(name for name in BESIDE if name in document and not (name == "measurement" and "H" in more)),
+        ranges=read_ranges(document, (*states, *parameters, STEP), where),
         **more,
     )
 

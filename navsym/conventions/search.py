@@ -52,8 +52,8 @@ class Outcome:
 def key_of_points(card: Card) -> Card:
     """The card without what has no influence on the points."""
     shape = card.earth if card.frame == "local-level" else "none"
-    central = "central" if card.gravity_gradient == "central" else "none"
-    return Card(card.frame, card.axes, earth=shape, gravity_gradient=central)
+    field = card.gravity_gradient if card.gravity_gradient in ("central", "normal") else "none"
+    return Card(card.frame, card.axes, earth=shape, gravity_gradient=field)
 
 
 def plain_card(card: Card) -> Card:
@@ -72,7 +72,7 @@ def narrow_card(card: Card, role: str) -> Card:
         plain = replace(plain, angle=None, earth_rate=None, transport_rate=None)
     if role == "attitude" and card.vector_error != "rotated":
         plain = replace(plain, angle=None)
-    if level or card.gravity_gradient != "central":  # a central pull settles gravity itself
+    if level or card.gravity_gradient not in ("central", "normal"):  # these settle gravity itself
         plain = replace(plain, gravity_gradient="none")
     return replace(plain, centrifugal=None, height_variation=None, radius_variation=None, gravity_radius=None)
 
@@ -223,14 +223,26 @@ def list_signs(problem: Problem) -> Iterator[dict[str, str | None]]:
         yield {"error": error, "rotation_sign": attitude, "bias_sign": bias, "innovation": innovation}
 
 
+def list_problem_structures(problem: Problem, frames: tuple[str, ...] = CHOICES["frame"]) -> Iterator[Card]:
+    """Every card without its signs that a model with these roles and quantities may have."""
+    given = problem.quantities
+    placed = {"latitude", "longitude"} <= set(given)
+    return list_structures(frozenset(problem.roles), len(given.get("radii", ())), frames, "height" in given, placed)
+
+
+def list_cards(problem: Problem) -> Iterator[Card]:
+    """Every card with its signs."""
+    signs = list(list_signs(problem))
+    return (change(structure, words) for structure in list_problem_structures(problem) for words in signs)
+
+
 def examine(problem: Problem, comparison: Comparison, most: int = 0) -> Iterator[Outcome]:
     """Every card that agrees with what is known, with up to ``most + 1`` of the blocks that exclude it."""
     frames = (problem.known["frame"],) if "frame" in problem.known else CHOICES["frame"]
-    radii = len(problem.quantities.get("radii", ()))
     blocks = list_blocks(problem)
     signs = [words for words in list_signs(problem) if all(problem.known.get(k, w) == w for k, w in words.items())]
     fixed = {name: word for name, word in problem.known.items() if name not in SIGNS}
-    for structure in list_structures(frozenset(problem.roles), radii, frames, "height" in problem.quantities):
+    for structure in list_problem_structures(problem, frames):
         if any(getattr(structure, name) != word for name, word in fixed.items()):
             continue
         try:

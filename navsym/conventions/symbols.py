@@ -10,17 +10,21 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
+from math import prod
 from typing import Any
 
 from flint import fmpq_mpoly_ctx
 
 from navsym.conventions.card import Card
+from navsym.conventions.frames import place
 from navsym.conventions.measuring import CORRECTED, full_column
 from navsym.conventions.mechanisation import Mechanisation, World
-from navsym.conventions.points import gradient_names
+from navsym.conventions.points import about_pole, gradient_names
 from navsym.conventions.reading import Problem
 from navsym.core.rational_functions import Quotient, add_fractions, multiply_fractions
+from navsym.language.expression import read_tree
 from navsym.language.printer import print_tree
+from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, Tree, build, fold_tree
 
 #: Names of quantities that the user has not given begin like this.
 HIDDEN = "unnamed_"
@@ -30,7 +34,24 @@ NUMERAL = re.compile(r"-?\d+(/\d+)?")
 GENERATORS = (
     *(f"c{i}{j}" for i in range(3) for j in range(3)),
     *(f"{name}{k}" for name in ("f", "w", "v", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp") for k in range(3)),
-    *("sin", "cos", "h", "RN", "RE", "third", "mean", "slope", "rate", "gravity", "pull", "radius"),
+    *(
+        "sin",
+        "cos",
+        "east",
+        "ahead",
+        "turned",
+        "straight",
+        "h",
+        "RN",
+        "RE",
+        "third",
+        "mean",
+        "slope",
+        "rate",
+        "gravity",
+        "pull",
+        "radius",
+    ),
 )
 
 
@@ -78,6 +99,7 @@ class Formulas:
         self.problem, self.card = problem, card
         self.context = fmpq_mpoly_ctx.get(GENERATORS, "lex")
         self.texts: dict[str, str] = {}
+        self.derived: dict[str, Ratio] = {}
         self.world = self.build()
         self.columns = cache(self.compute_columns)
 
@@ -121,10 +143,17 @@ class Formulas:
         latitude = self.text("latitude") or HIDDEN + "latitude"
         sine, cosine = self.symbol("sin", f"sin({latitude})"), self.symbol("cos", f"cos({latitude})")
         h: Any = self.symbol("h", self.text("height")) if "height" in given else 0
+        RN, RE, third = self.radii()
+        circles = self.circle("longitude", "east", "ahead"), self.circle("earth_angle", "turned", "straight")
         r = self.vector("r", "position")
+        if {"latitude", "longitude", "radii"} <= set(given) and card.frame != "local-level":
+            u = place(sine, cosine, circles[0], h, RN, RE)
+            r = [a * 1 for a in (about_pole(circles[1], u) if card.frame == "inertial" else u)]
+            self.derived = {self.texts[f"r{k}"]: r[k] for k in range(3)}
         squares = " + ".join(f"({self.texts[f'r{k}']})**2" for k in range(3))
         radius = self.symbol("radius", f"sqrt({squares})")
-        RN, RE, third = self.radii()
+        if self.derived and RN is RE:
+            radius = RN + h
         pull, gravity = self.gravitation(r, radius)
         mean = self.symbol("mean", f"sqrt(({self.texts['RN']})*({self.texts.get('RE', self.texts['RN'])}))")
         return World(
@@ -139,7 +168,7 @@ class Formulas:
             h,
             RN,
             RE,
-            self.symbol("slope", None),
+            self.symbol("slope", self.text("radius_slope")),
             gravity,
             pull,
             radius,
@@ -149,7 +178,13 @@ class Formulas:
             self.vector("m", "known_vector") if self.problem.measured else (0, 0, 0),
             tuple(self.problem.measured),
             {r: self.vector(f"c{r[0]}", f"{r}_correction") for r in CORRECTED} if self.problem.reset else {},
+            *circles,
         )
+
+    def circle(self, quantity: str, sine: str, cosine: str) -> tuple[Any, Any]:
+        """Sine and cosine of an angle; those of zero where it is not given."""
+        text = self.text(quantity)
+        return (0, 1) if text is None else (self.symbol(sine, f"sin({text})"), self.symbol(cosine, f"cos({text})"))
 
     def radii(self) -> tuple[Ratio, Ratio, Ratio]:
         """Meridian, prime vertical, and the radius of gravity."""
@@ -164,6 +199,7 @@ class Formulas:
     def gravitation(self, r: list[Ratio], radius: Ratio) -> tuple[Ratio, list[Ratio]]:
         """mu/|r|^3, and gravity in the frame or along down."""
         size = len(self.problem.quantities.get("gravity", ()))
+        central = self.card.gravity_gradient == "central"
         if self.card.frame == "local-level":
             down = self.down() if size == 3 else self.symbol("gravity", self.text("gravity"))
             return self.symbol("pull", None), [down]
@@ -172,8 +208,9 @@ class Formulas:
         else:
             pull = self.symbol("pull", None)
         if size == 3:
-            central = self.card.gravity_gradient == "central"
             return pull, [pull * x * -1 for x in r] if central else self.vector("g", "gravity")
+        if central and "gravitational_parameter" in self.problem.quantities:
+            return pull, [pull * x * -1 for x in r]
         scalar = self.symbol("gravity", self.text("gravity"))
         if size == 1 and "gravitational_parameter" not in self.problem.quantities:
             pull = scalar / radius
@@ -204,14 +241,42 @@ class Formulas:
         zero = rate * 0
         return [zero, zero, rate]
 
-    # From quotients to texts
+    # From texts to quotients, and back
+
+    def read(self, text: str) -> Any:
+        """A formula of the user as a quotient, or None where it has other parts than the quantities.
+
+        The quotients obey the relations of the quantities, so that equal ones are equal formulas.
+        """
+        one = self.context.constant(1)
+        places = {t: GENERATORS.index(name) for name, t in self.texts.items()}
+        known = {read_tree(t, None): Ratio(Quotient(self.context.gen(k), one)) for t, k in places.items()}
+        known |= {read_tree(t, None): value for t, value in self.derived.items()}
+
+        def step(part: Tree, inner: list[Any]) -> Any:
+            if part in known:
+                return known[part]
+            if part.head == NUMBER:
+                return Ratio(Quotient(self.context.constant(to_flint(part.args[0])), one))
+            if part.head == "tan":
+                sine, cosine = (known.get(build(name, part.args)) for name in ("sin", "cos"))
+                return sine / cosine if sine and cosine else None
+            if part.head == POWER and part.args[1].head == NUMBER and inner[0] is not None:
+                number = part.args[1].args[0]
+                power = prod([inner[0]] * abs(int(number)), start=inner[0].lift(1))
+                return None if number.denominator != 1 else 1 / power if number < 0 else power
+            if None in inner or part.head not in (SUM, PRODUCT):
+                return None
+            return sum(inner[1:], inner[0]) if part.head == SUM else prod(inner[1:], start=inner[0])
+
+        return fold_tree(read_tree(text, None), step)
 
     def write(self, value: Any, sign: int = 1) -> str:
         """A coefficient in the user's names."""
         if type(value) is int:
             return str(sign * value)
         top, bottom = value.value
-        terms = reduce_terms({tuple(map(int, e)): c for e, c in top.to_dict().items()})
+        terms = reduce_terms(top)
         above = self.write_terms({e: c * sign for e, c in terms.items()})
         if above == "0" or bottom == 1:
             return above
@@ -297,8 +362,8 @@ def relation_rows(columns: Sequence[tuple[int, ...]]) -> Iterator[list[Fraction]
 
     for i in range(3):
         for j in range(i, 3):
-            for place in (lambda k, m: 3 * k + m, lambda k, m: 3 * m + k):
-                yield row({**{pair(place(i, m), place(j, m)): 1 for m in range(3)}, (): -int(i == j)})
+            for at in (lambda k, m: 3 * k + m, lambda k, m: 3 * m + k):
+                yield row({**{pair(at(i, m), at(j, m)): 1 for m in range(3)}, (): -int(i == j)})
     for i in range(3):
         for j in range(3):
             a, b, c, d = (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3
@@ -306,41 +371,38 @@ def relation_rows(columns: Sequence[tuple[int, ...]]) -> Iterator[list[Fraction]
             yield row({plus: 1, minus: -1, (3 * i + j,): -1})
 
 
-SINE, COSINE = GENERATORS.index("sin"), GENERATORS.index("cos")
+CIRCLES = (("sin", "cos"), ("east", "ahead"), ("turned", "straight"))
 
 
-def reduce_terms(terms: Mapping[tuple[int, ...], Any]) -> Terms:
-    """The normal form of a polynomial modulo the relations of a rotation and of sine and cosine."""
-    rules = rotation_rules()
-    waiting: Terms = {e: as_fraction(c) for e, c in terms.items()}
+def reduce_terms(poly: Any) -> Terms:
+    """The normal form of a polynomial modulo the relations of a rotation and of sines and cosines."""
+    context = poly.context()
+    for pair in CIRCLES:
+        sine, cosine = (context.gen(GENERATORS.index(name)) for name in pair)
+        poly = divmod(poly, sine * sine + cosine * cosine - 1)[1]
     result: Terms = {}
-    while waiting:
-        powers, factor = waiting.popitem()
-        places = [k for k in range(9) for _ in range(powers[k])]
-        pairs = ((places[i], places[j]) for i in range(len(places)) for j in range(i + 1, len(places)))
-        rule = next((p for p in pairs if p in rules), None)
-        if rule is not None:
-            rest = lower(powers, rule)
-            new = [(raise_by(rest, monomial), x) for monomial, x in rules[rule].items()]
-        elif powers[SINE] > 1:
-            rest = lower(powers, (SINE, SINE))
-            new = [(rest, Fraction(1)), (raise_by(rest, (COSINE, COSINE)), Fraction(-1))]
-        else:
-            result[powers] = result.get(powers, Fraction(0)) + factor
-            continue
-        for key, x in new:
-            waiting[key] = waiting.get(key, Fraction(0)) + factor * x
+    for powers, factor in poly.to_dict().items():
+        exact, rest = as_fraction(factor), tuple(map(int, powers[9:]))
+        for first, x in normal_form(tuple(map(int, powers[:9]))).items():
+            result[first + rest] = result.get(first + rest, Fraction(0)) + exact * x
     return {e: c for e, c in result.items() if c}
 
 
-def lower(powers: tuple[int, ...], places: Sequence[int]) -> tuple[int, ...]:
-    """The monomial divided by these generators."""
-    return tuple(n - places.count(k) for k, n in enumerate(powers))
-
-
-def raise_by(powers: tuple[int, ...], places: Sequence[int]) -> tuple[int, ...]:
-    """The monomial times these generators."""
-    return tuple(n + places.count(k) for k, n in enumerate(powers))
+@cache
+def normal_form(powers: tuple[int, ...]) -> Terms:
+    """A product of entries of a rotation modulo its relations."""
+    rules = rotation_rules()
+    places = [k for k in range(9) for _ in range(powers[k])]
+    pairs = ((places[i], places[j]) for i in range(len(places)) for j in range(i + 1, len(places)))
+    rule = next((pair for pair in pairs if pair in rules), None)
+    if rule is None:
+        return {powers: Fraction(1)}
+    result: Terms = {}
+    for monomial, x in rules[rule].items():
+        lowered = tuple(n - rule.count(k) + monomial.count(k) for k, n in enumerate(powers))
+        for key, y in normal_form(lowered).items():
+            result[key] = result.get(key, Fraction(0)) + x * y
+    return result
 
 
 __all__ = ["HIDDEN", "Formulas", "Ratio", "reduce_terms", "rotation_rules"]

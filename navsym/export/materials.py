@@ -11,9 +11,10 @@ from typing import Any
 import sympy as sp
 
 from navsym.claims import CERTIFIED, PROVED, Claim, Equation, Record, Verdict, Verdicts, equation_of
+from navsym.conventions.converting import Conversion
 from navsym.core.errors import DomainError, NavsymError
 from navsym.core.sandbox import Exhausted, run_limited
-from navsym.export.algorithms.models import functions_of_model, matrix_function, plain_name
+from navsym.export.algorithms.models import functions_of_model, matrix_function, plain_name, require_ranges
 from navsym.export.functions import RefusedError, formula_lines, function_of, material
 from navsym.export.languages.names import function_name
 from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source
@@ -21,6 +22,9 @@ from navsym.export.ready import READY, algorithm, is_program, units_of_paper
 from navsym.guaranteed.phases.answer import Phases, Regime
 from navsym.guaranteed.phases.driver import phases
 from navsym.guaranteed.solver import Estimator, solve
+from navsym.language.algebra import to_sympy
+from navsym.language.declarations import box_of, symbols_of
+from navsym.language.expression import read_tree
 from navsym.language.names import quote
 from navsym.models.derivation import Derivation
 from navsym.models.model import Model, contents_of
@@ -32,7 +36,7 @@ from navsym.verification.papers import file_of_source, is_model, load_papers, sp
 SECONDS = 90.0
 MEGABYTES = 4096
 LARGEST_DENOMINATOR = 10**9  # of an exact end; beyond it an end is the middle of an enclosure
-EXPORTABLE = "a claim id, a verdict, an Estimator, Phases, a Derivation or a Model"
+EXPORTABLE = "a claim id, a verdict, an Estimator, Phases, a Derivation, a Conversion or a Model"
 
 
 def functions_from(
@@ -61,6 +65,8 @@ def functions_from(
         return [function_of_phases(item, real, units)]
     if isinstance(item, Model):
         return functions_of_system(item, real, units)
+    if isinstance(item, Conversion):
+        return functions_of_conversion(item, real, units)
     if isinstance(item, Derivation):
         return functions_of_derivation(item, real, units)
     raise DomainError(f"expected {EXPORTABLE}; got {quote(item)}; name one of these", where="export")
@@ -172,6 +178,24 @@ def functions_of_system(model: Model, real: str, units: Mapping[str, str]) -> li
         message = "expected a model with F and H; got a basis of regressors; export what nav.solve or nav.phases gives"
         raise RefusedError(message)
     return list(functions_of_model(contents, real, units))
+
+
+def functions_of_conversion(found: Conversion, real: str, units: Mapping[str, str]) -> list[ExportedFunction]:
+    """The transformation of the errors in both directions; RefusedError where it is not proved."""
+    if not found.proved:
+        raise RefusedError("expected a conversion that is proved; got one that is not; convert in smaller steps")
+    problem, symbols, result = found.problem, symbols_of(found.problem.parameters), []
+    known = {**box_of(problem.parameters), **{symbols[n]: ends for n, ends in problem.ranges.items() if n in symbols}}
+    for name, texts, title in (
+        ("T", found.T, "Errors of the card from those of the other: x_to = T x"),
+        ("T_inverse", found.inverse, "The way back: x = T_inverse x_to"),
+    ):
+        matrix = sp.Matrix([[to_sympy(read_tree(cell, None), symbols) for cell in row] for row in texts])
+        label = f"{plain_name(problem.name)}:{name}"
+        require_ranges(sorted(map(str, matrix.free_symbols)), {s.name: ends for s, ends in known.items()})
+        box = {s: ends for s, ends in known.items() if s in matrix.free_symbols}
+        result.append(matrix_function(label, matrix, None, title, real, Layout(units=units), box))
+    return result
 
 
 def unknown_claim(name: str, known: list[str], where: str) -> NavsymError:

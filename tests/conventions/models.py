@@ -250,7 +250,7 @@ def left_invariant() -> dict[str, Any]:
 
 
 def msckf() -> dict[str, Any]:
-    """Mourikis and Roumeliotis 2007, error state truth minus estimate; VINS-Mono has the same matrix."""
+    """Mourikis and Roumeliotis 2007, error state truth minus estimate."""
     return {**sola_local(), "known": {"frame": "inertial", "error": "truth - estimate"}}
 
 
@@ -309,6 +309,108 @@ def navego() -> dict[str, Any]:
     return document("avpgb", blocks, quantities, rS="positive", **declared(quantities))
 
 
+def inertial_model(order: str, blocks: Mapping[str, Grid], known: Mapping[str, str] | None = None) -> dict[str, Any]:
+    """A model of a flat world with the quantities of a visual-inertial filter."""
+    quantities = {"specific_force_body": F_B, "angular_rate": W_B, "rotation": C}
+    return document(order, blocks, quantities, {"frame": "inertial", **(known or {})})
+
+
+LOCAL = {"pv": E, "va": neg(mul(C, skew(F_B))), "vb": neg(C), "aa": neg(skew(W_B)), "ag": neg(E)}
+
+
+def msckf_vio() -> dict[str, Any]:
+    """KumarRobotics/msckf_vio 050c50d, src/msckf_vio.cpp, processModel: JPL quaternion from the world to the body."""
+    return inertial_model("agvbp", LOCAL, {"error": "truth - estimate"})
+
+
+def imu_gps_localization() -> dict[str, Any]:
+    """ydsf16/imu_gps_localization 432bc0c, imu_processor.cpp: the rate of its transition matrix."""
+    return inertial_model("pvabg", LOCAL)
+
+
+def autonomous_driving() -> dict[str, Any]:
+    """gaoxiang12/slam_in_autonomous_driving 282486e, src/ch3/eskf.hpp; correction is added to the estimate."""
+    return inertial_model("pvagb", LOCAL, {"error": "truth - estimate"})
+
+
+def lins() -> dict[str, Any]:
+    """ChaoqinRobotics LINS 94fe6c8, lins/include/KalmanFilter.hpp."""
+    return inertial_model("pvabg", LOCAL)
+
+
+def lins_before() -> dict[str, Any]:
+    """The same before its issue 4 was answered: [w x] with the other sign."""
+    return inertial_model("pvabg", {**LOCAL, "aa": skew(W_B)})
+
+
+def okvis() -> dict[str, Any]:
+    """ethz-asl/okvis 17246bd, ImuError.cpp: its transition over one step, to first order in the step."""
+    turned = [" + ".join(f"{C[i][k]}*{F_B[k]}" for k in range(3)) for i in range(3)]
+    return inertial_model("pavgb", {"pv": E, "va": neg(skew(turned)), "vb": neg(C), "ag": neg(C)})
+
+
+def gps_imu_fusion() -> dict[str, Any]:
+    """zm0612/eskf-gps-imu-fusion 4b57efe, src/eskf.cpp, without its Earth model: F alone."""
+    quantities = {"specific_force": F_N, "rotation": C}
+    return document("pvagb", {"pv": E, "va": skew(F_N), "vb": C, "ag": neg(C)}, quantities, {"frame": "inertial"})
+
+
+def gps_imu_fusion_fed_back() -> dict[str, Any]:
+    """The same with its feedback: corrections are added to position, velocity and to both biases."""
+    known = {"frame": "inertial", "error": "truth - estimate", "bias_sign": "truth - estimate"}
+    return gps_imu_fusion() | {"known": known}
+
+
+def openvins() -> dict[str, Any]:
+    """OpenVINS, documentation of its propagation: error on the left of the rotation from the world to the body."""
+    return inertial_model("apvgb", LOCAL, {"error": "truth - estimate"})
+
+
+def navego_2014(opposite: bool = False) -> dict[str, Any]:
+    """rodralez/NaveGo 04c75bf, F_update.m, after Titterton and Weston: one radius, no gradient of gravity."""
+    document = navego()
+    states, F = document["model"]["states"], [list(row) for row in document["model"]["F"]]
+    row, column = states.index("x_v2"), states.index("x_p2")
+    F[row][column] = "(vN**2 + vE**2)/R**2"
+    quantities = {**document["quantities"], "radii": ["R"]}
+    gyro, accelerometer = (C, neg(C)) if opposite else (neg(C), C)
+    for side, other, block in (("a", "g", gyro), ("v", "b", accelerometer)):
+        for i in range(3):
+            for j in range(3):
+                F[states.index(f"x_{side}{i}")][states.index(f"x_{other}{j}")] = block[i][j]
+    parameters = {k: v for k, v in document["parameters"].items() if k != "rS"}
+    return document | {"model": {"states": states, "F": F}, "quantities": quantities, "parameters": parameters}
+
+
+def navego_107() -> dict[str, Any]:
+    """The same with the bias blocks that issue 107 of NaveGo quotes: +C for gyros and -C for accelerometers."""
+    return navego_2014(opposite=True)
+
+
+def vins_mono() -> dict[str, Any]:
+    """Qin, Li, Shen, VINS-Mono, arXiv:1708.03852, equation 9: the error of the preintegrated rotation in the body."""
+    return inertial_model("pvabg", LOCAL)
+
+
+def pyins() -> dict[str, Any]:
+    """nmayorov/pyins 13e0599, pyins/error_model.py: ENU, velocity beside the turned one, position in metres."""
+    quantities = {**NED, "velocity": ["vE", "vN", "vU"], "radii": ["RN", "RE", "R0"]}
+    m, n = "(RN + h)", "(RE + h)"
+    R = [["0", f"-1/{m}", "0"], [f"1/{n}", "0", "0"], [f"tan(L)/{n}", "0", "0"]]
+    v, earth = skew(["vE", "vN", "vU"]), ["0", "W*cos(L)", "W*sin(L)"]
+    rho = [f"-vN/{m}", f"vE/{n}", f"vE*tan(L)/{n}"]
+    both = [f"{x} + {y}" for x, y in zip(earth, rho, strict=True)]
+    twice = [f"2*({x}) + {y}" for x, y in zip(earth, rho, strict=True)]
+    down = skew(["0", "0", "-g"])
+    blocks = {
+        "pv": E, "pa": v, "vv": neg(skew(twice)), "va": neg(down),
+        "vp": [["0", "0", "0"], ["0", "0", "0"], ["0", "0", "2*g/R0"]],
+        "ap": mul(skew(earth), R), "av": R, "aa": plus(neg(skew(both)), mul(R, v)),
+        "ag": neg(C), "vg": mul(v, C), "vb": C,
+    }  # fmt: skip
+    return document("pvagb", blocks, quantities, R0="positive", **declared(quantities))
+
+
 PUBLISHED = {
     "Groves, inertial frame": groves_inertial,
     "Groves, Earth frame": groves_earth,
@@ -322,4 +424,17 @@ PUBLISHED = {
     "MSCKF": msckf,
     "PSINS": psins,
     "NaveGo": navego,
+    "msckf_vio": msckf_vio,
+    "OpenVINS": openvins,
+    "VINS-Mono": vins_mono,
+    "OKVIS": okvis,
+    "imu_gps_localization": imu_gps_localization,
+    "slam_in_autonomous_driving": autonomous_driving,
+    "LINS": lins,
+    "LINS, before issue 4": lins_before,
+    "eskf-gps-imu-fusion": gps_imu_fusion,
+    "eskf-gps-imu-fusion, with feedback": gps_imu_fusion_fed_back,
+    "NaveGo 2014": navego_2014,
+    "NaveGo, issue 107": navego_107,
+    "pyins": pyins,
 }

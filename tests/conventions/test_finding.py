@@ -31,7 +31,16 @@ CARDS: dict[str, dict[str, Any]] = {
     "right invariant": {"attitude_error": "frame", "vector_error": "rotated", "bias_sign": PLUS},
     "left invariant": {"attitude_error": "body", "vector_error": "body", "bias_sign": PLUS},
     "MSCKF": {"attitude_error": "body", "error": MINUS, "rotation_sign": "-", "bias_sign": MINUS},
+    "msckf_vio": {"attitude_error": "body", "error": MINUS, "rotation_sign": "-", "bias_sign": MINUS},
+    "OpenVINS": {"attitude_error": "body", "error": MINUS, "rotation_sign": "-", "bias_sign": MINUS},
+    "slam_in_autonomous_driving": {"attitude_error": "body", "error": MINUS, "rotation_sign": "-", "bias_sign": MINUS},
+    "VINS-Mono": {"attitude_error": "body", "rotation_sign": "+", "bias_sign": PLUS},
+    "OKVIS": {"attitude_error": "frame", "rotation_sign": "+", "bias_sign": PLUS},
+    "imu_gps_localization": {"attitude_error": "body", "rotation_sign": "+", "bias_sign": PLUS},
+    "LINS": {"attitude_error": "body", "rotation_sign": "+", "bias_sign": PLUS},
+    "eskf-gps-imu-fusion": {"attitude_error": "frame", "error": PLUS, "rotation_sign": "-", "bias_sign": MINUS},
 }
+ALONE = ("MSCKF", "msckf_vio", "OpenVINS", "slam_in_autonomous_driving")  # their source says what an error is
 LEVEL: dict[str, dict[str, Any]] = {
     "Groves, local level": {
         "axes": "NED",
@@ -42,6 +51,8 @@ LEVEL: dict[str, dict[str, Any]] = {
     },
     "KF-GINS": {"axes": "NED", "angle": "phi", "rotation_sign": "-", "bias_sign": MINUS, "position_error": "metres"},
     "PSINS": {"axes": "ENU", "angle": "phi", "rotation_sign": "-", "bias_sign": MINUS, "position_error": "geodetic"},
+    "NaveGo 2014": {"axes": "NED", "angle": "phi", "rotation_sign": "-", "bias_sign": MINUS, "earth": "sphere"},
+    "NaveGo, issue 107": {"axes": "NED", "angle": "phi", "rotation_sign": "-", "bias_sign": PLUS, "earth": "sphere"},
     "psi angle": {"angle": "psi", "rotation_sign": "-", "bias_sign": MINUS, "position_error": "metres"},
 }
 
@@ -56,7 +67,7 @@ def test_a_published_model_has_the_card_of_its_source(name):
     answer = nav.conventions(models.PUBLISHED[name]())
     assert answer.complete
     assert has_card(answer, CARDS[name])
-    assert len(answer.cards) == (1 if name == "MSCKF" else 2)
+    assert len(answer.cards) == (1 if name in ALONE else 2)
 
 
 @pytest.mark.long
@@ -65,6 +76,21 @@ def test_a_published_model_of_a_local_level_has_the_card_of_its_source(name):
     answer = nav.conventions(models.PUBLISHED[name]())
     assert answer.complete
     assert has_card(answer, {"error": PLUS, "frame": "local-level", **LEVEL[name]})
+
+
+CONFLICTS = {
+    "LINS, before issue 4": {("attitude", "attitude")},
+    "eskf-gps-imu-fusion, with feedback": {("attitude", "gyro_bias"), ("velocity", "accelerometer_bias")},
+    "pyins": {("attitude", "attitude"), ("velocity", "velocity"), ("attitude", "position")},
+}
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.long] * (n == "pyins")) for n in CONFLICTS])
+def test_a_published_model_without_a_card_has_its_blocks_named(name):
+    answer = nav.conventions(models.PUBLISHED[name]())
+    assert answer.complete and not answer.cards
+    assert {c.block for c in answer.conflicts} == CONFLICTS[name]
+    assert {c.status for c in answer.conflicts} == {"PROVED"}
 
 
 @pytest.mark.long

@@ -1,0 +1,263 @@
+"""From one frame to another: states and quantities of a motion are carried over, through the frame of the Earth.
+
+A local level is turned by latitude and longitude, the inertial frame by the angle of the Earth, and its velocities
+contain W x r. Turning a local level about its own axes needs neither.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from navsym.conventions.card import DROPPED, KEPT, Card
+from navsym.conventions.mechanisation import Mechanisation, State, plus_height, rotate_about_pole
+from navsym.conventions.nilpotent import (
+    NOTHING,
+    Grid,
+    Nilpotent,
+    Vector,
+    add,
+    add_vectors,
+    apply,
+    constant,
+    cross,
+    identity,
+    multiply,
+    negate,
+    skew,
+    times,
+    transpose,
+)
+from navsym.core.errors import DomainError
+
+LEVEL = "local-level"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Passage:
+    """The way from the frame and the axes of one mechanisation to those of another, of the same motion."""
+
+    source: Mechanisation
+    target: Mechanisation
+
+    @property
+    def card(self) -> Card:
+        """The card of the target."""
+        return self.target.card
+
+    @property
+    def stays(self) -> bool:
+        """True where only the axes of a local level change, or nothing."""
+        return self.source.card.frame == self.card.frame
+
+    def turn(self) -> Grid:
+        """Rotation from the axes of the source to those of the card."""
+        if self.card.frame != LEVEL:
+            return identity()
+        return multiply(self.target.turn, transpose(self.source.turn))
+
+    def spin(self) -> Any:
+        """The rate of the Earth; 0 where both cards drop it."""
+        if KEPT not in (self.source.card.earth_rate, self.card.earth_rate):
+            return 0
+        world = self.source.world
+        if self.source.card.frame != LEVEL:
+            return world.earth_rate[2]
+        north, down = world.earth_rate
+        return north * world.cos - down * world.sin
+
+    def carry(self, estimate: State, x: State) -> tuple[State, State]:
+        """Estimate and truth in the frame of the card; both may move with tau."""
+        if self.stays:
+            A = self.turn()
+            return turn_state(A, estimate, self.source.is_geodetic), turn_state(A, x, self.source.is_geodetic)
+        return self.from_earth(*self.to_earth(estimate, x))
+
+    def to_earth(self, estimate: State, x: State) -> tuple[State, State]:
+        """Estimate and truth in the frame of the Earth, with positions in metres."""
+        flow = self.source
+        if flow.card.frame == "earth":
+            return estimate, x
+        if flow.card.frame == "inertial":
+            R = transpose(rotate_about_pole(flow.world.angle, self.spin()))
+            return self.slow_down(R, estimate), self.slow_down(R, x)
+        R, moved = flow.level(x), add_vectors(estimate.position, negate(x.position))
+        tilted = multiply(R, add(identity(), skew(flow.tilt(x, moved))))
+        velocity = apply(R, x.velocity)
+        r = [Nilpotent(at, 0, v.value) for at, v in zip(self.centre(), velocity, strict=True)]
+        along = [part * unit for part, unit in zip(moved, flow.metres(x), strict=True)]
+        there = add_vectors(r, apply(R, apply(flow.turn, along)))
+        truth = replace(x, attitude=multiply(R, x.attitude), velocity=velocity, position=r)
+        outer = multiply(tilted, estimate.attitude)
+        return replace(estimate, attitude=outer, velocity=apply(tilted, estimate.velocity), position=there), truth
+
+    def centre(self) -> list[Any]:
+        """The position from the centre of the Earth in its frame."""
+        w = self.source.world
+        return place(w.sin, w.cos, w.meridian, w.h, w.RN, w.RE)
+
+    def slow_down(self, R: Grid, x: State) -> State:
+        """A state of the inertial frame beside the Earth."""
+        r = apply(R, x.position)
+        velocity = add_vectors(apply(R, x.velocity), negate(cross(self.pole(), r)))
+        return replace(x, attitude=multiply(R, x.attitude), velocity=velocity, position=r)
+
+    def pole(self) -> Vector:
+        """The rate of the Earth in its own frame."""
+        return constant([0, 0, self.spin()])
+
+    def from_earth(self, estimate: State, x: State) -> tuple[State, State]:
+        """Estimate and truth in the frame of the card."""
+        if self.card.frame == "earth":
+            return estimate, x
+        if self.card.frame == "inertial":
+            R = rotate_about_pole(self.source.world.angle, self.spin())
+            moved = [add_vectors(s.velocity, cross(self.pole(), s.position)) for s in (estimate, x)]
+            return tuple(  # type: ignore[return-value]
+                replace(s, attitude=multiply(R, s.attitude), velocity=apply(R, velocity), position=apply(R, s.position))
+                for s, velocity in zip((estimate, x), moved, strict=True)
+            )
+        flow, at = self.target, replace(x, position=[NOTHING] * 3)
+        now = [Nilpotent(part.value) for part in apply(transpose(flow.level(at)), x.velocity)]
+        rate = flow.position_rate(replace(at, velocity=now))
+        at = replace(at, position=[Nilpotent(0, 0, part.value) for part in rate])
+        R = transpose(flow.level(at))
+        away = apply(transpose(flow.turn), apply(R, add_vectors(estimate.position, negate(x.position))))
+        moved = [part / unit for part, unit in zip(away, flow.metres(at), strict=True)]
+        tilted = multiply(add(identity(), skew(negate(flow.tilt(at, moved)))), R)
+        truth = replace(at, attitude=multiply(R, x.attitude), velocity=apply(R, x.velocity))
+        there, outer = add_vectors(at.position, moved), multiply(tilted, estimate.attitude)
+        return replace(estimate, attitude=outer, velocity=apply(tilted, estimate.velocity), position=there), truth
+
+
+def same_motion(source: Mechanisation, card: Card) -> Mechanisation:
+    """The mechanisation of a card in the motion of another one."""
+    way, world, moves = (
+        Passage(source, Mechanisation(card, source.world)),
+        source.world,
+        source.card.frame != card.frame,
+    )
+    if not moves and card.axes == source.card.axes:
+        return way.target
+    out = transpose(axes_of(way.target)) if moves else identity()
+    A = multiply(out, axes_of(source)) if moves else way.turn()
+    same = {"C": values_of(multiply(A, source.truth().attitude)), "seen": turned(A, world.seen)}
+    if not moves:
+        transport = None if world.transport is None else turned(A, world.transport)
+        vectors = {"v": turned(A, world.v), "r": turned(A, world.r), "transport": transport}
+        return Mechanisation(card, replace(world, **same, **vectors))
+    _, truth = way.to_earth(source.truth(), source.truth())
+    at, velocity = ([Nilpotent(x.value) for x in vector] for vector in (truth.position, truth.velocity))
+    gravity, W = apply(axes_of(source), source.gravity(source.truth())), way.spin()
+    whirl = cross(way.pole(), cross(way.pole(), at))
+    if source.card.frame == "inertial":
+        gravity = add_vectors(gravity, negate(whirl))
+    if card.frame == "inertial":
+        gravity, velocity = add_vectors(gravity, whirl), add_vectors(velocity, cross(way.pole(), at))
+    gravity, rate = apply(out, gravity), [0, 0, W]
+    if card.frame == LEVEL:
+        gravity = apply(transpose(way.target.turn), gravity)[2:]
+        rate = [times(W, world.cos), times(-1, times(W, world.sin))]
+    names = {"v": apply(out, velocity), "r": apply(out, at), "gravity": gravity}
+    same |= {name: [x.value for x in vector] for name, vector in names.items()}
+    return Mechanisation(card, replace(world, **same, earth_rate=rate, transport=None))
+
+
+def turned(A: Grid, v: Any) -> list[Any]:
+    """A v in coefficients."""
+    return [x.value for x in apply(A, constant(v))]
+
+
+def values_of(A: Grid) -> list[list[Any]]:
+    """A matrix without infinitesimals."""
+    return [[x.value for x in row] for row in A]
+
+
+def axes_of(flow: Mechanisation) -> Grid:
+    """Rotation from the frame of a card to that of the Earth, now."""
+    if flow.card.frame == LEVEL:
+        return flow.level(replace(flow.truth(), position=[NOTHING] * 3))
+    return transpose(rotate_about_pole(flow.world.angle)) if flow.card.frame == "inertial" else identity()
+
+
+def place(sine: Any, cosine: Any, meridian: Sequence[Any], h: Any, RN: Any, RE: Any) -> list[Any]:
+    """The position from the centre of the Earth in its frame, by latitude, longitude, height and both radii."""
+    share = 1
+    if RN is not RE:  # 1 - e^2, which follows from both radii
+        share = RN * cosine * cosine / (RE - RN * sine * sine)
+    across = plus_height(RE, h) * cosine
+    return [across * meridian[1], across * meridian[0], plus_height(RE * share, h) * sine]
+
+
+def turn_state(A: Grid, x: State, is_geodetic: bool) -> State:
+    """A state in other axes; latitude, longitude and height stay."""
+    position = x.position if is_geodetic else apply(A, x.position)
+    return replace(x, attitude=multiply(A, x.attitude), velocity=apply(A, x.velocity), position=position)
+
+
+# The card in another frame
+
+
+def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool, turning: bool, alone: bool) -> Card:
+    """The card of the same motion in another frame; raises DomainError where no card has its gravity.
+
+    words   : frame, and axes and angle of a local level
+    radii   : how many radii of the Earth the model has; height : True where it has the height
+    turning : True where the model has the rate of the Earth
+    alone   : True for velocities without positions, whose errors would drive them in another frame
+    """
+    frame = words["frame"]
+    refuse(alone, "position among the roles")
+    if LEVEL in (frame, card.frame):
+        plain = {"angle": "phi", "vector_error": "difference"}
+        for name, word in plain.items():
+            wanted = words.get(name, getattr(card, name) or word)
+            refuse(wanted != word or getattr(card, name) not in (None, word), f"{name} {word} on both sides")
+    central = replace(card, frame="earth", axes=None, angle=None, transport_rate=None, height_variation=None)
+    hub = replace(central, radius_variation=None, position_error=card.position_error and "metres")
+    if card.frame == LEVEL:
+        require_whole(card)
+        normal = "normal" if card.position_error else "none"
+        hub = replace(hub, gravity_gradient=normal, centrifugal=DROPPED)
+    elif card.frame == "inertial":
+        hub = replace(hub, earth_rate=KEPT if turning else DROPPED, centrifugal=KEPT)
+    if hub.earth_rate == DROPPED or hub.position_error is None:
+        hub = replace(hub, centrifugal=None)
+    if "inertial" in (frame, card.frame) and hub.centrifugal == KEPT:
+        refuse(hub.gravity_gradient in ("radial", "normal"), "a gradient of gravitation alone, central or none")
+    if frame == "earth":
+        return hub
+    if frame == "inertial":
+        refuse(hub.centrifugal == DROPPED, "a centrifugal term that is kept")
+        return replace(hub, frame=frame, earth_rate=None, centrifugal=None)
+    refuse(not radii, "quantities with radii")
+    refuse(hub.centrifugal == KEPT, "gravity with its centrifugal part in one")
+    shape, name = ("sphere", "R + h" if height else "R") if radii == 1 else ("ellipsoid", None)
+    vertical = {"central": name, "normal": card.gravity_radius, "none": None}.get(hub.gravity_gradient)
+    curved = hub.position_error is None or hub.gravity_gradient == "normal"
+    refuse(
+        not curved and not (vertical and hub.gravity_gradient == "central"), "a gradient of gravity, central or normal"
+    )
+    slope = None if shape == "sphere" else KEPT if hub.position_error else DROPPED
+    level = {"axes": words.get("axes", "NED"), "angle": words.get("angle", "phi"), "earth": shape}
+    kind = {"gravity_gradient": "vertical" if vertical else "none", "gravity_radius": vertical, "centrifugal": None}
+    return replace(
+        hub, frame=frame, **level, **kind, transport_rate=KEPT, height_variation=KEPT, radius_variation=slope
+    )
+
+
+def require_whole(card: Card) -> None:
+    """Refuse a local level that drops what belongs to its motion."""
+    refuse(card.earth == "none", "a curved Earth below the local level")
+    refuse(card.transport_rate != KEPT, "a transport rate that is kept")
+    if card.position_error:
+        refuse(card.height_variation == DROPPED, "radii that change with the height")
+        refuse(card.radius_variation not in (None, KEPT), "radii that change with the latitude everywhere")
+
+
+def refuse(wrong: bool, expected: str) -> None:
+    """Refuse a card that has no equal in the other frame."""
+    if wrong:
+        message = f"expected {expected}; got another card; convert it first where that can be, else its axes only"
+        raise DomainError(message, where="convert: frame")

@@ -1,0 +1,151 @@
+"""From a card to a model: F, H, G and reset in the user's names, derived; and a card read from a file.
+
+A file with a table [card] and no F asks for the model of the card. Fields that do not matter for the model, and those
+that follow from the others, may be left out; where two cards remain, the field in which they differ is asked for.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
+from functools import cache
+from typing import Any
+
+from navsym.conventions.card import CHOICES, MEASURED_LESS, Card
+from navsym.conventions.measuring import CORRECTED, MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
+from navsym.conventions.mechanisation import BIASES, Mechanisation
+from navsym.conventions.reading import Problem, matrix_of, read_known, read_problem
+from navsym.conventions.search import Block, list_cards, plain_card
+from navsym.conventions.symbols import HIDDEN, Formulas
+from navsym.core.errors import DomainError, EmptyError
+from navsym.language.names import join_place, quote
+from navsym.language.schema import as_table
+
+#: How the names of quantities that the file lacks begin -> what to give.
+UNNAMED = {
+    **{"c": "rotation", "f": "specific_force", "w": "angular_rate", "v": "velocity", "r0": "position"},
+    **{"r1": "position", "r2": "position", "g": "gravity", "R": "radii", "slope": "radius_slope", "rate": "earth_rate"},
+    "pull": "gravitational_parameter",
+}
+
+
+def fill_model(document: Mapping[str, Any], where: str = "") -> dict[str, Any]:
+    """A document without the card: it is what is known of a model with F, and else F, H, G and reset are derived.
+
+    Raises DomainError for a card that contradicts itself, EmptyError for one that says too little.
+    """
+    place = join_place(where, "card")
+    words = read_known(as_table(document["card"], place), place)
+    rest = {name: value for name, value in document.items() if name != "card"}
+    model = as_table(document.get("model", {}), join_place(where, "model"))
+    if "F" in model:
+        return {**rest, "known": {**as_table(document.get("known", {}), join_place(where, "known")), **words}}
+    problem = read_problem({**rest, "model": empty_model(rest, model)}, where)
+    card = choose_card(problem, words, place)
+    formulas = Formulas(problem, plain_card(card))
+    flow = Mechanisation(plain_card(card), formulas.world)
+    matrices = {name: written for name in ("F", "H", "G", "reset") if (written := list_zeros(getattr(problem, name)))}
+    write_blocks(problem, flow, formulas, lambda block: sign_of(card, block), matrices)
+    require_names("card", *matrices.values())
+    return {**rest, "model": {**model, "states": list(problem.states), **matrices}}
+
+
+def empty_model(document: Mapping[str, Any], model: Mapping[str, Any]) -> dict[str, Any]:
+    """The model with zeros where the card will write."""
+    roles = document.get("roles", {})
+    listed = (
+        [s for names in roles.values() if isinstance(names, list) for s in names] if isinstance(roles, dict) else []
+    )
+    states = model.get("states", listed)
+    n = len(states) if isinstance(states, list) else 0
+
+    def count(table: str) -> int:
+        places = document.get(table, {})
+        rows = (
+            [k for v in places.values() for k in (v if isinstance(v, list) else [v])]
+            if isinstance(places, dict)
+            else []
+        )
+        return max([k for k in rows if isinstance(k, int) and k < 1000], default=0)
+
+    shapes = {"F": (n, n), "H": (count("measured"), n), "G": (n, count("noises"))}
+    if any(f"{role}_correction" in document.get("quantities", {}) for role in CORRECTED):
+        shapes["reset"] = (n, n)
+    zeros = {name: [["0"] * width for _ in range(height)] for name, (height, width) in shapes.items() if height * width}
+    for k, row in enumerate(zeros.get("reset", [])):
+        row[k] = "1"
+    return {**model, "states": states, **zeros}
+
+
+def list_zeros(M: Sequence[Sequence[Any]]) -> list[list[str]]:
+    """A matrix of zeros and ones as texts."""
+    return [["1" if repr(cell) == "<1>" else "0" for cell in row] for row in M]
+
+
+def choose_card(problem: Problem, words: Mapping[str, str], where: str) -> Card:
+    """The one card that says these words."""
+    cards = list(list_cards(problem))
+    right = [card for card in cards if all(getattr(card, name) == word for name, word in words.items())]
+    if len(right) == 1:
+        return right[0]
+    for name in (f.name for f in fields(Card) if f.name in CHOICES):
+        near = [card for card in cards if all(getattr(card, k) == w for k, w in words.items() if k != name)]
+        found = list(dict.fromkeys(str(getattr(card, name)) for card in right or near))
+        if right and len(found) > 1 and name not in words:
+            message = f"expected {name}, one of {', '.join(found)}; got none; add it to the card"
+            raise EmptyError(message, where=join_place(where, name))
+        if not right and near and name in words:
+            message = (
+                f"expected {name} {' or '.join(found)} beside the other words; got {quote(words[name])}; correct it"
+            )
+            raise DomainError(message, where=join_place(where, name))
+    raise DomainError("expected words of one card; got words that exclude each other; correct them", where=where)
+
+
+def sign_of(card: Card, block: Block) -> int:
+    """The sign by which the signs of a card scale a block; noises are plus."""
+    signs = card.signs()
+    row, column = block
+    if row.startswith(MEASURED_MARK):
+        return (-1 if card.innovation == MEASURED_LESS else 1) * signs[column]
+    if row.startswith(RESET_MARK):
+        return signs["attitude"]
+    return signs[row] * signs.get(column, 1)
+
+
+def write_blocks(
+    problem: Problem,
+    flow: Mechanisation,
+    formulas: Formulas,
+    sign: Callable[[Block], int],
+    matrices: Mapping[str, list[list[str]]],
+    shown: bool = True,
+) -> None:
+    """Write the blocks of a mechanisation into matrices by their names; H unless ``shown`` is False."""
+    sides = list(problem.roles)
+    blocks = [(row, column) for row in sides for column in sides if not {row, column} <= {*BIASES}]
+    blocks += [(MEASURED_MARK + kind, column) for kind in problem.measured for column in sides if shown]
+    blocks += [(row, NOISE_MARK + noise) for row in sides for noise in problem.noises]
+    both = [role for role in CORRECTED if role in sides and problem.reset]
+    blocks += [(RESET_MARK + row, column) for row in both for column in both]
+    columns = cache(lambda column: [full_column(flow, column, k) for k in range(3)])
+    for row, column in blocks:
+        matrix, factor = matrices[matrix_of((row, column))], sign((row, column))
+        for i, place in enumerate(problem.places(row)):
+            for j, other in enumerate(problem.places(column)):
+                text = formulas.write(columns(column)[j][row][i], factor)
+                unit = row == RESET_MARK + column and i == j
+                matrix[place][other] = ("1" if text == "0" else f"1 + {text}") if unit else text
+
+
+def require_names(where: str, *matrices: Sequence[Sequence[str]]) -> None:
+    """Refuse a model that needs a quantity that the file does not name."""
+    cells = " ".join(cell for M in matrices for row in M for cell in row)
+    missing = sorted({*re.findall(HIDDEN + r"(\w+)", cells)})
+    if missing:
+        names = sorted(
+            {next((word for key, word in UNNAMED.items() if name.startswith(key)), name) for name in missing}
+        )
+        message = f"expected quantities with {' and '.join(names)}; got none; add them to [quantities]"
+        raise EmptyError(message, where=f"{where}: quantities")

@@ -1,0 +1,179 @@
+"""Cards as files: models derived from them, all cards that are equal, and cards that say too little or too much."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import navsym as nav
+from navsym.cli.main import run
+from navsym.conventions.card import Card
+from navsym.conventions.converting import convert
+from navsym.conventions.generating import choose_card
+from navsym.conventions.reading import read_problem
+from navsym.conventions.search import list_cards
+from navsym.core.errors import NavsymError
+from navsym.language.tomlfile import read_toml
+from tests.conventions import models
+from tests.conventions.test_finding import document_of
+from tests.conventions.test_measuring import sola
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+CARD = EXAMPLES / "card.toml"
+WORDS = read_toml(CARD)["card"]
+
+
+def test_the_model_of_a_card_has_that_card_and_those_that_are_equal():
+    found = nav.conventions(CARD)
+    assert found.complete and all(found.cards[0].words()[name] == word for name, word in WORDS.items())
+    assert len(found.cards) == 16  # a flat world at rest: any frame and axes, phi or psi, all signs or none changed
+    again = nav.conventions({**read_toml(CARD), "card": found.cards[5].words()})
+    assert again.model()["F"] == found.model()["F"] and set(again.cards) == set(found.cards)
+
+
+def test_a_card_beside_a_model_asks_whether_it_is_right(tmp_path, capsys):
+    model = str(EXAMPLES / "conventions.toml")
+    assert len(nav.conventions(model, card=CARD).cards) == 1
+    assert run(["conventions", model, "--card", str(CARD)]) == 0
+    wrong = tmp_path / "card.toml"
+    wrong.write_text(CARD.read_text().replace('rotation_sign  = "-"', 'rotation_sign  = "+"'))
+    assert run(["conventions", model, "--card", str(wrong)]) == 1
+    assert "must change" in capsys.readouterr().out
+
+
+def test_measurements_noise_and_reset_are_derived_too():
+    document = sola()
+    document["model"] = {"states": document["model"]["states"]}
+    (words,) = (card.words() for card in nav.conventions(sola()).cards)
+    found = nav.conventions({**document, "card": words})
+    assert found.complete and words in [card.words() for card in found.cards]
+    known = {"frame": "inertial", "error": words["error"]}
+    assert {(c.block, c.matrix) for c in nav.conventions(sola(), known=known).conflicts} == set()
+    assert found.model()["H"][0][:3] == ["1", "0", "0"] and found.model()["reset"][6][6] == "1"
+
+
+def test_every_card_of_a_problem_is_chosen_by_its_own_words():
+    document = models.groves_earth()
+    problem = read_problem(document)
+    cards = list(list_cards(problem))
+    assert len({tuple(card.words().items()) for card in cards}) == len(cards)
+    for card in random.Random(1).sample(cards, 20):
+        assert choose_card(problem, card.words(), "card") == card
+
+
+@pytest.mark.parametrize(
+    ("change", "kind", "named"),
+    [
+        ({"rotation_sign": None}, "empty", "rotation_sign"),
+        ({"vector_error": None}, "empty", "vector_error"),
+        ({"frame": "moon"}, "domain", "frame"),
+        ({"axes": "NED"}, "domain", "local-level"),
+        ({"centrifugal": "kept"}, "domain", "centrifugal"),
+        ({"sense": "active"}, "syntax", "sense"),
+        ({"frame": 3}, "syntax", "frame"),
+    ],
+)
+def test_a_card_that_says_too_little_or_contradicts_itself_is_named(change: dict[str, Any], kind: str, named: str):
+    words = {name: word for name, word in {**WORDS, **change}.items() if word is not None}
+    with pytest.raises(NavsymError) as caught:
+        nav.conventions({**read_toml(CARD), "card": words})
+    assert (caught.value.kind, named in str(caught.value)) == (kind, True)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_quantity_that_the_card_needs_is_asked_for():
+    document = read_toml(CARD)
+    del document["quantities"]["rotation"]
+    with pytest.raises(NavsymError, match="rotation"):
+        nav.conventions(document)
+    with pytest.raises(NavsymError, match="card"):
+        nav.conventions(document, card=EXAMPLES / "guard.toml")
+
+
+# -- other axes and frames, proved on the text of a model -------------------------------------------------
+
+PLACED = {
+    **models.NED, "specific_force_body": models.F_B, "angular_rate": models.W_B, "radii": ["R"], "longitude": "lon",
+    "earth_angle": "th",
+}  # fmt: skip
+PLACED.pop("specific_force")
+ABROAD = PLACED | {"velocity": ["v1", "v2", "v3"], "position": ["r1", "r2", "r3"], "gravitational_parameter": "mu"}
+LEVEL = Card(
+    "local-level", "NED", angle="phi", earth="sphere", earth_rate="kept", transport_rate="kept",
+    gravity_gradient="vertical", gravity_radius="R + h", height_variation="kept", position_error="metres",
+)  # fmt: skip
+EARTH = Card(
+    "earth",
+    earth="sphere",
+    earth_rate="kept",
+    gravity_gradient="central",
+    centrifugal="dropped",
+    position_error="metres",
+)
+WAYS = [
+    (LEVEL, PLACED, {"frame": "earth"}),
+    (replace(LEVEL, earth_rate="dropped"), PLACED, {"frame": "inertial", "attitude_error": "body"}),
+    (replace(LEVEL, angle="psi"), PLACED, {"axes": "ENU", "angle": "phi", "error": "truth - estimate"}),
+    (EARTH, ABROAD, {"frame": "local-level", "axes": "NWU"}),
+    (replace(EARTH, centrifugal="kept"), ABROAD, {"frame": "inertial", "vector_error": "rotated"}),
+    (replace(EARTH, gravity_gradient="normal", gravity_radius="R + h"), ABROAD, {"frame": "local-level"}),
+]
+ELLIPSOID = PLACED | {"radii": ["RN", "RE"], "radius_slope": "rho"}
+
+
+@pytest.mark.parametrize(
+    ("card", "quantities", "changes"),
+    [pytest.param(*way, marks=[] if k in (1, 4) else [pytest.mark.long]) for k, way in enumerate(WAYS)]
+    + [
+        pytest.param(
+            replace(LEVEL, earth="ellipsoid", radius_variation="kept", gravity_radius="RN + h"),
+            ELLIPSOID,
+            {"frame": "earth"},
+            marks=pytest.mark.long,
+        )
+    ],
+)
+def test_a_model_in_another_frame_is_what_the_generator_gives_there(card, quantities, changes):
+    problem = read_problem(document_of(card, "pvagb", quantities))
+    conversion = convert(problem, card, changes)
+    assert conversion.proved
+    assert all(getattr(conversion.target, name) == word for name, word in changes.items())
+
+
+@pytest.mark.parametrize(
+    ("card", "quantities", "changes", "named"),
+    [
+        (replace(LEVEL, earth_rate="kept"), PLACED, {"frame": "inertial"}, "centrifugal"),
+        (replace(LEVEL, height_variation="dropped"), PLACED, {"frame": "earth"}, "height"),
+        (replace(LEVEL, angle="psi"), PLACED, {"frame": "earth"}, "phi"),
+        (replace(EARTH, centrifugal="kept"), ABROAD, {"frame": "local-level"}, "centrifugal"),
+        (replace(EARTH, gravity_gradient="radial"), ABROAD, {"frame": "local-level"}, "gradient"),
+    ],
+)
+def test_a_card_that_has_no_equal_in_the_other_frame_is_refused(card, quantities, changes, named):
+    problem = read_problem(models.document("pvagb", {}, quantities, **models.declared(quantities)))
+    with pytest.raises(NavsymError, match=named):
+        convert(problem, card, changes)
+
+
+def test_a_wrong_model_is_not_proved_in_another_frame():
+    card, quantities, changes = WAYS[4]
+    document = document_of(card, "pvagb", quantities)
+    row, column = 3, 7
+    document["model"]["F"][row][column] = f"-({document['model']['F'][row][column]})"
+    assert not convert(read_problem(document), card, changes).proved
+
+
+def test_a_conversion_leaves_as_code_in_both_directions(tmp_path):
+    conversion = nav.conventions(EXAMPLES / "conventions.toml").convert(attitude_error="body")
+    exported = conversion.export(to="python", out=str(tmp_path / "code"))
+    names = [function["name"] for function in exported.functions]
+    assert names == ["inertial_with_biases_T", "inertial_with_biases_T_inverse"]
+    assert nav.check(tmp_path / "code").accepted
+    spoiled = replace(conversion, proved=False)
+    with pytest.raises(NavsymError, match="proved"):
+        nav.export(spoiled, to="python", out=str(tmp_path / "other"))
