@@ -515,12 +515,17 @@ def discrepancies(module: Any) -> Iterator[str]:
     yield from (f"refused: {pair}" for pair in EQUAL if verdict(identity(*pair), module) != "")
     yield from (f"accepted: {pair}" for pair in UNEQUAL if verdict(identity(*pair), module) != "the sides differ")
     yield from (f"accepted: {text}" for text in OUTSIDE if verdict(identity(text, text), module) == "")
-    yield from (f"read: {text[:30]}" for text in BROKEN if readable(text, module))
-    yield from (f"enclosed: {text}" for text, series in FUNCTIONS if not enclosed(text, series, module))
+    yield from list_others(module)
     yield from judge_page(module)
     from tests.checker.adversary import tricks  # it is made of what stands here
 
     yield from (f"accepted: {name}" for name, item in tricks() if judged(item, module) == "")
+
+
+def list_others(module: Any) -> Iterator[str]:
+    """What is no question to the checker: texts that are no JSON, and functions of a parameter."""
+    yield from (f"read: {text[:30]}" for text in BROKEN if readable(text, module))
+    yield from (f"enclosed: {text}" for text, series in FUNCTIONS if not enclosed(text, series, module))
 
 
 def enclosed(text: str, series: Any, module: Any) -> bool:

@@ -8,6 +8,7 @@ runs out of its time or memory is noticed. ``survivors.txt`` explains the ones t
 from __future__ import annotations
 
 import ast
+import gc
 import os
 import resource
 import sys
@@ -136,7 +137,7 @@ class Watched:
     """
 
     def __init__(self, module: ModuleType):
-        self.module, self.answers = module, dict[str, tuple[Any, str | None, frozenset[int]]]()
+        self.module, self.answers = module, dict[str, tuple[str, tuple[Any, ...], Any, str | None, frozenset[int]]]()
         self.changed: frozenset[int] | None = None
         self.check, self.grant = (partial(self.ask, name) for name in ("check", "grant"))
 
@@ -147,13 +148,29 @@ class Watched:
         """What the module says, or said before the change."""
         key = f"{name}{items!r}"
         if key not in self.answers and self.changed is None:
-            self.answers[key] = self.watch(name, items)
-        value, why, lines = self.answers.get(key, (None, None, frozenset()))
+            self.answers[key] = (name, items, *self.watch(name, items))
+        _, _, value, why, lines = self.answers.get(key, (name, items, None, None, frozenset()))
         if self.changed is not None and (key not in self.answers or self.changed & lines):
             return getattr(self.module, name)(*items)
         if why is not None:
             raise self.module.Refused(why)
         return value
+
+    def compare(self) -> str:
+        """Whether the module says ``otherwise`` than before, or the same for another ``reason``, or nothing new."""
+        found = ""
+        for name, items, _, why, lines in self.answers.values():
+            if self.changed is not None and not self.changed & lines:
+                continue
+            try:
+                getattr(self.module, name)(*items)
+                new = None
+            except self.module.Refused as refusal:
+                new = str(refusal)
+            if (new is None) != (why is None):
+                return "otherwise"
+            found = found or "reason" * (new != why)
+        return found
 
     def watch(self, name: str, items: tuple[Any, ...]) -> tuple[Any, str | None, frozenset[int]]:
         """Its value, or the reason of a refusal, and the lines that were run, with nothing remembered."""
@@ -177,14 +194,16 @@ class Watched:
 
 
 @cache
-def watched(source: str) -> tuple[Watched, ast.Module, list[ast.AST]]:
-    """The checker with what it says of all questions, and the nodes of its source."""
+def watched(source: str) -> tuple[Watched, list[ast.AST], list[Any]]:
+    """The checker with what it says of all questions, the nodes of its source, and its statements, compiled."""
     from tests.checker.forgeries import discrepancies
 
     tree = ast.parse(source)
     checker = Watched(module_of(source))
     assert list(discrepancies(checker)) == []
-    return checker, tree, list(ast.walk(tree))
+    codes = [(s, compile(ast.Module([s], []), "mutant", "exec")) for s in tree.body]
+    gc.freeze()
+    return checker, [tree, *list(ast.walk(tree))[1:]], codes
 
 
 def lines_of(tree: ast.Module, node: ast.AST) -> frozenset[int] | None:
@@ -208,15 +227,18 @@ def lines_of(tree: ast.Module, node: ast.AST) -> frozenset[int] | None:
 
 def noticed(source: str, place: int, number: int) -> bool:
     """True when the mutant answers one certificate otherwise; judged in a process of its own."""
-    checker, tree, nodes = watched(source)
+    checker, nodes, codes = watched(source)
     child = os.fork()
     if child == 0:
         resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 5))
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-        checker.changed = lines_of(tree, nodes[place]) or frozenset(range(1, len(source)))
-        apply(tree, nodes[place], number)
-        os._exit(judged(checker, ast.fix_missing_locations(tree)))
+        node, tree = nodes[place], nodes[0]
+        checker.changed = lines_of(tree, node)
+        own = next(s for s, _ in codes if s.lineno <= node.lineno <= s.end_lineno)
+        apply(tree, node, number)
+        ast.fix_missing_locations(own)
+        os._exit(judged(checker, [compile(ast.Module([s], []), "mutant", "exec") if s is own else c for s, c in codes]))
     return os.waitpid(child, 0)[1] != 0
 
 
@@ -227,12 +249,17 @@ def module_of(source: str | ast.Module) -> ModuleType:
     return module
 
 
-def judged(checker: Watched, tree: ast.Module) -> int:
-    from tests.checker.forgeries import discrepancies
+def judged(checker: Watched, codes: list[Any]) -> int:
+    from tests.checker.forgeries import discrepancies, list_others
 
     try:
-        checker.module = module_of(tree)
-        return int(next(discrepancies(checker), None) is not None)
+        module = checker.module = ModuleType("mutant")
+        for code in codes:
+            exec(code, module.__dict__)
+        found = checker.compare()
+        if found == "otherwise" or (not found and next(list_others(module), None) is not None):
+            return 1
+        return int(found != "" and next(discrepancies(checker), None) is not None)
     except BaseException:
         return 1
 
