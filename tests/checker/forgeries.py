@@ -14,7 +14,7 @@ from typing import Any
 
 from flint import arb, arb_series, ctx
 
-from tests.checker import proofs, words
+from tests.checker import calculus, proofs, words
 from tests.checker.examples import (
     ALL,
     ALMOST,
@@ -508,6 +508,7 @@ def discrepancies(module: Any) -> Iterator[str]:
     """What a module with the checker's names answers otherwise than it must."""
     yield from proofs.discrepancies(module)
     yield from words.discrepancies(module)
+    yield from calculus.discrepancies(module)
     yield from (f"refused: {item}" for item in GOOD if verdict(item, module) != "")
     for item, path, value, why in FORGERIES:
         if not re.search(why, verdict(changed(item, path, value), module) or "accepted"):

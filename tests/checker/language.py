@@ -8,6 +8,8 @@ ONES = {f"{n}_{i}_0": str(i + k) for k, n in enumerate("uvw") for i in range(3)}
 TWOS = {f"{n}_{i}_{j}": str(2 * i + 3 * j + k) for k, n in enumerate("AB") for i in range(2) for j in range(2)}
 QUAT = {"q_0_0": "3/5", "q_1_0": "4/5", "q_2_0": "0", "q_3_0": "0"}
 
+WHOLE, NORMAL = [None, None, ["integer"]], {"w": {"mean": "0", "cov": "1", "normal": True}}
+
 
 def some(point, *names):
     return {key: value for key, value in point.items() if key[0] in names}
@@ -144,6 +146,12 @@ MEANINGLESS = [
     (stated("integral(floor(x), x, 0, 1)", "=", "0"), "beside a floor"),
     (stated("E(floor(x))", "=", "0", x=LINE), "an expectation of a floor"),
     (stated("expm([[floor(x)]])", "=", "0", x=LINE), "an exponential of a floor"),
+    # floor(n) is n for a whole number n, which is then no variable: the integral is 1.
+    (stated("integral(floor(n), n, 0, 2)", "=", "2", n=WHOLE), "a whole number that varies"),
+    (stated("limit(floor(n), n, 1/2)", "=", "1/2", n=WHOLE), "a whole number that varies"),
+    (stated("diff(floor(n), n)", "=", "1", n=WHOLE), "a whole number that varies"),
+    (stated("dot_(floor(n))", "=", "1", rates={"n": "1"}, n=WHOLE), "a whole number that varies"),
+    (stated("integral(E(w), w, 0, 1)", "=", "0") | {"random": NORMAL}, "the name of a number"),
     (stated("expm([[1, 2]])", "=", "0"), "expected n by n"),
     (stated("E(x, x)", "=", "0", x=LINE), "a wrong number of arguments"),
     (stated("diff(x**2, limit(y, y, x))", "=", "0", x=LINE), "expected a symbol behind diff"),

@@ -252,6 +252,43 @@ def judge(item: Any, module: Any) -> str:
     return ""
 
 
+#: Declared for the texts of KNOWN and TAKEN, and hypotheses of some.
+DECLARED = {
+    **dict.fromkeys("AB", SQUARE), **dict.fromkeys("VW", (SQUARE, "invertible")), "U": (SQUARE, "orthogonal"),
+    **dict.fromkeys("PQ", (SQUARE, "positive")), "N": (SQUARE, "nonnegative"), "H": FLAT, "K": TALL,
+    "R": (["m", "m"], "positive"), "S": ["m", "m"], "u": ["n", 1], "v": ["n", 1],
+}  # fmt: skip
+NUMBERS = {"a": APART, "b": REAL, "c": ABOVE, "d": ["1", None, []], "e": ["0", None, []], "f": ["0", None, [*APART[2]]]}
+#: Inverses and quotients that exist, by what is declared: positive sums, M N M', products of regular factors.
+KNOWN = """inv(A @ A.T + eye(n)); inv(V @ V.T); inv(H @ P @ H.T + R); inv(H @ N @ H.T + R); inv(P + N); inv(-P)
+inv(a*P); inv(c*P + Q); inv(P/c + Q); inv(c**2*P/3 + Q); inv(c*P/n + Q); inv(d*P + Q); inv(f*P + Q); inv(a*c*P); inv(a**2*P)
+inv((c + 2)*P + Q); inv(inv(P) + N); inv(V @ W); inv(V @ P @ V); inv(V @ P @ V.T + Q); inv(V @ N @ V.T + P)
+inv(A @ V @ P @ V.T @ A.T + P); inv(U); inv(V.T); inv(H.T @ H + eye(n)); inv(H @ H.T + R); A/(1 + dot(u, u))
+A/(1 + dot(u, N @ u)); A/(c + dot(u, u) + dot(v, v)); A/b; zeros(n, m) @ R; inv(eye(n)); 2*inv(P)
+S = H @ P @ H.T + R: inv(S); S = inv(R): inv(S)"""
+#: The same where it has to be assumed.
+TAKEN = """inv(A @ A.T); inv(A @ A.T + N); inv(H @ A @ H.T + R); inv(H @ P @ H.T); inv(P - Q); inv(V + P); inv(N + N)
+inv(- P + N); inv(b*P); inv(a*P + Q); inv(0*P); inv(2*N); inv(a*N); inv(e*P + Q); inv(b*c*P); inv((c + b)*P + Q)
+inv((c - 2)*P); inv(inv(V) + Q); inv(V @ B); inv(V @ P @ V + Q); inv(V @ W @ V.T + P); inv(V @ W @ P @ V.T + P)
+inv(U + P); inv(A.T); inv(H @ K); inv(zeros(n, n)); A/trace(B); A/dot(u, u); A/(1 + dot(u, v)); A/(1 + dot(u, A @ u))
+A/(b + dot(u, u)); A/(dot(u, u) + dot(v, v)); A/(1 - dot(u, u)); H @ P @ H.T + R = S: inv(S); S + R = R: inv(S)
+-S = R: inv(S)"""
+
+
+def list_assumed(module: Any) -> Iterator[str]:
+    """Which inverses and quotients are taken to exist without a reason, or not taken to."""
+    for table, is_taken in ((KNOWN, False), (TAKEN, True)):
+        for line in table.replace("\n", "; ").split("; "):
+            given, _, text = line.rpartition(": ")
+            inside = text[4:-1] if text.startswith("inv") else text[2:]
+            expected = [f"{inside} invertible" if text.startswith("inv") else f"{inside} != 0"] * is_taken
+            statement = state(text, text, given=[given] if given else [], symbols=NUMBERS, **DECLARED)
+            algebra = module.Words(statement)
+            algebra.state()
+            if [*algebra.assumed] != expected:
+                yield f"{[*algebra.assumed]}, not {expected}: {text}"
+
+
 def discrepancies(module: Any) -> Iterator[str]:
     """What a module with the checker's names answers otherwise than it must."""
     yield from (f"refused: {item}: {judge(item, module)}" for item in TRUE if judge(item, module))
@@ -259,3 +296,4 @@ def discrepancies(module: Any) -> Iterator[str]:
         answer = judge(changed(item, path, value), module)
         if (answer != "") != (why != "") or not re.search(why, answer):
             yield f"{path} {value}: expected {why or 'acceptance'}; got {answer or 'acceptance'}"
+    yield from list_assumed(module)
