@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from tests.checker.proofs import LINE, UP, B, I, answer, by, equal, prove, span, state, stated
+from tests.checker.proofs import LINE, UP, B, I, answer, by, equal, prove, refute, span, state, stated
 
 WHOLE, POSITIVE, COUNT = [None, None, ["integer"]], ["0", None, ["open-low"]], ["1", None, ["integer"]]
 GROWTH: dict[str, Any] = {"signs": []}
@@ -126,7 +126,11 @@ LIMITS = [
         "integer from 0 to 8",
     ),
     row("limit(1/x**9, x, 1)", "1", [taylor("1", "x__1**9", pole=[B, B], around=[9])], "integer from 0 to 8"),
+    row("limit(x, x, 1)", "1", [taylor("x__1", "1", 9)], "integer from 0 to 8"),
+    row("limit(1/x, x, -1)", "-1", [taylor("1", "x__1", pole=[B, B], around=[0])]),
+    row("limit(log(x), x, 2)", "log(2)", [taylor("log(x__1)", "1", pole=[B, B], around=[0])]),
 ]
+NATURAL = by("product", factors=[None])
 INTEGRALS = [
     row("integral(x**2, x, 0, 1)", "1/3", [integral(piece("x__1**3/3"))]),
     row("integral(x**2, x, 1, 0)", "-1/3", [integral(piece("x__1**3/3"))]),
@@ -178,6 +182,19 @@ INTEGRALS = [
     row("integral(log(a)*x, x, 0, 1)", "log(a)/2", [integral(piece("log(a)*x__1**2/2"))], "", {"a": "1"}, a=LINE),
     row("integral(0*log(a)*x, x, 0, 1)", "0", [integral(piece("0"))], "no value at the witness", {"a": "-1"}, a=LINE),
     row("integral(0/x, x, -1, 1)", "0", [integral(piece("0"))], "expected 1 entries"),
+    row("integral(exp(-x)*integral(y, y, 0, 1), x, 0, oo)", "1/2", [
+        integral(piece("y__1**2/2")), integral(piece("-exp(-x__2)/2", (0, 1))),
+    ]),
+    row("integral(x*integral(y, y, 0, 1), x, 0, a)", "a**2/4", [
+        integral(piece("y__1**2/2")), integral(piece("x__2**2/4")),
+    ], "", {"a": "1"}, a=LINE),
+    row("integral(sum(1, k, 1, x), x, 0, 2)", "2", [
+        sum_by("k__1", count=I), integral(piece("x__2**2/2")),
+    ], "whole ends"),
+    # exp(-x**2) is bounded by every power, 1/exp(-x**2) by none.
+    row("integral((2*x - 2)*exp(x**2 - 2*x), x, 0, oo)", "-1", [
+        integral(piece("exp(-x__1**2)**(-1)*exp(-x__1)**2", (0, 1), [NATURAL], [NATURAL])),
+    ], "a power that may have no value|entries"),
     row("integral(x*integral(y, y, 0, x), x, 0, 2)", "2", [
         integral(piece("y__1**2/2")), integral(piece("x__2**4/8")),
     ]),
@@ -263,6 +280,7 @@ ORDERS = [
     order("exp(x)", "1", {"x": 1}, x=LINE),
     order("exp(x)", "1", {"x": 2}, "the sides differ", goals=2, x=LINE),
     order("x**9", "0", {"x": 8}, goals=8, x=LINE),
+    order("x/(1 - x)", "x", {"x": 2}, goals=2, x=LINE),
     order("x**9", "0", {"x": 9}, "integer from 1 to 8", goals=9, x=LINE),
     order("x", "1", {"x": 0}, "integer from 1 to 8", goals=0, x=LINE),
     order("x", "0", {"y": 1}, "an order in no symbol", x=LINE),
@@ -281,6 +299,14 @@ ORDERS = [
     order("sqrt(x)*0", "0", {"x": 1}, "no value at the witness", x=POSITIVE),
     order("x + floor(a)", "floor(a)", {"x": 1}, "an order of a floor", x=LINE, a=LINE),
 ]
+#: Points that refute, or do not: (x - 1)**k has no value for x < 1, also for k = 2.
+REFUTED = [
+    (state("integral(x**2, x, 0, a)", "=", "a", a=LINE), {"a": "1"}, [integral(piece("x__1**3/3"))], ""),
+    (state("integral(x**2, x, 0, a)", "=", "a**3/3", a=LINE), {"a": "1"}, [integral(piece("x__1**3/3"))], "not seen"),
+    (state("integral((x - 1)**k, x, 0, 1)", "=", "0", k=LINE), {"k": "2"}, [integral(piece("(x__1 - 1)**3/3"))],
+     "another exponent"),
+    (state("x", "=", "1", x=LINE), ["x"], None, "expected numbers by symbol"),
+]  # fmt: skip
 ROWS = [*LIMITS, *INTEGRALS, *SUMS, *EXPONENTIALS, *ORDERS]
 
 
@@ -291,3 +317,7 @@ def discrepancies(module: Any) -> Iterator[str]:
         found = answer(module, statement, item)
         if (found == "HOLDS") != (why == "") or not re.search(why, found):
             yield f"{found}, not {why or 'HOLDS'}: {statement['left']} {statement['relation']} {statement['right']}"
+    for statement, point, answers, why in REFUTED:
+        found = answer(module, statement, refute(statement, point) | ({} if answers is None else {"answers": answers}))
+        if (found == "FAILS") != (why == "") or not re.search(why, found):
+            yield f"{found}, not {why or 'FAILS'}: {statement}"

@@ -527,6 +527,7 @@ def list_others(module: Any) -> Iterator[str]:
     """What is no question to the checker: texts that are no JSON, and functions of a parameter."""
     yield from (f"read: {text[:30]}" for text in BROKEN if readable(text, module))
     yield from (f"enclosed: {text}" for text, series in FUNCTIONS if not enclosed(text, series, module))
+    yield from words.list_assumed(module)
 
 
 def enclosed(text: str, series: Any, module: Any) -> bool:

@@ -10,6 +10,8 @@ QUAT = {"q_0_0": "3/5", "q_1_0": "4/5", "q_2_0": "0", "q_3_0": "0"}
 
 WHOLE, NORMAL = [None, None, ["integer"]], {"w": {"mean": "0", "cov": "1", "normal": True}}
 
+MEAN = {"mean": "log(a)", "cov": "1", "normal": True}
+
 
 def some(point, *names):
     return {key: value for key, value in point.items() if key[0] in names}
@@ -112,6 +114,10 @@ LANGUAGE = [
     ),
     (("sign(x)", "=", "-sign(-x)"), ("sign(-x)", "1"), "", {"x": "1"}, [I] * 3, {"x": LINE}),
     (("diff(x**3, x, 2)", "=", "6*x"), ("3*x**2", "6"), "", {"x": "1"}, [I], {"x": LINE}),
+    (("floor(5/2) + floor(-5/2) + floor(pi)", "=", "2"), ("3", "1"), "", {}, [I], {}),
+    (("floor(log(exp(2))) + floor(-log(exp(3)))", "=", "-1"), ("0", "-2"), "", {}, [I], {}),
+    (("floor(floor(x) + 1/2)", "=", "floor(x)"), ("floor(x) + 1",), "", {"x": "1/3"}, [I], {"x": LINE}),
+    (("floor(pi*x)", "=", "floor(x*pi)"), ("floor(x)",), "", {"x": "1/3"}, [I], {"x": LINE}),
     (("diff([x**2, x*y], x)", "=", "[2*x, y]"), ("[2*x, x]",), "", XY, [I] * 2, {"x": LINE, "y": LINE}),
 ]
 #: What the language does not mean, with the reason of its refusal.
@@ -153,6 +159,7 @@ MEANINGLESS = [
     (stated("dot_(floor(n))", "=", "1", rates={"n": "1"}, n=WHOLE), "a whole number that varies"),
     (stated("integral(E(w), w, 0, 1)", "=", "0") | {"random": NORMAL}, "the name of a number"),
     (stated("expm([[1, 2]])", "=", "0"), "expected n by n"),
+    (stated("transpose(x)", "=", "x", x=LINE), "expected a matrix"),
     (stated("E(x, x)", "=", "0", x=LINE), "a wrong number of arguments"),
     (stated("diff(x**2, limit(y, y, x))", "=", "0", x=LINE), "expected a symbol behind diff"),
     (stated("x", "=", "x", given=["x"], x=LINE), "expected a relation"),
@@ -172,6 +179,7 @@ NOWHERE_DEFINED = [
     (stated("x", "=", "x", given=["x >= 1"], x=LINE), X0, [I], "no value at the witness"),
     (stated("x", "=", "x", given=["x > 0"], x=LINE), X0, [I], "no value at the witness"),
     (stated("x", "=", "x", given=["x != 0"], x=LINE), X0, [I], "no value at the witness"),
+    (stated("E(w) - E(w)", "=", "0", a=LINE) | {"random": NORMAL | {"v": MEAN}}, {"a": "-1"}, [I], "at the witness"),
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, [I], "expected 2 entries"),
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, [I, I], "the sides differ"),
     (stated("where(x = 0, 1, 2)", "=", "2", x=LINE), X1, [I, I], "the sides differ"),
