@@ -173,7 +173,7 @@ VANISHING = "(sin(x)**2 + cos(x)**2 - 1)"
 
 # fmt: off
 TRUE = [
-    ("product", state("1/x", ">", x=UNIT), X1, factors(None, [1, span(0)])),
+    ("product", state("1/x", ">", x=UNIT), X1, signs("1/x", None, [1, span(0)])),
     ("cones", state("x + y + z", ">=", x=UP, y=UP, z=UP), X1 | {"y": "1", "z": "1"}, by("cones", splits=[None])),
     ("cones", state("1 - x - y + x*y", ">=", x=UNIT, y=UNIT), XY, by("cones", splits=[None])),
     ("roots", state("-x", ">=", x=[None, "0", []]), XB, roots(None, "0")),
