@@ -173,6 +173,8 @@ VANISHING = "(sin(x)**2 + cos(x)**2 - 1)"
 
 # fmt: off
 TRUE = [
+    ("range", stated("-x", ">=", "0", given=["x <= 0"], x=LINE), XB, span(1)),
+    ("range", stated("x", ">=", "0", given=["x >= 0"], x=LINE), X1, span(0)),
     ("product", state("1/x", ">", x=UNIT), X1, signs("1/x", None, [1, span(0)])),
     ("cones", state("x + y + z", ">=", x=UP, y=UP, z=UP), X1 | {"y": "1", "z": "1"}, by("cones", splits=[None])),
     ("cones", state("1 - x - y + x*y", ">=", x=UNIT, y=UNIT), XY, by("cones", splits=[None])),
@@ -349,6 +351,8 @@ WHOLE = state("x*(x - 1)*(x - 2)", "=", x=COUNT)
 X2, XH = {"x": "2"}, {"x": "1/2"}
 # fmt: off
 HOSTILE = [
+    ("rewrite", state("x", ">", x=LINE), X1, rewrite("x", "x", I, B), "not shown"),
+    ("multiply", state("x", ">", x=LINE), X1, multiply("2", B, B), "not shown"),
     ("abstract", state("x", ">", x=LINE), X1, abstract({"u": "x"}, {"u": LINE}, "u", [], B), "not shown"),
     ("modulo", stated("x", "=", "0", given=["y = 0"], x=LINE, y=LINE), {"x": "0", "y": "0"}, modulo("x", I, "0"),
      "the sides differ"),
