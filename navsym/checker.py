@@ -1451,6 +1451,10 @@ class Reader:
         require(not is_asked(term), f"{what} of an integral, sum, product or limit")
         require(not symbols_of(term) & set(self.fractions), f"{what} of a floor")
 
+    def require_real(self, name: str) -> None:
+        """Refuse a whole number as a variable: where floor(n) was read as n, n is whole."""
+        require(name not in self.box or not self.box[name].integer, "a whole number that varies")
+
     def find_floor(self, x: Term) -> Term:
         """floor(x) as x - f with a symbol f, 0 <= f < 1; floor(n + u) = n + floor(u) for what is seen to be whole.
 
@@ -1557,6 +1561,7 @@ class Reader:
         self.need(*(t for entry in list_entries(x) for t in (entry, *smoothness(entry))))
         if name == "t" and "t" in self.rates:
             return change_entries(self.differentiate_by_time, x)
+        self.require_real(name)
         return change_entries(lambda term: differentiate(term, name), x)
 
     def differentiate_by_time(self, term: Term) -> Term:
@@ -1565,6 +1570,8 @@ class Reader:
         slopes = self.slopes = self.slopes or self.list_rates()
         rows = [(name, slopes[name]) for name in sorted(symbols_of(term)) if name in slopes]
         require(all(rate is not None for _, rate in rows), "no rate is known")
+        for own, _ in rows:
+            self.require_real(own)
         return add_terms(multiply_terms(differentiate(term, name), rate) for name, rate in rows)  # type: ignore[arg-type]
 
     def list_rates(self) -> dict[str, Term | None]:
@@ -1786,8 +1793,12 @@ class Formula(Parser):
         term, needs, reader.exists = to_number(self.read_sum()), [*reader.exists], outside
         require(self.take(","), f"expected a variable in {kind}")
         name, ends = self.words.pop(), []
-        plain = matches("[A-Za-z][A-Za-z0-9_]*", name) and name not in ("pi", "oo", *reader.names, *reader.rates)
-        require(plain, f"expected the name of a number in {kind}")
+        taken = ("pi", "oo", *reader.names, *reader.rates, *reader.chances)
+        require(
+            matches("[A-Za-z][A-Za-z0-9_]*", name) and name not in taken, f"expected the name of a number in {kind}"
+        )
+        if kind in ("integral", "limit"):
+            reader.require_real(name)
         while self.take(","):
             ends.append(to_number(self.read_sum()))
         require(self.take(")") and len(ends) == 2 - (kind == "limit"), f"expected the ends of {kind}, and )")

@@ -14,7 +14,7 @@ from typing import Any
 
 from flint import arb, arb_series, ctx
 
-from tests.checker import proofs, words
+from tests.checker import calculus, proofs, words
 from tests.checker.examples import (
     ALL,
     ALMOST,
@@ -508,6 +508,7 @@ def discrepancies(module: Any) -> Iterator[str]:
     """What a module with the checker's names answers otherwise than it must."""
     yield from proofs.discrepancies(module)
     yield from words.discrepancies(module)
+    yield from calculus.discrepancies(module)
     yield from (f"refused: {item}" for item in GOOD if verdict(item, module) != "")
     for item, path, value, why in FORGERIES:
         if not re.search(why, verdict(changed(item, path, value), module) or "accepted"):
@@ -515,12 +516,18 @@ def discrepancies(module: Any) -> Iterator[str]:
     yield from (f"refused: {pair}" for pair in EQUAL if verdict(identity(*pair), module) != "")
     yield from (f"accepted: {pair}" for pair in UNEQUAL if verdict(identity(*pair), module) != "the sides differ")
     yield from (f"accepted: {text}" for text in OUTSIDE if verdict(identity(text, text), module) == "")
-    yield from (f"read: {text[:30]}" for text in BROKEN if readable(text, module))
-    yield from (f"enclosed: {text}" for text, series in FUNCTIONS if not enclosed(text, series, module))
+    yield from list_others(module)
     yield from judge_page(module)
     from tests.checker.adversary import tricks  # it is made of what stands here
 
     yield from (f"accepted: {name}" for name, item in tricks() if judged(item, module) == "")
+
+
+def list_others(module: Any) -> Iterator[str]:
+    """What is no question to the checker: texts that are no JSON, and functions of a parameter."""
+    yield from (f"read: {text[:30]}" for text in BROKEN if readable(text, module))
+    yield from (f"enclosed: {text}" for text, series in FUNCTIONS if not enclosed(text, series, module))
+    yield from words.list_assumed(module)
 
 
 def enclosed(text: str, series: Any, module: Any) -> bool:

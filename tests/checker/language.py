@@ -8,6 +8,15 @@ ONES = {f"{n}_{i}_0": str(i + k) for k, n in enumerate("uvw") for i in range(3)}
 TWOS = {f"{n}_{i}_{j}": str(2 * i + 3 * j + k) for k, n in enumerate("AB") for i in range(2) for j in range(2)}
 QUAT = {"q_0_0": "3/5", "q_1_0": "4/5", "q_2_0": "0", "q_3_0": "0"}
 
+WHOLE, NORMAL = [None, None, ["integer"]], {"w": {"mean": "0", "cov": "1", "normal": True}}
+
+FIVE = {"shapes": {"p": [[f"p{i}"] for i in range(5)]}, "random": {"p": {"mean": "zeros(5, 1)", "cov": "eye(5)"}}}
+FIVE["random"]["p"] |= {"normal": True}
+PAIR = {"shapes": {"p": [["p0"], ["p1"]]}, "random": {"p": {"mean": "[2, 3]", "cov": "[[1, a], [b, 1]]"}}}
+PAIR["random"]["p"] |= {"normal": True}
+TWO_ABOUT = {"mean": "2", "cov": "1", "normal": False}
+MEAN = {"mean": "log(a)", "cov": "1", "normal": True}
+
 
 def some(point, *names):
     return {key: value for key, value in point.items() if key[0] in names}
@@ -110,8 +119,33 @@ LANGUAGE = [
     ),
     (("sign(x)", "=", "-sign(-x)"), ("sign(-x)", "1"), "", {"x": "1"}, [I] * 3, {"x": LINE}),
     (("diff(x**3, x, 2)", "=", "6*x"), ("3*x**2", "6"), "", {"x": "1"}, [I], {"x": LINE}),
+    (("floor(5/2) + floor(-5/2) + floor(pi)", "=", "2"), ("3", "1"), "", {}, [I], {}),
+    (("floor(log(exp(2))) + floor(-log(exp(3)))", "=", "-1"), ("0", "-2"), "", {}, [I], {}),
+    (("floor(floor(x) + 1/2)", "=", "floor(x)"), ("floor(x) + 1",), "", {"x": "1/3"}, [I], {"x": LINE}),
+    (("floor(pi*x)", "=", "floor(x*pi)"), ("floor(x)",), "", {"x": "1/3"}, [I], {"x": LINE}),
     (("diff([x**2, x*y], x)", "=", "[2*x, y]"), ("[2*x, x]",), "", XY, [I] * 2, {"x": LINE, "y": LINE}),
 ]
+#: The same with what is random, with rates, whole numbers and cases: statement, its right side, a wrong one.
+A1, RATES = {"a": "1"}, {"x": "v", "t": "1"}
+READ = [
+    (stated("E(a*w**2 + sin(a)*w + a)", "=", "", a=LINE) | {"random": NORMAL}, "2*a", "a", A1, [I]),
+    (stated("E(w**8)", "=", "") | {"random": NORMAL}, "105", "1", {}, [I]),
+    (stated("E(w**2/(a + 1))", "=", "", a=LINE) | {"random": NORMAL}, "1/(a + 1)", "1/a", A1, [I]),
+    (stated("E(w*v*v)", "=", "", a=LINE) | {"random": {"w": TWO_ABOUT, "v": TWO_ABOUT | {"mean": "3"}}}, "20", "18",
+     A1, [I]),
+    (stated("cov(w, v)", "=", "", a=LINE) | {"random": {"w": TWO_ABOUT, "v": TWO_ABOUT}}, "0", "1", A1, [I]),
+    (stated("cov(p)", "=", "", a=LINE, b=LINE, given=["a = b"]) | PAIR, "[[1, a], [a, 1]]", "[[1, a], [-a, 1]]",
+     {"a": "1/2", "b": "1/2"}, [I, I, modulo("0", I, "-1"), I]),
+    (stated("diff(x**2, t)", "=", "", rates=RATES, t=LINE, x=LINE, v=LINE), "2*x*v", "0",
+     {"t": "1", "x": "1", "v": "1"}, [I]),
+    (stated("diff(x**2, x)", "=", "", rates=RATES, t=LINE, x=LINE, v=LINE), "2*x", "2*x*v",
+     {"t": "1", "x": "1", "v": "2"}, [I]),
+    (stated("where(x != 0, [1/x, 2][2], 2)", "=", "", x=LINE), "2", "1", X0, [I, I]),
+    (stated("where(x = 0, 2, [1/x, 2][2])", "=", "", x=LINE), "2", "1", X0, [I, I]),
+    (stated("floor(n + x)", "=", "", n=WHOLE, x=LINE), "n + floor(x)", "n", {"n": "1", "x": "1/2"}, [I]),
+    (stated("diff(x**9, x, 8)", "=", "", x=LINE), "362880*x", "x", X1, [I]),
+    (stated("asin(x) + acos(x)", "=", "", x=LINE), "acos(x) + asin(x)", "0", X1, [I]),
+]  # fmt: skip
 #: What the language does not mean, with the reason of its refusal.
 MEANINGLESS = [
     (stated("u*v", "=", "u", "u", "v"), "a product of matrices is written with @"),
@@ -144,7 +178,26 @@ MEANINGLESS = [
     (stated("integral(floor(x), x, 0, 1)", "=", "0"), "beside a floor"),
     (stated("E(floor(x))", "=", "0", x=LINE), "an expectation of a floor"),
     (stated("expm([[floor(x)]])", "=", "0", x=LINE), "an exponential of a floor"),
+    # floor(n) is n for a whole number n, which is then no variable: the integral is 1.
+    (stated("integral(floor(n), n, 0, 2)", "=", "2", n=WHOLE), "a whole number that varies"),
+    (stated("limit(floor(n), n, 1/2)", "=", "1/2", n=WHOLE), "a whole number that varies"),
+    (stated("diff(floor(n), n)", "=", "1", n=WHOLE), "a whole number that varies"),
+    (stated("dot_(floor(n))", "=", "1", rates={"n": "1"}, n=WHOLE), "a whole number that varies"),
+    (stated("integral(E(w), w, 0, 1)", "=", "0") | {"random": NORMAL}, "the name of a number"),
     (stated("expm([[1, 2]])", "=", "0"), "expected n by n"),
+    (stated("transpose(x)", "=", "x", x=LINE), "expected a matrix"),
+    (stated("diff(integral(y, y, 0, x), x)", "=", "0", x=LINE), "a derivative of an integral"),
+    (stated("sum(integral(k*x, x, 0, 1), k, 1, 2)", "=", "3/2"), "sum of an open question"),
+    (stated("cov(A, B)", "=", "0", "A", "B"), "expected a vector"),
+    (stated("x + ]", "=", "x", x=LINE), "not an expression"),
+    (stated("expm([[1]], [[1]])", "=", "[[1]]"), "expected expm of 1 argument"),
+    (stated("expm([[s__1]])", "=", "[[1]]", s__1=LINE), "a name that is in use"),
+    (stated("where(x > 0, 1, [1, 2])", "=", "1", x=LINE), "branches of different shapes"),
+    (stated("dot_(x, x)", "=", "1", rates={"x": "1"}, x=LINE), "expected dot_ of 1 argument"),
+    (stated("diff(x, x, 9)", "=", "0", x=LINE), "a derivative of a high order"),
+    (stated("E(w**3)", "=", "0") | {"random": {"w": NORMAL["w"] | {"normal": False}}}, "a moment that is not declared"),
+    (stated("E(w**9)", "=", "0") | {"random": NORMAL}, "a moment that is not declared"),
+    (stated("E(p[1])", "=", "0") | FIVE, "up to 4 numbers"),
     (stated("E(x, x)", "=", "0", x=LINE), "a wrong number of arguments"),
     (stated("diff(x**2, limit(y, y, x))", "=", "0", x=LINE), "expected a symbol behind diff"),
     (stated("x", "=", "x", given=["x"], x=LINE), "expected a relation"),
@@ -164,6 +217,15 @@ NOWHERE_DEFINED = [
     (stated("x", "=", "x", given=["x >= 1"], x=LINE), X0, [I], "no value at the witness"),
     (stated("x", "=", "x", given=["x > 0"], x=LINE), X0, [I], "no value at the witness"),
     (stated("x", "=", "x", given=["x != 0"], x=LINE), X0, [I], "no value at the witness"),
+    (stated("E(w) - E(w)", "=", "0", a=LINE) | {"random": NORMAL | {"v": MEAN}}, {"a": "-1"}, [I], "at the witness"),
+    (stated("y", "=", "y", given=["0*log(x) = 0"], x=LINE, y=LINE), {"x": "-1", "y": "1"}, [I], "at the witness"),
+    (stated("y", "=", "y", given=["0*log(x) >= 0"], x=LINE, y=LINE), {"x": "-1", "y": "1"}, [I], "at the witness"),
+    (stated("E(p[1]*p[2])", "=", "a + 6", a=LINE, b=LINE) | PAIR, {"a": "0", "b": "1/2"}, [I], "at the witness"),
+    (stated("E(p[1]*p[2])", "=", "a + 6", a=LINE, b=LINE) | PAIR, {"a": "2", "b": "2"}, [I], "at the witness"),
+    (stated("where(x = 0, [1/x, 2][2], 2)", "=", "2", x=LINE), X0, [I, I], "no value at the witness"),
+    (stated("sum([1/k, 2][2], k, 0, 1)", "=", "4"), {}, [I], "no value at the witness"),
+    (stated("diff(asin(x), x)*0", "=", "0", x=LINE), X1, [I], "no value at the witness"),
+    (stated("diff(acos(x), x)*0", "=", "0", x=LINE), {"x": "-1"}, [I], "no value at the witness"),
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, [I], "expected 2 entries"),
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, [I, I], "the sides differ"),
     (stated("where(x = 0, 1, 2)", "=", "2", x=LINE), X1, [I, I], "the sides differ"),
@@ -193,3 +255,6 @@ def list_language():
         yield stated(left, relation, right, *names, **symbols), witness, proofs, True
         for other in wrong:
             yield stated(left, relation, other, *names, **symbols), witness, proofs, False
+    for statement, right, wrong, witness, proofs in READ:
+        yield statement | {"right": right}, witness, proofs, True
+        yield statement | {"right": wrong}, witness, proofs, False

@@ -8,19 +8,22 @@ runs out of its time or memory is noticed. ``survivors.txt`` explains the ones t
 from __future__ import annotations
 
 import ast
+import gc
 import os
 import resource
 import sys
 from collections.abc import Iterator
+from functools import cache, partial
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "navsym" / "checker.py"
 EXPLAINED = Path(__file__).with_name("survivors.txt")
-SECONDS, MEMORY = 20, 3 * 2**30
+SECONDS, MEMORY = 8, 3 * 2**30
 COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
     ast.Lt: ast.LtE,
     ast.LtE: ast.Lt,
@@ -127,14 +130,115 @@ def replace(tree: ast.Module, old: ast.AST, new: ast.AST) -> None:
                 value[[item is old for item in value].index(True)] = new
 
 
+class Watched:
+    """The checker, whose answers are kept with the lines that each question runs; a mutant is asked what runs its own.
+
+    Its other names are those of the module.
+    """
+
+    def __init__(self, module: ModuleType):
+        self.module, self.answers = module, dict[str, tuple[str, tuple[Any, ...], Any, str | None, frozenset[int]]]()
+        self.changed: frozenset[int] | None = None
+        self.check, self.grant = (partial(self.ask, name) for name in ("check", "grant"))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.module, name)
+
+    def ask(self, name: str, *items: Any) -> Any:
+        """What the module says, or said before the change."""
+        key = f"{name}{items!r}"
+        if key not in self.answers and self.changed is None:
+            self.answers[key] = (name, items, *self.watch(name, items))
+        _, _, value, why, lines = self.answers.get(key, (name, items, None, None, frozenset()))
+        if self.changed is not None and (key not in self.answers or self.changed & lines):
+            return getattr(self.module, name)(*items)
+        if why is not None:
+            raise self.module.Refused(why)
+        return value
+
+    def compare(self) -> str:
+        """Whether the module says ``otherwise`` than before, or the same for another ``reason``, or nothing new."""
+        found = ""
+        for name, items, _, why, lines in self.answers.values():
+            if self.changed is not None and not self.changed & lines:
+                continue
+            try:
+                getattr(self.module, name)(*items)
+                new = None
+            except self.module.Refused as refusal:
+                new = str(refusal)
+            if (new is None) != (why is None):
+                return "otherwise"
+            found = found or "reason" * (new != why)
+        return found
+
+    def watch(self, name: str, items: tuple[Any, ...]) -> tuple[Any, str | None, frozenset[int]]:
+        """Its value, or the reason of a refusal, and the lines that were run, with nothing remembered."""
+        lines: set[int] = set()
+
+        def trace(frame: Any, event: str, _: Any) -> Any:
+            if frame.f_code.co_filename != "mutant":
+                return None
+            lines.add(frame.f_lineno)
+            return trace
+
+        for function in vars(self.module).values():
+            getattr(function, "cache_clear", int)()
+        sys.settrace(trace)
+        try:
+            return getattr(self.module, name)(*items), None, frozenset(lines)
+        except self.module.Refused as refusal:
+            return None, str(refusal), frozenset(lines)
+        finally:
+            sys.settrace(None)
+
+
+@cache
+def watched(source: str) -> tuple[Watched, list[ast.AST], list[Any]]:
+    """The checker with what it says of all questions, the nodes of its source, and its statements, compiled."""
+    from tests.checker.forgeries import discrepancies
+
+    tree = ast.parse(source)
+    checker = Watched(module_of(source))
+    assert list(discrepancies(checker)) == []
+    codes = [(s, compile(ast.Module([s], []), "mutant", "exec")) for s in tree.body]
+    gc.freeze()
+    return checker, [tree, *list(ast.walk(tree))[1:]], codes
+
+
+def lines_of(tree: ast.Module, node: ast.AST) -> frozenset[int] | None:
+    """The lines of the statement of a node, without the statements inside of it; None outside of functions."""
+    found, inside, around = None, False, list[ast.AST](tree.body)
+    while around:
+        part = next(s for s in around if s.lineno <= node.lineno <= s.end_lineno)  # type: ignore[attr-defined]
+        inside = inside or isinstance(part, ast.FunctionDef)
+        found = part
+        around = [s for name in ("body", "orelse", "finalbody", "handlers", "cases") for s in getattr(part, name, [])]
+        around = [s for s in around if isinstance(s, (ast.stmt, ast.ExceptHandler))]
+        around += [s for case in getattr(part, "cases", []) for s in case.body]
+        last = min((s.lineno for s in around), default=part.end_lineno + 1) - 1  # type: ignore[attr-defined]
+        if node.lineno <= last or not any(s.lineno <= node.lineno <= s.end_lineno for s in around):
+            break
+    if not inside or found is None or isinstance(found, (ast.FunctionDef, ast.ClassDef)):
+        return None
+    end = found.end_lineno if isinstance(found, ast.Match) else max(last, node.lineno)  # type: ignore[attr-defined]
+    return frozenset(range(found.lineno, end + 1))  # type: ignore[attr-defined]
+
+
 def noticed(source: str, place: int, number: int) -> bool:
     """True when the mutant answers one certificate otherwise; judged in a process of its own."""
+    checker, nodes, codes = watched(source)
     child = os.fork()
     if child == 0:
         resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 5))
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-        os._exit(judged(mutated(source, place, number)))
+        node, tree = nodes[place], nodes[0]
+        checker.changed = lines_of(tree, node)
+        own = next(s for s, _ in codes if s.lineno <= node.lineno <= s.end_lineno)
+        apply(tree, node, number)
+        ast.fix_missing_locations(own)
+        os._exit(judged(checker, [compile(ast.Module([s], []), "mutant", "exec") if s is own else c for s, c in codes]))
     return os.waitpid(child, 0)[1] != 0
 
 
@@ -145,11 +249,17 @@ def module_of(source: str | ast.Module) -> ModuleType:
     return module
 
 
-def judged(tree: ast.Module) -> int:
-    from tests.checker.forgeries import discrepancies
+def judged(checker: Watched, codes: list[Any]) -> int:
+    from tests.checker.forgeries import discrepancies, list_others
 
     try:
-        return int(next(discrepancies(module_of(tree)), None) is not None)
+        module = checker.module = ModuleType("mutant")
+        for code in codes:
+            exec(code, module.__dict__)
+        found = checker.compare()
+        if found == "otherwise" or (not found and next(list_others(module), None) is not None):
+            return 1
+        return int(found != "" and next(discrepancies(checker), None) is not None)
     except BaseException:
         return 1
 

@@ -118,16 +118,84 @@ POWERS = sized(
     state("abs(x)*x**y*A", "2*x*x**y*A", symbols={"x": REAL, "y": REAL}, A=SQUARE),
     at(A=A, numbers={"x": "2", "y": "3"}),
 )
+TRACE_OF = words(
+    state("trace(u @ v.T)*A", "dot(u, v)*A", A=SQUARE, u=["n", 1], v=["n", 1]), at(A=A, u="1; 2", v="3; 4")
+)
+TWICE = words(state("inv(A + B) - inv(A + B)", "zeros(n, n)", A=SQUARE, B=SQUARE), at(A=A, B=B))
+BOTH_SIDES = words(
+    state("Y @ X", "eye(2)", given=["X @ Y = eye(2)"], X=[2, 2], Y=[2, 2]),
+    at(X=A, Y="1 -2; 0 1"),
+    share("1", "", 2, ""),
+)
+QUOTIENT = words(
+    state("A/b", "A/b", symbols={"b": REAL}, A=(SQUARE, "invertible")),
+    at(A=A, numbers={"b": "2"}),
+    share("1/b", "", 0, ""),
+    share("-1/b", "", 0, ""),
+)
+OF_NUMBERS = words(
+    state("dot(u, inv(A) @ A @ u)/b", "dot(u, u)/b", symbols={"b": REAL}, A=(SQUARE, "invertible"), u=["n", 1]),
+    at(A=A, u="1; 2", numbers={"b": "2"}),
+    share("1/b", "u.T", 2, "u"),
+)
+NEGATIVE = words(state("-A + A", "zeros(n, n)", A=SQUARE), at(A=A))
+POWER = words(state("trace(A)**2*B", "trace(A)*trace(A)*B", A=SQUARE, B=SQUARE), at(A=A, B=B))
+SINGULAR = sized(state("inv(A)", "A", A=SQUARE), at(A=B))
+NOT_NEGATIVE = sized(state("A", "eye(n)", A=(SQUARE, "nonnegative")), at(n=3, A="1 1 1; 1 1 1; 1 1 1"))
+DEFINITE_3 = sized(state("A", "eye(n)", A=(SQUARE, "positive")), at(n=3, A="2 1 0; 1 2 1; 0 1 2"))
+#: Symmetric matrices that one principal minor alone, or one leading minor alone, shows to be no such matrices.
+MINORS = [
+    (NOT_NEGATIVE, rows)
+    for rows in (
+        "-1 0 0; 0 0 0; 0 0 0", "0 0 0; 0 -1 0; 0 0 0", "0 0 0; 0 0 0; 0 0 -1", "1 2 0; 2 1 0; 0 0 0",
+        "0 0 0; 0 1 2; 0 2 1", "1 0 2; 0 0 0; 2 0 1", "1 1 -1; 1 1 1; -1 1 1", "1 0 0; 0 1 0; 1 0 1",
+    )
+] + [
+    (DEFINITE_3, rows)
+    for rows in ("-1 0 0; 0 -1 0; 0 0 1", "1 2 0; 2 1 0; 0 0 -1", "1 0 0; 0 1 0; 0 0 -1", "1 0 0; 0 1 0; 0 0 0",
+                 "1 1 0; 1 1 0; 0 0 1", "0 0 0; 0 0 0; 0 0 0", "1 0 0; 0 1 0; 1 0 1")
+]  # fmt: skip
 TRUE = [
+    TRACE_OF, TWICE, BOTH_SIDES, QUOTIENT, OF_NUMBERS, NEGATIVE, POWER, SINGULAR, NOT_NEGATIVE, DEFINITE_3,
     POWERS, DIFFERENCE, TRACE, TRACED, LINE, SCALED, DIVIDED, ORTHOGONAL, PUSHED, ONE_SIDED, NUMBER, UNITS, RANK_ONE,
     DEFINITE,
     COMMUTING, APART_AT_ALL, *SIGNS, *PROPERTIES,
 ]  # fmt: skip
 
+#: Statements of SIGNS, and what makes them hold, at and beside the end.
+HOLDING = [*zip([SIGNS[k] for k in (0, 1, 2, 2, 3, 3, 4, 4, 5, 5)], (1, 2, 2, 3, 1, 2, 0, -1, 1, 0), strict=True)]
+
 LEFT, RIGHT, MATRICES = ["statement", "left"], ["statement", "right"], ["statement", "matrices"]
 POINT = ["witness", "matrices"]
 #: Certificate, place, what stands there instead, and why it is refused.
 FORGERIES: list[tuple[Any, list[Any], Any, str]] = [
+    *((item, ["point", "matrices", "A"], [r.split() for r in rows.split(";")], "properties") for item, rows in MINORS),
+    (words(state("inv(A @ B)", "inv(A) @ inv(B)", A=SQUARE, B=SQUARE), at(A=UNIT, B=UNIT)), ["shares"], [], "another"),
+    (words(state("inv(A + B)", "inv(A - B)", A=SQUARE, B=SQUARE), at(A=A, B="0 0; 0 0")), ["shares"], [], "another"),
+    (
+        words(state("K @ H", "eye(n)", given=["H @ K = eye(m)"], H=FLAT, K=TALL), at(n=1, H="1", K="1")),
+        ["shares"],
+        [share("1", "", 2, "")],
+        "integer from 0 to 1",
+    ),
+    (QUOTIENT, ["shares", 0, "coefficient"], "1/(b + 1)", "may not exist"),
+    (
+        words(
+            state("sqrt(b)*A", "sqrt(b)*A", symbols={"b": REAL}, A=(SQUARE, "invertible")),
+            at(A=A, numbers={"b": "4"}),
+            share("1/b", "", 0, ""),
+            share("-1/b", "", 0, ""),
+        ),
+        ["witness", "numbers", "b"],
+        "1",
+        "may not exist",
+    ),
+    (words(state("-A", "A", A=SQUARE), at(A="0 0; 0 0")), ["shares"], [], "another sum"),
+    (words(state("trace(A)**0*B", "B", A=SQUARE, B=SQUARE), at(A=A, B=B)), ["shares"], [], "a root or inverse power"),
+    (POWER, LEFT, "trace(A)**1*trace(A)*B", ""),
+    (POWER, LEFT, "x1*B", "an unknown name"),
+    (SINGULAR, ["point", "matrices", "A"], [["1", "1"], ["1", "1"]], "a singular matrix"),
+    *((item, ["point", "matrices", "A", 0, 0], str(x), "the statement holds there") for item, x in HOLDING),
     (DIFFERENCE, ["shares", 0, "coefficient"], "1", "another sum"),
     (DIFFERENCE, ["shares", 0, "relation"], 0, "another sum"),
     (DIFFERENCE, ["shares", 0, "relation"], 8, "integer from 0 to 7"),
@@ -250,6 +318,44 @@ def judge(item: Any, module: Any) -> str:
     except module.Refused as refusal:
         return str(refusal) or "refused"
     return ""
+
+
+#: Declared for the texts of KNOWN and TAKEN, and hypotheses of some.
+DECLARED = {
+    **dict.fromkeys("AB", SQUARE), **dict.fromkeys("VW", (SQUARE, "invertible")), "U": (SQUARE, "orthogonal"),
+    **dict.fromkeys("PQ", (SQUARE, "positive")), "N": (SQUARE, "nonnegative"), "H": FLAT, "K": TALL,
+    "R": (["m", "m"], "positive"), "S": ["m", "m"], "u": ["n", 1], "v": ["n", 1],
+}  # fmt: skip
+NUMBERS = {"a": APART, "b": REAL, "c": ABOVE, "d": ["1", None, []], "e": ["0", None, []], "f": ["0", None, [*APART[2]]]}
+#: Inverses and quotients that exist, by what is declared: positive sums, M N M', products of regular factors.
+KNOWN = """inv(A @ A.T + eye(n)); inv(V @ V.T); inv(H @ P @ H.T + R); inv(H @ N @ H.T + R); inv(P + N); inv(-P)
+inv(a*P); inv(c*P + Q); inv(P/c + Q); inv(c**2*P/3 + Q); inv(c*P/n + Q); inv(d*P + Q); inv(f*P + Q)
+inv(a*c*P); inv(a**2*P)
+inv((c + 2)*P + Q); inv(inv(P) + N); inv(V @ W); inv(V @ P @ V); inv(V @ P @ V.T + Q); inv(V @ N @ V.T + P)
+inv(A @ V @ P @ V.T @ A.T + P); inv(U); inv(V.T); inv(H.T @ H + eye(n)); inv(H @ H.T + R); A/(1 + dot(u, u))
+A/(1 + dot(u, N @ u)); A/(c + dot(u, u) + dot(v, v)); A/b; zeros(n, m) @ R; inv(eye(n)); 2*inv(P)
+S = H @ P @ H.T + R: inv(S); S = inv(R): inv(S)"""
+#: The same where it has to be assumed.
+TAKEN = """inv(A @ A.T); inv(A @ A.T + N); inv(H @ A @ H.T + R); inv(H @ P @ H.T); inv(P - Q); inv(V + P); inv(N + N)
+inv(- P + N); inv(b*P); inv(a*P + Q); inv(0*P); inv(2*N); inv(a*N); inv(e*P + Q); inv(b*c*P); inv((c + b)*P + Q)
+inv((c - 2)*P); inv(inv(V) + Q); inv(V @ B); inv(V @ P @ V + Q); inv(V @ W @ V.T + P); inv(V @ W @ P @ V.T + P)
+inv(U + P); inv(A.T); inv(H @ K); inv(zeros(n, n)); A/trace(B); A/dot(u, u); A/(1 + dot(u, v)); A/(1 + dot(u, A @ u))
+A/(b + dot(u, u)); A/(dot(u, u) + dot(v, v)); A/(1 - dot(u, u)); H @ P @ H.T + R = S: inv(S); S + R = R: inv(S)
+-S = R: inv(S)"""
+
+
+def list_assumed(module: Any) -> Iterator[str]:
+    """Which inverses and quotients are taken to exist without a reason, or not taken to."""
+    for table, is_taken in ((KNOWN, False), (TAKEN, True)):
+        for line in table.replace("\n", "; ").split("; "):
+            given, _, text = line.rpartition(": ")
+            inside = text[4:-1] if text.startswith("inv") else text[2:]
+            expected = [f"{inside} invertible" if text.startswith("inv") else f"{inside} != 0"] * is_taken
+            statement = state(text, text, given=[given] if given else [], symbols=NUMBERS, **DECLARED)
+            algebra = module.Words(statement)
+            algebra.state()
+            if [*algebra.assumed] != expected:
+                yield f"{[*algebra.assumed]}, not {expected}: {text}"
 
 
 def discrepancies(module: Any) -> Iterator[str]:

@@ -246,7 +246,7 @@ def prove_bound(names: Mapping[str, str]) -> list[str]:
     tries = [f"i_prec {BITS}, i_depth {DEPTH}{cut}"]
     tries += [f"i_prec {BITS}, i_depth {DEPTH}, i_taylor {name}{cut}" for name in names.values()][:2]
     balls = " | ".join(f"timeout {PATIENCE} by_difference ltac:(interval with ({options}))" for options in tries)
-    return [f"first [ lra | {balls} | timeout {PATIENCE} nra ]."]
+    return [f"first [ lra | timeout 3 nra | {balls} | timeout {PATIENCE} nra ]."]
 
 
 def refute(point: Mapping[str, str], names: Mapping[str, str]) -> list[str]:

@@ -8,18 +8,21 @@ checker's parser. The script does not follow the certificate's proof: identities
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from importlib.resources import files
 from typing import Any
 
 from navsym import checker
-from navsym.checker import Term
+from navsym.checker import Case, Range, Term
 from navsym.core.errors import DomainError
 from navsym.export.coq.scripts import prove_bound, prove_equality, refute
 from navsym.export.coq.terms import RELATIONS, Unwritten, defined, ranges, rename, subterms, write_term
 
 #: How numbers are compared: by polynomials alone, or by balls of few digits, then of many.
 PLAIN = "Ltac few_digits := lra.\nLtac many_digits := lra.\n"
+Names = Mapping[str, str]
+Said = list[tuple[Term, str, Term]]
 BALLS = "Ltac few_digits := interval with (i_prec 90).\nLtac many_digits := interval with (i_prec 700).\n"
 
 
@@ -44,9 +47,9 @@ def write_theory(certificate: Mapping[str, Any]) -> str:
             raise DomainError(message)
         try:
             theorems.append(write_theorem(f"statement_{place}", part))
-        except Unwritten as reason:
+        except (Unwritten, checker.Refused) as reason:
             raise DomainError(f"expected what Coq has words for; got {reason}; rest on the checker") from None
-    names = ", ".join(f"statement_{place}" for place in range(1, len(parts) + 1))
+    names = ", ".join(re.findall(r"^Theorem (\w+)", "\n".join(theorems), re.M))
     balls = any(needs_balls(part) for part in parts)
     return "\n".join(
         [
@@ -64,38 +67,71 @@ def write_theory(certificate: Mapping[str, Any]) -> str:
 def needs_balls(part: Mapping[str, Any]) -> bool:
     """Whether anything but polynomials and fractions is compared by size."""
     statement = part["statement"]
-    terms = [checker.parse(text) for text in (statement["left"], statement["right"], *part.get("point", {}).values())]
+    cases, _ = checker.read_statement(statement)
+    terms = [t for case in cases for t in (*case.terms, *(goal.term for goal in case.goals))]
+    terms += [checker.parse(text) for text in part.get("point", {}).values()]
     plain = all(piece[0] in ("number", "symbol", "+", "*", "^") for term in terms for piece in subterms(term))
     return not plain or (part["kind"] == "proof" and statement["relation"] != "=")
 
 
 def write_theorem(name: str, part: Mapping[str, Any]) -> str:
-    """One theorem with its script."""
+    """One theorem with its script; of vectors, hypotheses and cases one for each case."""
     statement = part["statement"]
-    if "given" in statement:
-        raise Unwritten("vectors, cases or hypotheses")
     cases, box = checker.read_statement(statement)
-    terms = cases[0].terms
     names = rename(box)
-    sides = [checker.parse(statement[side]) for side in ("left", "right")]
-    says = [(write_term(x, names), relation, write_term(y, names)) for x, relation, y in relations(statement, sides)]
-    if len(says) > 1 and part["kind"] != "proof":
-        raise Unwritten("a tolerance that fails")
-    needs = [*ranges(box, names), *defined(terms, names)]
-    claim = " /\\ ".join(f"{x} {RELATIONS[relation]} {y}" for x, relation, y in says)
-    quantified = f"forall ({' '.join(names.values())} : R), " if names else ""
-    whole = quantified + "".join(f"{need} -> " for need in needs) + claim
     printed = f"{statement['left']} {statement['relation']} {statement['right']}"
-    if statement["tolerance"] is not None:
-        printed += f", within {statement['tolerance']}"
+    printed += "" if statement["tolerance"] is None else f", within {statement['tolerance']}"
+    printed += "".join(f", given {text}" for text in statement.get("given", []))
+    require_words(statement, cases)
+    says = [[(goal.term, goal.relation, checker.ZERO) for goal in case.goals] for case in cases]
+    if is_plain(statement):
+        says = [relations(statement, [checker.parse(statement[side]) for side in ("left", "right")])]
+    if part["kind"] != "proof" and max(len(says), *map(len, says)) > 1:
+        raise Unwritten("a tolerance, vector or case that fails")
+    theorems = [
+        f"Theorem {name}{f'_{k}' if len(cases) > 1 else ''} : {write_case(part, case, wanted, box, names)}"
+        for k, (case, wanted) in enumerate(zip(cases, says, strict=True), start=1)
+    ]
+    return "\n".join([f"(* {printed} *)", *theorems])
+
+
+def require_words(statement: Mapping[str, Any], cases: list[Case]) -> None:
+    """Refuse what the reader of the checker has computed: derivatives, moments, whole parts, orders."""
+    text = " ".join([statement["left"], statement["right"], *statement["exists"], *statement.get("given", [])])
+    computed = re.search(r"\b(diff|dot_|E|cov)\(", text) or {"order", "random"} & set(statement)
+    if computed or any(case.fractions for case in cases):
+        raise Unwritten("a derivative, moment, whole part or order, which the checker reads")
+
+
+def write_case(part: Mapping[str, Any], case: Case, wanted: Said, box: Mapping[str, Range], names: Names) -> str:
+    """What a theorem says of one case, and its script."""
+    needs = [*ranges(box, names), *defined(case.terms, names)]
+    needs += [f"{write_term(t, names)} >= 0" for t in case.given] + [f"{write_term(t, names)} = 0" for t in case.zeros]
+    says = [(write_term(x, names), RELATIONS[relation], write_term(y, names)) for x, relation, y in wanted]
+    claim = " /\\ ".join(map(" ".join, says))
+    whole = (f"forall ({' '.join(names.values())} : R), " if names else "") + "".join(f"{n} -> " for n in needs) + claim
+    lines = ["intros."]
     if part["kind"] == "counterexample":
         lines = refute(part["point"], names)
         whole = f"~ ({whole})"
-    elif statement["relation"] == "=" and statement["tolerance"] is None:
-        lines = ["intros.", *prove_equality(terms, names)]
-    else:
-        lines = ["intros.", *(["split."] if len(says) > 1 else []), *(prove_bound(names) * len(says))]
-    return "\n".join([f"(* {printed} *)", f"Theorem {name} : {whole}.", "Proof.", *lines, "Qed.", ""])
+    for k, (x, relation, y) in enumerate(wanted if part["kind"] == "proof" else ()):
+        lines += ["split."] * (k + 1 < len(wanted))
+        script = prove_equality(parts_of(part, case, x, y), names) if relation == "=" else prove_bound(names)
+        lines += ["{", *script, "}"] if len(wanted) > 1 else script
+    return "\n".join([f"{whole}.", "Proof.", *lines, "Qed.", ""])
+
+
+def parts_of(part: Mapping[str, Any], case: Case, x: Term, y: Term) -> tuple[Term, ...]:
+    """The terms of an equation."""
+    return case.terms if is_plain(part["statement"]) else (x, y)
+
+
+def is_plain(statement: Mapping[str, Any]) -> bool:
+    """Whether both sides are numbers that the first reader of the checker reads, too."""
+    try:
+        return "given" not in statement and bool(checker.parse(statement["left"]) and checker.parse(statement["right"]))
+    except checker.Refused:
+        return False
 
 
 def relations(statement: Mapping[str, Any], sides: list[Term]) -> list[tuple[Term, str, Term]]:
