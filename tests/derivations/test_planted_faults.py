@@ -35,6 +35,16 @@ SAME: dict[tuple[str, str], str] = {
         "A2 * u * u + A1 * u * v -> A2 * u * u - A1 * u * v",
     ): "u v = 0 along the axes, where the roots are",
     ("terrain_search:interval.whole", "-1 -> 1"): "two slopes of different directions serve as well",
+    ("trajectory:table.curse.first", "a[1]: 1 -> 0"): "the ends of an enclosure rise alike; the proof compares its own",
+    **{
+        ("trajectory:algorithm.field", line): "it counts different values, and as many differ"
+        for line in (
+            "first + rest -> first - rest",
+            "sum((ahead[i][j] * row[j] for j in range(n))) + q[i] * row[i] -> "
+            "sum((ahead[i][j] * row[j] for j in range(n))) - q[i] * row[i]",
+            "sum((a * b for a, b in zip(row, g, strict=True))) + 1 -> sum((a * b for a, b in zip(row, g, strict=True))) - 1",
+        )
+    },
 }
 
 
