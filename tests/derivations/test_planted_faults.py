@@ -42,7 +42,8 @@ SAME: dict[tuple[str, str], str] = {
             "first + rest -> first - rest",
             "sum((ahead[i][j] * row[j] for j in range(n))) + q[i] * row[i] -> "
             "sum((ahead[i][j] * row[j] for j in range(n))) - q[i] * row[i]",
-            "sum((a * b for a, b in zip(row, g, strict=True))) + 1 -> sum((a * b for a, b in zip(row, g, strict=True))) - 1",
+            "sum((a * b for a, b in zip(row, g, strict=True))) + 1 -> "
+            "sum((a * b for a, b in zip(row, g, strict=True))) - 1",
         )
     },
 }
