@@ -168,16 +168,20 @@ class Property:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Worded(Property):
-    """Whether a formula in the words of files holds, with that formula and a point where it fails."""
+    """Whether a formula in the words of files holds, with that formula and a point where it fails.
+
+    is_whole : the formula is what is printed, and not only its left side
+    """
 
     formula: Formula = field(kw_only=True)
     counterexample: Mapping[str, Any] = field(default_factory=dict, kw_only=True)
+    is_whole: bool = field(default=False, kw_only=True)
 
     @property
     def sides(self) -> tuple[str, str]:
-        """Both sides of an equation; of another relation or a chain the whole formula, and nothing."""
+        """Both sides of an equation; of another relation, a chain or a whole formula all of it, and nothing."""
         formula = self.formula
-        if formula.chain or formula.relation != "=" or formula.order:
+        if self.is_whole or formula.chain or formula.relation != "=" or formula.order:
             return str(formula), ""
         within = "" if formula.tolerance is None else f" +- {formula.tolerance}"
         return side_text(formula.left) + within, side_text(formula.right)

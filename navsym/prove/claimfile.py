@@ -432,7 +432,8 @@ def property_of_claim(claim: FileClaim | TextClaim) -> Worded:
     point, fails = verdict.counterexample or {}, verdict.status == REFUTED
     if fails:
         at = ", ".join(f"{name} = {value}" for name, value in point.items())
-        verdict = replace(verdict, status=PROVED, evidence=f"{verdict.evidence}: {at}", assumptions=())
+        words = f"{verdict.evidence}: {at}" if at else verdict.evidence
+        verdict = replace(verdict, status=PROVED, evidence=words, assumptions=())
     parts = (verdict.scope, verdict.assumptions, verdict.evidence, verdict.certificate)
     found = Finding(not fails, verdict.method, verdict.status, *parts)
     return Worded(True, found, meaning=said, formula=claim.formula, counterexample=point)

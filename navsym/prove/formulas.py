@@ -6,11 +6,11 @@ import itertools
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import NoneType
 from typing import TYPE_CHECKING, Any, overload
 
-from navsym.claims import Statement, Verdict, Verdicts
+from navsym.claims import Bound, Equation, Statement, Verdict, Verdicts
 from navsym.claims.formula import names_of, side_text
 from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
 from navsym.language.names import RESERVED, quote, suggest_nearest
@@ -131,8 +131,9 @@ def state_formula(
 ) -> Statement:
     """The statement of a claim in a derivation module, with the arguments of :func:`prove`.
 
-    A formula between numbers keeps its two sides; what has vectors, hypotheses, cases or conditions of its text is
-    decided when the claim is stated, and the statement says whether it holds. Raises NavsymError as prove does.
+    Of two sides with a relation the left one is what is printed, of a whole formula all of it. What has vectors,
+    hypotheses, cases or conditions of its text is decided when the claim is stated, and the statement says whether it
+    holds. Raises NavsymError as prove does.
 
     >>> state_formula("sin(a) <= a", a=("0", "pi")).relation
     '<='
@@ -144,8 +145,12 @@ def state_formula(
     require_options(box, SECONDS, 1)
     beside = dict(box=box or {}, tolerance=tolerance, exists=exists, given=given, rates=rates or {}, order=order)
     (claim,) = read_formula(split_formula(statement, relation, right, symbols), symbols, beside).claims
-    is_plain = isinstance(claim, FileClaim) and not text_conditions(claim)
-    return statement_of(claim) if is_plain else property_of_claim(claim)
+    if not isinstance(claim, FileClaim) or text_conditions(claim):
+        return replace(property_of_claim(claim), is_whole=relation is None)
+    found = statement_of(claim)
+    if relation is None and isinstance(found, Equation) and tolerance is None:  # the formula is what is printed
+        return Bound(found.printed, "=", found.derived, found.box, found.exists, found.written)
+    return found
 
 
 @dataclass(frozen=True, slots=True)
