@@ -35,6 +35,10 @@ SAME: dict[tuple[str, str], str] = {
         "A2 * u * u + A1 * u * v -> A2 * u * u - A1 * u * v",
     ): "u v = 0 along the axes, where the roots are",
     ("terrain_search:interval.whole", "-1 -> 1"): "two slopes of different directions serve as well",
+    (
+        "terrain_search:sequential.below",
+        "e - coarse - w * (k - turn) -> e - coarse + w * (k - turn)",
+    ): "the grid of the velocity is symmetric",
     ("trajectory:table.curse.first", "a[1]: 1 -> 0"): "the ends of an enclosure rise alike; the proof compares its own",
     **{
         ("trajectory:algorithm.field", line): "it counts different values, and as many differ"
