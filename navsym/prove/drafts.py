@@ -137,28 +137,36 @@ def new_claim(
     <new claim pendulum:1: PROVED>
     <new claim pendulum:2: PROVED>
     """
-    from navsym.language.scaffold import NewClaim, append_claim, check_module_name, read_equation_numbers
+    from navsym.language.scaffold import NewClaim, append_claim, read_equation_numbers
 
-    path = own_folder(folder) / f"{check_module_name(module)}.py"
-    if not path.is_file():
-        message = f"expected a module in one file; got {module}; make it with navsym new-paper"
-        raise DomainError(message, where=str(path))
+    path = find_module(module, folder)
     if slip not in ("paper", "scan"):
         raise DomainError(f"expected paper or scan; got {slip[:40]}; name one", where="--slip")
     names = frozenset(name.strip() for name in positive.split(",") if name.strip())
     sentence = title or f"Equation ({number.rstrip('*')}), {'corrected' if corrects else 'as it stands in the paper'}."
     text = path.read_text(encoding="utf-8")
     sides = choose_sides(printed, derived, formula, relation)
-    call = {}
+    call: dict[str, Any] = {}
     if len(sides) != 2 or given or symbols or any(is_beyond_numbers(side) for side in sides):
         words = declare_names(text, (*sides, *given), names, dict(symbols or {}))
-        call = {"": sides if len(sides) != 2 else (printed, "=", derived), "given": list(given), "tolerance": tolerance}
-        call |= words
+        whole = sides if len(sides) != 2 else (printed, "=", derived)
+        call = {"": whole, "given": list(given), "tolerance": tolerance, **words}
     draft = NewClaim(number, sentence, printed, derived, "OPEN", corrects, reason, "", names, tolerance, call)
     append_claim(text, draft)  # what cannot be written is refused before it is decided
     verdict = decide_stated(call) if call else decide_draft(text, draft)
     write_text(path, append_claim(text, declare_verdict(draft, verdict, slip)))
     return DraftedClaim(path, f"{module}:{number}", verdict, equation_of(number, read_equation_numbers(text)))
+
+
+def find_module(module: str, folder: str | Path | None) -> Path:
+    """The file of a derivation module; raises DomainError where there is none."""
+    from navsym.language.scaffold import check_module_name
+
+    path = own_folder(folder) / f"{check_module_name(module)}.py"
+    if not path.is_file():
+        message = f"expected a module in one file; got {module}; make it with navsym new-paper"
+        raise DomainError(message, where=str(path))
+    return path
 
 
 def choose_sides(printed: str, derived: str, formula: str, relation: str) -> tuple[str, ...]:

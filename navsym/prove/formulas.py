@@ -108,11 +108,7 @@ def prove(
     if relation is None and is_file(statement):
         refuse_declarations(symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())})
         return prove_file(statement, seconds, jobs, progress)
-    claims = read_formula(split_formula(statement, relation, right, symbols), symbols, beside)
-
-    from navsym.prove.claimfile import decide_claims
-
-    return decide_claims(claims, seconds=seconds)[0]
+    return prove_formula(split_formula(statement, relation, right, symbols), symbols, beside, seconds)
 
 
 def state_formula(
@@ -170,6 +166,13 @@ def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress
     from navsym.prove.claimfile import decide_claims, read_claims
 
     return decide_claims(read_claims(path, go_on=True), jobs=jobs, seconds=seconds, progress=progress)
+
+
+def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any], seconds: float) -> Verdict:
+    """The verdict of one formula."""
+    from navsym.prove.claimfile import decide_claims
+
+    return decide_claims(read_formula(sides, given, beside), seconds=seconds)[0]
 
 
 def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any]) -> ClaimFile:
