@@ -147,10 +147,9 @@ def new_claim(
     text = path.read_text(encoding="utf-8")
     sides = choose_sides(printed, derived, formula, relation)
     call: dict[str, Any] = {}
-    if len(sides) != 2 or given or symbols or any(is_beyond_numbers(side) for side in sides):
+    if "=" not in sides or given or symbols or any(is_beyond_numbers(side) for side in sides):
         words = declare_names(text, (*sides, *given), names, dict(symbols or {}))
-        whole = sides if len(sides) != 2 else (printed, "=", derived)
-        call = {"": whole, "given": list(given), "tolerance": tolerance, **words}
+        call = {"": sides, "given": list(given), "tolerance": tolerance, **words}
     draft = NewClaim(number, sentence, printed, derived, "OPEN", corrects, reason, "", names, tolerance, call)
     append_claim(text, draft)  # what cannot be written is refused before it is decided
     verdict = decide_stated(call) if call else decide_draft(text, draft)
@@ -170,7 +169,7 @@ def find_module(module: str, folder: str | Path | None) -> Path:
 
 
 def choose_sides(printed: str, derived: str, formula: str, relation: str) -> tuple[str, ...]:
-    """The formula alone, two sides of an equation, or left, relation and right; raises DomainError for a mixture."""
+    """The formula alone, or left, relation and right; raises DomainError for a mixture."""
     from navsym.language.scaffold import one_line
 
     for text, where in ((printed, "--printed"), (derived, "--derived"), (formula, "--formula")):
@@ -181,7 +180,7 @@ def choose_sides(printed: str, derived: str, formula: str, relation: str) -> tup
         got = "both" if formula else "one side or none"
         message = f"expected a printed and a derived side, or a whole formula; got {got}; give one of them"
         raise DomainError(message, where="--formula" if formula else "--derived")
-    return (printed, derived) if relation == "=" else (printed, relation, derived)
+    return printed, relation, derived
 
 
 def is_beyond_numbers(side: str) -> bool:
