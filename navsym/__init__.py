@@ -67,7 +67,7 @@ _HOMES = {
     "init": "navsym.claims.workspace",
     "prove": "navsym.prove.formulas",
     **dict.fromkeys(("Reading", "read"), "navsym.language.latex.reading"),
-    "new_paper": "navsym.prove.drafts",
+    **dict.fromkeys(("new_claim", "new_paper"), "navsym.prove.drafts"),
     "Bank": "navsym.multimodel.bank",
     **dict.fromkeys(("Conventions", "conventions"), "navsym.conventions.answer"),
     "condition": "navsym.trajectory.conditioning",
@@ -87,6 +87,7 @@ _HOMES = {
     "compare": "navsym.export.compare",
     "doctor": "navsym.core.machine",
     "explain": "navsym.report.explain",
+    **dict.fromkeys(("ProgressBar", "explore"), "navsym.report.notebook"),
     "export": "navsym.export.driver",
     "plot": "navsym.report.plots",
     "report": "navsym.report.site",
@@ -140,11 +141,14 @@ if TYPE_CHECKING:
     from navsym.multimodel.filters import filter as filter
     from navsym.observability.answer import Observability as Observability
     from navsym.observability.answer import observe as observe
+    from navsym.prove.drafts import new_claim as new_claim
     from navsym.prove.drafts import new_paper as new_paper
     from navsym.prove.formulas import prove as prove
     from navsym.report.citation import cite as cite
     from navsym.report.explain import explain as explain
     from navsym.report.listing import claims as claims
+    from navsym.report.notebook import ProgressBar as ProgressBar
+    from navsym.report.notebook import explore as explore
     from navsym.report.plots import plot as plot
     from navsym.report.site import report as report
     from navsym.studies.experiments import simulate as simulate

@@ -38,7 +38,6 @@
 
 # %%
 import navsym as nav
-from navsym.report.notebook import explore
 
 # %% [markdown]
 # ## The model
@@ -149,7 +148,7 @@ def polynomial_for(T):
     return nav.solve(channel, "drift", T=f"{T:.2f}", digits=8).plot()
 
 
-explore(polynomial_for, T=(0.3, 5.0, 1.5))
+nav.explore(polynomial_for, T=(0.3, 5.0, 1.5))
 
 # %% [markdown]
 # ## Code

@@ -23,7 +23,6 @@ import numpy as np
 import sympy as sp
 
 import navsym as nav
-from navsym.report.notebook import explore
 from navsym_papers.guaranteed_velocity import model, polynomial
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
@@ -194,7 +193,7 @@ def errors_for(T):
     return figure
 
 
-explore(errors_for, T=(0.5, 6.2, 1.5))
+nav.explore(errors_for, T=(0.5, 6.2, 1.5))
 
 # %% [markdown]
 # ## Every refuted line, with its reason

@@ -22,7 +22,6 @@ import numpy as np
 
 import navsym as nav
 from navsym.guaranteed.baselines import realise_worst_noise, search_correlations
-from navsym.report.notebook import explore
 
 channel = nav.Model(
     name="velocity channel",
@@ -80,7 +79,7 @@ def dual_for(T):
     return ANSWER["y3"].at(T=f"{T:.2f}").plot()
 
 
-explore(dual_for, T=(0.3, 6.2, 1.5))
+nav.explore(dual_for, T=(0.3, 6.2, 1.5))
 
 # %% [markdown]
 # ## Where a grid and a linear programme are wrong

@@ -24,7 +24,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import navsym as nav
-from navsym.report.notebook import explore
 from navsym.trajectory.conditioning import best_scaling
 from navsym_papers.trajectory import table, window
 from navsym_papers.trajectory.experiment.courses import ORDER, TAU, course, measured, with_printed_gain
@@ -112,7 +111,7 @@ def conditioning_for(step, order):
     return figure
 
 
-explore(conditioning_for, step=(0.05, 2.0, 0.2), order=(2, 24, 10))
+nav.explore(conditioning_for, step=(0.05, 2.0, 0.2), order=(2, 24, 10))
 
 # %% [markdown]
 # ## The table, printed against true

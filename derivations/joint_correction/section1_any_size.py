@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from navsym.claims import Claim, Property, claim
-from navsym.prove.claimfile import claims_from
-from navsym.verification.sources import property_of_text
+from navsym.prove.claimfile import claims_from, property_of_claim
 
 SQUARE = {"n": "G", "m": "Theta C1 P1 P2", "k": "Phi_z C2 T", "i": "F C11", "o": "Theta_v C12", "j": "D_w C22"}
 OTHER = {
@@ -51,7 +50,7 @@ def of_every_size(left: str, right: str, *given: str) -> Callable[[], Property]:
 
     def derive() -> Property:
         block = {"id": "any", "left": left, "right": right, "given": list(given)}
-        return property_of_text(claims_from({"symbols": shapes(), "claim": [block]}).claims[0])
+        return property_of_claim(claims_from({"symbols": shapes(), "claim": [block]}).claims[0])
 
     derive.__module__ = __name__
     return derive

@@ -74,12 +74,9 @@ def characteristic(matrix: sp.MatrixBase) -> list[sp.Expr]:
 @claim("1.4.theta")
 def next_vector_depends():
     """a_{m+1} is the combination of a_1 ... a_m with the coefficients theta of Cayley and Hamilton."""
-    printed, derived = [], []
     for s in systems():
         theta = characteristic(s.block)
-        printed += flat(sp.Matrix([theta]) * s.chain(1, s.m))
-        derived += list(s.chain(1, s.m + 1)[s.m, :])
-    return Equation(printed, derived)
+        yield sp.Matrix([theta]) * s.chain(1, s.m), s.chain(1, s.m + 1)[s.m, :]
 
 
 def theta_of(s: System) -> tuple[sp.Expr, ...]:
@@ -89,26 +86,23 @@ def theta_of(s: System) -> tuple[sp.Expr, ...]:
 @claim("1.5.x")
 def motion_of_x():
     """dx/dt = G_x x with G_x = C_1 Theta C_1^-1: equal to L_x G for every state."""
-    printed, derived = [], []
     for s in systems():
         C1 = free("x", s.m)
         L_x = C1 * s.chain(1, s.m)
-        printed += flat(C1 * companion(theta_of(s)) * exact_inverse("C1", C1) * L_x)
-        derived += flat(L_x * s.G)
-    return Equation(printed, derived)
+        yield C1 * companion(theta_of(s)) * exact_inverse("C1", C1) * L_x, L_x * s.G
 
 
 @claim("1.5.Gx")
 def matrix_of_x():
     """G_x is the upper left block of the transformed system, and z does not enter dx/dt."""
-    printed, derived = [], []
     for s in systems():
         C1 = free("x", s.m)
         L, back = coordinates(s, C1, free("z", s.rest))
         block = (L * s.G * back)[: s.m, :]
-        printed += flat(C1 * companion(theta_of(s)) * exact_inverse("C1", C1), sp.zeros(s.m, s.rest))
-        derived += flat(block[:, : s.m], block[:, s.m :])
-    return Equation(printed, derived)
+        yield (
+            flat(C1 * companion(theta_of(s)) * exact_inverse("C1", C1), sp.zeros(s.m, s.rest)),
+            flat(block[:, : s.m], block[:, s.m :]),
+        )
 
 
 @claim("1.5.Theta")
@@ -134,12 +128,9 @@ def coefficients(basis: sp.MatrixBase, row: sp.MatrixBase) -> list[sp.Expr]:
 @claim("1.5.gx")
 def output_of_x():
     """sigma_1 = g_x^T x with g_x^T = (1 0 ... 0) C_1^-1."""
-    printed, derived = [], []
     for s in systems():
         C1 = free("x", s.m)
-        printed += flat(unit_row(s.m) * exact_inverse("C1", C1) * C1 * s.chain(1, s.m))
-        derived += flat(s.h(1).T)
-    return Equation(printed, derived)
+        yield unit_row(s.m) * exact_inverse("C1", C1) * C1 * s.chain(1, s.m), s.h(1).T
 
 
 def observer(size: int) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
@@ -153,16 +144,13 @@ def observer(size: int) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
 @claim("1.6.error")
 def error_of_x():
     """The error x - x° of (1.6) obeys de/dt = (G_x - K_x g_x^T) e + q_x - K_x r_x."""
-    printed, derived = [], []
     for size in (1, 2, 3):
         G, K, row = observer(size)
         x, estimate, q = (sp.Matrix(sp.symbols(f"{name}1:{size + 1}", real=True)) for name in ("x", "e", "q"))
         r = sp.Symbol("r", real=True)
         truth = G * x + q
         filtered = G * estimate + K * ((row * x)[0] + r - (row * estimate)[0])
-        printed += list((G - K * row) * (x - estimate) + q - K * r)
-        derived += list(truth - filtered)
-    return Equation(printed, derived)
+        yield (G - K * row) * (x - estimate) + q - K * r, truth - filtered
 
 
 @claim("1.6.gain_unique")

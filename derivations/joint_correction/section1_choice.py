@@ -46,14 +46,14 @@ def largest_i_below_m():
     For r <= i < m the determinant is zero, for i = r - 1 it is phi_r^(m-r+1) times that of (1.8), up to sign. With
     phi_1 alone only the second chain by itself (i = 0) would do, with none of them l = n - m and no other basis exists.
     """
-    printed, derived = [], []
     for m, rest in SIZES:
         for last in range(1, m + 1):
             phi = sp.Symbol(f"phi{last}", real=True)
             for i in range(last - 1, m):
-                printed.append(phi ** (2 * (m - last + 1)) if i == last - 1 else sp.Integer(0))
-                derived.append(basis_determinant(m, rest, i, last))
-    return Equation(printed, derived)
+                yield (
+                    phi ** (2 * (m - last + 1)) if i == last - 1 else sp.Integer(0),
+                    basis_determinant(m, rest, i, last),
+                )
 
 
 @claim("1.14.exists.alone")

@@ -144,7 +144,6 @@ def delta_relation():
 
     The coefficients come from Cramer's rule.
     """
-    printed, derived = [], []
     for i, j in CASES:
         s = overlapping()
         basis = sp.Matrix.vstack(s.chain(1, i), s.chain(2, j))
@@ -155,23 +154,21 @@ def delta_relation():
             changed = basis.as_mutable()
             changed[r, :] = target
             delta.append(changed.det(method="berkowitz") / det)
-        printed += list(to_lowest_terms(sp.Matrix([delta])) * basis)
-        derived += list(target)
-    return Equation(printed, derived)
+        yield to_lowest_terms(sp.Matrix([delta])) * basis, target
 
 
 @claim("1.14.outputs")
 def outputs():
     """sigma_1 = g_u^T u, sigma_2 = g_w^T w with g_u^T = (1 0 ... 0) C_11^-1, g_w^T = (1 0 ... 0) C_22^-1."""
-    printed, derived = [], []
     for i, j in CASES:
         s, C, rows = parts(i, j)
-        printed += flat(
-            unit_row(i) * exact_inverse("C11", C["u"]) * rows["u"],
-            unit_row(j) * exact_inverse("C22", C["w"]) * rows["w"],
+        yield (
+            flat(
+                unit_row(i) * exact_inverse("C11", C["u"]) * rows["u"],
+                unit_row(j) * exact_inverse("C22", C["w"]) * rows["w"],
+            ),
+            flat(s.h(1).T, s.h(2).T),
         )
-        derived += flat(s.h(1).T, s.h(2).T)
-    return Equation(printed, derived)
 
 
 @claim("1.14.dimension")
@@ -187,13 +184,10 @@ def dimension():
 @claim("1.14.one_to_one")
 def u_and_w_determine_the_state():
     """(u, w) = L_* xi is one to one: L_* times its inverse is the identity, although v is carried along."""
-    printed, derived = [], []
     for i, j in CASES:
         _, _, rows = parts(i, j)
         L = sp.ImmutableMatrix.vstack(rows["u"], rows["w"])
-        printed += flat(sp.eye(4))
-        derived += flat(L * exact_inverse("L", L))
-    return Equation(printed, derived)
+        yield sp.eye(4), L * exact_inverse("L", L)
 
 
 @claim("1.14.error")

@@ -13,7 +13,6 @@ from navsym_papers.joint_correction.section1_systems import (
     coefficients_of_polynomial,
     coordinates,
     direct_sum,
-    flat,
     free,
     g,
     k,
@@ -77,27 +76,21 @@ def characteristic_of(matrix: sp.Matrix) -> list[sp.Expr]:
 @claim("1.8.one_to_one")
 def transformation_is_invertible():
     """(x, z) and xi determine each other: the transformation composed with its inverse is the identity."""
-    printed, derived = [], []
     for s in systems():
         L, back = coordinates(s, free("x", s.m), free("z", s.rest))
-        printed += flat(sp.eye(s.n))
-        derived += flat(L * back)
-    return Equation(printed, derived)
+        yield sp.eye(s.n), L * back
 
 
 @claim("1.9.z")
 def motion_of_z():
     """dz/dt = G_z1 x + G_z2 z with the blocks of (1.10): equal to L_z G for every state."""
-    printed, derived = [], []
     for s in systems():
         C1, C2 = free("x", s.m), free("z", s.rest)
         L_x, L_z = C1 * s.chain(1, s.m), C2 * s.chain(2, s.rest)
         phi = phi_of(s)
         G_z1 = C2 * last_row(s.rest, phi[: s.m]) * exact_inverse("C1", C1)
         G_z2 = C2 * companion(phi[s.m :]) * exact_inverse("C2", C2)
-        printed += flat(G_z1 * L_x + G_z2 * L_z)
-        derived += flat(L_z * s.G)
-    return Equation(printed, derived)
+        yield G_z1 * L_x + G_z2 * L_z, L_z * s.G
 
 
 @claim("1.9.sigma2")
@@ -114,25 +107,19 @@ def output_of_z():
 @claim("1.10.Gz1")
 def drive_of_z():
     """G_z1 = C_2 Phi_x C_1^-1, the lower left block of the transformed system."""
-    printed, derived = [], []
     for s in systems():
         C1, C2 = free("x", s.m), free("z", s.rest)
         L, back = coordinates(s, C1, C2)
-        printed += flat(C2 * last_row(s.rest, phi_of(s)[: s.m]) * exact_inverse("C1", C1))
-        derived += flat((L * s.G * back)[s.m :, : s.m])
-    return Equation(printed, derived)
+        yield C2 * last_row(s.rest, phi_of(s)[: s.m]) * exact_inverse("C1", C1), (L * s.G * back)[s.m :, : s.m]
 
 
 @claim("1.10.Gz2")
 def matrix_of_z():
     """G_z2 = C_2 Phi_z C_2^-1, the lower right block of the transformed system."""
-    printed, derived = [], []
     for s in systems():
         C2 = free("z", s.rest)
         L, back = coordinates(s, free("x", s.m), C2)
-        printed += flat(C2 * companion(phi_of(s)[s.m :]) * exact_inverse("C2", C2))
-        derived += flat((L * s.G * back)[s.m :, s.m :])
-    return Equation(printed, derived)
+        yield C2 * companion(phi_of(s)[s.m :]) * exact_inverse("C2", C2), (L * s.G * back)[s.m :, s.m :]
 
 
 @claim(
@@ -158,13 +145,10 @@ def output_row_of_z_printed():
 @claim("1.10.gz*", corrects="1.10.gz")
 def output_row_of_z():
     """g_z^T = (1 0 ... 0) C_2^-1."""
-    printed, derived = [], []
     for s in systems():
         C2 = free("z", s.rest)
         _, back = coordinates(s, free("x", s.m), C2)
-        printed += list(unit_row(s.rest) * exact_inverse("C2", C2))
-        derived += list((s.h(2).T * back)[:, s.m :])
-    return Equation(printed, derived)
+        yield unit_row(s.rest) * exact_inverse("C2", C2), (s.h(2).T * back)[:, s.m :]
 
 
 @claim("1.10.Phi")
@@ -184,13 +168,10 @@ def next_vector_of_the_second_chain():
 
     Here phi is the last row of L G L^-1.
     """
-    printed, derived = [], []
     for s in systems():
         L, back = coordinates(s, sp.eye(s.m), sp.eye(s.rest))
         phi = (L * s.G * back)[s.n - 1, :]
-        printed += list(phi * L)
-        derived += list(s.chain(2, s.rest + 1)[s.rest, :])
-    return Equation(printed, derived)
+        yield phi * L, s.chain(2, s.rest + 1)[s.rest, :]
 
 
 # The estimator
@@ -234,14 +215,11 @@ PAIRS = ((1, 1), (2, 1), (1, 2), (2, 2), (3, 2))
 @claim("1.11.error")
 def error_dynamics():
     """The error of (1.6), (1.11) is block triangular: x drives z through G_z1, z never drives x."""
-    printed, derived = [], []
     for m, rest in PAIRS:
         b = blocks(m, rest)
         upper = sp.Matrix.hstack(b["Gx"] - b["Kx"] * b["gx"], sp.zeros(m, rest))
         lower = sp.Matrix.hstack(b["Gz1"], b["Gz2"] - b["Kz"] * b["gz"])
-        printed += flat(sp.Matrix.vstack(upper, lower))
-        derived += flat(closed_loop(b))
-    return Equation(printed, derived)
+        yield sp.Matrix.vstack(upper, lower), closed_loop(b)
 
 
 @claim("1.11.gain_unique")
@@ -273,27 +251,21 @@ def second_gain_is_unique():
 @claim("1.11.characteristic")
 def characteristic_polynomial_factors():
     """The characteristic polynomial of the whole estimator is the product of those of its stages."""
-    printed, derived = [], []
     for m, rest in PAIRS:
         b = blocks(m, rest)
         first = polynomial_of(b["Gx"] - b["Kx"] * b["gx"])
         second = polynomial_of(b["Gz2"] - b["Kz"] * b["gz"])
-        printed.append(first * second)
-        derived.append(polynomial_of(closed_loop(b)))
-    return Equation(printed, derived)
+        yield first * second, polynomial_of(closed_loop(b))
 
 
 @claim("1.12.xi")
 def estimate_of_the_state():
     """xi - xi° = L^-1 (x - x°, z - z°)."""
-    printed, derived = [], []
     for s in systems()[:3]:
         L, back = coordinates(s, sp.eye(s.m), sp.eye(s.rest))
         truth, estimate = (sp.Matrix(sp.symbols(f"{name}1:{s.n + 1}", real=True)) for name in ("xi", "eta"))
         pair = sp.Matrix.vstack(L * truth - estimate)
-        printed += list(back * pair)
-        derived += list(truth - back * estimate)
-    return Equation(printed, derived)
+        yield back * pair, truth - back * estimate
 
 
 @claim("1.two_stage.separate")
@@ -315,13 +287,10 @@ def first_stage_ignores_the_second():
 @claim("1.two_stage.influence")
 def exact_first_stage_leaves_a_free_second():
     """With x° = x the error of z° obeys the second stage alone: its rate is (G_z2 - K_z g_z^T)(z - z°)."""
-    printed, derived = [], []
     for m, rest in PAIRS[:3]:
         b = blocks(m, rest)
         f = sp.Matrix(sp.symbols(f"f1:{rest + 1}", real=True))
-        printed += list((b["Gz2"] - b["Kz"] * b["gz"]) * f)
-        derived += list(closed_loop(b)[m:, :] * sp.Matrix.vstack(sp.zeros(m, 1), f))
-    return Equation(printed, derived)
+        yield (b["Gz2"] - b["Kz"] * b["gz"]) * f, closed_loop(b)[m:, :] * sp.Matrix.vstack(sp.zeros(m, 1), f)
 
 
 @claim("1.two_stage.linear")

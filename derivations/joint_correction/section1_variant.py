@@ -60,34 +60,30 @@ def general_error():
 
     It enters through G°_z1 - K°_z g_z1^T, and z enters itself through G°_z2 - K°_z g_z2^T.
     """
-    printed, derived = [], []
     for m, rest in PAIRS[:4]:
         b = general(m, rest)
         e, f, x, z = (
             sp.Matrix(sp.symbols(f"{name}1:{size + 1}", real=True))
             for name, size in (("e", m), ("f", rest), ("x", m), ("z", rest))
         )
-        printed += list((b["Gz1"] - b["Kz"] * b["g1"]) * e + (b["Gz2"] - b["Kz"] * b["g2"]) * f)
         innovation = (b["g1"] * x + b["g2"] * z - b["g1"] * (x - e) - b["g2"] * (z - f))[0]
-        derived += list(b["Gz1"] * x + b["Gz2"] * z - b["Gz1"] * (x - e) - b["Gz2"] * (z - f) - b["Kz"] * innovation)
-    return Equation(printed, derived)
+        yield (
+            (b["Gz1"] - b["Kz"] * b["g1"]) * e + (b["Gz2"] - b["Kz"] * b["g2"]) * f,
+            b["Gz1"] * x + b["Gz2"] * z - b["Gz1"] * (x - e) - b["Gz2"] * (z - f) - b["Kz"] * innovation,
+        )
 
 
 @claim("1.13.free_of_gain")
 def special_choice_has_no_weight():
     """For the rows b of (1.7), S = 0, the weight K°_z is gone from the influence of x: g_z1 = 0."""
-    printed, derived = [], []
     for m, rest in PAIRS[:4]:
         b = general(m, rest)
-        printed += [sp.Integer(0)] * m
-        derived += list(b["g1"].subs({symbol: 0 for symbol in b["S"]}))
-    return Equation(printed, derived)
+        yield [sp.Integer(0)] * m, b["g1"].subs({symbol: 0 for symbol in b["S"]})
 
 
 @claim("1.13.equivalent")
 def general_variant_in_the_old_coordinates():
     """(1.13) is (1.11) plus the injection -T^-1 S K_x of the first innovation, when K°_z = T K_z."""
-    printed, derived = [], []
     for m, rest in PAIRS[:4]:
         b, raw = general(m, rest), blocks(m, rest)
         T_inverse = sp.Matrix(exact_inverse("T", sp.ImmutableMatrix(b["T"])))
@@ -95,9 +91,10 @@ def general_variant_in_the_old_coordinates():
         itself = b["Gz2"] - b["T"] * raw["Kz"] * b["g2"]
         first = raw["Gx"] - raw["Kx"] * raw["gx"]
         # the error of S x + T z in the coordinates e (of x) and f (of z): S e + T f
-        printed += flat(raw["Gz1"] + T_inverse * b["S"] * raw["Kx"] * raw["gx"], raw["Gz2"] - raw["Kz"] * raw["gz"])
-        derived += flat(T_inverse * (coupling + itself * b["S"] - b["S"] * first), T_inverse * itself * b["T"])
-    return Equation(printed, derived)
+        yield (
+            flat(raw["Gz1"] + T_inverse * b["S"] * raw["Kx"] * raw["gx"], raw["Gz2"] - raw["Kz"] * raw["gz"]),
+            flat(T_inverse * (coupling + itself * b["S"] - b["S"] * first), T_inverse * itself * b["T"]),
+        )
 
 
 @claim("1.13.preferable")
@@ -117,14 +114,11 @@ def weight_grows_with_the_gain():
 
     Derivative of the coupling by the gains: -g_z1 of (1.13), not zero for S different from zero, against 0.
     """
-    printed, derived = [], []
     for m, rest in PAIRS[:4]:
         b, raw = general(m, rest), blocks(m, rest)
         for gain in raw["Kz"]:
             coupling = (b["Gz1"] - b["Kz"] * b["g1"]).diff(gain)
-            printed += flat(-(b["Kz"].diff(gain)) * b["g1"], sp.zeros(rest, m))
-            derived += flat(coupling, (raw["Gz1"]).diff(gain))
-    return Equation(printed, derived)
+            yield flat(-(b["Kz"].diff(gain)) * b["g1"], sp.zeros(rest, m)), flat(coupling, (raw["Gz1"]).diff(gain))
 
 
 def steady_variance(S: sp.Expr) -> sp.Expr:

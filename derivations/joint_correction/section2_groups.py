@@ -261,9 +261,9 @@ def neglected_terms():
 @claim("2.8.inhomogeneous")
 def inhomogeneous_terms():
     """(2.8) and (2.9) are inhomogeneous, and all terms that make them so have the order mu (times rho)."""
-    orders = {lowest_order(f, ORDERS) for group in (velocity(), position()) for f in group.linear()[2] if f != 0}
-    highest = {truncate(f, ORDERS, 2).dropped for group in (velocity(), position()) for f in group.linear()[2]}
-    found = tuple(sorted(orders)) if highest == {()} else None
+    forcing = [term for group in (velocity(), position()) for term in group.linear()[2]]
+    orders = {lowest_order(term, ORDERS) for term in forcing if term != 0}
+    found = tuple(sorted(orders)) if {truncate(term, ORDERS, 2).dropped for term in forcing} == {()} else None
     return Property(
         (1,),
         Finding(found, "bookkeeping of every monomial", PROVED, scope="orders as declared in 2.8.neglected"),

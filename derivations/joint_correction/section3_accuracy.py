@@ -56,14 +56,11 @@ def measurement_before_the_end():
     """The rows used here solve the equations: velocity and position u before the end, in the variables at the end."""
     from navsym_papers.joint_correction.section2_groups import mu, position, velocity
 
-    printed, derived = [], []
     for row, group, size in ((VELOCITY, velocity(), 3), (POSITION, position(), 4)):
         F, H, _ = group.linear()
         F = F.subs(mu, 0)[:size, :size]
         values = sp.Matrix([row])
-        printed += [*(-values.diff(u)), *values.subs(u, 0)]
-        derived += [*(values * F), *H.subs(mu, 0)[0, :size]]
-    return Equation(printed, derived)
+        yield [*(-values.diff(u)), *values.subs(u, 0)], [*(values * F), *H.subs(mu, 0)[0, :size]]
 
 
 @claim("2.8.accuracy_short", expect=CERTIFIED)

@@ -161,12 +161,12 @@ def poles_cross_at_kappa_one():
     1 - 3 l^2, have no common zero.
     """
     real, imaginary = crossing()
-    printed, derived = [], []
     for side in (1, -1):
         factor = 1 + side * kappa
-        printed += [-(3 * lam - lam**3) * factor, -side * (1 - 3 * lam**2) * factor]
-        derived += [real.subs(omega, side), imaginary.subs(omega, side)]
-    return Equation(printed, derived)
+        yield (
+            [-(3 * lam - lam**3) * factor, -side * (1 - 3 * lam**2) * factor],
+            [real.subs(omega, side), imaginary.subs(omega, side)],
+        )
 
 
 @claim("3.coupled.stable")

@@ -20,7 +20,6 @@ MODELS, SWITCHING = [[examples.CALM, examples.JUMP]], [examples.STICKY]
 def weighing_is_needed():
     """Below (13): the optimal estimate has to weigh: any other kappa adds (kappa - X)^2 [1 to 6 components]."""
     kappa = sp.Symbol("kappa", real=True)
-    printed, derived = [], []
     for size in range(1, 7):
         g, a, _, c = mixture(size)
         mean = sum(w * x for w, x in zip(g, a, strict=True))
@@ -28,9 +27,7 @@ def weighing_is_needed():
         def mean_square(estimate: sp.Expr, g=g, a=a, c=c) -> sp.Expr:
             return sum(w * (v + (x - estimate) ** 2) for w, x, v in zip(g, a, c, strict=True))
 
-        printed.append((kappa - mean) ** 2)
-        derived.append(mean_square(kappa) - mean_square(mean))
-    return Equation(printed, derived)
+        yield (kappa - mean) ** 2, mean_square(kappa) - mean_square(mean)
 
 
 @claim("12.selection")

@@ -35,15 +35,12 @@ def prediction():
     The information matrix of (x(k), x(k-1)) read off the two exponents, times the covariance that Kalman's
     prediction says, is the identity.
     """
-    printed, derived = [], []
     for n in (1, 2):
         A, P, Q = full("a", n, n), symmetric("p", n), symmetric("q", n)
         Qi, Pi = inverse(Q), inverse(P)
         information = sp.Matrix(sp.BlockMatrix([[Qi, -Qi * A], [-A.T * Qi, Pi + A.T * Qi * A]]))
         moments = sp.Matrix(sp.BlockMatrix([[A * P * A.T + Q, A * P], [P * A.T, P]]))
-        printed += list(information * moments)
-        derived += list(sp.eye(2 * n))
-    return Equation(printed=printed, derived=derived)
+        yield information * moments, sp.eye(2 * n)
 
 
 def measured(n: int, m: int):
@@ -60,24 +57,18 @@ SHAPES = ((1, 1), (2, 1), (1, 2))
 @claim("8.correct")
 def correction():
     """Between (13) and (14): P - K H P inverts the sum of informations, (states, measurements) (1,1), (2,1), (1,2)."""
-    printed, derived = [], []
     for n, m in SHAPES:
         P, H, R, _, _, corrected = measured(n, m)
-        printed += list((inverse(P) + H.T * inverse(R) * H) * corrected)
-        derived += list(sp.eye(n))
-    return Equation(printed=printed, derived=derived)
+        yield (inverse(P) + H.T * inverse(R) * H) * corrected, sp.eye(n)
 
 
 @claim("8.joseph")
 def joseph():
     """Joseph's form (I - K H) P (I - K H)^T + K R K^T equals P - K H P at Kalman's gain."""
-    printed, derived = [], []
     for n, m in SHAPES:
         P, H, R, _, gain, corrected = measured(n, m)
         L = sp.eye(n) - gain * H
-        printed += list(L * P * L.T + gain * R * gain.T)
-        derived += list(corrected)
-    return Equation(printed=printed, derived=derived)
+        yield L * P * L.T + gain * R * gain.T, corrected
 
 
 @claim("8.posterior")
@@ -87,7 +78,6 @@ def posterior_exponent():
     Likelihood times prior and the Gaussian of the corrected moments have exponents that differ by the
     exponent of (18), which does not depend on x.
     """
-    printed, derived = [], []
     for n, m in SHAPES:
         P, H, R, D, gain, corrected = measured(n, m)
         x, mean, Y = full("x", n, 1), full("m", n, 1), full("y", m, 1)
@@ -95,9 +85,7 @@ def posterior_exponent():
         off, deviation = x - mean - gain * v, Y - H * x
         corrected_information = inverse(P) + H.T * inverse(R) * H
         product = deviation.T * inverse(R) * deviation + (x - mean).T * inverse(P) * (x - mean)
-        printed.append((off.T * corrected_information * off + v.T * inverse(D) * v)[0])
-        derived.append(product[0])
-    return Equation(printed=printed, derived=derived)
+        yield (off.T * corrected_information * off + v.T * inverse(D) * v)[0], product[0]
 
 
 v, D, P, R, H, Y, mean = (
@@ -127,28 +115,25 @@ def likelihood():
 @claim("18.exponent")
 def exponent():
     """(18), exponent: the minimum over x of the two quadratic forms is v^T D^-1 v."""
-    printed, derived = [], []
     for n, m in SHAPES:
         prior, observe, noise, spread, gain, _ = measured(n, m)
         start, z = full("m", n, 1), full("y", m, 1)
         innovation = z - observe * start
         best = start + gain * innovation
         off = z - observe * best
-        printed.append((innovation.T * inverse(spread) * innovation)[0])
-        derived.append((off.T * inverse(noise) * off + (best - start).T * inverse(prior) * (best - start))[0])
-    return Equation(printed=printed, derived=derived)
+        yield (
+            (innovation.T * inverse(spread) * innovation)[0],
+            (off.T * inverse(noise) * off + (best - start).T * inverse(prior) * (best - start))[0],
+        )
 
 
 @claim("18.normaliser")
 def normaliser():
     """(18), denominator: |D| = |P| |R| / |P^+|, what the integral over x leaves of the three normalisers."""
-    printed, derived = [], []
     for n, m in SHAPES:
         prior, observe, noise, spread, _, _ = measured(n, m)
         information = inverse(prior) + observe.T * inverse(noise) * observe
-        printed.append(spread.det())
-        derived.append(prior.det() * noise.det() * information.det())
-    return Equation(printed=printed, derived=derived)
+        yield spread.det(), prior.det() * noise.det() * information.det()
 
 
 d = sp.Symbol("d", positive=True)

@@ -20,27 +20,24 @@ def chain(size, entries=distribution):
 @claim("5")
 def transition_probabilities():
     """(5): p^ij is the probability of i after j, so its columns (fixed j) sum to one (chains of 2 to 4 modes)."""
-    printed, derived = [], []
     for size in (2, 3, 4):
         start, switch = chain(size)
         both = {(i, j): start[j] * switch[j][i] for i in range(size) for j in range(size)}
         for j in range(size):
-            printed.append(1)
-            derived.append(sum(both[i, j] for i in range(size)) / start[j])
-    return Equation(printed=printed, derived=derived)
+            yield 1, sum(both[i, j] for i in range(size)) / start[j]
 
 
 @claim("5.prediction")
 def prediction_of_modes():
     """(5): with these indices P[I(k) = i] is the sum over j of p^ij P[I(k-1) = j] (chains of 2 to 4 modes)."""
-    printed, derived = [], []
     for size in (2, 3, 4):
         start, switch = chain(size)
         both = {(i, j): start[j] * switch[j][i] for i in range(size) for j in range(size)}
         for i in range(size):
-            printed.append(sp.Matrix([switch[j][i] for j in range(size)]).dot(sp.Matrix(start)))
-            derived.append(sum(value for (to, _), value in both.items() if to == i))
-    return Equation(printed=printed, derived=derived)
+            yield (
+                sp.Matrix([switch[j][i] for j in range(size)]).dot(sp.Matrix(start)),
+                sum(value for (to, _), value in both.items() if to == i),
+            )
 
 
 def path(start, switch, step, likelihood):
@@ -79,13 +76,13 @@ def markov():
         [[distribution(f"l{i}{x}", 2) for x in TWO] for i in TWO],
     )
     now = {"x1": 0, "i1": 0, "y0": 0}
-    printed, derived = [], []
     for x2, i2, y1 in product(TWO, repeat=3):
         after = {"x2": x2, "i2": i2, "y1": y1}
         before = {"x0": 1, "i0": 1}
-        printed.append(summed(table, **after, **now) / summed(table, **now))
-        derived.append(summed(table, **after, **now, **before) / summed(table, **now, **before))
-    return Equation(printed=printed, derived=derived)
+        yield (
+            summed(table, **after, **now) / summed(table, **now),
+            summed(table, **after, **now, **before) / summed(table, **now, **before),
+        )
 
 
 @claim(
@@ -105,13 +102,10 @@ def forgetful_printed():
 @claim("14*", corrects="14")
 def forgetful():
     """(14): when p^ij(k) does not depend on j it is P[I(k) = i] (chains of 2 to 4 modes)."""
-    printed, derived = [], []
     for size in (2, 3, 4):
         start, row = distribution("s", size), distribution("p", size)
         for i in range(size):
-            printed.append(row[i])
-            derived.append(sum(row[i] * start[j] for j in range(size)))
-    return Equation(printed=printed, derived=derived)
+            yield row[i], sum(row[i] * start[j] for j in range(size))
 
 
 @claim(
@@ -134,7 +128,6 @@ def follows_printed():
 @claim("14.follows*", corrects="14.follows")
 def follows():
     """Before (14): after the Gaussian approximation the mode is predicted by the sum of p^ij g^j(k-1)."""
-    printed, derived = [], []
     for size in (2, 3, 4):
         modes = range(size)
         start, switch, seen = free("s", size), [free(f"p{j}", size) for j in modes], free("rho", size)
@@ -142,9 +135,10 @@ def follows():
         joint = {(i, j): seen[j] * start[j] * switch[j][i] for i in modes for j in modes}
         evidence = sum(seen[j] * start[j] for j in modes)
         g = [seen[j] * start[j] / evidence for j in modes]
-        printed += [sum(switch[j][i] * g[j] for j in modes) for i in modes]
-        derived += [sum(joint[i, j] for j in modes) / evidence for i in modes]
-    return Equation(printed=printed, derived=derived)
+        yield (
+            [sum(switch[j][i] * g[j] for j in modes) for i in modes],
+            [sum(joint[i, j] for j in modes) / evidence for i in modes],
+        )
 
 
 @claim("19")
@@ -152,9 +146,6 @@ def no_switching():
     """(19): with the identity in place of p^ij the mode never changes, over any number of steps up to six."""
     start = distribution("s", 3)
     identity = sp.eye(3)
-    printed, derived = [], []
     for steps in range(1, 7):
         reached = identity**steps * sp.Matrix(start)
-        printed += start
-        derived += list(reached)
-    return Equation(printed=printed, derived=derived)
+        yield start, reached

@@ -47,11 +47,8 @@ def estimate_printed():
 @claim("12*", corrects="12")
 def estimate():
     """(12): the mean of the mixture is the sum over i of g^i times the partial mean [I,n = 2,2 3,2 2,3]."""
-    printed, derived = [], []
     for s in every_size():
-        printed.append(sum(finite.mode(s, i) * partial_mean(s, "xi", i) for i in s.I))
-        derived.append(mean(s, "xi"))
-    return Equation(printed=printed, derived=derived)
+        yield sum(finite.mode(s, i) * partial_mean(s, "xi", i) for i in s.I), mean(s, "xi")
 
 
 def mixture(size: int):
@@ -101,7 +98,6 @@ def covariance_of_any_number():
 @claim("13.densities")
 def covariance_of_densities():
     """(13) for posteriors of any form: finite-state densities in place of Gaussian ones [I,n = 2,2]."""
-    printed, derived = [], []
     for s in (step(2, 2),):
         xi, eta = values(s, "xi"), values(s, "eta")
         X, Y = mean(s, "xi"), mean(s, "eta")
@@ -112,9 +108,7 @@ def covariance_of_densities():
             a, b, below = partial_mean(s, "xi", i), partial_mean(s, "eta", i), s.probability(Y=0, i=i)
             both = sum(xi[x] * eta[x] * s.probability(Y=0, x=x, i=i) for x in s.X) / below
             terms.append(finite.mode(s, i) * (both - a * b + (a - X) * (b - Y)))
-        printed.append(sum(terms))
-        derived.append(second - X * Y)
-    return Equation(printed=printed, derived=derived)
+        yield sum(terms), second - X * Y
 
 
 @claim(
@@ -191,7 +185,6 @@ def accumulate():
 @claim("accumulate.all")
 def accumulate_all():
     """Two to four partial estimates added one at a time give (12) and (13)."""
-    printed, derived = [], []
     for size in (2, 3, 4):
         w = [sp.Symbol(f"w_{i}", positive=True) for i in range(size)]
         _, a, b, c = mixture(size)
@@ -200,6 +193,4 @@ def accumulate_all():
             share = w[i] / (W + w[i])
             C = (1 - share) * C + share * c[i] + share * (1 - share) * (a[i] - X) * (b[i] - Y)
             W, X, Y = W + w[i], X + share * (a[i] - X), Y + share * (b[i] - Y)
-        printed.append(C)
-        derived.append(covariance(size))
-    return Equation(printed=printed, derived=derived)
+        yield C, covariance(size)

@@ -87,37 +87,34 @@ def likelihood():
 @claim("21")
 def mode_probability():
     """(21): (10) under (19) [I,n = 2,2 3,2 2,3]."""
-    printed, derived = [], []
     for s in frozen_steps():
         below = sp.expand(sum(rho(s, i) * s.modes[i] for i in s.I))
-        printed += [rho(s, i) * s.modes[i] / below for i in s.I]
-        derived += [finite.mode(s, i) for i in s.I]
-    return Equation(printed=printed, derived=derived)
+        yield [rho(s, i) * s.modes[i] / below for i in s.I], [finite.mode(s, i) for i in s.I]
 
 
 @claim("21.mixture")
 def mixture():
     """Below (21): the general formula (11) holds with the weights (21) and the densities (20) [I,n = 2,2 3,2 2,3]."""
-    printed, derived = [], []
     for s in frozen_steps():
         below = sp.expand(sum(rho(s, i) * s.modes[i] for i in s.I))
-        printed.append(sum(s.L(i, 0) * predicted(s, i, 0) * s.modes[i] for i in s.I) / below)
-        derived.append(s.probability(Y=0, x=0) / s.probability(Y=0))
-    return Equation(printed=printed, derived=derived)
+        yield (
+            sum(s.L(i, 0) * predicted(s, i, 0) * s.modes[i] for i in s.I) / below,
+            s.probability(Y=0, x=0) / s.probability(Y=0),
+        )
 
 
 @claim("21.start")
 def start():
     """Below (21): g^i(0) = p^i rho^i(0) / sum; equal to p^i when step 0 has no measurement (two to four modes)."""
-    printed, derived = [], []
     for size in (2, 3, 4):
         p, seen = finite.free("p", size), finite.free("rho", size)
         joint = {(i, Y): p[i] * (seen[i] if Y == 0 else 1) for i in range(size) for Y in (0, 1)}
         for Y in (0, 1):
             weight = [p[i] * (seen[i] if Y == 0 else 1) for i in range(size)]
-            printed += [w / sum(weight) for w in weight]
-            derived += [joint[i, Y] / sum(joint[j, Y] for j in range(size)) for i in range(size)]
-    return Equation(printed=printed, derived=derived)
+            yield (
+                [w / sum(weight) for w in weight],
+                [joint[i, Y] / sum(joint[j, Y] for j in range(size)) for i in range(size)],
+            )
 
 
 def polygaussian_and_exact(steps: int):

@@ -67,31 +67,24 @@ def mode_likelihood():
 @claim("17")
 def mode_probability():
     """(17): (10) under (14) [I,n = 2,2 3,2 2,3]."""
-    printed, derived = [], []
     for s in forgetful_steps():
         below = sp.expand(sum(rho(s, i) * s.p(i, 0) for i in s.I))
-        printed += [rho(s, i) * s.p(i, 0) / below for i in s.I]
-        derived += [finite.mode(s, i) for i in s.I]
-    return Equation(printed=printed, derived=derived)
+        yield [rho(s, i) * s.p(i, 0) / below for i in s.I], [finite.mode(s, i) for i in s.I]
 
 
 @claim("17.fold")
 def mode_probability_of_the_fold():
     """With one density for all pi^j[x(k-1)], (10) is (17) with p^i = sum p^ij g^j(k-1) [I,n = 2,2 3,2 2,3]."""
-    printed, derived = [], []
     for s in finite.every_size():
         fold = {s.past[j][y]: s.past[0][y] for j in s.I for y in s.X}
         likelihood = [sum(s.L(i, x) * s.f(i, x, y) * s.past[0][y] for x in s.X for y in s.X) for i in s.I]
         weight = [likelihood[i] * sum(s.p(i, j) * s.modes[j] for j in s.I) for i in s.I]
-        printed += [w / sum(weight) for w in weight]
-        derived += [finite.mode(s, i).subs(fold, simultaneous=True) for i in s.I]
-    return Equation(printed=printed, derived=derived)
+        yield [w / sum(weight) for w in weight], [finite.mode(s, i).subs(fold, simultaneous=True) for i in s.I]
 
 
 @claim("13.sequences")
 def weighing_of_sequences():
     """Below (13): the optimal estimate weighs partial ones by probabilities of mode sequences [I,n = 2,2 3,2 2,3]."""
-    printed, derived = [], []
     for s in finite.every_size():
         value = [sp.Symbol(f"xi_{x}", real=True) for x in s.X]
         evidence = s.probability(Y=0)
@@ -100,9 +93,7 @@ def weighing_of_sequences():
             weight = s.probability(Y=0, i=i, j=j)
             estimate = sum(value[x] * s.probability(Y=0, x=x, i=i, j=j) for x in s.X) / weight
             terms.append(weight / evidence * estimate)
-        printed.append(sum(terms))
-        derived.append(sum(value[x] * s.probability(Y=0, x=x) for x in s.X) / evidence)
-    return Equation(printed=printed, derived=derived)
+        yield sum(terms), sum(value[x] * s.probability(Y=0, x=x) for x in s.X) / evidence
 
 
 def leaves_by_tree(modes: int, steps: int, roots: int) -> int:

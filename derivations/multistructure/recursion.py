@@ -60,12 +60,9 @@ def posterior_printed():
 @claim("7*", corrects="7")
 def posterior_corrected():
     """(7) with one transition density in the denominator is Bayes' rule for state and mode [I,n = 2,2 3,2 2,3]."""
-    printed, derived = [], []
     for s in every_size():
         whole = total(bayes_numerator(s, i, x) for i in s.I for x in s.X)
-        printed += [bayes_numerator(s, i, 0) / whole for i in s.I]
-        derived += [finite.posterior(s, 0, i) for i in s.I]
-    return Equation(printed=printed, derived=derived)
+        yield [bayes_numerator(s, i, 0) / whole for i in s.I], [finite.posterior(s, 0, i) for i in s.I]
 
 
 def state_posterior(s: Step, x: int) -> sp.Expr:
@@ -98,14 +95,11 @@ def partial_definition_printed():
 @claim("8.definition*", corrects="8.definition")
 def partial_definition():
     """The fraction above (8) with a denominator summed over j alone [I,n = 2,2 3,2 2,3]."""
-    printed, derived = [], []
     for s in every_size():
         for i in s.I:
             above = total(s.probability(Y=0, x=0, i=i, j=j, y=y) for j in s.I for y in s.X)
             below = total(s.probability(Y=0, x=x, i=i, j=j, y=y) for x in s.X for j in s.I for y in s.X)
-            printed.append(above / below)
-            derived.append(finite.partial(s, 0, i))
-    return Equation(printed=printed, derived=derived)
+            yield above / below, finite.partial(s, 0, i)
 
 
 def right_side_of_8(s: Step, i: int, x: int) -> sp.Expr:
@@ -116,11 +110,8 @@ def right_side_of_8(s: Step, i: int, x: int) -> sp.Expr:
 @claim("8")
 def partial_posterior():
     """(8): pi^i[x(k)] from the partial densities and mode probabilities of the step before [I,n = 2,2 3,2 2,3]."""
-    printed, derived = [], []
     for s in every_size():
-        printed += [right_side_of_8(s, i, 0) for i in s.I]
-        derived += [finite.partial(s, 0, i) for i in s.I]
-    return Equation(printed=printed, derived=derived)
+        yield [right_side_of_8(s, i, 0) for i in s.I], [finite.partial(s, 0, i) for i in s.I]
 
 
 @claim(
@@ -191,18 +182,14 @@ def mode_definition_printed():
 @claim("10.definition*", corrects="10.definition")
 def mode_definition():
     """The fraction above (10) with a numerator summed over j [I,n = 2,2 3,2 2,3]."""
-    printed, derived = [], []
     for s in every_size():
         below = total(s.probability(Y=0, i=i, j=j) for i in s.I for j in s.I)
-        printed += [total(s.probability(Y=0, i=i, j=j) for j in s.I) / below for i in s.I]
-        derived += [finite.mode(s, i) for i in s.I]
-    return Equation(printed=printed, derived=derived)
+        yield [total(s.probability(Y=0, i=i, j=j) for j in s.I) / below for i in s.I], [finite.mode(s, i) for i in s.I]
 
 
 @claim("10.first")
 def mode_probability_by_densities():
     """(10), first line, for two to four modes and any state: f[Y, i, j] = f[Y / i, j] p^ij g^j, summed."""
-    printed, derived = [], []
     for size in (2, 3, 4):
         pairs = [(i, j) for i in range(size) for j in range(size)]
         together = {key: sp.Symbol("a_{}{}".format(*key), positive=True) for key in pairs}
@@ -213,21 +200,19 @@ def mode_probability_by_densities():
         density = {key: together[key] / before[key] for key in pairs}
         weight = {key: density[key] * before[key] for key in pairs}
         whole = total(weight.values())
-        printed += [total(weight[i, j] for j in range(size)) / whole for i in range(size)]
-        derived += [total(together[i, j] for j in range(size)) / total(together.values()) for i in range(size)]
-    return Equation(printed=printed, derived=derived)
+        yield (
+            [total(weight[i, j] for j in range(size)) / whole for i in range(size)],
+            [total(together[i, j] for j in range(size)) / total(together.values()) for i in range(size)],
+        )
 
 
 @claim("10")
 def mode_probability():
     """(10), second line: mode probabilities from rho^ij [I,n = 2,2 3,2 2,3]."""
-    printed, derived = [], []
     for s in every_size():
         weight = {(i, j): rho(s, i, j) * s.p(i, j) * s.modes[j] for i in s.I for j in s.I}
         whole = total(weight.values())
-        printed += [total(weight[i, j] for j in s.I) / whole for i in s.I]
-        derived += [finite.mode(s, i) for i in s.I]
-    return Equation(printed=printed, derived=derived)
+        yield [total(weight[i, j] for j in s.I) / whole for i in s.I], [finite.mode(s, i) for i in s.I]
 
 
 @claim(
@@ -248,11 +233,8 @@ def mixture_printed():
 @claim("11*", corrects="11")
 def mixture():
     """(11) summed over i: the posterior is the mixture of the partial ones [I,n = 2,2 3,2 2,3]."""
-    printed, derived = [], []
     for s in every_size():
-        printed.append(total(finite.mode(s, i) * finite.partial(s, 0, i) for i in s.I))
-        derived.append(state_posterior(s, 0))
-    return Equation(printed=printed, derived=derived)
+        yield total(finite.mode(s, i) * finite.partial(s, 0, i) for i in s.I), state_posterior(s, 0)
 
 
 @claim("11.form")
@@ -261,13 +243,10 @@ def form():
 
     The text says "in the form (1)", which is the error equation and no density: the number (11) lost a digit.
     """
-    printed, derived = [], []
     for s in every_size():
         weight = [total(rho(s, i, j) * s.p(i, j) * s.modes[j] for j in s.I) for i in s.I]
         whole = total(weight)
-        printed.append(total(weight[i] / whole * right_side_of_8(s, i, 0) for i in s.I))
-        derived.append(state_posterior(s, 0))
-    return Equation(printed=printed, derived=derived)
+        yield total(weight[i] / whole * right_side_of_8(s, i, 0) for i in s.I), state_posterior(s, 0)
 
 
 @claim("11.parts")

@@ -55,13 +55,13 @@ def instant_as_printed():
 def instant():
     """The instant of crossing is t_0 + t_G times the interval between measurements: the mean time."""
     start = sp.Symbol("t_0", positive=True)
-    printed, derived = [], []
     for size in SIZES:
         q = [slope for _, slope in slopes(size)]
         weight = sum(v * v for v in q)
-        printed.append(start + dt * crossing_time([(0, v) for v in q], (0, 1)))
-        derived.append(sum((start + m * dt) * v * v for m, v in enumerate(q)) / weight)
-    return Equation(printed=printed, derived=derived)
+        yield (
+            start + dt * crossing_time([(0, v) for v in q], (0, 1)),
+            sum((start + m * dt) * v * v for m, v in enumerate(q)) / weight,
+        )
 
 
 @claim("9.angle")
@@ -152,12 +152,12 @@ def criterion_as_printed():
 @claim("9.sum*", corrects="9.sum")
 def criterion():
     """The criterion near the true track is sum (h_y beta step (k - t))^2."""
-    printed, derived = [], []
     for size in SIZES:
         q = own_slopes(size)
-        printed.append(sum((slope * beta * step * (m - t)) ** 2 for m, slope in enumerate(q)))
-        derived.append(misfit([(0, slope) for slope in q], (0, beta), t))
-    return Equation(printed=printed, derived=derived)
+        yield (
+            sum((slope * beta * step * (m - t)) ** 2 for m, slope in enumerate(q)),
+            misfit([(0, slope) for slope in q], (0, beta), t),
+        )
 
 
 def weighted_mean(q):
@@ -216,15 +216,12 @@ def second_order_condition():
 @claim("10.sufficient")
 def sufficiency():
     """A second derivative >= 0 suffices here: I_n(t) exceeds I_n(t_G) by half of it times (t - t_G)^2, at every t."""
-    printed, derived = [], []
     for size in SIZES:
         q = own_slopes(size)
         parabola = misfit([(0, v) for v in q], (0, beta), t)
         curvature = sp.diff(sp.expand(parabola), t, 2)
         centre = crossing_time([(0, v) for v in q], (0, beta))
-        printed.append(curvature / 2 * (t - centre) ** 2)
-        derived.append(parabola - parabola.subs(t, centre))
-    return Equation(printed=printed, derived=derived)
+        yield curvature / 2 * (t - centre) ** 2, parabola - parabola.subs(t, centre)
 
 
 @claim("10.unique")

@@ -58,13 +58,13 @@ def four_measurements():
 @claim("joint.determinant")
 def determinant_of_the_joint_search():
     """det J is the sum of the squares of those determinants over all fours of measurements; of fewer it is zero."""
-    printed, derived = [], []
     for size in (1, 2, 3, 4):
         points = slopes(size)
         fours = combinations(range(size + 1), 4)
-        printed.append(sum((four([points[k] for k in chosen], chosen) ** 2 for chosen in fours), sp.Integer(0)))
-        derived.append(joint_information(points).det(method="berkowitz"))
-    return Equation(printed=printed, derived=derived)
+        yield (
+            sum((four([points[k] for k in chosen], chosen) ** 2 for chosen in fours), sp.Integer(0)),
+            joint_information(points).det(method="berkowitz"),
+        )
 
 
 def place(k: int) -> sp.Matrix:

@@ -212,16 +212,16 @@ def ay0():
 @claim("12.linear")
 def sums_in_one_pass():
     """The double sums are differences of products of single sums: six numbers, O(n) operations."""
-    printed, derived = [], []
     for size in SIZES:
         G0, G1 = moment(slopes(size), 0), moment(slopes(size), 1)
-        printed += [
-            sp.expand(G1[0, 0] * G0[0, 1] - G1[0, 1] * G0[0, 0]),
-            sp.expand(G1[0, 0] * G0[1, 1] - G1[1, 1] * G0[0, 0]),
-            sp.expand(G1[0, 1] * G0[1, 1] - G1[1, 1] * G0[0, 1]),
-        ]
-        derived += [double_sum(size, PRINTED[name]) for name in ("Ax2*", "Ax1", "Ax0*")]
-    return Equation(printed=printed, derived=derived)
+        yield (
+            [
+                sp.expand(G1[0, 0] * G0[0, 1] - G1[0, 1] * G0[0, 0]),
+                sp.expand(G1[0, 0] * G0[1, 1] - G1[1, 1] * G0[0, 0]),
+                sp.expand(G1[0, 1] * G0[1, 1] - G1[1, 1] * G0[0, 1]),
+            ],
+            [double_sum(size, PRINTED[name]) for name in ("Ax2*", "Ax1", "Ax0*")],
+        )
 
 
 @claim("12.linear.any")

@@ -24,12 +24,9 @@ def form_sums(G, M):
 @claim("case1.value")
 def value_without_cross_track_error():
     """With beta_y = 0, t_G is one value, whatever beta_x: the mean weighted with the squared slopes along x."""
-    printed, derived = [], []
     for size in (1, 2, 3):
         p = [slope for slope, _ in slopes(size)]
-        printed.append(sum(k * s**2 for k, s in enumerate(p)) / sum(s**2 for s in p))
-        derived.append(crossing_time(slopes(size), (beta_x, 0)))
-    return Equation(printed=printed, derived=derived)
+        yield sum(k * s**2 for k, s in enumerate(p)) / sum(s**2 for s in p), crossing_time(slopes(size), (beta_x, 0))
 
 
 def slope_at_the_axis(size):

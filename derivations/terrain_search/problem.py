@@ -48,12 +48,9 @@ def count_of(first, last):
 def height_error_of_the_model():
     """The height error b of (1) moves the fix of (2): it adds (n + 1) b^2 and 2 b sum d, which hypotheses share not."""
     b = sp.Symbol("deltaH", real=True)
-    printed, derived = [], []
     for size in (1, 2, 3):
         d = sp.symbols(f"d0:{size + 1}", real=True)
-        printed.append(2 * b * sum(d) + (size + 1) * b**2)
-        derived.append(sum((each + b) ** 2 for each in d) - sum(each**2 for each in d))
-    return Equation(printed=printed, derived=derived)
+        yield 2 * b * sum(d) + (size + 1) * b**2, sum((each + b) ** 2 for each in d) - sum(each**2 for each in d)
 
 
 @claim("2.cost")

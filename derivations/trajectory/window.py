@@ -75,13 +75,13 @@ def falling(degree: sp.Expr, r: int) -> sp.Expr:
 @claim("window.every")
 def one_degree_more():
     """For every degree: one degree more adds (2 d + 1) ((d + r)!/(d - r)!/r!)^2 to the variance, from zero (r to 3)."""
-    printed, derived = [], []
     for r in range(4):
         whole = falling(D, r) * (D + r + 1) / factorial(r)
         square = whole**2 / (2 * r + 1)
-        printed += [(2 * D + 1) * (falling(D, r) / factorial(r)) ** 2, sp.Integer(0)]
-        derived += [square - square.subs(D, D - 1), square.subs(D, r - 1)]
-    return Equation(printed, derived)
+        yield (
+            [(2 * D + 1) * (falling(D, r) / factorial(r)) ** 2, sp.Integer(0)],
+            [square - square.subs(D, D - 1), square.subs(D, r - 1)],
+        )
 
 
 @claim("window.legendre")
@@ -90,16 +90,15 @@ def derivatives_at_the_end():
 
     Over the window it has the square integral T/(2 d + 1) and its r-th derivative the factor (2/T)^r; r to 3, d to 9.
     """
-    printed, derived = [], []
     for d in range(LARGEST + 1):
         polynomial = sp.expand(sp.legendre(d, u))
         square = sp.Poly(polynomial**2, u).integrate()
-        printed.append(sp.Rational(2, 2 * d + 1))
-        derived.append(square.eval(1) - square.eval(-1))
+        yield sp.Rational(2, 2 * d + 1), square.eval(1) - square.eval(-1)
         for r in range(min(d, 3) + 1):
-            printed.append(sp.Rational(factorial(d + r), factorial(d - r) * 2**r * factorial(r)))
-            derived.append(sp.diff(polynomial, u, r).subs(u, 1))
-    return Equation(printed, derived)
+            yield (
+                sp.Rational(factorial(d + r), factorial(d - r) * 2**r * factorial(r)),
+                sp.diff(polynomial, u, r).subs(u, 1),
+            )
 
 
 @claim("window.order")
@@ -161,8 +160,5 @@ def normalisation_is_optimal_for_two_states():
 @claim("6.Nf.determinant")
 def determinant_of_the_first_stage():
     """det N_f = 1! 2! ... (n - 1)!: every order is solvable in exact arithmetic (n to 10)."""
-    printed, derived = [], []
     for n in range(2, 11):
-        printed.append(sp.prod([sp.Integer(factorial(k)) for k in range(1, n)]))
-        derived.append(N_f(n).det(method="berkowitz"))
-    return Equation(printed, derived)
+        yield sp.prod([sp.Integer(factorial(k)) for k in range(1, n)]), N_f(n).det(method="berkowitz")

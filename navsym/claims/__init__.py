@@ -4,7 +4,18 @@ from navsym.claims.claim import Claim, claim
 from navsym.claims.formula import Formula
 from navsym.claims.paper import Coverage, Paper, claims_of, compare_equations, equation_of
 from navsym.claims.record import Record
-from navsym.claims.statement import UNDECIDED, Bound, Box, Equation, Finding, Optimum, Property, Statement, state
+from navsym.claims.statement import (
+    UNDECIDED,
+    Bound,
+    Box,
+    Equation,
+    Finding,
+    Optimum,
+    Property,
+    Statement,
+    Worded,
+    state,
+)
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Status, Verdict, Verdicts
 
 __all__ = [
@@ -29,6 +40,7 @@ __all__ = [
     "Status",
     "Verdict",
     "Verdicts",
+    "Worded",
     "claim",
     "claims_of",
     "compare_equations",

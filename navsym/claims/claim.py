@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 import html
+import inspect
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal, cast
 
 from navsym.claims.display import mark_verdict, write_card
-from navsym.claims.statement import Statement
+from navsym.claims.statement import Equation, Statement
 from navsym.claims.verdict import PROVED, Status, Verdict
 from navsym.core.errors import MissingEngineError
 
@@ -70,6 +72,10 @@ class Claim:
         return write_card(lines, str(self.expect))
 
 
+#: What a claim's function gives: its statement, or pairs of printed and derived sides, case by case.
+Derive = Callable[[], Statement | Iterator[tuple[Any, Any]]]
+
+
 def claim(
     number: str,
     *,
@@ -78,15 +84,19 @@ def claim(
     slip: Slip | None = None,
     reason: str = "",
     title: str | None = None,
-) -> Callable[[Callable[[], Statement]], Claim]:
-    """Decorator that turns a function without arguments into a :class:`Claim`."""
+) -> Callable[[Derive], Claim]:
+    """Decorator that turns a function without arguments into a :class:`Claim`.
 
-    def make(derive: Callable[[], Statement]) -> Claim:
+    A function that yields pairs of a printed and a derived side states that each pair is equal.
+    """
+
+    def make(derive: Derive) -> Claim:
+        is_generator = inspect.isgeneratorfunction(derive)
         return Claim(
             module=derivation_name(derive),
             number=number,
             title=title if title is not None else title_of(derive),
-            derive=derive,
+            derive=cast(Callable[[], Statement], collect_pairs(derive) if is_generator else derive),
             expect=expect,
             corrects=corrects,
             slip=slip,
@@ -96,13 +106,33 @@ def claim(
     return make
 
 
-def derivation_name(derive: Callable[[], Statement]) -> str:
+def collect_pairs(derive: Callable[[], Any]) -> Callable[[], Statement]:
+    """A function that gives one equation of all pairs, entry by entry."""
+
+    @functools.wraps(derive)
+    def collected() -> Statement:
+        printed: list[Any] = []
+        derived: list[Any] = []
+        for left, right in derive():
+            printed += entries_of(left)
+            derived += entries_of(right)
+        return Equation(printed, derived)
+
+    return collected
+
+
+def entries_of(side: Any) -> list[Any]:
+    """The entries of a list or a matrix, row by row; or the one expression."""
+    return list(side) if isinstance(side, (list, tuple)) or hasattr(side, "shape") else [side]
+
+
+def derivation_name(derive: Derive) -> str:
     """Name of the derivation module: the part of the dotted name after the package of the papers."""
     parts = derive.__module__.split(".")
     return parts[1] if parts[0] == PAPERS and len(parts) > 1 else parts[-1]
 
 
-def title_of(derive: Callable[[], Statement]) -> str:
+def title_of(derive: Derive) -> str:
     """First line of the docstring of a claim's function: the title.
 
     Raises MissingEngineError under -OO, which drops docstrings, and ValueError without one.

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.claims.display import SIGNS, display_latex, latex_of
+from navsym.claims.formula import Formula, side_text
 from navsym.claims.verdict import Status
 
 #: Box: symbol -> (lower, upper), exact numbers, None for an end at infinity.
@@ -163,6 +164,30 @@ class Property:
 
     def _repr_latex_(self) -> str:
         return display_latex(rf"{latex_of(self.printed)} \overset{{?}}{{=}} {latex_of(self.derived.value)}")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Worded(Property):
+    """Whether a formula in the words of files holds, with that formula and a point where it fails.
+
+    is_whole : the formula is what is printed, and not only its left side
+    """
+
+    formula: Formula = field(kw_only=True)
+    counterexample: Mapping[str, Any] = field(default_factory=dict, kw_only=True)
+    is_whole: bool = field(default=False, kw_only=True)
+
+    @property
+    def sides(self) -> tuple[str, str]:
+        """Both sides of an equation; of another relation, a chain or a whole formula all of it, and nothing."""
+        formula = self.formula
+        if self.is_whole or formula.chain or formula.relation != "=" or formula.order:
+            return str(formula), ""
+        within = "" if formula.tolerance is None else f" +- {formula.tolerance}"
+        return side_text(formula.left) + within, side_text(formula.right)
+
+    def _repr_latex_(self) -> str:
+        return self.formula._repr_latex_()
 
 
 Statement = Equation | Bound | Optimum | Property

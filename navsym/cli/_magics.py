@@ -107,7 +107,7 @@ def read_cell(text: str, start: int) -> str:
     from navsym.language.latex.reading import read_with_reals
     from navsym.language.tomlfile import parse_toml
 
-    tables = parse_toml(text[:start], "cell")
+    tables = parse_toml(text[:start], "cell") if TABLE.search(text[:start]) else {}
     blank = re.sub(r"[^\n]", " ", text[:start])
     reading = read_with_reals(blank + text[start:], tables.get("symbols", {}), tables.get("latex"))
     refused = next((formula for formula in reading.formulas if formula.status != "READ"), None)

@@ -7,14 +7,26 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._settings import values_of
+from navsym.cli.diff import read_range
 from navsym.cli.output import emit
+from navsym.language.tomlfile import parse_toml
 
 
 def command(
     module: Annotated[str, typer.Argument(help="derivation module in one file")],
     number: Annotated[str, typer.Argument(help="equation and part, such as 4.3.u2; a star for a correction")],
-    printed: Annotated[str, typer.Option(help="the printed side, in the language of files")],
-    derived: Annotated[str, typer.Option(help="the derived side; replace it by the route from the model")],
+    printed: Annotated[str, typer.Option(help="the printed side, in the language of files or in LaTeX")] = "",
+    derived: Annotated[str, typer.Option(help="the derived side; replace it by the route from the model")] = "",
+    formula: Annotated[str, typer.Option(help="in place of both sides: a relation or a chain, also in LaTeX")] = "",
+    relation: Annotated[str, typer.Option(help="between the sides: = != < <= > >=")] = "=",
+    ranges: Annotated[
+        list[str] | None, typer.Option("--range", help='range of a symbol, such as "T=0,2*pi"; may be repeated')
+    ] = None,
+    declare: Annotated[
+        list[str] | None, typer.Option(help='a declaration, such as "u={ vector = 3 }" or "R=positive"; repeatable')
+    ] = None,
+    given: Annotated[list[str] | None, typer.Option(help="a hypothesis, a relation; may be repeated")] = None,
     title: Annotated[str, typer.Option(help="what the equation says, one sentence")] = "",
     positive: Annotated[str, typer.Option(help="new names that are positive, such as R,g; others are real")] = "",
     tolerance: Annotated[
@@ -26,17 +38,23 @@ def command(
     folder: Annotated[Path | None, typer.Option(help="where; default: the folder of derivations")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """Decide printed = derived and append the claim to its module, with the verdict.
+    """Decide printed = derived, or a formula, and append the claim to its module, with the verdict.
 
     Example: navsym new-claim schuler_pendulum 1 --printed "2*pi*sqrt(R/g)" --derived "2*pi/sqrt(g/R)" --positive R,g
-    """
-    from navsym.prove.drafts import new_claim
 
-    claim = new_claim(
+    Example: navsym new-claim schuler_pendulum 2 --formula "sin(a) <= a" --range a=0,pi
+    """
+    import navsym as nav
+
+    claim = nav.new_claim(
         module,
         number,
         printed=printed,
         derived=derived,
+        formula=formula,
+        relation=relation,
+        given=given or [],
+        symbols=dict(map(read_range, ranges or [])) | read_words(declare or []),
         title=title,
         positive=positive,
         tolerance=tolerance,
@@ -47,6 +65,13 @@ def command(
     )
     is_numeral = tolerance is None and printed.strip("+-").replace(".", "", 1).isdigit()
     emit(claim.document(), as_json=json_, text=lambda: as_text(claim.document(), number, is_numeral))
+
+
+def read_words(settings: list[str]) -> dict[str, Any]:
+    """Declarations ``NAME=WORD`` or ``NAME=`` and a value of TOML."""
+    words = values_of(settings, "--declare", "NAME=WORD or NAME={ TABLE }", "u={ vector = 3 }", "expected {} once")
+    tables = {name: text for name, text in words.items() if text.startswith(("[", "{", '"'))}
+    return words | {name: parse_toml(f"x = {text}", "--declare")["x"] for name, text in tables.items()}
 
 
 def as_text(document: dict[str, Any], number: str, is_numeral: bool) -> str:

@@ -10,7 +10,8 @@ import ast
 import keyword
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import sympy as sp
 
@@ -68,6 +69,19 @@ def {function}() -> Equation:
         printed={printed},
         derived={derived},
 {tolerance}    )
+"""
+
+STATED = """
+
+@claim({arguments})
+def {function}() -> Statement:
+    {title}
+    return {call}
+"""
+
+#: What a claim in the words of files imports beside what every module does.
+STATED_IMPORTS = """from navsym.claims import Statement
+from navsym.prove.formulas import state_formula
 """
 
 
@@ -179,18 +193,20 @@ class NewClaim:
 
     positive  : names that this claim declares positive; other new names are declared real
     tolerance : of a printed numeral, or None
+    call      : arguments of ``state_formula``, which take the place of both sides; empty for two sides
     """
 
     number: str
     title: str
-    printed: str
-    derived: str
-    expect: str
+    printed: str = ""
+    derived: str = ""
+    expect: str = "OPEN"
     corrects: str = ""
     reason: str = ""
     slip: str = ""
     positive: frozenset[str] = frozenset()
     tolerance: str | None = None
+    call: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def arguments(self) -> str:
@@ -215,6 +231,8 @@ def append_claim(source: str, new: NewClaim) -> str:
         raise DuplicateError(message)
     source = source.replace(EXAMPLE, "", 1)
     tree = parse_module(source)
+    if new.call:
+        return append_stated(source, new, names_at_top(tree))
     given = read_declarations(tree, new.positive)
     sides = [
         read_claim_side(text, where, given) for text, where in ((new.printed, "--printed"), (new.derived, "--derived"))
@@ -233,6 +251,47 @@ def append_claim(source: str, new: NewClaim) -> str:
     names = used - names_at_top(tree)
     declared = write_declarations("real", names - new.positive) + write_declarations("positive", names & new.positive)
     return strike_off(source, new.number).rstrip("\n") + "\n" + declared + block
+
+
+def append_stated(source: str, new: NewClaim, known: set[str]) -> str:
+    """The source of a module with one more claim in the words of files."""
+    block = STATED.format(
+        arguments=new.arguments,
+        function=name_function(new.number, known),
+        title=write_docstring(new.title),
+        call=write_call(new.call),
+    )
+    if "state_formula" not in known:
+        first = next(n for n in ast.parse(source).body if isinstance(n, ast.ImportFrom) and n.module == "navsym.claims")
+        lines = source.splitlines(keepends=True)
+        source = "".join([*lines[: first.end_lineno], STATED_IMPORTS, *lines[first.end_lineno :]])
+    return strike_off(source, new.number).rstrip("\n") + "\n" + block
+
+
+def write_call(arguments: Mapping[str, Any]) -> str:
+    """A call of ``state_formula`` as source: texts by place under ``""``, everything else by its name."""
+    parts = [quote_formula(text) for text in arguments[""]]
+    names = {name: value for name, value in arguments.items() if name and value not in (None, (), [], {})}
+    parts += [f"{name}={write_plain(value)}" for name, value in names.items() if not keyword.iskeyword(name)]
+    if words := {name: value for name, value in names.items() if keyword.iskeyword(name)}:
+        parts.append(f"**{write_plain(words)}")
+    whole = f"state_formula({', '.join(parts)})"
+    return whole if len(whole) <= WIDE else "state_formula(\n        " + ",\n        ".join(parts) + ",\n    )"
+
+
+def write_plain(value: Any) -> str:
+    """A declaration as Python source: texts, whole numbers, lists and tables of these."""
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{quote_string(str(key))}: {write_plain(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(write_plain, value)) + "]"
+    return repr(value) if type(value) in (bool, int) else quote_string(str(value))
+
+
+def quote_formula(text: str) -> str:
+    """A formula as Python source: LaTeX as it is printed."""
+    is_raw = "\\" in text and text.isprintable() and not text.endswith("\\") and '"' not in text
+    return f'r"{text}"' if is_raw else quote_string(text)
 
 
 def write_declarations(kind: str, names: set[str]) -> str:

@@ -241,7 +241,7 @@ def measurements_for(made: Bank, values: Any, *, missing: bool = False) -> Array
         k, j = (int(i) for i in np.argwhere(bad)[0])
         raise NotFiniteError(
             f"measurements[{k}]: expected a finite number; got {table[k, j]} in entry {j}; "
-            "mend it, or ask for missing measurements"
+            "mend it, or say that none came with --missing, missing=True"
         )
     if made.horizon is not None and len(table) > made.horizon:
         raise ShapeError(

@@ -10,9 +10,9 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.claims import OPEN, REFUTED, Bound, Equation, Statement, Status, Verdict, Verdicts
+from navsym.claims import OPEN, PROVED, REFUTED, Bound, Equation, Finding, Statement, Status, Verdict, Verdicts
 from navsym.claims.formula import Formula, Side, names_of
-from navsym.claims.statement import Written
+from navsym.claims.statement import Worded, Written
 from navsym.core.choice import one_of
 from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, ShapeError, TooLargeError
 from navsym.core.sandbox import Exhausted, Failed, run_many
@@ -39,6 +39,7 @@ from navsym.language.schema import (
 from navsym.language.shapes import Shape
 from navsym.language.tomlfile import read_toml
 from navsym.prove.assumptions import is_nonzero, is_positive
+from navsym.prove.grant import write_statements
 from navsym.prove.ladder import decide
 from navsym.prove.relations.judge import TextClaim, decide_text
 from navsym.prove.relations.reading import is_text_claim, limit_scalar, read_shapes, read_text_claim
@@ -421,3 +422,18 @@ def statement_of(claim: FileClaim | TextClaim) -> Statement:
 def list_texts(side: Side) -> tuple[str, ...]:
     """The texts of the entries of a side, row by row."""
     return (side,) if isinstance(side, str) else tuple(text for row in side for text in list_texts(row))
+
+
+def property_of_claim(claim: FileClaim | TextClaim) -> Worded:
+    """Whether a claim holds, decided now: of those with vectors, cases, derivatives, hypotheses or conditions."""
+    verdict = decide_claim(claim)
+    texts = claim.documents if isinstance(claim, TextClaim) else tuple(write_statements(statement_of(claim)) or ())
+    said = texts if verdict.certificate else ()
+    point, fails = verdict.counterexample or {}, verdict.status == REFUTED
+    if fails:
+        at = ", ".join(f"{name} = {value}" for name, value in point.items())
+        words = f"{verdict.evidence}: {at}" if at else verdict.evidence
+        verdict = replace(verdict, status=PROVED, evidence=words, assumptions=())
+    parts = (verdict.scope, verdict.assumptions, verdict.evidence, verdict.certificate)
+    found = Finding(not fails, verdict.method, verdict.status, *parts)
+    return Worded(True, found, meaning=said, formula=claim.formula, counterexample=point)

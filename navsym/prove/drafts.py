@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,8 +11,12 @@ from navsym.claims.paper import equation_of, papers_folder
 from navsym.claims.verdict import Verdict
 from navsym.claims.workspace import find_workspace
 from navsym.core.answers import Answer
-from navsym.core.errors import DomainError, DuplicateError
+from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError
 from navsym.language.files import write_text
+from navsym.language.names import quote
+
+#: Arguments of a statement that are no declarations.
+BESIDE = ("box", "tolerance", "exists", "given", "rates", "order")
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -95,8 +99,12 @@ def new_claim(
     module: str,
     number: str,
     *,
-    printed: str,
-    derived: str,
+    printed: str = "",
+    derived: str = "",
+    formula: str = "",
+    relation: str = "=",
+    given: Sequence[str] = (),
+    symbols: Mapping[str, Any] | None = None,
     title: str = "",
     positive: str = "",
     tolerance: str | None = None,
@@ -105,38 +113,107 @@ def new_claim(
     slip: str = "paper",
     folder: str | Path | None = None,
 ) -> DraftedClaim:
-    """Decide ``printed = derived`` and append the claim to a module, with the verdict that was reached.
+    r"""Decide ``printed = derived``, or a whole formula, and append the claim to a module, with its verdict.
 
     number    : equation and part, such as ``"4.3.u2"``; a star for a correction
+    formula   : in the place of both sides: a relation or a chain of them, in the language of files or in LaTeX
+    relation  : between the two sides, one of ``= != < <= > >=``
+    given     : hypotheses, each a relation
+    symbols   : name -> declaration as for :func:`navsym.prove`: ``("0", "pi")``, ``"positive"``, ``{"vector": 3}``
     positive  : new names that are positive, such as ``"R,g"``; others are real
     tolerance : of a printed numeral, half a unit of its last digit
     corrects  : number of the refuted claim that this one replaces
     reason    : for a refuted claim: what is wrong; ``slip`` says who slipped, ``"paper"`` or ``"scan"``
 
+    Two plain sides become Python source, whose derived side is to be replaced by a route from the model. Whatever has
+    ranges, another relation, hypotheses, vectors, matrices, cases, calculus or LaTeX is kept as it is written.
     Raises NavsymError for sides that are no formulas, a number that is claimed already, or no such module.
 
-    >>> import tempfile
+    >>> import navsym as nav, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     paper = new_paper("pendulum", folder=folder)
-    ...     new_claim("pendulum", "1", printed="2*sin(a)*cos(a)", derived="sin(2*a)", folder=folder)
+    ...     paper = nav.new_paper("pendulum", equations="1-2", folder=folder)
+    ...     nav.new_claim("pendulum", "1", printed="2*sin(a)*cos(a)", derived="sin(2*a)", folder=folder)
+    ...     nav.new_claim("pendulum", "2", formula=r"\sin a \le a", symbols={"a": ("0", "pi")}, folder=folder)
     <new claim pendulum:1: PROVED>
+    <new claim pendulum:2: PROVED>
     """
-    from navsym.language.scaffold import NewClaim, append_claim, check_module_name, read_equation_numbers
+    from navsym.language.scaffold import NewClaim, append_claim, read_equation_numbers
 
-    path = own_folder(folder) / f"{check_module_name(module)}.py"
-    if not path.is_file():
-        message = f"expected a module in one file; got {module}; make it with navsym new-paper"
-        raise DomainError(message, where=str(path))
+    path = find_module(module, folder)
     if slip not in ("paper", "scan"):
         raise DomainError(f"expected paper or scan; got {slip[:40]}; name one", where="--slip")
     names = frozenset(name.strip() for name in positive.split(",") if name.strip())
     sentence = title or f"Equation ({number.rstrip('*')}), {'corrected' if corrects else 'as it stands in the paper'}."
     text = path.read_text(encoding="utf-8")
-    draft = NewClaim(number, sentence, printed, derived, "OPEN", corrects, reason, "", names, tolerance)
+    sides = choose_sides(printed, derived, formula, relation)
+    call: dict[str, Any] = {}
+    if "=" not in sides or given or symbols or any(is_beyond_numbers(side) for side in sides):
+        words = declare_names(text, (*sides, *given), names, dict(symbols or {}))
+        call = {"": sides, "given": list(given), "tolerance": tolerance, **words}
+    draft = NewClaim(number, sentence, printed, derived, "OPEN", corrects, reason, "", names, tolerance, call)
     append_claim(text, draft)  # what cannot be written is refused before it is decided
-    verdict = decide_draft(text, draft)
+    verdict = decide_stated(call) if call else decide_draft(text, draft)
     write_text(path, append_claim(text, declare_verdict(draft, verdict, slip)))
     return DraftedClaim(path, f"{module}:{number}", verdict, equation_of(number, read_equation_numbers(text)))
+
+
+def find_module(module: str, folder: str | Path | None) -> Path:
+    """The file of a derivation module; raises DomainError where there is none."""
+    from navsym.language.scaffold import check_module_name
+
+    path = own_folder(folder) / f"{check_module_name(module)}.py"
+    if not path.is_file():
+        message = f"expected a module in one file; got {module}; make it with navsym new-paper"
+        raise DomainError(message, where=str(path))
+    return path
+
+
+def choose_sides(printed: str, derived: str, formula: str, relation: str) -> tuple[str, ...]:
+    """The formula alone, or left, relation and right; raises DomainError for a mixture."""
+    from navsym.language.scaffold import one_line
+
+    for text, where in ((printed, "--printed"), (derived, "--derived"), (formula, "--formula")):
+        one_line(text, where)
+    if formula and not (printed or derived or relation != "="):
+        return (formula,)
+    if formula or not (printed.strip() and derived.strip()):
+        got = "both" if formula else "one side or none"
+        message = f"expected a printed and a derived side, or a whole formula; got {got}; give one of them"
+        raise DomainError(message, where="--formula" if formula else "--derived")
+    return printed, relation, derived
+
+
+def is_beyond_numbers(side: str) -> bool:
+    """Whether a side needs the words of files: LaTeX, vectors, matrices, cases or calculus."""
+    from navsym.language.vectors import is_wide
+
+    return "\\" in side or is_wide(side)
+
+
+def declare_names(
+    source: str, texts: Sequence[str], positive: frozenset[str], symbols: dict[str, Any]
+) -> dict[str, Any]:
+    """Declarations of a claim in the words of files: those given, and what the module says of other names in it."""
+    from navsym.claims.formula import names_of
+    from navsym.language.scaffold import EXAMPLE, KINDS, NAMES_IN, parse_module, read_declarations
+
+    known = read_declarations(parse_module(source.replace(EXAMPLE, "", 1)), positive - symbols.keys())
+    used = set[str]().union(*map(names_of, texts)) & known.keys() - symbols.keys()
+    for name in symbols:
+        if not NAMES_IN.fullmatch(name) or name in BESIDE:
+            message = f"expected a name of the formula; got {quote(name)}; rename it"
+            raise ExpressionSyntaxError(message, where="--declare")
+    words = {name: [kind for kind in KINDS[1:] if getattr(known[name], f"is_{kind}")] for name in sorted(used)}
+    return {**symbols, **{name: kinds[0] for name, kinds in words.items() if kinds}}
+
+
+def decide_stated(call: Mapping[str, Any]) -> Verdict:
+    """Verdict on a claim in the words of files, by the arguments of its statement."""
+    from navsym.prove.formulas import state_formula
+    from navsym.prove.ladder import decide_within
+
+    named = {name: value for name, value in call.items() if name}
+    return decide_within(state_formula(*call[""], **named))
 
 
 def own_folder(folder: str | Path | None) -> Path:

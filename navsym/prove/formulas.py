@@ -6,15 +6,18 @@ import itertools
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import NoneType
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
-from navsym.claims import Verdict, Verdicts
+from navsym.claims import Bound, Equation, Statement, Verdict, Verdicts
 from navsym.claims.formula import names_of, side_text
 from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
 from navsym.language.names import RESERVED, quote, suggest_nearest
 from navsym.language.tomlfile import read_toml
+
+if TYPE_CHECKING:
+    from navsym.prove.claimfile import ClaimFile
 
 SECONDS = 20.0
 RELATION = re.compile(r"!=|<=|>=|==|=<|=>|<>|~=|[=<>]|[\u2260\u2264\u2265]")
@@ -66,8 +69,8 @@ def prove(
 ) -> Verdict | Verdicts:
     """Verdict of a formula, or the verdicts of a claim file.
 
-    statement : a formula as text, ``"sin(2*a) = 2*sin(a)*cos(a)"``, a chain of them, ``"a <= b = c"``, either in LaTeX
-                (a text with a backslash); or its left side, followed by ``relation`` and ``right``; or the path of a
+    statement : a formula as text, ``"sin(2*a) = 2*sin(a)*cos(a)"``, a chain of them, ``"a <= b = c"``, or in LaTeX
+                (with a backslash); or its left side, followed by ``relation`` and ``right``; or the path of a
                 claim file (TOML). A side is text, an exact number, a sympy expression, or rows or a matrix of these.
     relation  : one of ``= != < <= > >=``
     symbols   : declarations: ``T=("0", "2*pi")`` for a closed range, ``"real"``, ``"positive"``, ``"nonnegative"``,
@@ -105,8 +108,45 @@ def prove(
     if relation is None and is_file(statement):
         refuse_declarations(symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())})
         return prove_file(statement, seconds, jobs, progress)
-    sides = split_formula(statement, symbols) if relation is None else Sides(statement, relation, right)
-    return prove_formula(sides, symbols, beside, seconds)
+    return prove_formula(split_formula(statement, relation, right, symbols), symbols, beside, seconds)
+
+
+def state_formula(
+    statement: Any,
+    relation: str | None = None,
+    right: Any = None,
+    /,
+    *,
+    box: Mapping[str, Any] | None = None,
+    tolerance: Any = None,
+    exists: Any = (),
+    given: Any = (),
+    rates: Mapping[str, Any] | None = None,
+    order: Mapping[str, int] | None = None,
+    **symbols: Any,
+) -> Statement:
+    """The statement of a claim in a derivation module, with the arguments of :func:`prove`.
+
+    Of two sides with a relation the left one is what is printed, of a whole formula all of it. What has vectors,
+    hypotheses, cases or conditions of its text is decided when the claim is stated, and the statement says whether it
+    holds. Raises NavsymError as prove does.
+
+    >>> state_formula("sin(a) <= a", a=("0", "pi")).relation
+    '<='
+    >>> state_formula("norm(R @ u) = norm(u)", u={"vector": 3}, R={"rotation": "b to n"}).derived.value
+    True
+    """
+    from navsym.prove.claimfile import FileClaim, property_of_claim, statement_of, text_conditions
+
+    require_options(box, SECONDS, 1)
+    beside = dict(box=box or {}, tolerance=tolerance, exists=exists, given=given, rates=rates or {}, order=order)
+    (claim,) = read_formula(split_formula(statement, relation, right, symbols), symbols, beside).claims
+    if not isinstance(claim, FileClaim) or text_conditions(claim):
+        return replace(property_of_claim(claim), is_whole=relation is None)
+    found = statement_of(claim)
+    if relation is None and isinstance(found, Equation) and tolerance is None:  # the formula is what is printed
+        return Bound(found.printed, "=", found.derived, found.box, found.exists, found.written)
+    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +169,14 @@ def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress
 
 
 def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any], seconds: float) -> Verdict:
-    """The verdict of one formula, with the box, tolerance and existing expressions beside it."""
+    """The verdict of one formula."""
+    from navsym.prove.claimfile import decide_claims
+
+    return decide_claims(read_formula(sides, given, beside), seconds=seconds)[0]
+
+
+def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any]) -> ClaimFile:
+    """One formula as a claim file, with the box, tolerance and existing expressions beside it."""
     from navsym.language.values import (
         merge_declarations,
         read_assumptions,
@@ -137,7 +184,7 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
         write_entries,
         write_value,
     )
-    from navsym.prove.claimfile import ClaimFile, Symbols, decide_claims, read_claim
+    from navsym.prove.claimfile import ClaimFile, Symbols, read_claim
 
     left, right = sides.chain, ""
     if not sides.chain:
@@ -167,8 +214,7 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
     if beside["tolerance"] is not None:
         block["tolerance"] = write_value(beside["tolerance"], "prove: tolerance")
     symbols = Symbols.read(table, "prove", slopes)
-    claim = read_claim(block, symbols, "prove")
-    return decide_claims(ClaimFile(symbols.parameters, (claim,)), seconds=seconds)[0]
+    return ClaimFile(symbols.parameters, (read_claim(block, symbols, "prove"),))
 
 
 def list_dimensions(value: Any) -> list[str]:
@@ -211,8 +257,10 @@ def refuse_declarations(names: Mapping[str, Any]) -> None:
         raise DomainError(message, where="prove")
 
 
-def split_formula(statement: Any, given: Mapping[str, Any]) -> Sides:
-    """The two sides of a text at its one relation; a text with a backslash is LaTeX."""
+def split_formula(statement: Any, relation: str | None, right: Any, given: Mapping[str, Any]) -> Sides:
+    """The two sides as given, or of a text at its one relation; a text with a backslash is LaTeX."""
+    if relation is not None:
+        return Sides(read_latex_side(statement, given), relation, read_latex_side(right, given))
     if isinstance(statement, str) and "\\" in statement:
         return read_latex(statement, given)
     if not isinstance(statement, str):
@@ -233,6 +281,12 @@ def is_outside_brackets(text: str, at: int) -> bool:
     """Whether a place of a text lies in no parentheses and brackets."""
     before = text[:at]
     return sum(map(before.count, "([")) <= sum(map(before.count, ")]"))
+
+
+def read_latex_side(side: Any, given: Mapping[str, Any]) -> Any:
+    """A side in LaTeX as text of the language of files; any other side as it is."""
+    is_latex = isinstance(side, str) and "\\" in side
+    return read_latex(f"{side} = 0", given).left if is_latex else side
 
 
 def read_latex(statement: str, given: Mapping[str, Any]) -> Sides:

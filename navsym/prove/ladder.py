@@ -6,7 +6,10 @@ limits: a statement that needs more time or memory is OPEN.
 
 from __future__ import annotations
 
-from navsym.claims.statement import UNDECIDED, Bound, Equation, Finding, Optimum, Property, Statement
+from collections.abc import Mapping
+from typing import Any
+
+from navsym.claims.statement import UNDECIDED, Bound, Equation, Finding, Optimum, Property, Statement, Worded
 from navsym.claims.verdict import OPEN, REFUTED, Verdict
 from navsym.core.errors import DomainError
 from navsym.core.sandbox import Exhausted, run_limited
@@ -77,7 +80,9 @@ def decide_property(statement: Property) -> Verdict:
 
 def contradict(statement: Property, finding: Finding) -> Verdict:
     """REFUTED by a decided value; a value that was only sampled cannot refute."""
-    words = f"printed {statement.printed!r}, found {finding.value!r}. {finding.evidence}".strip()
+    point: Mapping[str, Any] = statement.counterexample if isinstance(statement, Worded) else {}
+    told = "" if isinstance(statement, Worded) else f"printed {statement.printed!r}, found {finding.value!r}. "
+    words = f"{told}{finding.evidence}".strip()
     if not finding.status.holds:
         return Verdict(OPEN, finding.method, finding.scope, evidence=f"{words} (sampled only)")
     return Verdict(
@@ -85,7 +90,7 @@ def contradict(statement: Property, finding: Finding) -> Verdict:
         method=finding.method,
         scope=finding.scope,
         evidence=words,
-        counterexample={},
+        counterexample=point,
         certificate=finding.certificate,
     )
 

@@ -33,12 +33,36 @@ CLEARLY = 0.4
 
 
 @dataclass(frozen=True, slots=True)
+class Shift:
+    """A shift of the reference's clock at which it fits far better.
+
+    seconds, sd : how late the reference is, and the standard deviation of that; mean, parts : NEES there
+    """
+
+    seconds: float
+    sd: float
+    mean: float
+    parts: tuple[float, float, float]
+
+    def document(self) -> dict[str, Any]:
+        """As part of a JSON document."""
+        return {"seconds": self.seconds, "sd": self.sd, "mean": self.mean, "parts": list(self.parts)}
+
+    def __str__(self) -> str:
+        side = "late" if self.seconds > 0 else "early"
+        east, north, up = self.parts
+        return (
+            f"the reference fits best {abs(self.seconds):.3f} ± {self.sd:.2g} s {side}, NEES {self.mean:.3g} there "
+            f"(E {east:.3g}, N {north:.3g}, U {up:.3g}): check both clocks"
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class Consistency:
     """A mean of squares that is one where standard deviations hold.
 
     mean : over rows and axes; parts: of East, North, Up; band : where 95 % of such means lie, for ``worth``
-    independent squares; rows : that were compared; lag : shift of the reference's clock, s, at which it fits far
-    better, and the mean there; None without one
+    independent squares; rows : that were compared; lag : shift of the reference's clock, or None
     """
 
     mean: float
@@ -46,7 +70,7 @@ class Consistency:
     band: tuple[float, float]
     rows: int
     worth: float
-    lag: tuple[float, float] | None = None
+    lag: Shift | None = None
 
     @property
     def holds(self) -> bool:
@@ -58,7 +82,7 @@ class Consistency:
         found: dict[str, Any] = {"mean": self.mean, "parts": list(self.parts)}
         found |= {"band": list(self.band), "rows": self.rows}
         if self.lag is not None:
-            found["lag"] = {"seconds": self.lag[0], "mean": self.lag[1]}
+            found["lag"] = self.lag.document()
         return found
 
 
@@ -115,7 +139,27 @@ def compare(t: Array, velocity: Array, deviation: Array, reference: str | os.Pat
     shifted = [normalised_at(float(lag), t, velocity, deviation, table) for lag in LAGS]
     means = [float((errors**2).mean()) if len(errors) else math.inf for errors in shifted]
     best = int(np.argmin(means))
-    return replace(found, lag=(float(LAGS[best]), means[best])) if means[best] < CLEARLY * found.mean else found
+    if means[best] >= CLEARLY * found.mean:
+        return found
+    whole = consistency_of(shifted[best])
+    assert whole is not None
+    return replace(found, lag=shift_of(best, means, whole))
+
+
+def shift_of(best: int, means: list[float], whole: Consistency) -> Shift:
+    """The least of the parabola through three neighbouring means, and its deviation.
+
+    The mean of squares at its least is the variance of one error, and ``whole.worth`` of them are independent: the
+    information of the shift is ``worth d²mean / (2 mean)``. Without two neighbours it is that of the grid.
+    """
+    step = float(LAGS[1] - LAGS[0])
+    before, least, after = (means[k] if 0 <= k < len(means) else math.inf for k in (best - 1, best, best + 1))
+    bend = before - 2 * least + after
+    if not (0.0 < bend < math.inf):
+        return Shift(float(LAGS[best]), step, least, whole.parts)
+    away = step * (before - after) / (2 * bend)
+    sd = step * math.sqrt(2 * least / (whole.worth * bend))
+    return Shift(float(LAGS[best]) + away, sd, least, whole.parts)
 
 
 def normalised_at(lag: float, t: Array, velocity: Array, deviation: Array, table: Array) -> Array:

@@ -188,9 +188,7 @@ def with_reference(found: Track, reference: Any) -> Track:
     nees = compare(found.t, found.velocity, found.velocity_sd, reference)
     if nees.lag is None:
         return replace(found, nees=nees)
-    side = "late" if nees.lag[0] > 0 else "early"
-    line = f"the reference fits best {abs(nees.lag[0]):.2g} s {side}, NEES {nees.lag[1]:.3g} there: check both clocks"
-    return replace(found, nees=nees, warnings=(*found.warnings, line))
+    return replace(found, nees=nees, warnings=(*found.warnings, str(nees.lag)))
 
 
 def settings_of(method: str | None, window: float | None, order: int, gate: float, sigma: float | None) -> Settings:

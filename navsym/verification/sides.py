@@ -10,7 +10,7 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.claims import Bound, Equation, Optimum, Property, Statement
+from navsym.claims import Bound, Equation, Optimum, Property, Statement, Worded
 from navsym.prove.wording import expression_text
 
 
@@ -27,6 +27,8 @@ def sides(statement: Statement) -> tuple[str, str]:
         return f"{side_text(statement.printed)} {statement.relation} {side_text(statement.derived)}", ""
     if isinstance(statement, Optimum):
         return optimum_text(statement)
+    if isinstance(statement, Worded):
+        return statement.sides
     assert isinstance(statement, Property)
     return value_text(statement.printed), value_text(statement.derived.value)
 

@@ -12,19 +12,18 @@ from importlib.abc import SourceLoader
 from pathlib import Path
 from types import ModuleType
 
-from navsym.claims import CERTIFIED, PROVED, REFUTED, Claim, Finding, Paper, Property, Statement, Status, Verdict
+from navsym.claims import CERTIFIED, PROVED, Claim, Finding, Paper, Property, Statement, Status, Verdict
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, NotEstimableError
 from navsym.language.declarations import Parameter
 from navsym.language.files import read_bytes, read_text
 from navsym.language.tomlfile import SIZE, read_toml
 from navsym.models.model import contents_of
-from navsym.prove.claimfile import FileClaim, complete_verdict, decide_claim, read_claims, statement_of
+from navsym.prove.claimfile import FileClaim, complete_verdict, property_of_claim, read_claims, statement_of
 from navsym.prove.relations.judge import TextClaim
 from navsym.prove.wording import expression_text
 
 LARGEST = 5_000_000  # bytes of a derivation module
 DIGITS = 12  # of the values of targets
-FOUND = ("method", "status", "scope", "assumptions", "evidence", "certificate")
 OWN = "navsym_workspace"  # before the name of an imported module
 
 
@@ -60,7 +59,7 @@ def claim_of_block(name: str, path: Path, claim: FileClaim | TextClaim) -> Claim
     if isinstance(claim, FileClaim):
         builder, completed = partial(statement_of, claim), partial(complete_verdict, claim)
     else:
-        builder = partial(property_of_text, claim)
+        builder = partial(property_of_claim, claim)
     return Claim(
         name,
         claim.id,
@@ -74,18 +73,6 @@ def claim_of_block(name: str, path: Path, claim: FileClaim | TextClaim) -> Claim
         completed,
         "expect" not in notes,
     )
-
-
-def property_of_text(claim: TextClaim) -> Property:
-    """Whether a claim with vectors, cases, derivatives or hypotheses holds."""
-    verdict = decide_claim(claim)
-    said = claim.documents if verdict.certificate else ()
-    if verdict.status != REFUTED:
-        return Property(True, Finding(True, **{name: getattr(verdict, name) for name in FOUND}), meaning=said)
-    point = ", ".join(f"{name} = {value}" for name, value in (verdict.counterexample or {}).items())
-    evidence = f"{verdict.evidence}: {point}"
-    finding = Finding(False, verdict.method, PROVED, verdict.scope, (), evidence, verdict.certificate)
-    return Property(True, finding, meaning=said)
 
 
 def place_of_line(name: str, path: Path, pattern: str) -> str:

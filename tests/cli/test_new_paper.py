@@ -201,3 +201,77 @@ def test_a_title_of_more_than_one_printable_line_is_refused(folder, title, capsy
     assert add(folder, "1", "--printed", "a", "--derived", "a", "--title", title) == 2
     assert "--title: expected one printable line" in capsys.readouterr().err
     assert (folder / "sample_paper.py").read_text() == before
+
+
+#: Words of new-claim beside the number, and the verdict that is known from elsewhere.
+WORDED = [
+    (["--formula", "sin(a) <= a", "--range", "a=0,pi"], "PROVED"),
+    (["--formula", "sin(a) <= a", "--range", "a=-pi,0"], "REFUTED"),
+    (["--printed", r"\frac{1}{2}\sin 2a", "--derived", "sin(a)*cos(a)"], "PROVED"),
+    (["--formula", r"\frac{1}{2}\sin 2a = \sin a"], "REFUTED"),
+    (["--formula", "0 < exp(-s) <= 1", "--range", "s=0,oo"], "PROVED"),
+    (["--printed", "a/a", "--derived", "1"], "PROVED"),
+    (["--printed", "[[0, -w], [w, 0]] @ [[0, -w], [w, 0]]", "--derived", "-w**2*eye(2)"], "PROVED"),
+    (["--printed", "[[0, -w], [w, 0]] @ [[0, -w], [w, 0]]", "--derived", "w**2*eye(2)"], "REFUTED"),
+    (["--printed", "integral(s*exp(-s), s, 0, T)", "--derived", "1 - (1 + T)*exp(-T)", "--positive", "T"], "PROVED"),
+    (
+        [
+            *("--formula", "dot(u, v) <= 1", "--given", "dot(u, u) = 1", "--given", "dot(v, v) = 1"),
+            *("--declare", "u={ vector = 3 }", "--declare", "v={ vector = 3 }"),
+        ],
+        "PROVED",
+    ),
+    (["--formula", "norm(u) >= 1", "--declare", "u={ vector = 2 }"], "REFUTED"),
+    (["--formula", "lambda + 1 > lambda", "--declare", "lambda=positive"], "PROVED"),
+    (["--formula", "x**2 = 2*x", "--declare", 'x=["0", "1"]'], "REFUTED"),
+]
+
+
+@pytest.mark.parametrize(("words", "status"), WORDED)
+def test_a_claim_in_the_words_of_files_has_the_same_verdict_when_its_module_is_read_again(
+    folder, capsys, words, status
+):
+    assert add(folder, "1", *words, "--title", "A formula.", "--json") == 0
+    assert json.loads(capsys.readouterr().out)["status"] == status
+    (record,) = decide_papers([loaded(folder / "sample_paper.py")], jobs=1).document()["claims"]
+    assert (record["status"], record["expect"]) == (status, status)
+    assert "True" not in record["printed"] and (status == "PROVED" or record["counterexample"])
+
+
+def test_names_of_the_module_keep_their_declaration_in_words(folder, capsys):
+    assert add(folder, "1", "--printed", "sqrt(R**2)", "--derived", "R", "--positive", "R") == 0
+    assert add(folder, "2", "--printed", "sqrt(R**2)", "--relation", ">=", "--derived", "R/2") == 0
+    assert 'R="positive"' in (folder / "sample_paper.py").read_text()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--formula", "x = y", "--declare", "z) + open('y'=positive"],
+        ["--formula", "x = given", "--declare", "given=positive"],
+        ["--formula", "x = x", "--printed", "x"],
+        ["--formula", "x = x", "--relation", "<="],
+        ["--printed", "x"],
+        ["--formula", "x"],
+        ["--formula", r"\frac{1"],
+        ["--formula", "x = x", "--declare", "x={ vector ="],
+        ["--formula", "x = x", "--declare", "y=positive"],
+        ["--formula", "x = x", "--range", "x=3,1"],
+        ["--formula", "x = x\n+ 1"],
+        ["--formula", "__import__('os') = 1"],
+        ["--formula", "x @ y = 1"],
+    ],
+)
+def test_words_that_are_no_formula_are_refused_and_the_file_stays(folder, capsys, words):
+    before = (folder / "sample_paper.py").read_text()
+    assert add(folder, "1", *words) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    assert (folder / "sample_paper.py").read_text() == before
+
+
+@given(st.text(max_size=30), st.text(max_size=10))
+def test_any_text_becomes_the_same_text_in_source(text, name):
+    from navsym.language.scaffold import quote_formula, write_plain
+
+    assert eval(quote_formula(text)) == text
+    assert eval(write_plain({name: [text, {"vector": 3}]})) == {name: [text, {"vector": 3}]}

@@ -28,6 +28,7 @@ SAME: dict[tuple[str, str], str] = {
         "sp.sin(2 * sp.pi) - sp.sin(0) -> sp.sin(2 * sp.pi) + sp.sin(0)",
     ): "the sine of 0 is 0: after a whole turn the course is the same",
     ("joint_correction:1.6.gain_unique", "G - K * row -> G + K * row"): "what is unique in -K is so in K",
+    ("multistructure:17.memory", "made.means[0]: 0 -> 1"): "all modes start alike, and numbers are counted",
     ("multistructure:near.cumulant", "-mean -> mean"): "only its second and fourth powers enter",
     ("terrain_search:sequential.below", "-1 -> 1"): "the best hypotheses lie at 0 and 1",
     (
@@ -35,6 +36,21 @@ SAME: dict[tuple[str, str], str] = {
         "A2 * u * u + A1 * u * v -> A2 * u * u - A1 * u * v",
     ): "u v = 0 along the axes, where the roots are",
     ("terrain_search:interval.whole", "-1 -> 1"): "two slopes of different directions serve as well",
+    (
+        "terrain_search:sequential.below",
+        "e - coarse - w * (k - turn) -> e - coarse + w * (k - turn)",
+    ): "the grid of the velocity is symmetric",
+    ("trajectory:table.curse.first", "a[1]: 1 -> 0"): "the ends of an enclosure rise alike; the proof compares its own",
+    **{
+        ("trajectory:algorithm.field", line): "it counts different values, and as many differ"
+        for line in (
+            "first + rest -> first - rest",
+            "sum((ahead[i][j] * row[j] for j in range(n))) + q[i] * row[i] -> "
+            "sum((ahead[i][j] * row[j] for j in range(n))) - q[i] * row[i]",
+            "sum((a * b for a, b in zip(row, g, strict=True))) + 1 -> "
+            "sum((a * b for a, b in zip(row, g, strict=True))) - 1",
+        )
+    },
 }
 
 

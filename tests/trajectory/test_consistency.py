@@ -50,12 +50,29 @@ def test_a_late_reference_is_named_and_its_own_deviations_count() -> None:
     noise = np.random.default_rng(1).normal(size=(200, 3))
     late = np.column_stack([t + 0.4, speed])
     found = compare(t, speed + 0.01 * noise, np.full((200, 3), 0.01), late)
-    assert found.lag[0] == pytest.approx(0.4) and found.lag[1] < 1.3 < found.mean
+    assert found.lag.seconds == pytest.approx(0.4, abs=0.01) and found.lag.mean < 1.3 < found.mean
     rough = np.column_stack([t, speed + 0.05 * noise])
     plain = compare(t, speed, np.full((200, 3), 0.01), rough)
     assert plain.mean > 10 and plain.lag is None
     own = compare(t, speed, np.full((200, 3), 0.01), np.column_stack([rough, np.full((200, 3), 0.05)]))
     assert 0.8 < own.mean < 1.2 and own.lag is None
+
+
+def test_the_deviation_of_a_shift_is_that_of_many_estimates() -> None:
+    """Shifts off the grid, white and correlated errors: the error of a shift over its deviation has the variance 1."""
+    t = np.arange(0.0, 300.0)
+    for kept in (0.0, 0.8):
+        scores = []
+        for seed in range(60):
+            late = np.random.default_rng(seed).uniform(-1.5, 1.5)
+            late += np.copysign(0.3, late)
+            speed = np.stack([8 * np.sin((t + k) / (5 + k)) for k in range(3)], axis=1)
+            fine = np.arange(-10.0, 310.0, 0.1)
+            truth = np.stack([8 * np.sin((fine - late + k) / (5 + k)) for k in range(3)], axis=1)
+            errors = 0.2 * correlated(seed, len(t), kept)
+            found = compare(t, speed + errors, np.full((len(t), 3), 0.2), np.column_stack([fine, truth]))
+            scores.append((found.lag.seconds - late) / found.lag.sd)
+        assert 0.6 < np.mean(np.square(scores)) < 1.6
 
 
 def test_the_answer_has_nees_and_the_csv_all_rows(tmp_path: Path) -> None:

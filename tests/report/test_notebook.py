@@ -1,0 +1,100 @@
+"""Sliders over a model show the estimator at exact numbers, and a bar of progress ends as one line of text."""
+
+from __future__ import annotations
+
+import random
+
+import matplotlib.pyplot as plt
+import nbformat
+import pytest
+from IPython.core.interactiveshell import InteractiveShell
+from IPython.utils.capture import capture_output
+from nbclient import NotebookClient
+
+import navsym as nav
+
+
+def swing(**ranges):
+    return nav.Model(
+        "x v", F=[["0", "1"], ["-w**2", "0"]], H=["x"], interval="T", targets={"x": "x", "speed": "v"}, **ranges
+    )
+
+
+def test_a_model_has_a_slider_for_each_parameter_with_exact_stops():
+    widget = nav.explore(swing(w=("1/2", "2"), T="positive"), "speed", T=("1", "pi"))
+    sliders = {slider.description: slider for slider in widget.children[:-1]}
+    assert {*sliders} == {"w", "T"} and sliders["T"].options[-1][1] == "pi"
+    stop = random.Random(26).randrange(len(sliders["w"].options))
+    label, exact = sliders["w"].options[stop]
+    sliders["w"].index = stop
+    with capture_output():
+        widget.update()
+    expected = nav.solve(swing(w=("1/2", "2"), T="positive"), "speed", T=sliders["T"].value, w=exact)
+    assert f"{float(expected.value):.4g}" in "".join(text.get_text() for text in widget.result.findobj(plt.Text))
+    assert float(label) == pytest.approx(eval(exact), rel=1e-3)
+
+
+def test_a_stop_without_an_estimator_says_why():
+    widget = nav.explore(swing(w=("1/2", "2"), T=("0", "2")))
+    widget.children[1].index = 0
+    with capture_output() as shown:
+        widget.update()
+    assert widget.result is None and "expected a length of time T above zero" in shown.stdout
+
+
+@pytest.mark.parametrize(
+    ("ranges", "kind", "hint"),
+    [
+        ({}, "domain", "write T="),
+        ({"T": ("1",)}, "shape", "both ends"),
+        ({"T": 3}, "shape", "range of two numbers"),
+        ({"T": ("2", "1")}, "domain", "swap"),
+        ({"T": ("1", "2"), "u": ("1", "2")}, "domain", "got u"),
+    ],
+)
+def test_a_parameter_without_two_ends_is_asked_for(ranges, kind, hint):
+    with pytest.raises(nav.NavsymError, match=hint) as caught:
+        nav.explore(swing(w=("1/2", "2"), T="positive"), **ranges)
+    assert caught.value.kind == kind and caught.value.where.startswith("explore")
+
+
+@pytest.mark.parametrize(
+    ("steps", "last"),
+    [
+        ([(1, 2, "a"), (2, 2, "b")], "2 of 2 b"),
+        ([("a",), ("b",)], "2 b"),
+        ([(3, 9), (4, 9)], "4 of 9"),
+        ([(None, 7), (None, 7)], "2 of 7"),
+    ],
+)
+def test_a_bar_understands_whatever_a_call_tells(steps, last):
+    bar = nav.ProgressBar()
+    assert [bar.tell(*step) for step in steps][-1] == last
+
+
+def test_a_bar_in_a_notebook_is_drawn_while_it_works_and_is_text_at_its_end(monkeypatch):
+    InteractiveShell.clear_instance()
+    InteractiveShell.instance(history_length=0).history_manager.enabled = False
+    bar = nav.ProgressBar()
+    with capture_output() as shown:
+        ledger = nav.verify("alpha_beta_filter", progress=bar, jobs=1)
+    pages = [output.data["text/html"] for output in shown.outputs]
+    InteractiveShell.clear_instance()
+    total = len(ledger.claims)
+    assert "<progress" in pages[0] and "<progress" not in pages[-1] and pages[-1].startswith(f"{total} of {total}")
+    assert not shown.stderr and len(pages) <= total
+
+
+@pytest.mark.long
+def test_a_notebook_with_sliders_and_a_bar_runs_in_a_kernel_and_leaves_no_bar(tmp_path):
+    model = "m = nav.Model('x v', F=[['0', '1'], ['-w**2', '0']], H=['x'], interval='3', w=('1/2', '2'))"
+    cells = [
+        "import navsym as nav",
+        f"{model}\nnav.explore(m)",
+        "nav.verify('alpha_beta_filter', progress=nav.ProgressBar())",
+    ]
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(text) for text in cells])
+    NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    widget, (bar, ledger) = notebook.cells[1].outputs[0], notebook.cells[2].outputs
+    assert "application/vnd.jupyter.widget-view+json" in widget.data
+    assert bar.data["text/html"].startswith("19 of 19") and "19 claims" in ledger.data["text/plain"]
