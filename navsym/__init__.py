@@ -95,10 +95,10 @@ _HOMES = {
 
 __all__ = ["__version__", *sorted(_HOMES)]
 
-#: Types of answers, for annotations. ``dir(navsym)`` leaves them out, so that it lists what one calls.
+#: Types of answers and of their parts, for annotations. ``dir(navsym)`` leaves them out, so that it lists what one calls.
 _ANSWERS = {
     *("Comparison", "Conventions", "Derivation", "Estimate", "Estimator", "Formulation", "Ledger", "Observability"),
-    *("Phases", "Reading", "Verdict", "Verdicts"),
+    *("Number", "Phases", "ProgressBar", "Reading", "Status", "Verdict", "Verdicts"),
 }
 
 if TYPE_CHECKING:
