@@ -95,7 +95,7 @@ _HOMES = {
 
 __all__ = ["__version__", *sorted(_HOMES)]
 
-#: Types of answers and of their parts, for annotations. ``dir(navsym)`` leaves them out, so that it lists what one calls.
+#: Types of answers and of their parts, for annotations. ``dir(navsym)`` leaves them out: it lists what one calls.
 _ANSWERS = {
     *("Comparison", "Conventions", "Derivation", "Estimate", "Estimator", "Formulation", "Ledger", "Observability"),
     *("Number", "Phases", "ProgressBar", "Reading", "Status", "Verdict", "Verdicts"),
