@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import html
+import io
 import time
 from collections.abc import Callable
+from contextlib import nullcontext, redirect_stdout
 from types import ModuleType
 from typing import Any, cast
 
@@ -47,7 +49,7 @@ def explore(what: Model | Callable[..., Any], target: str | None = None, **range
         name: widgets.FloatSlider(value=middle, min=low, max=high, step=(high - low) / 100, continuous_update=False)
         for name, (low, high, middle) in ranges.items()
     }
-    return widgets.interactive(what, **controls)
+    return connect(what, controls)
 
 
 def explore_model(model: Model, target: str, ranges: dict[str, Any]) -> Any:
@@ -70,7 +72,15 @@ def explore_model(model: Model, target: str, ranges: dict[str, Any]) -> Any:
         controls[name] = widgets.SelectionSlider(
             options=options, index=STOPS // 2, description=name, continuous_update=False
         )
-    return widgets.interactive(draw, **controls)
+    return connect(draw, controls)
+
+
+def connect(draw: Callable[..., Any], controls: dict[str, Any]) -> Any:
+    """The widget of a drawing and its sliders; without a notebook it is made without the control letters of one."""
+    from IPython import get_ipython
+
+    with nullcontext() if get_ipython() else redirect_stdout(io.StringIO()):
+        return load_widgets().interactive(draw, **controls)
 
 
 def read_ends(model: Model, ranges: dict[str, Any]) -> dict[str, tuple[Any, Any]]:

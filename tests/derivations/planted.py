@@ -27,6 +27,7 @@ import sympy as sp
 from navsym.claims import Claim, Equation, Statement, claims_of
 from navsym.claims.claim import PAPERS
 from navsym.claims.paper import import_paper
+from navsym.core.errors import NavsymError
 from navsym.prove.ladder import decide
 from navsym.verification.sides import hash_statement
 
@@ -235,5 +236,8 @@ def state(claim: Claim) -> Statement | None:
 
 
 def falls(claim: Claim, statement: Statement | None) -> bool:
-    """Whether the changed statement is decided in another way than the claim declares."""
-    return statement is None or decide(statement).status != claim.expect
+    """Whether the changed statement is refused, or decided in another way than the claim declares."""
+    try:
+        return statement is None or decide(statement).status != claim.expect
+    except NavsymError:
+        return True

@@ -98,3 +98,10 @@ def test_a_notebook_with_sliders_and_a_bar_runs_in_a_kernel_and_leaves_no_bar(tm
     widget, (bar, ledger) = notebook.cells[1].outputs[0], notebook.cells[2].outputs
     assert "application/vnd.jupyter.widget-view+json" in widget.data
     assert bar.data["text/html"].startswith("19 of 19") and "19 claims" in ledger.data["text/plain"]
+
+
+def test_a_function_is_drawn_at_its_start_and_at_all_ends():
+    drawn = []
+    widget = nav.explore(lambda a, b: drawn.append((a, b)), a=(0.0, 2.0, 0.5), b=(-1.0, 1.0, 0.25))
+    assert {(0.0, 0.25), (2.0, 0.25), (0.5, -1.0), (0.5, 1.0)} <= {*drawn}
+    assert [slider.value for slider in widget.children[:-1]] == [0.5, 0.25]
