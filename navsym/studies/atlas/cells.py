@@ -30,7 +30,7 @@ from navsym.studies.atlas.scenes import (
 )
 
 #: Cases looked at for the exceptional set of a cell, and letters of a condition that is written.
-NODES, LETTERS = 150, 160
+NODES, LETTERS = 60, 160
 KEPT = Path(__file__).with_name("atlas.json")
 #: Components in the frame of the INS, and in the body or camera.
 AXES: Mapping[bool, Sequence[str]] = {True: ("north", "east", "down"), False: "xyz"}
