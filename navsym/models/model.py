@@ -119,7 +119,9 @@ class Model:
             if rates is not None:
                 document["rates"] = {key: write_value(value, f"Model: rates.{key}") for key, value in rates.items()}
             if inputs is not None:
-                document["inputs"] = {key: write_entries(value, f"Model: inputs.{key}") for key, value in inputs.items()}
+                document["inputs"] = {
+                    key: write_entries(value, f"Model: inputs.{key}") for key, value in inputs.items()
+                }
             if ranges is not None:
                 document["ranges"] = {key: write_entries(ends, f"Model: ranges.{key}") for key, ends in ranges.items()}
             linear = names if dynamics is None else None

@@ -1,15 +1,16 @@
 """Observability with unknown inputs: x' = F x + G u, z = H x + D u, where nothing is known of u.
 
 A pair (a, b) is known where a x + b u is. The measurements give (h, d). A combination with b = 0 shows a x, and with it
-its derivative (a' + a F, a G), which is a pair again. What is shown of x at last is all that strong observability grants:
-the annihilator is the largest V with F V - V' in V + G u and H V + D u = 0 for one u (Basile and Marro 1969; Molinari
-1976). A nonlinear model is linearised along its motion, whose inputs are symbols with endless derivatives.
+its derivative (a' + a F, a G), which is a pair again. What is shown of x at last is all that strong observability
+grants: its annihilator is the largest V with F V - V' in V + G u and H V + D u = 0 for one u (Basile and Marro 1969;
+Molinari 1976). A nonlinear model is linearised along its motion, whose inputs are symbols with endless derivatives.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import sympy as sp
 
@@ -64,7 +65,7 @@ def driven_model(contents: ModelFile) -> tuple[LinearModel, sp.ImmutableMatrix, 
     rates = dict(model.rates)
     for u in inputs:
         jets = [u, *(sp.Dummy(f"{u}_{k}", real=True) for k in range(1, model.size + 3))]
-        rates |= dict(zip(jets, jets[1:], strict=False))
+        rates |= dict(pairwise(jets))
     H = sp.ImmutableMatrix([row[: len(states)] for row in rows])
     G = sp.ImmutableMatrix([[sp.diff(f, u) for u in inputs] for f in contents.dynamics])
     D = sp.ImmutableMatrix([row[len(states) :] for row in rows])
@@ -80,12 +81,7 @@ def over_one_ring(model: LinearModel, G: sp.ImmutableMatrix, D: sp.ImmutableMatr
         message = "expected a model without square roots beside unknown inputs; got one; name it as a parameter"
         raise DomainError(message, where="inputs")
     *rows, (flat, bottom) = listed
-    return Driven(
-        motion,
-        [row for row, _ in rows],
-        [flat[i * q : (i + 1) * q] for i in range(n)],
-        bottom,
-    )
+    return Driven(motion, [row for row, _ in rows], [flat[i * q : (i + 1) * q] for i in range(n)], bottom)
 
 
 def shown_functionals(model: Driven, rows: Matrix, point: Sequence[int]) -> Matrix:
@@ -136,9 +132,7 @@ def is_unseen(model: Driven, rows: Matrix, columns: Matrix, point: Sequence[int]
     chosen = [spanning[k] for k in independent_places(at_point(spanning, point))]
     for column in columns:
         moved = [model.bottom * entry for entry in model.motion.retreat(column)]
-        seen = [
-            model.bottom * clock * sum((a * b for a, b in zip(row[:n], column, strict=True)), zero) for row in rows
-        ]
+        seen = [model.bottom * clock * sum((a * b for a, b in zip(row[:n], column, strict=True)), zero) for row in rows]
         if linear_relation(chosen, [*moved, *seen], model.motion.ring) is None:
             return False
     return True
@@ -168,7 +162,7 @@ def observe_driven(contents: ModelFile) -> tuple[LinearModel, JointObservability
             MeasurementObservability(name, as_matrix(rows), (), len(rows))
             for name, rows in zip(model.measurements, single, strict=True)
         ),
-        staircase=tuple(after - before for before, after in zip(sizes, sizes[1:], strict=False)),
+        staircase=tuple(after - before for before, after in pairwise(sizes)),
         unobservable=as_matrix(unseen),
         assumptions=(),
         written=None,

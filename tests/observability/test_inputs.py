@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from itertools import pairwise
 
 import pytest
 import sympy as sp
@@ -31,7 +32,7 @@ def rank_of_jets(states, dynamics, outputs, inputs, seed: int) -> int:
     jets = [[sp.Symbol(f"{u}_{k}") for k in range(n + 2)] for u in inputs]
     first = {sp.Symbol(u): jet[0] for u, jet in zip(inputs, jets, strict=True)}
     f = [sp.sympify(entry).subs(first) for entry in dynamics]
-    moves = dict(zip(x, f, strict=True)) | {a: b for jet in jets for a, b in zip(jet, jet[1:], strict=False)} | {time: 1}
+    moves = dict(zip(x, f, strict=True)) | {a: b for jet in jets for a, b in pairwise(jet)} | {time: 1}
     z = [sp.sympify(entry).subs(first) for entry in outputs]
     listed = list(z)
     for _ in range(n):
@@ -73,7 +74,7 @@ def test_ranks_of_random_models_are_those_of_their_jets(seed: int) -> None:
     assert answer.rank == rank_of_jets(states, sums, outputs, list(columns), seed)
 
 
-#: states, dynamics, measurements, inputs, rank; Martinelli, Observability: A New Theory Based on the Group of Invariance
+#: states, dynamics, measurements, inputs, rank; the first three after Martinelli, Observability, SIAM 2020
 NONLINEAR = [
     ("x y h", ["s*cos(h)", "s*sin(h)", "w"], ["x", "y"], "s w", 3),
     ("x y h", ["s*cos(h)", "s*sin(h)", "2"], ["x**2 + y**2"], "s", 1),

@@ -5,8 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from pathlib import Path
-from typing import Any
 
 import sympy as sp
 
@@ -16,22 +14,12 @@ from navsym.models.linear import LinearModel
 from navsym.observability.certificates import Certifier
 from navsym.observability.chains import JointObservability, direction_names, observe_jointly
 from navsym.observability.pieces import independent_rows, is_spanned
-from navsym.observability.rank_drops import RankDrop, find_joint_drops
-from navsym.studies.atlas.scenes import (
-    ARM,
-    MANOEUVRES,
-    MODELS,
-    Aiding,
-    Scene,
-    error_model,
-    g,
-    list_columns,
-    make_scene,
-)
+from navsym.observability.rank_drops import find_joint_drops
+from navsym.studies.atlas.kept import KEPT, Cell, atlas
+from navsym.studies.atlas.scenes import ARM, MANOEUVRES, MODELS, Aiding, Scene, error_model, g, list_columns, make_scene
 
 #: Cases looked at for the exceptional set of a cell, and letters of a condition that is written.
 NODES, LETTERS = 60, 160
-KEPT = Path(__file__).with_name("atlas.json")
 #: Components in the frame of the INS, and in the body or camera.
 AXES: Mapping[bool, Sequence[str]] = {True: ("north", "east", "down"), False: "xyz"}
 
@@ -60,44 +48,36 @@ def model_of(name: str) -> LinearModel:
     return error_model(*parts_of(name))
 
 
-def compute_cell(name: str) -> dict[str, Any]:
-    """A cell of the atlas from nothing but its name.
-
-    rank, size, proved : of the unobservable space; ``proved`` is false where the rank is known from below only
-    words              : a basis of the unobservable space
-    drops              : conditions with the rank that is left; ``complete`` where these are proved to be all
-    checked            : the checker grants the rank and all drops; ``certificate`` is the hash of what it read
-    """
+def compute_cell(name: str) -> Cell:
+    """A cell of the atlas from nothing but its name."""
     scene, aiding = parts_of(name)
     model = error_model(scene, aiding)
     joint = observe_jointly(model)
-    found = find_joint_drops(joint, nonzero_symbols(scene, aiding), NODES)
+    found = find_joint_drops(joint, nonzero_symbols(scene), NODES)
     certifier = Certifier.of(model)
-    rank = certifier.certify_rank(joint)
-    drops = [certifier.certify_drop(drop) for drop in found.drops]
-    text = json.dumps([rank, *drops], sort_keys=True)
-    return {
-        "size": model.size,
-        "rank": joint.joint_dimension,
-        "proved": joint.proved,
-        "words": list(name_basis(joint, scene, aiding)),
-        "drops": [describe_drop(drop) for drop in found.drops],
-        "complete": found.complete["joint"],
-        "open": len(found.open["joint"]),
-        "checked": [rank is not None, sum(item is not None for item in drops), len(drops)],
-        "certificate": hashlib.sha256(text.encode()).hexdigest()[:32],
-    }
+    granted = [certifier.certify_rank(joint), *map(certifier.certify_drop, found.drops)]
+    return Cell(
+        name,
+        size=model.size,
+        rank=joint.joint_dimension,
+        proved=joint.proved,
+        unobservable=tuple(name_basis(joint, scene, aiding)),
+        drops={shorten(drop.condition): drop.rank for drop in found.drops},
+        complete=found.complete["joint"],
+        open=len(found.open["joint"]),
+        checked=sum(item is not None for item in granted),
+        certificate=hashlib.sha256(json.dumps(granted, sort_keys=True).encode()).hexdigest()[:32],
+    )
 
 
-def nonzero_symbols(scene: Scene, aiding: Aiding) -> list[sp.Symbol]:
-    """Gravity, and the depth of what a camera sees."""
+def shorten(condition: str) -> str:
+    """A condition that can be read: a long one is cut."""
+    return condition if len(condition) <= LETTERS else f"{condition[: LETTERS - 2]} …"
+
+
+def nonzero_symbols(scene: Scene) -> list[sp.Symbol]:
+    """Gravity, and the depth of what is seen."""
     return [g, *(point[2] for point in scene.points)]
-
-
-def describe_drop(drop: RankDrop) -> dict[str, Any]:
-    """Condition and rank of a drop; a long condition is cut."""
-    text = drop.condition
-    return {"condition": text if len(text) <= LETTERS else f"{text[: LETTERS - 2]} …", "rank": drop.rank}
 
 
 # Words
@@ -109,10 +89,11 @@ def name_basis(joint: JointObservability, scene: Scene, aiding: Aiding) -> Itera
     chosen: list[list[sp.Expr]] = []
     for words, vector in (*symmetries(scene, aiding), *single_states(scene, aiding)):
         row = sp.ImmutableMatrix([vector])
-        if len(chosen) < space.rows and any(x != 0 for x in row) and is_spanned(space, row):
-            if len(independent_rows(sp.ImmutableMatrix([*chosen, vector]))) > len(chosen):
-                chosen.append(vector)
-                yield words
+        if len(chosen) == space.rows or all(x == 0 for x in row) or not is_spanned(space, row):
+            continue
+        if len(independent_rows(sp.ImmutableMatrix([*chosen, vector]))) > len(chosen):
+            chosen.append(vector)
+            yield words
     for k in range(space.rows):
         trial = [*chosen, list(space[k, :])]
         if len(chosen) < space.rows and len(independent_rows(sp.ImmutableMatrix(trial))) > len(chosen):
@@ -176,19 +157,12 @@ def vector_of(aiding: Aiding, parts: Mapping[str, sp.Matrix]) -> list[sp.Expr]:
     return [sp.expand(parts[block][j]) if block in parts else sp.Integer(0) for block, j in list_columns(aiding)]
 
 
-# What is kept
-
-
-def read_atlas() -> dict[str, dict[str, Any]]:
-    """The cells as they were computed, by name."""
-    cells: dict[str, dict[str, Any]] = json.loads(KEPT.read_text(encoding="utf-8"))
-    return cells
-
-
-def keep_atlas(names: Iterable[str] | None = None) -> None:
-    """Compute the cells and write ``atlas.json``. Some minutes."""
-    known = read_atlas() if KEPT.exists() else {}
-    computed = {name: compute_cell(name) for name in (names if names is not None else cell_names())}
-    cells = {name: (known | computed)[name] for name in cell_names() if name in known | computed}
-    lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(cell, ensure_ascii=False)}" for name, cell in cells.items())
-    KEPT.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
+def keep_atlas(cells: Iterable[Cell]) -> None:
+    """Write cells to ``atlas.json``, in the place of those with the same names. All of them take some minutes."""
+    known = {**(atlas.cells if KEPT.exists() else {}), **{cell.name: cell for cell in cells}}
+    listed = [known[name] for name in cell_names() if name in known]
+    lines = []
+    for cell in listed:
+        own = {key: value for key, value in cell.document().items() if key != "name"}
+        lines.append(f"{json.dumps(cell.name)}: {json.dumps(own, ensure_ascii=False)}")
+    KEPT.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")

@@ -1,8 +1,9 @@
 """Error models of the atlas: the generator of error dynamics along a manoeuvre that is written as symbols with rates.
 
-No row is typed. The nonlinear mechanisation of a card is linearised along the manoeuvre (``conventions``); a measurement
-is predicted from an estimate with an infinitesimal error, and the coefficient of the error is the row. Extra states are
-errors of what a measurement uses beside the motion: a lever arm, a camera's pose and delay, landmarks.
+No row is typed. The nonlinear mechanisation of a card is linearised along the manoeuvre (``conventions``); a
+measurement is predicted from an estimate with an infinitesimal error, and the coefficient of the error is the row.
+Extra states are errors of what a measurement uses beside the motion: a lever arm, a camera's pose and delay,
+landmarks.
 """
 
 from __future__ import annotations
@@ -66,6 +67,7 @@ MANOEUVRES = (
     Manoeuvre("rotation about the vertical", heading=heading, rates={heading: w}),
     Manoeuvre("rotation about a level axis", roll=roll, rates={roll: w}),
     Manoeuvre("rotation about two axes", heading=heading, roll=roll, rates={heading: u1, roll: u2}),
+    Manoeuvre("turn with changing bank", FORWARD, heading, roll, {heading: u1, roll: u2}),
 )
 
 INS = Card("local-level", "NED", earth_rate=KEPT, transport_rate=DROPPED, angle="phi", position_error="metres")
