@@ -37,6 +37,7 @@ along the motion, and no row is typed.
   constant the body is aligned with north, east, down.
 * Ranks hold over an interval, for generic parameters. A star: no other condition than those listed lowers the rank. A
   question mark: proved from below only.
+* An empty place is a cell that takes more than a minute.
 * Each rank is that of textbook error equations in other coordinates, too, modulo a prime
   (`tests/studies/test_atlas.py`).
 

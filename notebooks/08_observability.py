@@ -30,7 +30,7 @@ for name, cell in nav.atlas.items():
 
 # %%
 turn = nav.atlas["VIO: level turn: three landmarks"]
-general = nav.atlas["VIO: turn with changing bank: three landmarks"]
+general = nav.atlas["VIO: figure eight with changing bank: three landmarks"]
 print(*turn.unobservable, sep="\n")
 assert "scale" in turn.unobservable and "scale" not in general.unobservable
 assert general.rank == general.size - 4

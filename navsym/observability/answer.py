@@ -230,15 +230,8 @@ def observe(
             raise DomainError(message, where="observe: model")
         if split is not None or poles is not None or restore or candidates:
             need_one_matrix(contents)
-        if contents.inputs:
-            along, joint = observe_driven(contents)
-            kind = "discrete" if contents.Phi is not None else kind_of(along)
-            return Observability(
-                contents.name, along, joint, (), {"joint": False}, kind=kind, inputs=tuple(contents.inputs)
-            )
-        if len(contents.pieces) > 1:
-            first, joint, pieces = observe_pieces(contents)
-            return Observability(contents.name, first, joint, (), {"joint": False}, kind="pieces", pieces=pieces)
+        if contents.inputs or len(contents.pieces) > 1:
+            return observe_in_parts(contents)
         request = read_split(split) if split is not None else None
         polynomials = read_poles(poles, contents) if poles is not None else ()
         rows = read_candidate_rows(candidates or {}, contents)
@@ -249,6 +242,19 @@ def observe(
         if contents.Phi is not None:
             return replace(found, kind="discrete", splits=(), best_split=None, split=None)
         return found
+
+
+def observe_in_parts(contents: ModelFile) -> Observability:
+    """A model with unknown inputs or in pieces: without chains, and so without drops and certificates."""
+    pieces: tuple[Mapping[str, Any], ...] = ()
+    if contents.inputs:
+        model, joint = observe_driven(contents)
+        kind = "discrete" if contents.Phi is not None else kind_of(model)
+    else:
+        model, joint, pieces = observe_pieces(contents)
+        kind = "pieces"
+    inputs = tuple(contents.inputs)
+    return Observability(contents.name, model, joint, (), {"joint": False}, kind=kind, pieces=pieces, inputs=inputs)
 
 
 def need_one_matrix(contents: ModelFile) -> None:

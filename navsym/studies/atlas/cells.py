@@ -12,7 +12,7 @@ from navsym.core.errors import DomainError
 from navsym.language.names import quote
 from navsym.models.linear import LinearModel
 from navsym.observability.certificates import Certifier
-from navsym.observability.chains import JointObservability, direction_names, observe_jointly
+from navsym.observability.chains import JointObservability, direction_names, observe_jointly, prove_by_guesses
 from navsym.observability.pieces import independent_rows, is_spanned
 from navsym.observability.rank_drops import find_joint_drops
 from navsym.studies.atlas.kept import KEPT, Cell, atlas
@@ -52,7 +52,8 @@ def compute_cell(name: str) -> Cell:
     """A cell of the atlas from nothing but its name."""
     scene, aiding = parts_of(name)
     model = error_model(scene, aiding)
-    joint = observe_jointly(model)
+    guesses = (vector for _, vector in (*symmetries(scene, aiding), *single_states(scene, aiding)))
+    joint = prove_by_guesses(observe_jointly(model), guesses)
     found = find_joint_drops(joint, nonzero_symbols(scene), NODES)
     certifier = Certifier.of(model)
     granted = [certifier.certify_rank(joint), *map(certifier.certify_drop, found.drops)]

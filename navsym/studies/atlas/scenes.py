@@ -67,7 +67,7 @@ MANOEUVRES = (
     Manoeuvre("rotation about the vertical", heading=heading, rates={heading: w}),
     Manoeuvre("rotation about a level axis", roll=roll, rates={roll: w}),
     Manoeuvre("rotation about two axes", heading=heading, roll=roll, rates={heading: u1, roll: u2}),
-    Manoeuvre("turn with changing bank", FORWARD, heading, roll, {heading: u1, roll: u2}),
+    Manoeuvre("figure eight with changing bank", FORWARD, heading, roll, {heading: w, w: q, q: -k * w, roll: u2}),
 )
 
 INS = Card("local-level", "NED", earth_rate=KEPT, transport_rate=DROPPED, angle="phi", position_error="metres")
