@@ -40,7 +40,7 @@ def rank_of_jets(states, dynamics, outputs, inputs, seed: int) -> int:
         listed += z
     source = random.Random(seed)
     symbols = [time, *x, *(s for jet in jets for s in jet)]
-    at = {s: sp.Rational(source.randrange(1, 60), source.randrange(2, 40)) for s in symbols}
+    at = {s: sp.Rational(source.randrange(1000, 9000), source.randrange(11, 99)) for s in symbols}
     columns = [*x, *(s for jet in jets for s in jet[: n + 1])]
     half = sp.Rational(source.randrange(1, 9), 11)  # sine and cosine of an angle by the tangent of its half
     turn = {sp.sin(sp.Symbol("h")): 2 * half / (1 + half**2), sp.cos(sp.Symbol("h")): (1 - half**2) / (1 + half**2)}

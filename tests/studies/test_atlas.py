@@ -91,6 +91,9 @@ def hold_on(name: str, condition: str, rank: int) -> None:
     there = model.at(zeros)
     rows = [k for k in range(there.H.rows) if any(x != 0 for x in there.H[k, :])]
     rates = {s: rate for s, rate in there.rates.items() if s not in zeros}
+    if not rows:
+        assert rank == 0
+        return
     H = there.H.extract(rows, list(range(there.size)))
     motion, listed = moving_rows(LinearModel(there.F, None, H, there.states, (), there.time, rates))
     assert generic_rank([row for row, _ in listed], motion)[0] == rank

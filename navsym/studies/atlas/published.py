@@ -43,7 +43,7 @@ PUBLISHED = (
         lambda cells: set(three(cells, GENERAL).unobservable) == {"turn about gravity through the body", *SHIFTS},
     ),
     Published(
-        "Rotation about two axes shows the pose of the camera on the body",
+        "A general motion that turns about more than one axis shows the pose of the camera on the body",
         "Kelly and Sukhatme 2011",
         lambda cells: not any("camera" in words for words in three(cells, GENERAL).unobservable),
     ),
