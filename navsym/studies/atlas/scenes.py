@@ -121,8 +121,9 @@ def turn_about(axis: int, angle: sp.Expr | int) -> sp.Matrix:
 
 
 def tidy(value: sp.Matrix) -> sp.Matrix:
-    """Entries with sin**2 + cos**2 = 1 used."""
-    return value.applyfunc(lambda x: sp.expand(sp.trigsimp(sp.expand(x))))
+    """Entries as polynomials in sines and cosines, with sin**2 = 1 - cos**2 used."""
+    known = {sp.sin(angle) ** 2: 1 - sp.cos(angle) ** 2 for angle in (heading, roll)}
+    return value.applyfunc(lambda x: sp.expand(sp.expand(x).subs(known)))
 
 
 def derivative(value: sp.Matrix, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Matrix:
