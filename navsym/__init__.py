@@ -46,6 +46,7 @@ __version__ = "0.2.0"
 #: Public name -> module that holds it. A module is imported when its name is first used, and its engines with it.
 _HOMES = {
     "Model": "navsym.models.model",
+    "atlas": "navsym.studies.atlas.kept",
     "audit": "navsym.audit.answer",
     "book": "navsym.book.entries",
     **dict.fromkeys(("Derivation", "derive"), "navsym.models.derivation"),
@@ -151,6 +152,7 @@ if TYPE_CHECKING:
     from navsym.report.notebook import explore as explore
     from navsym.report.plots import plot as plot
     from navsym.report.site import report as report
+    from navsym.studies.atlas.kept import atlas as atlas
     from navsym.studies.experiments import simulate as simulate
     from navsym.studies.run import sweep as sweep
     from navsym.terrain.locate import locate as locate

@@ -282,6 +282,14 @@ class Writer:
             }
         return done
 
+    def list_inputs(self, value: Any, here: str) -> Any:
+        """Columns of unknown inputs; a word stays."""
+        table = as_table(value, here)
+        return {
+            name: self.column(item, join_place(here, name)) if isinstance(item, list) else item
+            for name, item in table.items()
+        }
+
     def list_pieces(self, value: Any, here: str) -> Any:
         """The pieces, each with its F."""
         blocks = [dict(as_table(block, join_place(here, i))) for i, block in enumerate(as_list(value, here, "blocks"))]
@@ -309,6 +317,7 @@ TABLES: dict[str, Callable[[Writer, Any, str], Any]] = {
     "measurement": Writer.list_measurements,
     "targets": Writer.list_targets,
     "rates": Writer.list_rates,
+    "inputs": Writer.list_inputs,
     "piece": Writer.list_pieces,
     "interval": Writer.list_numbers,
     "ranges": Writer.list_ranges,

@@ -54,6 +54,7 @@ class Model:
     Phi          : (n, n) in place of F: a model in steps, ``x_(k+1) = Phi x_k``; for ``observe`` only
     relations    : equations between the states that hold always, such as ``q0**2 + q1**2 = 1``; with dynamics
     rates        : parameter -> its derivative by the time, for parameters that move; for ``observe`` only
+    inputs       : unknown input -> its column of n entries, or "unknown" where dynamics name it; for ``observe`` only
     ranges       : state, parameter or ``dt`` -> two ends, what the inputs of exported code may be; for ``export`` only
     parameters   : name -> declaration; keywords that remain mean the same
 
@@ -97,6 +98,7 @@ class Model:
         Phi: Any = None,
         relations: Any = None,
         rates: Mapping[str, Any] | None = None,
+        inputs: Mapping[str, Any] | None = None,
         ranges: Mapping[str, Any] | None = None,
         name: str = "model",
         parameters: Mapping[str, Any] | None = None,
@@ -104,8 +106,8 @@ class Model:
     ):
         with places_of_arguments():
             names = name_list(states, "Model: states")
-            formulas = (F, H, sigma, interval, targets, pieces, dynamics, rates, Phi)
-            declarations = declarations_of(parameters, declared, formulas, {*names, "t"})
+            formulas = (F, H, sigma, interval, targets, pieces, dynamics, rates, Phi, inputs)
+            declarations = declarations_of(parameters, declared, formulas, {*names, *(inputs or {}), "t"})
             document: dict[str, Any] = {"model": {"name": name, "states": names}}
             for key, value in (("F", F), ("Phi", Phi)):
                 if value is not None:
@@ -116,6 +118,10 @@ class Model:
             document["parameters"] = declarations
             if rates is not None:
                 document["rates"] = {key: write_value(value, f"Model: rates.{key}") for key, value in rates.items()}
+            if inputs is not None:
+                document["inputs"] = {
+                    key: write_entries(value, f"Model: inputs.{key}") for key, value in inputs.items()
+                }
             if ranges is not None:
                 document["ranges"] = {key: write_entries(ends, f"Model: ranges.{key}") for key, ends in ranges.items()}
             linear = names if dynamics is None else None
@@ -603,6 +609,7 @@ def document_of(contents: ModelFile | BasisFile) -> dict[str, Any]:
         return {table: content for table, content in tables.items() if content}
     tables = {"model": {"name": contents.name, "states": list(contents.states)}, "parameters": parameters}
     tables["rates"] = {name: to_text(rate) for name, rate in contents.rates.items()}
+    tables["inputs"] = {name: [*map(to_text, column)] or "unknown" for name, column in contents.inputs.items()}
     tables["measurement"] = [
         {"name": m.name, "sigma": to_text(m.sigma)}
         | ({"h": [to_text(entry) for entry in m.h]} if m.z is None else {"z": to_text(m.z)})

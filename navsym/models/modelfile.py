@@ -81,6 +81,7 @@ class ModelFile:
     dynamics     : f, one entry per state, of a nonlinear model; there are no pieces then
     relations    : functions of the states that are zero on the manifold on which they move
     Phi          : matrix of one step of a discrete-time model; there are no pieces then
+    inputs       : unknown input -> how it enters, one entry per state; none beside dynamics, which name it
     ranges       : state, parameter or ``dt`` (the step of a filter) -> its ends, for exported code
     """
 
@@ -96,6 +97,7 @@ class ModelFile:
     dynamics: tuple[Expr, ...] = ()
     relations: tuple[Expr, ...] = ()
     Phi: Matrix | None = None
+    inputs: Mapping[str, tuple[Expr, ...]] = field(default_factory=dict)
     ranges: Mapping[str, tuple[Expr, Expr]] = field(default_factory=dict)
 
     def _repr_latex_(self) -> str:
@@ -142,9 +144,12 @@ class BasisFile:
 
 
 def need_fixed(found: ModelFile | BasisFile, where: str) -> None:
-    """Refuse what only observability is asked about: steps, nonlinear dynamics, and parameters that move."""
+    """Refuse what only observability is asked about: steps, nonlinear dynamics, unknown inputs, moving parameters."""
     if isinstance(found, ModelFile) and found.Phi is not None:
         raise DomainError("expected a model in continuous time with F; got steps Phi; ask observe", where=where)
+    if isinstance(found, ModelFile) and found.inputs:
+        got = f"the unknown input {next(iter(found.inputs))}"
+        raise DomainError(f"expected a model without unknown inputs; got {got}; ask observe", where=where)
     if isinstance(found, ModelFile) and (found.dynamics or found.rates):
         got = "nonlinear dynamics" if found.dynamics else f"the rate of {next(iter(found.rates))}"
         message = f"expected a linear model with constant parameters; got {got}; ask observe, or write F as F(t)"
@@ -239,7 +244,7 @@ def read_targets(document: Table, known: Known, names: tuple[str, ...], where: s
     return targets
 
 
-TABLES = ("model", "basis", "parameters", "rates", "measurement", "piece", "interval", "targets", "ranges")
+TABLES = ("model", "basis", "parameters", "rates", "inputs", "measurement", "piece", "interval", "targets", "ranges")
 #: Tables of the same file that only ``conventions`` reads.
 BESIDE = ("roles", "quantities", "known")
 #: Name of the step of a filter among the ranges.
@@ -308,7 +313,7 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
     if "Phi" in model:
         return read_discrete(document, where, parameters, known, states)
     if "dynamics" in model or "relations" in model:
-        return read_nonlinear(document, where, parameters, moving | {name: symbol(name) for name in states}, states)
+        return read_nonlinear(document, where, parameters, moving, states)
     T = read_interval(document, known, join_place(where, "interval"))
     return ModelFile(
         name=as_title(model.get("name", "model"), join_place(place, "name")),
@@ -320,6 +325,7 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
         T=T,
         targets=read_targets(document, known, states, where),
         rates=read_rates(document, moving, parameters, where),
+        inputs=read_inputs(document, moving, states, len(states), where),
         ranges=read_ranges(document, (*states, *parameters, STEP), where),
     )
 
@@ -346,6 +352,7 @@ def read_discrete(
         T=None,
         targets={},
         Phi=read_square(model["Phi"], known, join_place(place, "Phi"), len(states), "one per state"),
+        inputs=read_inputs(document, known, states, len(states), where),
     )
 
 
@@ -361,18 +368,22 @@ def read_nonlinear(
             raise DuplicateError(message, where=join_place(place, key))
     dynamics = require_key(model, "dynamics", place)
     relations = as_list(model.get("relations", ["0 = 0"]), join_place(place, "relations"), "a list of equations")
-    known = {name: value for name, value in moving.items() if name not in (*states, "t")}
+    known = {name: value for name, value in moving.items() if name != "t"}
+    moving = {**moving, **{name: symbol(name) for name in states}}
+    inputs = read_inputs(document, moving, states, 0, where)
+    driven = {**moving, **{name: symbol(name) for name in inputs}}
     return ModelFile(
         name=as_title(model.get("name", "model"), join_place(place, "name")),
         parameters=parameters,
         states=states,
         time=symbol("t"),
         pieces=(),
-        measurements=read_measurements(document, moving, 0, where),
+        measurements=read_measurements(document, driven, 0, where),
         T=read_interval(document, known, join_place(where, "interval")),
         targets={},
         rates=read_rates(document, moving, parameters, where),
-        dynamics=read_vector(dynamics, moving, join_place(place, "dynamics"), len(states), "one per state"),
+        inputs=inputs,
+        dynamics=read_vector(dynamics, driven, join_place(place, "dynamics"), len(states), "one per state"),
         relations=tuple(
             read_relation(text, moving, join_place(join_place(place, "relations"), i))
             for i, text in enumerate(relations)
@@ -403,6 +414,25 @@ def read_rates(document: Table, moving: Known, parameters: Mapping[str, Paramete
             message = f"expected a parameter that is left free; got a value for {name}, which moves; drop its rate"
             raise DomainError(message, where=place)
     return {name: read_entry(value, moving, join_place(place, name)) for name, value in table.items()}
+
+
+def read_inputs(
+    document: Table, moving: Known, states: tuple[str, ...], n: int, where: str
+) -> dict[str, tuple[Expr, ...]]:
+    """The [inputs] table: a column of n entries for each unknown input, or "unknown" where dynamics name it."""
+    place = join_place(where, "inputs")
+    table = as_table(document.get("inputs", {}), place)
+    if table and "piece" in document:
+        raise DuplicateError("expected [inputs] or [[piece]]; got both; remove one of them", where=place)
+    found = {}
+    for name, value in table.items():
+        here = join_place(place, name)
+        if check_name(name, where=here) in (*moving, *states, "t"):
+            raise DuplicateError(f"expected a name of its own; got {quote(name)}; rename the input", where=here)
+        if not n and value != "unknown":
+            raise DomainError(f'expected "unknown"; got {quote(value)}; name the input in dynamics', where=here)
+        found[name] = read_vector(value, moving, here, n, "one per state") if n else ()
+    return found
 
 
 def read_ranges(document: Table, names: tuple[str, ...], where: str) -> dict[str, tuple[Expr, Expr]]:

@@ -33,6 +33,7 @@ from navsym.observability.chains import (
     prove_rank,
 )
 from navsym.observability.document import as_html, as_latex, document_of_observability
+from navsym.observability.inputs import observe_driven
 from navsym.observability.pieces import observe_pieces
 from navsym.observability.rank_drops import RankDrop, find_drops
 from navsym.observability.sensors import Restoration, restore_observability
@@ -55,6 +56,7 @@ class Observability(Answer):
     rank_drops_complete : subspace -> whether the list of its drops is proved to hold all of them
     kind                : "constant", "discrete", "varying", "nonlinear" or "pieces"
     frozen_rank         : of a varying model, the rank that it has with F and h frozen at one time: another question
+    inputs              : unknown inputs; what is observed holds whatever they are
     rank_drops_open     : subspace -> conditions under which nothing was decided when the search ended
     pieces              : of a model in pieces, from, to and the rank of each by itself
     splits, best_split  : two-stage splits of two measurements that observe all; empty and None elsewhere
@@ -82,6 +84,7 @@ class Observability(Answer):
     kind: str = "constant"
     frozen_rank: int | None = None
     pieces: tuple[Mapping[str, Any], ...] = ()
+    inputs: tuple[str, ...] = ()
     rank_drops_open: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
@@ -137,7 +140,7 @@ class Observability(Answer):
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """The generic rank and every rank that is left on a drop, as far as the checker grants them."""
-        if self.kind == "pieces":
+        if self.joint.written is None:
             return []
         certifier = Certifier.of(self.model)
         listed = [certifier.certify_rank(self.joint), *map(certifier.certify_drop, list_nested(self.rank_drops))]
@@ -196,7 +199,8 @@ def observe(
     the time or parameters with rates it is ``a_(j+1) = a_j' + F^T a_j`` (Silverman and Meadows 1967): the rank
     over an interval. A nonlinear model is linearised along its own motion, so that the rows are gradients of Lie
     derivatives (Hermann and Krener 1977): the local rank at a generic state. Pieces are stacked. Of a model in steps
-    the rows are ``H, H Phi, ..., H Phi^(n-1)``: the first state from n steps or more.
+    the rows are ``H, H Phi, ..., H Phi^(n-1)``: the first state from n steps or more. With unknown inputs a functional
+    gives its derivative where no input enters it (Basile and Marro 1969).
 
     model      : a :class:`navsym.Model`, a LinearModel, or the path of a model file
     split      : (i, j), vectors taken from each of two measurements; by default (m, n - m)
@@ -226,9 +230,8 @@ def observe(
             raise DomainError(message, where="observe: model")
         if split is not None or poles is not None or restore or candidates:
             need_one_matrix(contents)
-        if len(contents.pieces) > 1:
-            first, joint, pieces = observe_pieces(contents)
-            return Observability(contents.name, first, joint, (), {"joint": False}, kind="pieces", pieces=pieces)
+        if contents.inputs or len(contents.pieces) > 1:
+            return observe_in_parts(contents)
         request = read_split(split) if split is not None else None
         polynomials = read_poles(poles, contents) if poles is not None else ()
         rows = read_candidate_rows(candidates or {}, contents)
@@ -241,16 +244,29 @@ def observe(
         return found
 
 
+def observe_in_parts(contents: ModelFile) -> Observability:
+    """A model with unknown inputs or in pieces: without chains, and so without drops and certificates."""
+    pieces: tuple[Mapping[str, Any], ...] = ()
+    if contents.inputs:
+        model, joint = observe_driven(contents)
+        kind = "discrete" if contents.Phi is not None else kind_of(model)
+    else:
+        model, joint, pieces = observe_pieces(contents)
+        kind = "pieces"
+    inputs = tuple(contents.inputs)
+    return Observability(contents.name, model, joint, (), {"joint": False}, kind=kind, pieces=pieces, inputs=inputs)
+
+
 def need_one_matrix(contents: ModelFile) -> None:
     """Refuse splits, poles and candidates beside anything but one matrix F."""
-    if contents.dynamics or len(contents.pieces) > 1 or contents.Phi is not None:
-        got = (
-            "dynamics"
-            if contents.dynamics
-            else "steps Phi"
-            if contents.Phi is not None
-            else f"{len(contents.pieces)} pieces"
-        )
+    found = {
+        "unknown inputs": contents.inputs,
+        "dynamics": contents.dynamics,
+        "steps Phi": contents.Phi is not None,
+        f"{len(contents.pieces)} pieces": len(contents.pieces) > 1,
+    }
+    if any(found.values()):
+        got = next(words for words, there in found.items() if there)
         message = f"expected one constant F for splits, poles and candidates; got {got}; leave them out"
         raise DomainError(message, where="observe: model")
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def document_of_observability(answer: Observability) -> dict[str, Any]:
     """The answer as JSON data; every expression is text of the language of files."""
-    certifier = Certifier.of(answer.model) if answer.kind != "pieces" else None
+    certifier = Certifier.of(answer.model) if answer.joint.written is not None else None
     data: dict[str, Any] = {
         "n": len(answer.states),
         "states": list(answer.states),
@@ -34,6 +34,7 @@ def document_of_observability(answer: Observability) -> dict[str, Any]:
         "proved": answer.joint.proved,
         "checked": certifier is not None and certifier.certify_rank(answer.joint) is not None,
         "model": answer.kind,
+        "inputs": list(answer.inputs),
         "instant": instant_data(answer, certifier),
         "pieces": [dict(piece) for piece in answer.pieces],
         "rank_drops": [drop_data(drop, certifier) for drop in answer.rank_drops if drop.lasting],
@@ -53,7 +54,7 @@ def instant_data(answer: Observability, certifier: Certifier | None) -> dict[str
 
     Over an interval the rank is lost where the parameters are such that a drop lasts; at an instant also in passing.
     """
-    if answer.kind in ("constant", "discrete", "pieces"):
+    if answer.joint.written is None or answer.kind in ("constant", "discrete"):
         return None
     passing = [drop_data(drop, certifier) for drop in answer.rank_drops if not drop.lasting]
     return {"rank": answer.rank, "rank_drops": passing, "frozen_rank": answer.frozen_rank}

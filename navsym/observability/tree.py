@@ -152,6 +152,7 @@ class Tree:
     wanted: int
     width: int
     motion: Motion | None = None
+    most: int = NODES
     heap: list[tuple[int, int, Node]] = field(default_factory=list)
     full: Leaf | None = None
     drops: list[Leaf] = field(default_factory=list)
@@ -166,13 +167,12 @@ class Tree:
     def search(self) -> Cases:
         """All leaves, or as many as the limits allow."""
         visited = 0
-        most = MOVING_NODES if self.motion is not None and self.motion.rates else NODES
         while self.heap:
             node = heapq.heappop(self.heap)[2]
             if any(all(lies_in_ideal(f, node.system) for f in leaf.system) for leaf in self.drops):
                 continue
             visited += 1
-            if visited > most:
+            if visited > self.most:
                 self.open.append(node.system)
                 continue
             try:
@@ -232,13 +232,20 @@ def is_covered(system: System, listed: Sequence[System]) -> bool:
 
 
 def search_drops(
-    rows: Sequence[list[Poly]], wanted: int, ring: Ring, motion: Motion | None = None, system: System | None = None
+    rows: Sequence[list[Poly]],
+    wanted: int,
+    ring: Ring,
+    motion: Motion | None = None,
+    system: System | None = None,
+    nodes: int | None = None,
 ) -> Cases:
     """Where the rank of the rows, and of all their derivatives along a motion, is below ``wanted``.
 
     system : only among its zeros; all points by default
+    nodes  : so many cases at most
     """
-    tree = Tree(ring, wanted, len(rows[0]) if rows else 0, motion)
+    most = nodes or (MOVING_NODES if motion is not None and motion.rates else NODES)
+    tree = Tree(ring, wanted, len(rows[0]) if rows else 0, motion, most)
     start = restricted(Node([], ring, UnitBasis(ring), [list(row) for row in rows]), system or [])
     if start is not None:
         tree.push(start)

@@ -182,7 +182,7 @@ def pages(
 
     ledger   : the verdicts; a paper whose card is not in it is shown without its matrix of equations
     words    : wording of erratum sheets by module
-    book     : whether the pages of the book come too, ``book.html`` and one for each chapter
+    book     : whether the pages of the book come too, ``book.html`` and one for each chapter, and ``atlas.html``
     progress : called with the id of each claim that is set in type
 
     Files: ``certificates/*.json``, ``verdicts.json``, ``MODULE.html``, ``MODULE.erratum.html`` and
@@ -203,9 +203,11 @@ def pages(
     places = {claim.record.id: f"{paper.file}.html#{claim.anchor}" for paper in papers for claim in paper.claims}
     yield "trust.html", env.get_template("trust.html").render(shared, trust=trust_of(ledger), places=places)
     if book:
+        from navsym.report.atlas_page import atlas_pages
         from navsym.report.book_pages import book_pages
 
         yield from book_pages(env.get_template, shared)
+        yield from atlas_pages(env.get_template, shared)
     papers.sort(key=lambda paper: not paper.erratum.entries)  # those with something to correct come first
     yield "index.html", env.get_template("index.html").render(shared, papers=papers, total=total(papers), book=book)
 

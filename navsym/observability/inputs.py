@@ -1,0 +1,171 @@
+"""Observability with unknown inputs: x' = F x + G u, z = H x + D u, where nothing is known of u.
+
+A pair (a, b) is known where a x + b u is. The measurements give (h, d). A combination with b = 0 shows a x, and with it
+its derivative (a' + a F, a G), which is a pair again. What is shown of x at last is all that strong observability
+grants: its annihilator is the largest V with F V - V' in V + G u and H V + D u = 0 for one u (Basile and Marro 1969;
+Molinari 1976). A nonlinear model is linearised along its motion, whose inputs are symbols with endless derivatives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import sympy as sp
+
+from navsym.core.errors import DomainError
+from navsym.language.expression import symbol
+from navsym.models.along import gradient, model_along_motion
+from navsym.models.linear import LinearModel
+from navsym.models.modelfile import ModelFile
+from navsym.observability.chains import JointObservability, MeasurementObservability, need_chains
+from navsym.observability.linear import (
+    Matrix,
+    at_point,
+    independent_places,
+    linear_relation,
+    null_vectors,
+    primitive_vector,
+)
+from navsym.observability.motion import Motion, motion_of
+from navsym.observability.ring import Poly
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Driven:
+    """A model with unknown inputs over one ring.
+
+    rows    : (h, d) of each measurement, n + q entries
+    columns : G without its denominator, (n, q);  bottom : that denominator
+    """
+
+    motion: Motion
+    rows: Matrix
+    columns: Matrix
+    bottom: Poly
+
+    @property
+    def size(self) -> int:
+        """n, the number of states."""
+        return self.motion.size
+
+
+def driven_model(contents: ModelFile) -> tuple[LinearModel, sp.ImmutableMatrix, sp.ImmutableMatrix]:
+    """F and H along the motion with the derivatives of the inputs, G (n, q), and D (p, q)."""
+    model, inputs = model_along_motion(contents), [symbol(name) for name in contents.inputs]
+    if not contents.dynamics:
+        G = sp.ImmutableMatrix([list(column) for column in contents.inputs.values()]).T
+        return model, G, sp.ImmutableMatrix.zeros(model.H.rows, len(inputs))
+    if contents.relations:
+        message = "expected a model without relations beside unknown inputs; got relations; solve them for a state"
+        raise DomainError(message, where="relations")
+    states = [symbol(name) for name in contents.states]
+    rows = [gradient(m.z, [*states, *inputs]) for m in contents.measurements if m.z is not None]
+    rates = dict(model.rates)
+    for u in inputs:
+        jets = [u, *(sp.Dummy(f"{u}_{k}", real=True) for k in range(1, model.size + 3))]
+        rates |= dict(pairwise(jets))
+    H = sp.ImmutableMatrix([row[: len(states)] for row in rows])
+    G = sp.ImmutableMatrix([[sp.diff(f, u) for u in inputs] for f in contents.dynamics])
+    D = sp.ImmutableMatrix([row[len(states) :] for row in rows])
+    return LinearModel(model.F, None, H, model.states, model.measurements, model.time, rates), G, D
+
+
+def over_one_ring(model: LinearModel, G: sp.ImmutableMatrix, D: sp.ImmutableMatrix) -> Driven:
+    """All matrices as polynomials. Raises DomainError for square roots."""
+    q, n = G.cols, model.size
+    still = LinearModel(model.F, None, None, model.states, (), model.time, model.rates)
+    motion, listed = motion_of(still, [sp.Matrix.hstack(model.H, D), sp.Matrix(1, n * q, list(G))])
+    if motion.roots:
+        message = "expected a model without square roots beside unknown inputs; got one; name it as a parameter"
+        raise DomainError(message, where="inputs")
+    *rows, (flat, bottom) = listed
+    return Driven(motion, [row for row, _ in rows], [flat[i * q : (i + 1) * q] for i in range(n)], bottom)
+
+
+def shown_functionals(model: Driven, rows: Matrix, point: Sequence[int]) -> Matrix:
+    """Independent functionals of the state that some measurements (h, d) show whatever the inputs are."""
+    n, ring = model.size, model.motion.ring
+    pairs, shown = [list(row) for row in rows], list[list[Poly]]()
+    done = 0
+    while True:
+        pairs = [pairs[k] for k in independent_places(at_point(pairs, point))] if pairs else []
+        for combination in combinations_without_inputs([pair[n:] for pair in pairs], model, point):
+            zero = ring.constant(0)
+            row = [sum((c * pair[k] for c, pair in zip(combination, pairs, strict=True)), zero) for k in range(n)]
+            trial = [*shown, primitive_vector(row, ring)]
+            if len(independent_places(at_point(trial, point))) == len(trial):
+                shown = trial
+        if done == len(shown):
+            return shown
+        for row in shown[done:]:
+            driven = [
+                model.motion.clock * sum((a * g for a, g in zip(row, column, strict=True)), ring.constant(0))
+                for column in zip(*model.columns, strict=True)
+            ]
+            moved = [model.bottom * entry for entry in model.motion.advance(row)]
+            pairs.append(primitive_vector([*moved, *driven], ring))
+        done = len(shown)
+
+
+def combinations_without_inputs(parts: Matrix, model: Driven, point: Sequence[int]) -> Matrix:
+    """Vectors c with c B = 0 for the shares B of the inputs in some pairs."""
+    columns = [list(column) for column in zip(*parts, strict=True)]
+    nonzero = [column for column in columns if any(entry != 0 for entry in column)]
+    chosen = [nonzero[k] for k in independent_places(at_point(nonzero, point))] if nonzero else []
+    return null_vectors(chosen, len(parts), model.motion.ring)
+
+
+def is_unseen(model: Driven, rows: Matrix, columns: Matrix, point: Sequence[int]) -> bool:
+    """True when for each column N one input u has F N - N' - G u in the span of the columns and h N = d u.
+
+    Then a state that starts along the columns stays there for some input, and no measurement shows it: the rank is not
+    larger. All are identities of polynomials.
+    """
+    n, zero = model.size, model.motion.ring.constant(0)
+    width, clock = len(rows), model.motion.clock
+    spanning = [[*column, *([zero] * width)] for column in columns]
+    for k in range(len(rows[0]) - n):
+        entering = [clock * row[k] for row in model.columns]
+        spanning.append([*entering, *(model.bottom * clock * row[n + k] for row in rows)])
+    chosen = [spanning[k] for k in independent_places(at_point(spanning, point))]
+    for column in columns:
+        moved = [model.bottom * entry for entry in model.motion.retreat(column)]
+        seen = [model.bottom * clock * sum((a * b for a, b in zip(row[:n], column, strict=True)), zero) for row in rows]
+        if linear_relation(chosen, [*moved, *seen], model.motion.ring) is None:
+            return False
+    return True
+
+
+def observe_driven(contents: ModelFile) -> tuple[LinearModel, JointObservability]:
+    """The model along its motion, and what its measurements show of the state whatever the unknown inputs are.
+
+    Raises the errors of :func:`observe_jointly`, and DomainError for relations and square roots.
+    """
+    model, G, D = driven_model(contents)
+    need_chains(model)
+    driven = over_one_ring(model, G, D)
+    n, ring, point = model.size, driven.motion.ring, driven.motion.points(1)[0]
+    places = range(len(driven.rows))
+    single = [shown_functionals(driven, [driven.rows[j]], point) for j in places]
+    joint = [shown_functionals(driven, driven.rows[: j + 1], point) for j in places]
+    sizes = [0, *map(len, joint)]
+    unseen = null_vectors(joint[-1], n, ring)
+
+    def as_matrix(rows: Matrix) -> sp.ImmutableMatrix:
+        return sp.ImmutableMatrix(len(rows), n, [ring.expression(x) for row in rows for x in row])
+
+    return model, JointObservability(
+        states=model.states,
+        measurements=tuple(
+            MeasurementObservability(name, as_matrix(rows), (), len(rows))
+            for name, rows in zip(model.measurements, single, strict=True)
+        ),
+        staircase=tuple(after - before for before, after in pairwise(sizes)),
+        unobservable=as_matrix(unseen),
+        assumptions=(),
+        written=None,
+        observed=as_matrix(null_vectors(unseen, n, ring)),
+        proved=is_unseen(driven, driven.rows, unseen, point),
+    )

@@ -1,0 +1,169 @@
+"""Cells of the atlas: rank, unobservable space in words, exceptional set and certificate of one error model."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+import sympy as sp
+
+from navsym.core.errors import DomainError
+from navsym.language.names import quote
+from navsym.models.linear import LinearModel
+from navsym.observability.certificates import Certifier
+from navsym.observability.chains import JointObservability, direction_names, observe_jointly, prove_by_guesses
+from navsym.observability.pieces import independent_rows, is_spanned
+from navsym.observability.rank_drops import find_joint_drops
+from navsym.studies.atlas.kept import KEPT, Cell, atlas
+from navsym.studies.atlas.scenes import ARM, MANOEUVRES, MODELS, Aiding, Scene, error_model, g, list_columns, make_scene
+
+#: Cases looked at for the exceptional set of a cell, and letters of a condition that is written.
+NODES, LETTERS = 60, 160
+#: Components in the frame of the INS, and in the body or camera.
+AXES: Mapping[bool, Sequence[str]] = {True: ("north", "east", "down"), False: "xyz"}
+
+
+def cell_names() -> Iterator[str]:
+    """Names of all cells: "INS: level turn: position"."""
+    for model, (_, aidings) in MODELS.items():
+        for manoeuvre in MANOEUVRES:
+            for aiding in aidings:
+                yield f"{model}: {manoeuvre.name}: {aiding.name}"
+
+
+def parts_of(name: str) -> tuple[Scene, Aiding]:
+    """The scene and the aiding of a cell. Raises DomainError for a name that is no cell."""
+    if name not in cell_names():
+        raise DomainError(f"expected a cell such as INS: rest: position; got {quote(name)}; see docs/atlas.md")
+    model, manoeuvre, aiding = name.split(": ")
+    card, aidings = MODELS[model]
+    chosen = next(a for a in aidings if a.name == aiding)
+    flown = next(m for m in MANOEUVRES if m.name == manoeuvre)
+    return make_scene(card, flown, chosen.points, ARM if chosen.arm else ()), chosen
+
+
+def model_of(name: str) -> LinearModel:
+    """The error model of a cell: F, H and the rates of all that moves."""
+    return error_model(*parts_of(name))
+
+
+def compute_cell(name: str) -> Cell:
+    """A cell of the atlas from nothing but its name."""
+    scene, aiding = parts_of(name)
+    model = error_model(scene, aiding)
+    guesses = (vector for _, vector in (*symmetries(scene, aiding), *single_states(scene, aiding)))
+    joint = prove_by_guesses(observe_jointly(model), guesses)
+    found = find_joint_drops(joint, nonzero_symbols(scene), NODES)
+    certifier = Certifier.of(model)
+    granted = [certifier.certify_rank(joint), *map(certifier.certify_drop, found.drops)]
+    return Cell(
+        name,
+        size=model.size,
+        rank=joint.joint_dimension,
+        proved=joint.proved,
+        unobservable=tuple(name_basis(joint, scene, aiding)),
+        drops={shorten(drop.condition): drop.rank for drop in found.drops},
+        complete=found.complete["joint"],
+        open=len(found.open["joint"]),
+        checked=sum(item is not None for item in granted),
+        certificate=hashlib.sha256(json.dumps(granted, sort_keys=True).encode()).hexdigest()[:32],
+    )
+
+
+def shorten(condition: str) -> str:
+    """A condition that can be read: a long one is cut."""
+    return condition if len(condition) <= LETTERS else f"{condition[: LETTERS - 2]} …"
+
+
+def nonzero_symbols(scene: Scene) -> list[sp.Symbol]:
+    """Gravity, and the depth of what is seen."""
+    return [g, *(point[2] for point in scene.points)]
+
+
+# Words
+
+
+def name_basis(joint: JointObservability, scene: Scene, aiding: Aiding) -> Iterator[str]:
+    """A basis of the unobservable space: known symmetries and single states first, then what is left, by its states."""
+    space = joint.unobservable
+    chosen: list[list[sp.Expr]] = []
+    for words, vector in (*symmetries(scene, aiding), *single_states(scene, aiding)):
+        row = sp.ImmutableMatrix([vector])
+        if len(chosen) == space.rows or all(x == 0 for x in row) or not is_spanned(space, row):
+            continue
+        if len(independent_rows(sp.ImmutableMatrix([*chosen, vector]))) > len(chosen):
+            chosen.append(vector)
+            yield words
+    for k in range(space.rows):
+        trial = [*chosen, list(space[k, :])]
+        if len(chosen) < space.rows and len(independent_rows(sp.ImmutableMatrix(trial))) > len(chosen):
+            chosen = trial
+            yield name_direction(space[k, :], scene, aiding)
+
+
+def single_states(scene: Scene, aiding: Aiding) -> Iterator[tuple[str, list[sp.Expr]]]:
+    """Every state by itself."""
+    columns = list_columns(aiding)
+    for place, (block, j) in enumerate(columns):
+        yield name_state(scene, block, (j,)), [sp.Integer(int(k == place)) for k in range(len(columns))]
+
+
+def name_state(scene: Scene, block: str, places: Sequence[int]) -> str:
+    """A block with its components."""
+    axes = AXES[not scene.in_body and block in ("position", "velocity", "attitude")]
+    return block if block == "delay" else f"{block.replace('_', ' ')} {', '.join(axes[j] for j in places)}"
+
+
+def name_direction(row: Sequence[sp.Expr], scene: Scene, aiding: Aiding) -> str:
+    """A direction by the states that take part; in full where it is short."""
+    columns = list_columns(aiding)
+    text = direction_names(row, [f"{name_state(scene, block, (j,))}" for block, j in columns])
+    if len(text) <= LETTERS:
+        return text
+    blocks: dict[str, list[int]] = {}
+    for value, (block, j) in zip(row, columns, strict=True):
+        if value != 0:
+            blocks.setdefault(block, []).append(j)
+    return " with ".join(name_state(scene, block, places) for block, places in blocks.items())
+
+
+def symmetries(scene: Scene, aiding: Aiding) -> Iterator[tuple[str, list[sp.Expr]]]:
+    """Changes of all that leave the measurements of a camera or of a beacon as they are, where they keep the sensors'.
+
+    They are candidates: the exact unobservable space decides which of them belong to it.
+    """
+    frame = scene.C
+    gravity, velocity = frame * scene.gravity, frame * scene.velocity
+    arm = sp.Matrix(ARM) if scene.in_body else sp.zeros(3, 1)
+    landmarks = {f"landmark {k}": point + arm for k, point in enumerate(scene.points, start=1)}
+    units = [sp.Matrix([int(i == j) for i in range(3)]) for j in range(3)]
+    axes = AXES[not scene.in_body]
+    for words, axis in (("gravity", gravity / g), *zip(axes, units, strict=True)):
+        turned = {"attitude": axis, "velocity": axis.cross(velocity)}
+        turned["accelerometer_bias"] = -frame.T * axis.cross(gravity)
+        moved = {block: axis.cross(point) for block, point in landmarks.items()}
+        yield f"turn about {words} through the body", vector_of(aiding, turned | moved)
+        for point in [*landmarks.values()][:1]:
+            about = {"position": -axis.cross(point)}
+            yield f"turn about {words} through the first point", vector_of(aiding, turned | about)
+    for words, unit in zip(axes, units, strict=True):
+        yield f"common shift along {words}", vector_of(aiding, {"position": unit} | dict.fromkeys(landmarks, unit))
+    scaled = {"velocity": velocity, "accelerometer_bias": -scene.acceleration, "camera arm": arm}
+    yield "scale", vector_of(aiding, scaled | landmarks)
+
+
+def vector_of(aiding: Aiding, parts: Mapping[str, sp.Matrix]) -> list[sp.Expr]:
+    """A direction of the state from its blocks."""
+    return [sp.expand(parts[block][j]) if block in parts else sp.Integer(0) for block, j in list_columns(aiding)]
+
+
+def keep_atlas(cells: Iterable[Cell]) -> None:
+    """Write cells to ``atlas.json``, in the place of those with the same names. All of them take some minutes."""
+    known = {**(atlas.cells if KEPT.exists() else {}), **{cell.name: cell for cell in cells}}
+    listed = [known[name] for name in cell_names() if name in known]
+    lines = []
+    for cell in listed:
+        own = {key: value for key, value in cell.document().items() if key != "name"}
+        lines.append(f"{json.dumps(cell.name)}: {json.dumps(own, ensure_ascii=False)}")
+    KEPT.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")

@@ -1,0 +1,105 @@
+"""The atlas as a mapping: cells as they were computed, each with the error model that it is about."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from difflib import get_close_matches
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from navsym.core.errors import UnknownSymbolError
+from navsym.language.names import quote
+from navsym.language.printer import to_text
+from navsym.models.model import Model
+
+#: The cells as they were computed: name -> all of a cell but its name.
+KEPT = Path(__file__).with_name("atlas.json")
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """An error model with an aiding along a manoeuvre, and what its measurements show over an interval.
+
+    name         : "MODEL: MANOEUVRE: AIDING"
+    size, rank   : number of states, and of the directions that are shown
+    proved       : False where the rank is known from below only
+    unobservable : a basis of what is not shown, in words
+    drops        : condition -> rank that is left there, None where it was not found
+    complete     : True where these are proved to be all conditions, for gravity and depths that are not zero
+    open         : number of sets of points at which nothing was decided
+    checked      : number of ranks that the checker grants, of ``1 + len(drops)``
+    certificate  : hash of what the checker read
+    """
+
+    name: str
+    size: int
+    rank: int
+    proved: bool
+    unobservable: tuple[str, ...]
+    drops: Mapping[str, int | None]
+    complete: bool
+    open: int
+    checked: int
+    certificate: str
+
+    @property
+    def model(self) -> Model:
+        """The error model, written by the generator of error dynamics."""
+        from navsym.studies.atlas.cells import model_of
+
+        linear = model_of(self.name)
+        rates = {symbol.name: to_text(rate) for symbol, rate in linear.rates.items()}
+        return Model(linear.states, linear.F, linear.H, measurements=linear.measurements, rates=rates, name="atlas")
+
+    def document(self) -> dict[str, Any]:
+        """The cell as plain data."""
+        return {**asdict(self), "unobservable": list(self.unobservable)}
+
+    def __repr__(self) -> str:
+        return f"<{self.name}: rank {self.rank} of {self.size}>"
+
+
+class Atlas(Mapping[str, Cell]):
+    """All cells by name. They are recomputed by tests, not when they are read.
+
+    >>> import navsym as nav
+    >>> cell = nav.atlas["INS: rest: position"]
+    >>> cell, cell.drops
+    (<INS: rest: position: rank 12 of 15>, {'uN = 0': 11})
+    >>> nav.observe(cell.model).rank
+    12
+    """
+
+    @cached_property
+    def cells(self) -> dict[str, Cell]:
+        """The cells in the order of models, manoeuvres and aidings."""
+        kept = json.loads(KEPT.read_text(encoding="utf-8"))
+        return {
+            name: Cell(name, **{**cell, "unobservable": tuple(cell["unobservable"])}) for name, cell in kept.items()
+        }
+
+    def __getitem__(self, name: str) -> Cell:
+        if name not in self.cells:
+            near = get_close_matches(str(name), self.cells, n=1)
+            remedy = f"did you mean {near[0]}?" if near else "list them with list(nav.atlas)"
+            raise UnknownSymbolError(f"expected the name of a cell; got {quote(str(name))}; {remedy}", where="atlas")
+        return self.cells[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.cells
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.cells)
+
+    def __len__(self) -> int:
+        return len(self.cells)
+
+    def __repr__(self) -> str:
+        return f"<atlas: {len(self)} cells>"
+
+
+#: The atlas.
+atlas = Atlas()
