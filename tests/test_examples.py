@@ -46,7 +46,6 @@ def run(test: doctest.DocTest) -> str:
     return "".join(report)
 
 
-
 @pytest.mark.parametrize("name", sorted(set(NAMES) - VALUES))
 def test_a_public_name_is_documented_with_an_example_that_runs(name: str, tmp_path: Path, monkeypatch: Any) -> None:
     assert inspect.getdoc(getattr(nav, name)), f"{name} has no documentation"
