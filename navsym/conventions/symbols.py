@@ -254,10 +254,10 @@ class Formulas:
         known |= {read_tree(t, None): value for t, value in self.derived.items()}
 
         def step(part: Tree, inner: list[Any]) -> Any:
-            if part in known:
-                return known[part]
             if part.head == NUMBER:
                 return Ratio(Quotient(self.context.constant(to_flint(part.args[0])), one))
+            if part in known:
+                return known[part]
             if part.head == "tan":
                 sine, cosine = (known.get(build(name, part.args)) for name in ("sin", "cos"))
                 return sine / cosine if sine and cosine else None
