@@ -95,7 +95,7 @@ class Passage:
     def centre(self) -> list[Any]:
         """The position from the centre of the Earth in its frame."""
         w = self.source.world
-        return place(w.sin, w.cos, w.meridian, w.h, w.RN, w.RE)
+        return locate(w.sin, w.cos, w.meridian, w.h, w.RN, w.RE)
 
     def slow_down(self, R: Grid, x: State) -> State:
         """A state of the inertial frame beside the Earth."""
@@ -131,7 +131,7 @@ class Passage:
         return replace(estimate, attitude=outer, velocity=apply(tilted, estimate.velocity), position=there), truth
 
 
-def same_motion(source: Mechanisation, card: Card) -> Mechanisation:
+def carry_motion(source: Mechanisation, card: Card) -> Mechanisation:
     """The mechanisation of a card in the motion of another one."""
     way, world, moves = (
         Passage(source, Mechanisation(card, source.world)),
@@ -142,10 +142,10 @@ def same_motion(source: Mechanisation, card: Card) -> Mechanisation:
         return way.target
     out = transpose(axes_of(way.target)) if moves else identity()
     A = multiply(out, axes_of(source)) if moves else way.turn()
-    same = {"C": values_of(multiply(A, source.truth().attitude)), "seen": turned(A, world.seen)}
+    same = {"C": values_of(multiply(A, source.truth().attitude)), "seen": rotate_vector(A, world.seen)}
     if not moves:
-        transport = None if world.transport is None else turned(A, world.transport)
-        vectors = {"v": turned(A, world.v), "r": turned(A, world.r), "transport": transport}
+        transport = None if world.transport is None else rotate_vector(A, world.transport)
+        vectors = {"v": rotate_vector(A, world.v), "r": rotate_vector(A, world.r), "transport": transport}
         return Mechanisation(card, replace(world, **same, **vectors))
     _, truth = way.to_earth(source.truth(), source.truth())
     at, velocity = ([Nilpotent(x.value) for x in vector] for vector in (truth.position, truth.velocity))
@@ -164,7 +164,7 @@ def same_motion(source: Mechanisation, card: Card) -> Mechanisation:
     return Mechanisation(card, replace(world, **same, earth_rate=rate, transport=None))
 
 
-def turned(A: Grid, v: Any) -> list[Any]:
+def rotate_vector(A: Grid, v: Any) -> list[Any]:
     """A v in coefficients."""
     return [x.value for x in apply(A, constant(v))]
 
@@ -181,7 +181,7 @@ def axes_of(flow: Mechanisation) -> Grid:
     return transpose(rotate_about_pole(flow.world.angle)) if flow.card.frame == "inertial" else identity()
 
 
-def place(sine: Any, cosine: Any, meridian: Sequence[Any], h: Any, RN: Any, RE: Any) -> list[Any]:
+def locate(sine: Any, cosine: Any, meridian: Sequence[Any], h: Any, RN: Any, RE: Any) -> list[Any]:
     """The position from the centre of the Earth in its frame, by latitude, longitude, height and both radii."""
     share = 1
     if RN is not RE:  # 1 - e^2, which follows from both radii
