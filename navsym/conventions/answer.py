@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from navsym.conventions.card import Card
-from navsym.conventions.converting import Conversion, convert, written
+from navsym.conventions.converting import Conversion, convert, print_matrix
 from navsym.conventions.generating import fill_model
 from navsym.conventions.measuring import RESET_MARK
 from navsym.conventions.points import BITS
@@ -130,7 +130,7 @@ class Conventions(Answer):
         ['0', '-f3', 'f2']
         """
         names = [name for name in ("F", "H", "G", "reset") if getattr(self.problem, name)]
-        matrices = {name: written(getattr(self.problem, name)) for name in names}
+        matrices = {name: print_matrix(getattr(self.problem, name)) for name in names}
         return {"name": self.name, "states": list(self.problem.states), **matrices}
 
     def document(self) -> dict[str, Any]:

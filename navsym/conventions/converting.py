@@ -13,7 +13,7 @@ from typing import Any
 
 from navsym.claims.verdict import PROVED
 from navsym.conventions.card import CHOICES, Card
-from navsym.conventions.frames import Passage, change_frame, same_motion
+from navsym.conventions.frames import Passage, carry_motion, change_frame
 from navsym.conventions.generating import require_names, write_blocks
 from navsym.conventions.measuring import NOISE_MARK, RESET_MARK, unit_error
 from navsym.conventions.mechanisation import ROLES, Mechanisation
@@ -143,7 +143,7 @@ class Converter:
     def matrices(self, way: Passage, inverse: list[list[str]]) -> list[list[list[str]]]:
         """F, H, G and the reset of the target."""
         problem, signs, own = self.problem, self.target.signs(), self.source.signs()
-        matrices = {name: written(getattr(problem, name)) for name in ("F", "H", "G", "reset")}
+        matrices = {name: print_matrix(getattr(problem, name)) for name in ("F", "H", "G", "reset")}
         moves = (self.source.frame, self.source.axes) != (self.target.frame, self.target.axes)
 
         def sign(block: tuple[str, str]) -> int:
@@ -203,7 +203,7 @@ def convert(problem: Problem, source: Card, changes: Mapping[str, str]) -> Conve
     target = read_target(source, changes, problem)
     converter = Converter(problem, source, target)
     flow = Mechanisation(plain_card(source), converter.formulas.world)
-    way = Passage(flow, same_motion(flow, plain_card(target)))
+    way = Passage(flow, carry_motion(flow, plain_card(target)))
     (T, rate), (inverse, _) = converter.transformation(way), converter.transformation(way, back=True)
     with precision(BITS):
         F, H, G, reset = converter.matrices(way, inverse)
@@ -211,17 +211,17 @@ def convert(problem: Problem, source: Card, changes: Mapping[str, str]) -> Conve
     unit = [["1" if i == j else "0" for j in range(len(T))] for i in range(len(T))]
     pairs = [
         (multiply_texts(T, inverse), unit),
-        (multiply_texts(F, T), add_texts(multiply_texts(T, written(problem.F)), rate)),
+        (multiply_texts(F, T), add_texts(multiply_texts(T, print_matrix(problem.F)), rate)),
     ]
     if H:
-        pairs.append((multiply_texts(H, T), written(problem.H)))
+        pairs.append((multiply_texts(H, T), print_matrix(problem.H)))
     if G:
-        pairs.append((G, multiply_texts(T, written(problem.G))))
+        pairs.append((G, multiply_texts(T, print_matrix(problem.G))))
     frozen = (freeze(M) for M in (T, inverse, rate, F, H, G, reset))
     return Conversion(source, target, *frozen, proved=converter.is_proved(pairs), problem=problem)  # type: ignore[misc,arg-type]
 
 
-def written(M: Sequence[Sequence[Any]]) -> list[list[str]]:
+def print_matrix(M: Sequence[Sequence[Any]]) -> list[list[str]]:
     """A matrix of trees as texts."""
     return [[print_tree(x) for x in row] for row in M]
 

@@ -95,7 +95,7 @@ class Passage:
     def centre(self) -> list[Any]:
         """The position from the centre of the Earth in its frame."""
         w = self.source.world
-        return place(w.sin, w.cos, w.meridian, w.h, w.RN, w.RE)
+        return locate(w.sin, w.cos, w.meridian, w.h, w.RN, w.RE)
 
     def slow_down(self, R: Grid, x: State) -> State:
         """A state of the inertial frame beside the Earth."""
@@ -113,10 +113,10 @@ class Passage:
             return estimate, x
         if self.card.frame == "inertial":
             R = rotate_about_pole(self.source.world.angle, self.spin())
-            moved = [add_vectors(s.velocity, cross(self.pole(), s.position)) for s in (estimate, x)]
+            speeds = [add_vectors(s.velocity, cross(self.pole(), s.position)) for s in (estimate, x)]
             return tuple(  # type: ignore[return-value]
                 replace(s, attitude=multiply(R, s.attitude), velocity=apply(R, velocity), position=apply(R, s.position))
-                for s, velocity in zip((estimate, x), moved, strict=True)
+                for s, velocity in zip((estimate, x), speeds, strict=True)
             )
         flow, at = self.target, replace(x, position=[NOTHING] * 3)
         now = [Nilpotent(part.value) for part in apply(transpose(flow.level(at)), x.velocity)]
@@ -131,7 +131,7 @@ class Passage:
         return replace(estimate, attitude=outer, velocity=apply(tilted, estimate.velocity), position=there), truth
 
 
-def same_motion(source: Mechanisation, card: Card) -> Mechanisation:
+def carry_motion(source: Mechanisation, card: Card) -> Mechanisation:
     """The mechanisation of a card in the motion of another one."""
     way, world, moves = (
         Passage(source, Mechanisation(card, source.world)),
@@ -142,10 +142,14 @@ def same_motion(source: Mechanisation, card: Card) -> Mechanisation:
         return way.target
     out = transpose(axes_of(way.target)) if moves else identity()
     A = multiply(out, axes_of(source)) if moves else way.turn()
-    same = {"C": values_of(multiply(A, source.truth().attitude)), "seen": turned(A, world.seen)}
+    same: dict[str, Any] = {"C": values_of(multiply(A, source.truth().attitude)), "seen": rotate_vector(A, world.seen)}
     if not moves:
-        transport = None if world.transport is None else turned(A, world.transport)
-        vectors = {"v": turned(A, world.v), "r": turned(A, world.r), "transport": transport}
+        transport = None if world.transport is None else rotate_vector(A, world.transport)
+        vectors: dict[str, Any] = {
+            "v": rotate_vector(A, world.v),
+            "r": rotate_vector(A, world.r),
+            "transport": transport,
+        }
         return Mechanisation(card, replace(world, **same, **vectors))
     _, truth = way.to_earth(source.truth(), source.truth())
     at, velocity = ([Nilpotent(x.value) for x in vector] for vector in (truth.position, truth.velocity))
@@ -164,7 +168,7 @@ def same_motion(source: Mechanisation, card: Card) -> Mechanisation:
     return Mechanisation(card, replace(world, **same, earth_rate=rate, transport=None))
 
 
-def turned(A: Grid, v: Any) -> list[Any]:
+def rotate_vector(A: Grid, v: Any) -> list[Any]:
     """A v in coefficients."""
     return [x.value for x in apply(A, constant(v))]
 
@@ -181,7 +185,7 @@ def axes_of(flow: Mechanisation) -> Grid:
     return transpose(rotate_about_pole(flow.world.angle)) if flow.card.frame == "inertial" else identity()
 
 
-def place(sine: Any, cosine: Any, meridian: Sequence[Any], h: Any, RN: Any, RE: Any) -> list[Any]:
+def locate(sine: Any, cosine: Any, meridian: Sequence[Any], h: Any, RN: Any, RE: Any) -> list[Any]:
     """The position from the centre of the Earth in its frame, by latitude, longitude, height and both radii."""
     share = 1
     if RN is not RE:  # 1 - e^2, which follows from both radii
@@ -214,8 +218,8 @@ def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool,
         for name, word in plain.items():
             wanted = words.get(name, getattr(card, name) or word)
             refuse(wanted != word or getattr(card, name) not in (None, word), f"{name} {word} on both sides")
-    central = replace(card, frame="earth", axes=None, angle=None, transport_rate=None, height_variation=None)
-    hub = replace(central, radius_variation=None, position_error=card.position_error and "metres")
+    hub = replace(card, frame="earth", axes=None, angle=None, transport_rate=None, height_variation=None)
+    hub = replace(hub, radius_variation=None, position_error=card.position_error and "metres")
     if card.frame == LEVEL:
         require_whole(card)
         normal = "normal" if card.position_error else "none"
@@ -233,15 +237,18 @@ def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool,
         return replace(hub, frame=frame, earth_rate=None, centrifugal=None)
     refuse(not radii, "quantities with radii")
     refuse(hub.centrifugal == KEPT, "gravity with its centrifugal part in one")
-    shape, name = ("sphere", "R + h" if height else "R") if radii == 1 else ("ellipsoid", None)
-    vertical = {"central": name, "normal": card.gravity_radius, "none": None}.get(hub.gravity_gradient)
-    curved = hub.position_error is None or hub.gravity_gradient == "normal"
-    refuse(
-        not curved and not (vertical and hub.gravity_gradient == "central"), "a gradient of gravity, central or normal"
-    )
+    shape, lifted = "sphere" if radii == 1 else "ellipsoid", "R + h" if height else "R"
+    central = hub.gravity_gradient == "central" and shape == "sphere"
+    vertical = lifted if central else card.gravity_radius if hub.gravity_gradient == "normal" else None
+    fits = central or hub.position_error is None or hub.gravity_gradient == "normal"
+    refuse(not fits, "a gradient of gravity, central or normal")
     slope = None if shape == "sphere" else KEPT if hub.position_error else DROPPED
-    level = {"axes": words.get("axes", "NED"), "angle": words.get("angle", "phi"), "earth": shape}
-    kind = {"gravity_gradient": "vertical" if vertical else "none", "gravity_radius": vertical, "centrifugal": None}
+    level: dict[str, Any] = {"axes": words.get("axes", "NED"), "angle": words.get("angle", "phi"), "earth": shape}
+    kind: dict[str, Any] = {
+        "gravity_gradient": "vertical" if vertical else "none",
+        "gravity_radius": vertical,
+        "centrifugal": None,
+    }
     return replace(
         hub, frame=frame, **level, **kind, transport_rate=KEPT, height_variation=KEPT, radius_variation=slope
     )

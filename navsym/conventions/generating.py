@@ -12,11 +12,11 @@ from dataclasses import fields
 from functools import cache
 from typing import Any
 
-from navsym.conventions.card import CHOICES, MEASURED_LESS, Card
+from navsym.conventions.card import CHOICES, Card
 from navsym.conventions.measuring import CORRECTED, MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
 from navsym.conventions.mechanisation import BIASES, Mechanisation
 from navsym.conventions.reading import Problem, matrix_of, read_known, read_problem
-from navsym.conventions.search import Block, list_cards, plain_card
+from navsym.conventions.search import Block, list_cards, plain_card, sign_of
 from navsym.conventions.symbols import HIDDEN, Formulas
 from navsym.core.errors import DomainError, EmptyError
 from navsym.language.names import join_place, quote
@@ -101,17 +101,6 @@ def choose_card(problem: Problem, words: Mapping[str, str], where: str) -> Card:
             )
             raise DomainError(message, where=join_place(where, name))
     raise DomainError("expected words of one card; got words that exclude each other; correct them", where=where)
-
-
-def sign_of(card: Card, block: Block) -> int:
-    """The sign by which the signs of a card scale a block; noises are plus."""
-    signs = card.signs()
-    row, column = block
-    if row.startswith(MEASURED_MARK):
-        return (-1 if card.innovation == MEASURED_LESS else 1) * signs[column]
-    if row.startswith(RESET_MARK):
-        return signs["attitude"]
-    return signs[row] * signs.get(column, 1)
 
 
 def write_blocks(

@@ -14,7 +14,7 @@ from typing import Any
 from flint import arb, fmpq
 
 from navsym.conventions.card import Card
-from navsym.conventions.frames import place
+from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED
 from navsym.conventions.mechanisation import AXES, World
 from navsym.conventions.reading import Problem
@@ -185,8 +185,8 @@ class Sampler:
         normal, r = [arb(0)] * 3, None
         if {"latitude", "longitude", "radii"} <= set(given) and not level:
             turn = angle if card.frame == "inertial" else (arb(0), arb(1))
-            normal = about_pole(turn, (-cosine * meridian[1], -cosine * meridian[0], -sine))
-            r = about_pole(turn, place(sine, cosine, meridian, h, RN, RE)) if "position" in given else None
+            normal = turn_about_pole(turn, (-cosine * meridian[1], -cosine * meridian[0], -sine))
+            r = turn_about_pole(turn, locate(sine, cosine, meridian, h, RN, RE)) if "position" in given else None
         r = self.vector("position") if r is None else self.settle("position", r)
         radius = sum((x * x for x in r), arb(0)).sqrt()
         pull, gravity = self.gravitation(r, radius, level, normal)
@@ -294,7 +294,7 @@ class Sampler:
         return self.settle("transport_rate", wanted)
 
 
-def about_pole(angle: Sequence[Any], u: Sequence[Any]) -> list[Any]:
+def turn_about_pole(angle: Sequence[Any], u: Sequence[Any]) -> list[Any]:
     """A vector of the Earth in the inertial frame, by sine and cosine of the angle between them."""
     sine, cosine = angle
     return [cosine * u[0] - sine * u[1], sine * u[0] + cosine * u[1], u[2]]

@@ -158,15 +158,10 @@ class Comparison:
 
     def block_sign(self, card: Card, block: Block) -> int:
         """The sign by which the signs of a card scale a block; that of a noise is the one that fits more blocks."""
-        signs = card.signs()
-        row, column = block
-        if row.startswith(MEASURED_MARK):
-            return (-1 if card.innovation == MEASURED_LESS else 1) * signs[column]
-        if row.startswith(RESET_MARK):
-            return signs["attitude"]
-        if column.startswith(NOISE_MARK):
-            return signs[row] * self.noise_sign(plain_card(card), tuple(sorted(signs.items())), column)
-        return signs[row] * signs[column]
+        if block[1].startswith(NOISE_MARK):
+            signs = card.signs()
+            return signs[block[0]] * self.noise_sign(plain_card(card), tuple(sorted(signs.items())), block[1])
+        return sign_of(card, block)
 
     def compare_noise(self, card: Card, signs: tuple[tuple[str, int], ...], noise: str) -> int:
         """The sign of a noise, which nothing else tells."""
@@ -190,6 +185,17 @@ class Comparison:
         row, column = block
         parts = [x for k in range(3) for x in self.columns(card, column, 0)[k][row]]
         return all(type(x) is int or x.contains(0) for x in parts)
+
+
+def sign_of(card: Card, block: Block) -> int:
+    """The sign by which the signs of a card scale a block; noises are plus."""
+    signs = card.signs()
+    row, column = block
+    if row.startswith(MEASURED_MARK):
+        return (-1 if card.innovation == MEASURED_LESS else 1) * signs[column]
+    if row.startswith(RESET_MARK):
+        return signs["attitude"]
+    return signs[row] * signs.get(column, 1)
 
 
 def in_decimals(x: Any) -> str:

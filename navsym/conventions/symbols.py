@@ -16,10 +16,10 @@ from typing import Any
 from flint import fmpq_mpoly_ctx
 
 from navsym.conventions.card import Card
-from navsym.conventions.frames import place
+from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED, full_column
 from navsym.conventions.mechanisation import Mechanisation, World
-from navsym.conventions.points import about_pole, gradient_names
+from navsym.conventions.points import gradient_names, turn_about_pole
 from navsym.conventions.reading import Problem
 from navsym.core.rational_functions import Quotient, add_fractions, multiply_fractions
 from navsym.language.expression import read_tree
@@ -147,8 +147,8 @@ class Formulas:
         circles = self.circle("longitude", "east", "ahead"), self.circle("earth_angle", "turned", "straight")
         r = self.vector("r", "position")
         if {"latitude", "longitude", "radii"} <= set(given) and card.frame != "local-level":
-            u = place(sine, cosine, circles[0], h, RN, RE)
-            r = [a * 1 for a in (about_pole(circles[1], u) if card.frame == "inertial" else u)]
+            u = locate(sine, cosine, circles[0], h, RN, RE)
+            r = [a * 1 for a in (turn_about_pole(circles[1], u) if card.frame == "inertial" else u)]
             self.derived = {self.texts[f"r{k}"]: r[k] for k in range(3)}
         squares = " + ".join(f"({self.texts[f'r{k}']})**2" for k in range(3))
         radius = self.symbol("radius", f"sqrt({squares})")
@@ -254,10 +254,10 @@ class Formulas:
         known |= {read_tree(t, None): value for t, value in self.derived.items()}
 
         def step(part: Tree, inner: list[Any]) -> Any:
-            if part in known:
-                return known[part]
             if part.head == NUMBER:
                 return Ratio(Quotient(self.context.constant(to_flint(part.args[0])), one))
+            if part in known:
+                return known[part]
             if part.head == "tan":
                 sine, cosine = (known.get(build(name, part.args)) for name in ("sin", "cos"))
                 return sine / cosine if sine and cosine else None

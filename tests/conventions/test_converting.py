@@ -14,7 +14,7 @@ from flint import arb
 import navsym as nav
 from navsym.conventions.card import CHOICES, Card
 from navsym.conventions.converting import CONVERTED, Converter, transform
-from navsym.conventions.frames import Passage, change_frame, same_motion
+from navsym.conventions.frames import Passage, carry_motion, change_frame
 from navsym.conventions.mechanisation import ROLES, Mechanisation, World
 from navsym.conventions.points import BITS, draw_point
 from navsym.conventions.reading import read_problem
@@ -133,7 +133,7 @@ def test_two_hundred_random_pairs_lead_back(moves):
 
 def ways(flow: Mechanisation, target: Card) -> list[Passage]:
     """The way to a card and the way back."""
-    other = same_motion(flow, target)
+    other = carry_motion(flow, target)
     return [Passage(flow, other), Passage(other, flow)]
 
 
