@@ -57,9 +57,9 @@ _HOMES = {
     "Estimate": "navsym.guaranteed.streaming.estimate",
     "NavsymError": "navsym.core.errors",
     "Number": "navsym.core.numbers",
-    "Phases": "navsym.guaranteed.phases.answer",
+    **dict.fromkeys(("PhaseMap", "Phases"), "navsym.guaranteed.phases.answer"),
     "formulate": "navsym.guaranteed.formulate",
-    "phases": "navsym.guaranteed.phases.driver",
+    "phases": "navsym.guaranteed.phases.front",
     "solve": "navsym.guaranteed.solver",
     **dict.fromkeys(
         ("Verdict", "Verdicts", "Status", "PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"), "navsym.claims"
@@ -119,8 +119,9 @@ if TYPE_CHECKING:
     from navsym.guaranteed.baselines import Comparison as Comparison
     from navsym.guaranteed.formulate import Formulation as Formulation
     from navsym.guaranteed.formulate import formulate as formulate
+    from navsym.guaranteed.phases.answer import PhaseMap as PhaseMap
     from navsym.guaranteed.phases.answer import Phases as Phases
-    from navsym.guaranteed.phases.driver import phases as phases
+    from navsym.guaranteed.phases.front import phases as phases
     from navsym.guaranteed.solver import Estimator as Estimator
     from navsym.guaranteed.solver import solve as solve
     from navsym.guaranteed.streaming.estimate import Estimate as Estimate

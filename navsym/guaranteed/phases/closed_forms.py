@@ -8,7 +8,7 @@ solve linear systems with exact entries, and the pair goes to the ladder of proo
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -16,6 +16,7 @@ import numpy as np
 import sympy as sp
 
 from navsym.claims import OPEN, Equation, Optimum, Verdict
+from navsym.claims.statement import Box
 from navsym.core.balls import enclose
 from navsym.core.exact import to_fraction, to_rational
 from navsym.core.sandbox import Exhausted, run_limited
@@ -170,6 +171,14 @@ def propose_closed_forms(family: Family, span: PatternInterval) -> list[ClosedFo
         quick = monomial_guess(family, span, exact, found)
         if quick is not None:
             return [quick]
+    return complete_forms(family, span, exact, found)
+
+
+def complete_forms(
+    family: Family, span: PatternInterval, exact: tuple[sp.Expr, ...], found: Sequence[SharpMember]
+) -> list[ClosedForm]:
+    """Closed forms on exact places: weights, and duals that are feasible at the samples found; not yet proved."""
+    lengths, panels = [s.T for s in found], tuple(k for k, _, _ in span.pattern)
     weights = solve_weights(family, span, exact, lengths[0])
     if weights is None:
         return []
@@ -370,7 +379,7 @@ def solve_weights(
 ) -> tuple[sp.Expr, ...] | None:
     """Exact weights from ``sum w_i H(u_i) = P`` on independent rows."""
     N = sp.Matrix([[h.subs(U, u) for h in family.rows[k]] for (k, _, _), u in zip(span.pattern, places, strict=True)]).T
-    numeric = np.array(N.subs(family.parameter, T).evalf(30).tolist(), dtype=float)
+    numeric = numeric_matrix(family, N.tolist(), T)
     rows = first_independent_rows(numeric)
     if len(rows) < N.cols:
         return None
@@ -380,8 +389,15 @@ def solve_weights(
 
 def decide_pair(family: Family, guess: ClosedForm, lower: sp.Expr, upper: sp.Expr, seconds: float) -> Verdict:
     """The ladder's verdict on the pair for all values between the ends."""
-    T, value, (start, end) = signed_parameter(family.parameter, lower, upper)
-    put = lambda e: sp.sympify(e, strict=True).subs(family.parameter, value)  # noqa: E731
+    T, value, ends = signed_parameter(family.parameter, lower, upper)
+    return decide_form(family, guess, {family.parameter: value}, {T: ends}, seconds)
+
+
+def decide_form(
+    family: Family, guess: ClosedForm, values: Mapping[sp.Symbol, sp.Expr], box: Box, seconds: float
+) -> Verdict:
+    """The ladder's verdict on the pair with expressions in the symbols of a box for the parameters."""
+    put = lambda e: sp.sympify(e, strict=True).subs(values)  # noqa: E731
     statements = [
         Optimum(
             regressors=tuple(put(h / sigma) for h in row),
@@ -392,7 +408,7 @@ def decide_pair(family: Family, guess: ClosedForm, lower: sp.Expr, upper: sp.Exp
             support=tuple(map(put, guess.places)),
             weights=tuple(put(w * family.sigma[k]) for w, k in zip(guess.weights, guess.panels, strict=True)),
             value=put(guess.value),
-            box={T: (start, end)},
+            box=box,
         )
         for row, sigma, ends in zip(family.rows, family.sigma, family.panels, strict=True)
     ]
