@@ -50,6 +50,7 @@ _HOMES = {
     "book": "navsym.book.entries",
     **dict.fromkeys(("Derivation", "derive"), "navsym.models.derivation"),
     **dict.fromkeys(("Observability", "observe"), "navsym.observability.answer"),
+    **dict.fromkeys(("Block", "BlockEstimator", "solve_blocks"), "navsym.guaranteed.blocks"),
     "Comparison": "navsym.guaranteed.baselines",
     "Estimator": "navsym.guaranteed.solver",
     "Formulation": "navsym.guaranteed.formulate",
@@ -117,6 +118,9 @@ if TYPE_CHECKING:
     from navsym.export.differences import diff as diff
     from navsym.export.driver import export as export
     from navsym.guaranteed.baselines import Comparison as Comparison
+    from navsym.guaranteed.blocks import Block as Block
+    from navsym.guaranteed.blocks import BlockEstimator as BlockEstimator
+    from navsym.guaranteed.blocks import solve_blocks as solve_blocks
     from navsym.guaranteed.formulate import Formulation as Formulation
     from navsym.guaranteed.formulate import formulate as formulate
     from navsym.guaranteed.phases.answer import PhaseMap as PhaseMap
