@@ -1033,8 +1033,8 @@ def can_meet(met: list[set[fmpq]], without: fmpq, most: int, budget: Iterator[bo
 def check_cones(item: Any) -> None:
     """lower <= the least sum of costs c_i(w_i) of vectors w_i with sum H_i' w_i = P <= upper; all numbers are rational.
 
-    c_i(w) is the largest w.r of noise r in a set B_i. If all H_i x lie in their B_i, x.P = sum w_i.H_i x <= sum c_i(w_i)
-    for all such w (weak duality, as above). The last w are those of the certificate.
+    c_i(w) is the largest w.r of noise r in a set B_i. If all H_i x lie in their B_i, x.P = sum w_i.(H_i x) is at most
+    sum c_i(w_i) for all such w (weak duality, as above). The weights of the certificate show the upper bound.
     """
     _, blocks, functional, dual, *ends, bits = read_fields(item, "kind blocks functional dual lower upper bits")
     ctx.prec, (lower, upper) = read_integer(bits, 53, 20000), map(read_number, ends)
@@ -1052,7 +1052,7 @@ def check_cones(item: Any) -> None:
 
 
 def find_cost(norm: Any, size: Any, w: fmpq_mat, y: fmpq_mat) -> arb:
-    """The largest w.r of noise r, in which y has to lie: r' size**-1 r <= 1, all |r_j| <= s_j, or sum |r_j|/s_j <= 1."""
+    """The largest w.r of noise r, where y has to lie, too: r' size**-1 r <= 1, |r_j| <= s_j, or sum |r_j|/s_j <= 1."""
     n = w.nrows()
     rows = read_list(size, lambda row: read_list(row, read_number, n if norm == "l2" else 1), n)
     if norm == "l2":

@@ -191,7 +191,7 @@ def solve_blocks(
     """The linear estimate with the least guaranteed error from blocks of vector measurements.
 
     Minimises ``sum_i max w_i . r_i`` over the noise of each block, subject to ``sum H_i' w_i = P``: second-order cones
-    for balls and ellipsoids. Both bounds of the value are computed in exact arithmetic and agree to 20 digits as a rule.
+    for balls and ellipsoids. Both bounds of the value are exact, and agree to 20 digits as a rule.
 
     blocks      : :class:`Block`, all of the same unknowns
     target      : P, one number an unknown; or a mapping of names to several, which gives an answer for each
@@ -204,7 +204,7 @@ def solve_blocks(
     >>> import navsym as nav
     >>> found = nav.solve_blocks([nav.Block([["1", "0"], ["0", "1"]]), nav.Block([["1", "1"]], "1/4")], ["1", "0"])
     >>> found.value.lower[:8], found.check()
-    ('0.883883', <1 checked, all ACCEPTED>)
+    ('0.820970', <1 checked, all ACCEPTED>)
     """
     if isinstance(target, Mapping):
         return {name: solve_target(blocks, P, constraints, name) for name, P in target.items()}

@@ -154,19 +154,24 @@ def sharp_member(family: Family, T: Fraction, pattern: Pattern | None) -> SharpM
 # -- exact linear algebra on the contacts ---------------------------------------------------------
 
 
+def recognise_places(family: Family, span: PatternInterval, found: Sequence[SharpMember]) -> tuple[sp.Expr, ...] | None:
+    """Exact places of a span from its samples; None where one is not recognised, or the samples are too few."""
+    if len(found) < 3:
+        return None
+    panels, lengths = [k for k, _, _ in span.pattern], [s.T for s in found]
+    columns = [[s.places[i] for s in found] for i in range(len(span.pattern))]
+    places = [recognise_place(family, k, c, lengths) for k, c in zip(panels, columns, strict=True)]
+    places = [middle_of_constant(family, k) if p is None else p for k, p in zip(panels, places, strict=True)]
+    exact = tuple(p for p in places if p is not None)
+    return exact if len(exact) == len(panels) else None
+
+
 def propose_closed_forms(family: Family, span: PatternInterval) -> list[ClosedForm]:
     """Closed forms of a span as guesses, not yet proved; the dual with most zeros first."""
     found = sample_regime(family, span)
-    if len(found) < 3:
+    exact = recognise_places(family, span, found)
+    if exact is None:
         return []
-    lengths = [s.T for s in found]
-    columns = [[s.places[i] for s in found] for i in range(len(span.pattern))]
-    panels = tuple(k for k, _, _ in span.pattern)
-    places = [recognise_place(family, k, c, lengths) for k, c in zip(panels, columns, strict=True)]
-    places = [middle_of_constant(family, k) if p is None else p for k, p in zip(panels, places, strict=True)]
-    if any(p is None for p in places):
-        return []
-    exact = tuple(p for p in places if p is not None)
     if family.growing and family.rows == (tuple(U**k for k in range(len(family.functional))),):
         quick = monomial_guess(family, span, exact, found)
         if quick is not None:

@@ -404,8 +404,16 @@ def solve_interval(section: RegularInterval, follow: FollowOptions, steps: StepC
     """All regimes between two values without a singular one inside."""
     family, lower, singular = section.family, section.lower, section.names
     low, high = inner_range(lower, section.upper, singular)
-    spans, guesses, first = sketch_interval(section, steps, limit)
+    spans = scan_interval(family, low, high, steps, limit)
     upper = section.upper if spans[-1].upper == high else to_rational(spans[-1].upper)
+    spans = drop_accidental_intervals(family, spans, limit.share(1 / 4))
+    steps.found(len(spans))
+    guesses = guess_forms(family, spans, steps, limit.share(1 / 2))
+    spans, guesses = limit.share(1 / 4).within("closed forms next to others", extend_forms, family, spans, guesses) or (
+        spans,
+        guesses,
+    )
+    first = locate_changes(family, spans, [g[0] if g else None for g in guesses], limit.share(1 / 2))
     changes, forms = agree_on_forms(family, spans, guesses, first, (lower, upper), limit.share(1 / 2))
     part = limit.share(1 / 4)
     merge_regimes(
@@ -434,21 +442,6 @@ def solve_interval(section: RegularInterval, follow: FollowOptions, steps: StepC
     )
     rows = tuple(regime for parts in regimes for regime in parts)
     return Phases(family, lower, upper, rows, honest, tuple(uncovered))
-
-
-def sketch_interval(
-    section: RegularInterval, steps: StepCounter, limit: Budget
-) -> tuple[list[PatternInterval], list[list[ClosedForm]], tuple[Boundary, ...]]:
-    """The spans of a section with their closed forms as guesses, and the changes between; not yet proved."""
-    family = section.family
-    spans = scan_interval(family, *inner_range(section.lower, section.upper, section.names), steps, limit)
-    spans = drop_accidental_intervals(family, spans, limit.share(1 / 4))
-    steps.found(len(spans))
-    guesses = guess_forms(family, spans, steps, limit.share(1 / 2))
-    found = limit.share(1 / 4).within("closed forms next to others", extend_forms, family, spans, guesses)
-    spans, guesses = found or (spans, guesses)
-    first = locate_changes(family, spans, [g[0] if g else None for g in guesses], limit.share(1 / 2))
-    return spans, guesses, first
 
 
 def scan_interval(

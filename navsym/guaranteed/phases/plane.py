@@ -17,20 +17,21 @@ from itertools import pairwise
 import sympy as sp
 
 from navsym.claims import OPEN, PROVED, Equation
-from navsym.core.balls import enclose
+from navsym.core.balls import UnsupportedError, enclose
 from navsym.core.errors import NavsymError
 from navsym.core.exact import to_rational
 from navsym.guaranteed.phases.answer import Curve, Meeting, Part, PhaseMap, Regime
-from navsym.guaranteed.phases.boundaries import recognise_root
+from navsym.guaranteed.phases.boundaries import boundary_events, recognise_root
 from navsym.guaranteed.phases.budget import Budget
 from navsym.guaranteed.phases.closed_forms import (
     ClosedForm,
     complete_forms,
     decide_form,
+    recognise_places,
     sample_regime,
     signed_parameter,
 )
-from navsym.guaranteed.phases.driver import StepCounter, is_same_form, plan_range, sketch_interval
+from navsym.guaranteed.phases.driver import StepCounter, inner_range, is_same_form, plan_range, scan_interval
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.patterns import Pattern, PatternInterval
 from navsym.guaranteed.phases.recognise import simple_place
@@ -43,6 +44,8 @@ SLICES, NARROWEST = 7, Fraction(1, 300)
 ENOUGH = 3
 #: A part that is not proved at once is halved so often.
 HALVINGS = 2
+#: How near to a change that a scan saw its curve has to pass.
+CLOSE = 1e-4
 #: Exact numbers nearer than this are looked at for equality.
 SAME = 1e-9
 #: Digits of the constants from which formulas are recognised.
@@ -55,16 +58,15 @@ Ends = tuple[sp.Expr, sp.Expr]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Slice:
-    """One value of the second parameter: patterns in order, their closed forms, and the changes between them.
+    """One value of the second parameter: patterns in order, and the places of their measurements where these are exact.
 
-    changes : exact places, None where one is not known exactly; ``why`` in words
+    singular : for each change of pattern the singular value at which it is, or None
     """
 
     value: sp.Rational
     spans: tuple[PatternInterval, ...]
-    forms: tuple[ClosedForm | None, ...]
-    changes: tuple[sp.Expr | None, ...]
-    why: tuple[str, ...]
+    places: tuple[tuple[sp.Expr, ...] | None, ...]
+    singular: tuple[sp.Expr | None, ...]
 
     @property
     def order(self) -> tuple[Pattern, ...]:
@@ -79,6 +81,7 @@ class Band:
     slices: tuple[Slice, ...]
     forms: tuple[ClosedForm | None, ...]
     curves: tuple[sp.Expr | None, ...]
+    why: tuple[str, ...]
     family: Family
 
     @property
@@ -177,21 +180,22 @@ def slice_family(family: Family, second: sp.Symbol, value: sp.Rational) -> Famil
 def sketch_slice(family: Family, value: sp.Rational, ends: Ends, limit: Budget, steps: StepCounter) -> Slice | None:
     """The slice at a value; None where the one-parameter search fails or leaves a part out."""
     spans: list[PatternInterval] = []
-    forms: list[ClosedForm | None] = []
-    changes: list[sp.Expr | None] = []
-    why: list[str] = []
+    places: list[tuple[sp.Expr, ...] | None] = []
+    singular: list[sp.Expr | None] = []
     try:
         plan, lost, _ = plan_range(family, *ends, limit)
         for section in plan:
-            if spans:
-                changes, why = [*changes, section.lower], [*why, "the regressors are dependent"]
-            here, guesses, between = sketch_interval(section, steps, limit)
-            spans, forms = [*spans, *here], [*forms, *(g[0] if g else None for g in guesses)]
-            changes, why = [*changes, *(b.at for b in between)], [*why, *(b.why for b in between)]
+            if section.family.left_out or lost:
+                return None
+            singular += [section.lower] if spans else []
+            here = scan_interval(
+                section.family, *inner_range(section.lower, section.upper, section.names), steps, limit
+            )
+            spans, singular = [*spans, *here], [*singular, *([None] * (len(here) - 1))]
+            places += [recognise_places(section.family, s, sample_regime(section.family, s)) for s in here]
     except NavsymError:
         return None
-    whole = not lost and not any(section.family.left_out for section in plan)
-    return Slice(value, tuple(spans), tuple(forms), tuple(changes), tuple(why)) if whole else None
+    return Slice(value, tuple(spans), tuple(places), tuple(singular))
 
 
 def group_slices(slices: Sequence[Slice]) -> list[list[Slice]]:
@@ -212,28 +216,77 @@ def lift_band(family: Family, second: sp.Symbol, slices: Sequence[Slice], limit:
     """Closed forms and curves with both parameters free, as far as the slices determine them."""
     middle = slices[len(slices) // 2]
     here = replace(family, beside={second: middle.value})
-    curves = [lift_numbers([one.changes[k] for one in slices], slices, second) for k in range(len(middle.changes))]
-    forms = []
+    forms: list[ClosedForm | None] = []
     for k in range(len(middle.spans)):
         what = f"a formula on slice {second.name} = {middle.value}"
         forms.append(limit.share(1 / 2).within(what, lift_form, here, second, slices, k))
-    return Band(tuple(slices), tuple(forms), tuple(curves), here)
+    found = [lift_curve(here, second, slices, forms, k, limit.share(1 / 2)) for k in range(len(middle.singular))]
+    return Band(tuple(slices), tuple(forms), tuple(at for at, _ in found), tuple(why for _, why in found), here)
 
 
 def lift_form(family: Family, second: sp.Symbol, slices: Sequence[Slice], k: int) -> ClosedForm | None:
     """The closed form of the k-th pattern of a band; None when its places are not recognised."""
-    forms = [form for one in slices if (form := one.forms[k]) is not None]
-    if len(forms) < len(slices) or len({form.panels for form in forms}) > 1:
+    known = [places for one in slices if (places := one.places[k]) is not None]
+    if len(known) < len(slices):
         return None
-    columns = zip(*(form.places for form in forms), strict=True)
-    places = [lift_place(column, slices, family.parameter, second) for column in columns]
-    if any(place is None for place in places):
-        return None
-    middle = slices[len(slices) // 2]
-    span = replace(middle.spans[k], pattern=middle.spans[k].pattern)
-    samples = sample_regime(family, span)
-    guesses = complete_forms(family, span, tuple(p for p in places if p is not None), samples) if samples else []
+    lifted = [lift_place(column, slices, family.parameter, second) for column in zip(*known, strict=True)]
+    places = tuple(place for place in lifted if place is not None)
+    span = slices[len(slices) // 2].spans[k]
+    samples = sample_regime(family, span) if len(places) == len(lifted) else []
+    guesses = complete_forms(family, span, places, samples) if samples else []
     return next(iter(guesses), None)
+
+
+def lift_curve(
+    family: Family,
+    second: sp.Symbol,
+    slices: Sequence[Slice],
+    forms: Sequence[ClosedForm | None],
+    k: int,
+    limit: Budget,
+) -> tuple[sp.Expr | None, str]:
+    """The curve between two patterns of a band, on which a weight, a room or a slack of a closed form vanishes."""
+    if slices[0].singular[k] is not None:
+        return lift_numbers([one.singular[k] for one in slices], slices, second), "the regressors are dependent"
+    T, spans = family.parameter, slices[len(slices) // 2].spans
+    events = [*boundary_events(family, spans[k], forms[k], spans[k + 1], forms[k + 1])]
+    for event, why in events:
+        at = lift_roots(event, T, second, slices, k)
+        if at is not None:
+            return at, why
+    for event, why in (pair for pair in events if T in pair[0].free_symbols):
+        what = f"a curve near {T.name} = {float(spans[k].upper):.6g}"
+        at = limit.share(1 / 4).within(what, solve_event, event, T, second, slices, k)
+        if at is not None:
+            return at, why
+    return None, ""
+
+
+def lift_roots(event: sp.Expr, T: sp.Symbol, second: sp.Symbol, slices: Sequence[Slice], k: int) -> sp.Expr | None:
+    """A formula of the roots of an event on slices, next to the changes that the scans saw."""
+    roots: list[sp.Expr | None] = []
+    for one in slices:
+        guess = float(one.spans[k].upper)
+        roots.append(recognise_root(event.subs(second, one.value), T, guess, CLOSE * max(1.0, guess)))
+        if roots[-1] is None:
+            return None
+    return lift_numbers(roots, slices, second)
+
+
+def solve_event(event: sp.Expr, T: sp.Symbol, second: sp.Symbol, slices: Sequence[Slice], k: int) -> sp.Expr | None:
+    """A solution by algebra that goes through the changes that the scans saw."""
+    try:
+        solutions = sp.solve(sp.fraction(sp.together(event))[0], T)
+    except NotImplementedError:
+        return None
+    for solution in solutions:
+        try:
+            misses = [enclose(solution.subs(second, one.value)) - float(one.spans[k].upper) for one in slices]
+        except UnsupportedError:
+            continue
+        if all(bool(abs(miss) < CLOSE) for miss in misses):
+            return solution
+    return None
 
 
 def lift_place(
@@ -354,7 +407,7 @@ def join_curves(bands: Sequence[Band], cuts: Sequence[Ends], first_ends: Ends, s
                 continue
             old = found.get(at)
             low = before[1] if old is None else old.low
-            found[at] = Curve(band.family.parameter.name, at, second.name, low, after[0], band.middle.why[k])
+            found[at] = Curve(band.family.parameter.name, at, second.name, low, after[0], band.why[k])
     upright = [
         one
         for pair, cut in zip(pairwise(bands), cuts[1:-1], strict=True)

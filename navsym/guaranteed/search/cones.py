@@ -104,7 +104,10 @@ def solve_cones(cones: Sequence[Cone], functional: fmpq_mat) -> tuple[Array, lis
     white = np.vstack([whiten(cone) @ h for cone, h in zip(cones, H, strict=True)])
     turn = np.linalg.inv(np.linalg.qr(white)[1])  # orthonormal columns
     extra = sum(cone.rows for cone in cones if cone.norm == "l1")
-    rows, right, kinds, used = [], [], [], 0
+    rows: list[Array] = []
+    right: list[Array] = []
+    kinds: list[Any] = []
+    used = 0
     for cone, h in zip(cones, H, strict=True):
         part, bound, kind, more = cone_rows(cone, whiten(cone) @ h @ turn, extra, used, clarabel)
         rows, right, kinds, used = [*rows, part], [*right, bound], [*kinds, *kind], used + more
