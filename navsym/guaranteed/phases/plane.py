@@ -16,7 +16,7 @@ from itertools import pairwise
 
 import sympy as sp
 
-from navsym.claims import OPEN, PROVED, Equation
+from navsym.claims import OPEN, PROVED, REFUTED, Equation
 from navsym.core.balls import UnsupportedError, enclose
 from navsym.core.errors import NavsymError
 from navsym.core.exact import to_rational
@@ -48,6 +48,8 @@ HALVINGS = 2
 CLOSE = 1e-4
 #: Exact numbers nearer than this are looked at for equality.
 SAME = 1e-9
+#: Seconds for the first attempt in each coordinate: a proof that exists is mostly had soon.
+QUICK = 12.0
 #: Digits of the constants from which formulas are recognised.
 DIGITS = 90
 #: The share of a part, from its left curve to its right one.
@@ -187,15 +189,16 @@ def sketch_slice(family: Family, value: sp.Rational, ends: Ends, limit: Budget, 
         for section in plan:
             if section.family.left_out or lost:
                 return None
-            singular += [section.lower] if spans else []
-            here = scan_interval(
-                section.family, *inner_range(section.lower, section.upper, section.names), steps, limit
-            )
-            spans, singular = [*spans, *here], [*singular, *([None] * (len(here) - 1))]
+            low, high = inner_range(section.lower, section.upper, section.names)
+            here = scan_interval(section.family, low, high, steps, limit)
+            if here[-1].upper != high:
+                return None
+            singular += [*([section.lower] if spans else []), *([None] * (len(here) - 1))]
             places += [recognise_places(section.family, s, sample_regime(section.family, s)) for s in here]
+            spans += here
     except NavsymError:
         return None
-    return Slice(value, tuple(spans), tuple(places), tuple(singular))
+    return Slice(value, tuple(spans), tuple(places), tuple(singular)) if spans else None
 
 
 def group_slices(slices: Sequence[Slice]) -> list[list[Slice]]:
@@ -381,18 +384,46 @@ def prove_part(part: Part, form: ClosedForm, second: sp.Symbol, limit: Budget, h
         limit.gives_up(f"the proof of a closed form for {second.name} from {part.low} to {part.high}")
         return [part]
     name, value, box = signed_parameter(second, part.low, part.high)
-    across = regime.lower + (regime.upper - regime.lower) * ACROSS
-    puts = {regime.family.parameter: across.subs(second, value), second: value}
-    seconds = limit.share(1 / 2).left() if halvings else limit.left()
-    verdict = decide_form(regime.family, form, puts, {ACROSS: (sp.S.Zero, sp.S.One), name: box}, seconds)
-    if verdict.status.holds and not verdict.assumptions:
-        return [replace(part, regime=replace(regime, closed=replace(form, verdict=verdict), status=verdict.status))]
+    choices = list(first_coordinates(part, second))
+    for k, (at, ends) in enumerate([*choices, *choices]):
+        puts = {regime.family.parameter: at.subs(second, value), second: value}
+        share = limit.share(1 / (2 * len(choices) - k + (halvings > 0))).left()
+        seconds = min(share, QUICK) if k < len(choices) else share
+        verdict = decide_form(regime.family, form, puts, {ACROSS: ends, name: box}, seconds)
+        if verdict.status.holds and not verdict.assumptions:
+            proved = replace(form, verdict=verdict)
+            return [replace(part, regime=replace(regime, closed=proved, status=verdict.status))]
+        if verdict.status is REFUTED:
+            break
     if not halvings:
         return [part]
     middle = (part.low + part.high) / 2
     halves = replace(part, high=middle), replace(part, low=middle)
     first = prove_part(halves[0], form, second, limit.share(1 / 2), halvings - 1)
     return [*first, *prove_part(halves[1], form, second, limit, halvings - 1)]
+
+
+def first_coordinates(part: Part, second: sp.Symbol) -> Iterator[tuple[sp.Expr, Ends]]:
+    """The first parameter as ``left + (right - left) s``, or as ``g s`` with a curve ``c g`` beside the part; and s.
+
+    Each takes all values in the part; the second may take more, where the closed form then has to hold as well.
+    """
+    left, right = part.regime.lower, part.regime.upper
+    yield left + (right - left) * ACROSS, (sp.S.Zero, sp.S.One)
+    if bool(enclose(part.low) > 0):
+        for g in dict.fromkeys(side.as_independent(second)[1] for side in (left, right)):
+            ratios = [sp.simplify(side / g) for side in (left, right)]
+            if all(is_power(ratio, second) for ratio in ratios):
+                ends = [ratio.subs(second, end) for end in (part.low, part.high) for ratio in ratios]
+                yield g * ACROSS, (min(ends, key=to_double), max(ends, key=to_double))
+
+
+def is_power(ratio: sp.Expr, second: sp.Symbol) -> bool:
+    """True for a positive number times a power of the second parameter, which is positive: it is monotone."""
+    factor, power = ratio.as_independent(second)
+    base, exponent = power.as_base_exp()
+    good = power == 1 or (base == second and exponent.is_Rational)
+    return bool(good and bool(enclose(factor) > 0))
 
 
 # Curves and the points where they meet
