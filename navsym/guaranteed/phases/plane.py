@@ -113,8 +113,7 @@ def find_map(
     steps = StepCounter(progress, 0)
     slices = cut_slices(family, second, first_ends, second_ends, limit.share(1 / 2), steps)
     bands = [lift_band(family, second, group, limit.share(1 / 4)) for group in group_slices(slices)]
-    outer = [(end, end) for end in second_ends]
-    cuts = [outer[0], *(meet_bands(a, b, second, first_ends) for a, b in pairwise(bands)), outer[1]]
+    cuts = cut_range(bands, second, first_ends, second_ends)
     parts: list[Part] = []
     for k, (band, (before, after)) in enumerate(zip(bands, pairwise(cuts), strict=False)):
         parts += prove_band(band, second, first_ends, (before[1], after[0]), limit.share(1 / (len(bands) - k)))
@@ -255,14 +254,17 @@ def lift_band(family: Family, second: sp.Symbol, slices: Sequence[Slice], limit:
 
 def lift_form(family: Family, second: sp.Symbol, slices: Sequence[Slice], k: int) -> ClosedForm | None:
     """The closed form of the k-th pattern of a band; None when its places are not recognised."""
-    known = [places for one in slices if (places := one.places[k]) is not None]
-    if len(known) < len(slices):
+    known = [(one, places) for one in slices if (places := one.places[k]) is not None]
+    if len(known) < ENOUGH:
         return None
-    lifted = [lift_place(column, slices, family.parameter, second) for column in zip(*known, strict=True)]
+    clear = [one for one, _ in known]
+    columns = zip(*(places for _, places in known), strict=True)
+    lifted = [lift_place(column, clear, family.parameter, second) for column in columns]
     places = tuple(place for place in lifted if place is not None)
-    span = slices[len(slices) // 2].spans[k]
-    samples = sample_regime(family, span) if len(places) == len(lifted) else []
-    guesses = complete_forms(family, span, places, samples) if samples else []
+    middle = clear[len(clear) // 2]
+    here = replace(family, beside={second: middle.value})
+    samples = sample_regime(here, middle.spans[k]) if len(places) == len(lifted) else []
+    guesses = complete_forms(here, middle.spans[k], places, samples) if samples else []
     return next(iter(guesses), None)
 
 
@@ -293,13 +295,14 @@ def lift_curve(
 
 def lift_roots(event: sp.Expr, T: sp.Symbol, second: sp.Symbol, slices: Sequence[Slice], k: int) -> sp.Expr | None:
     """A formula of the roots of an event on slices, next to the changes that the scans saw."""
-    roots: list[sp.Expr | None] = []
+    found: list[tuple[Slice, sp.Expr]] = []
     for one in slices:
         guess = float(one.spans[k].upper)
-        roots.append(recognise_root(event.subs(second, one.value), T, guess, CLOSE * max(1.0, guess)))
-        if roots[-1] is None:
+        root = recognise_root(event.subs(second, one.value), T, guess, CLOSE * max(1.0, guess))
+        found += [] if root is None else [(one, root)]
+        if not found:
             return None
-    return lift_numbers(roots, slices, second)
+    return lift_numbers([root for _, root in found], [one for one, _ in found], second)
 
 
 def solve_event(event: sp.Expr, T: sp.Symbol, second: sp.Symbol, slices: Sequence[Slice], k: int) -> sp.Expr | None:
@@ -350,13 +353,27 @@ def lift_numbers(numbers: Sequence[sp.Expr | None], slices: Sequence[Slice], sec
 # Where one order of patterns ends and the next begins
 
 
-def meet_bands(one: Band, other: Band, second: sp.Symbol, first_ends: Ends) -> Ends:
+def cut_range(bands: Sequence[Band], second: sp.Symbol, first_ends: Ends, second_ends: Ends) -> list[Ends]:
+    """The ends of the second range, and where each band ends and the next begins: in order, some as gaps."""
+    beyond = to_double(second_ends[1] - second_ends[0]) * float(NEAR)
+    cuts = [(second_ends[0], second_ends[0])]
+    for one, other in pairwise(bands):
+        cut, last = meet_bands(one, other, second, first_ends, beyond), cuts[-1][1]
+        if not to_double(last) < to_double(cut[0]) <= to_double(cut[1]) < to_double(second_ends[1]):
+            start = max(last, one.edges[1], key=to_double)
+            cut = start, max(start, other.edges[0], key=to_double)
+        cuts.append(cut)
+    return [*cuts, (second_ends[1], second_ends[1])]
+
+
+def meet_bands(one: Band, other: Band, second: sp.Symbol, first_ends: Ends, beyond: float) -> Ends:
     """Where one band ends and the next begins: the same exact value twice, or the last slice and the first.
 
-    There two curves of a band meet, one of them meets an end of the first range, or two values are equal.
+    There two curves of a band meet, one of them meets an end of the first range, or two values are equal. A scan does
+    not see patterns next to an end of its range, so that the value may lie a little beyond the slices.
     """
     low, high = one.edges[1], other.edges[0]
-    middle, reach = float(low + high) / 2, float(high - low) / 2
+    middle, reach = float(low + high) / 2, float(high - low) / 2 + beyond
     found: dict[sp.Expr, int] = {}
     for event in [*closing_events(one, first_ends), *closing_events(other, first_ends), *value_events(one, other)]:
         root = recognise_root(sp.together(event), second, middle, reach)
@@ -395,7 +412,7 @@ def prove_band(band: Band, second: sp.Symbol, first_ends: Ends, ends: Ends, limi
     marks = [first_ends[0], *band.curves, first_ends[1]]
     known = [k for k, mark in enumerate(marks) if mark is not None]
     parts: list[Part] = []
-    for j, (a, b) in enumerate(pairwise(known)):
+    for j, (a, b) in enumerate(pairwise(known) if to_double(ends[1] - ends[0]) > 0 else ()):
         share = limit.share(1 / (len(known) - 1 - j))
         form = band.forms[a] if b == a + 1 else None
         rest = Part(*ends, Regime(band.family, band.middle.spans[a], marks[a], marks[b], None, OPEN))  # type: ignore[arg-type]
@@ -415,8 +432,8 @@ def prove_part(
     choices = list(first_coordinates(part, second))
     for k, (at, ends) in enumerate([*choices, *choices]):
         puts = {regime.family.parameter: at.subs(second, value), second: value}
-        share = limit.share(1 / (2 * len(choices) - k + (halvings > 0))).left()
-        seconds = min(share, QUICK) if k < len(choices) else share
+        seconds = limit.share(1 / (2 * len(choices) - k + (halvings > 0))).left()
+        seconds = min(seconds, QUICK) if k < len(choices) else seconds
         verdict = decide_form(regime.family, form, puts, {ACROSS: ends, name: box}, seconds)
         if verdict.status.holds and not verdict.assumptions:
             proved = replace(form, verdict=verdict)
