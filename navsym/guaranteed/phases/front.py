@@ -67,27 +67,38 @@ def phases(
     if twice is not None:
         raise DuplicateError(f"expected one value; got two of {twice}; give one", where=f"phases: {twice}")
     given = {**(values or {}), **parameters}
+    refuse_problem(model)
+    pairs = {name: value for name, value in given.items() if isinstance(value, (tuple, list))}
+    names = names_of_parameters(pairs, parameter)
+    fixed = {name: value for name, value in given.items() if name not in pairs}
+    with file_in_errors(model):
+        contents = contents_of(model, None, fixed, "phases")
+        first, *second = [range_ends(contents, name, pairs.get(name)) for name in names]
+        family = family_of(contents, target, *names)
+        answer: Phases | PhaseMap
+        if second:
+            refuse_options(quick, unique)
+            beside = declared_symbol(contents, names[1])
+            answer = find_map(family, beside, first, second[0], Budget.of(seconds), progress)
+        else:
+            answer = find_phases(family, *first, certify=not quick, unique=unique, seconds=seconds, progress=progress)
+    return replace(answer, question=Question(model, target, fixed))
+
+
+def refuse_problem(model: Any) -> None:
+    """Raises DomainError for a problem without a free parameter."""
     if isinstance(model, GuaranteedProblem):
         message = "expected a model with a free parameter; got a problem, whose numbers are all given; give the model"
         raise DomainError(message, where="phases: model")
-    pairs = {name: value for name, value in given.items() if isinstance(value, (tuple, list))}
+
+
+def names_of_parameters(pairs: Mapping[str, Any], parameter: str | Sequence[str]) -> list[str]:
+    """The one or two parameters that vary. Raises DomainError."""
     names = [*pairs] or ([parameter] if isinstance(parameter, str) else [*parameter])
     if not 1 <= len(set(names)) == len(names) <= 2:
         got = ", ".join(map(str, names)) or "none"
         raise DomainError(f"expected a range, or two; got those of {got}; give values to the others", where="phases")
-    fixed = {name: value for name, value in given.items() if name not in pairs}
-    with file_in_errors(model):
-        contents = contents_of(model, None, fixed, "phases")
-        ends = [range_ends(contents, name, pairs.get(name)) for name in names]
-        family = family_of(contents, target, *names)
-        answer: Phases | PhaseMap
-        if len(names) == 2:
-            refuse_options(quick, unique)
-            second = declared_symbol(contents, names[1])
-            answer = find_map(family, second, ends[0], ends[1], Budget.of(seconds), progress)
-        else:
-            answer = find_phases(family, *ends[0], certify=not quick, unique=unique, seconds=seconds, progress=progress)
-    return replace(answer, question=Question(model, target, fixed))
+    return names
 
 
 def refuse_options(quick: bool, unique: bool) -> None:
