@@ -15,7 +15,6 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-import sympy as sp
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -238,7 +237,7 @@ def plot_map(found: PhaseMap) -> Figure:
     return made
 
 
-def program_values(expression: sp.Expr, name: sp.Symbol, at: Array) -> Array:
+def program_values(expression: Any, name: Any, at: Array) -> Array:
     """An expression at many values of its symbol, from balls."""
     program = tape(expression)
     return np.array([float(enclose(program, {name: exact_ball(Fraction(float(x)))}).mid()) for x in at])
