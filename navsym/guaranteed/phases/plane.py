@@ -18,7 +18,7 @@ from itertools import combinations, groupby, pairwise
 import sympy as sp
 
 from navsym.claims import OPEN, PROVED, REFUTED, Equation
-from navsym.core.balls import UnsupportedError, enclose
+from navsym.core.balls import enclose
 from navsym.core.errors import NavsymError
 from navsym.core.exact import to_rational
 from navsym.guaranteed.phases.answer import Curve, Meeting, Part, PhaseMap, Regime
@@ -248,7 +248,7 @@ def lift_band(family: Family, second: sp.Symbol, slices: Sequence[Slice], limit:
     for k in range(len(middle.spans)):
         what = f"a formula on slice {second.name} = {middle.value}"
         forms.append(limit.share(1 / 2).within(what, lift_form, here, second, slices, k))
-    found = [lift_curve(here, second, slices, forms, k, limit.share(1 / 2)) for k in range(len(middle.singular))]
+    found = [lift_curve(here, second, slices, forms, k) for k in range(len(middle.singular))]
     return Band(tuple(slices), tuple(forms), tuple(at for at, _ in found), tuple(why for _, why in found), here)
 
 
@@ -269,25 +269,14 @@ def lift_form(family: Family, second: sp.Symbol, slices: Sequence[Slice], k: int
 
 
 def lift_curve(
-    family: Family,
-    second: sp.Symbol,
-    slices: Sequence[Slice],
-    forms: Sequence[ClosedForm | None],
-    k: int,
-    limit: Budget,
+    family: Family, second: sp.Symbol, slices: Sequence[Slice], forms: Sequence[ClosedForm | None], k: int
 ) -> tuple[sp.Expr | None, str]:
     """The curve between two patterns of a band, on which a weight, a room or a slack of a closed form vanishes."""
     if slices[0].singular[k] is not None:
         return lift_numbers([one.singular[k] for one in slices], slices, second), "the regressors are dependent"
     T, spans = family.parameter, slices[len(slices) // 2].spans
-    events = [*boundary_events(family, spans[k], forms[k], spans[k + 1], forms[k + 1])]
-    for event, why in events:
+    for event, why in boundary_events(family, spans[k], forms[k], spans[k + 1], forms[k + 1]):
         at = lift_roots(event, T, second, slices, k)
-        if at is not None:
-            return at, why
-    for event, why in (pair for pair in events if T in pair[0].free_symbols):
-        what = f"a curve near {T.name} = {float(spans[k].upper):.6g}"
-        at = limit.share(1 / 4).within(what, solve_event, event, T, second, slices, k)
         if at is not None:
             return at, why
     return None, ""
@@ -303,22 +292,6 @@ def lift_roots(event: sp.Expr, T: sp.Symbol, second: sp.Symbol, slices: Sequence
         if not found:
             return None
     return lift_numbers([root for _, root in found], [one for one, _ in found], second)
-
-
-def solve_event(event: sp.Expr, T: sp.Symbol, second: sp.Symbol, slices: Sequence[Slice], k: int) -> sp.Expr | None:
-    """A solution by algebra that goes through the changes that the scans saw."""
-    try:
-        solutions = sp.solve(sp.fraction(sp.together(event))[0], T)
-    except NotImplementedError:
-        return None
-    for solution in solutions:
-        try:
-            misses = [enclose(solution.subs(second, one.value)) - float(one.spans[k].upper) for one in slices]
-        except UnsupportedError:
-            continue
-        if all(bool(abs(miss) < CLOSE) for miss in misses):
-            return solution
-    return None
 
 
 def lift_place(
@@ -460,7 +433,7 @@ def first_coordinates(part: Part, second: sp.Symbol) -> Iterator[tuple[sp.Expr, 
     yield left + (right - left) * ACROSS, (sp.S.Zero, sp.S.One)
     if bool(enclose(part.low) > 0):
         for g in dict.fromkeys(side.as_independent(second)[1] for side in (left, right)):
-            ratios = [sp.simplify(side / g) for side in (left, right)]
+            ratios = [side / g for side in (left, right)]
             if all(is_power(ratio, second) for ratio in ratios):
                 ends = [ratio.subs(second, end) for end in (part.low, part.high) for ratio in ratios]
                 yield g * ACROSS, (min(ends, key=to_double), max(ends, key=to_double))
