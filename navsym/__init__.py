@@ -51,6 +51,7 @@ _HOMES = {
     "book": "navsym.book.entries",
     **dict.fromkeys(("Derivation", "derive"), "navsym.models.derivation"),
     **dict.fromkeys(("Observability", "observe"), "navsym.observability.answer"),
+    **dict.fromkeys(("Block", "BlockEstimator", "solve_blocks"), "navsym.guaranteed.blocks"),
     "Comparison": "navsym.guaranteed.baselines",
     "Estimator": "navsym.guaranteed.solver",
     "Formulation": "navsym.guaranteed.formulate",
@@ -58,9 +59,9 @@ _HOMES = {
     "Estimate": "navsym.guaranteed.streaming.estimate",
     "NavsymError": "navsym.core.errors",
     "Number": "navsym.core.numbers",
-    "Phases": "navsym.guaranteed.phases.answer",
+    **dict.fromkeys(("PhaseMap", "Phases"), "navsym.guaranteed.phases.answer"),
     "formulate": "navsym.guaranteed.formulate",
-    "phases": "navsym.guaranteed.phases.driver",
+    "phases": "navsym.guaranteed.phases.front",
     "solve": "navsym.guaranteed.solver",
     **dict.fromkeys(
         ("Verdict", "Verdicts", "Status", "PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"), "navsym.claims"
@@ -98,7 +99,8 @@ __all__ = ["__version__", *sorted(_HOMES)]
 
 #: Types of answers and of their parts, for annotations. ``dir(navsym)`` leaves them out: it lists what one calls.
 _ANSWERS = {
-    *("Comparison", "Conventions", "Derivation", "Estimate", "Estimator", "Formulation", "Ledger", "Observability"),
+    *("Bank", "BlockEstimator", "Comparison", "Conventions", "Derivation", "Estimate", "Estimator", "Formulation"),
+    *("Ledger", "Observability", "PhaseMap"),
     *("Number", "Phases", "ProgressBar", "Reading", "Status", "Verdict", "Verdicts"),
 }
 
@@ -125,10 +127,14 @@ if TYPE_CHECKING:
     from navsym.export.differences import diff as diff
     from navsym.export.driver import export as export
     from navsym.guaranteed.baselines import Comparison as Comparison
+    from navsym.guaranteed.blocks import Block as Block
+    from navsym.guaranteed.blocks import BlockEstimator as BlockEstimator
+    from navsym.guaranteed.blocks import solve_blocks as solve_blocks
     from navsym.guaranteed.formulate import Formulation as Formulation
     from navsym.guaranteed.formulate import formulate as formulate
+    from navsym.guaranteed.phases.answer import PhaseMap as PhaseMap
     from navsym.guaranteed.phases.answer import Phases as Phases
-    from navsym.guaranteed.phases.driver import phases as phases
+    from navsym.guaranteed.phases.front import phases as phases
     from navsym.guaranteed.solver import Estimator as Estimator
     from navsym.guaranteed.solver import solve as solve
     from navsym.guaranteed.streaming.estimate import Estimate as Estimate

@@ -1030,6 +1030,43 @@ def can_meet(met: list[set[fmpq]], without: fmpq, most: int, budget: Iterator[bo
     return not met or (most > 0 and any(can_meet(*choice) for choice in rest))
 
 
+def check_cones(item: Any) -> None:
+    """lower <= the least sum of costs c_i(w_i) of vectors w_i with sum H_i' w_i = P <= upper; all numbers are rational.
+
+    c_i(w) is the largest w.r of noise r in a set B_i. If all H_i x lie in their B_i, x.P = sum w_i.(H_i x) is at most
+    sum c_i(w_i) for all such w (weak duality, as above). The weights of the certificate show the upper bound.
+    """
+    _, blocks, functional, dual, *ends, bits = read_fields(item, "kind blocks functional dual lower upper bits")
+    ctx.prec, (lower, upper) = read_integer(bits, 53, 20000), map(read_number, ends)
+    P = read_list(functional, read_number)
+    x, rest, total = fmpq_mat(len(P), 1, read_list(dual, read_number, len(P))), fmpq_mat(len(P), 1, P), arb(0)
+    for H, norm, size, weights in read_list(blocks, lambda block: read_fields(block, "H norm size weights")):
+        w = read_list(weights, read_number)
+        rows = read_list(H, lambda row: read_list(row, read_number, len(P)), len(w))
+        matrix, column = fmpq_mat(len(w), len(P), [e for row in rows for e in row]), fmpq_mat(len(w), 1, w)
+        rest -= matrix.transpose() * column
+        total += find_cost(norm, size, column, matrix * x)
+    require(not any(rest.entries()), "the weights do not carry the functional")
+    require((x.transpose() * fmpq_mat(len(P), 1, P))[0, 0] >= lower, "the lower bound is above x.P")
+    require(total <= upper, "the weights cost more than the upper bound")
+
+
+def find_cost(norm: Any, size: Any, w: fmpq_mat, y: fmpq_mat) -> arb:
+    """The largest w.r of noise r, where y has to lie, too: r' size**-1 r <= 1, |r_j| <= s_j, or sum |r_j|/s_j <= 1."""
+    n = w.nrows()
+    rows = read_list(size, lambda row: read_list(row, read_number, n if norm == "l2" else 1), n)
+    if norm == "l2":
+        shape = fmpq_mat(n, n, [e for row in rows for e in row])
+        require(shape == shape.transpose() and is_definite(shape), "expected a positive definite matrix")
+        require((y.transpose() * shape.solve(y))[0, 0] <= 1, "the dual leaves the noise")
+        return arb((w.transpose() * shape * w)[0, 0]).sqrt()
+    require(norm in ("linf", "l1") and all(s > 0 for (s,) in rows), "expected a norm and positive sizes")
+    parts = [abs(e) / s for e, (s,) in zip(y.entries(), rows, strict=True)]
+    costs = [abs(e) * s for e, (s,) in zip(w.entries(), rows, strict=True)]
+    require((max(parts) if norm == "linf" else sum(parts)) <= 1, "the dual leaves the noise")
+    return arb(sum(costs) if norm == "linf" else max(costs))
+
+
 # -- 9. Statements and their proofs ------------------------------------------------------------------------------------
 # A goal says that a term is = 0, != 0, >= 0 or > 0 at all points of a box where the term, and other terms that have to
 # exist, are defined. A proof is a tree: an object with a rule, its data and the proofs of its premises, which are goals
@@ -3988,7 +4025,7 @@ def grant(statement: Any, item: Any) -> str:
 # -- 11. The entry -----------------------------------------------------------------------------------------------------
 EVERY_CHECK: tuple[Callable[[Any], None], ...] = (
     check_identity, check_exponential, check_rank, check_observability, check_condition, check_positivity, check_all,
-    check_gap, check_touch, check_exclusion, check_proof, check_counterexample, check_words, check_sized,
+    check_gap, check_touch, check_exclusion, check_cones, check_proof, check_counterexample, check_words, check_sized,
 )  # fmt: skip
 KINDS = {check.__name__.removeprefix("check_"): check for check in EVERY_CHECK}
 KINDS |= {"sliver": check_gap, "range": check_touch}

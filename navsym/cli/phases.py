@@ -1,4 +1,4 @@
-"""The complete solution as a parameter varies: regimes, boundaries, closed forms."""
+"""The complete solution as a parameter varies, or two: regimes, boundaries, closed forms."""
 
 from __future__ import annotations
 
@@ -18,9 +18,12 @@ RESUME = "nothing is saved; a shorter --range, --quick or fewer --seconds take l
 def command(
     file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
     target: Annotated[str | None, typer.Option(help="name of the target; not needed where the file has one")] = None,
-    parameter: Annotated[str, typer.Option(help="name of the parameter that varies")] = "T",
+    parameter: Annotated[
+        str, typer.Option(help='name of the parameter that varies, or of two: "T, p" makes a map')
+    ] = "T",
     range_: Annotated[
-        str | None, typer.Option("--range", help='its range, such as "0, 2*pi"; default: the declared one')
+        str | None,
+        typer.Option("--range", help='its range, such as "0, 2*pi"; of two "0, 2*pi; 1, 2"; default: those declared'),
     ] = None,
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="value of another parameter, such as w=1/2; may be repeated")
@@ -42,16 +45,18 @@ def command(
     import navsym as nav
 
     values: dict[str, Any] = dict(values_of(set_))
-    if range_ is not None:
-        if parameter in values:
-            message = f"expected a range or a value of {parameter}; got both; leave one out"
-            raise DuplicateError(message, where="--range")
-        values[parameter] = ends_of(range_)
+    names = [name.strip() for name in parameter.split(",")]
+    ranges = {} if range_ is None else ranges_of(names, range_)
+    twice = next((name for name in ranges if name in values), None)
+    if twice is not None:
+        message = f"expected a range or a value of {twice}; got both; leave one out"
+        raise DuplicateError(message, where="--range")
+    values |= ranges
     with Progress("steps", resume=RESUME) as bar:
         answer = nav.phases(
             file,
             target,
-            parameter=parameter,
+            parameter=names,
             quick=quick,
             unique=unique,
             seconds=seconds,
@@ -62,7 +67,16 @@ def command(
         for k, certificate in enumerate(answer.certificates()):
             write_text(out.with_name(f"{out.stem}-{k + 1}.json"), dumps(certificate) + "\n")
     document = answer.document()
-    emit(document, as_json=json_, text=lambda: as_text(document))
+    emit(document, as_json=json_, text=lambda: (map_text if len(names) == 2 else as_text)(document))
+
+
+def ranges_of(names: list[str], text: str) -> dict[str, tuple[str, str]]:
+    """The ranges of parameters, separated by semicolons."""
+    texts = text.split(";")
+    if len(texts) != len(names):
+        message = f'expected {len(names)} ranges; got {len(texts)}; write --parameter "T, p" --range "0, 2*pi; 1, 2"'
+        raise ExpressionSyntaxError(message, where="--range")
+    return {name: ends_of(ends) for name, ends in zip(names, texts, strict=True)}
 
 
 def ends_of(text: str) -> tuple[str, str]:
@@ -90,6 +104,43 @@ def as_text(document: dict[str, Any]) -> str:
             title = f"Regime {k}: values at some {name}"
             parts.append(table((name, "value", "time", "weight", "measurement"), rows, title=title))
     return "\n\n".join([*parts, "\n".join(remarks(document))])
+
+
+def map_text(document: dict[str, Any]) -> str:
+    """Regions with their parts, times and weights, the curves between them, points where these meet, what is left."""
+    first, second = document["parameters"]
+    ends = " and ".join(f"{name} from {a} to {b}" for name, (a, b) in document["range"].items())
+    rows = [row for k, region in enumerate(document["regions"], 1) for row in region_rows(k, region, first, second)]
+    heads = ("region", second, first, "value", "time", "weight", "measurement", "verdict")
+    parts = [table(heads, rows, title=f"{document['target']}, {ends}")]
+    if document["curves"]:
+        rows = [(c["equation"], between_ends(c, {first, second}), c["why"]) for c in document["curves"]]
+        parts.append(table(("curve", "for", "event"), rows, title="Curves"))
+    if document["meetings"]:
+        rows = [(m[first], m[second], "; ".join(m["curves"])) for m in document["meetings"]]
+        parts.append(table((first, second, "curves"), rows, title="Points where curves meet"))
+    lines = [f"Given up: {what}; more --seconds may help." for what in document.get("given_up", ())]
+    lines += [f"Not covered: {between_ends(part, {first, second})}." for part in document["uncovered"]]
+    lines.append(f"Closed forms are proved on {document['covered']:.4%} of the rectangle.")
+    return "\n\n".join([*parts, "\n".join(lines)])
+
+
+def region_rows(k: int, region: dict[str, Any], first: str, second: str) -> list[tuple[str, ...]]:
+    """One line for every part and for every time, whichever are more."""
+    rows = []
+    for i in range(max(len(region["parts"]), len(region["support"]))):
+        part, point = region["parts"][i : i + 1], region["support"][i : i + 1]
+        ends = [" to ".join(map(short, part[0][name])) if part else "" for name in (second, first)]
+        place = (point[0]["at"], weight(point[0]), point[0]["measurement"]) if point else ("", "", "")
+        rows.append(("" if i else str(k), *ends, "" if i else region["value"], *place, "" if i else region["status"]))
+    return rows
+
+
+def between_ends(row: dict[str, Any], names: set[str]) -> str:
+    """The ranges in a row, in words."""
+    return ", ".join(
+        f"{name} from {short(row[name][0])} to {short(row[name][1])}" for name in sorted(names & row.keys())
+    )
 
 
 def regime_rows(k: int, regime: dict[str, Any], name: str) -> list[tuple[str, ...]]:

@@ -20,7 +20,7 @@ from navsym.export.languages.names import function_name
 from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source
 from navsym.export.ready import READY, algorithm, is_program, units_of_paper
 from navsym.guaranteed.phases.answer import Phases, Regime
-from navsym.guaranteed.phases.driver import phases
+from navsym.guaranteed.phases.front import phases
 from navsym.guaranteed.solver import Estimator, solve
 from navsym.language.algebra import to_sympy
 from navsym.language.declarations import box_of, symbols_of

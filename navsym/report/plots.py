@@ -23,9 +23,9 @@ from matplotlib.patches import Rectangle
 from navsym.claims import Record
 from navsym.core.balls import Tape, enclose, exact_ball, tape
 from navsym.core.errors import DomainError, NavsymError
-from navsym.guaranteed.phases.answer import Phases, Regime
+from navsym.guaranteed.phases.answer import PhaseMap, Phases, Regime
 from navsym.guaranteed.solver import Estimator
-from navsym.language.expression import parse, symbol
+from navsym.language.expression import parse, symbol, to_text
 from navsym.language.names import quote
 from navsym.multimodel.engine import Estimates
 from navsym.report.explain import entries_of
@@ -158,8 +158,9 @@ def plot(answer: Any) -> Figure:
     """A picture of an answer, as a matplotlib figure; a notebook shows it, ``savefig`` writes it.
 
     An Estimator shows its dual polynomials within their bounds, and its weights; Phases show value and times by the
-    parameter; estimates of a filter show the probabilities of the modes; a track shows velocities with their
-    deviations; condition numbers are compared with doubles; a ledger shows its verdicts; a refuted record both sides.
+    parameter; a map shows its regions; estimates of a filter show the probabilities of the modes; a track shows
+    velocities with their deviations; condition numbers are compared with doubles; a ledger shows its verdicts; a
+    refuted record both sides.
 
     Raises DomainError for an answer without a picture.
 
@@ -219,6 +220,29 @@ def plot_phases(found: Phases) -> Figure:
     return phase_diagram(rows, parameter=found.parameter, unit=MODEL_UNIT, quantity=f"deviation of {found.target}, 1")
 
 
+def plot_map(found: PhaseMap) -> Figure:
+    """Regions in the plane of both parameters, a colour for each closed form; what is not proved stays white."""
+    made, axes = figure()
+    first, second = found.parameters
+    for k, parts in enumerate(found.regions):
+        label = to_text(parts[0].regime.closed.value)  # type: ignore[union-attr]
+        for part in parts:
+            low, high = (float(exact_ball(end).mid()) for end in (part.low, part.high))
+            across = np.linspace(low, high, POINTS)
+            sides = [program_values(end, found.second, across) for end in (part.regime.lower, part.regime.upper)]
+            own = {"label": label if len(label) <= 30 else f"region {k + 1}"} if part is parts[0] else {}
+            axes.fill_between(across, *sides, color=COLOURS[k % len(COLOURS)], alpha=0.6, linewidth=0, **own)
+    axes.set(xlabel=f"{second}, {MODEL_UNIT}", ylabel=f"{first}, {MODEL_UNIT}")
+    axes.legend(loc="best", frameon=False)
+    return made
+
+
+def program_values(expression: Any, name: Any, at: Array) -> Array:
+    """An expression at many values of its symbol, from balls."""
+    program = tape(expression)
+    return np.array([float(enclose(program, {name: exact_ball(Fraction(float(x)))}).mid()) for x in at])
+
+
 def curve_of_regime(regime: Regime) -> Mapping[str, Any] | None:
     """Values of the parameter with the optimum there, and with the times where they have closed forms."""
     if regime.value is None:
@@ -229,11 +253,8 @@ def curve_of_regime(regime: Regime) -> Mapping[str, Any] | None:
         return {"at": at, "value": value, "label": "enclosures"}
     low, high = (float(exact_ball(end).mid()) for end in (regime.lower, regime.upper))
     at = np.linspace(low, high, POINTS + 1)[1:-1]
-    points = [exact_ball(Fraction(float(x))) for x in at]
     drawn = [regime.value, *(p.at for p in regime.support if p.at is not None)]
-    parameter = regime.family.parameter
-    programs = [tape(e) for e in drawn]
-    curves = [np.array([float(enclose(p, {parameter: x}).mid()) for x in points]) for p in programs]
+    curves = [program_values(e, regime.family.parameter, at) for e in drawn]
     return {"at": at, "value": curves[0], "label": text_of_value(regime), "instants": np.array(curves[1:])}
 
 
@@ -312,6 +333,7 @@ MODEL_UNIT = "unit of the model"
 PICTURES: dict[type, Callable[[Any], Figure]] = {
     Estimator: plot_estimator,
     Phases: plot_phases,
+    PhaseMap: plot_map,
     Estimates: plot_filter,
     Track: plot_track,
     Conditions: plot_conditions,

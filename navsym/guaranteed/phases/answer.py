@@ -196,18 +196,7 @@ class Phases(Answer):
         >>> drift.at(T="3").value.lower[:12]
         '1.0101086659'
         """
-        from navsym.guaranteed.solver import solve
-
-        name, where = self.parameter, "Phases.at"
-        if list(value) != [name] or self.question is None:
-            got = ", ".join(value) or "none"
-            raise DomainError(f"expected one value of {name}; got {got}; write at({name}=…)", where=where)
-        text = write_value(value[name], f"{where}: {name}")
-        at = parse(text, {}, where=f"{where}: {name}")
-        if not (bool(enclose(at - self.lower) >= 0) and bool(enclose(self.upper - at) >= 0)):
-            ends = f"{end_text(self.lower)} to {end_text(self.upper)}"
-            raise DomainError(f"expected a value from {ends}; got {text}; choose one", where=f"{where}: {name}")
-        return solve(self.question.model, self.question.target, values={**self.question.values, name: text})
+        return solve_at(self.question, {self.parameter: (self.lower, self.upper)}, value, "Phases.at")
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym phases``."""
@@ -251,8 +240,237 @@ class Phases(Answer):
         return write_card([html.escape(f"{self.target} by {self.parameter}"), write_table(heads, rows)])
 
 
+def solve_at(
+    question: Question | None, ranges: Mapping[str, tuple[sp.Expr, sp.Expr]], values: Mapping[str, Any], where: str
+) -> Estimator:
+    """The certified estimator for values inside their ranges. Raises DomainError."""
+    from navsym.guaranteed.solver import solve
+
+    if values.keys() != ranges.keys() or question is None:
+        got, names = ", ".join(values) or "none", ", ".join(f"{name}=…" for name in ranges)
+        one = "one value of" if len(ranges) == 1 else "values of"
+        raise DomainError(f"expected {one} {', '.join(ranges)}; got {got}; write at({names})", where=where)
+    texts = {name: write_value(value, f"{where}: {name}") for name, value in values.items()}
+    for name, (lower, upper) in ranges.items():
+        at = parse(texts[name], {}, where=f"{where}: {name}")
+        if not (bool(enclose(at - lower) >= 0) and bool(enclose(upper - at) >= 0)):
+            ends = f"{end_text(lower)} to {end_text(upper)}"
+            message = f"expected a value from {ends}; got {texts[name]}; choose one"
+            raise DomainError(message, where=f"{where}: {name}")
+    return solve(question.model, question.target, values={**question.values, **texts})
+
+
 def end_text(end: sp.Expr, side: int = 0) -> str:
     """An end in the language of files; the middle of an enclosure as a decimal of 34 digits, rounded to a side."""
     if end.is_Rational and end.q > 10**9:
         return decimal(to_fmpq(end), DIGITS, side)
     return to_text(end)
+
+
+# Maps in two parameters
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """A part of a map: the second parameter between two numbers, the first between two curves.
+
+    low, high : of the second parameter
+    regime    : the optimal estimators there; its ends are formulas in the second parameter
+    """
+
+    low: sp.Expr
+    high: sp.Expr
+    regime: Regime
+
+    def document(self, first: str, second: str) -> dict[str, Any]:
+        """Ranges of both parameters as text."""
+        return {second: [end_text(self.low), end_text(self.high)], first: list(self.regime.ends)}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curve:
+    """A boundary of a map: one parameter as a formula in the other.
+
+    name, at      : ``name = at``
+    along         : the other parameter, from low to high
+    why           : what happens there
+    """
+
+    name: str
+    at: sp.Expr
+    along: str
+    low: sp.Expr
+    high: sp.Expr
+    why: str
+
+    @property
+    def equation(self) -> str:
+        """The equation of the curve."""
+        return f"{self.name} = {to_text(self.at)}"
+
+    def values_at(self, name: str, value: sp.Expr) -> list[sp.Expr]:
+        """Values of the other parameter on the curve, or at its ends, where a parameter has a value."""
+        if name == self.along:
+            inside = all(not bool(enclose(e) < 0) for e in (value - self.low, self.high - value))
+            own = {s: value for s in self.at.free_symbols}
+            return [self.at.subs(own)] if inside else []
+        return [self.low, self.high] if self.at == value else []
+
+    def document(self) -> dict[str, Any]:
+        """The row of the curve in the document of the verb."""
+        return {"equation": self.equation, self.along: [end_text(self.low), end_text(self.high)], "why": self.why}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Meeting:
+    """A point of a map at which curves meet."""
+
+    first_name: str
+    first: sp.Expr
+    second_name: str
+    second: sp.Expr
+    curves: tuple[str, ...]
+
+    def document(self) -> dict[str, Any]:
+        """The row of the point in the document of the verb."""
+        here = {self.first_name: end_text(self.first), self.second_name: end_text(self.second)}
+        return here | {"curves": list(self.curves)}
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PhaseMap(Answer):
+    """The guaranteed optimum for all values of two parameters in a rectangle.
+
+    family       : the problems by the first parameter, the second beside it
+    second       : the second parameter
+    first_ends, second_ends : the rectangle
+    parts        : in order of the second parameter, then of the first; each with its formula and verdict, or open
+    curves       : boundaries between closed forms, as equations
+    meetings     : points where curves meet
+    gaps         : ranges of the second parameter between which the order of the patterns changes, and no more is known
+    given_up     : steps that were given up at the limit of work
+
+    >>> import navsym as nav
+    >>> model = nav.Model(states="x v a", F=[["0", "1", "0"], ["0", "0", "1"], ["0"] * 3], H=["x", "v"],
+    ...     sigma=["1", "p"], interval="T", targets={"a": "a"}, T=("1", "6"), p=("1/2", "3"))
+    >>> found = nav.phases(model, T=("1", "6"), p=("1", "2"))
+    >>> found
+    PhaseMap(a, T from 1 to 6 and p from 1 to 2: 2 regions, 1 curve, all covered)
+    >>> [curve.equation for curve in found.curves]
+    ['T = 8/p']
+    """
+
+    family: Family
+    second: sp.Symbol
+    first_ends: tuple[sp.Expr, sp.Expr]
+    second_ends: tuple[sp.Expr, sp.Expr]
+    parts: tuple[Part, ...]
+    curves: tuple[Curve, ...]
+    meetings: tuple[Meeting, ...]
+    gaps: tuple[tuple[sp.Expr, sp.Expr], ...] = ()
+    given_up: tuple[str, ...] = ()
+    question: Question | None = None
+
+    @property
+    def target(self) -> str:
+        """Name of the target."""
+        return self.family.target
+
+    @property
+    def parameters(self) -> tuple[str, str]:
+        """Names of both parameters."""
+        return self.family.parameter.name, self.second.name
+
+    @property
+    def regions(self) -> tuple[tuple[Part, ...], ...]:
+        """Proved parts with one closed form together."""
+        found: dict[tuple[Any, ...], list[Part]] = {}
+        for part in self.parts:
+            form = part.regime.closed
+            if form is not None:
+                found.setdefault((form.panels, form.places, form.weights, form.dual), []).append(part)
+        return tuple(map(tuple, found.values()))
+
+    @property
+    def uncovered(self) -> tuple[dict[str, Any], ...]:
+        """Parts of the rectangle about which nothing is proved, as text."""
+        first, second = self.parameters
+        whole = [end_text(end) for end in self.first_ends]
+        gaps = [{second: [end_text(a), end_text(b)], first: whole} for a, b in self.gaps]
+        return (*gaps, *(p.document(first, second) for p in self.parts if p.regime.closed is None))
+
+    @property
+    def covered(self) -> float:
+        """The share of the rectangle that the proved parts cover, in doubles."""
+        low, high = (float(enclose(e).mid()) for e in self.second_ends)
+        height = float(enclose(self.first_ends[1] - self.first_ends[0]).mid())
+        lost = sum(float(enclose(b - a).mid()) * height for a, b in self.gaps)
+        lost += sum(part_area(part, self.second) for part in self.parts if part.regime.closed is None)
+        return 1.0 - lost / ((high - low) * height)
+
+    def at(self, **values: Any) -> Estimator:
+        """The certified estimator for values of both parameters in the rectangle: ``map.at(T="3", p="1")``.
+
+        Raises DomainError for other names or values outside the rectangle, and the errors of :func:`navsym.solve`.
+        """
+        ranges = dict(zip(self.parameters, (self.first_ends, self.second_ends), strict=True))
+        return solve_at(self.question, ranges, values, "PhaseMap.at")
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym phases`` with two parameters."""
+        first, second = self.parameters
+        ends = zip((first, second), (self.first_ends, self.second_ends), strict=True)
+        return {
+            "target": self.target,
+            "parameters": [first, second],
+            "range": {name: [end_text(a), end_text(b)] for name, (a, b) in ends},
+            "regions": [region_document(parts, first, second) for parts in self.regions],
+            "curves": [curve.document() for curve in self.curves],
+            "meetings": [point.document() for point in self.meetings],
+            "covered": self.covered,
+            "uncovered": list(self.uncovered),
+        } | ({"given_up": list(self.given_up)} if self.given_up else {})
+
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """None: closed forms are proved by the search, as those of regimes are."""
+        return []
+
+    def __repr__(self) -> str:
+        ranges = zip(self.parameters, (self.first_ends, self.second_ends), strict=True)
+        where = " and ".join(f"{name} from {end_text(a)} to {end_text(b)}" for name, (a, b) in ranges)
+        counts = [
+            f"{len(rows)} {word if len(rows) == 1 else word + 's'}"
+            for rows, word in ((self.regions, "region"), (self.curves, "curve"))
+        ]
+        left = f"{self.covered:.2%} covered" if self.uncovered else "all covered"
+        return f"PhaseMap({self.target}, {where}: {', '.join([*counts, left])})"
+
+    def _repr_html_(self) -> str:
+        """The regions and curves as tables, for notebooks."""
+        rows = [
+            (display_latex(latex_of(p.regime.value)), *(" to ".join(e) for e in p.document(*self.parameters).values()))
+            for parts in self.regions
+            for p in parts
+        ]
+        first, second = self.parameters
+        regions = write_table(("value", second, first), rows)
+        curves = write_table(("curve", "event"), [(html.escape(c.equation), html.escape(c.why)) for c in self.curves])
+        return write_card([html.escape(repr(self)), regions, curves])
+
+
+def region_document(parts: tuple[Part, ...], first: str, second: str) -> dict[str, Any]:
+    """The row of a region: what its parts share, the weakest verdict, and where they lie."""
+    row = parts[0].regime.document()
+    proved = all(str(part.regime.status) == "PROVED" for part in parts)
+    shared = {key: row[key] for key in ("value", "support", "dual")}
+    status = "PROVED" if proved else "CERTIFIED"
+    return shared | {"status": status, "parts": [part.document(first, second) for part in parts]}
+
+
+def part_area(part: Part, second: sp.Symbol) -> float:
+    """The area between the curves of a part, by the trapezoidal rule on 64 strips."""
+    low, high = (float(enclose(e).mid()) for e in (part.low, part.high))
+    width = part.regime.upper - part.regime.lower
+    places = [sp.Rational(str(low + (high - low) * k / 64)) for k in range(65)]
+    sizes = [abs(float(enclose(width.subs(second, at)).mid())) for at in places]
+    return (sum(sizes) - (sizes[0] + sizes[-1]) / 2) * (high - low) / 64

@@ -8,7 +8,7 @@ solve linear systems with exact entries, and the pair goes to the ladder of proo
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -16,6 +16,7 @@ import numpy as np
 import sympy as sp
 
 from navsym.claims import OPEN, Equation, Optimum, Verdict
+from navsym.claims.statement import Box
 from navsym.core.balls import enclose
 from navsym.core.exact import to_fraction, to_rational
 from navsym.core.sandbox import Exhausted, run_limited
@@ -153,23 +154,36 @@ def sharp_member(family: Family, T: Fraction, pattern: Pattern | None) -> SharpM
 # -- exact linear algebra on the contacts ---------------------------------------------------------
 
 
+def recognise_places(family: Family, span: PatternInterval, found: Sequence[SharpMember]) -> tuple[sp.Expr, ...] | None:
+    """Exact places of a span from its samples; None where one is not recognised, or the samples are too few."""
+    if len(found) < 3:
+        return None
+    panels, lengths = [k for k, _, _ in span.pattern], [s.T for s in found]
+    columns = [[s.places[i] for s in found] for i in range(len(span.pattern))]
+    places = [recognise_place(family, k, c, lengths) for k, c in zip(panels, columns, strict=True)]
+    places = [middle_of_constant(family, k) if p is None else p for k, p in zip(panels, places, strict=True)]
+    exact = tuple(p for p in places if p is not None)
+    return exact if len(exact) == len(panels) else None
+
+
 def propose_closed_forms(family: Family, span: PatternInterval) -> list[ClosedForm]:
     """Closed forms of a span as guesses, not yet proved; the dual with most zeros first."""
     found = sample_regime(family, span)
-    if len(found) < 3:
+    exact = recognise_places(family, span, found)
+    if exact is None:
         return []
-    lengths = [s.T for s in found]
-    columns = [[s.places[i] for s in found] for i in range(len(span.pattern))]
-    panels = tuple(k for k, _, _ in span.pattern)
-    places = [recognise_place(family, k, c, lengths) for k, c in zip(panels, columns, strict=True)]
-    places = [middle_of_constant(family, k) if p is None else p for k, p in zip(panels, places, strict=True)]
-    if any(p is None for p in places):
-        return []
-    exact = tuple(p for p in places if p is not None)
     if family.growing and family.rows == (tuple(U**k for k in range(len(family.functional))),):
         quick = monomial_guess(family, span, exact, found)
         if quick is not None:
             return [quick]
+    return complete_forms(family, span, exact, found)
+
+
+def complete_forms(
+    family: Family, span: PatternInterval, exact: tuple[sp.Expr, ...], found: Sequence[SharpMember]
+) -> list[ClosedForm]:
+    """Closed forms on exact places: weights, and duals that are feasible at the samples found; not yet proved."""
+    lengths, panels = [s.T for s in found], tuple(k for k, _, _ in span.pattern)
     weights = solve_weights(family, span, exact, lengths[0])
     if weights is None:
         return []
@@ -370,7 +384,7 @@ def solve_weights(
 ) -> tuple[sp.Expr, ...] | None:
     """Exact weights from ``sum w_i H(u_i) = P`` on independent rows."""
     N = sp.Matrix([[h.subs(U, u) for h in family.rows[k]] for (k, _, _), u in zip(span.pattern, places, strict=True)]).T
-    numeric = np.array(N.subs(family.parameter, T).evalf(30).tolist(), dtype=float)
+    numeric = numeric_matrix(family, N.tolist(), T)
     rows = first_independent_rows(numeric)
     if len(rows) < N.cols:
         return None
@@ -380,8 +394,15 @@ def solve_weights(
 
 def decide_pair(family: Family, guess: ClosedForm, lower: sp.Expr, upper: sp.Expr, seconds: float) -> Verdict:
     """The ladder's verdict on the pair for all values between the ends."""
-    T, value, (start, end) = signed_parameter(family.parameter, lower, upper)
-    put = lambda e: sp.sympify(e, strict=True).subs(family.parameter, value)  # noqa: E731
+    T, value, ends = signed_parameter(family.parameter, lower, upper)
+    return decide_form(family, guess, {family.parameter: value}, {T: ends}, seconds)
+
+
+def decide_form(
+    family: Family, guess: ClosedForm, values: Mapping[sp.Symbol, sp.Expr], box: Box, seconds: float
+) -> Verdict:
+    """The ladder's verdict on the pair with expressions in the symbols of a box for the parameters."""
+    put = lambda e: sp.sympify(e, strict=True).subs(values)  # noqa: E731
     statements = [
         Optimum(
             regressors=tuple(put(h / sigma) for h in row),
@@ -392,7 +413,7 @@ def decide_pair(family: Family, guess: ClosedForm, lower: sp.Expr, upper: sp.Exp
             support=tuple(map(put, guess.places)),
             weights=tuple(put(w * family.sigma[k]) for w, k in zip(guess.weights, guess.panels, strict=True)),
             value=put(guess.value),
-            box={T: (start, end)},
+            box=box,
         )
         for row, sigma, ends in zip(family.rows, family.sigma, family.panels, strict=True)
     ]

@@ -8,7 +8,6 @@ two-sided certificates.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -21,15 +20,14 @@ from flint import fmpq
 
 from navsym.claims import CERTIFIED, OPEN
 from navsym.core.balls import enclose
-from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError
 from navsym.core.exact import decimal, from_decimal, lower_end, to_fmpq, to_fraction, to_rational, upper_end
 from navsym.guaranteed.certificate.range import RangeProof
-from navsym.guaranteed.phases.answer import Phases, Question, Regime, end_text
+from navsym.guaranteed.phases.answer import Phases, Regime, end_text
 from navsym.guaranteed.phases.boundaries import Boundary, locate_boundary, unlocated_boundary
 from navsym.guaranteed.phases.budget import DEFAULT_SECONDS, Budget
 from navsym.guaranteed.phases.certify_range import covered, follow_regime
 from navsym.guaranteed.phases.closed_forms import ClosedForm, propose_closed_forms, prove_closed_form
-from navsym.guaranteed.phases.family import Family, family_of
+from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.narrow import Sliver, certify_slivers
 from navsym.guaranteed.phases.neighbours import extend_forms, merge_regimes
 from navsym.guaranteed.phases.patterns import BRACKET, COUNT, PatternInterval, scan_patterns
@@ -43,15 +41,10 @@ from navsym.guaranteed.phases.singular_values import (
     split_at_singular_values,
     unsolved_boundary,
 )
-from navsym.guaranteed.problem import GuaranteedProblem
 from navsym.guaranteed.solver import solve_problem
-from navsym.language.expression import parse
-from navsym.language.values import write_value
-from navsym.models.model import contents_of, file_in_errors
-from navsym.models.modelfile import BasisFile, ModelFile
 
 if TYPE_CHECKING:
-    from navsym.models.model import Model
+    pass
 
 # One regime settled: its proved closed form, or contacts followed for every value, slivers, holes and a table.
 
@@ -516,81 +509,3 @@ def inner_range(lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr]) -> tuple
     steps = [Fraction(1, 400) if e in singular else Fraction(1, 10**9) for e in (lower, upper)]
     low, high = a + steps[0] * (b - a), b - steps[1] * (b - a)
     return low.limit_denominator(10**12), high.limit_denominator(10**12)
-
-
-def phases(
-    model: Model | str | os.PathLike[str],
-    target: str | None = None,
-    *,
-    parameter: str = "T",
-    quick: bool = False,
-    unique: bool = False,
-    seconds: float = DEFAULT_SECONDS,
-    values: Mapping[str, Any] | None = None,
-    progress: Callable[[int, int], None] = lambda done, of: None,
-    **parameters: Any,
-) -> Phases:
-    """The guaranteed optimum for every value of a parameter: regimes, boundaries, closed forms.
-
-    On each regime the optimal estimator measures in one pattern. A closed form of value, times and weights is proved
-    for every value of the parameter; elsewhere the optimum is certified for every value by enclosures.
-
-    model      : a :class:`navsym.Model`, or the path of a model file
-    target     : name of the target; not needed where the model has one
-    parameters : a pair is the range of the parameter that varies, such as ``T=("0", "2*pi")``; a single value is put
-                 in for another parameter
-    parameter  : the parameter that varies, over its declared range, where no pair is given
-    quick      : leave regimes without a closed form uncertified
-    unique     : also prove of closed forms that no other estimator is optimal (slower)
-    seconds    : processor time after which the search stops; ``uncovered`` then names what is left
-    values     : the same as ``parameters``, for names that are taken by the arguments above
-    progress   : called with (finished, all) steps
-
-    Raises DomainError for a range that is empty or missing, NotEstimableError, UnknownSymbolError for an unknown
-    parameter, and the errors of model files.
-
-    >>> import navsym as nav
-    >>> drift = nav.phases("examples/schuler-velocity.toml", "drift", T=("2", "3"))
-    >>> for regime in drift.regimes:
-    ...     print(regime)
-    Regime(2 < T < 2*pi/3: ..., PROVED)
-    Regime(2*pi/3 < T < 3: -1/cos(T), PROVED)
-    """
-    twice = next((name for name in parameters if name in (values or {})), None)
-    if twice is not None:
-        raise DuplicateError(f"expected one value; got two of {twice}; give one", where=f"phases: {twice}")
-    given = {**(values or {}), **parameters}
-    if isinstance(model, GuaranteedProblem):
-        message = "expected a model with a free parameter; got a problem, whose numbers are all given; give the model"
-        raise DomainError(message, where="phases: model")
-    pairs = {name: value for name, value in given.items() if isinstance(value, (tuple, list))}
-    if len(pairs) > 1:
-        got = ", ".join(pairs)
-        raise DomainError(f"expected one range; got those of {got}; give values to the others", where="phases")
-    fixed = {name: value for name, value in given.items() if name not in pairs}
-    with file_in_errors(model):
-        contents = contents_of(model, None, fixed, "phases")
-        name = next(iter(pairs), parameter)
-        ends = range_ends(contents, name, pairs.get(name))
-        family = family_of(contents, target, name)
-        answer = find_phases(family, *ends, certify=not quick, unique=unique, seconds=seconds, progress=progress)
-    return replace(answer, question=Question(model, target, fixed))
-
-
-def range_ends(contents: ModelFile | BasisFile, name: str, pair: Sequence[Any] | None) -> Ends:
-    """The ends of a range that is given, or of the one that the model declares for the parameter.
-
-    Raises ExpressionSyntaxError for other than two ends, and DomainError where there is no range.
-    """
-    where = f"phases: {name}"
-    if pair is not None:
-        if len(pair) != 2:
-            got = f"{len(pair)}"
-            raise ExpressionSyntaxError(f'expected two ends; got {got}; write {name}=("0", "2*pi")', where=where)
-        lower, upper = (parse(write_value(end, where), {}, where=where) for end in pair)
-        return lower, upper
-    for symbol, ends in contents.box.items():
-        if symbol.name == name and None not in ends:
-            return ends
-    message = f'expected a range of {name}; got none; give {name}=("0", "2*pi") (--range "0, 2*pi")'
-    raise DomainError(message, where=where)

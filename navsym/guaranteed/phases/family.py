@@ -10,7 +10,8 @@ are a family of their own.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -30,7 +31,7 @@ U = sp.Symbol("u", real=True)
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """Problems with one free parameter.
+    """Problems with one free parameter, or with others beside it.
 
     rows         : regressors in U, one row per panel: the measurements on the first stretch, on the next, …
     functional   : P
@@ -42,6 +43,7 @@ class Family:
     left_out     : places of unknowns that depend on the others and are not among the columns of rows
     cuts         : places in U where one stretch ends and the next begins, in order
     shorter      : the family of lengths up to ``least``, below which this one does not hold, or None
+    beside       : other parameters, with the values at which a search looks at them; formulas keep them free
     """
 
     rows: Rows
@@ -57,6 +59,7 @@ class Family:
     cuts: tuple[sp.Expr, ...] = ()
     shorter: Family | None = None
     least: sp.Expr = sp.S.Zero
+    beside: Mapping[sp.Symbol, sp.Rational] = field(default_factory=dict)
 
     @property
     def chain(self) -> tuple[Family, ...]:
@@ -97,8 +100,10 @@ class Family:
         return self.start == 0 and self.stop == self.parameter and self.parameter not in free and not self.cuts
 
     def at(self, expression: sp.Expr, value: Any) -> sp.Expr:
-        """An expression with a value for the parameter."""
-        return expression if self.parameter not in expression.free_symbols else expression.subs(self.parameter, value)
+        """An expression with a value for the parameter, and those beside it."""
+        values = {self.parameter: value, **self.beside}
+        here = {symbol: values[symbol] for symbol in values.keys() & expression.free_symbols}
+        return expression.subs(here) if here else expression
 
     def ends(self, value: Any, panel: int = 0) -> tuple[sp.Expr, sp.Expr]:
         """The ends in U of a panel for one value."""
@@ -147,8 +152,8 @@ class Family:
         return sp.expand(self.stop - u) if self.backward else u
 
 
-def family_of(found: ModelFile | BasisFile, target: str | None, parameter: str) -> Family:
-    """The family of a file with one parameter free.
+def family_of(found: ModelFile | BasisFile, target: str | None, parameter: str, *beside: str) -> Family:
+    """The family of a file with one parameter free, and perhaps others beside it.
 
     Raises DomainError when nothing depends on the parameter, when F depends on the time or has eigenvalues without a
     closed form, or when other parameters have no value.
@@ -159,7 +164,7 @@ def family_of(found: ModelFile | BasisFile, target: str | None, parameter: str) 
         family = direct_family(found, name, functional, symbol)
     else:
         family = model_family(found, name, functional, symbol)
-    refuse_others(family)
+    refuse_others(family, {declared_symbol(found, other).name for other in beside})
     refuse_sums_over_roots(family)
     return family
 
@@ -172,13 +177,13 @@ def declared_symbol(found: ModelFile | BasisFile, parameter: str) -> sp.Symbol:
     return found.parameters[parameter].symbol
 
 
-def refuse_others(family: Family) -> None:
-    """Raises DomainError when the family depends on other symbols than its parameter, or not on the parameter."""
+def refuse_others(family: Family, beside: set[str]) -> None:
+    """Raises DomainError when the family depends on symbols that are none of its parameters, or not on the first."""
     parts = [*family.functional, *family.sigma, *(h for r in family.rows for h in r)]
     parts += [family.start, *family.cuts, family.stop]
     free = {s for part in parts for s in part.free_symbols} - {U}
     parameter = family.parameter.name
-    others = sorted({s.name for s in free} - {parameter})
+    others = sorted({s.name for s in free} - {parameter} - beside)
     if others:
         raise DomainError(
             f"expected one parameter, {parameter}; got also {', '.join(others)}; give --set {others[0]}=…"

@@ -366,10 +366,15 @@ def unsolved_boundary(section: RegularInterval) -> Boundary:
 
 def need_range(family: Family, lower: sp.Expr, upper: sp.Expr) -> None:
     """Raises DomainError for ends that are no finite numbers, for from >= to, and for lengths below zero."""
+    need_order(lower, upper)
+    if family.growing and not bool(enclose(lower) >= 0):
+        raise DomainError(f"range: expected lengths 0 <= from < to; got {lower} to {upper}; mend them")
+
+
+def need_order(lower: sp.Expr, upper: sp.Expr) -> None:
+    """Raises DomainError for ends that are no finite numbers, and for from >= to."""
     for end in (lower, upper):
         if end.free_symbols or not enclose(end).is_finite():
             raise DomainError(f"range: expected finite numbers; got {end}; give two numbers")
     if not bool(enclose(upper - lower) > 0):
         raise DomainError(f"range: expected from < to; got {lower} to {upper}; exchange or mend them")
-    if family.growing and not bool(enclose(lower) >= 0):
-        raise DomainError(f"range: expected lengths 0 <= from < to; got {lower} to {upper}; mend them")
