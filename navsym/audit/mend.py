@@ -13,7 +13,7 @@ from navsym.audit.decide import Scope, decide_entry, draw_points
 from navsym.audit.evaluate import spell_entry
 from navsym.audit.form import Function, Part, Unit, names_in, walk
 from navsym.audit.names import squeeze
-from navsym.audit.questions import Entry
+from navsym.audit.questions import Entry, NotThereError
 from navsym.audit.sources import Source, read_expression
 from navsym.audit.values import Scalar, Unread
 from navsym.claims.verdict import PROVED
@@ -265,7 +265,7 @@ def is_right(mend: Mend, entry: Entry, source: Source, scope: Scope, probes: lis
         if case is None or entry.again is None:
             return False
         cell, expected = entry.again(case)
-    except NavsymError:
+    except (NavsymError, NotThereError):
         return False
     if not isinstance(cell, Scalar) or not isinstance(expected, Scalar):
         return False
