@@ -52,7 +52,8 @@ def test_exported_code_reads_back_as_the_claim_from_which_it_was_made(claim, tmp
     for language, (file, first, last, result) in FILES.items():
         text = (tmp_path / "out" / file).read_text()
         lines, name = list(find_lines(text, first, last)), re.search(result, text)[1] if "\\w" in result else result
-        spec = f'[[code]]\nname = "c"\nfile = "out/{file}"\nfunction = "formula"\nlines = {lines}\n{HELPERS.get(language, "")}[code.symbols]\n'
+        spec = f'[[code]]\nname = "c"\nfile = "out/{file}"\nfunction = "formula"\nlines = {lines}\n'
+        spec += HELPERS.get(language, "") + "[code.symbols]\n"
         spec += "".join(f'{symbol} = "{declared}"\n' for symbol, declared in CLAIMS[claim].items())
         sides = *claim.split(" = "), f"{claim.split(' = ')[0]} + 1"
         spec += "".join(
