@@ -13,7 +13,7 @@ from navsym.audit.decide import Scope, decide_entry, draw_points
 from navsym.audit.evaluate import spell_entry
 from navsym.audit.form import Function, Part, Unit, names_in, walk
 from navsym.audit.names import squeeze
-from navsym.audit.questions import Entry
+from navsym.audit.questions import Entry, NotThereError
 from navsym.audit.sources import Source, read_expression
 from navsym.audit.values import Scalar, Unread
 from navsym.claims.verdict import PROVED
@@ -22,8 +22,8 @@ from navsym.language.printer import print_tree
 from navsym.language.tree import MINUS_ONE, NUMBER, POWER, SYMBOL, Tree, build, build_call, fold_tree, list_names
 from navsym.prove.rooms.goals import player
 
-PER_ENTRY = 5000  # changes that are tried, of a short function
-PER_QUESTION = 10_000
+PER_ENTRY = 4000  # changes that are tried, of a short function
+PER_QUESTION = 6000
 SHORT = 40  # statements of one
 MOST_NAMES = 24
 TOLERANCE = 1e-9
@@ -147,6 +147,7 @@ class Place:
             return
         side = unit.text(whole_side(statement))
         target, *rest = statement.parts
+        targets: list[tuple[str, Any]]
         if statement.kind == "declare":
             targets = [(name, name) for name in sorted(list_orphans(self.function))]
         else:
@@ -154,10 +155,11 @@ class Place:
             parts = [inner for inner in walk(target) if low <= inner.span[0] < inner.span[1] <= high]
             edits = [*edit_indices(self, parts), *edit_names(self, parts)]
             texts = [f"{cut(unit.source, low, start)}{new}{cut(unit.source, end, high)}" for start, end, new in edits]
-            free = [text for text in texts if squeeze(text) not in self.list_taken()]
+            taken = self.list_taken()
+            free = [text for text in texts if squeeze(text) not in taken]
             targets = [(text, part) for text in free if (part := read_mend(text, unit)) is not None]
-        for text, part in targets:
-            edited = Part(statement.kind, statement.line, (part, *rest), statement.span)
+        for text, new in targets:
+            edited = Part(statement.kind, statement.line, (new, *rest), statement.span)
             sign = statement.parts[1] if statement.kind == "assign" else ""
             yield Mend(statement.line, " ".join(f"{text} {sign}= {side}".split()), {id(statement): edited})
 
@@ -265,7 +267,7 @@ def is_right(mend: Mend, entry: Entry, source: Source, scope: Scope, probes: lis
         if case is None or entry.again is None:
             return False
         cell, expected = entry.again(case)
-    except NavsymError:
+    except (NavsymError, NotThereError):
         return False
     if not isinstance(cell, Scalar) or not isinstance(expected, Scalar):
         return False

@@ -383,7 +383,8 @@ def find_values(table: Table) -> tuple[Balls, Balls] | None:
 
 def list_orders(code: Balls, expected: Balls) -> tuple[list[tuple[int, ...]], bool]:
     """Orders p with code[p_i][p_j] = expected[i][j] as far as balls tell, and whether these are all."""
-    n, found, steps, waiting = len(code), list[tuple[int, ...]](), 0, [()]
+    n, found, steps = len(code), list[tuple[int, ...]](), 0
+    waiting: list[tuple[int, ...]] = [()]
     while waiting:
         order = waiting.pop()
         steps += 1

@@ -160,16 +160,3 @@ def test_formulas_of_a_function_are_listed_in_the_spelling_of_the_source(tmp_pat
     assert formulas["xn[0]"]["formula"] == "x[0] + x[1]*dt" and formulas["xn[0]"]["line"] == 5
     assert run(["audit", str(tmp_path / "code.c"), "--json"]) == 2
     assert "--function" in json.loads(capsys.readouterr().out)["error"]["message"]
-
-
-def test_exported_c_reads_back_as_the_claim_from_which_it_was_made(tmp_path):
-    """Where the code returns NAVSYM_OK its value is the formula, for all reals of the declared ranges."""
-    for name, text in {"a": "sin(2*a) = 2*sin(a)*cos(a)", "b": "(b - 1)*(b + 1) = b**2 - 1"}.items():
-        nav.export(nav.prove(text), to=["c"], out=tmp_path / name)
-        left, right = text.split(" = ")
-        spec = f'[[code]]\nname = "c"\nfile = "{name}/c/formula.c"\nfunction = "formula"\n'
-        spec += "".join(f'[[question]]\nname = "{s}"\nkind = "equal"\nleft = "c:value"\nright = "{t}"\n'
-                        for s, t in (("left", left), ("right", right)))  # fmt: skip
-        (tmp_path / f"{name}.toml").write_text(spec)
-        audit = nav.audit(tmp_path / f"{name}.toml")
-        assert [q.status for q in audit.questions] == [nav.PROVED, nav.PROVED]
