@@ -1306,14 +1306,14 @@ def rotation_of(x: Value) -> Value:
     def two(a: Term, b: Term, sign: int, c: Term, d: Term) -> Term:
         return ("*", number(2), ("+", ("*", a, b), ("*", number(sign), c, d)))
 
-    def square(sign: int, own: Term, *others: Term) -> Term:
+    def square(own: Term, *others: Term) -> Term:
         return ("+", ("*", w, w), ("*", own, own), *(("*", MINUS_ONE, o, o) for o in others))
 
     return Matrix(
         [
-            [square(1, x1, y1, z1), two(x1, y1, -1, w, z1), two(x1, z1, 1, w, y1)],
-            [two(x1, y1, 1, w, z1), square(1, y1, x1, z1), two(y1, z1, -1, w, x1)],
-            [two(x1, z1, -1, w, y1), two(y1, z1, 1, w, x1), square(1, z1, x1, y1)],
+            [square(x1, y1, z1), two(x1, y1, -1, w, z1), two(x1, z1, 1, w, y1)],
+            [two(x1, y1, 1, w, z1), square(y1, x1, z1), two(y1, z1, -1, w, x1)],
+            [two(x1, z1, -1, w, y1), two(y1, z1, 1, w, x1), square(z1, x1, y1)],
         ]
     )
 
