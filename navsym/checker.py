@@ -3018,6 +3018,7 @@ def integrate_piece(piece: Any, q: Question, goal: Goal, c: Term, d: Term) -> Te
         piece, "antiderivative limits continuous smooth equal signs"
     )
     F, name, x = parse(text), q.variable, ("symbol", q.variable)
+    signs = read_list(signs, lambda entry: entry)
     require(not (is_infinite(c) and is_infinite(d)), "expected a cut between -oo and oo")
     is_open = [bool(read_integer(k, 0, 1)) for k in read_list(by_limit, lambda k: k, 2)]
     require(all(o or not is_infinite(end) for o, end in zip(is_open, (c, d), strict=True)), "expected a limit at oo")
@@ -3055,6 +3056,7 @@ def answer_sum(entry: Any, q: Question, goal: Goal) -> Term:
     """
     text, defined, equal, start, count, signs = read_fields(entry, "telescoper defined equal start count signs")
     G, name, k = parse(text), q.variable, ("symbol", q.variable)
+    signs = read_list(signs, lambda entry: entry)
     require(is_integral(q.low, goal.box), "expected whole ends")
     path, following = add_terms((q.low, k)), substitute(G, {name: ("+", k, ONE)})
     inside = goal._replace(box=goal.box | {name: Range(ZERO, None, integer=True)})
@@ -3094,7 +3096,7 @@ def answer_limit(entry: Any, q: Question, goal: Goal) -> Term:
 
     Theorem (Taylor): N, D are analytic at a, where the derivatives of order below n vanish, and that of D does not.
     """
-    name, far, signs = q.variable, is_infinite(q.low), entry["signs"]
+    name, far, signs = q.variable, is_infinite(q.low), read_list(entry["signs"], lambda entry: entry)
     y, a = ("symbol", name), ZERO if far else q.low
     way = y if not far or q.low == INFINITY else negate(y)
     typed = [substitute(t, {name: way}) for t in (q.term, *q.needs)]
@@ -3164,7 +3166,7 @@ def ask_sign(c: Term, signs: Any, goal: Goal) -> int:
     ball = value_of(c, {}) if not symbols_of(c) else arb.nan()
     if ball > 0 or ball < 0:
         return 1 if ball > 0 else -1
-    require(isinstance(signs, list) and signs, "expected a sign with its proof")
+    require(signs, "expected a sign with its proof")
     sign, proof = read_list(signs.pop(0), lambda entry: entry, 2)
     s = read_integer(sign, -1, 1)
     require(s != 0, "expected a sign")
