@@ -22,6 +22,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from copy import deepcopy
 from fractions import Fraction
 from functools import lru_cache, reduce
 from itertools import combinations, pairwise, product, repeat, zip_longest
@@ -3018,7 +3019,6 @@ def integrate_piece(piece: Any, q: Question, goal: Goal, c: Term, d: Term) -> Te
         piece, "antiderivative limits continuous smooth equal signs"
     )
     F, name, x = parse(text), q.variable, ("symbol", q.variable)
-    signs = read_list(signs, lambda entry: entry)
     require(not (is_infinite(c) and is_infinite(d)), "expected a cut between -oo and oo")
     is_open = [bool(read_integer(k, 0, 1)) for k in read_list(by_limit, lambda k: k, 2)]
     require(all(o or not is_infinite(end) for o, end in zip(is_open, (c, d), strict=True)), "expected a limit at oo")
@@ -3056,7 +3056,6 @@ def answer_sum(entry: Any, q: Question, goal: Goal) -> Term:
     """
     text, defined, equal, start, count, signs = read_fields(entry, "telescoper defined equal start count signs")
     G, name, k = parse(text), q.variable, ("symbol", q.variable)
-    signs = read_list(signs, lambda entry: entry)
     require(is_integral(q.low, goal.box), "expected whole ends")
     path, following = add_terms((q.low, k)), substitute(G, {name: ("+", k, ONE)})
     inside = goal._replace(box=goal.box | {name: Range(ZERO, None, integer=True)})
@@ -3096,7 +3095,7 @@ def answer_limit(entry: Any, q: Question, goal: Goal) -> Term:
 
     Theorem (Taylor): N, D are analytic at a, where the derivatives of order below n vanish, and that of D does not.
     """
-    name, far, signs = q.variable, is_infinite(q.low), read_list(entry["signs"], lambda entry: entry)
+    name, far, signs = q.variable, is_infinite(q.low), entry["signs"]
     y, a = ("symbol", name), ZERO if far else q.low
     way = y if not far or q.low == INFINITY else negate(y)
     typed = [substitute(t, {name: way}) for t in (q.term, *q.needs)]
@@ -3166,7 +3165,7 @@ def ask_sign(c: Term, signs: Any, goal: Goal) -> int:
     ball = value_of(c, {}) if not symbols_of(c) else arb.nan()
     if ball > 0 or ball < 0:
         return 1 if ball > 0 else -1
-    require(signs, "expected a sign with its proof")
+    require(isinstance(signs, list) and signs, "expected a sign with its proof")
     sign, proof = read_list(signs.pop(0), lambda entry: entry, 2)
     s = read_integer(sign, -1, 1)
     require(s != 0, "expected a sign")
@@ -3304,7 +3303,7 @@ def check_proof(item: Any) -> None:
     more = " answers" if "answers" in item else ""
     _, statement, bits, witness, proofs, *rest = read_fields(item, f"kind statement bits witness proofs{more}")
     ctx.prec = read_integer(bits, 53, 20000)
-    cases, box = read_statement(statement, Answers(rest[0] if rest else []))
+    cases, box = read_statement(statement, Answers(deepcopy(rest[0]) if rest else []))
     place = read_point(witness, box)
     require(any(lies_in(case, place) for case in cases), "the statement may have no value at the witness")
     prove_all(proofs, [goal for case in cases for goal in case.goals])
@@ -3325,7 +3324,7 @@ def check_counterexample(item: Any) -> None:
     ctx.prec = read_integer(bits, 53, 200000)
     require(isinstance(point, dict), "expected numbers by symbol")
     there = {name: parse(text) for name, text in point.items()}
-    cases, box = read_statement(statement, Answers(rest[0] if rest else [], there))
+    cases, box = read_statement(statement, Answers(deepcopy(rest[0]) if rest else [], there))
     place = read_point(point, box)
     inside = [case for case in cases if lies_in(case, place)]
     goals = [goal for case in inside for goal in case.goals]
