@@ -22,6 +22,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from copy import deepcopy
 from fractions import Fraction
 from functools import lru_cache, reduce
 from itertools import combinations, pairwise, product, repeat, zip_longest
@@ -1343,14 +1344,14 @@ def rotation_of(x: Value) -> Value:
     def two(a: Term, b: Term, sign: int, c: Term, d: Term) -> Term:
         return ("*", number(2), ("+", ("*", a, b), ("*", number(sign), c, d)))
 
-    def square(sign: int, own: Term, *others: Term) -> Term:
+    def square(own: Term, *others: Term) -> Term:
         return ("+", ("*", w, w), ("*", own, own), *(("*", MINUS_ONE, o, o) for o in others))
 
     return Matrix(
         [
-            [square(1, x1, y1, z1), two(x1, y1, -1, w, z1), two(x1, z1, 1, w, y1)],
-            [two(x1, y1, 1, w, z1), square(1, y1, x1, z1), two(y1, z1, -1, w, x1)],
-            [two(x1, z1, -1, w, y1), two(y1, z1, 1, w, x1), square(1, z1, x1, y1)],
+            [square(x1, y1, z1), two(x1, y1, -1, w, z1), two(x1, z1, 1, w, y1)],
+            [two(x1, y1, 1, w, z1), square(y1, x1, z1), two(y1, z1, -1, w, x1)],
+            [two(x1, z1, -1, w, y1), two(y1, z1, 1, w, x1), square(z1, x1, y1)],
         ]
     )
 
@@ -3339,7 +3340,7 @@ def check_proof(item: Any) -> None:
     more = " answers" if "answers" in item else ""
     _, statement, bits, witness, proofs, *rest = read_fields(item, f"kind statement bits witness proofs{more}")
     ctx.prec = read_integer(bits, 53, 20000)
-    cases, box = read_statement(statement, Answers(rest[0] if rest else []))
+    cases, box = read_statement(statement, Answers(deepcopy(rest[0]) if rest else []))
     place = read_point(witness, box)
     require(any(lies_in(case, place) for case in cases), "the statement may have no value at the witness")
     prove_all(proofs, [goal for case in cases for goal in case.goals])
@@ -3360,7 +3361,7 @@ def check_counterexample(item: Any) -> None:
     ctx.prec = read_integer(bits, 53, 200000)
     require(isinstance(point, dict), "expected numbers by symbol")
     there = {name: parse(text) for name, text in point.items()}
-    cases, box = read_statement(statement, Answers(rest[0] if rest else [], there))
+    cases, box = read_statement(statement, Answers(deepcopy(rest[0]) if rest else [], there))
     place = read_point(point, box)
     inside = [case for case in cases if lies_in(case, place)]
     goals = [goal for case in inside for goal in case.goals]

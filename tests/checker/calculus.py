@@ -9,7 +9,30 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from tests.checker.proofs import LINE, UP, B, I, answer, by, equal, prove, refute, span, state, stated
+from tests.checker.proofs import (
+    LINE,
+    TWO,
+    UNIT,
+    UP,
+    X1,
+    XY,
+    B,
+    I,
+    abstract,
+    answer,
+    by,
+    equal,
+    modulo,
+    multiply,
+    prove,
+    refute,
+    roots,
+    signs,
+    span,
+    squares,
+    state,
+    stated,
+)  # fmt: skip
 
 WHOLE, POSITIVE, COUNT = [None, None, ["integer"]], ["0", None, ["open-low"]], ["1", None, ["integer"]]
 GROWTH: dict[str, Any] = {"signs": []}
@@ -307,7 +330,43 @@ REFUTED = [
      "another exponent"),
     (state("x", "=", "1", x=LINE), ["x"], None, "expected numbers by symbol"),
 ]  # fmt: skip
-ROWS = [*LIMITS, *INTEGRALS, *SUMS, *EXPONENTIALS, *ORDERS]
+#: Proofs by the other rules, each with a premise that is false, or a place that matters.
+XYZ, MINUS, SEVEN = {"x": "1", "y": "1", "z": "1"}, {"x": "-1"}, ["6", "8", []]
+RULES = [
+    (
+        state("x", ">", x=LINE),
+        X1,
+        None,
+        [by("rewrite", B, **{"from": "x", "to": "x"}, defined=[], equal=I)],
+        "not shown",
+    ),
+    (state("x", ">", x=LINE), X1, None, [multiply("2", B, B)], "not shown"),
+    (state("x", ">", x=LINE), X1, None, [abstract({"u": "x"}, {"u": LINE}, "u", [], B)], "not shown"),
+    (
+        stated("x", "=", "0", given=["y = 0"], x=LINE, y=LINE),
+        {"x": "0", "y": "0"},
+        None,
+        [modulo("x", I, "0")],
+        "differ",
+    ),
+    (state("x", "=", "x", x=LINE), X1, None, [squares("x", "x", 2, I, I, I)], "integer from -1 to 1"),
+    (state("x", "=", "x", x=LINE), X1, None, [squares("x", "x", -2, I, I, I)], "integer from -1 to 1"),
+    (state("1 - x - 2*y + x*y", ">=", x=UNIT, y=UNIT), XY, None, [by("cones", splits=[None])], "negative coefficient"),
+    (state("-(x - 7)**2*(x - 5)", ">=", x=SEVEN), {"x": "7"}, None, [roots("6", "8")], "the wrong sign"),
+    (state("x**201*x + 1", ">", x=LINE), X1, None, [roots(None, None)], "no rational function"),
+    (state("x**200*x**2 + 1", ">", x=LINE), X1, None, [roots(None, None)], "a polynomial of a high degree"),
+    (stated("-x", ">=", "0", given=["x <= 0"], x=LINE), MINUS, None, [span(1)], ""),
+    (stated("x", ">=", "0", given=["x >= 0"], x=LINE), X1, None, [span(0)], ""),
+    (state("1/x", ">", x=UNIT), X1, None, [signs("1/x", None, [1, span(0)])], ""),
+    (state("x + y + z", ">=", x=UP, y=UP, z=UP), XYZ, None, [by("cones", splits=[None])], ""),
+    (state("1 - x - y + x*y", ">=", x=UNIT, y=UNIT), XY, None, [by("cones", splits=[None])], ""),
+    (state("-x", ">=", x=[None, "0", []]), MINUS, None, [roots(None, "0")], ""),
+    (state("x**200 + 1", ">", x=LINE), X1, None, [roots(None, None)], ""),
+    (state("(x - 3)**(-2)", ">", x=TWO), X1, None, [roots("1", "2")], ""),
+    (state("(1/(x - 3))**(-2)", ">", x=TWO), X1, None, [roots("1", "2")], ""),
+    (state("(x - 3)**(-3)", "<", x=TWO), X1, None, [equal("-(x - 3)**(-3)", roots("1", "2"))], ""),
+]
+ROWS = [*LIMITS, *INTEGRALS, *SUMS, *EXPONENTIALS, *ORDERS, *RULES]
 
 
 def discrepancies(module: Any) -> Iterator[str]:

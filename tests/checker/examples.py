@@ -424,7 +424,26 @@ PIVOT = PLAIN | {
     "free": [1],
     "null": [["0", "a"]],
 }
+# Two columns that almost point in one direction: the small singular value comes from an elimination.
+ALIKE = {
+    "kind": "condition",
+    "bits": 256,
+    "outside": 0,
+    "brackets": [
+        "19999999999981109/10000000000000000",
+        "20000000000021109/10000000000000000",
+        "12318413951960607/1000000000000000000000000000000",
+        "3079603487996311/250000000000000000000000000000",
+    ],
+    "statement": {
+        "matrix": [["1", "1/6371000"], ["1", "1/3185500"]],
+        "unit": 0,
+        "lower": "1274199987/100",
+        "upper": "1274200013/100",
+    },
+}
 GOOD = [
+    ALIKE,
     CONDITION,
     SCALED,
     STILL,

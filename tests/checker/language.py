@@ -126,6 +126,7 @@ LANGUAGE = [
     (("diff([x**2, x*y], x)", "=", "[2*x, y]"), ("[2*x, x]",), "", XY, [I] * 2, {"x": LINE, "y": LINE}),
 ]
 #: The same with what is random, with rates, whole numbers and cases: statement, its right side, a wrong one.
+NULL = f"[{', '.join('0' * 64)}]"
 A1, RATES = {"a": "1"}, {"x": "v", "t": "1"}
 READ = [
     (stated("E(a*w**2 + sin(a)*w + a)", "=", "", a=LINE) | {"random": NORMAL}, "2*a", "a", A1, [I]),
@@ -144,6 +145,8 @@ READ = [
     (stated("where(x = 0, 2, [1/x, 2][2])", "=", "", x=LINE), "2", "1", X0, [I, I]),
     (stated("floor(n + x)", "=", "", n=WHOLE, x=LINE), "n + floor(x)", "n", {"n": "1", "x": "1/2"}, [I]),
     (stated("diff(x**9, x, 8)", "=", "", x=LINE), "362880*x", "x", X1, [I]),
+    (stated(f"trace(eye(64)) + {NULL}[64] + [{NULL}][1,64]", "=", ""), "64", "0", {}, [I]),
+    (stated("det(eye(5)) + trace(inv(eye(4)))", "=", ""), "5", "0", {}, [I]),
     (stated("asin(x) + acos(x)", "=", "", x=LINE), "acos(x) + asin(x)", "0", X1, [I]),
 ]  # fmt: skip
 #: What the language does not mean, with the reason of its refusal.
@@ -189,6 +192,14 @@ MEANINGLESS = [
     (stated("diff(integral(y, y, 0, x), x)", "=", "0", x=LINE), "a derivative of an integral"),
     (stated("sum(integral(k*x, x, 0, 1), k, 1, 2)", "=", "3/2"), "sum of an open question"),
     (stated("cov(A, B)", "=", "0", "A", "B"), "expected a vector"),
+    (stated(f"[{', '.join('0' * 65)}]", "=", "0"), "too many entries"),
+    (stated(f"[[{', '.join('0' * 65)}]]", "=", "0"), "too many entries"),
+    (stated("eye(65)", "=", "0"), "expected a size"),
+    (stated("det(eye(6))", "=", "1"), "expected n by n with n <= 5"),
+    (stated("inv(eye(5))", "=", "eye(5)"), "expected n by n with n <= 4"),
+    (stated("expm(zeros(17, 17))", "=", "eye(17)"), "expected n by n with n <= 16"),
+    (stated("floor(log(0))", "=", "0"), "a number that may not exist"),
+    (stated("x", "=", "x", x=LINE) | {"shapes": {"2x": [["x"]]}}, "expected names"),
     (stated("x + ]", "=", "x", x=LINE), "not an expression"),
     (stated("expm([[1]], [[1]])", "=", "[[1]]"), "expected expm of 1 argument"),
     (stated("expm([[s__1]])", "=", "[[1]]", s__1=LINE), "a name that is in use"),

@@ -9,6 +9,7 @@ import re
 import pytest
 
 from navsym import checker
+from tests.checker import calculus
 from tests.checker.adversary import tricks
 from tests.checker.examples import EXPONENTIAL, GAP, GOOD, PARABOLA, RANGE, TOUCH
 from tests.checker.forgeries import (
@@ -140,3 +141,7 @@ def still_true(case) -> bool:
     except (TypeError, ValueError):
         return False
     return size < 0.01 * max(1.0, abs(float(old))) or (kind == "gap" and path[0] in ("support", "dual"))
+
+
+def test_a_certificate_is_not_consumed_by_its_check():
+    assert list(calculus.discrepancies(checker)) == list(calculus.discrepancies(checker)) == []
