@@ -96,6 +96,8 @@ def prove(
     <PROVED: cross(u, cross(v, u)) = v - u*dot(u, v); proof tree; all u in R^3, v in R^3>
     >>> nav.prove("inv(A @ B) = inv(B) @ inv(A)", A={"matrix": ["n", "n"]}, B={"matrix": ["n", "n"]}).assumptions
     ('A @ B invertible', 'B invertible', 'A invertible')
+    >>> nav.prove(r"\\sin x = x - x^3/6 + O(x^5)").holds
+    True
     >>> nav.prove(0.5, "=", "1/2")
     Traceback (most recent call last):
     navsym.core.errors.DomainError: prove: left: expected an exact number; got the float 0.5; write "1/2" ...
@@ -106,17 +108,26 @@ def prove(
         refuse_declarations(symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())})
         return prove_file(statement, seconds, jobs, progress)
     sides = split_formula(statement, symbols) if relation is None else Sides(statement, relation, right)
+    if sides.order is not None:
+        if order:
+            message = "expected one order; got O(...) in the formula and order= beside it; remove one of them"
+            raise DomainError(message, where="prove: order")
+        beside["order"] = dict([sides.order])
     return prove_formula(sides, symbols, beside, seconds)
 
 
 @dataclass(frozen=True, slots=True)
 class Sides:
-    """What a caller says: two sides in any accepted form, and the relation between them; or the text of a chain."""
+    """What a caller says: two sides in any accepted form, and the relation between them; or the text of a chain.
+
+    order : name and order of an ``O(x^k)`` that stands behind the right side
+    """
 
     left: Any
     relation: str
     right: Any
     chain: str = ""
+    order: tuple[str, int] | None = None
 
 
 def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress: Progress | None) -> Verdicts:
@@ -245,8 +256,9 @@ def read_latex(statement: str, given: Mapping[str, Any]) -> Sides:
         raise ExpressionSyntaxError(str(refused.why).partition(": ")[2], where=f"prove: statement, line {refused.line}")
     first, *others = reading.formulas
     if not others:
-        return Sides(first.left, str(first.relation), first.right)
-    if any(one.right != other.left for one, other in itertools.pairwise(reading.formulas)):
+        return Sides(first.left, str(first.relation), first.right, order=first.order)
+    linked = all(one.right == other.left for one, other in itertools.pairwise(reading.formulas))
+    if not linked or any(one.order for one in reading.formulas):
         count = len(reading.formulas)
         message = f"expected one formula or a chain of them; got {count} in {quote(statement)}; prove them one by one"
         raise ExpressionSyntaxError(message, where="prove: statement")

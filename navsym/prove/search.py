@@ -46,6 +46,7 @@ from navsym.prove.rooms.signs import (
     by_bounds,
     by_concavity,
     by_cones,
+    by_constant,
     by_contacts,
     by_corners,
     by_divided_root,
@@ -76,7 +77,7 @@ EQUATIONS: tuple[tuple[Room, ...], ...] = (
 )  # fmt: skip
 SIGNS: tuple[tuple[Room, ...], ...] = (
     (
-        by_number, by_positive_radicand, by_divided_root, by_divided_term, by_identity,
+        by_number, by_constant, by_positive_radicand, by_divided_root, by_divided_term, by_identity,
         by_elimination, by_sums_of_hypotheses, by_range, by_roots, by_bounds, by_corners, by_product, by_sum,
         by_few_balls, by_values, by_side, by_squares, by_cones, by_forms, by_quadrics,
     ),

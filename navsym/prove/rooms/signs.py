@@ -31,6 +31,8 @@ from navsym.prove.rooms.goals import (
 CELLS = (120, 2500)
 #: Comparisons of variables in one proof by cones.
 MOST_SPLITS = 300
+#: Numbers in a term whose sums are compared with it.
+MOST_NUMBERS = 4
 
 
 def by_number(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -41,6 +43,33 @@ def by_number(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         yield {"rule": "balls", "bits": bits, "cells": 1}
     if goal.relation == ">=":
         yield {"rule": "zero", "proof": Hole()}
+
+
+def by_constant(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A term that seems to be one number, such as a sum of the numbers in it: by the equation."""
+    if sample and player.symbols_of(goal.term):
+        for number in list_constants(goal):
+            if all((value - arb(number)).contains(0) for value in sample):
+                proof: Proof = {"rule": "rewrite", "from": write_term(goal.term), "to": f"({number})"}
+                yield proof | {"defined": Holes(), "equal": Hole(), "proof": Hole()}
+                return
+
+
+def list_constants(goal: Any) -> list[fmpq]:
+    """Zero and the sums of numbers among the terms, as far as the relation allows them."""
+    numbers = [q for t in flatten(goal.term) if (q := player.constant_of(t)) is not None and q != 0][:MOST_NUMBERS]
+    subsets = (chosen for n in range(len(numbers) + 1) for chosen in itertools.combinations(numbers, n))
+    sums = dict.fromkeys(sum(chosen, fmpq(0)) for chosen in subsets)
+    return [q for q in sums if q > 0 or (q == 0 and goal.relation == ">=") or (q != 0 and goal.relation == "!=")]
+
+
+def flatten(term: Term) -> Iterator[Term]:
+    """The terms of a sum, of sums inside it, and of their negatives."""
+    for part in player.list_terms(term):
+        if part[0] == "*" and part[1] == player.MINUS_ONE and len(part) == 3 and part[2][0] == "+":
+            yield from map(player.negate, flatten(part[2]))
+        else:
+            yield part
 
 
 def by_identity(goal: Any, sample: list[arb]) -> Iterator[Proof]:
