@@ -238,7 +238,12 @@ def refute_document(documents: Sequence[Document], document: Document, point: Ma
             term = player.replace(term, ("symbol", name), value)
         zero = find_proof(player.Goal(term, "=", {}))
         if zero is not None:
-            certificate = {"kind": "counterexample", "statement": document, "bits": BITS[0], "point": dict(point)} | more
+            certificate = {
+                "kind": "counterexample",
+                "statement": document,
+                "bits": BITS[0],
+                "point": dict(point),
+            } | more
             grant(documents, certificate | {"zero": zero})
             return certificate | {"zero": zero}
     raise refusal

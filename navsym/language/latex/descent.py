@@ -106,7 +106,7 @@ class Descent(SymbolReader):
         return self.name(noad)
 
     def is_landau(self, noad: Noad) -> bool:
-        r"""True for the letter O, plain, upright or ``\mathcal``, before a parenthesis, where it is no declared name."""
+        r"""True for O, plain, upright or ``\mathcal``, before a parenthesis, where it is no declared name."""
         following = self.noads[self.place + 1] if self.place + 1 < len(self.noads) else None
         if following is None or following.kind != "open" or following.value != "(" or noad.has_scripts:
             return False

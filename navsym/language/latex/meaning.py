@@ -140,7 +140,9 @@ class Explainer:
         if part.head == "zeros":
             return Term(f"zeros({', '.join(part.args)})", shape=part.args)
         if part.head == "order":
-            raise Refusal(part.at, "O(x^k) as the last term of the right side", "it elsewhere", "move it, or leave it out")
+            raise Refusal(
+                part.at, "O(x^k) as the last term of the right side", "it elsewhere", "move it, or leave it out"
+            )
         return self.methods[part.head](part)
 
     def scalar(self, part: Part, what: str) -> Term:

@@ -29,6 +29,7 @@ from navsym.prove.words.judge import decide_words
 POINTS = 16
 FEW = 4  # points at which an exact zero is sought
 PRECISIONS = (64, 512)
+TROUBLE = (*REFUSALS, NavsymError, ArithmeticError, RecursionError)
 QUICK = 0.4  # seconds for a condition that need not be listed
 
 
@@ -69,7 +70,7 @@ def decide_text(claim: TextClaim, seconds: float) -> Verdict:
     for document in claim.documents:
         try:
             cases, box, answers = read_with_answers(document)
-        except (*REFUSALS, ArithmeticError, RecursionError) as error:
+        except TROUBLE as error:
             refuted = refute_at_points(claim, document)
             why = f"the checker does not read it: {error}"
             return refuted or Verdict(OPEN, "none", claim.scope, evidence=why)
@@ -148,7 +149,9 @@ def find_failure(points: Sequence[tuple[dict[str, Any], Any]]) -> dict[str, Any]
     return None
 
 
-def refute_at_zero(claim: TextClaim, document: Document, points: Sequence[tuple[dict[str, Any], Any]]) -> Verdict | None:
+def refute_at_zero(
+    claim: TextClaim, document: Document, points: Sequence[tuple[dict[str, Any], Any]]
+) -> Verdict | None:
     """REFUTED at a point where a term that must not be 0 seems to be 0, and exact algebra shows it."""
     before = ctx.prec
     for point, case in points[:FEW]:
@@ -196,7 +199,7 @@ def refute_at_points(claim: TextClaim, document: Document) -> Verdict | None:
             inside = [(point, case) for case in cases if player.lies_in(case, place)]
             if find_failure(inside) is not None:
                 return refute(claim, document, point)
-        except (*REFUSALS, ArithmeticError, RecursionError):
+        except TROUBLE:
             continue
     return None
 
@@ -237,5 +240,5 @@ def write_condition(term: Any) -> str:
     """A term in the usual order, as far as the algebra takes it."""
     try:
         return expression_text(to_sympy(term))
-    except (NavsymError, ArithmeticError, RecursionError):
+    except TROUBLE:
         return write_term(term)

@@ -33,6 +33,7 @@ CELLS = (120, 2500)
 MOST_SPLITS = 300
 #: Numbers in a term whose sums are compared with it.
 MOST_NUMBERS = 4
+FEW_SAMPLES = 4
 
 
 def by_number(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -47,7 +48,7 @@ def by_number(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 def by_constant(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """A term that seems to be one number, such as a sum of the numbers in it: by the equation."""
-    if sample and player.symbols_of(goal.term):
+    if len(sample) >= FEW_SAMPLES and player.symbols_of(goal.term):
         for number in list_constants(goal):
             if all((value - arb(number)).contains(0) for value in sample):
                 proof: Proof = {"rule": "rewrite", "from": write_term(goal.term), "to": f"({number})"}
