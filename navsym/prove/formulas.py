@@ -158,7 +158,8 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
     texts = (left, right, exists, *map(str, hypotheses), *slopes.values())
     dimensions = {side for value in given.values() for side in list_dimensions(value)} - given.keys()
     moments = [text for value in given.values() for text in list_moments(value)]
-    words = dict.fromkeys(sorted((symbols_in((*texts, *moments), given) - dimensions) | slopes.keys()), "real")
+    known = dict(given) | dict.fromkeys(beside["order"] or ())
+    words = dict.fromkeys(sorted((symbols_in((*texts, *moments), known) - dimensions) | slopes.keys()), "real")
     words |= read_assumptions((sides.left, sides.right, *existing), "prove")
     declared = {name: write_declaration(value, f"prove: {name}") for name, value in given.items()}
     for name in declared.keys() - words.keys():

@@ -388,6 +388,18 @@ def by_positive_radicand(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     yield body if goal.relation == ">" else {"rule": "side", "sign": 1, "proof": body}
 
 
+def by_existence(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """u >= 0 where something has a root of u, as sqrt(u)**2, and u > 0 where something has its logarithm."""
+    for relation, u in player.set_union(map(player.conditions, goal.exists)) if player.symbols_of(goal.term) else ():
+        enough = relation == ">" or (relation == goal.relation == ">=")
+        if enough and player.is_identity(player.subtract(goal.term, u)):
+            form = ("exp", ("log", u)) if relation == ">" else ("^", ("sqrt", u), player.number(2))
+            product: Proof = {"rule": "product", "factors": [None]}
+            proof = product if goal.relation != "!=" else {"rule": "side", "sign": 1, "proof": product}
+            yield {"rule": "equal", "to": write_term(form), "defined": Holes(), "proof": proof}
+            return
+
+
 def by_divided_root(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """u > 0 where something is divided by sqrt(u): u sqrt(u)**(-4) = sqrt(u)**(-2)."""
     if goal.relation not in (">", "!="):
