@@ -75,7 +75,10 @@ EQUATIONS: tuple[tuple[Room, ...], ...] = (
         by_algebra, by_one_angle, by_cofactors, by_elimination, by_modulus, by_values,
         by_values_of_constants, by_inverse, by_factors_of_roots, by_exponents, by_equal_squares,
     ),
-    (by_known_signs, by_roots_of_symbols, by_sums_of_hypotheses, by_logarithms_of_products, by_empty_case, by_sides_of_zero, by_gradient),
+    (
+        by_known_signs, by_roots_of_symbols, by_sums_of_hypotheses, by_logarithms_of_products, by_empty_case,
+        by_sides_of_zero, by_gradient,
+    ),
 )  # fmt: skip
 SIGNS: tuple[tuple[Room, ...], ...] = (
     (
@@ -84,8 +87,8 @@ SIGNS: tuple[tuple[Room, ...], ...] = (
         by_few_balls, by_values, by_side, by_squares, by_cones, by_forms, by_quadrics,
     ),
     (
-        by_constant, by_known_signs, by_cofactors, by_hypothesis, by_cases, by_quadratic, by_divisors, by_roots_of_symbols,
-        by_substitution, by_slope, by_contacts, by_modulus, by_logarithms, by_empty_case,
+        by_constant, by_known_signs, by_cofactors, by_hypothesis, by_cases, by_quadratic, by_divisors,
+        by_roots_of_symbols, by_substitution, by_slope, by_contacts, by_modulus, by_logarithms, by_empty_case,
     ),
     (by_concavity, by_many_balls),
 )  # fmt: skip
