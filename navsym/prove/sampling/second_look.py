@@ -37,7 +37,12 @@ from navsym.prove.sampling.points import AWKWARD, Point, Range, draw_points, ran
 PLACES = 6
 MOST_FACTORS = 8
 MOST_MEETINGS = 24
+INVERSES = {
+    sp.exp: sp.log, sp.log: sp.exp, sp.sin: sp.asin, sp.cos: sp.acos, sp.tan: sp.atan, sp.asin: sp.sin, sp.acos: sp.cos,
+    sp.atan: sp.tan, sp.sinh: sp.asinh, sp.tanh: sp.atanh,
+}  # fmt: skip
 MOST_EDGES = 8
+CLOSE = sp.Rational(1, 10**1000)  # to a pole of a logarithm
 
 #: Functions that are zero where their argument is.
 VANISHING = (sp.Abs, sp.sin, sp.tan, sp.atan, sp.asin, sp.sinh, sp.tanh)
@@ -97,13 +102,35 @@ def values_beside(parts: Sequence[sp.Expr], symbol: sp.Symbol, limit: Range, poi
         if symbol in part.free_symbols <= known:
             slope = sp.diff(part, symbol)
             curve = sp.expand(sp.diff(slope, symbol) / 2)
-            if symbol not in curve.free_symbols:
-                try:
-                    numbers = [p.subs({**point, symbol: 0}) for p in (curve, slope, part)]
-                    values |= dict.fromkeys(v for v in roots_of(*numbers) if limit.contains(v))
-                except UnsupportedError:
-                    continue
-    return [*values, *values_at_edges(limit)[:MOST_EDGES]] if len(known) == 1 or not values else [*values]
+            try:
+                numbers = [p.subs({**point, symbol: 0}) for p in (curve, slope, part)]
+                found = roots_of(*numbers) if symbol not in curve.free_symbols else invert(part.subs(point), symbol)
+                values |= dict.fromkeys(v for v in found if v.is_real and limit.contains(v))
+            except UnsupportedError:
+                continue
+    if point and values:
+        return [*values]
+    beside = [v + CLOSE for v in values if limit.contains(v + CLOSE)]
+    return [*values, *values_at_edges(limit)[:MOST_EDGES], *beside]
+
+
+def invert(part: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
+    """The root of ``c + a f(u)`` with an inverse of f, and so on inwards, where the symbol stands once."""
+    value: sp.Expr = sp.Integer(0)
+    while part != symbol:
+        rest, own = part.as_independent(symbol, as_Add=part.is_Add)
+        if part.is_Add or part.is_Mul:
+            value = value - rest if part.is_Add else value / rest
+        elif part.is_Pow and not part.exp.free_symbols:
+            own, value = part.base, value ** (1 / part.exp)
+        elif part.func in INVERSES:
+            own, value = part.args[0], INVERSES[part.func](value)
+        else:
+            return []
+        if own == part or own.count(symbol) != 1:
+            return []
+        part = own
+    return [value]
 
 
 def box_of_ranges(limits: Mapping[sp.Symbol, Range]) -> dict[sp.Symbol, tuple[sp.Expr | None, sp.Expr | None]]:
