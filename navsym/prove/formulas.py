@@ -106,12 +106,7 @@ def prove(
         refuse_declarations(symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())})
         return prove_file(statement, seconds, jobs, progress)
     sides = split_formula(statement, symbols) if relation is None else Sides(statement, relation, right)
-    if sides.order is not None:
-        if order:
-            message = "expected one order; got O(...) in the formula and order= beside it; remove one of them"
-            raise DomainError(message, where="prove: order")
-        beside["order"] = dict([sides.order])
-    return prove_formula(sides, symbols, beside, seconds)
+    return prove_formula(sides, symbols, beside | {"order": choose_order(sides.order, order)}, seconds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,6 +121,16 @@ class Sides:
     right: Any
     chain: str = ""
     order: tuple[str, int] | None = None
+
+
+def choose_order(printed: tuple[str, int] | None, order: Mapping[str, int] | None) -> Mapping[str, int] | None:
+    """The order that stands in the formula, or beside it."""
+    if printed is None:
+        return order
+    if order:
+        message = "expected one order; got O(...) in the formula and order= beside it; remove one of them"
+        raise DomainError(message, where="prove: order")
+    return dict([printed])
 
 
 def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress: Progress | None) -> Verdicts:

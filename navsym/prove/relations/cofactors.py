@@ -42,7 +42,7 @@ def by_cofactors(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     own = [*relations, *list_own_relations(parts, generators, ring)]
     roots = [k for k, part in enumerate(parts) if part[0] == "sqrt"]
     most = FEW_UNKNOWNS if any(m[k] % 2 for m in read_terms(top) for k in roots) else MOST_UNKNOWNS
-    for rest in [0] if goal.relation in ("=", ">=") else list_constants(goal)[:MOST_RESTS] or [1]:
+    for rest in [fmpq(0)] if goal.relation in ("=", ">=") else list_constants(goal)[:MOST_RESTS] or [fmpq(1)]:
         for found in find_cofactors(top - rest * bottom, own, most):
             shares = [
                 write_share(c, down, bottom, parts) if c else "0"
