@@ -58,7 +58,7 @@ def show_formula(formula: ReadFormula, rows: list[str]) -> list[str]:
     """The lines of one formula."""
     place = f"{formula.file}:{formula.line}:{formula.column}".lstrip(":")
     if formula.trouble is None:
-        return [f"{place}  READ", f"  {formula.source}", f"  {formula.left} {formula.relation} {formula.right}", ""]
+        return [f"{place}  READ", f"  {formula.source}", f"  {formula.text}", ""]
     line, column = formula.trouble
     row = rows[line - 1] if line <= len(rows) else ""
     start = max(0, column - 60)

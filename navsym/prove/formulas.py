@@ -108,7 +108,8 @@ def prove(
     if relation is None and is_file(statement):
         refuse_declarations(symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())})
         return prove_file(statement, seconds, jobs, progress)
-    return prove_formula(split_formula(statement, relation, right, symbols), symbols, beside, seconds)
+    sides = split_formula(statement, relation, right, symbols)
+    return prove_formula(sides, symbols, beside | {"order": choose_order(sides.order, order)}, seconds)
 
 
 def state_formula(
@@ -139,8 +140,9 @@ def state_formula(
     from navsym.prove.claimfile import FileClaim, property_of_claim, statement_of, text_conditions
 
     require_options(box, SECONDS, 1)
-    beside = dict(box=box or {}, tolerance=tolerance, exists=exists, given=given, rates=rates or {}, order=order)
-    (claim,) = read_formula(split_formula(statement, relation, right, symbols), symbols, beside).claims
+    beside = dict(box=box or {}, tolerance=tolerance, exists=exists, given=given, rates=rates or {})
+    sides = split_formula(statement, relation, right, symbols)
+    (claim,) = read_formula(sides, symbols, beside | {"order": choose_order(sides.order, order)}).claims
     if not isinstance(claim, FileClaim) or text_conditions(claim):
         return replace(property_of_claim(claim), is_whole=relation is None)
     found = statement_of(claim)
@@ -151,12 +153,26 @@ def state_formula(
 
 @dataclass(frozen=True, slots=True)
 class Sides:
-    """What a caller says: two sides in any accepted form, and the relation between them; or the text of a chain."""
+    """What a caller says: two sides in any accepted form, and the relation between them; or the text of a chain.
+
+    order : name and order of an ``O(x^k)`` that stands behind the right side
+    """
 
     left: Any
     relation: str
     right: Any
     chain: str = ""
+    order: tuple[str, int] | None = None
+
+
+def choose_order(printed: tuple[str, int] | None, order: Mapping[str, int] | None) -> Mapping[str, int] | None:
+    """The order that stands in the formula, or beside it."""
+    if printed is None:
+        return order
+    if order:
+        message = "expected one order; got O(...) in the formula and order= beside it; remove one of them"
+        raise DomainError(message, where="prove: order")
+    return dict([printed])
 
 
 def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress: Progress | None) -> Verdicts:
@@ -196,7 +212,8 @@ def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, An
     texts = (left, right, exists, *map(str, hypotheses), *slopes.values())
     dimensions = {side for value in given.values() for side in list_dimensions(value)} - given.keys()
     moments = [text for value in given.values() for text in list_moments(value)]
-    words = dict.fromkeys(sorted((symbols_in((*texts, *moments), given) - dimensions) | slopes.keys()), "real")
+    known = dict(given) | dict.fromkeys(beside["order"] or ())
+    words = dict.fromkeys(sorted((symbols_in((*texts, *moments), known) - dimensions) | slopes.keys()), "real")
     words |= read_assumptions((sides.left, sides.right, *existing), "prove")
     declared = {name: write_declaration(value, f"prove: {name}") for name, value in given.items()}
     for name in declared.keys() - words.keys():
@@ -299,8 +316,9 @@ def read_latex(statement: str, given: Mapping[str, Any]) -> Sides:
         raise ExpressionSyntaxError(str(refused.why).partition(": ")[2], where=f"prove: statement, line {refused.line}")
     first, *others = reading.formulas
     if not others:
-        return Sides(first.left, str(first.relation), first.right)
-    if any(one.right != other.left for one, other in itertools.pairwise(reading.formulas)):
+        return Sides(first.left, str(first.relation), first.right, order=first.order)
+    linked = all(one.right == other.left for one, other in itertools.pairwise(reading.formulas))
+    if not linked or any(one.order for one in reading.formulas):
         count = len(reading.formulas)
         message = f"expected one formula or a chain of them; got {count} in {quote(statement)}; prove them one by one"
         raise ExpressionSyntaxError(message, where="prove: statement")

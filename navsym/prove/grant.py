@@ -230,13 +230,20 @@ def refute_document(documents: Sequence[Document], document: Document, point: Ma
             return certificate | {"zero": None}
         except REFUSALS as error:
             refusal = error
-    if document["relation"] in ("<", ">", "!=") and not more:
-        term = player.read_statement(document)[0][0].goals[0].term
-        for name, value in point.items():
-            term = player.replace(term, ("symbol", name), player.parse(value))
+    if document["relation"] in ("<", ">", "!="):
+        there = {name: player.parse(value) for name, value in point.items()}
+        cases, _ = player.read_statement(document, player.Answers(more["answers"], there) if more else None)
+        term = cases[0].goals[0].term
+        for name, value in cases[0].complete(there).items():
+            term = player.replace(term, ("symbol", name), value)
         zero = find_proof(player.Goal(term, "=", {}))
         if zero is not None:
-            certificate = {"kind": "counterexample", "statement": document, "bits": BITS[0], "point": dict(point)}
+            certificate = {
+                "kind": "counterexample",
+                "statement": document,
+                "bits": BITS[0],
+                "point": dict(point),
+            } | more
             grant(documents, certificate | {"zero": zero})
             return certificate | {"zero": zero}
     raise refusal

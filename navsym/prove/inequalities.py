@@ -111,9 +111,21 @@ def decide_unproved_relation(
         GOALS[relation](difference),
     )
     doubt = doubt_of(look, relation)
+    if not doubt and look.counterexample is None and has_beats(difference, box):
+        doubt = "waves whose periods have no common multiple meet as nearly as one likes, far beyond all samples"
     if doubt:
         return Verdict(OPEN, "sampling", scope, evidence=doubt)
     return judge_look(look, sample, scope, f"printed {relation} derived")
+
+
+def has_beats(difference: sp.Expr, box: Box) -> bool:
+    """Whether sines of a symbol without ends have frequencies whose ratio is not seen to be rational."""
+    waves = difference.atoms(sp.sin, sp.cos)
+    for symbol in difference.free_symbols - set(box):
+        slopes = [slope for wave in waves if (slope := sp.diff(wave.args[0], symbol)) != 0 and slope.is_number]
+        if any(not sp.cancel(slope / slopes[0]).is_Rational for slope in slopes[1:]):
+            return True
+    return False
 
 
 def doubt_of(look: Look, relation: str) -> str:

@@ -36,6 +36,7 @@ from navsym.prove.rooms.forms import (
     by_divisors,
     by_forms,
     by_hypothesis,
+    by_known_signs,
     by_one_angle,
     by_roots_of_symbols,
     by_substitution,
@@ -46,10 +47,12 @@ from navsym.prove.rooms.signs import (
     by_bounds,
     by_concavity,
     by_cones,
+    by_constant,
     by_contacts,
     by_corners,
     by_divided_root,
     by_divided_term,
+    by_existence,
     by_few_balls,
     by_identity,
     by_logarithms,
@@ -70,19 +73,22 @@ from navsym.prove.rooms.signs import (
 EQUATIONS: tuple[tuple[Room, ...], ...] = (
     (
         by_algebra, by_one_angle, by_cofactors, by_elimination, by_modulus, by_values,
-        by_values_of_constants, by_factors_of_roots, by_exponents, by_inverse, by_equal_squares,
+        by_values_of_constants, by_inverse, by_factors_of_roots, by_exponents, by_equal_squares,
     ),
-    (by_sums_of_hypotheses, by_logarithms_of_products, by_empty_case, by_sides_of_zero, by_gradient),
+    (
+        by_known_signs, by_roots_of_symbols, by_sums_of_hypotheses, by_logarithms_of_products, by_empty_case,
+        by_sides_of_zero, by_gradient,
+    ),
 )  # fmt: skip
 SIGNS: tuple[tuple[Room, ...], ...] = (
     (
-        by_number, by_positive_radicand, by_divided_root, by_divided_term, by_identity,
+        by_number, by_positive_radicand, by_existence, by_divided_root, by_divided_term, by_identity,
         by_elimination, by_sums_of_hypotheses, by_range, by_roots, by_bounds, by_corners, by_product, by_sum,
         by_few_balls, by_values, by_side, by_squares, by_cones, by_forms, by_quadrics,
     ),
     (
-        by_cofactors, by_hypothesis, by_cases, by_quadratic, by_divisors, by_roots_of_symbols, by_substitution,
-        by_slope, by_contacts, by_modulus, by_logarithms, by_empty_case,
+        by_constant, by_known_signs, by_cofactors, by_hypothesis, by_cases, by_quadratic, by_divisors,
+        by_roots_of_symbols, by_substitution, by_slope, by_contacts, by_modulus, by_logarithms, by_empty_case,
     ),
     (by_concavity, by_many_balls),
 )  # fmt: skip

@@ -62,7 +62,7 @@ def test_claims_are_added_with_the_verdict_that_was_found(folder, capsys):
 
 
 def test_names_that_must_be_positive_are_asked_for_and_declared(folder, capsys):
-    sides = ("--printed", "sqrt(R)**5*sqrt(g/R**3)", "--derived", "R*sqrt(g)")
+    sides = ("--printed", "(R**3*g)**(1/3)", "--derived", "R*g**(1/3)")
     before = (folder / "sample_paper.py").read_text()
     assert add(folder, "1", *sides) == 2
     assert "add --positive R,g if they are" in capsys.readouterr().err

@@ -123,7 +123,19 @@ class Climber(ClusterReader):
             return self.table()
         if token in FRACTIONS:
             return self.quotient()
+        if landau := self.landau():
+            return landau
         return self.symbol()
+
+    def landau(self) -> Part | None:
+        """``O(x^k)``, unless the letter is a declared name."""
+        here = self.cluster(self.place)
+        letters = [t.text for t in here.base if t.text not in "{}"]
+        plain = letters == ["O"] and "O" not in self.notation
+        if here.sub or here.sup or self.look_at(here.after) != "(" or not (plain or letters == [r"\mathcal", "O"]):
+            return None
+        at, self.place = here.base[0].at, here.after
+        return Part("order", tuple(self.listed()), at)
 
     def open_braces(self) -> None:
         """Drop braces around what needs none."""

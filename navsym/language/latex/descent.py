@@ -92,6 +92,8 @@ class Descent(SymbolReader):
             return self.bracket(noad)
         if noad.kind == "sym" and (noad.value.isdigit() or noad.value == "."):
             return self.number()
+        if self.is_landau(noad):
+            return self.landau(noad)
         if noad.kind == "env":
             self.place += 1
             return self.power(self.cases(noad) if noad.value[0] == "cases" else self.matrix(noad), noad)
@@ -103,7 +105,20 @@ class Descent(SymbolReader):
             return self.call(CALLS[noad.value])
         return self.name(noad)
 
-    # -- names ----------------------------------------------------------------------------
+    def is_landau(self, noad: Noad) -> bool:
+        r"""True for O, plain, upright or ``\mathcal``, before a parenthesis, where it is no declared name."""
+        following = self.noads[self.place + 1] if self.place + 1 < len(self.noads) else None
+        if following is None or following.kind != "open" or following.value != "(" or noad.has_scripts:
+            return False
+        if noad.kind == "arg" and noad.value == "mathcal":
+            return len(noad.args[0]) == 1 and noad.args[0][0].is_sign("O") and not noad.args[0][0].has_scripts
+        return noad.kind in ("sym", "word") and noad.value == "O" and "O" not in self.notation
+
+    def landau(self, noad: Noad) -> Part:
+        """``O(x^k)``: terms of an order."""
+        self.place += 1
+        opening = self.noads[self.place]
+        return Part("order", tuple(self.arguments(opening)), noad.at)
 
     # -- powers and brackets --------------------------------------------------------------
 

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import Any
 
 from navsym.language.latex.notation import Notation, Shape
-from navsym.language.latex.parts import Part, Refusal, list_names
+from navsym.language.latex.parts import Part, Refusal, join_terms, list_names
 from navsym.language.names import FUNCTIONS
 
 #: How tightly a text binds.
@@ -61,6 +61,20 @@ def list_columns(parts: list[Part], notation: Notation) -> list[bool]:
         return rows
     other = explain(parts[rows.index(False)], notation).shape
     return [row and other[1:] == ("1",) and other[0] != "1" for row in rows]
+
+
+def take_order(part: Part) -> tuple[Part, tuple[str, int] | None]:
+    """A side without ``O(x^k)`` at its end, and the name with its order. Raises Refusal for another O."""
+    *terms, last = part.args if part.head == "+" else (part,)
+    last = last.args[0] if last.head == "-" else last
+    if last.head != "order":
+        return part, None
+    inner = last.args[0]
+    base, power = inner.args if inner.head == "^" else (inner, Part("num", ("1",)))
+    whole = power.head == "num" and re.fullmatch("[1-9][0-9]?", power.args[0])
+    if len(last.args) != 1 or base.head != "name" or not whole:
+        raise Refusal(last.at, "O(x^k) of one name and a whole power", "another O", "write it so, or the claim by hand")
+    return join_terms(terms) if terms else Part("num", ("0",), last.at), (base.args[0], int(power.args[0]))
 
 
 def is_row(part: Part) -> bool:
@@ -125,6 +139,10 @@ class Explainer:
             return Term(f"eye({part.args[0]})", shape=(part.args[0],) * 2)
         if part.head == "zeros":
             return Term(f"zeros({', '.join(part.args)})", shape=part.args)
+        if part.head == "order":
+            raise Refusal(
+                part.at, "O(x^k) as the last term of the right side", "it elsewhere", "move it, or leave it out"
+            )
         return self.methods[part.head](part)
 
     def scalar(self, part: Part, what: str) -> Term:

@@ -14,7 +14,7 @@ class Part:
     """A piece of a formula.
 
     head : ``num name unknown + - * ^ mark () frac sqrt abs norm floor call matrix skew dot diff integral sum index``,
-           ``limit inner list cases cond``, ``eye`` and ``zeros``
+           ``limit inner list cases cond``, ``eye`` and ``zeros``, ``order`` for ``O(x^k)``
     args : parts and texts; a product has its marks between its factors: ``(a, "", b, "/", c)``
     at   : where it begins; two readings are compared without it
     """

@@ -17,7 +17,7 @@ from navsym.language.latex.climbing import climb
 from navsym.language.latex.descent import descend
 from navsym.language.latex.documents import ENDINGS, Block, hide_comments, list_blocks
 from navsym.language.latex.macros import Macro, expand_macros, list_macros
-from navsym.language.latex.meaning import explain, fit_sides, list_columns
+from navsym.language.latex.meaning import explain, fit_sides, list_columns, take_order
 from navsym.language.latex.notation import Notation, build_notation, read_notation
 from navsym.language.latex.parts import Part, Refusal, list_names, list_unknown
 from navsym.language.latex.rows import Relation, Side, split_relations
@@ -42,6 +42,7 @@ class ReadFormula:
     latex        : in one line, with the macros of the document expanded
     trouble      : line and column of the trouble
     unknown      : name -> LaTeX, of the names that nobody declared
+    order        : name and order of ``+ O(x^k)`` at the end of the right side, which ``right`` leaves out
     """
 
     file: str
@@ -57,6 +58,15 @@ class ReadFormula:
     latex: str
     trouble: tuple[int, int] | None = None
     unknown: tuple[tuple[str, str], ...] = ()
+    order: tuple[str, int] | None = None
+
+    @property
+    def text(self) -> str:
+        """The reading in one line; empty when it is refused."""
+        if self.status != "READ":
+            return ""
+        rest = "" if self.order is None else f" + O({self.order[0]}**{self.order[1]})"
+        return f"{self.left} {self.relation} {self.right}{rest}"
 
     def document(self) -> dict[str, Any]:
         """The formula as plain data."""
@@ -65,6 +75,7 @@ class ReadFormula:
         return {
             "place": place,
             **{k: getattr(self, k) for k in keys},
+            **({} if self.order is None else {"order": dict([self.order])}),
             "symbols": list(self.symbols),
             "latex": self.latex,
         }
@@ -130,7 +141,8 @@ class Reading(Answer):
             stem = re.sub(r"[^A-Za-z0-9_.-]", "", PurePath(formula.file).stem)[:40].lstrip("_.-") or "formula"
             count = sum(name.startswith(f"{stem}:{formula.line}.") for name in ids) + 1
             ids.add(label := f"{stem}:{formula.line}.{count}")
-            keys = {"left": formula.left, "relation": formula.relation, "right": formula.right}
+            keys: dict[str, Any] = {"left": formula.left, "relation": formula.relation, "right": formula.right}
+            keys |= {} if formula.order is None else {"order": dict([formula.order])}
             beside = {"printed": formula.latex, "source": f"{formula.file or 'text'}: line {formula.line}"}
             blocks.append({"id": label, **keys, **beside})
         return toml_text({"symbols": symbols, **({"rates": rates} if rates else {}), "claim": blocks})
@@ -308,10 +320,9 @@ def read_relation(relation: Relation, places: list[int], notation: Notation, lin
         if relation.index and not is_whole(notation, relation.index):
             remedy = f'declare {relation.index} = {{ integer = ["1", "oo"] }}'
             raise Refusal(relation.at, "a whole number that runs through the list", relation.index, remedy)
-        texts, names = read_sides(relation, notation, unknown)
-        return ReadFormula(
-            lines.name, row, column, source, "READ", None, texts[0], relation.sign, texts[1], names, latex
-        )
+        texts, names, order = read_sides(relation, notation, unknown)
+        said = (texts[0], relation.sign, texts[1], names, latex)
+        return ReadFormula(lines.name, row, column, source, "READ", None, *said, order=order)
     except Refusal as refusal:
         spot = lines.place(places[min(max(refusal.at, 0), len(places) - 1)])
         why = f"line {spot[0]}, column {spot[1]}: {refusal}"
@@ -325,8 +336,13 @@ def is_whole(notation: Notation, name: str) -> bool:
     return isinstance(declaration, Mapping) and "integer" in declaration
 
 
-def read_sides(relation: Relation, notation: Notation, unknown: list[Part]) -> tuple[tuple[str, str], tuple[str, ...]]:
-    """The texts of both sides and the declared names in them; ``unknown`` collects the others. Raises Refusal."""
+def read_sides(
+    relation: Relation, notation: Notation, unknown: list[Part]
+) -> tuple[tuple[str, str], tuple[str, ...], tuple[str, int] | None]:
+    """The texts of both sides, the declared names in them, and the order of an O(x^k) behind them.
+
+    ``unknown`` collects the other names. Raises Refusal.
+    """
     faces: dict[str, set[bool]] = {}
     parts: list[Part] = []
     for side in (relation.left, relation.right):
@@ -346,17 +362,23 @@ def read_sides(relation: Relation, notation: Notation, unknown: list[Part]) -> t
     if both:
         question = f"{both[0]} in bold and plain type: one name or two?"
         raise Refusal(relation.left.start, "one type for a name", question, r"write \mathbf in [latex]")
+    for side, part in zip((relation.left, relation.right), parts, strict=True):
+        with shifted(side.start):
+            compare_readings(part, side.text, notation)
+    used = dict.fromkeys(name for part in parts for name in list_names(part) if name in notation)
+    with shifted(relation.right.start):
+        parts[1], order = take_order(parts[1])
     terms = []
     columns = list_columns(parts, notation)
     for side, part, as_column in zip((relation.left, relation.right), parts, columns, strict=True):
         with shifted(side.start):
-            compare_readings(part, side.text, notation)
             terms.append(explain(part, notation, as_column))
     first_term, second_term = fit_sides(terms[0], terms[1], relation.right.start)
     if (first_term.shape or second_term.shape) and relation.sign not in ("=", "!="):
         raise Refusal(relation.right.start, "scalars on both sides of an order", "vectors", "compare entries")
-    used = dict.fromkeys(name for part in parts for name in list_names(part) if name in notation)
-    return (first_term.text, second_term.text), tuple(used)
+    if order is not None and relation.sign != "=":
+        raise Refusal(relation.right.start, "= before O(x^k)", relation.sign, "write an equation")
+    return (first_term.text, second_term.text), tuple(used), order
 
 
 class shifted:
@@ -387,6 +409,4 @@ def plain_spelling(spelled: str) -> str:
 
 def show_reading(formula: ReadFormula) -> str:
     """The reading of a formula, or why there is none."""
-    if formula.status == "READ":
-        return f"{formula.left} {formula.relation} {formula.right}"
-    return formula.why or ""
+    return formula.text or formula.why or ""

@@ -10,8 +10,10 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from flint import ctx
+
 from navsym.prove.calculus.candidates import Signs, list_candidates
-from navsym.prove.grant import REFUSALS, Document
+from navsym.prove.grant import BITS, REFUSALS, Document
 from navsym.prove.rooms.goals import Hole, player, values_of
 from navsym.prove.search import find_filled
 
@@ -89,6 +91,10 @@ def finish(entry: Any) -> Any:
 
 def read_with_answers(document: Document, seconds: float = SECONDS, point: Mapping[str, Any] | None = None) -> Any:
     """The cases of a statement, its box and the answers of its questions; raises Refused."""
-    answers = Search(seconds, point)
-    cases, box = player.read_statement(document, answers)
+    answers, before = Search(seconds, point), ctx.prec
+    ctx.prec = BITS[0]  # as the checker will read it
+    try:
+        cases, box = player.read_statement(document, answers)
+    finally:
+        ctx.prec = before
     return cases, box, answers.found

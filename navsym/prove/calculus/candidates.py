@@ -9,7 +9,6 @@ from typing import Any
 
 import sympy as sp
 from sympy.concrete.gosper import gosper_term
-from sympy.integrals.manualintegrate import manualintegrate
 from sympy.simplify.fu import TR8
 
 from navsym.core.errors import NavsymError
@@ -147,6 +146,8 @@ def list_antiderivatives(question: Any, goal: Any, pair: Any, signs: list[int]) 
     known = {to_sympy(("symbol", n)): sp.Symbol(n, positive=True) for n, r in goal.box.items() if is_positive(r)}
     back = {value: key for key, value in known.items()}
     seen: set[str] = set()
+    from sympy.integrals.manualintegrate import manualintegrate  # takes long to load, and few claims have integrals
+
     for method in (integrate_waves, integrate_bells, integrate_quotient_of_cosine, manualintegrate, integrate_slowly):
         try:
             found = method(f.subs(known), x)

@@ -14,9 +14,11 @@ from typing import Any
 from flint import Ordering, arb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, nmod_mat
 
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, player, write_number, write_term
+from navsym.prove.rooms.signs import list_constants
 
 PRIME = (1 << 61) - 1
 ROUNDS = 5
+MOST_RESTS = 3
 MOST_GIVEN = 5
 MOST_VALUES = 8  # the relations of a rotation give every entry by the others
 MOST_UNKNOWNS = 2500
@@ -27,10 +29,9 @@ Polynomial = dict[Exponents, fmpq]
 
 
 def by_cofactors(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """Candidates for the rule ``modulo`` with nothing left of the term, or 1 where it has a sign."""
+    """Candidates for the rule ``modulo`` with nothing left of the term, or a number where it has a sign."""
     if not goal.zeros:
         return
-    rest = 0 if goal.relation in ("=", ">=") else 1
     parts = [*dict.fromkeys(g for t in (goal.term, *goal.zeros) for g in player.list_generators(t))]
     if not parts:
         return
@@ -42,12 +43,13 @@ def by_cofactors(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     roots = [k for k, part in enumerate(parts) if part[0] == "sqrt"]
     most = FEW_UNKNOWNS if any(m[k] % 2 for m in read_terms(top) for k in roots) else MOST_UNKNOWNS
     divisors = write_divisors(bottom, goal, generators, ring)
-    for found in find_cofactors(top - rest * bottom, own, most):
-        shares = [
-            write_share(c, down, divisors, parts) if c else "0"
-            for c, (_, down) in zip(found, quotients[1:], strict=False)
-        ]
-        yield {"rule": "modulo", "to": str(rest), "cofactors": shares, "defined": Holes(), "proof": Hole()}
+    for rest in [fmpq(0)] if goal.relation in ("=", ">=") else list_constants(goal)[:MOST_RESTS] or [fmpq(1)]:
+        for found in find_cofactors(top - rest * bottom, own, most):
+            shares = [
+                write_share(c, down, divisors, parts) if c else "0"
+                for c, (_, down) in zip(found, quotients[1:], strict=False)
+            ]
+            yield {"rule": "modulo", "to": f"({rest})", "cofactors": shares, "defined": Holes(), "proof": Hole()}
 
 
 def by_elimination(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -185,6 +187,8 @@ def write_divisors(bottom: fmpq_mpoly, goal: Any, generators: dict[Term, fmpq_mp
     """A division by a polynomial: by the goal's own divisors, known to be != 0, as far as they are factors."""
     text, rest = "", bottom
     for _, part in player.conditions(goal.term):
+        if not set(player.list_generators(part)) <= set(generators):
+            continue
         own, below = player.to_quotient(part, generators, ring)
         while below == 1 and not own.is_constant() and divmod(rest, own)[1] == 0:
             rest, text = divmod(rest, own)[0], f"{text}/({write_term(part)})"

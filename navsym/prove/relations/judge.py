@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from itertools import chain, islice
 from typing import Any
 
-from flint import arb
+from flint import arb, ctx
 
 from navsym.claims.formula import Formula
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Verdict
@@ -27,6 +27,9 @@ from navsym.prove.wording import decimal_ends, expression_text
 from navsym.prove.words.judge import decide_words
 
 POINTS = 16
+FEW = 4  # points at which an exact zero is sought
+PRECISIONS = (64, 512)
+TROUBLE = (*REFUSALS, NavsymError, ArithmeticError, RecursionError)
 QUICK = 0.4  # seconds for a condition that need not be listed
 
 
@@ -67,7 +70,7 @@ def decide_text(claim: TextClaim, seconds: float) -> Verdict:
     for document in claim.documents:
         try:
             cases, box, answers = read_with_answers(document)
-        except (*REFUSALS, ArithmeticError, RecursionError) as error:
+        except TROUBLE as error:
             refuted = refute_at_points(claim, document)
             why = f"the checker does not read it: {error}"
             return refuted or Verdict(OPEN, "none", claim.scope, evidence=why)
@@ -80,6 +83,8 @@ def decide_text(claim: TextClaim, seconds: float) -> Verdict:
         proofs = []
         for goal in (goal for case in cases for goal in case.goals):
             proof = IDENTITY if is_identity(goal) else find_proof(goal, max(0.1, end - time.process_time()))
+            if proof is None and (failing := refute_at_zero(claim, document, points)):
+                return failing
             if proof is None:
                 words = f"no proof was found; it holds at {len(points)} exact points"
                 return Verdict(OPEN, "proof tree", claim.scope, evidence=words)
@@ -131,11 +136,35 @@ def list_points(claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]) 
 
 
 def find_failure(points: Sequence[tuple[dict[str, Any], Any]]) -> dict[str, Any] | None:
-    """A point at which a goal of its case fails."""
-    for point, case in points:
-        balls = evaluate_point(case, point)
-        if any(player.FAILURES[goal.relation](player.value_of(goal.term, balls)) for goal in case.goals):
-            return point
+    """A point at which a goal of its case fails; small differences need many digits."""
+    before = ctx.prec
+    try:
+        for ctx.prec in PRECISIONS:
+            for point, case in points:
+                balls = evaluate_point(case, point)
+                if any(player.FAILURES[goal.relation](player.value_of(goal.term, balls)) for goal in case.goals):
+                    return point
+    finally:
+        ctx.prec = before
+    return None
+
+
+def refute_at_zero(
+    claim: TextClaim, document: Document, points: Sequence[tuple[dict[str, Any], Any]]
+) -> Verdict | None:
+    """REFUTED at a point where a term that must not be 0 seems to be 0, and exact algebra shows it."""
+    before = ctx.prec
+    for point, case in points[:FEW]:
+        if len(case.goals) != 1 or case.goals[0].relation not in (">", "!="):
+            continue
+        try:
+            ctx.prec = PRECISIONS[-1]
+            value = player.value_of(case.goals[0].term, evaluate_point(case, point))
+        finally:
+            ctx.prec = before
+        if value.contains(0):
+            verdict = refute(claim, document, point)
+            return verdict if verdict.status == REFUTED else None
     return None
 
 
@@ -182,7 +211,7 @@ def refute_at_points(claim: TextClaim, document: Document) -> Verdict | None:
             inside = [(point, case) for case in cases if player.lies_in(case, place)]
             if find_failure(inside) is not None:
                 return refute(claim, document, point)
-        except (*REFUSALS, ArithmeticError, RecursionError):
+        except TROUBLE:
             continue
     return None
 
@@ -223,5 +252,5 @@ def write_condition(term: Any) -> str:
     """A term in the usual order, as far as the algebra takes it."""
     try:
         return expression_text(to_sympy(term))
-    except (NavsymError, ArithmeticError, RecursionError):
+    except TROUBLE:
         return write_term(term)

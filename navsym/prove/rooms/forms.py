@@ -198,6 +198,21 @@ def by_roots_of_symbols(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     yield proof
 
 
+def by_known_signs(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Real symbols that are positive wherever the term has a value, as new ones with that range."""
+    known = player.with_weaker(player.set_union(map(player.conditions, (goal.term, *goal.exists))))
+    terms, ranges, form = {}, {}, goal.term
+    for name in sorted(player.symbols_of(goal.term)):
+        v, new = ("symbol", name), f"{name}_p"
+        if (">=", v) in known and goal.box[name].low is None and new not in goal.box:
+            is_open = {(">", v), ("!=", v), ("!=", ("sqrt", v))} & known
+            terms[new], ranges[new] = name, ["0", None, ["open-low"] if is_open else []]
+            form = player.replace(form, v, ("symbol", new))
+    if terms:
+        proof: Proof = {"rule": "abstract", "terms": terms, "ranges": ranges, "to": write_term(form)}
+        yield proof | {"inside": Holes(), "defined": Holes(), "proof": Hole()}
+
+
 def by_hypothesis(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """A hypothesis c v + r >= 0 as a number u >= 0, and v = (u - r)/c."""
     for k, given in enumerate(goal.given):

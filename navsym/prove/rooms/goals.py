@@ -149,7 +149,8 @@ def sample_goal(goal: Any, is_strict: bool = False) -> list[arb]:
     """
     if goal.zeros:
         return []
-    names = sorted(player.symbols_of(goal.term).union(*map(player.symbols_of, goal.given)))
+    within = (*goal.given, *(goal.exists if is_strict else ()))
+    names = sorted(player.symbols_of(goal.term).union(*map(player.symbols_of, within)))
     values: list[arb] = []
     wanted = len(SHARES) + 4
     for k in range((4 * wanted if goal.given else wanted) if names else 1):

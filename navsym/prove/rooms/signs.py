@@ -31,6 +31,9 @@ from navsym.prove.rooms.goals import (
 CELLS = (120, 2500)
 #: Comparisons of variables in one proof by cones.
 MOST_SPLITS = 300
+#: Numbers in a term whose sums are compared with it.
+MOST_NUMBERS = 4
+FEW_SAMPLES = 4
 
 
 def by_number(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -41,6 +44,33 @@ def by_number(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         yield {"rule": "balls", "bits": bits, "cells": 1}
     if goal.relation == ">=":
         yield {"rule": "zero", "proof": Hole()}
+
+
+def by_constant(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A term that seems to be one number, such as a sum of the numbers in it: by the equation."""
+    if len(sample) >= FEW_SAMPLES and player.symbols_of(goal.term):
+        for number in list_constants(goal):
+            if all((value - arb(number)).contains(0) for value in sample):
+                proof: Proof = {"rule": "rewrite", "from": write_term(goal.term), "to": f"({number})"}
+                yield proof | {"defined": Holes(), "equal": Hole(), "proof": Hole()}
+                return
+
+
+def list_constants(goal: Any) -> list[fmpq]:
+    """Zero and the sums of numbers among the terms, as far as the relation allows them."""
+    numbers = [q for t in flatten(goal.term) if (q := player.constant_of(t)) is not None and q != 0][:MOST_NUMBERS]
+    subsets = (chosen for n in range(len(numbers) + 1) for chosen in itertools.combinations(numbers, n))
+    sums = dict.fromkeys(sum(chosen, fmpq(0)) for chosen in subsets)
+    return [q for q in sums if q > 0 or (q == 0 and goal.relation == ">=") or (q != 0 and goal.relation == "!=")]
+
+
+def flatten(term: Term) -> Iterator[Term]:
+    """The terms of a sum, of sums inside it, and of their negatives."""
+    for part in player.list_terms(term):
+        if part[0] == "*" and part[1] == player.MINUS_ONE and len(part) == 3 and part[2][0] == "+":
+            yield from map(player.negate, flatten(part[2]))
+        else:
+            yield part
 
 
 def by_identity(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -356,6 +386,18 @@ def by_positive_radicand(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     body: Proof = {"rule": "squares", "left": write_term(goal.term), "right": "0", "sign": 1, "defined": Holes()}
     body |= {"proofs": [square, {"rule": "product", "factors": [None]}]}
     yield body if goal.relation == ">" else {"rule": "side", "sign": 1, "proof": body}
+
+
+def by_existence(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """u >= 0 where something has a root of u, as sqrt(u)**2, and u > 0 where something has its logarithm."""
+    for relation, u in player.set_union(map(player.conditions, goal.exists)) if player.symbols_of(goal.term) else ():
+        enough = relation == ">" or (relation == goal.relation == ">=")
+        if enough and player.is_identity(player.subtract(goal.term, u)):
+            form = ("exp", ("log", u)) if relation == ">" else ("^", ("sqrt", u), player.number(2))
+            product: Proof = {"rule": "product", "factors": [None]}
+            proof = product if goal.relation != "!=" else {"rule": "side", "sign": 1, "proof": product}
+            yield {"rule": "equal", "to": write_term(form), "defined": Holes(), "proof": proof}
+            return
 
 
 def by_divided_root(goal: Any, sample: list[arb]) -> Iterator[Proof]:

@@ -36,6 +36,13 @@ from navsym.prove.sampling.points import AWKWARD, Point, Range, draw_points, ran
 
 PLACES = 6
 MOST_FACTORS = 8
+MOST_MEETINGS = 24
+INVERSES = {
+    sp.exp: sp.log, sp.log: sp.exp, sp.sin: sp.asin, sp.cos: sp.acos, sp.tan: sp.atan, sp.asin: sp.sin, sp.acos: sp.cos,
+    sp.atan: sp.tan, sp.sinh: sp.asinh, sp.tanh: sp.atanh,
+}  # fmt: skip
+MOST_EDGES = 8
+CLOSE = sp.Rational(1, 10**1000)  # to a pole of a logarithm
 
 #: Functions that are zero where their argument is.
 VANISHING = (sp.Abs, sp.sin, sp.tan, sp.atan, sp.asin, sp.sinh, sp.tanh)
@@ -73,6 +80,59 @@ def zeros_in(base: sp.Expr, symbol: sp.Symbol, limits: Mapping[sp.Symbol, Range]
         yield from ({**point, symbol: value} for value in found)
 
 
+def meeting_points(difference: sp.Expr, limits: Mapping[sp.Symbol, Range]) -> Iterator[Point]:
+    """Points at which arguments of functions, or what is squared, vanish together: where peaks and narrow dips are.
+
+    One symbol after the other, in both orders, takes a root of an argument that holds no later symbol, or an end.
+    """
+    nodes = (node for node in difference.atoms(sp.Function, sp.Pow) if node.is_Function or node.exp.is_Rational)
+    parts = sorted({node.args[0] for node in nodes if node.args[0].free_symbols}, key=str)[:MOST_FACTORS]
+    for order in dict.fromkeys((tuple(limits), tuple(limits)[::-1])):
+        points: list[Point] = [{}]
+        for symbol in order:
+            points = [{**p, symbol: v} for p in points for v in values_beside(parts, symbol, limits[symbol], p)]
+            points = points[:MOST_MEETINGS]
+        yield from (point for point in points if point)
+
+
+def values_beside(parts: Sequence[sp.Expr], symbol: sp.Symbol, limit: Range, point: Point) -> list[sp.Expr]:
+    """Values of a symbol at which a part vanishes, those before it being known; and the edges of its range."""
+    known, values = {symbol, *point}, dict[sp.Expr, None]()
+    for part in parts:
+        if symbol in part.free_symbols <= known:
+            slope = sp.diff(part, symbol)
+            curve = sp.expand(sp.diff(slope, symbol) / 2)
+            try:
+                numbers = [p.subs({**point, symbol: 0}) for p in (curve, slope, part)]
+                found = roots_of(*numbers) if symbol not in curve.free_symbols else invert(part.subs(point), symbol)
+                values |= dict.fromkeys(v for v in found if v.is_real and limit.contains(v))
+            except UnsupportedError:
+                continue
+    if point and values:
+        return [*values]
+    beside = [v + CLOSE for v in values if limit.contains(v + CLOSE)]
+    return [*values, *values_at_edges(limit)[:MOST_EDGES], *beside]
+
+
+def invert(part: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
+    """The root of ``c + a f(u)`` with an inverse of f, and so on inwards, where the symbol stands once."""
+    value: sp.Expr = sp.Integer(0)
+    while part != symbol:
+        rest, own = part.as_independent(symbol, as_Add=part.is_Add)
+        if part.is_Add or part.is_Mul:
+            value = value - rest if part.is_Add else value / rest
+        elif part.is_Pow and not part.exp.free_symbols:
+            own, value = part.base, value ** (1 / part.exp)
+        elif part.func in INVERSES:
+            own, value = part.args[0], INVERSES[part.func](value)
+        else:
+            return []
+        if own == part or own.count(symbol) != 1:
+            return []
+        part = own
+    return [value]
+
+
 def box_of_ranges(limits: Mapping[sp.Symbol, Range]) -> dict[sp.Symbol, tuple[sp.Expr | None, sp.Expr | None]]:
     """The ranges as a box."""
     return {symbol: (limit.lower, limit.upper) for symbol, limit in limits.items()}
@@ -98,7 +158,8 @@ FAR = tuple(sp.Integer(10) ** k for k in (3, 12, 31))
 NEAR = tuple(sp.Rational(1, 10**k) for k in (3, 12, 31, 75, 150, 300))
 DENOMINATORS = (1, 2, 3, 4, 6, 12, 100, 10**12, 10**150)
 TOUCHING = 1e-60
-MOST_EXPONENT = 10_000
+MOST_DIGITS = 20_000
+MOST_ROOT = 100
 
 #: A descent that comes so near to an end of a range is meant to reach it.
 NEARBY = 1e-3
@@ -140,6 +201,7 @@ def look_again(
         draw_points(symbols, box, ORDINARY),
         special_points(limits),
         zeros_of_factors(difference, limits) if zero_breaks else (),
+        meeting_points(difference, limits),
         *(descents(goal, limits) for goal in goals),
     )
     positive = negative = touching = None
@@ -194,9 +256,13 @@ def put_in_numbers(expression: sp.Expr, point: Point) -> sp.Expr | None:
     exponents = [power.exp for power in expression.atoms(sp.Pow) if power.exp.free_symbols]
     turned = [node.args[0] for node in expression.atoms(sp.exp) if node.has(sp.log)]  # exp(y log x) becomes x**y
     exponents += [argument.replace(sp.log, lambda *_: sp.Integer(1)) for argument in turned]
-    sizes = (abs(value_at(tape(exponent), point)) for exponent in exponents)
-    try:
-        return expression.subs(point) if all(size < MOST_EXPONENT for size in sizes) else None
+    within = set().union(*(exponent.free_symbols for exponent in exponents)) & point.keys()
+    if any(point[symbol].is_Rational and point[symbol].q > MOST_ROOT for symbol in within):
+        return None
+    sizes = (1 + abs(value_at(tape(exponent), point)) for exponent in exponents)
+    try:  # the exponents of a power of a power are multiplied
+        digits = max((len(str(value)) for value in point.values()), default=1) if exponents else 1
+        return expression.subs(point) if math.prod(sizes, start=arb(digits)) < MOST_DIGITS else None
     except OverflowError:  # roots of numbers with hundreds of digits
         return None
 

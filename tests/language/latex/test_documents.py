@@ -312,6 +312,51 @@ def test_prove_takes_latex():
         assert caught.value.where.startswith("prove: statement")
 
 
+@pytest.mark.parametrize(
+    ("latex", "status"),
+    [
+        (r"\sin x = x - \frac{x^3}{6} + O(x^5)", "PROVED"),
+        (r"\sin x = x - \frac{x^3}{6} + O(x^6)", "REFUTED"),
+        (r"e^{\epsilon} = 1 + \epsilon + \mathcal{O}(\epsilon^2)", "PROVED"),
+        (r"\cos\theta = 1 - \mathcal O\left(\theta^{2}\right)", "PROVED"),
+        (r"\tan t = \mathrm{O}(t)", "PROVED"),
+        (r"\tan t = O(t^2)", "REFUTED"),
+    ],
+)
+def test_terms_of_an_order_at_the_end_are_the_order_of_the_claim(latex, status):
+    assert nav.prove(latex).status == status
+
+
+@pytest.mark.parametrize(
+    "latex",
+    [
+        r"\cos x + O(x^2) = 1", r"\cos x = 1 + 2 O(x^2)", r"\cos x = 1 + O(1)", r"\cos x = 1 + O(x^2)^2",
+        r"\cos x = 1 + O(x^{n})", r"\cos x = \frac{1 + O(x^2)}{1}", r"\cos x \le 1 + O(x^2)", r"\cos x = 1 + O(x, y)",
+        r"\cos x = (1 + O(x^2))", r"\sin x = x + O(x^3) = O(x)", r"\cos x = 1 + O_2(x^2)",
+    ],
+)  # fmt: skip
+def test_other_terms_of_an_order_are_refused(latex):
+    with pytest.raises(NavsymError):
+        nav.prove(latex)
+
+
+def test_a_letter_o_with_a_declaration_is_a_name():
+    reading = nav.read("y = a + O x", symbols={"y": "real", "a": "real", "O": "real", "x": "real"})
+    assert reading.formulas[0].right == "a + O*x" and reading.formulas[0].order is None
+
+
+def test_an_order_is_written_into_the_claim_file(tmp_path):
+    reading = nav.read(r"\sqrt{1 + \epsilon} = 1 + \epsilon/2 + O(\epsilon^2)", symbols={"epsilon": "real"})
+    assert reading.formulas[0].document()["order"] == {"epsilon": 2} and "O(epsilon**2)" in repr(reading._repr_html_())
+    (tmp_path / "claims.toml").write_text(reading.claims())
+    assert [v.status for v in nav.prove(tmp_path / "claims.toml")] == [nav.PROVED]
+
+
+def test_an_order_is_said_once():
+    with pytest.raises(NavsymError, match="one order"):
+        nav.prove(r"\sin x = x + O(x^3)", order={"x": 3})
+
+
 def test_claims_take_their_latex_and_source_along():
     block = {"id": "a", "left": "x", "right": "x", "printed": "x = x", "source": "p. 3"}
     assert len(claims_from({"symbols": {"x": "real"}, "claim": [block]}).claims) == 1
