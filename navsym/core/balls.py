@@ -42,6 +42,17 @@ def precision(bits: int) -> Iterator[None]:
         ctx.prec = before
 
 
+@contextmanager
+def series_terms(count: int) -> Iterator[None]:
+    """Series of ``count`` terms; flint's cap is global, so it is put back."""
+    before = ctx.cap
+    ctx.cap = count
+    try:
+        yield
+    finally:
+        ctx.cap = before
+
+
 @dataclass(frozen=True, slots=True)
 class Instruction:
     """One instruction: an operation, the places of its arguments and a constant."""

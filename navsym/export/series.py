@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import contextmanager
 from typing import Any
 
 import sympy as sp
-from flint import ctx, fmpq, fmpq_series
+from flint import fmpq, fmpq_series
+
+from navsym.core.balls import series_terms
 
 TERMS = 48  # coefficients that are computed; a formula that vanishes to a higher order is left alone
 
@@ -29,20 +30,9 @@ class NoSeriesError(ArithmeticError):
     """The formula has no power series with rational coefficients around zero, or none that is found here."""
 
 
-@contextmanager
-def capped(terms: int):  # type: ignore[no-untyped-def]
-    """flint's power series with so many terms."""
-    before = ctx.cap
-    ctx.cap = terms
-    try:
-        yield
-    finally:
-        ctx.cap = before
-
-
 def taylor(expression: sp.Expr, t: sp.Symbol, terms: int = TERMS) -> tuple[fmpq, ...]:
     """The first coefficients of a formula in t around zero, exactly; raises NoSeriesError."""
-    with capped(terms):
+    with series_terms(terms):
         try:
             found = series(expression, t)
         except (ValueError, ZeroDivisionError) as error:

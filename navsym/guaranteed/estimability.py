@@ -14,10 +14,10 @@ import sympy as sp
 from flint import arb, arb_series, fmpq
 
 from navsym.claims import PROVED, Equation
-from navsym.core.balls import UnsupportedError, enclose, precision
+from navsym.core.balls import UnsupportedError, enclose, precision, series_terms
 from navsym.core.errors import NavsymError, NotEstimableError
 from navsym.core.exact import decimal, to_fmpq, to_rational
-from navsym.guaranteed.certificate.enclosure import interval_ball, joint_tape, series_coefficients, series_terms
+from navsym.guaranteed.certificate.enclosure import interval_ball, joint_tape, series_coefficients
 from navsym.guaranteed.problem import GuaranteedProblem
 from navsym.guaranteed.time_varying import rational_end
 from navsym.language.expression import to_text

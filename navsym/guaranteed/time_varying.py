@@ -18,10 +18,10 @@ from dataclasses import dataclass, replace
 import sympy as sp
 from flint import arb, arb_mat, arb_series, fmpq
 
-from navsym.core.balls import enclose, precision
+from navsym.core.balls import enclose, precision, series_terms
 from navsym.core.errors import DomainError, TooLargeError
 from navsym.core.exact import decimal, from_decimal, to_fmpq, to_rational
-from navsym.guaranteed.certificate.enclosure import interval_ball, joint_tape, series_terms
+from navsym.guaranteed.certificate.enclosure import interval_ball, joint_tape
 from navsym.guaranteed.certificate.moving import series_coefficient
 from navsym.models.modelfile import ModelFile, Piece
 

@@ -22,7 +22,7 @@ from typing import Any
 import sympy as sp
 from flint import arb, arb_series, fmpq
 
-from navsym.core.balls import Tape, precision, tape
+from navsym.core.balls import Tape, precision, series_terms, tape
 from navsym.core.errors import DomainError
 from navsym.export.accuracy.rounding import (
     ARITHMETICS,
@@ -39,7 +39,7 @@ from navsym.export.accuracy.rounding import (
 )
 from navsym.export.expression_graph import Builder, Graph, pruned
 from navsym.export.holes import Part, T
-from navsym.export.series import capped, taylor
+from navsym.export.series import taylor
 
 BITS = 160
 MOST_TERMS = 18  # that are not zero
@@ -116,7 +116,7 @@ def at_switch(part: Part, switch: float, arithmetic: Arithmetic) -> Continuation
 def lagrange(formula: Tape, n: int, reach: arb) -> arb:
     """max |f^(n)/n!| over [-reach, reach], in cells."""
     worst = arb(0)
-    with capped(n + 1):
+    with series_terms(n + 1):
         for cell in cells(-reach, reach):
             value = formula.run({T: arb_series([cell, arb(1)], n + 1)})[n]
             if not value.is_finite():

@@ -7,8 +7,7 @@ time, its ends and its noise bound. Time on a panel is ``t = start + (end - star
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache, partial
 from math import comb
@@ -20,7 +19,7 @@ import sympy as sp
 from flint import arb, arb_mat, arb_poly, arb_series, ctx, fmpq, fmpz
 from numpy.typing import NDArray
 
-from navsym.core.balls import OPERATIONS, Instruction, read_instruction
+from navsym.core.balls import OPERATIONS, Instruction, multiply_all, read_instruction, series_terms
 from navsym.core.exact import to_fmpq
 
 # Several expressions as one tape: shared parts once, constants once for each precision, run over balls and series.
@@ -113,7 +112,7 @@ FLOATS: dict[str, Any] = {
     "e": lambda c, a, v: np.e,
     "symbol": lambda c, a, v: v[c],
     "add": lambda c, a, v: sum(a[1:], a[0]),
-    "mul": lambda c, a, v: np.prod(a, axis=0) if all(np.ndim(x) == 0 for x in a) else product(a),
+    "mul": lambda c, a, v: np.prod(a, axis=0) if all(np.ndim(x) == 0 for x in a) else multiply_all(a),
     "power": lambda c, a, v: a[0] ** c if c >= 0 else 1.0 / a[0] ** (-c),
     "root": lambda c, a, v: a[0] ** (c[0] / c[1]),
     "general_power": lambda c, a, v: a[0] ** a[1],
@@ -133,26 +132,8 @@ FLOATS: dict[str, Any] = {
 }
 
 
-def product(factors: Sequence[Any]) -> Any:
-    value = factors[0]
-    for factor in factors[1:]:
-        value = value * factor
-    return value
-
-
 ORDER = 10
 ONE = fmpz(1)
-
-
-@contextmanager
-def series_terms(count: int) -> Iterator[None]:
-    """Series of ``count`` terms; flint's cap is global, so it is put back."""
-    before = ctx.cap
-    ctx.cap = count
-    try:
-        yield
-    finally:
-        ctx.cap = before
 
 
 @dataclass(frozen=True)

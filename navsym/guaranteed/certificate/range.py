@@ -16,7 +16,7 @@ from typing import Any
 import sympy as sp
 from flint import arb, arb_mat, fmpq
 
-from navsym.core.balls import precision
+from navsym.core.balls import precision, series_terms
 from navsym.core.exact import decimal, from_decimal, to_fmpq
 from navsym.guaranteed.certificate.enclosure import (
     Expansion,
@@ -26,7 +26,6 @@ from navsym.guaranteed.certificate.enclosure import (
     dot_product,
     interval_ball,
     is_cell_bounded,
-    series_terms,
     taylor_order,
 )
 from navsym.guaranteed.certificate.fixed import certificate_header, end_place

@@ -12,10 +12,10 @@ import sympy as sp
 from flint import arb, arb_mat, arb_series, fmpq, fmpq_mat
 
 from navsym import checker
-from navsym.core.balls import enclose
+from navsym.core.balls import enclose, series_terms
 from navsym.core.exact import decimal, from_decimal, to_fmpq, to_fraction, to_rational
 from navsym.guaranteed.certificate.basis import make_basis
-from navsym.guaranteed.certificate.enclosure import interval_ball, series_terms
+from navsym.guaranteed.certificate.enclosure import interval_ball
 from navsym.guaranteed.certificate.moving import (
     Member,
     MovingProblem,
