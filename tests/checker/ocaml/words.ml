@@ -252,7 +252,7 @@ let rec evaluate state t =
       let e = plain "an exponent" b in
       let x = whole "a base" a in
       (match !constant e with
-      | Some q when is_whole q && Q.sign q >= 0 -> ()
+      | Some q when is_whole q && Q.sign q > 0 -> ()
       | _ -> if has_trace x then refuse "a power of a trace");
       Whole (Pow (x, e))
   | Turned t | Call ("transpose", [ t ]) -> Total (turn state (total ".T" t))
