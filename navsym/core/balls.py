@@ -162,6 +162,7 @@ def undefined_like(like: Any) -> Any:
 
 
 def multiply_all(factors: Sequence[Any]) -> Any:
+    """The product of one factor or more, of any kind of number."""
     value = factors[0]
     for factor in factors[1:]:
         value = value * factor

@@ -28,6 +28,7 @@ SAME: dict[tuple[str, str], str] = {
         "sp.sin(2 * sp.pi) - sp.sin(0) -> sp.sin(2 * sp.pi) + sp.sin(0)",
     ): "the sine of 0 is 0: after a whole turn the course is the same",
     ("joint_correction:1.6.gain_unique", "G - K * row -> G + K * row"): "what is unique in -K is so in K",
+    ("joint_correction:3.3.y1", "x[1]: 1 -> 0"): "none of the four rows holds y_4, for which x_2 stands",
     ("multistructure:17.memory", "made.means[0]: 0 -> 1"): "all modes start alike, and numbers are counted",
     ("multistructure:near.cumulant", "-mean -> mean"): "only its second and fourth powers enter",
     ("terrain_search:sequential.below", "-1 -> 1"): "the best hypotheses lie at 0 and 1",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import random
 import shutil
@@ -139,7 +140,7 @@ def test_coq_proves_no_false_statement(tmp_path):
 def test_coq_proves_a_sample_of_the_ledger(tmp_path):
     """Ten kept certificates at random that are written for Coq: nine of them at least."""
     kept = json.loads(Path("derivations/certificates.json").read_text("utf-8"))
-    items = [kept[key]["certificate"] for key in sorted(kept)]
-    rows = [replay.replay(item, tmp_path / f"{k}.v") for k, item in enumerate(random.Random(25).sample(items, 12))]
-    written = [row for row in rows if row.status != "UNWRITTEN"]
-    assert len(written) >= 9 and sum(row.status == "PROVED" for row in written) >= len(written) - 1, rows
+    items = random.Random(25).sample([kept[key]["certificate"] for key in sorted(kept)], 40)
+    rows = (replay.replay(item, tmp_path / f"{k}.v") for k, item in enumerate(items))
+    written = [*itertools.islice((row for row in rows if row.status != "UNWRITTEN"), 10)]
+    assert len(written) == 10 and sum(row.status == "PROVED" for row in written) >= 9, written

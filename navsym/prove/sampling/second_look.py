@@ -96,7 +96,10 @@ def meeting_points(difference: sp.Expr, limits: Mapping[sp.Symbol, Range]) -> It
 
 
 def values_beside(parts: Sequence[sp.Expr], symbol: sp.Symbol, limit: Range, point: Point) -> list[sp.Expr]:
-    """Values of a symbol at which a part vanishes, those before it being known; and the edges of its range."""
+    """Values of a symbol at which a part vanishes, those before it being known, and values between and beside them.
+
+    Without any, or for the first symbol, the edges of its range, too.
+    """
     known, values = {symbol, *point}, dict[sp.Expr, None]()
     for part in parts:
         if symbol in part.free_symbols <= known:
@@ -108,10 +111,14 @@ def values_beside(parts: Sequence[sp.Expr], symbol: sp.Symbol, limit: Range, poi
                 values |= dict.fromkeys(v for v in found if v.is_real and limit.contains(v))
             except UnsupportedError:
                 continue
-    if point and values:
+    zeros = sorted(values, key=lambda v: exact_ball(v).mid())
+    between = ((low + high) / 2 for low, high in itertools.pairwise(zeros))
+    steps = (v + step for v in zeros for step in (1, -1))  # (x - 1000)**2 ((x - 1000)**2 - 2) is lowest a unit away
+    values |= dict.fromkeys(v for v in (*between, *steps) if limit.contains(v))
+    if point and zeros:
         return [*values]
-    beside = [v + CLOSE for v in values if limit.contains(v + CLOSE)]
-    return [*values, *values_at_edges(limit)[:MOST_EDGES], *beside]
+    close = [v + CLOSE for v in zeros if limit.contains(v + CLOSE)]
+    return [*values, *values_at_edges(limit)[:MOST_EDGES], *close]
 
 
 def invert(part: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
