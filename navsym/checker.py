@@ -352,7 +352,11 @@ def constant_of(term: Term) -> fmpq | None:
         return term[1]
     if symbols_of(term):
         return None
-    terms = evaluate(term, {}, Exact).parts[0].terms
+    before, EFFORT[0] = EFFORT[0], 0  # what a number is does not depend on what was asked before
+    try:
+        terms = evaluate(term, {}, Exact).parts[0].terms
+    finally:
+        EFFORT[0] = before
     if not set(terms) <= {frozenset()}:
         return None
     require(value_of(term, {}).is_finite(), "a number that may not exist")  # 0 log(-1) is none
@@ -472,7 +476,9 @@ class Exact:
     def __mul__(self, other: Any) -> Exact:
         y = Exact(other)
         EFFORT[0] += len(self.terms) * len(y.terms)
-        require(EFFORT[0] < MOST_EFFORT, "too many terms")
+        if EFFORT[0] >= MOST_EFFORT:
+            EFFORT[0] = 0  # a refusal ends the question: the next one begins anew
+            raise Refused("too many terms")
         return Exact((frozenset(collect([*m, *n]).items()), c * d) for (m, c), (n, d) in product(self, y))
 
     __radd__, __rmul__ = __add__, __mul__

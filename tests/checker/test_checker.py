@@ -7,6 +7,7 @@ import random
 import re
 
 import pytest
+from flint import fmpq
 
 from navsym import checker
 from tests.checker import calculus
@@ -145,3 +146,11 @@ def still_true(case) -> bool:
 
 def test_a_certificate_is_not_consumed_by_its_check():
     assert list(calculus.discrepancies(checker)) == list(calculus.discrepancies(checker)) == []
+
+
+def test_what_a_number_is_does_not_depend_on_what_was_asked_before(monkeypatch):
+    monkeypatch.setattr(checker, "EFFORT", [checker.MOST_EFFORT])
+    assert checker.constant_of(checker.parse("(1/11)*2")) == fmpq(2, 11)
+    with pytest.raises(checker.Refused, match="too many terms"):
+        checker.Exact(2) * 3
+    assert (checker.Exact(2) * 3).terms == {frozenset(): 6}
