@@ -113,3 +113,11 @@ def test_every_picture_of_the_site_is_made_by_the_command():
     assert {path.stem for path in (DOCS / "pictures").glob("*.svg")} == made
     used = set(re.findall(r"pictures/(\w+)\.svg", (DOCS / "pictures.md").read_text(encoding="utf-8")))
     assert used == made
+
+
+def test_every_screenshot_is_made_by_its_command_and_shown_once():
+    made = re.findall(r'photograph\(browser, "(\w+)"\)|"(\w+)": \("', (DOCS / "screens.py").read_text(encoding="utf-8"))
+    names = sorted(one or other for one, other in made)
+    assert names == sorted(path.stem for path in (DOCS / "pictures").glob("*.png"))
+    texts = [path.read_text(encoding="utf-8") for path in DOCS.glob("*.md")]
+    assert sorted(name for text in texts for name in re.findall(r"pictures/(\w+)\.png", text)) == names

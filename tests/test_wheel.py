@@ -57,6 +57,7 @@ def test_the_wheel_alone_is_enough_for_a_workspace(elsewhere):
         "claims/angles.claims.toml",
         "claims/baro.toml",
         "models/alignment.toml",
+        "audits/ekf.toml",
         "pendulum",
     }
     assert json.loads(call(elsewhere, "navsym", "list", "--json"))["claims"][0]["decided"]

@@ -209,7 +209,7 @@ def init(folder: str | os.PathLike[str] = ".") -> Workspace:
 
     >>> import navsym as nav
     >>> nav.init("drive")
-    <workspace drive: claims/baro.toml, models/alignment.toml, pendulum>
+    <workspace drive: claims/baro.toml, models/alignment.toml, audits/ekf.toml, pendulum>
     """
     root = Path(folder).absolute()
     files = {**example_files(), **editor_files()}

@@ -20,6 +20,7 @@ from navsym.language.files import decode
 from navsym.language.names import quote
 
 LARGEST = 50_000_000
+NAMED = 12  # letters of a hash, which name a kept certificate
 #: Every key that a certificate has: a file of nothing else is one, even if it lost its kind.
 KEYS = frozenset(
     "kind left right symbols matrix solution variable rank point rows null expression box bits cells of panels "
@@ -113,8 +114,8 @@ def check(
 ) -> Checks:
     """Replay certificates in the independent checker, and run exported code on its own vectors.
 
-    items    : paths of certificates (JSON), of exported folders or of folders of either; certificates as plain data;
-               answers, of which every certificate is replayed
+    items    : paths of certificates (JSON), of the ``certificates.json`` that ``verify`` keeps, of exported folders or
+               of folders of either; certificates as plain data; answers, of which every certificate is replayed
     kernel   : ``"coq"`` has Coq prove the statement of every accepted certificate as well, from a theory in ``out``;
                UNWRITTEN and FAILED say that no theory, or no proof, is found, and count as not confirmed
     out      : folder of the theories; default: beside the certificate's file, build/coq for answers
@@ -180,9 +181,24 @@ def parts_of(item: Any, asked: Asked) -> list[Part]:
         message = "expected a file or folder that exists; got none of this name; correct it"
         raise NavsymError(message, where=str(path), kind="missing-file")
     if not path.is_dir():
-        return [(path.name, lambda: [check_file(path, asked)])]
-    files = [(file.name, partial(check_in_folder, file, asked)) for file in sorted(path.rglob("*.json"))]
-    return [(path.name, lambda: [Check(**row) for row in check_export(path)]), *files]
+        return kept_parts(path, asked) or [(path.name, lambda: [check_file(path, asked)])]
+    parts: list[Part] = [(path.name, lambda: [Check(**row) for row in check_export(path)])]
+    for file in sorted(path.rglob("*.json")):
+        parts += kept_parts(file, asked) or [(file.name, partial(check_in_folder, file, asked))]
+    return parts
+
+
+def kept_parts(path: Path, asked: Asked) -> list[Part]:
+    """One part for each certificate that ``navsym verify`` keeps, named by its hash; none for a file of another kind."""
+    try:
+        document = json.loads(path.read_bytes())
+    except (OSError, ValueError, RecursionError):
+        return []
+    entries = document.items() if isinstance(document, dict) and "kind" not in document else ()
+    kept = {key: entry["certificate"] for key, entry in entries if isinstance(entry, dict) and "certificate" in entry}
+    if len(kept) != len(entries) or not all(isinstance(certificate, dict) for certificate in kept.values()):
+        return []
+    return [(key[:NAMED], partial(check_plain, key[:NAMED], part, asked)) for key, part in kept.items()]
 
 
 def certificate_parts(certificates: list[Mapping[str, Any]], asked: Asked) -> list[Part]:

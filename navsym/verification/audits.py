@@ -88,13 +88,12 @@ def property_of_question(path: Path, number: str) -> Property:
             store.put(key, kept)
     status = Status(kept["status"])
     is_right = status != REFUTED
-    points = [c for c in kept["certificates"] if c["kind"] == "counterexample"]
-    whole = {"kind": "all", "of": kept["certificates"]} if kept["certificates"] else None
-    certificate = whole if is_right else next(iter(points), None)
-    finding = Finding(
-        is_right, "audit of source code", status if is_right else PROVED, "", (), kept["evidence"], certificate
-    )
-    return Property(True, finding)
+    parts = kept["certificates"] if is_right else [c for c in kept["certificates"] if c["kind"] == "counterexample"][:1]
+    is_whole = bool(parts) and (not is_right or kept["whole"])
+    certificate = {"kind": "all", "of": parts} if is_whole else None
+    decided = status if is_right else PROVED
+    finding = Finding(is_right, "audit of source code", decided, "", (), kept["evidence"], certificate)
+    return Property(True, finding, tuple(part["statement"] for part in parts) if is_whole else ())
 
 
 def read_kept(key: str) -> dict[str, Any] | None:
@@ -119,4 +118,6 @@ def write_finding(question: AuditedQuestion) -> dict[str, Any]:
     if question.status.holds and question.sense != "exact":
         counted += f" in the sense {question.sense}"
     evidence = "; ".join([counted, *remarks])
-    return {"status": str(question.status), "evidence": evidence, "certificates": question.certificates()}
+    whole = all(entry.certificate is not None for entry in question.entries)
+    found = {"status": str(question.status), "evidence": evidence, "whole": whole}
+    return found | {"certificates": question.certificates()}

@@ -97,6 +97,7 @@ def test_verify_decides_all_that_is_listed_from_any_folder_below(verified):
         "claims/baro.toml:sum*": "PROVED",
         "claims/baro.toml:cancelled": "PROVED",
         "models/alignment.toml:drift": "CERTIFIED",
+        "audits/ekf.toml:transition": "PROVED",
         "pendulum:2": "PROVED",
     }
     assert verified["models/alignment.toml:drift"].evidence.startswith("guaranteed standard deviation 5.82842712")
@@ -115,6 +116,28 @@ def test_ledger_and_cache_stand_in_the_workspace_and_git_ignores_the_cache(insid
     assert (inside / ".navsym" / ".gitignore").read_text() == "*\n" and (inside / ".navsym/results.sqlite").is_file()
     assert not (inside / "README.md").exists() and not (inside / "models" / "ledger.json").exists()
     assert nav.Ledger.from_json(json.loads((inside / "ledger.json").read_text())).unexpected == ()
+
+
+def test_check_replays_each_kept_certificate_and_names_the_damaged_one(inside, verified, tmp_path):
+    kept = json.loads((inside / "certificates.json").read_text())
+    checks = nav.check(inside / "certificates.json")
+    assert checks.accepted and {row.path[:12] for row in checks} == {key[:12] for key in kept}
+    damaged = next(key for key, entry in kept.items() if entry["certificate"]["kind"] == "proof")
+    kept[damaged]["certificate"]["statement"]["right"] += " + 1"
+    (tmp_path / "certificates.json").write_text(json.dumps(kept))
+    assert [row.path for row in nav.check(tmp_path) if row.status == "REJECTED"] == [damaged[:12]]
+
+
+def test_the_audit_of_a_new_workspace_has_a_certificate_and_a_fault_in_its_code_is_found(tmp_path, monkeypatch):
+    nav.init(tmp_path / "new")
+    monkeypatch.chdir(tmp_path / "new")
+    (record,) = nav.verify("audits/ekf.toml")
+    assert (str(record.status), record.certificate["kind"]) == ("PROVED", "all") and "unchecked" not in record.evidence
+    code = Path("audits/ekf.c")
+    code.write_text(code.read_text().replace("-x[3] * s", "x[3] * s"))
+    (record,) = nav.verify("audits/ekf.toml")
+    assert str(record.status) == "REFUTED" and "write -x[3] * s * dt" in record.evidence
+    assert "unchecked" not in record.evidence
 
 
 def test_nothing_is_written_to_a_home_that_is_read_only(inside, monkeypatch, tmp_path, capsys):
@@ -223,7 +246,8 @@ def test_the_nearest_workspace_counts_and_an_outer_one_leaves_its_files_alone(tm
     inner = nav.init(tmp_path / "outer" / "claims" / "inner")
     (outer.root / "navsym.toml").write_text('[workspace]\nclaims = ["**/*.toml"]\n')
     assert find_workspace(inner.root / "papers").root == inner.root
-    assert find_workspace(outer.root / "claims").list_files("claims") == ["claims/baro.toml", "models/alignment.toml"]
+    listed = find_workspace(outer.root / "claims").list_files("claims")
+    assert listed == ["audits/ekf.toml", "claims/baro.toml", "models/alignment.toml"]
 
 
 def test_a_workspace_is_not_made_over_another_one(folder, capsys):
@@ -283,7 +307,8 @@ def test_a_python_file_that_is_not_listed_is_never_run(tmp_path, monkeypatch):
     (root / "papers" / "_helper.py").write_text("raise SystemExit('run')\n")
     (root / "other.py").write_text("raise SystemExit('run')\n")
     monkeypatch.chdir(root)
-    assert {claim.paper for claim in nav.claims()} == {"claims/baro.toml", "models/alignment.toml", "pendulum"}
+    made = {"claims/baro.toml", "models/alignment.toml", "audits/ekf.toml", "pendulum"}
+    assert {claim.paper for claim in nav.claims()} == made
 
 
 @pytest.mark.parametrize(
