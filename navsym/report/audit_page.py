@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,7 +31,7 @@ class Note:
     """What is said beside a line.
 
     status : a verdict; OPEN of a line that is not read; "formula" where nothing was asked
-    label  : the question and its entry, or the name of an output
+    label  : the question and its entries, or the name of an output
     text   : the ground of the verdict
     sides  : what the code computes, and of REFUTED what is expected
     """
@@ -81,10 +81,13 @@ def collect_notes(answer: Audit) -> Mapping[str, dict[int, list[Note]]]:
     """File -> line -> what is said there."""
     notes: defaultdict[str, dict[int, list[Note]]] = defaultdict(dict)
     for question in answer.questions:
+        alike: dict[tuple[str, int, Note], list[str]] = {}  # a loop assigns many entries in one line
         for entry in question.entries:
-            label = f"{question.name} {entry.entry[0]},{entry.entry[1]}"
-            note = Note(str(entry.status), label, entry.remark(), sides_of(entry))
-            notes[entry.file].setdefault(entry.line, []).append(note)
+            note = Note(str(entry.status), question.name, entry.remark(), sides_of(entry))
+            alike.setdefault((entry.file, entry.line, note), []).append(f"{entry.entry[0]},{entry.entry[1]}")
+        for (source, line, note), places in alike.items():
+            label = f"{question.name} {' '.join(places)}"
+            notes[source].setdefault(line, []).append(replace(note, label=label))
     for file in answer.files:
         for line, why in file.refused:
             notes[file.file].setdefault(line, []).append(Note("OPEN", "not read", why))
