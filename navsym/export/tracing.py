@@ -43,9 +43,20 @@ UFUNCS = {
     "minimum": "min",
 }
 #: casadi's names of operations.
-CASADI = {"ADD": "add", "SUB": "sub", "MUL": "mul", "DIV": "div", "NEG": "neg", "FABS": "abs", "SQRT": "sqrt"}
+CASADI = {
+    "ADD": "add",
+    "SUB": "sub",
+    "MUL": "mul",
+    "HYPOT": "hypot",
+    "DIV": "div",
+    "NEG": "neg",
+    "FABS": "abs",
+    "SQRT": "sqrt",
+}
 CASADI |= {"POW": "pow", "CONSTPOW": "pow", "FMAX": "max", "FMIN": "min", "ATAN2": "atan2", "EXPM1": "expm1"}
 CASADI |= {name.upper(): name for name in "sin cos tan exp log asin acos atan sinh cosh tanh".split()}
+#: Functions that multiply by one double.
+SCALES = {"radians": sp.pi / 180, "deg2rad": sp.pi / 180, "degrees": 180 / sp.pi, "rad2deg": 180 / sp.pi}
 UNARY = frozenset("neg abs sqrt sin cos tan exp log expm1 asin acos atan sinh cosh tanh".split())
 BINARY = frozenset("add sub mul div pow atan2 max min".split())
 SIGNS = {"add": "({} + {})", "sub": "({} - {})", "mul": "({}*{})", "div": "({}/{})", "pow": "({}**{})", "neg": "(-{})"}
@@ -90,6 +101,11 @@ class Notes:
         """One operation on numbers of which one at least is traced; raises UntraceableError for what is none."""
         if op == "pow" and isinstance(args[1], (float, int)) and float(args[1]).is_integer():
             return self.power(self.wrap(args[0]), int(args[1]))
+        if op == "hypot" and args:
+            return self.length([self.wrap(a) for a in args])
+        if op in SCALES and len(args) == 1:
+            scale = SCALES[op]
+            return self.put("mul", (args[0], self.put("const", value=scale, literal=float(scale))))
         if len(args) != (1 if op in UNARY else 2) or op not in UNARY | BINARY:
             raise UntraceableError(f"the function {op} of {len(args)} arguments")
         return self.put(op, args)
@@ -104,6 +120,16 @@ class Notes:
         for _ in range(abs(n)):
             found = self.put("mul", (found, base))
         return self.put("div", (1.0, found)) if n < 0 else self.wrap(found)
+
+    def length(self, parts: Sequence[Traced]) -> Traced:
+        """The root of a sum of squares; as in :meth:`power`, products with 1 cover what a library's own may err."""
+        total = self.put("mul", (parts[0], parts[0]))
+        for part in parts[1:]:
+            total = self.put("add", (total, self.put("mul", (part, part))))
+        found = self.put("sqrt", (total,))
+        for _ in range(PRODUCTS):
+            found = self.put("mul", (found, 1.0))
+        return found
 
 
 def share_of_pi(value: float) -> tuple[int, int] | None:
