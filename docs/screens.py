@@ -102,9 +102,8 @@ def show_notebook(browser: Browser, address: str) -> None:
     wait_for(is_there, "JupyterLab")
     wait_for(lambda: browser.value("document.querySelectorAll('mjx-container').length > 3"), "formulas")
     wait_for(lambda: browser.value("document.querySelectorAll('.Toastify__toast button').length"), "news")
-    browser.value(
-        "([...document.querySelectorAll('.Toastify__toast button')].filter(b => b.innerText === 'No').map(b => b.click()), 0)"
-    )
+    buttons = "[...document.querySelectorAll('.Toastify__toast button')]"
+    browser.value(f"({buttons}.filter(b => b.innerText === 'No').map(b => b.click()), 0)")
     wait_for(lambda: not browser.value("document.querySelectorAll('.Toastify__toast').length"), "no news")
     browser.value("(document.querySelectorAll('.jp-CodeCell')[1].scrollIntoView(), 0)")
     outside = [words for words in browser.trouble if not words.startswith(f"request: {address}")]

@@ -189,7 +189,7 @@ def parts_of(item: Any, asked: Asked) -> list[Part]:
 
 
 def kept_parts(path: Path, asked: Asked) -> list[Part]:
-    """One part for each certificate that ``navsym verify`` keeps, named by its hash; none for a file of another kind."""
+    """One part for each certificate that ``navsym verify`` keeps, named by its hash; none for another file."""
     try:
         document = json.loads(path.read_bytes())
     except (OSError, ValueError, RecursionError):
