@@ -4,20 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from navsym.cli.output import emit, table
 from navsym.conventions.card import HEADINGS, attitude_formula
 
 
-def command(
-    file: Annotated[Path, typer.Argument(help="conventions file (TOML) with [model], [roles] and [quantities]")],
-    card: Annotated[Path | None, typer.Option(help="file with a table [card]: is the model right under it?")] = None,
-    html: Annotated[Path | None, typer.Option(help="page to write: cards, and what excludes their neighbours")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
-) -> int:
+def command(file: Path, *, card: Path | None = None, html: Path | None = None, json_: bool = False) -> int:
     """Find all conventions under which an error model is right. Status 1 when there are none.
 
     Example: navsym conventions examples/conventions.toml
