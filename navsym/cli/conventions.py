@@ -35,7 +35,12 @@ def as_text(data: Mapping[str, Any]) -> str:
     blocks = [cards_text(data["cards"])] if data["cards"] else [conflicts_text(data)]
     if data["excluded"]:
         rows = [
-            (HEADINGS[item["field"]], str(item["card"][item["field"]]), item["why"], place_text(item["point"]))
+            (
+                HEADINGS[item["field"]],
+                str(item["card"][item["field"]]),
+                item["why"],
+                ", ".join(f"{k} = {v}" for k, v in item["point"].items()),
+            )
             for item in data["excluded"]
         ]
         blocks.append(table(["neighbour with another", "namely", "is excluded", "at"], rows))
@@ -78,8 +83,3 @@ def conflict_row(conflict: Mapping[str, Any]) -> list[str]:
     """One block that must change."""
     entries = " ".join(f"{conflict['matrix']}[{i},{j}]" for i, j in conflict["entries"])
     return [" by ".join(conflict["block"]), entries, conflict["change"], conflict["status"]]
-
-
-def place_text(point: Mapping[str, str]) -> str:
-    """A point in one line."""
-    return ", ".join(f"{name} = {value}" for name, value in point.items())

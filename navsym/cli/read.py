@@ -21,7 +21,9 @@ def command(
     """
     import navsym as nav
 
-    reading = nav.read(take_input() if file == "-" else Path(file), symbols=symbols)
+    reading = nav.read(
+        sys.stdin.buffer.read(4_000_001).decode("utf-8", "replace") if file == "-" else Path(file), symbols=symbols
+    )
     if out is not None:
         write_text(out, reading.claims())
         remark(f"{len(reading.read)} claims in {out}")
@@ -30,11 +32,6 @@ def command(
     else:
         emit(reading.document(), as_json=json_, text=lambda: as_text(reading))
     return 0 if len(reading.read) == len(reading.formulas) else 1
-
-
-def take_input() -> str:
-    """Standard input as text; more than four million bytes are cut, and refused by their number."""
-    return sys.stdin.buffer.read(4_000_001).decode("utf-8", "replace")
 
 
 def as_text(reading: Reading) -> str:
