@@ -12,6 +12,7 @@ from typing import Any
 import typer
 
 import navsym as nav
+from navsym.cli._options import with_options
 from navsym.cli.main import help_line, verbs
 
 #: Text that is shown as it stands.
@@ -77,7 +78,7 @@ def verbs_page() -> str:
     text = "# Verbs and their options\n\n`navsym VERB --help` prints the same. Every verb takes `--json`.\n\n"
     for verb, path in verbs().items():
         app = typer.Typer(add_completion=False, rich_markup_mode=None)
-        app.command(name=verb)(importlib.import_module(f"navsym.cli.{path.stem}").command)
+        app.command(name=verb)(with_options(importlib.import_module(f"navsym.cli.{path.stem}").command, verb))
         context = typer.main.get_command(app).make_context(f"navsym {verb}", [], resilient_parsing=True)
         text += f"## {verb}\n\n{help_line(path)}\n\n" + VERBATIM.format(context.command.get_help(context).rstrip())
     return text

@@ -11,6 +11,7 @@ import msgspec
 from navsym.claims.claim import Slip
 from navsym.claims.paper import Kind
 from navsym.claims.verdict import Status
+from navsym.core.answers import named
 from navsym.core.numbers import Number
 
 #: What varies from run to run, or is too large for a ledger.
@@ -82,14 +83,9 @@ class Record:
 
     def to_json(self) -> dict[str, Any]:
         """The entry of ``claims`` in the document of ``navsym verify``."""
-        values = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "statement"}
-        return values | {
-            "status": str(self.status),
-            "expect": str(self.expect),
-            "assumptions": list(self.assumptions),
-            "counterexample": None if self.counterexample is None else dict(self.counterexample),
-            "difference": None if self.difference is None else [self.difference.lower, self.difference.upper],
-        }
+        ends = self.difference and [self.difference.lower, self.difference.upper]
+        names = " ".join(field.name for field in fields(self) if field.name != "statement")
+        return named(self, names) | {"difference": ends}
 
     def ledger_json(self) -> dict[str, Any]:
         """The entry of a ledger: nothing that varies from run to run."""

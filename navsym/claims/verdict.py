@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
 from navsym.claims.display import mark_verdict, write_card, write_table
 from navsym.claims.formula import Formula
-from navsym.core.answers import Answer
-from navsym.core.errors import NavsymError, UnknownSymbolError
+from navsym.core.answers import Answer, Answers, named
+from navsym.core.errors import NavsymError
 from navsym.core.numbers import Number
 
 
@@ -97,16 +97,14 @@ class Verdict(Answer):
 
     def document(self) -> dict[str, Any]:
         """One entry of ``claims`` in the JSON document of ``navsym prove``."""
-        refuted = self.status == REFUTED
+        head = {"id": self.formula.id} if self.formula else {}
+        wrong = {"counterexample": None, "difference": None}
+        if self.status == REFUTED:
+            wrong = {"counterexample": dict(self.counterexample or {})} | named(self, "difference")
         return {
-            **({"id": self.formula.id} if self.formula else {}),
-            "status": str(self.status),
-            "method": self.method,
-            "scope": self.scope,
-            "assumptions": list(self.assumptions),
-            "evidence": self.evidence,
-            "counterexample": dict(self.counterexample or {}) if refuted else None,
-            "difference": self.difference.document() if refuted and self.difference else None,
+            **head,
+            **named(self, "status method scope assumptions evidence"),
+            **wrong,
             "certificate": self.certificate,
         }
 
@@ -140,7 +138,7 @@ class Verdict(Answer):
 
 
 @dataclass(frozen=True, slots=True, repr=False, eq=False)
-class Verdicts(Answer):
+class Verdicts(Answers[Verdict]):
     """The verdicts of a claim file, in its order; by place or by the id of a claim.
 
     verdicts : one for each claim
@@ -156,21 +154,6 @@ class Verdicts(Answer):
 
     verdicts: tuple[Verdict, ...]
     errors: Mapping[str, NavsymError] = field(default_factory=dict)
-
-    def __len__(self) -> int:
-        return len(self.verdicts)
-
-    def __iter__(self) -> Iterator[Verdict]:
-        return iter(self.verdicts)
-
-    def __getitem__(self, key: int | str) -> Verdict:
-        if isinstance(key, int):
-            return self.verdicts[key]
-        for verdict in self.verdicts:
-            if verdict.id == key:
-                return verdict
-        known = ", ".join(verdict.id for verdict in self.verdicts)
-        raise UnknownSymbolError(f"expected one of the claims {known}; got {key!r}; correct the id")
 
     @property
     def holds(self) -> bool:

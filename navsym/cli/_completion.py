@@ -1,6 +1,6 @@
 """What may come next on a command line, found without importing a verb: it is asked at every press of Tab.
 
-Verbs are listed, options are read from the sources, claims from the ledger.
+Verbs are listed, options are read from the sources and their table, claims from the ledger.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from pathlib import Path
 
 from navsym.claims.paper import experiment_names, paper_names, papers_folder
 from navsym.claims.workspace import find_workspace
+from navsym.cli._options import words_of
 from navsym.core.errors import NavsymError
 
 SHELLS = ("bash", "zsh", "fish")
@@ -34,7 +35,7 @@ def candidates(line: str, verbs: dict[str, Path]) -> list[str]:
     if before and before[-1] in VALUES:
         return begin(last, VALUES[before[-1]]())
     if last.startswith("-"):
-        return begin(last, options(verbs[verb]))
+        return begin(last, options(verb, verbs[verb]))
     return begin(last, POSITIONAL[verb]()) if verb in POSITIONAL else []
 
 
@@ -52,26 +53,11 @@ def begin(start: str, words: Iterable[str]) -> list[str]:
     return [word for word in words if word.startswith(start)]
 
 
-def options(source: Path) -> list[str]:
-    """Options of a verb as its source declares them: ``typer.Option("--json")``, or by the parameter's name."""
+def options(verb: str, source: Path) -> list[str]:
+    """Options of a verb: the parameters of its command that are given by keyword only."""
     tree = ast.parse(source.read_bytes())
     command = next(n for n in tree.body if isinstance(n, ast.FunctionDef) and n.name == "command")
-    found = []
-    for argument in (*command.args.args, *command.args.kwonlyargs):
-        call = option_call(argument.annotation)
-        if call is not None:
-            words = [a.value for a in call.args if isinstance(a, ast.Constant) and isinstance(a.value, str)]
-            named = [word for text in words for word in text.split("/") if word.startswith("--")]
-            found += named or ["--" + argument.arg.strip("_").replace("_", "-")]
-    return [*found, "--help"]
-
-
-def option_call(annotation: ast.expr | None) -> ast.Call | None:
-    """The call of ``typer.Option`` in an annotation."""
-    for node in ast.walk(annotation) if annotation is not None else ():
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "Option":
-            return node
-    return None
+    return [flag for a in command.args.kwonlyargs for flag in words_of(verb, a.arg)["flag"].split("/")] + ["--help"]
 
 
 def claims() -> list[str]:

@@ -1,15 +1,54 @@
-"""Arguments of the functions by the names that the command line gives them."""
+"""The options of the verbs: their words and flags from one table, and how errors of functions name them."""
 
 from __future__ import annotations
 
+import functools
+import inspect
 import re
-from collections.abc import Iterator
+import tomllib
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any, get_type_hints
 
 from navsym.core.errors import NavsymError
 
 #: A remedy of the Python call that sets a switch.
 FLAG = re.compile(r"\b([a-z_]+)=True\b")
+
+
+@functools.cache
+def read_table() -> dict[str, dict[str, Any]]:
+    """Verb -> parameter -> words; what verbs have alike stands under ``all``."""
+    return tomllib.loads(Path(__file__).with_name("options.toml").read_text(encoding="utf-8"))
+
+
+def words_of(verb: str, parameter: str) -> dict[str, Any]:
+    """The flag of a parameter, its help, and its least and largest value where it has some."""
+    name, table = parameter.rstrip("_"), read_table()
+    words = table.get(verb, {}).get(name) or table["all"][name]
+    return {"flag": f"--{name.replace('_', '-')}"} | ({"help": words} if isinstance(words, str) else words)
+
+
+def with_options(command: Callable[..., Any], verb: str) -> Callable[..., Any]:
+    """The command of a verb as typer takes it: parameters by keyword only are options, the others arguments."""
+    import typer
+
+    hints, parameters = get_type_hints(command), []
+    for parameter in inspect.signature(command).parameters.values():
+        words = words_of(verb, parameter.name)
+        flag = words.pop("flag")
+        is_option = parameter.kind is inspect.Parameter.KEYWORD_ONLY
+        shown = typer.Option(flag, **words) if is_option else typer.Argument(**words)
+        parameters.append(parameter.replace(annotation=Annotated[hints[parameter.name], shown]))
+
+    @functools.wraps(command)
+    def described(*positional: Any, **named: Any) -> Any:
+        return command(*positional, **named)
+
+    described.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    described.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    return described
 
 
 @contextmanager

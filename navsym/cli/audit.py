@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli.output import emit, table
 
@@ -14,18 +12,13 @@ if TYPE_CHECKING:
 
 
 def command(
-    file: Annotated[
-        Path, typer.Argument(help="questions (TOML) with [[code]] and [[question]] blocks, or a source with --function")
-    ],
-    function: Annotated[
-        str | None, typer.Option(help="function of a source, whose outputs are shown as formulas")
-    ] = None,
-    all_: Annotated[bool, typer.Option("--all", help="list the entries that are PROVED too")] = False,
-    annotations: Annotated[
-        bool, typer.Option("--annotations", help="print file:line: message, for editors and CI")
-    ] = False,
-    html: Annotated[Path | None, typer.Option(help="page to write: the source, coloured by verdict")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    file: Path,
+    *,
+    function: str | None = None,
+    all_: bool = False,
+    annotations: bool = False,
+    html: Path | None = None,
+    json_: bool = False,
 ) -> int:
     """Read the formulas of source code and decide questions about them. Status 1 when an entry is refuted.
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli.output import emit
 
@@ -12,12 +10,7 @@ if TYPE_CHECKING:
     from navsym.book.entries import Entry
 
 
-def command(
-    search: Annotated[
-        str, typer.Argument(help="words that all occur in id, title, formula or source; or a formula, in any names")
-    ] = "",
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
-) -> int:
+def command(search: str = "", *, json_: bool = False) -> int:
     """Search the formulas of the book, by words or by a formula in any names. Status 1 when nothing is found.
 
     Example: navsym book "a/sqrt(1 - e**2*sin(x)**2)"

@@ -5,9 +5,7 @@ from __future__ import annotations
 import functools
 import sys
 import time
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit
@@ -36,18 +34,17 @@ RESUME = {
 
 
 def command(
-    name: Annotated[str, typer.Argument(help=" | ".join(NAMES))],
-    modules: Annotated[list[str] | None, typer.Argument(help="papers, for mutants; default: all")] = None,
-    share: Annotated[float, typer.Option(min=0.0, max=1.0, help="share of the mutants that are tried")] = 1.0,
-    inputs: Annotated[
-        int | None, typer.Option(min=1, help="damaged files, certificates, statements, kills; default 10000, 200 kills")
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="seed of the random choices")] = 0,
-    jobs: Annotated[int, typer.Option(min=1, help="batches at the same time")] = 1,
-    seconds: Annotated[float, typer.Option(min=1.0, help="limit for one batch, seconds")] = 3600.0,
-    fresh: Annotated[bool, typer.Option("--fresh", help="do everything again, ignoring what is kept")] = False,
-    markdown: Annotated[bool, typer.Option("--markdown", help="print the row for TRUST.md")] = False,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    name: str,
+    modules: list[str] | None = None,
+    *,
+    share: float = 1.0,
+    inputs: int | None = None,
+    seed: int = 0,
+    jobs: int = 1,
+    seconds: float = 3600.0,
+    fresh: bool = False,
+    markdown: bool = False,
+    json_: bool = False,
 ) -> int:
     """Run a campaign of a checkout; it resumes where it was stopped. Status 1 when anything wrong was found.
 

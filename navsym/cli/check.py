@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
@@ -14,12 +12,7 @@ if TYPE_CHECKING:
     from navsym.export.acceptance import Checks
 
 
-def command(
-    paths: Annotated[list[Path], typer.Argument(help="certificates (JSON), or folders of them or of exported code")],
-    kernel: Annotated[str | None, typer.Option(help="have a proof kernel prove each statement, too: coq")] = None,
-    out: Annotated[Path | None, typer.Option(help="folder of the kernel's theories; default: beside each file")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
-) -> int:
+def command(paths: list[Path], *, kernel: str | None = None, out: Path | None = None, json_: bool = False) -> int:
     """Accept or reject every certificate; status 1 when one is rejected, or not proved by the kernel.
 
     Example: navsym check report/certificates

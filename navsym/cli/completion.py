@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from navsym.cli._completion import PLACES, SHELLS
 from navsym.cli.output import OutputError, emit, write_text
 from navsym.core.choice import one_of
 
 
-def command(
-    shell: Annotated[str, typer.Argument(help="bash, zsh or fish")],
-    install: Annotated[bool, typer.Option("--install", help="write the script where the shell looks for it")] = False,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
-) -> None:
+def command(shell: str, *, install: bool = False, json_: bool = False) -> None:
     """Print the script that completes verbs, options and claim ids, or install it for this user.
 
     Example: navsym completion bash --install

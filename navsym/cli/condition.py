@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
@@ -14,13 +12,7 @@ if TYPE_CHECKING:
     from navsym.trajectory.conditioning import Conditions, MatrixCondition
 
 
-def command(
-    n: Annotated[int, typer.Option(help="order of the motion, 1 to 120")],
-    tau: Annotated[str, typer.Option(help="step in seconds: decimal or fraction, read exactly")] = "0.2",
-    rho: Annotated[str, typer.Option(help="factor of the speed, 1/m: decimal or fraction")] = "1/6371000",
-    digits: Annotated[int, typer.Option(help="significant digits of the enclosures")] = 30,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
-) -> None:
+def command(*, n: int, tau: str = "0.2", rho: str = "1/6371000", digits: int = 30, json_: bool = False) -> None:
     """Certified 2-norm condition numbers of the matrices N_p, N_pN, N_f and N_s, beside double precision.
 
     Example: navsym condition --n 20 --tau 0.2 --rho 1/6371000

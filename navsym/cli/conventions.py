@@ -4,20 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from navsym.cli.output import emit, table
 from navsym.conventions.card import HEADINGS, attitude_formula
 
 
-def command(
-    file: Annotated[Path, typer.Argument(help="conventions file (TOML) with [model], [roles] and [quantities]")],
-    card: Annotated[Path | None, typer.Option(help="file with a table [card]: is the model right under it?")] = None,
-    html: Annotated[Path | None, typer.Option(help="page to write: cards, and what excludes their neighbours")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
-) -> int:
+def command(file: Path, *, card: Path | None = None, html: Path | None = None, json_: bool = False) -> int:
     """Find all conventions under which an error model is right. Status 1 when there are none.
 
     Example: navsym conventions examples/conventions.toml
@@ -42,7 +35,12 @@ def as_text(data: Mapping[str, Any]) -> str:
     blocks = [cards_text(data["cards"])] if data["cards"] else [conflicts_text(data)]
     if data["excluded"]:
         rows = [
-            (HEADINGS[item["field"]], str(item["card"][item["field"]]), item["why"], place_text(item["point"]))
+            (
+                HEADINGS[item["field"]],
+                str(item["card"][item["field"]]),
+                item["why"],
+                ", ".join(f"{k} = {v}" for k, v in item["point"].items()),
+            )
             for item in data["excluded"]
         ]
         blocks.append(table(["neighbour with another", "namely", "is excluded", "at"], rows))
@@ -85,8 +83,3 @@ def conflict_row(conflict: Mapping[str, Any]) -> list[str]:
     """One block that must change."""
     entries = " ".join(f"{conflict['matrix']}[{i},{j}]" for i, j in conflict["entries"])
     return [" by ".join(conflict["block"]), entries, conflict["change"], conflict["status"]]
-
-
-def place_text(point: Mapping[str, str]) -> str:
-    """A point in one line."""
-    return ", ".join(f"{name} = {value}" for name, value in point.items())

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli.output import emit, table
 from navsym.core.errors import EmptyError, ExpressionSyntaxError
@@ -13,11 +11,7 @@ if TYPE_CHECKING:
     from navsym.core.datasets import Datasets
 
 
-def command(
-    action: Annotated[str, typer.Argument(help="list or get")] = "list",
-    names: Annotated[list[str] | None, typer.Argument(help="data sets to get; all for every one")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
-) -> None:
+def command(action: str = "list", names: list[str] | None = None, *, json_: bool = False) -> None:
     """List the data sets and their places, or fetch some and check them.
 
     Example: navsym data get srtm        (NAVSYM_DATA names a folder that already has them)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, write_text
@@ -13,16 +11,13 @@ from navsym.core.errors import DomainError
 
 
 def command(
-    file: Annotated[Path, typer.Argument(help="model file (TOML)")],
-    latex: Annotated[bool, typer.Option("--latex", help="print LaTeX instead of text; with --json add it")] = False,
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="value of a parameter, such as w=1/2; may be repeated")
-    ] = None,
-    out: Annotated[Path | None, typer.Option(help="write the text to this file")] = None,
-    certificate: Annotated[
-        Path | None, typer.Option(help="write proofs of exp(F t) and of the observed rank, for navsym check")
-    ] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    file: Path,
+    *,
+    latex: bool = False,
+    set_: list[str] | None = None,
+    out: Path | None = None,
+    certificate: Path | None = None,
+    json_: bool = False,
 ) -> None:
     """Derive the transition matrix, the regressors and the conditions of optimality from a model.
 

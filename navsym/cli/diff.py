@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli.output import emit, table
 from navsym.core.errors import ExpressionSyntaxError
@@ -13,16 +11,7 @@ if TYPE_CHECKING:
     from navsym.export.differences import Differences
 
 
-def command(
-    old: Annotated[
-        str, typer.Argument(help="a formula, the id of a claim, a claim or model file, a ledger, or an exported folder")
-    ],
-    new: Annotated[str, typer.Argument(help="another one of the same kind")],
-    box: Annotated[
-        list[str] | None, typer.Option("--range", help='range of a symbol, such as "T=0,2*pi"; may be repeated')
-    ] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
-) -> int:
+def command(old: str, new: str, *, box: list[str] | None = None, json_: bool = False) -> int:
     """Compare two formulas, files or folders exactly. Status 1 unless every formula is proved equal.
 
     Example: navsym diff "sin(2*a)" "2*sin(a)*cos(a)"

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli.output import emit, table
 
@@ -12,7 +10,7 @@ if TYPE_CHECKING:
     from navsym.core.machine import Machine
 
 
-def command(json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False) -> int:
+def command(*, json_: bool = False) -> int:
     """Show what this machine has and lacks. Status 3 when something required is missing.
 
     Example: navsym doctor

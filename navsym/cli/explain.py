@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli.output import emit
 
@@ -16,11 +14,7 @@ WIDTH = 100
 FORMULA = " " * 6
 
 
-def command(
-    claim: Annotated[str, typer.Argument(help="id of a claim, such as guaranteed_velocity:4.3.u2")],
-    seconds: Annotated[float, typer.Option(help="limit in seconds; above it the verdict is OPEN")] = 90.0,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
-) -> int:
+def command(claim: str, *, seconds: float = 90.0, json_: bool = False) -> int:
     """Tell why a claim has its verdict.
 
     Example: navsym explain guaranteed_velocity:4.3.u2

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
@@ -19,26 +17,18 @@ RESUME = "nothing was written; fewer languages in --to, fewer --vectors, or --no
 
 
 def command(
-    claims: Annotated[
-        list[str],
-        typer.Argument(help="module:number, FILE.toml:id, MODEL.toml, regimes joined as A+B+C; or a ready-made name"),
-    ],
-    to: Annotated[str, typer.Option(help="languages separated by commas; the documentation lists them")] = "c",
-    out: Annotated[Path, typer.Option(help="folder for the code; made when it is not there")] = Path("export"),
-    real: Annotated[str, typer.Option(help="floating-point type of the code: double or float")] = "double",
-    force: Annotated[bool, typer.Option("--force", help="replace existing files")] = False,
-    allow_confirmed: Annotated[
-        bool, typer.Option("--allow-confirmed", help="accept claims that were only sampled (CONFIRMED)")
-    ] = False,
-    license_: Annotated[str, typer.Option("--license", help="SPDX identifier for the headers")] = "Apache-2.0",
-    vectors: Annotated[int, typer.Option(min=4, max=100_000, help="test vectors for each function")] = 48,
-    unit: Annotated[
-        list[str] | None, typer.Option(help="unit of a symbol or result, such as T=s; may be repeated")
-    ] = None,
-    run: Annotated[
-        bool, typer.Option("--run/--no-run", help="compile and run the code on its vectors where this machine can")
-    ] = True,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    claims: list[str],
+    *,
+    to: str = "c",
+    out: Path = Path("export"),
+    real: str = "double",
+    force: bool = False,
+    allow_confirmed: bool = False,
+    license_: str = "Apache-2.0",
+    vectors: int = 48,
+    unit: list[str] | None = None,
+    run: bool = True,
+    json_: bool = False,
 ) -> int:
     """Write formulas that hold as code. A claim that does not hold is refused, with the one that corrects it.
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli.output import emit, remark
 
@@ -14,18 +12,13 @@ if TYPE_CHECKING:
 
 
 def command(
-    file: Annotated[
-        Path, typer.Argument(metavar="BANK.json", help="JSON: models, mode_transition, initial, measurements")
-    ],
-    method: Annotated[str, typer.Option(help="pulsating, k-pulsating, polygaussian, imm, gpb2 or exact")] = "pulsating",
-    depth: Annotated[int | None, typer.Option(help="K of k-pulsating: steps between two mergers  [default: 2]")] = None,
-    missing: Annotated[
-        bool, typer.Option("--missing", help="take null in a measurement for a number that did not come")
-    ] = False,
-    form: Annotated[
-        str, typer.Option(help="how covariances are kept: joseph, or the factors qr, potter, ud")
-    ] = "joseph",
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    file: Path,
+    *,
+    method: str = "pulsating",
+    depth: int | None = None,
+    missing: bool = False,
+    form: str = "joseph",
+    json_: bool = False,
 ) -> None:
     """Mode probabilities, mean, covariance and log-likelihood after every measurement.
 

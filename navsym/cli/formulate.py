@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from navsym.cli._settings import values_of
 from navsym.cli.output import emit, put, write_text
 
 
 def command(
-    file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
-    to: Annotated[str, typer.Option(help="casadi, cvxpy or mps")] = "mps",
-    kind: Annotated[str, typer.Option(help="lp (worst correlation), qp (white noise) or mixed")] = "lp",
-    target: Annotated[str | None, typer.Option(help="name of the target; not needed where the file has one")] = None,
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="value of a parameter, such as T=2.5; may be repeated")
-    ] = None,
-    grid: Annotated[int, typer.Option(help="number of times of each measurement")] = 201,
-    mixture: Annotated[float, typer.Option(help="factor of the quadratic term, for --kind mixed")] = 1.0,
-    out: Annotated[Path | None, typer.Option(help="file to write; standard output otherwise")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    file: Path,
+    *,
+    to: str = "mps",
+    kind: str = "lp",
+    target: str | None = None,
+    set_: list[str] | None = None,
+    grid: int = 201,
+    mixture: float = 1.0,
+    out: Path | None = None,
+    json_: bool = False,
 ) -> None:
     """Write the linear or quadratic programme of the problem on a grid of times.
 

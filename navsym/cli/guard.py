@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from navsym.cli._options import called_options
 from navsym.cli._settings import values_of
@@ -19,20 +17,17 @@ SHOWN = 12
 
 
 def command(
-    file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
-    data: Annotated[Path, typer.Option(help="CSV: t and one column per measurement; an empty cell is no measurement")],
-    target: Annotated[str | None, typer.Option(help="name of the target; not needed where the file has one")] = None,
-    memory: Annotated[int | None, typer.Option(help="epochs that are remembered; default: all")] = None,
-    outliers: Annotated[int, typer.Option(help="at most so many epochs have gross errors: 0 to 4")] = 0,
-    bound: Annotated[
-        str, typer.Option(help="what sigma bounds: bounded (the error itself) or variance (its standard deviation)")
-    ] = "bounded",
-    step: Annotated[str | None, typer.Option(help="time between epochs, kept in the state for navsym export")] = None,
-    state: Annotated[Path | None, typer.Option(help="continue from this file where it exists, and save there")] = None,
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="value of a parameter, such as w=2; may be repeated")
-    ] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    file: Path,
+    *,
+    data: Path,
+    target: str | None = None,
+    memory: int | None = None,
+    outliers: int = 0,
+    bound: str = "bounded",
+    step: str | None = None,
+    state: Path | None = None,
+    set_: list[str] | None = None,
+    json_: bool = False,
 ) -> None:
     """Estimate the target at the time of each epoch, from all epochs so far or the last --memory, with its radius.
 

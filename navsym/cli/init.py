@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli.output import emit
 
@@ -13,10 +11,7 @@ if TYPE_CHECKING:
     from navsym.claims.workspace import Workspace
 
 
-def command(
-    folder: Annotated[Path, typer.Argument(help="the folder; made when it is not there")] = Path("."),
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
-) -> None:
+def command(folder: Path = Path("."), *, json_: bool = False) -> None:
     """Make a workspace. Inside it, or below, every verb knows what navsym.toml lists.
 
     Example: navsym init drive

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli._options import called_options
 from navsym.cli.output import emit, table
@@ -15,14 +13,13 @@ if TYPE_CHECKING:
 
 
 def command(
-    noise: Annotated[float, typer.Option(help="largest error of a position, metres")],
-    acceleration: Annotated[float | None, typer.Option(help="largest acceleration of the motion, m/s^2")] = None,
-    jerk: Annotated[float | None, typer.Option(help="or: largest rate of the acceleration, m/s^3")] = None,
-    step: Annotated[float | None, typer.Option(help="positions come every so many seconds")] = None,
-    memory: Annotated[
-        float | None, typer.Option(help="seconds of positions at hand, with --step; default: as many as help")
-    ] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    *,
+    noise: float,
+    acceleration: float | None = None,
+    jerk: float | None = None,
+    step: float | None = None,
+    memory: float | None = None,
+    json_: bool = False,
 ) -> None:
     """The least error of a velocity that any algorithm guarantees from positions, and the rule that reaches it.
 

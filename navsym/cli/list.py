@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli.output import emit, remark, table
 
@@ -13,11 +11,12 @@ if TYPE_CHECKING:
 
 
 def command(
-    paper: Annotated[list[str] | None, typer.Option(help="derivation module; may be repeated")] = None,
-    status: Annotated[list[str] | None, typer.Option(help="verdict; may be repeated")] = None,
-    slip: Annotated[str | None, typer.Option(help="who slipped: paper, scan, undecidable, or any")] = None,
-    words: Annotated[str | None, typer.Option(help="text that the id or the title contains")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    *,
+    paper: list[str] | None = None,
+    status: list[str] | None = None,
+    slip: str | None = None,
+    words: str | None = None,
+    json_: bool = False,
 ) -> None:
     """List claims in the order of the paper, without deciding them.
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli._options import called_options
 from navsym.cli.output import emit, remark, table
@@ -15,13 +13,7 @@ if TYPE_CHECKING:
 
 
 def command(
-    config: Annotated[Path, typer.Argument(help="JSON: map, track, position and velocity hypotheses")],
-    method: Annotated[str, typer.Option(help="position, full, sequential or refined")] = "full",
-    maps: Annotated[bool, typer.Option("--maps", help="add the criterion over positions, row = j")] = False,
-    offset_free: Annotated[
-        bool, typer.Option("--offset-free", help="heights have an unknown constant error; estimate it too")
-    ] = False,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    config: Path, *, method: str = "full", maps: bool = False, offset_free: bool = False, json_: bool = False
 ) -> None:
     """Fix a position, and the errors of velocity, over a height map from a measured profile.
 

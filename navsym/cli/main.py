@@ -1,7 +1,7 @@
 """The command ``navsym``: finds the verb, runs it, and turns every error into one clear line.
 
-A verb is a file of this folder with a function ``command`` for typer; its name is the file
-name with ``-`` for ``_`` and its help line the first line of the file. Help lines are read
+A verb is a file of this folder with a function ``command``; its name is the file name with ``-`` for ``_``, its help
+line the first line of the file, and the words of its options stand in ``options.toml``. Help lines are read
 without importing the files, and only the verb that was called is imported: engines are slow
 to load, and ``navsym --help`` is not.
 """
@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from navsym import __version__
+from navsym.cli._options import with_options
 from navsym.cli._progress import Ticker
 from navsym.cli.output import OutputError, dumps, put, visible, wants_colour
 from navsym.core.errors import ExpressionSyntaxError, MissingEngineError, NavsymError
@@ -148,7 +149,7 @@ def call(module: str, verb: str, arguments: list[str]) -> int:
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     with Ticker(verb):
-        app.command(name=verb)(guarded(importlib.import_module(module).command))
+        app.command(name=verb)(guarded(with_options(importlib.import_module(module).command, verb)))
         result = app(args=arguments, prog_name=f"navsym {verb}", standalone_mode=False)
     return result if isinstance(result, int) else 0
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from navsym.cli._settings import values_of
 from navsym.cli.diff import read_range
@@ -14,29 +12,24 @@ from navsym.language.tomlfile import parse_toml
 
 
 def command(
-    module: Annotated[str, typer.Argument(help="derivation module in one file")],
-    number: Annotated[str, typer.Argument(help="equation and part, such as 4.3.u2; a star for a correction")],
-    printed: Annotated[str, typer.Option(help="the printed side, in the language of files or in LaTeX")] = "",
-    derived: Annotated[str, typer.Option(help="the derived side; replace it by the route from the model")] = "",
-    formula: Annotated[str, typer.Option(help="in place of both sides: a relation or a chain, also in LaTeX")] = "",
-    relation: Annotated[str, typer.Option(help="between the sides: = != < <= > >=")] = "=",
-    ranges: Annotated[
-        list[str] | None, typer.Option("--range", help='range of a symbol, such as "T=0,2*pi"; may be repeated')
-    ] = None,
-    declare: Annotated[
-        list[str] | None, typer.Option(help='a declaration, such as "u={ vector = 3 }" or "R=positive"; repeatable')
-    ] = None,
-    given: Annotated[list[str] | None, typer.Option(help="a hypothesis, a relation; may be repeated")] = None,
-    title: Annotated[str, typer.Option(help="what the equation says, one sentence")] = "",
-    positive: Annotated[str, typer.Option(help="new names that are positive, such as R,g; others are real")] = "",
-    tolerance: Annotated[
-        str | None, typer.Option(help="for a printed numeral: half a unit of its last digit, such as 0.05")
-    ] = None,
-    corrects: Annotated[str, typer.Option(help="number of the refuted claim that this one replaces")] = "",
-    reason: Annotated[str, typer.Option(help="for a refuted claim: what is wrong")] = "",
-    slip: Annotated[str, typer.Option(help="for a refuted claim: who slipped, paper or scan")] = "paper",
-    folder: Annotated[Path | None, typer.Option(help="where; default: the folder of derivations")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    module: str,
+    number: str,
+    *,
+    printed: str = "",
+    derived: str = "",
+    formula: str = "",
+    relation: str = "=",
+    ranges: list[str] | None = None,
+    declare: list[str] | None = None,
+    given: list[str] | None = None,
+    title: str = "",
+    positive: str = "",
+    tolerance: str | None = None,
+    corrects: str = "",
+    reason: str = "",
+    slip: str = "paper",
+    folder: Path | None = None,
+    json_: bool = False,
 ) -> None:
     """Decide printed = derived, or a formula, and append the claim to its module, with the verdict.
 

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from navsym.cli.output import emit
 
 
 def command(
-    name: Annotated[str, typer.Argument(help="module name, such as schuler_pendulum")],
-    title: Annotated[str, typer.Option(help="title of the paper")] = "",
-    author: Annotated[list[str] | None, typer.Option(help="author; may be repeated")] = None,
-    year: Annotated[int | None, typer.Option(help="year")] = None,
-    source: Annotated[str, typer.Option(help="journal, volume, pages")] = "",
-    language: Annotated[str, typer.Option(help="language of the paper")] = "English",
-    equations: Annotated[str, typer.Option(help='every number printed, such as "1-6" or "1.1-1.9, 2.1"')] = "1",
-    folder: Annotated[Path | None, typer.Option(help="where; default: the folder of derivations")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    name: str,
+    *,
+    title: str = "",
+    author: list[str] | None = None,
+    year: int | None = None,
+    source: str = "",
+    language: str = "English",
+    equations: str = "1",
+    folder: Path | None = None,
+    json_: bool = False,
 ) -> None:
     """Write derivations/NAME.py. It passes the generic tests at once; add claims with navsym new-claim.
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from navsym.cli._settings import values_of
 from navsym.cli.output import emit, table, write_text
@@ -14,26 +12,16 @@ from navsym.core.errors import NavsymError
 
 
 def command(
-    file: Annotated[Path, typer.Argument(help="model file (TOML): F and h, pieces, or dynamics and z")],
-    split: Annotated[
-        str | None, typer.Option(help='vectors taken from each measurement, such as "2,1"; default m,n-m')
-    ] = None,
-    poles: Annotated[
-        str | None, typer.Option(help='wanted polynomials in p, one per stage, such as "(p+1)**2; p+2"')
-    ] = None,
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="value of a parameter, such as w=1/2; may be repeated")
-    ] = None,
-    restoring: Annotated[
-        bool, typer.Option("--restore", help="the fewest further measurements that would show every state")
-    ] = False,
-    candidate: Annotated[
-        list[str] | None,
-        typer.Option(help='what could be measured, such as "gps = x + a*v"; may be repeated; default: each state'),
-    ] = None,
-    html: Annotated[Path | None, typer.Option(help="write the decomposition to this HTML file")] = None,
-    latex: Annotated[Path | None, typer.Option(help="write the decomposition to this LaTeX file")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    file: Path,
+    *,
+    split: str | None = None,
+    poles: str | None = None,
+    set_: list[str] | None = None,
+    restoring: bool = False,
+    candidate: list[str] | None = None,
+    html: Path | None = None,
+    latex: Path | None = None,
+    json_: bool = False,
 ) -> None:
     """Show the exact observability of a model: dimensions, rank drops, splits, gains by poles.
 

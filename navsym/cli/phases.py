@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
@@ -16,27 +14,17 @@ RESUME = "nothing is saved; a shorter --range, --quick or fewer --seconds take l
 
 
 def command(
-    file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
-    target: Annotated[str | None, typer.Option(help="name of the target; not needed where the file has one")] = None,
-    parameter: Annotated[
-        str, typer.Option(help='name of the parameter that varies, or of two: "T, p" makes a map')
-    ] = "T",
-    range_: Annotated[
-        str | None,
-        typer.Option("--range", help='its range, such as "0, 2*pi"; of two "0, 2*pi; 1, 2"; default: those declared'),
-    ] = None,
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="value of another parameter, such as w=1/2; may be repeated")
-    ] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="do not certify regimes without a closed form")] = False,
-    unique: Annotated[
-        bool, typer.Option("--unique", help="also prove that no other estimator is optimal (slower)")
-    ] = False,
-    seconds: Annotated[
-        float, typer.Option(help="processor time after which the search stops; the rest is listed as uncovered")
-    ] = 300.0,
-    out: Annotated[Path | None, typer.Option(help="write the certificates to numbered files of this name")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    file: Path,
+    *,
+    target: str | None = None,
+    parameter: str = "T",
+    range_: str | None = None,
+    set_: list[str] | None = None,
+    quick: bool = False,
+    unique: bool = False,
+    seconds: float = 300.0,
+    out: Path | None = None,
+    json_: bool = False,
 ) -> None:
     """Find the optimal times, weights and value for every value of a parameter.
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
@@ -14,15 +12,7 @@ if TYPE_CHECKING:
     from navsym.claims import Verdict, Verdicts
 
 
-def command(
-    file: Annotated[Path, typer.Argument(help="claim file (TOML) with [symbols] and [[claim]] blocks")],
-    jobs: Annotated[int, typer.Option(min=1, help="claims decided at the same time")] = 1,
-    seconds: Annotated[
-        float,
-        typer.Option(min=0.1, help="limit for one claim, seconds of processor time; above it the verdict is OPEN"),
-    ] = 20.0,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
-) -> int:
+def command(file: Path, *, jobs: int = 1, seconds: float = 20.0, json_: bool = False) -> int:
     """Decide the formulas of a claim file. Status 1 when one of them is refuted or open, 2 when one has no value.
 
     Example: navsym prove examples/formulas.toml

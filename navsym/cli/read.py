@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli.output import emit, remark, write_text
 
@@ -15,13 +13,7 @@ if TYPE_CHECKING:
 
 
 def command(
-    file: Annotated[str, typer.Argument(help="document (.tex, .rst, .md, .dox), or - for LaTeX on standard input")],
-    symbols: Annotated[
-        Path | None, typer.Option(help="TOML file with [symbols], and [latex] for names that are printed otherwise")
-    ] = None,
-    out: Annotated[Path | None, typer.Option(help="write the formulas that are read to this claim file (TOML)")] = None,
-    declare: Annotated[bool, typer.Option("--declare", help="print a skeleton of the declarations instead")] = False,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    file: str, *, symbols: Path | None = None, out: Path | None = None, declare: bool = False, json_: bool = False
 ) -> int:
     """Read the formulas of a document. Status 1 when one of them is refused.
 
@@ -29,7 +21,9 @@ def command(
     """
     import navsym as nav
 
-    reading = nav.read(take_input() if file == "-" else Path(file), symbols=symbols)
+    reading = nav.read(
+        sys.stdin.buffer.read(4_000_001).decode("utf-8", "replace") if file == "-" else Path(file), symbols=symbols
+    )
     if out is not None:
         write_text(out, reading.claims())
         remark(f"{len(reading.read)} claims in {out}")
@@ -38,11 +32,6 @@ def command(
     else:
         emit(reading.document(), as_json=json_, text=lambda: as_text(reading))
     return 0 if len(reading.read) == len(reading.formulas) else 1
-
-
-def take_input() -> str:
-    """Standard input as text; more than four million bytes are cut, and refused by their number."""
-    return sys.stdin.buffer.read(4_000_001).decode("utf-8", "replace")
 
 
 def as_text(reading: Reading) -> str:

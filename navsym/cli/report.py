@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, remark
@@ -13,19 +10,14 @@ from navsym.cli.verify import unexpected_lines
 
 
 def command(
-    modules: Annotated[list[str] | None, typer.Argument(help="derivation modules; default: all")] = None,
-    out: Annotated[
-        Path | None, typer.Option(help="folder for the pages, made when it is not there; default: report")
-    ] = None,
-    source: Annotated[
-        Path | None, typer.Option("--from", help="take verdicts from a document of navsym verify --json, or a ledger")
-    ] = None,
-    jobs: Annotated[int | None, typer.Option(help="claims decided at the same time; default: one per core")] = None,
-    seconds: Annotated[
-        float, typer.Option(help="limit of processor time for one claim; above it the verdict is OPEN")
-    ] = 90.0,
-    fresh: Annotated[bool, typer.Option("--fresh", help="search everything again, use no kept certificate")] = False,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    modules: list[str] | None = None,
+    *,
+    out: Path | None = None,
+    source: Path | None = None,
+    jobs: int | None = None,
+    seconds: float = 90.0,
+    fresh: bool = False,
+    json_: bool = False,
 ) -> int:
     """Decide the claims (or read verdicts with --from) and write the pages. Exit status as in verify.
 

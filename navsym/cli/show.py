@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli.output import emit
 from navsym.core.errors import printable
@@ -13,11 +11,7 @@ if TYPE_CHECKING:
     from navsym.claims import Record
 
 
-def command(
-    claim: Annotated[str, typer.Argument(help="id of a claim, guaranteed_velocity:4.3.u2, or an equation, …:4.16")],
-    seconds: Annotated[float, typer.Option(help="limit in seconds; above it the verdict is OPEN")] = 90.0,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
-) -> int:
+def command(claim: str, *, seconds: float = 90.0, json_: bool = False) -> int:
     """Show both sides of a claim and its verdict, decided now; all parts of an equation that has several.
 
     Example: navsym show guaranteed_velocity:4.3.u2

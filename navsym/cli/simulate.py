@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Container
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
@@ -14,12 +11,13 @@ from navsym.cli.output import emit, table
 
 
 def command(
-    name: Annotated[str, typer.Argument(help="joint_correction, multistructure, terrain_search or trajectory")],
-    runs: Annotated[int | None, typer.Option(help="Monte-Carlo runs; default: those of the study")] = None,
-    steps: Annotated[int | None, typer.Option(help="time steps of each run; default: those of the study")] = None,
-    seed: Annotated[int, typer.Option(help="same seed, same answer")] = 1,
-    journal: Annotated[Path | None, typer.Option(help="keep finished runs in this file and go on from it")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    name: str,
+    *,
+    runs: int | None = None,
+    steps: int | None = None,
+    seed: int = 1,
+    journal: Path | None = None,
+    json_: bool = False,
 ) -> None:
     """Run the numerical experiment of a paper again; its figures, with confidence intervals where it is random.
 

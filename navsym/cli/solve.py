@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
@@ -13,17 +11,14 @@ from navsym.cli.output import dumps, emit, table, write_text
 
 
 def command(
-    file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
-    target: Annotated[str | None, typer.Option(help="name of the target; not needed where the file has one")] = None,
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="value of a parameter, such as T=2.5; may be repeated")
-    ] = None,
-    digits: Annotated[int, typer.Option(help="certified digits of the value")] = 30,
-    compare: Annotated[
-        bool, typer.Option("--compare", help="also show least squares, the Kalman filter and convex solvers")
-    ] = False,
-    out: Annotated[Path | None, typer.Option(help="write the certificate to this file")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    file: Path,
+    *,
+    target: str | None = None,
+    set_: list[str] | None = None,
+    digits: int = 30,
+    compare: bool = False,
+    out: Path | None = None,
+    json_: bool = False,
 ) -> int:
     """Find the estimator with the smallest guaranteed standard deviation, with a certificate that can be replayed.
 

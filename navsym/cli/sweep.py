@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
@@ -17,20 +15,15 @@ if TYPE_CHECKING:
 
 
 def command(
-    config: Annotated[Path, typer.Argument(help='JSON: {"kind": "filter", "jobs": 100, "seed": 1, …}')],
-    workers: Annotated[
-        int, typer.Option(min=0, help="local processes, 0 computes in this one; default: all cores")
-    ] = os.cpu_count() or 1,
-    scheduler: Annotated[str | None, typer.Option(help="tcp://host:port of a running dask scheduler")] = None,
-    patience: Annotated[
-        float, typer.Option(min=1.0, help="seconds without any worker until a scheduler is given up")
-    ] = 120.0,
-    size: Annotated[
-        int | None, typer.Option(min=1, help="jobs in a shard, which is kept whole; default: at most 100")
-    ] = None,
-    out: Annotated[Path | None, typer.Option(help="folder of the shards in Parquet; default: one in the cache")] = None,
-    fresh: Annotated[bool, typer.Option("--fresh", help="do everything again, ignoring what is kept")] = False,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    config: Path,
+    *,
+    workers: int = os.cpu_count() or 1,
+    scheduler: str | None = None,
+    patience: float = 120.0,
+    size: int | None = None,
+    out: Path | None = None,
+    fresh: bool = False,
+    json_: bool = False,
 ) -> int:
     """Compute the shards of a study that are not kept yet, and sum up; stopped, it goes on where it was.
 

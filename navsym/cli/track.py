@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli._options import called_options
 from navsym.cli.output import emit, remark, table
@@ -15,28 +13,17 @@ if TYPE_CHECKING:
 
 
 def command(
-    file: Annotated[Path, typer.Argument(help="CSV of time, latitude, longitude, height, or an RTKLIB .pos")],
-    window: Annotated[
-        float | None, typer.Option(help="length of the sliding window, seconds; chooses --method window")
-    ] = None,
-    order: Annotated[int, typer.Option(help="states of the motion: 2 to velocity, 3 to acceleration, up to 6")] = 3,
-    method: Annotated[
-        str | None, typer.Option(help="differences, window, filter, smoother (default) or guaranteed")
-    ] = None,
-    sigma: Annotated[
-        float | None, typer.Option(help="standard deviation of positions, metres; default: the file's")
-    ] = None,
-    gate: Annotated[
-        float, typer.Option(help="standard deviations beyond which an innovation has less weight; 0: off")
-    ] = 5.0,
-    policy: Annotated[
-        str, typer.Option(help="strict refuses bad rows; repair mends or drops them, and lists them")
-    ] = "strict",
-    reference: Annotated[
-        Path | None, typer.Option(help="CSV of t, ve, vn, vu to compare with: prints NEES and its 95 % band")
-    ] = None,
-    out: Annotated[Path | None, typer.Option(help="write all rows to this CSV file")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    file: Path,
+    *,
+    window: float | None = None,
+    order: int = 3,
+    method: str | None = None,
+    sigma: float | None = None,
+    gate: float = 5.0,
+    policy: str = "strict",
+    reference: Path | None = None,
+    out: Path | None = None,
+    json_: bool = False,
 ) -> None:
     """Velocity (m/s) and acceleration (m/s^2) from measured positions, with standard deviations.
 

@@ -6,9 +6,7 @@ import textwrap
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, remark, table
@@ -22,16 +20,13 @@ RESUME = "the certificates so far are kept: the same command (without --fresh) g
 
 
 def command(
-    modules: Annotated[list[str] | None, typer.Argument(help="papers, or claim and model files; default: all")] = None,
-    write: Annotated[
-        bool, typer.Option("--write", help="write the verdicts to the ledger, ledger.json in a workspace")
-    ] = False,
-    jobs: Annotated[int | None, typer.Option(help="claims decided at the same time; default: one per core")] = None,
-    seconds: Annotated[
-        float, typer.Option(help="limit of processor time for one claim; above it the verdict is OPEN")
-    ] = 90.0,
-    fresh: Annotated[bool, typer.Option("--fresh", help="search everything again, use no kept certificate")] = False,
-    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+    modules: list[str] | None = None,
+    *,
+    write: bool = False,
+    jobs: int | None = None,
+    seconds: float = 90.0,
+    fresh: bool = False,
+    json_: bool = False,
 ) -> int:
     """Decide every claim of the papers. Status 1 when a verdict is not the one declared.
 

@@ -2,8 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, fields, is_dataclass
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+from navsym.core.errors import UnknownSymbolError
+
+Part = TypeVar("Part")
+
+
+def named(owner: Any, names: str) -> dict[str, Any]:
+    """Fields or properties as plain data, name by name: how documents are made.
+
+    >>> named(1 + 2j, "real imag")
+    {'real': 1.0, 'imag': 2.0}
+    """
+    return {name: plain(getattr(owner, name)) for name in names.split()}
+
+
+def plain(value: Any) -> Any:
+    """Tuples and arrays as lists, parts by their own documents or fields, paths and statuses as text."""
+    if hasattr(value, "document"):
+        return value.document()
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [*map(plain, value)]
+    if isinstance(value, Mapping):
+        return dict(value)
+    if is_dataclass(value):
+        return asdict(value)  # type: ignore[arg-type]
+    return str(value) if isinstance(value, str | Path) else value
 
 
 class Answer:
@@ -40,3 +70,33 @@ class Answer:
     def certificates(self) -> list[Mapping[str, Any]]:
         """The certificates that :meth:`check` replays."""
         return []
+
+
+class Answers(Answer, Generic[Part]):
+    """Base of answers of several parts: the first field of the class has them, in order.
+
+    They are counted, gone through, and taken by their place or by their id.
+    """
+
+    __slots__ = ()
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """The parts in order."""
+        found: tuple[Part, ...] = getattr(self, fields(self)[0].name)  # type: ignore[arg-type]
+        return found
+
+    def __len__(self) -> int:
+        return len(self.parts)
+
+    def __iter__(self) -> Iterator[Part]:
+        return iter(self.parts)
+
+    def __getitem__(self, wanted: int | str) -> Part:
+        if isinstance(wanted, int):
+            return self.parts[wanted]
+        known = {getattr(part, "id", None): part for part in reversed(self.parts)}
+        if wanted not in known:
+            listed = ", ".join(str(name) for name in [*known][:-9:-1]) or "nothing, the list is empty"
+            raise UnknownSymbolError(f"expected the id of a part, such as {listed}; got {wanted!r}; correct it")
+        return known[wanted]

@@ -33,7 +33,11 @@ def as_array(name: str, value: Any, shape: Shape, why: str) -> Array:
 
     Raises ShapeError, EmptyError (no entries), NotFiniteError.
     """
-    array = as_floats(name, value, why)
+    return freeze(need_finite(name, need_shape(name, as_floats(name, value, why), shape, why)))
+
+
+def need_shape(name: str, array: Array, shape: Shape, why: str) -> Array:
+    """The same array; EmptyError where it has no entries, ShapeError where its shape is another one."""
     if array.size == 0:
         raise EmptyError(f"{name}: expected shape {describe_shape(shape)}, {why}; got no entries; give at least one")
     fits = array.ndim == len(shape) and all(
@@ -43,18 +47,23 @@ def as_array(name: str, value: Any, shape: Shape, why: str) -> Array:
         raise ShapeError(
             f"{name}: expected shape {describe_shape(shape)}, {why}; got {array.shape}; give one entry for each"
         )
+    return array
+
+
+def need_finite(name: str, array: Array) -> Array:
+    """The same array; NotFiniteError where it holds NaN or an infinity."""
     if not np.isfinite(array).all():
         place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
         raise NotFiniteError(f"{name}: expected finite numbers; got {array[place]} at index {place}; remove or mend it")
-    return freeze(array)
+    return array
 
 
 def as_floats(name: str, value: Any, why: str) -> Array:
-    """A float copy of nested sequences of numbers; ragged rows and words are a ShapeError."""
+    """A float copy of nested sequences of numbers; ragged rows, truth values and words are a ShapeError."""
     try:
         raw = np.asarray(value)
-        if raw.dtype.kind not in "biufO":
-            raise TypeError(f"entries of type {raw.dtype}")
+        if raw.dtype.kind not in "iufO" or (raw.dtype == object and any(isinstance(v, bool | str) for v in raw.flat)):
+            raise TypeError("truth values or words")
         return np.array(raw, dtype=np.float64)
     except (TypeError, ValueError) as error:
         reason = "rows of different lengths" if "inhomogeneous" in str(error) else error

@@ -11,13 +11,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import reduce
+from operator import add, methodcaller, mul
 from typing import Any
 
 import sympy as sp
 from flint import arb, arb_series, ctx
 
 from navsym.core.errors import NavsymError
-from navsym.core.exact import to_fmpq
+from navsym.core.exact import raise_by_squaring, to_fmpq
 
 DEFAULT_BITS = 96
 
@@ -95,27 +97,8 @@ def tape(expression: sp.Expr) -> Tape:
     return Tape(expression, tuple(steps))
 
 
-FUNCTIONS = {
-    sp.sin: "sin",
-    sp.cos: "cos",
-    sp.tan: "tan",
-    sp.cot: "cot",
-    sp.sec: "sec",
-    sp.csc: "csc",
-    sp.exp: "exp",
-    sp.log: "log",
-    sp.Abs: "abs",
-    sp.asin: "asin",
-    sp.acos: "acos",
-    sp.atan: "atan",
-    sp.atan2: "atan2",
-    sp.sinh: "sinh",
-    sp.cosh: "cosh",
-    sp.tanh: "tanh",
-    sp.sign: "sign",
-    sp.Max: "max",
-    sp.Min: "min",
-}
+SAME_NAME = "sin cos tan cot sec csc exp log asin acos atan atan2 sinh cosh tanh sign".split()
+FUNCTIONS = {getattr(sp, name): name for name in SAME_NAME} | {sp.Abs: "abs", sp.Max: "max", sp.Min: "min"}
 
 
 def read_instruction(node: sp.Basic) -> tuple[str, Sequence[sp.Basic], Any]:
@@ -163,17 +146,7 @@ def undefined_like(like: Any) -> Any:
 
 def multiply_all(factors: Sequence[Any]) -> Any:
     """The product of one factor or more, of any kind of number."""
-    value = factors[0]
-    for factor in factors[1:]:
-        value = value * factor
-    return value
-
-
-def add_all(terms: Sequence[Any]) -> Any:
-    value = terms[0]
-    for term in terms[1:]:
-        value = value + term
-    return value
+    return reduce(mul, factors)
 
 
 def integer_power(x: Any, n: int) -> Any:
@@ -182,14 +155,7 @@ def integer_power(x: Any, n: int) -> Any:
         return reciprocal(integer_power(x, -n))
     if isinstance(x, arb):
         return ball_power(x, n)
-    result: Any = arb_series([arb(1)])
-    while n:
-        if n & 1:
-            result = result * x
-        n >>= 1
-        if n:
-            x = x * x
-    return result
+    return raise_by_squaring(x, n, mul) if n else arb_series([arb(1)])
 
 
 def reciprocal(x: Any) -> Any:
@@ -273,11 +239,7 @@ def two_argument_arctangent(y: Any, x: Any) -> Any:
     if isinstance(y, arb) and isinstance(x, arb):
         return undefined_like(y) if y.contains(0) and x.contains(0) else arb.atan2(y, x)
     head = constant_term(x)
-    return arctangent(y * reciprocal(x)) if head > 0 else undefined_like(y if isinstance(y, arb_series) else x)
-
-
-def arctangent(x: Any) -> Any:
-    return x.atan()
+    return (y * reciprocal(x)).atan() if head > 0 else undefined_like(y if isinstance(y, arb_series) else x)
 
 
 def hyperbolic(name: str) -> Callable[[Any], Any]:
@@ -294,16 +256,10 @@ def hyperbolic(name: str) -> Callable[[Any], Any]:
     return value
 
 
-def extreme_of(name: str) -> Callable[[Sequence[Any]], Any]:
-    def value(arguments: Sequence[Any]) -> Any:
-        if not all(isinstance(argument, arb) for argument in arguments):
-            return undefined_like(next(a for a in arguments if isinstance(a, arb_series)))
-        result = arguments[0]
-        for argument in arguments[1:]:
-            result = getattr(result, name)(argument)
-        return result
-
-    return value
+def extreme_of(name: str, arguments: Sequence[Any]) -> Any:
+    if not all(isinstance(argument, arb) for argument in arguments):
+        return undefined_like(next(a for a in arguments if isinstance(a, arb_series)))
+    return reduce(lambda x, y: getattr(x, name)(y), arguments)
 
 
 def unary(function: Callable[[Any], Any]) -> Callable[[Any, list[Any], Any], Any]:
@@ -315,31 +271,26 @@ OPERATIONS: dict[str, Callable[[Any, list[Any], Any], Any]] = {
     "pi": lambda constant, arguments, values: arb.pi(),
     "e": lambda constant, arguments, values: arb(1).exp(),
     "symbol": lambda constant, arguments, values: values[constant],
-    "add": lambda constant, arguments, values: add_all(arguments),
+    "add": lambda constant, arguments, values: reduce(add, arguments),
     "mul": lambda constant, arguments, values: multiply_all(arguments),
     "power": lambda constant, arguments, values: integer_power(arguments[0], constant),
     "root": lambda constant, arguments, values: rational_power(arguments[0], *constant),
     "general_power": lambda constant, arguments, values: general_power(*arguments),
-    "sin": unary(lambda x: x.sin()),
-    "cos": unary(lambda x: x.cos()),
     "tan": unary(lambda x: x.sin() * reciprocal(x.cos())),
     "cot": unary(lambda x: x.cos() * reciprocal(x.sin())),
     "sec": unary(lambda x: reciprocal(x.cos())),
     "csc": unary(lambda x: reciprocal(x.sin())),
-    "exp": unary(lambda x: x.exp()),
     "log": unary(logarithm),
     "abs": unary(absolute_value),
     "sign": unary(sign_function),
     "asin": unary(inverse_sine),
     "acos": unary(inverse_cosine),
-    "atan": unary(arctangent),
     "atan2": lambda constant, arguments, values: two_argument_arctangent(*arguments),
-    "sinh": unary(hyperbolic("sinh")),
-    "cosh": unary(hyperbolic("cosh")),
-    "tanh": unary(hyperbolic("tanh")),
-    "max": lambda constant, arguments, values: extreme_of("max")(arguments),
-    "min": lambda constant, arguments, values: extreme_of("min")(arguments),
+    "max": lambda constant, arguments, values: extreme_of("max", arguments),
+    "min": lambda constant, arguments, values: extreme_of("min", arguments),
 }
+OPERATIONS |= {name: unary(methodcaller(name)) for name in ("sin", "cos", "exp", "atan")}
+OPERATIONS |= {name: unary(hyperbolic(name)) for name in ("sinh", "cosh", "tanh")}
 
 
 # -- what the other rooms call ---------------------------------------
@@ -373,14 +324,8 @@ def derivatives(
 ) -> list[arb]:
     """Enclosures of f, f', f''/2!, … up to ``order`` in one symbol, over the given balls."""
     with precision(bits):
-        before = ctx.cap
-        ctx.cap = order + 1
-        try:
-            inputs = dict(values)
-            inputs[symbol] = arb_series([values[symbol], arb(1)])
-            result = program.run(inputs)
-        finally:
-            ctx.cap = before
+        with series_terms(order + 1):
+            result = program.run({**values, symbol: arb_series([values[symbol], arb(1)])})
         if isinstance(result, arb):
             return [result] + [arb(0)] * order
         if result.prec <= order:  # truncated earlier than asked: the missing coefficients are unknown

@@ -22,24 +22,14 @@ import numpy as np
 import sympy as sp
 
 from navsym.core.errors import DomainError, NotFiniteError, ShapeError, UnknownSymbolError
+from navsym.core.exact import raise_by_squaring
 
 Argument: TypeAlias = sp.Symbol | Sequence[sp.Symbol]
 Memo = dict[sp.Basic, Any]
 
-UNARY = {
-    sp.sin: ca.sin,
-    sp.cos: ca.cos,
-    sp.tan: ca.tan,
-    sp.asin: ca.asin,
-    sp.acos: ca.acos,
-    sp.atan: ca.atan,
-    sp.sinh: ca.sinh,
-    sp.cosh: ca.cosh,
-    sp.tanh: ca.tanh,
-    sp.exp: ca.exp,
-    sp.log: ca.log,
+SAME_NAME = "sin cos tan asin acos atan sinh cosh tanh exp log sign".split()
+UNARY = {getattr(sp, name): getattr(ca, name) for name in SAME_NAME} | {
     sp.Abs: ca.fabs,
-    sp.sign: ca.sign,
     sp.cot: lambda x: ca.cos(x) / ca.sin(x),
     sp.sec: lambda x: 1 / ca.cos(x),
     sp.csc: lambda x: 1 / ca.sin(x),
@@ -179,11 +169,7 @@ def translate_product(expression: sp.Mul, memo: Memo) -> Any:
     """Numerator over denominator: one division, and the rational coefficient in its two parts."""
     above, below = expression.as_numer_denom() if expression.is_commutative else (expression, sp.S.One)
     if below == 1:
-        return (
-            reduce(mul, (translate(factor, memo) for factor in above.args))
-            if above.is_Mul
-            else (translate(above, memo))
-        )
+        return reduce(mul, (translate(factor, memo) for factor in sp.Mul.make_args(above)))
     return translate(above, memo) / translate(below, memo)
 
 
@@ -191,24 +177,7 @@ def translate_power(expression: sp.Pow, memo: Memo) -> Any:
     """A power: whole exponents by multiplication, halves by the square root, others as they are."""
     base, exponent = expression.args
     x = translate(base, memo)
-    if exponent.is_Integer:
-        n = int(exponent)
-        return raise_to_whole(x, n) if n > 0 else 1 / raise_to_whole(x, -n)
-    if exponent.is_Rational and exponent.q == 2:
-        return (
-            raise_to_whole(ca.sqrt(x), int(exponent.p))
-            if exponent.p > 0
-            else (1 / raise_to_whole(ca.sqrt(x), -int(exponent.p)))
-        )
+    if exponent.is_Rational and exponent.q <= 2:
+        power = raise_by_squaring(x if exponent.q == 1 else ca.sqrt(x), abs(int(exponent.p)), mul)
+        return power if exponent.p > 0 else 1 / power
     return ca.power(x, translate(exponent, memo))
-
-
-def raise_to_whole(x: Any, n: int) -> Any:
-    """x ** n by repeated squaring."""
-    result, square = None, x
-    while n:
-        if n & 1:
-            result = square if result is None else result * square
-        n >>= 1
-        square = square * square if n else square
-    return result

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 from navsym.core.choice import one_of
-from navsym.core.errors import DomainError, MissingEngineError, NavsymError
+from navsym.core.errors import MissingEngineError, NavsymError
 
 
 class ChecksumError(NavsymError):
@@ -77,9 +77,8 @@ class DatasetRow:
 
     def document(self) -> dict[str, Any]:
         """The row of ``navsym data list``."""
-        names = ("name", "what", "path", "repository", "commit", "source", "sha256", "licence")
-        here = None if self.here is None else str(self.here)
-        return {**{name: getattr(self.data, name) for name in names}, "here": here, "trouble": self.trouble}
+        names = "name what path repository commit source sha256 licence"
+        return named(self.data, names) | named(self, "here trouble")
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,9 +148,7 @@ def look_up(known: Dataset) -> DatasetRow:
 
 def dataset(name: str) -> Dataset:
     """The data set of a name; raises DomainError with the names that exist."""
-    if name in DATASETS:
-        return DATASETS[name]
-    raise DomainError(f"expected one of {', '.join(DATASETS)}; got {name[:40]}; name one of them", where="data")
+    return DATASETS[one_of(name, DATASETS, "data")]
 
 
 def local_copy(known: Dataset) -> Path | None:

@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeVar
 
 import sympy as sp
 from flint import arb, fmpq, fmpz
 
 ONE = fmpz(1)
+Factor = TypeVar("Factor")
+
+
+def raise_by_squaring(x: Factor, n: int, times: Callable[[Factor, Factor], Factor]) -> Factor:
+    """x^n, n at least 1, by repeated squaring, for whatever can be multiplied."""
+    result: Factor | None = None
+    while n:
+        if n & 1:
+            result = x if result is None else times(result, x)
+        n >>= 1
+        x = times(x, x) if n else x
+    assert result is not None, "the exponent is at least 1"
+    return result
 
 
 def to_fmpq(x: Any) -> fmpq:

@@ -8,60 +8,28 @@ import platform
 import shutil
 import subprocess
 import sys
-from collections.abc import Sequence
+import tomllib
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 
 SUPPORTED = ((3, 11), (3, 13))
 SECONDS = 60  # for one import or one "--version"
 
 #: Engines that navsym cannot do without: module -> distribution.
-ENGINES = {
-    "sympy": "sympy",
-    "flint": "python-flint",
-    "numpy": "numpy",
-    "scipy": "scipy",
-    "casadi": "casadi",
-    "cvxpy": "cvxpy",
-    "osqp": "osqp",
-    "clarabel": "clarabel",
-    "highspy": "highspy",
-    "numba": "numba",
-    "msgspec": "msgspec",
-    "jinja2": "jinja2",
-    "matplotlib": "matplotlib",
-    "jupytext": "jupytext",
-    "pooch": "pooch",
-}
+NAMES = (
+    "sympy flint numpy scipy casadi cvxpy osqp clarabel highspy numba msgspec jinja2 matplotlib jupytext pooch".split()
+)
+ENGINES = {name: "python-flint" if name == "flint" else name for name in NAMES}
 
-#: Engines behind an extra: module -> (distribution, extra, what it is for).
-EXTRAS = {
-    "distributed": ("distributed", "cluster", "sweeps on a cluster"),
-    "pyarrow": ("pyarrow", "cluster", "tables of sweeps"),
-    "rasterio": ("rasterio", "maps", "GeoTIFF maps"),
-    "jupyterlab": ("jupyterlab", "notebook", "notebooks in a browser"),
-    "wasmtime": ("wasmtime", "cross", "running exported WebAssembly"),
-    "atheris": ("atheris", "fuzz", "campaign fuzz"),
-    "ziglang": ("ziglang", "cross", "cross-compiling exported C"),
-}
-
-#: Programs, all optional: name -> (commands to try, question for the version, what it is for).
-PROGRAMS: dict[str, tuple[tuple[str, ...], str, str]] = {
-    "C compiler": (("cc", "gcc", "clang"), "--version", "exported C"),
-    "C++ compiler": (("c++", "g++", "clang++"), "--version", "exported C++"),
-    "gfortran": (("gfortran",), "--version", "exported Fortran"),
-    "rustc": (("rustc",), "--version", "exported Rust"),
-    "node": (("node", "nodejs"), "--version", "exported JavaScript"),
-    "julia": (("julia",), "--version", "exported Julia"),
-    "octave": (("octave-cli", "octave"), "--version", "exported MATLAB"),
-    "zig": (("zig",), "version", "cross-compiling exported C"),
-    "cppcheck": (("cppcheck",), "--version", "static checks of exported C"),
-    "chromium": (("chromium", "chromium-browser", "google-chrome"), "--version", "browser tests of reports"),
-}
+#: Packages behind an extra, and programs, all optional: what each is for, and how it is asked for.
+TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
+EXTRAS: dict[str, dict[str, str]] = TABLE["extras"]
+PROGRAMS: dict[str, dict[str, Any]] = TABLE["programs"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,15 +71,8 @@ class Machine(Answer):
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym doctor``."""
-        return {
-            "complete": self.complete,
-            "navsym": version_of("navsym"),
-            "platform": self.platform,
-            "cores": self.cores,
-            "memory_bytes": self.memory_bytes,
-            "findings": [asdict(item) for item in self.findings],
-            "missing": list(self.missing),
-        }
+        head = named(self, "complete") | {"navsym": version_of("navsym")}
+        return head | named(self, "platform cores memory_bytes findings missing")
 
     def __repr__(self) -> str:
         lacking = f"missing: {', '.join(self.missing)}" if self.missing else "everything required is there"
@@ -128,7 +89,8 @@ def doctor() -> Machine:
     >>> machine.complete, machine.missing
     (True, ())
     """
-    return Machine(tuple(examine()), count_cores(), memory_size(), platform.platform())
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return Machine(tuple(examine()), cores, memory_size(), platform.platform())
 
 
 def examine() -> list[Equipment]:
@@ -154,12 +116,13 @@ def engine(module: str, distribution: str) -> Equipment:
     return Equipment(module, True, found, version_of(distribution), advice)
 
 
-def extra(module: str, about: tuple[str, str, str]) -> Equipment:
+def extra(module: str, about: Mapping[str, str]) -> Equipment:
     """A package behind an extra; when it is not installed, that is no fault."""
-    distribution, name, purpose = about
-    version = version_of(distribution)
+    version = version_of(module)
     found = bool(version) and importable(module)[0]
-    advice = "" if found else f"for {purpose}: python -m pip install -e '.[{name}]' in the environment"
+    advice = (
+        "" if found else f"for {about['purpose']}: python -m pip install -e '.[{about['extra']}]' in the environment"
+    )
     return Equipment(module, False, found, version, advice)
 
 
@@ -178,18 +141,19 @@ def version_of(distribution: str) -> str:
         return ""
 
 
-def program(name: str, about: tuple[tuple[str, ...], str, str]) -> Equipment:
+def program(name: str, about: Mapping[str, Any]) -> Equipment:
     """A program on the path that answers when asked for its version."""
-    commands, question, purpose = about
-    for candidate in commands:
+    for candidate in about["commands"]:
         path = shutil.which(candidate)
         if path is None:
             continue
-        code, output = answer([path, question])
+        code, output = answer([path, about["question"]])
         if code == 0:
             lines = output.strip().splitlines()
             return Equipment(name, False, True, lines[0].strip()[:60] if lines else "", "")
-    return Equipment(name, False, False, "", f"for {purpose}: install {commands[0]} and put it on PATH")
+    return Equipment(
+        name, False, False, "", f"for {about['purpose']}: install {about['commands'][0]} and put it on PATH"
+    )
 
 
 def answer(words: Sequence[str]) -> tuple[int, str]:
@@ -228,8 +192,3 @@ def memory_size() -> int | None:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, OSError, ValueError):
         return None
-
-
-def count_cores() -> int:
-    """Processor cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

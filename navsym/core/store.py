@@ -23,19 +23,7 @@ from navsym.core.errors import NavsymError
 
 ROOT = Path(__file__).parents[1]
 #: Engines of which a result may depend on the version.
-ENGINES = (
-    "sympy",
-    "mpmath",
-    "python-flint",
-    "numpy",
-    "scipy",
-    "numba",
-    "casadi",
-    "cvxpy",
-    "highspy",
-    "clarabel",
-    "osqp",
-)
+ENGINES = "sympy mpmath python-flint numpy scipy numba casadi cvxpy highspy clarabel osqp".split()
 SCHEMA = "CREATE TABLE IF NOT EXISTS results (key TEXT PRIMARY KEY, value TEXT NOT NULL, digest TEXT NOT NULL)"
 #: As bytes, so that an entry whose text is none any more is one damaged entry and not the end of reading.
 READ = "SELECT CAST(value AS BLOB), CAST(digest AS BLOB) FROM results WHERE key = ?"

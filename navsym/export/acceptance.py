@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import Any
 
 from navsym import checker
 from navsym.claims.display import write_card, write_table
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, Answers
 from navsym.core.errors import DomainError, EmptyError, NavsymError
 from navsym.export.coq.replay import Replay, replay, require_kernel
 from navsym.export.roundtrip import check_export
@@ -59,7 +59,7 @@ class Check:
 
 
 @dataclass(frozen=True, slots=True, repr=False, eq=False)
-class Checks(Answer):
+class Checks(Answers[Check]):
     """The results of checking, in order.
 
     checked     : a :class:`Check` for each certificate and each exported language
@@ -73,15 +73,6 @@ class Checks(Answer):
     def accepted(self) -> bool:
         """True when everything was accepted, and proved by the kernel where one was asked."""
         return all(row.holds for row in self.checked)
-
-    def __len__(self) -> int:
-        return len(self.checked)
-
-    def __iter__(self) -> Iterator[Check]:
-        return iter(self.checked)
-
-    def __getitem__(self, place: int) -> Check:
-        return self.checked[place]
 
     def __bool__(self) -> bool:
         return self.accepted

@@ -16,7 +16,7 @@ import sympy as sp
 from navsym.claims import PROVED, Statement, Verdict
 from navsym.core.errors import DomainError
 from navsym.export.functions import function_of, require_exportable
-from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source, State
+from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source, State, overlap
 from navsym.prove.ladder import decide_within
 from navsym.prove.wording import expression_text
 
@@ -146,15 +146,6 @@ def bound(link: Link, part: Material, names: Names) -> list[tuple[sp.Symbol, sp.
         wanted = f"expected inputs in the proved range of {link.claim}"
         raise DomainError(f"{wanted}; got values for {', '.join(ranged)}; prove their range first")
     return [(names.make(n), e.xreplace(table)) for n, e in zip((n for n in link.results if n), needed, strict=True)]
-
-
-def overlap(one: tuple[Any, Any], other: tuple[Any, Any]) -> tuple[Any, Any]:
-    """What lies in both ranges; None is an end at infinity."""
-    lows, highs = ([x for x in ends if x is not None] for ends in zip(one, other, strict=True))
-    return (
-        max((sp.sympify(x, strict=True) for x in lows), default=None),
-        min((sp.sympify(x, strict=True) for x in highs), default=None),
-    )
 
 
 def part_of(link: Link, decided: Decided) -> Material:

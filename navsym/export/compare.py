@@ -16,7 +16,7 @@ from typing import Any
 from flint import arb
 
 from navsym.claims.display import write_card
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError, EmptyError, ShapeError, UnknownSymbolError
 from navsym.export.accuracy.rounding import DOUBLE, followed, up, with_library
@@ -62,8 +62,7 @@ class FunctionComparison(Answer):
 
     def document(self) -> dict[str, Any]:
         """The comparison as plain data."""
-        head = {"how": self.how, "bound": self.bound, "worst": dict(self.worst), "deviation": self.deviation}
-        return head | {"evidence": self.evidence, "points": self.points}
+        return named(self, "how bound worst deviation evidence points")
 
     def __repr__(self) -> str:
         place = ", ".join(f"{name} = {value}" for name, value in self.worst.items())
@@ -223,7 +222,9 @@ def certify(
     text = write_trace(graph)
     if text is None:
         raise UntraceableError("the traced formula is too long")
-    is_same = prove(text, "=", formula, seconds=seconds, **ranges).holds if uses_all(text, sides.names) else False
+    # Only a text with every name takes a declaration of each.
+    uses_all = set(sides.names) <= player.symbols_of(player.parse(text))
+    is_same = uses_all and prove(text, "=", formula, seconds=seconds, **ranges).holds
     difference = None if is_same else player.parse(f"({text}) - ({write_numerals(formula)})")
 
     def bound_on(part: Box) -> float:
@@ -242,11 +243,6 @@ def certify(
     operations = sum(graph.operations().values())
     words = "proved to be the formula" if is_same else "compared with the formula in balls"
     return bound, f"{operations} operations were traced and {words}; {ROUNDED}"
-
-
-def uses_all(text: str, names: Sequence[str]) -> bool:
-    """True when every name stands in a text: only such a text takes a declaration of each."""
-    return set(names) <= player.symbols_of(player.parse(text))
 
 
 def require_faithful(sides: Sides, graph: Graph, literals: Sequence[Any], points: Sequence[tuple[float, ...]]) -> None:

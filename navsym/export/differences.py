@@ -7,7 +7,7 @@ import os
 import random
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,10 +18,11 @@ from flint import arb
 from navsym.claims import REFUTED, Bound, Equation, Record
 from navsym.claims.display import write_table
 from navsym.claims.formula import Formula as Statement
-from navsym.core.answers import Answer
+from navsym.core.answers import Answers, named
 from navsym.core.balls import enclose, hull
 from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, ShapeError
 from navsym.core.numbers import Number
+from navsym.export.parts import overlap
 from navsym.language.expression import parse, parse_noting, symbol
 from navsym.language.files import read_text
 from navsym.language.names import quote
@@ -88,13 +89,11 @@ class Difference:
     def document(self) -> dict[str, Any]:
         """One entry of ``differences`` in the JSON document of ``navsym diff``."""
         ends = self.difference and [self.difference.lower, self.difference.upper]
-        worst = None if self.worst is None else dict(self.worst)
-        head = {"name": self.name, "status": self.status, "worst": worst, "difference": ends}
-        return head | {"why": self.why, "assumptions": list(self.assumptions)}
+        return named(self, "name status worst") | {"difference": ends} | named(self, "why assumptions")
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Differences(Answer):
+class Differences(Answers[Difference]):
     """Formulas of two sides by their names; ``equal`` when every one is proved equal."""
 
     differences: tuple[Difference, ...]
@@ -103,15 +102,6 @@ class Differences(Answer):
     def equal(self) -> bool:
         """True when every formula is proved equal, on one and the same range."""
         return all(found.status == "EQUAL" for found in self.differences)
-
-    def __len__(self) -> int:
-        return len(self.differences)
-
-    def __iter__(self) -> Iterator[Difference]:
-        return iter(self.differences)
-
-    def __getitem__(self, place: int) -> Difference:
-        return self.differences[place]
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym diff``."""
@@ -268,23 +258,8 @@ def common_box(old: Formula, new: Formula) -> dict[sp.Symbol, tuple[Any, Any]]:
     box = dict(old.box)
     for s, (lower, upper) in new.box.items():
         mine = known.get(s.name, s)
-        low, high = box.get(mine, (None, None))
-        box[mine] = (larger(low, lower), smaller(high, upper))
+        box[mine] = overlap(box.get(mine, (None, None)), (lower, upper))
     return box
-
-
-def larger(a: Any, b: Any) -> Any:
-    """The larger of two exact numbers; of one and None, the number."""
-    if a is None or b is None:
-        return b if a is None else a
-    return a if enclose(sp.sympify(a - b, strict=True), {}) >= 0 else b
-
-
-def smaller(a: Any, b: Any) -> Any:
-    """The smaller of two exact numbers; of one and None, the number."""
-    if a is None or b is None:
-        return b if a is None else a
-    return b if enclose(sp.sympify(a - b, strict=True), {}) >= 0 else a
 
 
 def worst_point(

@@ -20,24 +20,13 @@ from typing import Any
 import sympy as sp
 
 from navsym.core.errors import DomainError, UnknownSymbolError
+from navsym.core.exact import raise_by_squaring
 from navsym.export.atoms import expm1, filled, plain
 from navsym.export.forms import common_step
 from navsym.export.holes import part_of
 
-UNARY: dict[type, str] = {
-    sp.sin: "sin",
-    sp.cos: "cos",
-    sp.exp: "exp",
-    sp.log: "log",
-    sp.Abs: "abs",
-    sp.asin: "asin",
-    sp.acos: "acos",
-    sp.atan: "atan",
-    sp.sinh: "sinh",
-    sp.cosh: "cosh",
-    sp.tanh: "tanh",
-    expm1: "expm1",
-}
+SAME_NAME = "sin cos exp log asin acos atan sinh cosh tanh".split()
+UNARY: dict[type, str] = {getattr(sp, name): name for name in SAME_NAME} | {sp.Abs: "abs", expm1: "expm1"}
 BINARY: dict[type, str] = {sp.atan2: "atan2", sp.Max: "max", sp.Min: "min"}
 MULTIPLES = 16  # above it an angle is computed by itself
 
@@ -256,8 +245,10 @@ class Builder:
                 below.append(self.power(base, -exponent))
             else:
                 above.append(self.visit(factor))
-        size, dyadic = abs(coefficient), is_dyadic(coefficient)
-        scale, divisor = (size, sp.S.One) if dyadic or not size.is_Rational else (size.p, sp.Integer(size.q))
+        size = abs(coefficient)
+        # By p/2^k with small p one multiplies, with one rounding at most, and need not divide.
+        whole = not size.is_Rational or size.q & (size.q - 1) == 0
+        scale, divisor = (size, sp.S.One) if whole else (size.p, sp.Integer(size.q))
         if scale != 1 or not above:
             above.insert(0, self.number(sp.sympify(scale, strict=True)))
         if divisor != 1:
@@ -285,14 +276,7 @@ class Builder:
 
     def whole_power(self, x: int, n: int) -> int:
         """The node of x^n, n at least 1, by repeated squaring."""
-        result: int | None = None
-        while n:
-            if n & 1:
-                result = x if result is None else self.put("mul", result, x)
-            n >>= 1
-            x = self.put("mul", x, x) if n else x
-        assert result is not None, "powers of zero are folded before"
-        return result
+        return raise_by_squaring(x, n, lambda a, b: self.put("mul", a, b))
 
     # -- angles ---------------------------------------
 
@@ -344,11 +328,6 @@ def direction_of(angle: sp.Expr) -> tuple[sp.Rational, sp.Expr]:
     if direction.could_extract_minus_sign():
         coefficient, direction = -coefficient, -direction
     return (coefficient, direction) if coefficient.is_Rational else (sp.S.One, angle)
-
-
-def is_dyadic(number: sp.Expr) -> bool:
-    """True for p/2^k with small p: multiplying by it is one rounding at most, and dividing is not needed."""
-    return bool(number.is_Rational and number.q & (number.q - 1) == 0)
 
 
 __all__ = ["Graph", "Node", "build"]

@@ -105,7 +105,8 @@ def factored(expression: sp.Expr) -> sp.Expr | None:
     power = (1 if parity[0][1] else 0) - (1 if parity[1][1] else 0)
     if any(parity[0]):
         quotient *= s**power
-    result = whole_again(quotient, angle, s, c)
+    halves = quotient.replace(lambda n: isinstance(n, sp.Add), lambda n: half_angle(n, angle, c))
+    result = halves.subs({s: sp.sin(angle), c: sp.cos(angle)}, simultaneous=True)
     return None if result.has(sp.nan, sp.zoo) else result
 
 
@@ -147,12 +148,6 @@ def reduced(part: sp.Expr, s: sp.Symbol, c: sp.Symbol) -> tuple[sp.Expr, sp.Expr
         term = coefficient * (1 - c**2) ** (power // 2)
         even, odd = (even, odd + term) if power % 2 else (even + term, odd)
     return sp.expand(even), sp.expand(odd)
-
-
-def whole_again(quotient: sp.Expr, angle: sp.Expr, s: sp.Symbol, c: sp.Symbol) -> sp.Expr:
-    """s and c back to functions; 1 - c and 1 + c as squares of half angles."""
-    quotient = quotient.replace(lambda n: isinstance(n, sp.Add), lambda n: half_angle(n, angle, c))
-    return quotient.subs({s: sp.sin(angle), c: sp.cos(angle)}, simultaneous=True)
 
 
 def half_angle(node: sp.Add, angle: sp.Expr, c: sp.Symbol) -> sp.Expr:

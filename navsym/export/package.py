@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from navsym import __version__
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 from navsym.core.errors import DomainError, DuplicateError, NavsymError
 from navsym.export.accuracy.vectors import Vector, vectors
 from navsym.export.folder import require_free, write_folder
@@ -191,12 +191,8 @@ class Exported(Answer):
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym export``."""
-        return {
-            "out": str(self.out),
-            "functions": list(self.functions),
-            "languages": [outcome_record(outcome) for outcome in self.outcomes],
-            "files": len(self.files),
-        }
+        parts = {"languages": [outcome_record(outcome) for outcome in self.outcomes], "files": len(self.files)}
+        return named(self, "out functions") | parts
 
     def __repr__(self) -> str:
         said = ", ".join(f"{outcome.language} {outcome.status}" for outcome in self.outcomes)

@@ -229,3 +229,15 @@ def inside(end: Any, direction: int, real: str = "double") -> float:
         while (ball > float(value)) if direction > 0 else (ball < float(value)):
             value = np.nextafter(value, kind(direction * np.inf))
     return float(value)
+
+
+def overlap(one: tuple[Any, Any], other: tuple[Any, Any]) -> tuple[Any, Any]:
+    """What lies in both ranges of exact ends; None is an end at infinity."""
+
+    def inner(ends: tuple[Any, Any], direction: int) -> Any:
+        known = [sp.sympify(end, strict=True) for end in ends if end is not None]
+        if len(known) < 2:
+            return known[0] if known else None
+        return known[0] if direction * enclose(known[0] - known[1], {}) >= 0 else known[1]
+
+    return inner((one[0], other[0]), 1), inner((one[1], other[1]), -1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import methodcaller
 from typing import Any
 
 import sympy as sp
@@ -12,18 +13,8 @@ from navsym.core.balls import series_terms
 
 TERMS = 48  # coefficients that are computed; a formula that vanishes to a higher order is left alone
 
-FUNCTIONS: dict[type, Callable[[Any], Any]] = {
-    sp.exp: lambda x: x.exp(),
-    sp.sin: lambda x: x.sin(),
-    sp.cos: lambda x: x.cos(),
-    sp.tan: lambda x: x.tan(),
-    sp.sinh: lambda x: x.sinh(),
-    sp.cosh: lambda x: x.cosh(),
-    sp.tanh: lambda x: x.tanh(),
-    sp.log: lambda x: x.log(),
-    sp.asin: lambda x: x.asin(),
-    sp.atan: lambda x: x.atan(),
-}
+NAMES = "exp sin cos tan sinh cosh tanh log asin atan".split()
+FUNCTIONS: dict[type, Callable[[Any], Any]] = {getattr(sp, name): methodcaller(name) for name in NAMES}
 
 
 class NoSeriesError(ArithmeticError):

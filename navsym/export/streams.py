@@ -243,7 +243,9 @@ def files_of_rule(rule: Rule, order: Order) -> tuple[dict[str, str], dict[str, A
     widest = expect(rule, rows)
     gap = repr(2.0 ** math.ceil(math.log2(max(4.0 * widest, 1e-13))))
     words = rule.words(f"SPDX-License-Identifier: {license_id(order.license)}", gap)
-    tables = words | {key: [c_number(x) for x in column] for key, column in columns_of(rows).items()}
+    tables = words | {
+        key: ["NAN" if x is None else repr(x) for x in column] for key, column in columns_of(rows).items()
+    }
 
     def fill(template: str, **more: Any) -> str:
         return environment().get_template(f"guard/{template}.j2").render(tables | {"rows": rows} | more)
@@ -283,11 +285,6 @@ def columns_of(rows: Sequence[dict[str, Any]]) -> dict[str, list[Any]]:
         "least_low": [row["least"][0] for row in rows],
         "least_high": [row["least"][1] for row in rows],
     }
-
-
-def c_number(x: float | None) -> str:
-    """A number as C writes it."""
-    return "NAN" if x is None else repr(x)
 
 
 def export_guard(

@@ -6,6 +6,7 @@ Nothing is "passed" that did not run: a missing program is reported as "not exec
 from __future__ import annotations
 
 import re
+import tomllib
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,21 +15,8 @@ from pathlib import Path
 from navsym.export.languages.targets import answering
 from navsym.export.processes import run
 
-#: Rules of MISRA C:2012 that exported code does not keep, each with its reason.
-DEVIATIONS = {
-    "15.5": (
-        "advisory",
-        "A function leaves at once when an argument is outside the proved domain or a result is not finite. One exit "
-        "at the end would need a variable for the status and nest the whole computation in it; the status would then "
-        "depend on more code than the test that decides it.",
-    ),
-    "5.9": (
-        "advisory",
-        "A part of a formula that is defined at zero by its Taylor polynomial is a static function, of the same name "
-        "and text in every source that needs it. Each source is complete in itself and can be taken out of the folder "
-        "alone.",
-    ),
-}
+#: Rules of MISRA C:2012 that exported code does not keep, each with its kind and reason.
+DEVIATIONS: dict[str, dict[str, str]] = tomllib.loads(Path(__file__).with_name("deviations.toml").read_text("utf-8"))
 #: Advice of cppcheck that is not of MISRA and not taken: the derived bound says what log(1 + x) loses, and where it
 #: would lose too much a polynomial stands in its place.
 UNTAKEN = ("unpreciseMathCall",)
@@ -86,4 +74,6 @@ def deviations_page(license_: str) -> str:
     lines += ["The rules below are not kept, and why. Whether the code was checked, by which program and with which"]
     lines += ["findings, is what `navsym check` says of this folder; this page claims nothing about it.", ""]
     lines += ["| rule | kind | reason |", "| --- | --- | --- |"]
-    return "\n".join([*lines, *(f"| {rule} | {kind} | {reason} |" for rule, (kind, reason) in DEVIATIONS.items()), ""])
+    return "\n".join(
+        [*lines, *(f"| {rule} | {row['kind']} | {row['reason']} |" for rule, row in DEVIATIONS.items()), ""]
+    )

@@ -299,57 +299,47 @@ def formula_or_relation(expression: sp.Basic) -> str:
 
 def write_formulas(derivation: Derivation, write: Writer) -> dict[str, Any]:
     """All formulas, written one by one."""
-    return {
-        "name": derivation.name,
-        "states": list(derivation.states),
-        "measurements": [
-            {"name": name, "sigma": write(sigma)}
-            for name, sigma in zip(derivation.measurements, derivation.sigmas, strict=True)
-        ],
-        "F": [write_rows(F, write) for F in derivation.system],
+    d = derivation
+    measured = zip(d.measurements, d.sigmas, strict=True)
+    found: dict[str, Any] = {
+        "name": d.name,
+        "states": d.states,
+        "measurements": [{"name": name, "sigma": sigma} for name, sigma in measured],
+        "F": d.system,
         "transition": [
             {
-                "time": write(t.time),
-                "matrix": write_rows(t.matrix, write),
-                "characteristic": [
-                    {"factor": write(factor), "multiplicity": times, "form": kind} for factor, times, kind in t.factors
-                ],
+                "time": t.time,
+                "matrix": t.matrix,
+                "characteristic": [{"factor": f, "multiplicity": times, "form": kind} for f, times, kind in t.factors],
             }
-            for t in derivation.transition
+            for t in d.transition
         ],
-        "regressors": [piece_data(derivation, piece, write) for piece in derivation.pieces],
-        "observability_matrix": (
-            None if derivation.observability_matrix is None else write_rows(derivation.observability_matrix, write)
-        ),
-        "conditions": [condition_data(derivation, c, write) for c in derivation.conditions],
-        "assumptions": [write(relation) for relation in derivation.assumptions],
+        "regressors": [{"variable": d.time, "from": p.start, "to": p.end, "H": p.rows} for p in d.pieces],
+        "observability_matrix": d.observability_matrix,
+        "conditions": [
+            {
+                "target": c.target,
+                "functional": c.functional,
+                "dual_polynomial": c.dual,
+                "slope": c.slope,
+                "value": sp.Add(*(x * p for x, p in zip(d.multipliers, c.functional, strict=True))),
+            }
+            for c in d.conditions
+        ],
+        "assumptions": d.assumptions,
     }
+    return {key: write_all(value, write) for key, value in found.items()}
 
 
-def write_rows(matrix: sp.MatrixBase, write: Writer) -> list[list[str]]:
-    """A matrix as rows of texts."""
-    return [[write(entry) for entry in row] for row in matrix.tolist()]
-
-
-def piece_data(derivation: Derivation, piece: PieceRegressors, write: Writer) -> dict[str, Any]:
-    """H on one piece, with the ends between which it holds."""
-    return {
-        "variable": write(derivation.time),
-        "from": write(piece.start),
-        "to": write(piece.end),
-        "H": write_rows(piece.rows, write),
-    }
-
-
-def condition_data(derivation: Derivation, conditions: Conditions, write: Writer) -> dict[str, Any]:
-    """The equations of the contacts, for one target."""
-    return {
-        "target": conditions.target,
-        "functional": [write(entry) for entry in conditions.functional],
-        "dual_polynomial": [[write(f) for f in polynomials] for polynomials in conditions.dual],
-        "slope": [[write(f) for f in slopes] for slopes in conditions.slope],
-        "value": write(sp.Add(*(x * p for x, p in zip(derivation.multipliers, conditions.functional, strict=True)))),
-    }
+def write_all(value: Any, write: Writer) -> Any:
+    """Plain data with every formula in it written; a matrix by rows."""
+    if isinstance(value, sp.MatrixBase):
+        return write_all(value.tolist(), write)
+    if isinstance(value, dict):
+        return {key: write_all(part, write) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [write_all(part, write) for part in value]
+    return write(value) if isinstance(value, sp.Basic) else value
 
 
 # LaTeX

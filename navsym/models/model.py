@@ -22,7 +22,7 @@ from navsym.language.tomlfile import read_toml, toml_text
 from navsym.language.values import read_assumptions, write_declaration, write_entries, write_value
 from navsym.language.vectors import is_wide
 from navsym.models.linear import LinearModel, linear_row
-from navsym.models.modelfile import BasisFile, ModelFile, Piece, model_from, need_fixed, piece_model, read_model
+from navsym.models.modelfile import BasisFile, ModelFile, model_from, need_fixed, piece_model, read_model
 
 #: Keys of a model file -> the arguments that write them, for the place of an error.
 PLACES = (
@@ -109,21 +109,19 @@ class Model:
             formulas = (F, H, sigma, interval, targets, pieces, dynamics, rates, Phi, inputs)
             declarations = declarations_of(parameters, declared, formulas, {*names, *(inputs or {}), "t"})
             document: dict[str, Any] = {"model": {"name": name, "states": names}}
-            for key, value in (("F", F), ("Phi", Phi)):
+            for key, value in (("F", F), ("Phi", Phi), ("dynamics", dynamics)):
                 if value is not None:
                     document["model"][key] = write_entries(value, f"Model: {key}")
-            for key, value in (("dynamics", dynamics), ("relations", relations)):
-                if value is not None:
-                    document["model"][key] = value if key == "relations" else write_entries(value, f"Model: {key}")
+            if relations is not None:
+                document["model"]["relations"] = relations
             document["parameters"] = declarations
-            if rates is not None:
-                document["rates"] = {key: write_value(value, f"Model: rates.{key}") for key, value in rates.items()}
-            if inputs is not None:
-                document["inputs"] = {
-                    key: write_entries(value, f"Model: inputs.{key}") for key, value in inputs.items()
-                }
-            if ranges is not None:
-                document["ranges"] = {key: write_entries(ends, f"Model: ranges.{key}") for key, ends in ranges.items()}
+            for key, write, table in (
+                ("rates", write_value, rates),
+                ("inputs", write_entries, inputs),
+                ("ranges", write_entries, ranges),
+            ):
+                if table is not None:
+                    document[key] = {name: write(value, f"Model: {key}.{name}") for name, value in table.items()}
             linear = names if dynamics is None else None
             document["measurement"] = measurement_blocks(H, sigma, measurements, linear, declarations)
             if pieces is not None:
@@ -624,16 +622,14 @@ def document_of(contents: ModelFile | BasisFile) -> dict[str, Any]:
     elif len(contents.pieces) == 1 and contents.pieces[0].end in (None, contents.T):
         tables["model"]["F"] = write_entries(contents.F, "F")
     else:
-        tables["piece"] = [piece_table(piece) for piece in contents.pieces]
+        tables["piece"] = [
+            {"from": to_text(piece.start), "to": to_text(piece.end), "F": write_entries(piece.F, "F")}
+            for piece in contents.pieces
+        ]
     tables["interval"] = {} if contents.T is None else {"T": to_text(contents.T)}
     tables["targets"] = targets
     tables["ranges"] = {name: [to_text(end) for end in ends] for name, ends in contents.ranges.items()}
     return {table: content for table, content in tables.items() if content}
-
-
-def piece_table(piece: Piece) -> dict[str, Any]:
-    """One [[piece]] block."""
-    return {"from": to_text(piece.start), "to": to_text(piece.end), "F": write_entries(piece.F, "F")}
 
 
 def declaration_of(parameter: Parameter) -> Any:

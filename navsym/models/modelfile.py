@@ -300,96 +300,72 @@ def admitted(value: Expr, parameter: Parameter) -> bool:
     return not below and not above and sign_of_constant(value) not in wrong
 
 
+#: What gives the motion -> keys of [model] and tables that have no place beside it.
+FOREIGN = {
+    "Phi": (("F", "dynamics", "relations"), ("piece", "rates", "interval", "targets", "ranges")),
+    "dynamics": (("F",), ("piece", "targets")),
+    "F": ((), ()),
+}
+
+
 def read_system(document: Table, where: str, parameters: Mapping[str, Parameter], known: Known) -> ModelFile:
-    """The [model] with its measurements, interval and targets."""
+    """The [model] with its measurements, interval and targets: F or pieces, steps Phi, or dynamics f(x)."""
     expect_keys(document, (*(key for key in TABLES if key != "basis"), *BESIDE), where)
     place = join_place(where, "model")
     model = as_table(document["model"], place)
     expect_keys(model, ("name", "states", "F", "Phi", "dynamics", "relations"), place)
     states = read_names(require_key(model, "states", place), join_place(place, "states"))
     require_distinct((*known, "t", *states), join_place(place, "states"))
-    time = symbol("t")
-    moving = {**known, "t": time}
-    if "Phi" in model:
-        return read_discrete(document, where, parameters, known, states)
-    if "dynamics" in model or "relations" in model:
-        return read_nonlinear(document, where, parameters, moving, states)
+    kind = "Phi" if "Phi" in model else "dynamics" if {"dynamics", "relations"} & model.keys() else "F"
+    require_alone(document, model, kind, where)
+    moving: Known = known if kind == "Phi" else {**known, "t": symbol("t")}
+    if kind == "dynamics":
+        moving = {**moving, **{name: symbol(name) for name in states}}
+    n = 0 if kind == "dynamics" else len(states)
+    inputs = read_inputs(document, moving, states, n, where)
+    driven = moving if n else {**moving, **{name: symbol(name) for name in inputs}}
     T = read_interval(document, known, join_place(where, "interval"))
     return ModelFile(
         name=as_title(model.get("name", "model"), join_place(place, "name")),
         parameters=parameters,
         states=states,
-        time=time,
-        pieces=read_pieces(document, model, moving, len(states), T, where),
-        measurements=read_measurements(document, moving, len(states), where),
+        time=symbol("t"),
+        pieces=read_pieces(document, model, moving, n, T, where) if kind == "F" else (),
+        measurements=read_measurements(document, driven, n, where),
         T=T,
-        targets=read_targets(document, known, states, where),
-        rates=read_rates(document, moving, parameters, where),
-        inputs=read_inputs(document, moving, states, len(states), where),
-        ranges=read_ranges(document, (*states, *parameters, STEP), where),
-    )
-
-
-def read_discrete(
-    document: Table, where: str, parameters: Mapping[str, Parameter], known: Known, states: tuple[str, ...]
-) -> ModelFile:
-    """A model in steps, ``x_(k+1) = Phi x_k, z_k = H x_k``: what belongs to continuous time is refused beside it."""
-    place = join_place(where, "model")
-    model = as_table(document["model"], place)
-    foreign = [(key, model, place) for key in ("F", "dynamics", "relations")]
-    foreign += [(key, document, where) for key in ("piece", "rates", "interval", "targets", "ranges")]
-    for key, table, outer in foreign:
-        if key in table:
-            message = f"expected Phi or {key}; got both; remove one of them"
-            raise DuplicateError(message, where=join_place(outer, key))
-    return ModelFile(
-        name=as_title(model.get("name", "model"), join_place(place, "name")),
-        parameters=parameters,
-        states=states,
-        time=symbol("t"),
-        pieces=(),
-        measurements=read_measurements(document, known, len(states), where),
-        T=None,
-        targets={},
-        Phi=read_square(model["Phi"], known, join_place(place, "Phi"), len(states), "one per state"),
-        inputs=read_inputs(document, known, states, len(states), where),
-    )
-
-
-def read_nonlinear(
-    document: Table, where: str, parameters: Mapping[str, Parameter], moving: Known, states: tuple[str, ...]
-) -> ModelFile:
-    """A model with ``dynamics`` in place of F: entries and measurements are formulas of the states."""
-    place = join_place(where, "model")
-    model = as_table(document["model"], place)
-    for key, table in (("F", model), ("piece", document), ("targets", document)):
-        if key in table:
-            message = f"expected dynamics or {key}; got both; remove one of them"
-            raise DuplicateError(message, where=join_place(place, key))
-    dynamics = require_key(model, "dynamics", place)
-    relations = as_list(model.get("relations", ["0 = 0"]), join_place(place, "relations"), "a list of equations")
-    known = {name: value for name, value in moving.items() if name != "t"}
-    moving = {**moving, **{name: symbol(name) for name in states}}
-    inputs = read_inputs(document, moving, states, 0, where)
-    driven = {**moving, **{name: symbol(name) for name in inputs}}
-    return ModelFile(
-        name=as_title(model.get("name", "model"), join_place(place, "name")),
-        parameters=parameters,
-        states=states,
-        time=symbol("t"),
-        pieces=(),
-        measurements=read_measurements(document, driven, 0, where),
-        T=read_interval(document, known, join_place(where, "interval")),
-        targets={},
+        targets=read_targets(document, known, states, where) if kind == "F" else {},
         rates=read_rates(document, moving, parameters, where),
         inputs=inputs,
-        dynamics=read_vector(dynamics, driven, join_place(place, "dynamics"), len(states), "one per state"),
-        relations=tuple(
-            read_relation(text, moving, join_place(join_place(place, "relations"), i))
-            for i, text in enumerate(relations)
-            if "relations" in model
-        ),
+        ranges=read_ranges(document, (*states, *parameters, STEP), where) if kind == "F" else {},
+        **read_motion(model, driven, moving, kind, len(states), place),
     )
+
+
+def require_alone(document: Table, model: Table, kind: str, where: str) -> None:
+    """DuplicateError for what another kind of motion would need."""
+    place = join_place(where, "model")
+    own, tables = FOREIGN[kind]
+    foreign = [(key, model, place) for key in own] + [(key, document, where) for key in tables]
+    for key, table, outer in foreign:
+        if key in table:
+            raise DuplicateError(
+                f"expected {kind} or {key}; got both; remove one of them", where=join_place(outer, key)
+            )
+
+
+def read_motion(model: Table, driven: Known, moving: Known, kind: str, n: int, place: str) -> dict[str, Any]:
+    """Phi of a model in steps, or the dynamics and relations of a nonlinear one."""
+    if kind == "Phi":
+        return {"Phi": read_square(model["Phi"], moving, join_place(place, "Phi"), n, "one per state")}
+    if kind == "F":
+        return {}
+    there = join_place(place, "relations")
+    relations = as_list(model["relations"], there, "a list of equations") if "relations" in model else []
+    dynamics = require_key(model, "dynamics", place)
+    return {
+        "dynamics": read_vector(dynamics, driven, join_place(place, "dynamics"), n, "one per state"),
+        "relations": tuple(read_relation(text, moving, join_place(there, i)) for i, text in enumerate(relations)),
+    }
 
 
 def read_relation(text: Any, moving: Known, where: str) -> Expr:

@@ -328,11 +328,6 @@ def forget_modes(made: Bank, steps: int) -> Bank:
     for k in range(1, len(stack) + 1):
         row = row @ made.at("mode_transition", min(k, made.mode_transition.shape[0]))
         stack[k - 1] = row
-    return with_transition(made, stack)
-
-
-def with_transition(made: Bank, stack: Array) -> Bank:
-    """The same bank with other transition probabilities (T or 1, m, m)."""
     twin = copy.copy(made)
-    object.__setattr__(twin, "mode_transition", arrays.freeze(np.array(stack)))
+    object.__setattr__(twin, "mode_transition", arrays.freeze(stack))
     return twin

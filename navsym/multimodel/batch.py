@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from navsym.core.errors import NotFiniteError, ShapeError
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.compiled import independent_scalars, run_compiled
+from navsym.multimodel.compiled import run_compiled, scalar_models
 from navsym.multimodel.doubt import ROUNDING, disagreements, in_units, moments, other_units
 from navsym.multimodel.engine import Estimates
 from navsym.multimodel.filters import UNUSED, run_filter
@@ -82,7 +82,7 @@ def in_lanes(models: Bank, z: Array, branching: int, out: Batch) -> bool:
     """Fill ``out`` by the compiled loops; False when a run had to stop."""
     from navsym.multimodel.kernels.batch import run_all
 
-    H, r, U, rotated = independent_scalars(models)
+    H, r, U, rotated = scalar_models(models)
     bank = (models.F, models.Q, H, r, U, rotated, models.mode_transition)
     start = (logs(models.probabilities), models.means, models.covariances)
     return bool(run_all(branching, bank, start, z, tuple(out)))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from navsym.core import arrays
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.engine import UNDERFLOW, Estimates, run_in_numpy
-from navsym.multimodel.kalman import logs, scalar_corrections
+from navsym.multimodel.kalman import independent_scalars, logs
 from navsym.multimodel.kernels.bank import ALL, BY_MODE, CROSS, KEEP, MIXED, OWN, run_bank
 from navsym.multimodel.schemes import Scheme, filters_at
 
@@ -25,7 +25,7 @@ WIDEST = 4096
 def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> Estimates:
     """The same estimate as :func:`navsym.multimodel.engine.run_in_numpy`, to rounding."""
     widest = widest_branching(rule, models, len(z))
-    H, r, U, rotated = independent_scalars(models)
+    H, r, U, rotated = scalar_models(models)
     partly = np.isnan(z).any(axis=1) & ~np.isnan(z).all(axis=1)
     if widest > WIDEST or (rotated and partly.any()):
         return run_in_numpy(rule, models, z, count)
@@ -59,22 +59,9 @@ def widest_branching(rule: Scheme, models: Bank, steps: int) -> int:
     return max((filters_at(rule, models.modes, roots, k) for k in horizon), default=models.modes)
 
 
-def independent_scalars(models: Bank) -> tuple[Array, Array, Array, bool]:
-    """H (T, m, p, n), variances (T, m, p) and rotations (T, m, p, p) that make R diagonal."""
-    diagonal = np.diagonal(models.R, axis1=-2, axis2=-1)
-    eye = np.broadcast_to(np.eye(models.channels), (1, *models.R.shape[1:])).copy()
-    if not np.any(models.R - diagonal[..., None] * np.eye(models.channels)):
-        return np.array(models.H), np.ascontiguousarray(diagonal), eye, False
-    length = max(models.H.shape[0], models.R.shape[0])
-    parts: list[list[Any]] = [
-        [scalars(models.at("H", k)[i], models.at("R", k)[i]) for i in range(models.modes)] for k in range(1, length + 1)
-    ]
-    H, r, U = (np.array([[mode[c] for mode in row] for row in parts]) for c in range(3))
-    return H, r, U, True
-
-
-def scalars(H: Array, R: Array) -> tuple[Array, Array, Array]:
-    """Rotated observation, variances and the rotation of one model."""
-    unit = np.eye(len(R))
-    rotation, rotated, variances = scalar_corrections(unit, H, R)
-    return rotated, variances, rotation.T
+def scalar_models(models: Bank) -> tuple[Array, Array, Array, bool]:
+    """H (T, m, p, n), variances (T, m, p), rotations (T, m, p, p) that make R diagonal, and whether they turn."""
+    H, r, rotation = independent_scalars(models.H, models.R)
+    eye = np.broadcast_to(np.eye(models.channels), (1, *models.R.shape[1:]))
+    turned = np.ascontiguousarray(eye if rotation is None else rotation)
+    return np.array(H), np.ascontiguousarray(r), turned, rotation is not None

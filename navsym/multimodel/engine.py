@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from navsym.claims.display import write_table
 from navsym.core import arrays
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.kalman import FORMS, Form, logs, normalise, residual, times, variances
 from navsym.multimodel.schemes import Scheme
@@ -93,7 +93,7 @@ def advance(rule: Scheme, k: int, bank: Bank, before: Hypotheses, z: Array, form
         weights, log_likelihood = normalise(branches.log_weights)[0], 0.0
     log_weights = branches.log_weights + log_likelihoods - log_likelihood
     merged_mean, merged = form.merge(weights[None], means, kept)  # multistructure:12*, :13
-    probabilities = sum_by_mode(weights, branches.modes, bank.modes)
+    probabilities = np.bincount(branches.modes, weights, bank.modes).astype(float)
     found = Hypotheses(means, kept, spread_over_modes(log_weights, branches.modes, bank.modes))
     folded = fold_hypotheses(rule, k, found, (merged_mean, merged), form)
     return Step(folded, probabilities, merged_mean[0], form.show(merged[0]), log_likelihood, best, singular, sound)
@@ -171,11 +171,6 @@ def is_regular(P: Array) -> bool:
         return False
     scale = np.sqrt(spread)
     return bool(np.linalg.eigvalsh(P / scale[..., None] / scale[..., None, :]).min() > REGULAR)
-
-
-def sum_by_mode(weights: Array, modes: NDArray[np.intp], m: int) -> Array:
-    """Probability of each last mode."""
-    return np.bincount(modes, weights=weights, minlength=m).astype(float)
 
 
 def spread_over_modes(log_weights: Array, modes: NDArray[np.intp], m: int) -> Array:
@@ -269,16 +264,8 @@ class Estimates(Answer):
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym filter``; ``left_out`` is there when steps were."""
-        return {
-            "probabilities": self.probabilities.tolist(),
-            "mean": self.mean.tolist(),
-            "covariance": self.covariance.tolist(),
-            "log_likelihood": self.log_likelihood.tolist(),
-            "filters_run": self.filters_run,
-            **({"left_out": list(self.left_out)} if self.left_out else {}),
-            **({"times": self.times.tolist()} if self.times is not None else {}),
-            "remarks": list(self.remarks),
-        }
+        more = f"{'left_out' if self.left_out else ''} {'' if self.times is None else 'times'}"
+        return named(self, f"probabilities mean covariance log_likelihood filters_run {more} remarks")
 
     def rows(self) -> list[tuple[str, ...]]:
         """Step, most probable mode, its probability, mean with standard deviations: words for people."""

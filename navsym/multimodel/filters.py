@@ -146,7 +146,7 @@ def run_filter(
             )
         models = forget_modes(models, len(z))
     roots = 1 if models.common else models.modes
-    notes = (UNUSED,) if rule.branching == "own" and not never_switches(models.mode_transition) else ()
+    notes = (UNUSED,) if rule.branching == "own" and (models.mode_transition != np.eye(models.modes)).any() else ()
     count = require_room(rule, models.modes, models.states, roots, len(z))
     run: Rerun = functools.partial(run_in_numpy, rule, count=count, form=kept)
     twin: Rerun = functools.partial(run, form=FORMS["ud" if form == "qr" else "qr"])
@@ -158,11 +158,6 @@ def run_filter(
     with np.errstate(over="ignore", invalid="ignore"):  # what leaves the range is refused, with its step
         estimate = require_range(settle(require_range(run(models, z=z)), twin, rule, models, z))
     return replace(estimate, notes=(*notes, *estimate.notes))
-
-
-def never_switches(mode_transition: Array) -> bool:
-    """Whether no mode ever leads to another."""
-    return bool((mode_transition == np.eye(mode_transition.shape[-1])).all())
 
 
 def require_range(estimate: Estimates) -> Estimates:

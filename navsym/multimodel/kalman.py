@@ -54,13 +54,12 @@ def correct(mean: Array, P: Array, z: Array, H: Array, R: Array) -> tuple[Array,
     factor, regular = factor_of(S)
     log_likelihood = log_density(innovation, factor)
     usable = regular & np.isfinite(log_likelihood)
-    gain = transposed(solve_factored(factor, H @ P))
+    gain = transposed(np.linalg.solve(transposed(factor), np.linalg.solve(factor, H @ P)))  # S^-1 H P
     with np.errstate(over="ignore", invalid="ignore"):
         corrected = mean + times(gain, innovation)
     L = np.eye(mean.shape[-1]) - gain @ H
     joseph = symmetrise(L @ P @ transposed(L) + gain @ R @ transposed(gain))
-    chosen = np.where(usable[..., None], corrected, mean)
-    return chosen, np.where(usable[..., None, None], joseph, P), np.where(usable, log_likelihood, -np.inf)
+    return choose_usable(usable, corrected, joseph, log_likelihood, mean, P)
 
 
 def residual(mean: Array, P: Array, z: Array, H: Array, R: Array) -> tuple[Array, Array]:
@@ -76,7 +75,7 @@ def log_density(innovation: Array, factor: Array) -> Array:
     with np.errstate(over="ignore", invalid="ignore"):
         whitened = np.linalg.solve(factor, innovation[..., None])[..., 0]
         distance = (whitened * whitened).sum(axis=-1)
-    log_root = np.log(np.diagonal(factor, axis1=-2, axis2=-1)).sum(axis=-1)
+    log_root = np.log(variances(factor)).sum(axis=-1)
     value = -0.5 * (distance + innovation.shape[-1] * LOG_TWO_PI) - log_root
     return np.asarray(np.where(np.isfinite(distance), value, -np.inf))
 
@@ -100,11 +99,6 @@ def factor_or_none(S: Array) -> Array | None:
         return None
 
 
-def solve_factored(factor: Array, B: Array) -> Array:
-    """``S^-1 B`` for ``S = L L^T``."""
-    return np.linalg.solve(transposed(factor), np.linalg.solve(factor, B))
-
-
 def times(A: Array, x: Array) -> Array:
     """``A x`` for stacks of matrices (..., m, n) and vectors (..., n)."""
     return (A @ x[..., None])[..., 0]
@@ -116,21 +110,8 @@ def transposed(A: Array) -> Array:
 
 
 def variances(P: Array) -> Array:
-    """Diagonals (..., n) of covariances (..., n, n)."""
+    """Diagonals (..., n) of matrices (..., n, n)."""
     return np.diagonal(P, axis1=-2, axis2=-1)
-
-
-def scalar_corrections(z: Array, H: Array, R: Array) -> tuple[Array, Array, Array]:
-    """Independent scalar measurements that say the same: rotate z, H by the eigenvectors of R.
-
-    z : (p,), H : (p, n), R : (p, p)  ->  z' (p,), H' (p, n), variances (p,).
-    A rotation leaves densities as they are, so likelihoods need no factor. A diagonal R is not touched.
-    """
-    diagonal = np.diagonal(R)
-    if np.count_nonzero(R - np.diag(diagonal)) == 0:
-        return z, H, diagonal.copy()
-    variances, rotation = np.linalg.eigh(R)
-    return rotation.T @ z, rotation.T @ H, np.maximum(variances, 0.0)
 
 
 # Mixtures, their weights in logarithms
@@ -174,7 +155,7 @@ def merge_groups(weights: Array, means: Array, covariances: Array) -> tuple[Arra
 
 def root_of(P: Array) -> Array:
     """A factor A (..., n, n) with ``A A^T = P`` for semidefinite P, by eigenvalues of correlations; not triangular."""
-    spread = np.sqrt(np.diagonal(P, axis1=-2, axis2=-1))
+    spread = np.sqrt(variances(P))
     safe = np.where(spread > 0.0, spread, 1.0)
     values, vectors = np.linalg.eigh(P / safe[..., None] / safe[..., None, :])
     return np.asarray(safe[..., None] * vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :])
@@ -188,7 +169,7 @@ def triangular(A: Array) -> Array:
     n, m = A.shape[-2:]
     wide = A if m >= n else np.concatenate([A, np.zeros((*A.shape[:-1], n - m))], axis=-1)
     S = transposed(np.asarray(np.linalg.qr(transposed(wide[..., ::-1, :]), mode="r")))[..., ::-1, ::-1]
-    signs = np.where(np.diagonal(S, axis1=-2, axis2=-1) < 0.0, -1.0, 1.0)
+    signs = np.where(variances(S) < 0.0, -1.0, 1.0)
     return np.asarray(S * signs[..., None, :])
 
 
@@ -236,7 +217,7 @@ def correct_by_qr(mean: Array, S: Array, z: Array, H: Array, R: Array) -> tuple[
     upper = np.concatenate([S, np.zeros((*HS.shape[:-2], n, p))], axis=-1)
     T = triangular(np.concatenate([upper, np.concatenate([HS, noise], axis=-1)], axis=-2))
     X, Y, Z = T[..., n:, n:], T[..., :n, n:], T[..., :n, :n]
-    spread = np.diagonal(X, axis1=-2, axis2=-1)
+    spread = variances(X)
     regular = np.asarray((spread > 0.0).all(axis=-1))
     X = np.where(regular[..., None, None], X, np.eye(p))
     white = np.linalg.solve(X, (z - times(H, mean))[..., None])[..., 0]
@@ -265,19 +246,23 @@ def choose_usable(
     )
 
 
-def independent_scalars_of(z: Array, H: Array, R: Array) -> tuple[Array, Array, Array]:
-    """Independent scalars that say the same: z', H', variances, by the eigenvectors of R; a diagonal R stays."""
-    diagonal = np.diagonal(R, axis1=-2, axis2=-1)
+def independent_scalars(H: Array, R: Array) -> tuple[Array, Array, Array | None]:
+    """Independent scalar measurements that say the same: H', variances, and the rotation of z by eigenvectors of R.
+
+    H : (..., p, n), R : (..., p, p). A rotation leaves densities as they are, so likelihoods need no factor. Diagonal R
+    are not touched, and have no rotation.
+    """
+    diagonal = variances(R)
     if not np.any(R - diagonal[..., None] * np.eye(R.shape[-1])):
-        return z, H, diagonal
-    variances, vectors = np.linalg.eigh(R)
-    turn = transposed(vectors)
-    return times(turn, np.broadcast_to(z, variances.shape)), turn @ H, np.maximum(variances, 0.0)
+        return H, diagonal, None
+    values, vectors = np.linalg.eigh(R)
+    return transposed(vectors) @ H, np.maximum(values, 0.0), transposed(vectors)
 
 
 def by_scalars(update: Any, mean: Array, factor: Array, z: Array, H: Array, R: Array) -> tuple[Array, Array, Array]:
     """Correct by one scalar after another; ``update(factor, h, r)`` gives variance, P h and the new factor."""
-    z, H, r = independent_scalars_of(z, H, R)
+    H, r, rotation = independent_scalars(H, R)
+    z = z if rotation is None else times(rotation, np.broadcast_to(z, r.shape))
     x, made = mean, factor
     likelihood, usable = np.zeros(H.shape[:-2]), np.ones(H.shape[:-2], dtype=bool)
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
@@ -308,7 +293,7 @@ def potter(S: Array, h: Array, r: Array) -> tuple[Array, Array, Array]:
 def bierman(UD: Array, h: Array, r: Array) -> tuple[Array, Array, Array]:
     """Bierman's scalar update of a UD pair, column by column."""
     n = UD.shape[-1]
-    U, D = np.triu(UD, 1) + np.eye(n), np.diagonal(UD, axis1=-2, axis2=-1)
+    U, D = np.triu(UD, 1) + np.eye(n), variances(UD)
     f = (U * h[..., :, None]).sum(axis=-2)
     v = D * f
     made = np.array(np.broadcast_to(UD, (*v.shape, n)))
@@ -329,7 +314,7 @@ def bierman(UD: Array, h: Array, r: Array) -> tuple[Array, Array, Array]:
 def ud_of(S: Array) -> Array:
     """UD pair of an upper triangular root; a zero column gives D = 0."""
     n = S.shape[-1]
-    diagonal = np.diagonal(S, axis1=-2, axis2=-1)
+    diagonal = variances(S)
     unit = np.triu(S, 1) / np.where(diagonal > 0.0, diagonal, 1.0)[..., None, :]
     return np.asarray(unit + (diagonal * diagonal)[..., None] * np.eye(n))
 
@@ -337,7 +322,7 @@ def ud_of(S: Array) -> Array:
 def root_of_ud(UD: Array) -> Array:
     """Upper triangular root ``U sqrt(D)`` of a UD pair."""
     n = UD.shape[-1]
-    D = np.diagonal(UD, axis1=-2, axis2=-1)
+    D = variances(UD)
     return np.asarray((np.triu(UD, 1) + np.eye(n)) * np.sqrt(np.maximum(D, 0.0))[..., None, :])
 
 
@@ -362,39 +347,24 @@ class Form:
     merge: Callable[[Array, Array, Array], Pair]
 
 
-def keep_covariance(P: Array) -> Array:
-    """The covariance itself."""
-    return P
-
-
-def ud_predict(mean: Array, UD: Array, F: Array, Q: Array) -> Pair:
-    """Time update of a UD pair, by the triangle of [F U sqrt(D), root of Q]."""
-    mean, S = predict_root(mean, root_of_ud(UD), F, Q)
-    return mean, ud_of(S)
-
-
-def ud_merge(weights: Array, means: Array, kept: Array) -> Pair:
-    """Mixtures of UD pairs."""
-    mean, S = merge_root(weights, means, root_of_ud(kept))
-    return mean, ud_of(S)
-
-
-def ud_keep(P: Array) -> Array:
-    """UD pair of a covariance."""
-    return ud_of(triangular_root(P))
-
-
-def ud_show(UD: Array) -> Array:
-    """Covariance of a UD pair."""
-    return square(root_of_ud(UD))
+def in_ud(moments: Pair) -> Pair:
+    """Mean and UD pair of a mean and a root."""
+    return moments[0], ud_of(moments[1])
 
 
 ROOTS = (triangular_root, square, predict_root)
 FORMS = {
-    "joseph": Form("joseph", keep_covariance, keep_covariance, predict, correct, merge_groups),
+    "joseph": Form("joseph", lambda P: P, lambda P: P, predict, correct, merge_groups),
     "qr": Form("qr", *ROOTS, correct_by_qr, merge_root),
     "potter": Form("potter", *ROOTS, functools.partial(by_scalars, potter), merge_root),
-    "ud": Form("ud", ud_keep, ud_show, ud_predict, functools.partial(by_scalars, bierman), ud_merge),
+    "ud": Form(
+        "ud",
+        lambda P: ud_of(triangular_root(P)),
+        lambda UD: square(root_of_ud(UD)),
+        lambda mean, UD, F, Q: in_ud(predict_root(mean, root_of_ud(UD), F, Q)),
+        functools.partial(by_scalars, bierman),
+        lambda weights, means, kept: in_ud(merge_root(weights, means, root_of_ud(kept))),
+    ),
 }
 
 

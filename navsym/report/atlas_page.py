@@ -8,7 +8,7 @@ from typing import Any
 
 from navsym.report.page import slug
 from navsym.studies.atlas.kept import Cell, atlas
-from navsym.studies.atlas.published import PUBLISHED, Published
+from navsym.studies.atlas.published import PUBLISHED
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,13 +44,8 @@ def atlas_pages(template: Callable[[str], Any], shared: Mapping[str, Any]) -> It
     ('atlas.html', True)
     """
     anchors = {name: f"c-{slug(name)}" for name in atlas}
-    cells, known = [*atlas.values()], [*map(view_published, PUBLISHED)]
+    cells, known = [*atlas.values()], [(one, "holds" if one.holds(atlas) else "does not hold") for one in PUBLISHED]
     yield (
         "atlas.html",
         template("atlas.html").render(shared, sheets=list_sheets(), anchors=anchors, cells=cells, published=known),
     )
-
-
-def view_published(statement: Published) -> dict[str, Any]:
-    """A published statement with what the atlas says of it."""
-    return {"statement": statement, "verdict": "holds" if statement.holds(atlas) else "does not hold"}

@@ -10,7 +10,7 @@ from typing import Any
 
 from navsym import __version__
 from navsym.claims import Paper, Record, Status
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 from navsym.report.formula.sides import only_truth
 from navsym.report.names import latex_escape
 from navsym.verification.decide import look_up_claims
@@ -30,7 +30,7 @@ class Citation(Answer):
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym cite``."""
-        return {"id": self.id, "status": str(self.status), "bibtex": self.bibtex}
+        return named(self, "id status bibtex")
 
     def __str__(self) -> str:
         return self.bibtex

@@ -8,8 +8,9 @@ from __future__ import annotations
 import html
 import inspect
 import re
+import tomllib
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from navsym.claims import Claim, Record
 from navsym.claims.display import mark_verdict, write_card
 from navsym.claims.paper import papers_folder
 from navsym.claims.workspace import find_workspace
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 from navsym.core.balls import enclose, tape
 from navsym.core.errors import NavsymError
 from navsym.language.expression import parse, symbol
@@ -58,15 +59,9 @@ class Explanation(Answer):
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym explain``."""
         correction = self.correction
-        return {
-            "id": self.record.id,
-            "status": str(self.record.status),
-            "paper": self.paper,
-            "source": self.source,
-            "corrected_by": correction and correction.id,
-            "steps": [asdict(step) for step in self.steps],
-            "correction": correction and {"title": correction.title, "formula": correction.formula},
-        }
+        head = named(self.record, "id status") | named(self, "paper source")
+        head |= {"corrected_by": correction and correction.id, **named(self, "steps")}
+        return head | {"correction": correction and named(correction, "title formula")}
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """The certificate of the verdict, when it has one."""
@@ -253,18 +248,8 @@ class Step:
     formula: str = ""
 
 
-#: How an explanation opens, by the kind of a claim.
-HEADINGS = {
-    "printed": "What is printed",
-    "beside": "What is printed, beside a formula",
-    "remark": "What we remark; the paper does not print it",
-    "beyond": "What goes beyond the paper",
-}
-WHOSE = {
-    "paper": "A slip of the paper: ",
-    "scan": "A slip of the scan, not of the authors: ",
-    "undecidable": "A slip of the paper or of the scan, the copy alone cannot tell: ",
-}
+#: What reports say of kinds, slips, verdicts and methods.
+WORDS: dict[str, dict[str, str]] = tomllib.loads(Path(__file__).with_name("words.toml").read_text("utf-8"))
 
 
 def steps(record: Record) -> list[Step]:
@@ -282,7 +267,7 @@ def steps(record: Record) -> list[Step]:
     if record.status == "REFUTED":
         found += counterexample_steps(record)
     if record.reason:
-        words = f"{WHOSE.get(record.slip or '', '')}{record.reason}."
+        words = f"{WORDS['slip'].get(record.slip or '', '')}{record.reason}."
         found.append(Step("What went wrong" if record.slip else "Remark", words))
     if record.cause:
         found.append(Step("Where it comes from", f"It repeats the slip of {record.cause}, where it is counted."))
@@ -300,7 +285,7 @@ def side_steps(record: Record) -> list[Step]:
         return [Step("What the file states", record.title, record.printed), *(right if record.derived else [])]
     derived = Step("What follows from the model", "Derived without looking at the printed side:", record.derived)
     whole = Step("What follows from the model", "The statement itself was derived and then examined.")
-    heading = "What replaces it" if record.corrects else HEADINGS[record.kind]
+    heading = "What replaces it" if record.corrects else WORDS["opening"][record.kind]
     return [Step(heading, record.title, record.printed), derived if record.derived else whole]
 
 
@@ -318,46 +303,10 @@ def question(record: Record) -> str:
     return f"Are the two sides the same, for {scope}?"
 
 
-METHODS = (
-    (
-        "exact point",
-        "Exact points of the range were tried, each in ball arithmetic, which encloses every "
-        "rounding error. At one of them the balls of the two sides have no point in common.",
-    ),
-    (
-        "exact primal-dual",
-        "Weights and dual were put into four conditions: the weights are unbiased, the instants "
-        "lie inside the interval, the dual polynomial stays within its bounds, and both values are equal. Together "
-        "they prove optimality without any solver.",
-    ),
-    (
-        "normal form after signs",
-        "Absolute values and roots of squares were replaced by what they are on the range, "
-        "the signs being proved first; then the difference was reduced to its normal form.",
-    ),
-    (
-        "normal form",
-        "The difference of the sides was written as a quotient of polynomials with exact coefficients "
-        "and multiplied out. Sines and cosines become powers of exp(i x), which leaves nothing to simplify by luck: "
-        "two expressions are equal exactly when the numerator is the zero polynomial.",
-    ),
-    ("squares", "Both sides were proved to have one sign, and their squares were reduced to the same normal form."),
-    ("derivative", "The derivatives of the two sides are the same on the range, and so is one value."),
-    (
-        "ball arithmetic",
-        "The range was covered by balls, each with all rounding errors enclosed; none of them leaves room for failure.",
-    ),
-    ("proof tree", "A tree of exact rules was found that ends in the statement; the checker has read it rule by rule."),
-    ("sampling", "No proof was found. The statement was tried at exact points, which confirms and does not prove."),
-    ("shape", "The two sides do not even have the same shape."),
-    ("none", "Nothing decided it."),
-)
-
-
 def decision(record: Record) -> str:
     """What the method does, and what it found here."""
     method = record.method
-    told = next((words for start, words in METHODS if method.startswith(start)), "")
+    told = next((words for start, words in WORDS["method"].items() if method.startswith(start)), "")
     if not told:
         told = f"By an exact method of the derivation itself: {method}."
     evidence = f" Found: {record.evidence}" if record.evidence else ""

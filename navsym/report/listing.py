@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from navsym.claims import Claim, Record, Status
 from navsym.claims.display import write_table
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, Answers, named
 from navsym.core.choice import one_of
-from navsym.core.errors import UnknownSymbolError
 from navsym.report.formula.sides import latex
 from navsym.verification.ledger import sort_records, stored_ledger
 from navsym.verification.papers import list_changed, load_papers
@@ -77,17 +76,8 @@ class ListedClaim(Answer):
 
     def document(self) -> dict[str, Any]:
         """One entry of ``claims`` in the JSON document of ``navsym list``."""
-        return {
-            "id": self.id,
-            "paper": self.paper,
-            "number": self.number,
-            "title": self.title,
-            "status": str(self.status),
-            "decided": self.record is not None,
-            "corrects": self.claim.corrects_id,
-            "slip": self.claim.slip,
-            "reason": self.claim.reason,
-        }
+        decided = {"decided": self.record is not None, "corrects": self.claim.corrects_id}
+        return named(self, "id paper number title status") | decided | named(self.claim, "slip reason")
 
     def __repr__(self) -> str:
         return f"<{self.id}: {self.status}; {self.title}>"
@@ -97,7 +87,7 @@ class ListedClaim(Answer):
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Listing(Answer):
+class Listing(Answers[ListedClaim]):
     """Claims in the order of their papers: a sequence, or by id.
 
     changed : papers whose text has changed since their verdicts were written; what their claims declare is shown
@@ -105,20 +95,6 @@ class Listing(Answer):
 
     claims: tuple[ListedClaim, ...]
     changed: tuple[str, ...] = ()
-
-    def __len__(self) -> int:
-        return len(self.claims)
-
-    def __iter__(self) -> Iterator[ListedClaim]:
-        return iter(self.claims)
-
-    def __getitem__(self, wanted: int | str) -> ListedClaim:
-        if isinstance(wanted, int):
-            return self.claims[wanted]
-        for claim in self.claims:
-            if claim.id == wanted:
-                return claim
-        raise UnknownSymbolError(f"expected the id of a claim in this list; got {wanted!r}; correct it")
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym list``."""

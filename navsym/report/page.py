@@ -20,8 +20,9 @@ import jinja2
 from markupsafe import Markup
 
 from navsym.claims import Paper, Record, equation_of
+from navsym.claims.display import MARKS as MARKS
 from navsym.report.erratum import Erratum, erratum_of, printed_side
-from navsym.report.explain import Step, ball_words, ended, steps
+from navsym.report.explain import WORDS, Step, ball_words, ended, steps
 from navsym.report.formula.latex import sentence_html, sentence_latex
 from navsym.report.formula.sides import Formula, coordinates, formula, only_truth
 from navsym.report.names import latex_escape
@@ -31,15 +32,6 @@ from navsym.report.wording import Words
 from navsym.verification.ledger import Ledger, is_only_in_the_copy, records_about, sort_records
 
 # Names of the files of a report, and the certificates that it keeps as files.
-
-
-def certificate_files(records: Sequence[Record]) -> dict[str, str]:
-    """Certificates as ``navsym check`` reads them."""
-    return {
-        name: json.dumps(part, ensure_ascii=False, indent=1) + "\n"
-        for record in records
-        for name, part in certificates_by_file(record)
-    }
 
 
 def certificates_by_file(record: Record) -> list[tuple[str, Any]]:
@@ -95,22 +87,6 @@ def truth_words(text: str) -> str:
 
 
 TEMPLATES = Path(__file__).parent / "templates"
-#: What stands over the first side of a claim, and before its reason.
-KINDS = {
-    "printed": "printed",
-    "beside": "printed, in words",
-    "remark": "a remark of ours",
-    "beyond": "beyond the paper",
-}
-WHOSE = {"paper": "Slip of the paper", "scan": "Slip of the scan", "undecidable": "Slip of the paper or of the scan"}
-MARKS = {"PROVED": "✓", "CERTIFIED": "◎", "CONFIRMED": "≈", "REFUTED": "✗", "OPEN": "?"}
-MEANINGS = {
-    "PROVED": "exact algebra decides it on the whole stated scope",
-    "CERTIFIED": "ball or rational arithmetic excludes failure on the whole stated box",
-    "CONFIRMED": "sampled only; the evidence says at how many points",
-    "REFUTED": "an exact point at which what is printed fails; the correction stands beside it",
-    "OPEN": "undecided; the evidence says what was tried",
-}
 COPY_MARK = "copy"  # a word: no sign says it
 
 
@@ -189,8 +165,11 @@ def pages(
     ``.tex``, ``trust.html``, ``index.html``.
     """
     words, env, papers = words or {}, environment(), []
-    shared = {"marks": MARKS, "meanings": MEANINGS, "copy_mark": COPY_MARK, "kinds": KINDS, "whose": WHOSE}
-    yield from certificate_files(ledger.claims).items()
+    shared = {"marks": MARKS, "meanings": WORDS["meaning"], "copy_mark": COPY_MARK}
+    shared |= {"kinds": WORDS["side"], "whose": WORDS["card_slip"]}
+    for record in ledger.claims:  # as navsym check reads them
+        for name, part in certificates_by_file(record):
+            yield name, json.dumps(part, ensure_ascii=False, indent=1) + "\n"
     yield "verdicts.json", json.dumps(ledger.document(), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
     for summary in ledger.papers:
         bare = Paper(summary.module, summary.title, authors=(), year=None, source="", language="", equations=())

@@ -10,13 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.errors import DomainError, EmptyError, NoDataError, NotFiniteError, OutsideMapError, ShapeError
+from navsym.core.arrays import Array, as_array, as_floats, freeze, need_finite, need_shape
+from navsym.core.errors import DomainError, NoDataError, OutsideMapError, ShapeError
 
 # What may enter a map, a track or a grid of hypotheses: checked once, copied, read-only.
-
-
-Array = NDArray[np.float64]
-
 
 #: Sizes that no map, track or step in any unit has; within them no sum of squares overflows.
 LARGEST, SMALLEST = 1e15, 1e-12
@@ -27,60 +24,31 @@ def put(owner: Any, name: str, value: Any) -> None:
     object.__setattr__(owner, name, value)
 
 
-def numbers(name: str, value: Any, ndim: int, why: str) -> Array:
-    """A float copy of nested sequences of real numbers with ``ndim`` axes and at least one entry."""
-    try:
-        raw = np.asarray(value)
-        if raw.dtype.kind not in "iufO":
-            raise TypeError(f"entries of type {raw.dtype}")
-        if raw.dtype.kind == "O" and any(isinstance(v, bool | str | bytes) for v in raw.flat):
-            raise TypeError("truth values or words")
-        array = np.array(raw, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as reason:
-        raise ShapeError(f"{name}: expected numbers, {why}; got {reason!s:.80}; give a full array") from None
-    if array.size == 0:
-        raise EmptyError(f"{name}: expected numbers, {why}; got none; give at least one")
-    if array.ndim != ndim:
-        raise ShapeError(f"{name}: expected {ndim} axes, {why}; got shape {array.shape}; mend the nesting")
-    return array
-
-
-def all_finite(name: str, array: Array) -> Array:
+def in_range(name: str, array: Array) -> Array:
     """The same array; NotFiniteError when it holds NaN or an infinity, DomainError above LARGEST."""
-    if not np.isfinite(array).all():
-        place = [int(i) for i in np.argwhere(~np.isfinite(array))[0]]
-        raise NotFiniteError(
-            f"{name}: expected finite numbers; got {array[tuple(place)]} at index {place}; remove or mend it"
-        )
-    if np.abs(array).max() > LARGEST:
-        place = [int(i) for i in np.argwhere(np.abs(array) > LARGEST)[0]]
+    if np.abs(need_finite(name, array)).max() > LARGEST:
+        place = tuple(int(i) for i in np.argwhere(np.abs(array) > LARGEST)[0])
         raise DomainError(
-            f"{name}: expected numbers below {LARGEST:g}; got {array[tuple(place)]:g} at index {place}; check the unit"
+            f"{name}: expected numbers below {LARGEST:g}; got {array[place]:g} at index {place}; check the unit"
         )
     return array
 
 
 def vector(name: str, value: Any, length: int | None, why: str) -> Array:
     """A read-only finite vector (length,)."""
-    array = all_finite(name, numbers(name, value, 1, why))
-    if length is not None and array.size != length:
-        raise ShapeError(f"{name}: expected {length} entries, {why}; got {array.size}; give one for each")
-    return frozen(array)
-
-
-def frozen(array: Any) -> Any:
-    """The same array, read-only from now on."""
-    array.flags.writeable = False
-    return array
+    return in_range(name, as_array(name, value, (length,), why))
 
 
 def with_voids(heights: Any, nodata: float | None) -> Array:
     """A copy of a matrix of heights with NaN where ``nodata`` stood; other NaN are errors."""
-    array = numbers("heights", heights, 2, "rows of y by columns of x")
+    why = "rows of y by columns of x"
+    array = need_shape("heights", as_floats("heights", heights, why), (None, None), why)
+    if min(array.shape) < 2:
+        raise ShapeError(f"heights: expected at least 2 x 2 nodes; got {array.shape}; give more")
     if nodata is None:
-        return all_finite("heights", array)
+        return in_range("heights", array)
     voids = voids_in(np.asarray(heights), nodata)
-    all_finite("heights", np.where(voids, 0.0, array))
+    in_range("heights", np.where(voids, 0.0, array))
     array[voids] = np.nan
     return array
 
@@ -177,11 +145,9 @@ class TerrainMap:
 
     def __post_init__(self) -> None:
         heights = with_voids(self.heights, self.nodata)
-        if min(heights.shape) < 2:
-            raise ShapeError(f"heights: expected at least 2 x 2 nodes; got {heights.shape}; give more")
-        put(self, "heights", frozen(heights))
+        put(self, "heights", freeze(heights))
         with np.errstate(over="ignore"):
-            put(self, "single", frozen(heights.astype(np.float32)))
+            put(self, "single", freeze(heights.astype(np.float32)))
         for name in ("x0", "y0"):
             put(self, name, finite(name, getattr(self, name)))
         for name in ("dx", "dy"):

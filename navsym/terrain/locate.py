@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.claims.display import write_table
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 from navsym.core.errors import DomainError, NavsymError, OutsideMapError
 from navsym.language.files import name_file
 from navsym.language.jsonfile import read_json
@@ -77,22 +77,17 @@ class Fix(Answer):
         """The JSON document of ``navsym locate``: plain numbers, no infinities."""
         moves = (float(value) for part in self.correction for value in part)
         document: dict[str, Any] = {
-            "method": self.method,
-            "position_index": list(self.position_index),
-            "velocity_index": list(self.velocity_index),
-            "criterion": self.criterion,
-            "second_best": self.second_best,
-            "unique": self.unique,
+            **named(self, "method position_index velocity_index criterion second_best unique"),
             "t_G": None if self.t_G is None else dict(zip(("min", "max", "mid"), self.t_G, strict=True)),
-            "quadratic": None if self.quadratic is None else list(self.quadratic),
-            "fix": {"x": self.x, "y": self.y, "vx": self.vx, "vy": self.vy},
+            **named(self, "quadratic"),
+            "fix": named(self, "x y vx vy"),
             "correction": dict(zip(("dx", "dy", "dvx", "dvy"), moves, strict=True)),
             "evaluated": self.evaluated,
-            "covariance": None if self.trust.covariance is None else self.trust.covariance.tolist(),
+            **named(self.trust, "covariance"),
             "weakest": None
             if self.trust.direction is None
             else {"direction": self.trust.direction.tolist(), "sd": self.trust.weakest, "across": self.trust.strongest},
-            "remarks": list(self.remarks),
+            **named(self, "remarks"),
         }
         if self.geodetic is not None:
             document["fix"] |= {"latitude": self.geodetic[0], "longitude": self.geodetic[1]}
@@ -268,17 +263,7 @@ def corrected(track: Profile, answer: Correction) -> tuple[Array, Array]:
 def by_sequence(terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_free: bool) -> Correction:
     """Position first and then velocity, with the times t_G and the quadratic of the paper."""
     found = search_sequential(terrain, track, grid, offset_free=offset_free)
-    return Correction(
-        found.index,
-        found.criterion,
-        found.second_best,
-        found.unique,
-        found.shift,
-        found.velocity,
-        found.evaluated,
-        found.t_G,
-        found.quadratic,
-    )
+    return Correction(**{field.name: getattr(found, field.name) for field in fields(Correction)})
 
 
 def by_refinement(terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_free: bool) -> Correction:
@@ -288,9 +273,7 @@ def by_refinement(terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_
     position = start.shift - velocity * track.elapsed[-1]
     fine = refine(terrain, track, (position[0], position[1]), (velocity[0], velocity[1]), offset=offset_free)
     shift = fine.position + fine.velocity * track.elapsed[-1]
-    return Correction(
-        start.index, fine.criterion, start.second_best, start.unique, shift, fine.velocity, start.evaluated
-    )
+    return replace(start, criterion=fine.criterion, shift=shift, velocity=fine.velocity)
 
 
 SEARCHES = {"position": by_position, "full": by_full, "sequential": by_sequence, "refined": by_refinement}

@@ -298,29 +298,43 @@ TRUST = 0.10
 
 
 @dataclass(frozen=True, slots=True)
-class Conditioning:
+class MatrixCondition:
     """Certified 2-norm condition number of one matrix, with what double precision makes of it.
 
     name      : N_p, N_pN, N_f or N_s
-    enclosure : certified bounds of the condition number
-    double    : value by singular values in double precision
+    enclosure : exact bounds of the condition number; digits : that were asked for
+    computed  : by singular values in double precision; infinite when these overflow
     """
 
     name: str
     enclosure: Enclosure
-    double: float
+    digits: int
+    computed: float
 
     @property
-    def error(self) -> float:
-        """Relative error of the double-precision value."""
-        if not math.isfinite(self.double):
-            return math.inf
-        return float(Fraction(self.double) / self.enclosure.lower - 1)
+    def value(self) -> Number:
+        """The condition number, rounded outwards to the digits that were asked for."""
+        return Number(*self.enclosure.decimal(self.digits))
+
+    @property
+    def double(self) -> float | None:
+        """What double precision gives; None when it overflows."""
+        return self.computed if math.isfinite(self.computed) else None
+
+    @property
+    def relative_error(self) -> float | None:
+        """double / value - 1; None without a double."""
+        return None if self.double is None else float(Fraction(self.double) / self.enclosure.lower - 1)
 
     @property
     def trustworthy(self) -> bool:
-        """True when the double-precision value is within :data:`TRUST`, relative, of the certified one."""
-        return abs(self.error) <= TRUST
+        """True when the double is within :data:`TRUST`, relative, of the certified value."""
+        return self.relative_error is not None and abs(self.relative_error) <= TRUST
+
+    def document(self) -> dict[str, Any]:
+        """The part of the verb's document that belongs to this matrix."""
+        names = ("double", "relative_error", "trustworthy")
+        return {**self.value.document(), **{name: getattr(self, name) for name in names}}
 
 
 def condition_number(rows: Rows, *, digits: int = 30, equilibrate: bool = False) -> Enclosure:
@@ -347,7 +361,7 @@ def condition_numbers(
     *,
     digits: int = 30,
     progress: Callable[[str], None] = lambda matrix: None,
-) -> dict[str, Conditioning]:
+) -> dict[str, MatrixCondition]:
     """Condition numbers of N_p, N_pN, N_f, N_s (trajectory:table), certified and in double precision.
 
     n        : order of the polynomial motion model, 1 to 120
@@ -360,17 +374,17 @@ def condition_numbers(
     measured, powers = observability_rows(n, rho, tau), power_rows(n)
     # Signs of columns do not change a norm, so N_pN and N_s agree for every nonzero rho and tau;
     # both are computed from their own definitions all the same.
-    exact = {}
+    found = {}
     for name, rows, equilibrate in (
         ("N_p", measured, False),
         ("N_pN", measured, True),
         ("N_f", powers, False),
         ("N_s", powers, True),
     ):
-        exact[name] = condition_number(rows, digits=digits, equilibrate=equilibrate)
+        exact = condition_number(rows, digits=digits, equilibrate=equilibrate)
+        found[name] = MatrixCondition(name, exact, digits, double_condition(rows, equilibrate))
         progress(name)
-    doubles = double_values(measured, powers)
-    return {name: Conditioning(name, exact[name], doubles[name]) for name in exact}
+    return found
 
 
 def check_request(n: int, rho: Fraction, tau: Fraction) -> None:
@@ -452,22 +466,6 @@ def descend(matrix: Array) -> tuple[Array, float]:
 # -- double precision beside it --------------------------------------------------------------------
 
 
-def double_values(measured: Rows, powers: Rows) -> dict[str, float]:
-    """The same four numbers by singular values in double precision."""
-    plain, whole = doubles(measured), doubles(powers)
-    return {
-        "N_p": double_condition(plain),
-        "N_pN": double_condition(plain / column_norms(plain)),
-        "N_f": double_condition(whole),
-        "N_s": double_condition(whole / column_norms(whole)),
-    }
-
-
-def doubles(rows: Rows) -> np.ndarray:
-    """Exact rows as an array (m, n) of the nearest doubles."""
-    return np.array([[float(x) for x in row] for row in rows])
-
-
 def column_norms(matrix: np.ndarray) -> np.ndarray:
     """Norms with the largest entry taken out, so that squares neither overflow nor vanish."""
     scale = np.abs(matrix).max(axis=0)
@@ -475,8 +473,11 @@ def column_norms(matrix: np.ndarray) -> np.ndarray:
     return scale * np.linalg.norm(matrix / scale, axis=0)
 
 
-def double_condition(matrix: np.ndarray) -> float:
-    """Largest over smallest singular value of a matrix (m, n) in doubles; inf where that is no number."""
+def double_condition(rows: Rows, equilibrate: bool = False) -> float:
+    """Largest over smallest singular value of rows (m, n) in doubles; inf where that is no number."""
+    matrix = np.array([[float(x) for x in row] for row in rows])
+    if equilibrate:
+        matrix = matrix / column_norms(matrix)
     if not np.all(np.isfinite(matrix)):
         return math.inf
     values = np.linalg.svd(matrix, compute_uv=False)
@@ -485,36 +486,9 @@ def double_condition(matrix: np.ndarray) -> float:
 
 # -- the verb --------------------------------------------------------------------------------------
 
-MATRICES = ("N_p", "N_pN", "N_f", "N_s")
 #: A decimal or a fraction of two: nothing else and nothing huge.
 DECIMAL = r"\d{1,60}(?:\.\d{0,60})?(?:[eE][+-]?\d{1,3})?"
 QUOTIENT = re.compile(rf"[+-]?{DECIMAL}(?:/{DECIMAL})?", re.ASCII)
-
-
-@dataclass(frozen=True, slots=True)
-class MatrixCondition:
-    """Condition number of one matrix.
-
-    value          : :class:`navsym.Number`, certified
-    double         : what singular values in double precision give; None when they overflow
-    relative_error : double / value - 1; None without a double
-    trustworthy    : whether the double is within a tenth of the value
-    """
-
-    name: str
-    value: Number
-    double: float | None
-    relative_error: float | None
-    trustworthy: bool
-
-    def document(self) -> dict[str, Any]:
-        """The part of the verb's document that belongs to this matrix."""
-        return {
-            **self.value.document(),
-            "double": self.double,
-            "relative_error": self.relative_error,
-            "trustworthy": self.trustworthy,
-        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -606,18 +580,10 @@ def condition(
             raise DomainError(f"expected an integer; got {quote(number)}; give one", where=f"condition: {name}")
     exact_tau, exact_rho = read_exactly(tau, "condition: tau"), read_exactly(rho, "condition: rho")
     try:
-        found = condition_numbers(n, exact_rho, exact_tau, digits=digits, progress=progress)
+        parts = condition_numbers(n, exact_rho, exact_tau, digits=digits, progress=progress)
     except NavsymError as error:
         raise error.at("condition") from None
-    parts = {name: matrix_condition(c, digits) for name, c in found.items()}
     return Conditions(n, exact_tau, exact_rho, digits, **parts)
-
-
-def matrix_condition(found: Conditioning, digits: int) -> MatrixCondition:
-    """The answer for one matrix, its enclosure rounded outwards to ``digits`` significant digits."""
-    number, finite = Number(*found.enclosure.decimal(digits)), math.isfinite(found.double)
-    double, error = (found.double, found.error) if finite else (None, None)
-    return MatrixCondition(found.name, number, double, error, found.trustworthy)
 
 
 def read_exactly(value: Any, where: str) -> Fraction:

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from navsym.core.answers import named
 from navsym.core.arrays import Array
 from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError
 from navsym.language.files import name_file, read_text
@@ -46,7 +47,7 @@ class Shift:
 
     def document(self) -> dict[str, Any]:
         """As part of a JSON document."""
-        return {"seconds": self.seconds, "sd": self.sd, "mean": self.mean, "parts": list(self.parts)}
+        return named(self, "seconds sd mean parts")
 
     def __str__(self) -> str:
         side = "late" if self.seconds > 0 else "early"
@@ -79,11 +80,7 @@ class Consistency:
 
     def document(self) -> dict[str, Any]:
         """As part of a JSON document."""
-        found: dict[str, Any] = {"mean": self.mean, "parts": list(self.parts)}
-        found |= {"band": list(self.band), "rows": self.rows}
-        if self.lag is not None:
-            found["lag"] = self.lag.document()
-        return found
+        return named(self, "mean parts band rows" if self.lag is None else "mean parts band rows lag")
 
 
 def consistency_of(normalised: Array) -> Consistency | None:

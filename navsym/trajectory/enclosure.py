@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -16,7 +17,7 @@ class Enclosure:
 
     def decimal(self, digits: int) -> tuple[str, str]:
         """Decimal strings of about ``digits`` significant digits, rounded outwards."""
-        return decimal_down(self.lower, digits), decimal_up(self.upper, digits)
+        return write_decimal(self.lower, digits, math.floor), write_decimal(self.upper, digits, math.ceil)
 
     def rounded(self, digits: int) -> str | None:
         """``d.ddde+XX`` with ``digits`` significant digits if both ends agree on it, else None."""
@@ -30,20 +31,10 @@ def exponent_of(x: Fraction) -> int:
     return guess if x >= Fraction(10) ** guess else guess - 1
 
 
-def decimal_down(x: Fraction, digits: int) -> str:
-    """Plain decimal string of ``digits`` significant digits, rounded down; x positive."""
+def write_decimal(x: Fraction, digits: int, rounding: Callable[[Fraction], int]) -> str:
+    """Plain decimal string of ``digits`` significant digits, rounded by floor or ceil; x positive."""
     places = digits - 1 - exponent_of(x)
-    return shifted_decimal(math.floor(x * Fraction(10) ** places), places)
-
-
-def decimal_up(x: Fraction, digits: int) -> str:
-    """Plain decimal string of ``digits`` significant digits, rounded up; x positive."""
-    places = digits - 1 - exponent_of(x)
-    return shifted_decimal(math.ceil(x * Fraction(10) ** places), places)
-
-
-def shifted_decimal(whole: int, places: int) -> str:
-    """The integer ``whole`` times ``10**-places`` as a plain decimal string; whole nonnegative."""
+    whole = rounding(x * Fraction(10) ** places)
     if places <= 0:
         return str(whole * 10**-places)
     text = str(whole).rjust(places + 1, "0")

@@ -358,7 +358,7 @@ def by_method(
             smoothed(track, noise, run)
         return from_states(track, run, words, factors)
     if settings.method == "differences":
-        windows = difference_windows(track, use)
+        windows = nearest_windows(track, use, 3)
         return from_weights(track, noise, windows, settings.order, least_squares, words)
     span = window_of(track, noise, settings)
     windows = sliding_windows(track, use, span, settings.order)
@@ -480,11 +480,6 @@ def axes_of(track: Positions, words: tuple[str, ...]) -> Array:
 
 
 # -- windows -----------------------------------------------------------------------------------------------
-
-
-def difference_windows(track: Positions, use: Rows) -> list[Rows]:
-    """The row before, the row and the row after, among rows in use."""
-    return nearest_windows(track, use, 3)
 
 
 def nearest_windows(track: Positions, use: Rows, count: int) -> list[Rows]:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from navsym.claims.display import write_table
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 from navsym.core.arrays import Array, as_array
 from navsym.core.errors import DomainError, TooLargeError
 from navsym.language.names import quote
@@ -66,13 +66,7 @@ class Rule:
 
     def document(self) -> dict[str, Any]:
         """The rule as plain data."""
-        return {
-            "ages": self.ages.tolist(),
-            "weights": self.weights.tolist(),
-            "error": self.error,
-            "noise": self.noise,
-            "motion": self.motion,
-        }
+        return named(self, "ages weights error noise motion")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,11 +86,8 @@ class Limit:
 
     def document(self) -> dict[str, Any]:
         """The limit as plain data; a sampled rule has no formula of its own."""
-        head: dict[str, Any] = {"derivative": self.derivative, "unit": self.unit}
-        if self.formula is not None:
-            head |= {"least_error": self.least_error, "formula": self.formula}
-        last = {"claims": list(self.claims)} if self.claims else {}
-        return {**head, "rule": self.rule.document(), **last}
+        formula = "" if self.formula is None else "least_error formula"
+        return named(self, f"derivative unit {formula} rule {'claims' if self.claims else ''}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,7 +100,7 @@ class Sampled:
 
     def document(self) -> dict[str, Any]:
         """The sampled rules as plain data."""
-        return {"step": self.step, "positions": self.positions, "limits": [part.document() for part in self.limits]}
+        return named(self, "step positions limits")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -128,13 +119,7 @@ class Limits(Answer):
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym limits``."""
-        return {
-            "noise": self.noise,
-            "bounded": self.bounded,
-            "bound": self.bound,
-            "limits": [part.document() for part in self.limits],
-            "sampled": None if self.sampled is None else self.sampled.document(),
-        }
+        return named(self, "noise bounded bound limits sampled")
 
     def __repr__(self) -> str:
         errors = ", ".join(f"{part.derivative} {part.rule.error:.6g} {part.unit}" for part in self.limits)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from navsym.claims.display import write_table
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named, plain
 from navsym.core.arrays import Array, freeze
 from navsym.core.errors import DomainError, NavsymError
 from navsym.language.files import name_file, write_text
@@ -66,35 +66,24 @@ class Track(Answer):
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym track``."""
+        noise = {
+            "position_sd": self.position_sd,
+            "density": self.noise.density,
+            "memory_seconds": self.memory,
+            "coloured_share": self.noise.ratio / (1.0 + self.noise.ratio),
+            "correlation_seconds": self.noise.tau,
+            "forgetting_rate": self.noise.rate,
+            "exponent": self.noise.exponent,
+            "drift": self.noise.drift,
+            "drift_seconds": self.noise.lasting,
+        }
         return {
-            "method": self.method,
-            "order": self.order,
-            "window": self.window,
+            **named(self, "method order window"),
             "rows": len(self.t),
             "axes": ["east", "north", "up"],
-            "t": self.t.tolist(),
-            "velocity": self.velocity.tolist(),
-            "velocity_sd": self.velocity_sd.tolist(),
-            "acceleration": None if self.acceleration is None else self.acceleration.tolist(),
-            "acceleration_sd": None if self.acceleration_sd is None else self.acceleration_sd.tolist(),
-            "flags": list(self.flags),
-            "gains": self.gains,
-            "certificate": self.certificate,
-            "noise": {
-                "position_sd": self.position_sd.tolist(),
-                "density": self.noise.density.tolist(),
-                "memory_seconds": self.memory,
-                "coloured_share": (self.noise.ratio / (1.0 + self.noise.ratio)).tolist(),
-                "correlation_seconds": self.noise.tau.tolist(),
-                "forgetting_rate": self.noise.rate.tolist(),
-                "exponent": self.noise.exponent.tolist(),
-                "drift": self.noise.drift.tolist(),
-                "drift_seconds": self.noise.lasting.tolist(),
-            },
-            "nis": None if self.nis is None else self.nis.document(),
-            "nees": None if self.nees is None else self.nees.document(),
-            "warnings": list(self.warnings),
-            "repairs": list(self.repairs),
+            **named(self, "t velocity velocity_sd acceleration acceleration_sd flags gains certificate"),
+            "noise": {name: plain(value) for name, value in noise.items()},
+            **named(self, "nis nees warnings repairs"),
             "remarks": [*self.warnings, *self.repairs],
         }
 

@@ -136,7 +136,8 @@ def read_track(path: str | os.PathLike[str], policy: Policy | str = "strict") ->
     """
     log = new_log(name_file(path), policy)
     text = text_of(read_bytes(path, LARGEST_FILE), log)
-    return checked_track(rtklib_rows(text, log) if looks_like_rtklib(text) else csv_rows(text, log), log)
+    is_rtklib = text.lstrip().startswith("%")  # such files begin with a comment
+    return checked_track(rtklib_rows(text, log) if is_rtklib else csv_rows(text, log), log)
 
 
 def new_log(where: str, policy: Policy | str) -> Log:
@@ -208,11 +209,6 @@ def text_of(data: bytes, log: Log) -> str:
                 log.repairs.append("line 1: text read as latin-1, because it is not UTF-8")
                 return data.decode("latin-1")
     return decode(data, log.where)
-
-
-def looks_like_rtklib(text: str) -> bool:
-    """True for RTKLIB's files, which begin with a comment after %."""
-    return text.lstrip().startswith("%")
 
 
 # -- RTKLIB --------------------------------------------------------------------------------------------
@@ -301,7 +297,8 @@ def csv_rows(text: str, log: Log) -> Iterator[Row]:
         raise EmptyError("expected a track; got no rows; check the export", where=log.where)
     if len(lines) > LARGEST_ROWS:
         raise too_long(log)
-    separator = separator_of(lines[0][1])
+    # A semicolon or a tab wins over commas, which may be decimal.
+    separator = next((mark for mark in ";\t" if lines[0][1].count(mark) >= 3), ",")
     first = split(lines[0][1], separator)
     columns, start = dict(zip(NAMES, range(4), strict=True)), 0
     if any(number_of(x) is None and decimal_comma(x) is None for x in first):
@@ -323,11 +320,6 @@ def csv_rows(text: str, log: Log) -> Iterator[Row]:
 def lines_of(text: str) -> list[str]:
     """Lines as an editor counts them; other separators of Unicode are ordinary characters."""
     return re.split(r"\r\n|\n|\r", text)
-
-
-def separator_of(line: str) -> str:
-    """The character that separates: a semicolon or tab wins over commas, which may be decimal."""
-    return next((mark for mark in ";\t" if line.count(mark) >= 3), ",")
 
 
 def split(line: str, separator: str) -> list[str]:

@@ -9,7 +9,7 @@ itself by maximum likelihood, East and North together, Up for itself.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from functools import partial
 
 import numpy as np
@@ -429,7 +429,7 @@ def search_shape(fit: Fit, scale: float, density: float) -> dict[str, float] | N
         found = loosest(fit, found) if found is not None and needed == 0.0 else found
     if found is None:
         return None
-    return {"scale": 10.0 ** found[0], "density": 10.0 ** found[1]} | vars_of(shape_at(found))
+    return {"scale": 10.0 ** found[0], "density": 10.0 ** found[1]} | asdict(shape_at(found))
 
 
 #: Twice the logarithm of a Bayes factor that is very strong evidence (Kass and Raftery 1995).
@@ -543,18 +543,13 @@ def cost_of_shape(fit: Fit, at: Array) -> float:
 
 
 #: Names of a shape, as in :class:`Noise`.
-SHAPE = ("rate", "ratio", "tau", "exponent", "drift", "lasting", "fading")
+SHAPE = tuple(field.name for field in fields(Shape))
 
 
 def shape_at(at: Array) -> Shape:
     """The shape at a point of the region."""
     rate, ratio, tau, drift, lasting = (10.0 ** np.array([at[4], at[2] - at[0], at[3], at[6] - at[0], at[7]])).tolist()
     return Shape(rate, ratio, tau, float(at[5]), drift, lasting, float(at[8]))
-
-
-def vars_of(shape: Shape) -> dict[str, float]:
-    """A shape as a table."""
-    return {name: getattr(shape, name) for name in SHAPE}
 
 
 def shape_of(noise: Noise, channel: int) -> Shape:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 import re
+import tomllib
 from dataclasses import dataclass, replace
 from decimal import Context, Decimal
 from fractions import Fraction
+from pathlib import Path
 
 from navsym.core.errors import DomainError
 from navsym.language.names import quote
@@ -42,41 +44,8 @@ class Unit:
         return math.radians(value) if self.angle and not self.radian else value
 
 
-#: Unit -> seconds in one, and its other spellings.
-TIMES = {
-    "s": ("1", "sec secs second seconds"),
-    "ms": ("1/1000", "msec msecs millisecond milliseconds"),
-    "us": ("1/1000000", "usec usecs microsecond microseconds"),
-    "ns": ("1/1000000000", "nsec nsecs nanosecond nanoseconds"),
-    "min": ("60", "mins minute minutes"),
-    "h": ("3600", "hr hrs hour hours"),
-    "day": ("86400", "d days"),
-}
-#: Unit -> degrees in one.
-DEGREES = {
-    "deg": ("1", "degree degrees dd decimal-degree decimal-degrees"),
-    "1e-7 deg": ("1/10000000", "dege7"),
-    "arcmin": ("1/60", "arcminute arcminutes '"),
-    "arcsec": ("1/3600", 'arcsecond arcseconds "'),
-    "gon": ("9/10", "grad grads gradian gradians"),
-    "semicircle": ("180", "semicircles"),
-}
-#: Unit -> radians in one.
-RADIANS = {
-    "rad": ("1", "radian radians"),
-    "mrad": ("1/1000", "milliradian milliradians"),
-    "urad": ("1/1000000", "microradian microradians"),
-}
-#: Unit -> metres in one. The foot of a survey is 1200/3937 m, that of the air 0.3048 m.
-LENGTHS = {
-    "m": ("1", "metre metres meter meters"),
-    "dm": ("1/10", "decimetre decimetres decimeter decimeters"),
-    "cm": ("1/100", "centimetre centimetres centimeter centimeters"),
-    "mm": ("1/1000", "millimetre millimetres millimeter millimeters"),
-    "km": ("1000", "kilometre kilometres kilometer kilometers"),
-    "feet": ("0.3048", "ft foot international-feet international-foot"),
-    "US survey feet": ("1200/3937", "us-survey-ft us-survey-foot us-ft ftus survey-feet survey-foot survey-ft"),
-}
+#: Quantity -> unit -> how much one is of the usual unit, and its other spellings.
+TABLE: dict[str, dict[str, list[str]]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 #: Words of a head that name a clock, a datum or a direction and no unit.
 REMARKS = frozenset(
     "utc gps gpst gnss tai unix epoch tow sow wgs84 wgs-84 itrf etrs89 nad83 north east "
@@ -84,11 +53,11 @@ REMARKS = frozenset(
 )
 
 
-def table_of(units: dict[str, tuple[str, str]], **kind: bool) -> dict[str, Unit]:
+def table_of(quantity: str, **kind: bool) -> dict[str, Unit]:
     """Spelling -> unit."""
     return {
         word: Unit(name, Fraction(factor), **kind)
-        for name, (factor, others) in units.items()
+        for name, (factor, others) in TABLE[quantity].items()
         for word in (spelling(name), *map(spelling, others.split()))
     }
 
@@ -99,9 +68,9 @@ def spelling(text: str) -> str:
     return re.sub(r"[\s_.-]+", "-", plain).strip("-")
 
 
-ANGLES = table_of(DEGREES, angle=True) | table_of(RADIANS, angle=True, radian=True)
+ANGLES = table_of("degrees", angle=True) | table_of("radians", angle=True, radian=True)
 #: Column -> the units that it may have; the first is that of a column without one.
-UNITS = {"t": table_of(TIMES), "lat": ANGLES, "lon": ANGLES, "h": table_of(LENGTHS)}
+UNITS = {"t": table_of("time"), "lat": ANGLES, "lon": ANGLES, "h": table_of("length")}
 QUANTITIES = {"t": "time", "lat": "angle", "lon": "angle", "h": "length"}
 
 

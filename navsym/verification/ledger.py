@@ -22,8 +22,8 @@ from navsym.claims import Paper, Record, equation_of
 from navsym.claims.display import mark_verdict, write_card, write_table
 from navsym.claims.paper import papers_folder
 from navsym.claims.workspace import find_workspace
-from navsym.core.answers import Answer
-from navsym.core.errors import DomainError, ShapeError, UnknownSymbolError
+from navsym.core.answers import Answers
+from navsym.core.errors import DomainError, ShapeError
 from navsym.language.files import write_text
 from navsym.language.jsonfile import read_json
 from navsym.prove.grant import UNCHECKED
@@ -38,7 +38,7 @@ WORST_FIRST = ("REFUTED", "OPEN", "CONFIRMED", "CERTIFIED", "PROVED")
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Ledger(Answer):
+class Ledger(Answers[Record]):
     """Verdicts on the claims of papers, in the order of the sources.
 
     claims : a :class:`navsym.claims.Record` for each
@@ -111,18 +111,6 @@ class Ledger(Answer):
             return old.statement == record.statement or "" in (old.statement, record.statement)
 
         return tuple(record.id for record in self.claims if not is_stored(record))
-
-    def __len__(self) -> int:
-        return len(self.claims)
-
-    def __iter__(self) -> Iterator[Record]:
-        return iter(self.claims)
-
-    def __getitem__(self, wanted: str) -> Record:
-        found = next((record for record in self.claims if record.id == wanted), None)
-        if found is None:
-            raise UnknownSymbolError(f"expected the id of a claim in this ledger; got {wanted!r}; see nav.claims()")
-        return found
 
     def by_paper(self) -> list[tuple[PaperSummary, list[Record]]]:
         """Each paper with its records in the order of its equations."""

@@ -52,13 +52,9 @@ def value_text(value: Any) -> str:
 
 def optimum_text(statement: Optimum) -> tuple[str, str]:
     """The printed dual, support, weights and value as text, and the regressors and functional."""
-    parts = (
-        ("dual", statement.dual),
-        ("support", statement.support),
-        ("weights", statement.weights),
-        ("value", statement.value),
+    printed = "; ".join(
+        f"{name} = {side_text(getattr(statement, name))}" for name in "dual support weights value".split()
     )
-    printed = "; ".join(f"{name} = {side_text(side)}" for name, side in parts)
     return printed, f"H = {side_text(statement.regressors)}, P = {side_text(statement.functional)}"
 
 

@@ -86,5 +86,5 @@ def test_the_doctor_knows_every_engine_and_extra_of_the_project() -> None:
     project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
     assert set(machine.ENGINES.values()) <= {name.split(">")[0] for name in project["dependencies"]}
-    for distribution, extra, _ in machine.EXTRAS.values():
-        assert any(name.startswith(distribution) for name in extras[extra])
+    for distribution, need in machine.EXTRAS.items():
+        assert any(name.startswith(distribution) for name in extras[need["extra"]])

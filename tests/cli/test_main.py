@@ -14,24 +14,19 @@ from pathlib import Path
 import pytest
 
 from navsym import __version__
-from navsym.cli import main
+from navsym.cli import _options, main
 
 VERB = '''
     """Count things that are there."""
     import os
     import typer
-    from typing import Annotated
     from navsym.cli.output import emit
     from navsym.core.errors import MissingEngineError, ShapeError
 
     def deeper(n):                        # without defaults: 3.13.0 forgets to count calls that use them
         return deeper(n + 1)
 
-    def command(
-        what: str,
-        times: int = 1,
-        json_: Annotated[bool, typer.Option("--json")] = False,
-    ) -> int:
+    def command(what: str, *, times: int = 1, json_: bool = False) -> int:
         """Count."""
         if what == "shape":
             raise ShapeError("expected 2 rows; got 3; drop one", where="a.toml: F")
@@ -69,6 +64,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "count_things.py").write_text(textwrap.dedent(VERB))
     monkeypatch.setattr(main, "FOLDER", tmp_path)
     monkeypatch.setattr(navsym.cli, "__path__", [str(tmp_path)])
+    table = {"all": {"what": "words", "times": "how often", "json": "print one JSON document"}}
+    monkeypatch.setattr(_options, "read_table", lambda: table)
     monkeypatch.delitem(sys.modules, "navsym.cli.count_things", raising=False)
     return tmp_path
 

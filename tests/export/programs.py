@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 from types import ModuleType
 
-from navsym.export.languages.python import files
+from navsym.export.languages.modules import files
 from navsym.export.materials import material_of_claim
 from navsym.export.parts import ExportedFunction
 from navsym.export.ready import algorithm
@@ -29,7 +29,7 @@ def functions(name: str, real: str = "double") -> tuple[ExportedFunction, ...]:
 @functools.cache
 def module(name: str) -> ModuleType:
     """The exported Python of a ready-made algorithm."""
-    made = files(functions(name), {f.name: [] for f in functions(name)}, LICENSE)
+    made = files("python", functions(name), {f.name: [] for f in functions(name)}, LICENSE)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "navsym_functions.py"
         path.write_text(made["navsym_functions.py"])

@@ -16,7 +16,7 @@ from navsym.core.balls import enclose, tape
 from navsym.core.errors import DomainError
 from navsym.export.accuracy.vectors import vectors
 from navsym.export.functions import ExportedFunction, function_of
-from navsym.export.languages.python import files as python_files
+from navsym.export.languages import modules
 from navsym.export.languages.summary import summary
 from navsym.export.languages.targets import TARGETS
 from tests.attacks.points.sweep import compiled_c, sweep_c
@@ -53,7 +53,7 @@ def test_a_hidden_overflow_is_a_status_and_not_a_number(name: str, tmp_path: Pat
 def test_numpy_says_so_as_well(tmp_path: Path) -> None:
     made = function("cube")
     file = tmp_path / "navsym_functions.py"
-    file.write_text(python_files([made], {made.name: vectors(made, 4)}, "")["navsym_functions.py"])
+    file.write_text(modules.files("python", [made], {made.name: vectors(made, 4)}, "")["navsym_functions.py"])
     spec = importlib.util.spec_from_file_location("navsym_functions_of_overflow", file)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)

@@ -95,7 +95,8 @@ def test_rotated_scalars_say_the_same_as_the_vector():
     P, H, R, z = random_spd(rng, 3), rng.standard_normal((3, 3)), random_spd(rng, 3), rng.standard_normal(3)
     whole = kalman.correct(np.zeros(3), P, z, H, R)
     mean, covariance, total = np.zeros(3), P, 0.0
-    for value, row, variance in zip(*kalman.scalar_corrections(z, H, R), strict=True):
+    rows, variances, rotation = kalman.independent_scalars(H, R)
+    for value, row, variance in zip(rotation @ z, rows, variances, strict=True):
         mean, covariance, part = kalman.correct(mean, covariance, np.array([value]), row[None], np.array([[variance]]))
         total += part
     assert_allclose(mean, whole[0], rtol=1e-10)

@@ -6,13 +6,14 @@ import pytest
 
 import navsym as nav
 from navsym.report.book_pages import book_pages, describe, words_of
-from navsym.report.page import MARKS, MEANINGS, environment
+from navsym.report.explain import WORDS
+from navsym.report.page import MARKS, environment
 from tests.report.test_page import Reading
 
 
 @pytest.fixture(scope="module")
 def made():
-    return dict(book_pages(environment().get_template, {"marks": MARKS, "meanings": MEANINGS}))
+    return dict(book_pages(environment().get_template, {"marks": MARKS, "meanings": WORDS["meaning"]}))
 
 
 def test_every_entry_and_every_misprint_stands_once_with_its_verdict(made):

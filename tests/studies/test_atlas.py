@@ -18,7 +18,8 @@ from navsym.core.errors import NavsymError
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import generic_rank, moving_rows
 from navsym.report.atlas_page import atlas_pages
-from navsym.report.page import MARKS, MEANINGS, environment
+from navsym.report.explain import WORDS
+from navsym.report.page import MARKS, environment
 from navsym.studies.atlas.cells import cell_names, compute_cell, model_of
 from navsym.studies.atlas.published import PUBLISHED
 from tests.report.test_page import Reading
@@ -61,7 +62,7 @@ def test_the_page_of_the_atlas_is_up_to_date():
 
 
 def test_the_page_of_the_report_shows_every_cell_once_and_closes_its_tags():
-    ((_, text),) = atlas_pages(environment().get_template, {"marks": MARKS, "meanings": MEANINGS})
+    ((_, text),) = atlas_pages(environment().get_template, {"marks": MARKS, "meanings": WORDS["meaning"]})
     page = Reading(text)
     assert not page.crossed and not page.open
     ids = [a["id"] for _, a in page.elements if "id" in a]

@@ -91,7 +91,7 @@ def test_descartes_counts_the_roots_above_a_point_exactly():
 def test_double_precision_is_doubted_when_it_is_wrong():
     found = condition_numbers(20, "1/6371000", "0.2")
     assert not found["N_f"].trustworthy
-    assert found["N_f"].error < -0.99
+    assert found["N_f"].relative_error < -0.99
     assert any("N_f" in line for line in condition(20).warnings)
     assert condition(5).warnings == ()
 

@@ -107,7 +107,7 @@ def at_switch(part: Part, switch: float, arithmetic: Arithmetic) -> Continuation
         if exact[terms] == 0:
             continue  # one more term costs nothing
         remainder = lagrange(tape(part.plain), v + terms, reach) * reach**terms
-        least = least_value(exact[:terms], reach) - remainder
+        least = min((down(horner(exact[:terms], cell)) for cell in cells(-reach, reach)), key=float) - remainder
         if remainder < least * SHARE * arithmetic.unit():
             return proved(part, exact[:terms], switch, arithmetic, remainder, least)
     return None
@@ -137,11 +137,6 @@ def horner(polynomial: Sequence[fmpq], t: arb) -> arb:
     for coefficient in reversed(polynomial):
         total = total * t + coefficient
     return total
-
-
-def least_value(polynomial: Sequence[fmpq], reach: arb) -> arb:
-    """A lower bound of the modulus of the polynomial on [-reach, reach], in cells; zero where one may hold a root."""
-    return min((down(horner(polynomial, cell)) for cell in cells(-reach, reach)), key=float)
 
 
 def proved(

@@ -61,18 +61,15 @@ def uniform_bound(
         part = waiting.pop()
         found = measured(graph, part, arithmetic, literals)
         count += 1
-        heapq.heappush(queue, (-badness(found), count, part, found))
+        # Relative bounds are capped, so that one zero does not hide the others.
+        cost = sum(min(r, 1e6) for r in found.relative) + sum(min(r, 1e12) for r in found.scaled)
+        heapq.heappush(queue, (-cost, count, part, found))
     every = [cell[-1] for cell in queue]
     relative, scaled, absolute = (
         tuple(map(max, zip(*(getattr(u, name) for u in every), strict=True)))
         for name in ("relative", "scaled", "absolute")
     )
     return Uniform(relative, scaled, absolute, finite=all(u.finite for u in every))
-
-
-def badness(found: Uniform) -> float:
-    """What a cell costs: the relative bounds, each capped, so that one zero does not hide the others."""
-    return sum(min(r, 1e6) for r in found.relative) + sum(min(r, 1e12) for r in found.scaled)
 
 
 def starting_cells(box: Sequence[tuple[float, float]]) -> list[Box]:

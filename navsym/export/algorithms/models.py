@@ -8,7 +8,7 @@ are those that the model declares: the rounding bounds hold in them, and the tes
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from itertools import combinations_with_replacement as pairs
@@ -153,15 +153,15 @@ def matrices_of(plant: Plant) -> Iterator[tuple[str, sp.MatrixBase | list[sp.Exp
     q = sp.symbols([f"{free_letter(plant, 'q')}{k}" for k in range(n)], nonnegative=True)
     Qd = noise_integral(Phi, q, dt)
     rate = F * Qd + Qd * F.T + sp.diag(*q)
-    upper = list(pairs(range(n), 2))
+    entries = upper(Qd)
     law = Equation(
-        printed=[Qd[i, j].diff(dt) for i, j in upper] + [Qd[i, j].subs(dt, 0) for i, j in upper],
-        derived=[rate[i, j] for i, j in upper] + [sp.S.Zero] * len(upper),
+        printed=[e.diff(dt) for e in entries] + [e.subs(dt, 0) for e in entries],
+        derived=upper(rate) + [sp.S.Zero] * len(entries),
     )
     title = (
         "Covariance of white noise of intensities q over dt, upper triangle: Qd' = F Qd + Qd F' + diag(q), Qd(0) = 0"
     )
-    yield "Qd", [Qd[i, j] for i, j in upper], law, title
+    yield "Qd", entries, law, title
 
 
 def transition_law(plant: Plant) -> Equation:
@@ -200,15 +200,48 @@ def free_letter(plant: Plant, letter: str) -> str:
 
 
 class Steps:
-    """Links of a chain under construction; numbers and symbols get no name of their own."""
+    """A chain under construction: its arguments with their ranges, and its links; numbers get no name of their own."""
 
-    def __init__(self, plant: Plant):
-        self.plant = plant
+    def __init__(self, plant: Plant, units: Mapping[str, str]):
+        self.plant, self.units = plant, units
         self.links: list[Link] = []
+        self.arrays: dict[str, tuple[str, ...]] = {}
+        self.tests: dict[str, Range] = {}
 
     def letter(self, letter: str) -> str:
         """The letter, or one that no parameter of the model has."""
         return free_letter(self.plant, letter)
+
+    def given(self, letter: str, ranges: Mapping[str, Range]) -> list[sp.Symbol]:
+        """An array argument of these entries, each with its range."""
+        self.arrays |= {letter: tuple(ranges)} if ranges else {}
+        self.tests |= ranges
+        return [real(name) for name in ranges]
+
+    def state(self) -> sp.Matrix:
+        """The state as an argument."""
+        x = self.letter("x")
+        return sp.Matrix(self.given(x, {f"{x}{i}": (-size, size) for i, size in enumerate(self.plant.sizes)}))
+
+    def covariance(self, letter: str) -> sp.Matrix:
+        """A covariance as an argument, in ranges in which it is positive definite: its scaled diagonal dominates."""
+        name, n, sizes = self.letter(letter), self.plant.n, self.plant.sizes
+        ranges = {}
+        for i, j in pairs(range(n), 2):
+            size = sizes[i] * sizes[j]
+            ranges[entry(name, i, j).name] = (size / 4, size) if i == j else (-size / (4 * n), size / (4 * n))
+        self.given(name, ranges)
+        return sp.Matrix(n, n, lambda i, j: entry(name, i, j))
+
+    def factors(self, tail: str = "") -> tuple[sp.Matrix, list[sp.Symbol]]:
+        """Unit upper triangular U and diagonal D as arguments."""
+        n, sizes = self.plant.n, self.plant.sizes
+        u, d = self.letter(f"U{tail}"), self.letter(f"D{tail}")
+        places = list(combinations(range(n), 2))
+        halves = {f"{u}{i}_{j}": sizes[i] / sizes[j] / 2 for i, j in places}
+        above = dict(zip(places, self.given(u, {name: (-half, half) for name, half in halves.items()}), strict=True))
+        diagonal = self.given(d, {f"{d}{j}": (size**2 / 4, size**2) for j, size in enumerate(sizes)})
+        return sp.Matrix(n, n, lambda i, j: above.get((i, j), sp.S.One if i == j else sp.S.Zero)), diagonal
 
     def put(self, names: Sequence[str], formulas: Sequence[sp.Expr], theorem: Any = None) -> list[sp.Expr]:
         """The values as symbols, defined by a link; what is a number or a symbol already stays what it is."""
@@ -219,6 +252,28 @@ class Steps:
             link = Link(tuple(names[k] for k in new), "", tuple(formulas[k] for k in new), theorem)
             self.links.append(link)
         return [made.get(k, e) for k, e in enumerate(formulas)]
+
+    def vector(self, letter: str, formulas: Iterable[sp.Expr], theorem: Any = None) -> list[sp.Expr]:
+        """The values as symbols ``letter0``, ``letter1`` and so on."""
+        formulas, name = list(formulas), self.letter(letter)
+        return self.put([f"{name}{i}" for i in range(len(formulas))], formulas, theorem)
+
+    def matrix(self, letter: str, formulas: sp.MatrixBase, theorem: Any = None) -> sp.Matrix:
+        """The entries of a square matrix as symbols ``letter0_0``, ``letter0_1`` and so on."""
+        name, n = self.letter(letter), formulas.rows
+        names = [f"{name}{i}_{j}" for i in range(n) for j in range(n)]
+        return sp.Matrix(n, n, self.put(names, list(formulas), theorem))
+
+    def transition(self) -> sp.Matrix:
+        """Phi with a name for each entry that is no number."""
+        return self.matrix("Phi", self.plant.Phi, lambda: transition_law(self.plant))
+
+    def measurement(self, k: int) -> tuple[sp.Symbol, list[sp.Expr], sp.Expr]:
+        """The number that is measured, its row, and its variance, with a name for each entry that is no number."""
+        z, reach = self.letter("z"), measured_range(self.plant, k)
+        self.tests[z] = (-reach, reach)
+        row = self.vector("h", self.plant.H.row(k))
+        return real(z), row, self.vector("r", [self.plant.variances[k]])[0]
 
     def results(self, outputs: Mapping[str, Sequence[sp.Expr]]) -> dict[str, tuple[str, ...]]:
         """Outputs -> names of their entries; what has none, or has it twice, gets one."""
@@ -235,71 +290,24 @@ class Steps:
             found[output] = tuple(names)
         return found
 
+    def chain(self, title: str, outputs: Mapping[str, Sequence[sp.Expr]]) -> Chain:
+        """The chain, its arguments in the order of the arrays, then ``z`` and ``dt``, then parameters."""
+        plant = self.plant
+        order = (*self.arrays, self.letter("z"), STEP)
+        layout = Layout(self.arrays, order, plant.steps | self.tests, self.units)
+        named = self.results(outputs)
+        return Chain(f"{title}; states {', '.join(plant.states)}", tuple(self.links), named, layout, plant.ranges)
+
 
 def chains_of(plant: Plant, units: Mapping[str, str]) -> Iterator[tuple[str, Chain]]:
     """Name and chain of every step of the filter."""
-    yield "predict", predict(plant, units)
+    yield "predict", predict(Steps(plant, units))
     for k, name in enumerate(plant.measurements):
-        yield f"update_{name}", update(plant, k, units)
+        yield f"update_{name}", update(Steps(plant, units), k)
     if plant.n <= MOST_UD:
-        yield "predict_ud", predict_ud(plant, units)
+        yield "predict_ud", predict_ud(Steps(plant, units))
     for k, name in enumerate(plant.measurements):
-        yield f"update_{name}_ud", update_ud(plant, k, units)
-
-
-def chain_of(
-    steps: Steps,
-    title: str,
-    arrays: Mapping[str, tuple[str, ...]],
-    outputs: Mapping[str, Sequence[sp.Expr]],
-    tests: Mapping[str, Range],
-    units: Mapping[str, str],
-) -> Chain:
-    """The chain of the steps with the arguments in the order of the arrays, then ``z`` and ``dt``, then parameters."""
-    plant = steps.plant
-    order = (*arrays, steps.letter("z"), STEP)
-    title = f"{title}; states {', '.join(plant.states)}"
-    named = steps.results(outputs)
-    return Chain(
-        title, tuple(steps.links), named, Layout(arrays, order, plant.steps | dict(tests), units), plant.ranges
-    )
-
-
-def state_of(plant: Plant, steps: Steps) -> tuple[list[sp.Symbol], dict[str, tuple[str, ...]], dict[str, Range]]:
-    """Symbols of the state, its argument and its range."""
-    x = steps.letter("x")
-    names = tuple(f"{x}{i}" for i in range(plant.n))
-    tests = {name: (-size, size) for name, size in zip(names, plant.sizes, strict=True)}
-    return [real(name) for name in names], {x: names}, tests
-
-
-def covariance_of(
-    plant: Plant, steps: Steps, letter: str
-) -> tuple[sp.Matrix, dict[str, tuple[str, ...]], dict[str, Range]]:
-    """A covariance, its argument, and ranges in which it is positive definite: its scaled diagonal dominates."""
-    name, n, sizes = steps.letter(letter), plant.n, plant.sizes
-    names = triangle(name, n)
-    tests = {
-        entry(name, i, j).name: (sizes[i] ** 2 / 4, sizes[i] ** 2)
-        if i == j
-        else (-sizes[i] * sizes[j] / (4 * n), sizes[i] * sizes[j] / (4 * n))
-        for i, j in pairs(range(n), 2)
-    }
-    return sp.Matrix(n, n, lambda i, j: entry(name, i, j)), {name: names}, tests
-
-
-def transition_of(plant: Plant, steps: Steps) -> sp.Matrix:
-    """Phi with a name for each entry that is no number."""
-    letter, n = steps.letter("Phi"), plant.n
-    names = [f"{letter}{i}_{j}" for i in range(n) for j in range(n)]
-    return sp.Matrix(n, n, steps.put(names, list(plant.Phi), lambda: transition_law(plant)))
-
-
-def row_of(plant: Plant, k: int, steps: Steps) -> tuple[list[sp.Expr], sp.Expr]:
-    """The row and the variance of a measurement, with a name for each entry that is no number."""
-    h, r = steps.letter("h"), steps.letter("r")
-    row = steps.put([f"{h}{i}" for i in range(plant.n)], list(plant.H.row(k)))
-    return row, steps.put([f"{r}0"], [plant.variances[k]])[0]
+        yield f"update_{name}_ud", update_ud(Steps(plant, units), k)
 
 
 def measured_range(plant: Plant, k: int) -> float:
@@ -314,108 +322,70 @@ def measured_range(plant: Plant, k: int) -> float:
     return total + 3 * largest(sp.sqrt(plant.variances[k]))
 
 
+def upper(matrix: sp.MatrixBase) -> list[sp.Expr]:
+    """The upper triangle of a square matrix, row by row."""
+    return [matrix[i, j] for i, j in pairs(range(matrix.rows), 2)]
+
+
+def scalar_product(a: Iterable[sp.Expr], b: Iterable[sp.Expr]) -> sp.Expr:
+    """The sum of the products of entries."""
+    return sum(x * y for x, y in zip(a, b, strict=True))
+
+
 # -- Joseph's form ---------------------------------------
 
 
-def predict(plant: Plant, units: Mapping[str, str]) -> Chain:
+def predict(steps: Steps) -> Chain:
     """``x <- Phi x``, ``P <- Phi P Phi' + Q``."""
-    steps, n = Steps(plant), plant.n
-    x, state, tests = state_of(plant, steps)
-    P, covariance, more = covariance_of(plant, steps, "P")
-    Q, noise, most = covariance_of(plant, steps, "Q")
-    Phi = transition_of(plant, steps)
-    y = steps.put([f"{steps.letter('y')}{i}" for i in range(n)], list(Phi * sp.Matrix(x)))
-    m = steps.letter("m")
-    M = sp.Matrix(n, n, steps.put([f"{m}{i}_{j}" for i in range(n) for j in range(n)], list(Phi * P)))
-    upper = list(pairs(range(n), 2))
-    N = steps.put(
-        triangle(steps.letter("N"), n),
-        [(M.row(i) * Phi.row(j).T)[0] + Q[i, j] for i, j in upper],
-        lambda: propagation(Phi, P, Q),
-    )
-    title = "Prediction over dt: x <- Phi x, P <- Phi P Phi' + Q"
-    outputs = {"next_x": y, "next_P": N}
-    return chain_of(steps, title, state | covariance | noise, outputs, tests | more | most, units)
+    n = steps.plant.n
+    x, P, Q = steps.state(), steps.covariance("P"), steps.covariance("Q")
+    Phi = steps.transition()
+    y = steps.vector("y", Phi * x)
+    M = steps.matrix("m", Phi * P)
+    moved = [(M.row(i) * Phi.row(j).T)[0] + Q[i, j] for i, j in pairs(range(n), 2)]
+    N = steps.put(triangle(steps.letter("N"), n), moved, lambda: propagation(Phi, P, Q))
+    return steps.chain("Prediction over dt: x <- Phi x, P <- Phi P Phi' + Q", {"next_x": y, "next_P": N})
 
 
 def propagation(Phi: sp.Matrix, P: sp.Matrix, Q: sp.Matrix) -> Equation:
     """The covariance of Phi e + w, entry by entry from those of e and w, is what the step adds up."""
     n = Phi.rows
-    product = (Phi * P) * Phi.T + Q
-    upper = list(pairs(range(n), 2))
     places = [[k for k in range(n) if Phi[i, k] != 0] for i in range(n)]
     derived = [
         sum((Phi[i, a] * Phi[j, b] * P[a, b] for a in places[i] for b in places[j]), start=sp.S.Zero) + Q[i, j]
-        for i, j in upper
+        for i, j in pairs(range(n), 2)
     ]
-    return Equation(printed=[product[i, j] for i, j in upper], derived=derived)
+    return Equation(printed=upper((Phi * P) * Phi.T + Q), derived=derived)
 
 
-def update(plant: Plant, k: int, units: Mapping[str, str]) -> Chain:
+def update(steps: Steps, k: int) -> Chain:
     """One measurement: ``P <- (1 - K h) P (1 - K h)' + K r K'`` for ``K = P h'/(h P h' + r)``, as two products."""
-    steps, n = Steps(plant), plant.n
-    x, state, tests = state_of(plant, steps)
-    P, covariance, more = covariance_of(plant, steps, "P")
-    z, letter = real(steps.letter("z")), steps.letter
-    h, r = row_of(plant, k, steps)
-    g = steps.put([f"{letter('g')}{i}" for i in range(n)], list(P * sp.Matrix(h)))
-    s, v = steps.put(
-        [f"{letter('s')}0", f"{letter('v')}0"],
-        [sum(a * b for a, b in zip(h, g, strict=True)) + r, z - sum(a * b for a, b in zip(h, x, strict=True))],
-    )
-    K = steps.put([f"{letter('K')}{i}" for i in range(n)], [e / s for e in g], information)
-    y = steps.put([f"{letter('y')}{i}" for i in range(n)], [a + b * v for a, b in zip(x, K, strict=True)])
-    m = letter("m")
-    M = sp.Matrix(
-        n,
-        n,
-        steps.put(
-            [f"{m}{i}_{j}" for i in range(n) for j in range(n)],
-            [P[i, j] - K[i] * g[j] for i in range(n) for j in range(n)],
-        ),
-    )
-    w = steps.put([f"{letter('w')}{i}" for i in range(n)], list(M * sp.Matrix(h)))
-    upper = list(pairs(range(n), 2))
-    N = steps.put(
-        triangle(letter("N"), n),
-        [M[i, j] - w[i] * K[j] + K[i] * r * K[j] for i, j in upper],
-        lambda: joseph(P, h, r, K),
-    )
-    name = plant.measurements[k]
+    n, letter = steps.plant.n, steps.letter
+    x, P = steps.state(), steps.covariance("P")
+    z, h, r = steps.measurement(k)
+    g = steps.vector("g", P * sp.Matrix(h))
+    s, v = steps.put([f"{letter('s')}0", f"{letter('v')}0"], [scalar_product(h, g) + r, z - scalar_product(h, x)])
+    K = steps.vector("K", [e / s for e in g], information)
+    y = steps.vector("y", [a + b * v for a, b in zip(x, K, strict=True)])
+    M = steps.matrix("m", sp.Matrix(n, n, lambda i, j: P[i, j] - K[i] * g[j]))
+    w = steps.vector("w", M * sp.Matrix(h))
+    shrunk = [M[i, j] - w[i] * K[j] + K[i] * r * K[j] for i, j in pairs(range(n), 2)]
+    N = steps.put(triangle(letter("N"), n), shrunk, lambda: joseph(P, h, r, K))
+    name = steps.plant.measurements[k]
     title = f"Correction by {name}, Joseph's form: P <- (1 - K h) P (1 - K h)' + K r K'"
-    reach = measured_range(plant, k)
-    outputs = {"next_x": y, "next_P": N}
-    return chain_of(steps, title, state | covariance, outputs, tests | more | {z.name: (-reach, reach)}, units)
+    return steps.chain(title, {"next_x": y, "next_P": N})
 
 
 def joseph(P: sp.Matrix, h: Sequence[sp.Expr], r: sp.Expr, K: Sequence[sp.Expr]) -> Equation:
     """M - (M h') K' + K r K' for M = P - K (h P) is (1 - K h) P (1 - K h)' + K r K', for every K."""
-    n = P.rows
     row, gain = sp.Matrix([h]), sp.Matrix(K)
     M = P - gain * (row * P)
     code = M - (M * row.T) * gain.T + gain * r * gain.T
-    L = sp.eye(n) - gain * row
-    form = L * P * L.T + gain * r * gain.T
-    upper = list(pairs(range(n), 2))
-    return Equation(printed=[code[i, j] for i, j in upper], derived=[form[i, j] for i, j in upper])
+    L = sp.eye(P.rows) - gain * row
+    return Equation(printed=upper(code), derived=upper(L * P * L.T + gain * r * gain.T))
 
 
 # -- UD form ---------------------------------------
-
-
-def factors_of(
-    plant: Plant, steps: Steps, tail: str = ""
-) -> tuple[sp.Matrix, list[sp.Symbol], dict[str, tuple[str, ...]], dict[str, Range]]:
-    """Unit upper triangular U and diagonal D, their arguments and ranges."""
-    n, sizes = plant.n, plant.sizes
-    u, d = steps.letter(f"U{tail}"), steps.letter(f"D{tail}")
-    above = {(i, j): real(f"{u}{i}_{j}") for i, j in combinations(range(n), 2)}
-    diagonal = [real(f"{d}{j}") for j in range(n)]
-    tests = {s.name: (-sizes[i] / sizes[j] / 2, sizes[i] / sizes[j] / 2) for (i, j), s in above.items()}
-    tests |= {s.name: (size**2 / 4, size**2) for s, size in zip(diagonal, sizes, strict=True)}
-    arrays = {u: tuple(s.name for s in above.values()), d: tuple(s.name for s in diagonal)}
-    U = sp.Matrix(n, n, lambda i, j: above.get((i, j), sp.S.One if i == j else sp.S.Zero))
-    return U, diagonal, {name: entries for name, entries in arrays.items() if entries}, tests
 
 
 def factor_outputs(U: Mapping[tuple[int, int], sp.Expr], D: Sequence[sp.Expr], n: int) -> dict[str, list[sp.Expr]]:
@@ -424,33 +394,28 @@ def factor_outputs(U: Mapping[tuple[int, int], sp.Expr], D: Sequence[sp.Expr], n
     return ({"next_U": above} if above else {}) | {"next_D": list(D)}
 
 
-def predict_ud(plant: Plant, units: Mapping[str, str]) -> Chain:
+def predict_ud(steps: Steps) -> Chain:
     """Thornton's weighted Gram-Schmidt: ``U D U' <- Phi U D U' Phi' + Uq Dq Uq'``."""
-    steps, n = Steps(plant), plant.n
-    x, state, tests = state_of(plant, steps)
-    U, D, arrays, more = factors_of(plant, steps)
-    V, E, noise, most = factors_of(plant, steps, "q")
-    Phi = transition_of(plant, steps)
-    y = steps.put([f"{steps.letter('y')}{i}" for i in range(n)], list(Phi * sp.Matrix(x)))
-    w, p, weights = steps.letter("w"), steps.letter("p"), [*D, *E]
+    n, x = steps.plant.n, steps.state()
+    (U, D), (V, E) = steps.factors(), steps.factors("q")
+    Phi = steps.transition()
+    y = steps.vector("y", Phi * x)
+    w, p, u, weights = steps.letter("w"), steps.letter("p"), steps.letter("u"), [*D, *E]
     moved = Phi * U
     W = [[*steps.put([f"{w}{n}_{i}_{k}" for k in range(n)], list(moved.row(i))), *V.row(i)] for i in range(n)]
     new: dict[tuple[int, int], sp.Expr] = {}
     diagonal: list[sp.Expr] = [sp.S.Zero] * n
     for j in reversed(range(n)):
         weighted = steps.put([f"{p}{j}_{k}" for k in range(2 * n)], [a * b for a, b in zip(W[j], weights, strict=True)])
-        (diagonal[j],) = steps.put(
-            [f"{steps.letter('d')}{j}"], [sum(a * b for a, b in zip(W[j], weighted, strict=True))]
-        )
-        above = [sum(a * b for a, b in zip(W[i], weighted, strict=True)) / diagonal[j] for i in range(j)]
-        made = steps.put([f"{steps.letter('u')}{i}_{j}" for i in range(j)], above, orthogonal_rest)
+        (diagonal[j],) = steps.put([f"{steps.letter('d')}{j}"], [scalar_product(W[j], weighted)])
+        above = [scalar_product(W[i], weighted) / diagonal[j] for i in range(j)]
+        made = steps.put([f"{u}{i}_{j}" for i in range(j)], above, orthogonal_rest)
         for i in range(j):
             new[i, j] = made[i]
             rest = [a - made[i] * b for a, b in zip(W[i], W[j], strict=True)]
             W[i] = steps.put([f"{w}{j}_{i}_{k}" for k in range(2 * n)], rest)
     title = "Prediction over dt in UD form (Thornton): U D U' <- Phi U D U' Phi' + Uq Dq Uq'"
-    outputs = {"next_x": y} | factor_outputs(new, diagonal, n)
-    return chain_of(steps, title, state | arrays | noise, outputs, tests | more | most, units)
+    return steps.chain(title, {"next_x": y} | factor_outputs(new, diagonal, n))
 
 
 def orthogonal_rest() -> Equation:
@@ -465,16 +430,14 @@ def orthogonal_rest() -> Equation:
     return Equation(printed=[il - u * lj - v * ij + u * v * jj + u * v * jj, ij - u * jj], derived=[il, sp.S.Zero])
 
 
-def update_ud(plant: Plant, k: int, units: Mapping[str, str]) -> Chain:
+def update_ud(steps: Steps, k: int) -> Chain:
     """Bierman's update: the factors of P - P h' h P/(h P h' + r) from those of P."""
-    steps, n = Steps(plant), plant.n
-    x, state, tests = state_of(plant, steps)
-    U, D, arrays, more = factors_of(plant, steps)
-    z, letter = real(steps.letter("z")), steps.letter
-    h, r = row_of(plant, k, steps)
-    (v,) = steps.put([f"{letter('v')}0"], [z - sum(a * b for a, b in zip(h, x, strict=True))])
-    f = steps.put([f"{letter('f')}{j}" for j in range(n)], list(U.T * sp.Matrix(h)))
-    g = steps.put([f"{letter('g')}{j}" for j in range(n)], [a * b for a, b in zip(D, f, strict=True)])
+    n, letter, x = steps.plant.n, steps.letter, steps.state()
+    U, D = steps.factors()
+    z, h, r = steps.measurement(k)
+    (v,) = steps.vector("v", [z - scalar_product(h, x)])
+    f = steps.vector("f", U.T * sp.Matrix(h))
+    g = steps.vector("g", [a * b for a, b in zip(D, f, strict=True)])
     before, gain = r, [sp.S.Zero] * n
     new: dict[tuple[int, int], sp.Expr] = {}
     diagonal: list[sp.Expr] = []
@@ -490,13 +453,11 @@ def update_ud(plant: Plant, k: int, units: Mapping[str, str]) -> Chain:
         )
         new |= {(i, j): made[i] for i in range(j)}
         before = after
-    K = steps.put([f"{letter('K')}{i}" for i in range(n)], [e / before for e in gain])
-    y = steps.put([f"{letter('y')}{i}" for i in range(n)], [a + b * v for a, b in zip(x, K, strict=True)])
-    name = plant.measurements[k]
+    K = steps.vector("K", [e / before for e in gain])
+    y = steps.vector("y", [a + b * v for a, b in zip(x, K, strict=True)])
+    name = steps.plant.measurements[k]
     title = f"Correction by {name} in UD form (Bierman): U D U' <- P - P h' h P/(h P h' + r), P = U D U'"
-    reach = measured_range(plant, k)
-    outputs = {"next_x": y} | factor_outputs(new, diagonal, n)
-    return chain_of(steps, title, state | arrays, outputs, tests | more | {z.name: (-reach, reach)}, units)
+    return steps.chain(title, {"next_x": y} | factor_outputs(new, diagonal, n))
 
 
 def telescoped() -> Equation:

@@ -1,1 +1,1 @@
-"""One file for each language, and what the languages share."""
+"""The languages of exported code, and what they share."""

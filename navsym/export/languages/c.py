@@ -66,7 +66,12 @@ def program_header(function: ExportedFunction, license_: str) -> str:
 def source(function: ExportedFunction, license_: str) -> str:
     """Definition: domain test, the formulas of each regime, finiteness test, results."""
     w = writer(function.arithmetic.name)
-    tests = domain_test(function, w)
+    tests = [  # comparisons that NaN fails, one for each argument; |x| alone where the range has no end
+        f"({w.absolute(name)} <= {w.largest})"
+        if math.isinf(i.low) and math.isinf(i.high)
+        else f"({name} >= {low}) && ({name} <= {high})"
+        for i, (name, low, high) in zip(function.inputs, w.ends(function), strict=True)
+    ]
     return w.render("source.c", f=function, license=license_, signature=signature(function), tests=tests)
 
 
@@ -108,13 +113,3 @@ def shape_text(output: Output) -> str:
     if not output.shape:
         return "scalar"
     return "x".join(map(str, output.shape)) + (", row by row" if len(output.shape) > 1 else " entries")
-
-
-def domain_test(function: ExportedFunction, w: Writer) -> list[str]:
-    """Comparisons that NaN fails, one for each argument; |x| alone where the range has no end."""
-    return [
-        f"({w.absolute(name)} <= {w.largest})"
-        if math.isinf(i.low) and math.isinf(i.high)
-        else f"({name} >= {low}) && ({name} <= {high})"
-        for i, (name, low, high) in zip(function.inputs, w.ends(function), strict=True)
-    ]

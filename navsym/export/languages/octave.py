@@ -39,7 +39,8 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
     def text(template: str, **values: Any) -> str:
         return WRITER.render(template, names=names, license=license_, results=results_text, **values)
 
-    found = {f"{names[f.name]}.m": function_text(f, names[f.name], license_) for f in functions}
+    words = {one.__name__: one for one in (counted_from_one, shape_text, rows_and_columns, in_range, entries_text)}
+    found = {f"{names[f.name]}.m": text("function.m", f=f, name=names[f.name], **words) for f in functions}
     found |= {f"navsym_{h.name}.m": text("helper.m", h=h) for h in WRITER.helpers(functions)}
     for f in functions:
         if f.state:
@@ -53,22 +54,6 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
         "test_vectors.m": text("test_vectors.m", functions=functions),
         "vectors.txt": vectors_text(functions, tests),
     }
-
-
-def function_text(function: ExportedFunction, name: str, license_: str) -> str:
-    """The file of a function; results are NaN where the status is not 0."""
-    return WRITER.render(
-        "function.m",
-        f=function,
-        name=name,
-        license=license_,
-        results=results_text,
-        counted_from_one=counted_from_one,
-        shape_text=shape_text,
-        rows_and_columns=rows_and_columns,
-        in_range=in_range,
-        entries_text=entries_text,
-    )
 
 
 def counted_from_one(line: str) -> str:

@@ -29,7 +29,7 @@ SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 class Target:
     """One language.
 
-    writer  : "module:function" of this folder that makes the files
+    writer  : "module:function" of this folder that makes the files; by default from the table ``modules.toml``
     tool    : program that must be there to run the vectors; "" when Python itself is enough
     steps   : commands, run in the folder; their words "{tool}", "{python}", "{c}" and those of ``WORDS``, and {build},
               are replaced
@@ -39,8 +39,8 @@ class Target:
     """
 
     name: str
-    writer: str
     steps: tuple[str, ...]
+    writer: str = "modules:files"
     tool: str = ""
     library: int = 1
     reals: tuple[str, ...] = ("double",)
@@ -51,7 +51,7 @@ class Target:
         """The function that makes the files, imported when it is first needed."""
         module, _, name = self.writer.partition(":")
         found: Callable[..., dict[str, str]] = getattr(importlib.import_module(f"{__package__}.{module}"), name)
-        return found
+        return functools.partial(found, self.name) if module == "modules" else found
 
     def executable(self) -> str | None:
         """Path of the tool on this machine, or None; a tool that does not answer is not there."""
