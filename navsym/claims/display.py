@@ -66,6 +66,11 @@ def write_cell(value: Any) -> str:
     return f'<td style="text-align:left">{shown}</td>'
 
 
+def count_in_words(count: int, word: str) -> str:
+    """``1 measurement``, ``2 measurements``."""
+    return f"{count} {word}{'' if count == 1 else 's'}"
+
+
 def shorten_digits(digits: str, length: int = 14) -> str:
     """A decimal string cut for reading."""
     return digits if len(digits) <= length else digits[:length] + "…"

@@ -58,17 +58,21 @@ def command(
 
 def as_text(ledger: Ledger, seconds: float) -> str:
     """A table in the order of the papers, and below it what is refuted and the counts: the end is what one sees."""
+    from navsym.claims.display import count_in_words as counted
+
     papers = ledger.by_paper()
     rows = [(r.number, str(r.status), r.title, remark_of(r)) for _, records in papers for r in records]
     blocks = [table(("claim", "verdict", "what it says", "remark"), rows)]
     for paper, records in papers:
-        counted = f"{paper.equations} numbered equations, {paper.claimed} claimed, {paper.definitions} definitions"
-        missing = f", missing: {', '.join(paper.missing) or 'none'}"
-        blocks.append(f"{paper.module}: {counted + missing if paper.equations else f'{len(records)} claims'}")
+        numbered = [counted(paper.equations, "numbered equation"), f"{paper.claimed} claimed"]
+        numbered += [counted(paper.definitions, "definition"), f"missing: {', '.join(paper.missing) or 'none'}"]
+        blocks.append(f"{paper.module}: {', '.join(numbered) if paper.equations else counted(len(records), 'claim')}")
         blocks += refuted_lines(records)
-    counted = ", ".join(f"{count} {status}" for status, count in ledger.counts.items() if count)
-    blocks.append(f"{len(ledger)} claims in {seconds:.1f} s: {counted}")
-    blocks.append(f"{len(ledger.unchecked)} verdicts are unchecked: the checker has no certificate of them")
+    statuses = ", ".join(f"{count} {status}" for status, count in ledger.counts.items() if count)
+    blocks.append(f"{counted(len(ledger), 'claim')} in {seconds:.1f} s: {statuses}")
+    blocks.append(
+        f"unchecked, because the checker has no certificate of them: {counted(len(ledger.unchecked), 'verdict')}"
+    )
     return "\n".join([*blocks, compare_line(ledger), *unexpected_lines(ledger.unexpected)])
 
 

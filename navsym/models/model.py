@@ -12,7 +12,7 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.claims.display import display_latex, latex_of, write_card
+from navsym.claims.display import count_in_words, display_latex, latex_of, write_card
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, NavsymError, ShapeError
 from navsym.language.declarations import Parameter, read_parameters, symbols_of
 from navsym.language.expression import parse, symbol, to_text
@@ -656,11 +656,6 @@ def list_names(word: str, names: Any) -> str:
     names = list(names)
     text = ", ".join(names[:6]) + (", …" if len(names) > 6 else "")
     return f"{len(names)} {word} {text}" if word.endswith("s") else f"{word}{'s' if len(names) > 1 else ''} {text}"
-
-
-def count_in_words(count: int, word: str) -> str:
-    """``1 measurement``, ``2 measurements``."""
-    return f"{count} {word}{'' if count == 1 else 's'}"
 
 
 def equations_latex(contents: ModelFile | BasisFile) -> list[str]:
