@@ -1098,7 +1098,8 @@ def check_design(item: Any) -> None:
     columns = matrix([read_list(texts[k], read, m) for k in basis]).transpose()
     lu = {} if exact else {"algorithm": "lu"}  # keeps zeros exact
     weights = columns.solve(matrix([[read(p)] for p in functional]), **lu).entries()
-    used = [(abs(w), k) for w, k in zip(weights, basis, strict=True) if not w == 0]
+    zeros = [w == 0 for w in weights]  # a ball is zero when nothing else is in it
+    used = [(abs(w), k) for w, k, zero in zip(weights, basis, zeros, strict=True) if not zero]
     require(all(k < len(table) for _, k in used), "a weight that stands at no row")
     bought = frozenset().union(*(needs[k] for _, k in used))
     require(sum(prices[name] for name in bought) <= most, "the weights need more than the budget")
@@ -4080,7 +4081,8 @@ def grant(statement: Any, item: Any) -> str:
 # -- 11. The entry -----------------------------------------------------------------------------------------------------
 EVERY_CHECK: tuple[Callable[[Any], None], ...] = (
     check_identity, check_exponential, check_rank, check_observability, check_condition, check_positivity, check_all,
-    check_gap, check_touch, check_exclusion, check_cones, check_design, check_proof, check_counterexample, check_words, check_sized,
+    check_gap, check_touch, check_exclusion, check_cones, check_design, check_proof, check_counterexample, check_words,
+    check_sized,
 )  # fmt: skip
 KINDS = {check.__name__.removeprefix("check_"): check for check in EVERY_CHECK}
 KINDS |= {"sliver": check_gap, "range": check_touch}

@@ -26,15 +26,7 @@ from navsym.core.balls import precision
 from navsym.core.errors import DomainError, EmptyError, NotEstimableError, TooLargeError, UnknownSymbolError
 from navsym.core.exact import decimal, from_decimal, lower_end, upper_end
 from navsym.core.numbers import Number
-from navsym.guaranteed.streaming.exchange import (
-    Cloud,
-    Optimum,
-    bounds_of,
-    exchange,
-    rehearse,
-    solve_basis,
-    to_doubles,
-)
+from navsym.guaranteed.streaming.exchange import Cloud, Optimum, bounds_of, exchange, rehearse, solve_basis, to_doubles
 from navsym.guaranteed.streaming.flow import BITS, Flow
 from navsym.guaranteed.streaming.memory import Row
 from navsym.guaranteed.streaming.numbers import middle, read_exact, to_float, write_rational
@@ -207,9 +199,7 @@ def list_candidates(
 class Market:
     """The rows on offer, and the duals collected so far; unit vectors beside the rows make every selection solvable."""
 
-    def __init__(
-        self, flow: Flow, rows: list[Row], needs: list[Needs], prices: dict[str, fmpq], budget: fmpq
-    ):
+    def __init__(self, flow: Flow, rows: list[Row], needs: list[Needs], prices: dict[str, fmpq], budget: fmpq):
         self.flow, self.rows, self.needs, self.prices, self.budget = flow, rows, needs, prices, budget
         self.now = rows[-1].t
         flow.choose_unknowns(frozenset(row.j for row in rows))
@@ -257,7 +247,9 @@ class Market:
         n = len(self.rows)
         found = exchange(replace(self.cloud, active=self.mask(rows)), self.target, range(n, n + self.m))
         if found is None:
-            raise TooLargeError("expected regressors that balls can tell apart; got an exchange without end; scale them")
+            raise TooLargeError(
+                "expected regressors that balls can tell apart; got an exchange without end; scale them"
+            )
         return found
 
     def weigh(self, found: Optimum) -> list[tuple[int, arb]] | None:
@@ -274,7 +266,8 @@ class Market:
             weights = columns.solve(self.target.transpose(), algorithm="lu").entries()  # keeps zeros
         else:
             weights = fmpq_mat(exact).transpose().solve(fmpq_mat([[p] for p in goal])).entries()
-        pairs = [(k, arb(w)) for k, w in zip(found.basis, weights, strict=True) if not w == 0]
+        zeros = [w == 0 for w in weights]
+        pairs = [(k, arb(w)) for k, w, zero in zip(found.basis, weights, zeros, strict=True) if not zero]
         return pairs if all(k < n for k, _ in pairs) else None
 
     def failing(self, dual: arb_mat, value: arb) -> tuple[frozenset[int], arb_mat]:
@@ -331,7 +324,7 @@ class Market:
         return None
 
     def fill(self, bought: int) -> tuple[set[int], Optimum]:
-        """The rows of a purchase and their optimum, after the rest of the budget went to rows that the dual refuses most."""
+        """The rows of a purchase and their optimum; the rest of the budget goes to rows that the dual refuses most."""
         while True:
             rows = {i for i, n in enumerate(self.bits) if not n & ~bought}
             found = self.optimum(rows)
@@ -352,7 +345,7 @@ class Market:
             found = self.fill(bought)[1]
 
     def refute(self, rows: set[int], found: Optimum) -> Optimum:
-        """A dual that is worth the goal and fails at few rows: they are allowed one by one as long as it is, in doubles."""
+        """A dual that is worth the goal and fails at few rows: in doubles they are allowed one by one while it is."""
         goal, n = middle(self.goal), len(self.rows)
         basis, signs, worth = found.basis, found.signs, middle(bounds_of(self.cloud, found)[0])
         x = np.array([middle(e) for e in found.dual.entries()])
@@ -411,7 +404,9 @@ class Market:
         for i, w in used:
             row, slope = self.rows[i], None
             if len(used) == self.m:
-                slope = middle(-w * ((self.row_at(row.j, row.t + STEP) - self.row_at(row.j, row.t)) * dual)[0, 0] / STEP)
+                slope = middle(
+                    -w * ((self.row_at(row.j, row.t + STEP) - self.row_at(row.j, row.t)) * dual)[0, 0] / STEP
+                )
             share, name = middle(row.sigma * abs(w) / cost), self.flow.names[row.j]
             points.append(DesignPoint(write_rational(row.t), name, row.text, middle(w), share, slope))
         return tuple(points)

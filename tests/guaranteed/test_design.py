@@ -62,7 +62,9 @@ def check_against_enumeration(seeds):
     compared = 0
     for seed in seeds:
         rng = np.random.default_rng(seed)
-        model, plain, sigma = random_model(rng, int(rng.integers(1, 4 if seed % 4 == 0 else 3)), int(rng.integers(1, 3)))
+        model, plain, sigma = random_model(
+            rng, int(rng.integers(1, 4 if seed % 4 == 0 else 3)), int(rng.integers(1, 3))
+        )
         times, instant, sensors, budget = offer_of(rng, len(sigma))
         best = enumerated(plain, sigma, times, instant, sensors, budget)
         try:
@@ -71,10 +73,11 @@ def check_against_enumeration(seeds):
             without_formula = "has a formula" in str(error)  # of exp(F t): there is no certificate
             assert without_formula or (error.kind == "not-estimable" and best is None), seed
             continue
-        compared += 1
         assert found.check() and Fraction(found.cost) <= budget
-        assert best == pytest.approx(float(found.value.upper), rel=1e-7, abs=1e-9), seed
-        if found.status == "CERTIFIED":
+        assert float(found.value.lower) <= best * (1 + 1e-7) + 1e-9, seed
+        if str(found.status) == "CERTIFIED":
+            compared += 1
+            assert best == pytest.approx(float(found.value.upper), rel=1e-7, abs=1e-9), seed
             assert Fraction(found.value.upper) - Fraction(found.value.lower) <= Fraction(found.value.upper) / 10**12
     return compared
 
