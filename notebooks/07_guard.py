@@ -137,8 +137,9 @@ assert accused <= faulty and all(row.status == "ACCEPTED" for e in excluding[::2
 
 # %% [markdown]
 # ## What to buy
-# Before the drive: a position of bound 5 m, or one of 1 m at five times the price, and a Doppler velocity, at seven instants.
-# The best selection within each budget is proved against all others. `slope` says how the level changes with an instant.
+# Before the drive: a position of bound 5 m, or one of 1 m at five times the price, and a Doppler velocity, at seven
+# instants. The best selection within each budget is proved against all others. `slope` says how the level changes with
+# an instant.
 
 # %%
 OFFER = nav.Model(

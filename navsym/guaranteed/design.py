@@ -29,7 +29,7 @@ from navsym.core.numbers import Number
 from navsym.guaranteed.streaming.exchange import Cloud, Optimum, bounds_of, exchange, rehearse, solve_basis, to_doubles
 from navsym.guaranteed.streaming.flow import BITS, Flow
 from navsym.guaranteed.streaming.memory import Row
-from navsym.guaranteed.streaming.numbers import middle, read_exact, to_float, write_rational
+from navsym.guaranteed.streaming.numbers import middle, read_exact, write_rational
 from navsym.language.files import name_file
 from navsym.language.names import quote, suggest_nearest
 from navsym.language.schema import as_table, expect_keys
@@ -168,13 +168,12 @@ def list_candidates(
             message = f"expected a measurement of the model; got {quote(name)}; correct it: {hint}"
             raise UnknownSymbolError(message, where="design: sensors")
         where = f"design: sensors.{name}"
-        graded = isinstance(offer, list | tuple)
-        for grade in offer if graded else [(None, offer)]:
+        grades: Sequence[Any] = offer if isinstance(offer, list | tuple) else [(None, offer)]
+        for grade in grades:
             if not isinstance(grade, list | tuple) or len(grade) != 2:
-                raise DomainError(
-                    f"expected a pair (noise bound, cost); got {quote(grade)}; write two numbers", where=where
-                )
-            own = read_exact(grade[0], where) if graded else None
+                message = f"expected a pair (noise bound, cost); got {quote(grade)}; write two numbers"
+                raise DomainError(message, where=where)
+            own = None if grades is not offer else read_exact(grade[0], where)
             if own is not None and own <= 0:
                 raise DomainError(f"expected a positive noise bound; got {quote(grade[0])}; correct it", where=where)
             item = name if own is None else f"{name} {write_rational(own)}"
@@ -207,6 +206,7 @@ class Market:
         self.table = arb_mat([self.row_at(row.j, row.t).entries() for row in rows])
         self.target = flow.cut(flow.row_of_target)
         self.exact = [flow.exact_row(row.j, row.t, self.now) for row in rows]
+        self.units = [[fmpq(int(i == k)) for i in range(self.m)] for k in range(self.m)]
         self.cloud = self.make_cloud()
         self.names = list(prices)
         self.bits = [sum(1 << self.names.index(name) for name in n) for n in needs]
@@ -220,17 +220,13 @@ class Market:
 
     def make_cloud(self) -> Cloud:
         """The rows and the unit vectors as the exchange takes them."""
-        scaled = np.array(
-            [[middle(e / row.sigma) for e in line] for row, line in zip(self.rows, self.table.tolist(), strict=True)]
-        )
-        reach = np.abs(np.linalg.pinv(scaled)).sum(axis=1)
-        sizes = [fmpq(int(np.ceil(FAR * max(r, 1e-6)))) for r in reach]
-        units = [[fmpq(int(i == k)) for i in range(self.m)] for k in range(self.m)]
-        vectors = [arb_mat([line]) for line in [*self.table.tolist(), *units]]
-        sigma = [*(row.sigma for row in self.rows), *map(arb, sizes)]
-        rest = np.diag([1 / to_float(s) for s in sizes])
-        wide = max(float((e / s).rad()) for v, s in zip(vectors, sigma, strict=True) for e in v.entries())
-        return Cloud(vectors, sigma, np.vstack([scaled, rest]), wide=wide)
+        lines, bounds = self.table.tolist(), [row.sigma for row in self.rows]
+        reach = np.linalg.pinv([[middle(e / s) for e in v] for v, s in zip(lines, bounds, strict=True)])
+        bounds += [arb(int(np.ceil(FAR * max(r, 1e-6)))) for r in np.abs(reach).sum(axis=1)]
+        lines += [list(map(arb, line)) for line in self.units]
+        balls = [[e / s for e in v] for v, s in zip(lines, bounds, strict=True)]
+        wide = max(float(e.rad()) for v in balls for e in v)
+        return Cloud([arb_mat([v]) for v in lines], bounds, np.array([list(map(middle, v)) for v in balls]), wide=wide)
 
     def price(self, items: int) -> fmpq:
         """What things cost together; one bit for each."""
@@ -247,9 +243,7 @@ class Market:
         n = len(self.rows)
         found = exchange(replace(self.cloud, active=self.mask(rows)), self.target, range(n, n + self.m))
         if found is None:
-            raise TooLargeError(
-                "expected regressors that balls can tell apart; got an exchange without end; scale them"
-            )
+            raise TooLargeError("expected regressors of like size; got an exchange without end; scale the unknowns")
         return found
 
     def weigh(self, found: Optimum) -> list[tuple[int, arb]] | None:
@@ -257,15 +251,15 @@ class Market:
         n = len(self.rows)
         if max(found.basis) < n:
             return list(zip(found.basis, found.weights.entries(), strict=True))
-        units = [[fmpq(int(i == k)) for i in range(self.m)] for k in range(self.m)]
         lines = [None if row is None else [row[c] for c in self.flow.columns] for row in self.exact]
-        exact = [[*lines, *units][k] for k in found.basis]
-        goal = [self.flow.exact_target(k) for k in self.flow.columns]
-        if None in exact or None in goal:
+        exact: list[Any] = [[*lines, *self.units][k] for k in found.basis]
+        goal: list[Any] = [[self.flow.exact_target(k)] for k in self.flow.columns]
+        weights: Any
+        if None in exact or [None] in goal:
             columns = arb_mat([self.cloud.vectors[k].entries() for k in found.basis]).transpose()
             weights = columns.solve(self.target.transpose(), algorithm="lu").entries()  # keeps zeros
         else:
-            weights = fmpq_mat(exact).transpose().solve(fmpq_mat([[p] for p in goal])).entries()
+            weights = fmpq_mat(exact).transpose().solve(fmpq_mat(goal)).entries()
         zeros = [w == 0 for w in weights]
         pairs = [(k, arb(w)) for k, w, zero in zip(found.basis, weights, zeros, strict=True) if not zero]
         return pairs if all(k < n for k, _ in pairs) else None
@@ -349,20 +343,20 @@ class Market:
         goal, n = middle(self.goal), len(self.rows)
         basis, signs, worth = found.basis, found.signs, middle(bounds_of(self.cloud, found)[0])
         x = np.array([middle(e) for e in found.dual.entries()])
-        cloud, P = replace(self.cloud, active=self.mask(rows)), to_doubles(self.target)
+        active, P = self.mask(rows), to_doubles(self.target)
+        cloud = replace(self.cloud, active=active)
         for i in self.random.permutation(n):
-            if cloud.active[i]:
+            if active[i]:
                 continue
+            active[i] = True
             if abs(cloud.scaled[i] @ x) * goal < worth:
-                cloud.active[i] = True
                 continue
-            cloud.active[i] = True
             other = rehearse(cloud, P, list(basis), list(signs))
             y = np.linalg.solve(cloud.scaled[other[0]], np.array(other[1], dtype=float))
-            if P @ y >= goal * (1 + 1e-9) and np.abs(cloud.scaled[cloud.active] @ y).max() < 1 + 1e-9:
+            if P @ y >= goal * (1 + 1e-9) and np.abs(cloud.scaled[active] @ y).max() < 1 + 1e-9:
                 (basis, signs), x, worth = other, y, float(P @ y)
             else:
-                cloud.active[i] = False
+                active[i] = False
         return solve_basis(self.cloud, self.target, list(basis), list(signs)) or found
 
     def answer(self) -> Design:
@@ -413,10 +407,10 @@ class Market:
 
     def row_at(self, j: int, t: fmpq) -> arb_mat:
         """A measurement at a time in the kept unknowns at the time of the estimate; also a little after it."""
-        row = self.flow.row(j, t)
         if t <= self.now or not self.flow.F:
             return self.flow.cut(arb_mat([self.flow.ball_row(j, t, self.now)]))
-        return self.flow.cut(row * self.flow.transition(self.now, t))
+        later = self.flow.transition(self.now, t)
+        return self.flow.cut(self.flow.row(j, t) if later is None else self.flow.row(j, t) * later)
 
     def write_certificate(self, found: Optimum, duals: Sequence[arb_mat], cost: arb) -> dict[str, Any]:
         """The certificate of kind design."""
