@@ -1084,8 +1084,8 @@ def check_design(item: Any) -> None:
     _, rows, costs, limit, functional, support, duals, low, high, bits, cells = fields
     budget, lower, upper, most = set_work(bits, cells), *map(read_number, (low, high, limit))
     prices = {name: read_number(price) for name, price in costs.items()}
-    table, m = read_list(rows, lambda row: read_fields(row, "H sigma needs")), len(functional)
-    sigma, needs = [read_entry(row[1]) for row in table], [frozenset(row[2]) for row in table]
+    table, m = read_list(rows, lambda row: read_fields(row, "H sigma needs")), len(read_list(functional, str))
+    sigma, needs = [read_entry(row[1]) for row in table], [frozenset(read_list(row[2], str)) for row in table]
     require(min(prices.values(), default=0) >= 0 and all(s > 0 for s in sigma), "a negative cost or noise bound")
     require(all(n <= prices.keys() for n in needs), "a row needs what has no cost")
     texts = [*(row[0] for row in table), *(["1" if i == k else "0" for i in range(m)] for k in range(m))]
