@@ -106,6 +106,17 @@ def test_the_value_is_that_of_two_convex_solvers_for_two_hundred_problems():
     assert worst["CLARABEL"] < 1e-9 and worst["SCS"] < 1e-3
 
 
+def test_boxes_alone_are_enclosed_sharply_also_where_several_duals_are_optimal():
+    rng = np.random.default_rng(12)
+    for _ in range(150):
+        blocks, _, target = random_blocks(rng, norms=["linf"])
+        try:
+            value = nav.solve_blocks(blocks, target).value
+        except nav.NavsymError:
+            continue
+        assert Fraction(value.upper) - Fraction(value.lower) <= Fraction(value.upper) / 10**18
+
+
 def test_sums_of_absolute_values_have_the_optimum_of_three_solvers():
     worst = compare(12, np.random.default_rng(11), BOXES, norms=["linf"])
     assert worst["CLARABEL"] < 1e-9 and worst["casadi"] < 1e-9 and worst["OSQP"] < 0.1
