@@ -100,8 +100,8 @@ __all__ = ["__version__", *sorted(_HOMES)]
 
 #: Types of answers and of their parts, for annotations. ``dir(navsym)`` leaves them out: it lists what one calls.
 _ANSWERS = {
-    *("Bank", "BlockEstimator", "Comparison", "Conventions", "Derivation", "Estimate", "Estimator", "Formulation"),
-    *("Ledger", "Observability", "PhaseMap"),
+    *("Bank", "BlockEstimator", "Comparison", "Conventions", "Derivation", "Design", "Estimate", "Estimator"),
+    *("Formulation", "Ledger", "Observability", "PhaseMap"),
     *("Number", "Phases", "ProgressBar", "Reading", "Status", "Verdict", "Verdicts"),
 }
 

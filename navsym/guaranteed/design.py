@@ -79,6 +79,12 @@ class Design(Answer):
     points      : measurements with a weight, see :class:`DesignPoint`
     status      : CERTIFIED where the two bounds meet, else OPEN
     certificate : plain data that the independent checker replays, kind "design"
+
+    >>> import navsym as nav
+    >>> model = nav.Model(states="x v", F=[["0", "1"], ["0", "0"]], H=["x"], targets={"v": "v"})
+    >>> found = nav.design(model, times=range(5), budget=2)
+    >>> found.bought, found.points[0].share, found.points[0].slope, found.check()
+    (('t = 0', 't = 4', 'z1'), 0.5, 0.125, <1 checked, all ACCEPTED>)
     """
 
     target: str
@@ -137,7 +143,7 @@ def design(
     >>> import navsym as nav
     >>> model = nav.Model(states="x v", F=[["0", "1"], ["0", "0"]], H=["x", "v"], targets={"start": "x - 4*v"})
     >>> nav.design(model, times=range(5), budget=6, sensors={"z1": 1, "z2": [("2", 1), ("1/2", 4)]})
-    Design(start: 1.0..., cost 2: z1 at 0; CERTIFIED)
+    Design(start: 1, cost 2: z1 at 0; CERTIFIED)
     """
     with file_in_errors(model):
         if isinstance(model, str | os.PathLike) and times is None:
