@@ -119,14 +119,14 @@ def test_boxes_alone_are_enclosed_sharply_also_where_several_duals_are_optimal()
 
 def test_sums_of_absolute_values_have_the_optimum_of_three_solvers():
     worst = compare(12, np.random.default_rng(11), BOXES, norms=["linf"])
-    assert worst["CLARABEL"] < 1e-9 and worst["casadi"] < 1e-9 and worst["OSQP"] < 0.1
+    assert worst["CLARABEL"] < 1e-9 and worst["casadi"] < 1e-9 and worst["OSQP"] < 0.3
 
 
 @pytest.mark.slow
 def test_five_hundred_sums_of_absolute_values_have_the_optimum_of_three_solvers():
     worst = compare(500, np.random.default_rng(12), BOXES, norms=["linf"])
     print(worst)  # documented
-    assert worst["CLARABEL"] < 1e-9 and worst["casadi"] < 1e-9 and worst["OSQP"] < 0.1
+    assert worst["CLARABEL"] < 1e-9 and worst["casadi"] < 1e-9 and worst["OSQP"] < 0.3
 
 
 def test_weights_are_unbiased_and_the_noise_of_the_worst_case_costs_the_value_exactly():
