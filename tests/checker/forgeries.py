@@ -349,6 +349,7 @@ FORGERIES = [
     (DESIGN, ["costs", "b"], "-1", "negative cost"),
     (DESIGN, ["duals"], [], "may do better"),
     (DESIGN, ["duals", 0], ["-1", "1"], "may do better"),
+    (DESIGN, ["rows", 0, "sigma"], "2", "cost more"),
     (DESIGN, ["rows", 2, "sigma"], "0", "noise bound"),
     (DESIGN, ["rows", 2, "sigma"], "1/4", "may do better"),
     (DESIGN, ["support"], [0, 6], "integer from"),
