@@ -10,7 +10,7 @@ and Karp 2013).
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
@@ -165,6 +165,9 @@ def list_candidates(
     flow: Flow, times: Sequence[Any], instant: Any, sensors: Mapping[str, Any] | None
 ) -> tuple[list[Row], list[Needs], dict[str, fmpq]]:
     """All rows that may be bought, what each needs, and what things cost. Raises DomainError, TooLargeError."""
+    if isinstance(times, str) or not isinstance(times, Iterable) or not isinstance(sensors, Mapping | None):
+        message = "expected a list of times and a mapping of sensors to costs; got others; write them so"
+        raise DomainError(message, where="design")
     at = sorted({read_exact(t, "design: times") for t in times})
     prices = {f"t = {write_rational(t)}": read_exact(instant, "design: instant") for t in at}
     offers: list[tuple[int, str, fmpq | None]] = []

@@ -143,6 +143,9 @@ def test_a_budget_that_shows_nothing_is_an_error_that_says_so():
         ({"times": range(3), "sensors": {"z1": [1, 2]}}, "domain"),
         ({"times": range(3), "sensors": {"z1": [("0", 2)]}}, "domain"),
         ({"times": ["now"]}, "syntax"),
+        ({"times": 3}, "domain"),
+        ({"times": "0, 1"}, "domain"),
+        ({"times": range(3), "sensors": ["z1"]}, "domain"),
         ({"times": range(900)}, "too-large"),
     ],
 )
