@@ -53,6 +53,7 @@ _HOMES = {
     **dict.fromkeys(("Observability", "observe"), "navsym.observability.answer"),
     **dict.fromkeys(("Block", "BlockEstimator", "solve_blocks"), "navsym.guaranteed.blocks"),
     "Comparison": "navsym.guaranteed.baselines",
+    **dict.fromkeys(("Design", "design"), "navsym.guaranteed.design"),
     "Estimator": "navsym.guaranteed.solver",
     "Formulation": "navsym.guaranteed.formulate",
     "Guard": "navsym.guaranteed.streaming.guard",
@@ -99,8 +100,8 @@ __all__ = ["__version__", *sorted(_HOMES)]
 
 #: Types of answers and of their parts, for annotations. ``dir(navsym)`` leaves them out: it lists what one calls.
 _ANSWERS = {
-    *("Bank", "BlockEstimator", "Comparison", "Conventions", "Derivation", "Estimate", "Estimator", "Formulation"),
-    *("Ledger", "Observability", "PhaseMap"),
+    *("Bank", "BlockEstimator", "Comparison", "Conventions", "Derivation", "Design", "Estimate", "Estimator"),
+    *("Formulation", "Ledger", "Observability", "PhaseMap"),
     *("Number", "Phases", "ProgressBar", "Reading", "Status", "Verdict", "Verdicts"),
 }
 
@@ -130,6 +131,8 @@ if TYPE_CHECKING:
     from navsym.guaranteed.blocks import Block as Block
     from navsym.guaranteed.blocks import BlockEstimator as BlockEstimator
     from navsym.guaranteed.blocks import solve_blocks as solve_blocks
+    from navsym.guaranteed.design import Design as Design
+    from navsym.guaranteed.design import design as design
     from navsym.guaranteed.formulate import Formulation as Formulation
     from navsym.guaranteed.formulate import formulate as formulate
     from navsym.guaranteed.phases.answer import PhaseMap as PhaseMap

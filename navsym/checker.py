@@ -1074,6 +1074,50 @@ def find_cost(norm: Any, size: Any, w: fmpq_mat, y: fmpq_mat) -> arb:
     return arb(sum(costs) if norm == "linf" else max(costs))
 
 
+def check_design(item: Any) -> None:
+    """Weights that cost at most ``upper`` need things within the budget; no weights within it cost less than ``lower``.
+
+    A dual x with x.P >= lower refutes all weights on rows with |h.x| <= sigma (weak duality). So lesser weights need,
+    for each dual, what one of its failing rows needs; and whoever buys that for all duals exceeds the budget.
+    """
+    fields = read_fields(item, "kind rows costs budget functional support duals lower upper bits cells")
+    _, rows, costs, limit, functional, support, duals, low, high, bits, cells = fields
+    budget, lower, upper, most = set_work(bits, cells), *map(read_number, (low, high, limit))
+    prices = {name: read_number(price) for name, price in costs.items()}
+    table, m = read_list(rows, lambda row: read_fields(row, "H sigma needs")), len(read_list(functional, str))
+    sigma, needs = [read_entry(row[1]) for row in table], [frozenset(read_list(row[2], str)) for row in table]
+    require(min(prices.values(), default=0) >= 0 and all(s > 0 for s in sigma), "a negative cost or noise bound")
+    require(all(n <= prices.keys() for n in needs), "a row needs what has no cost")
+    texts = [*(row[0] for row in table), *(["1" if i == k else "0" for i in range(m)] for k in range(m))]
+    basis = read_list(support, lambda k: read_integer(k, 0, len(texts) - 1), m)
+    exact = all(matches(NUMBER, e) for row in (functional, *(texts[k] for k in basis)) for e in row)
+    kind: Any = (fmpq_mat, read_number, {}) if exact else (arb_mat, read_entry, {"algorithm": "lu"})
+    matrix, read, way = kind
+    columns = matrix([read_list(texts[k], read, m) for k in basis]).transpose()
+    weights = columns.solve(matrix([[read(p)] for p in functional]), **way).entries()
+    zeros = [w == 0 for w in weights]  # a ball is zero when nothing else is in it
+    used = [(abs(w), k) for w, k, zero in zip(weights, basis, zeros, strict=True) if not zero]
+    require(all(k < len(table) for _, k in used), "a weight that stands at no row")
+    require(sum((sigma[k] * w for w, k in used), arb(0)) <= upper, "the weights cost more than the upper bound")
+    H, P = arb_mat([read_list(row[0], read_entry, m) for row in table]), arb_mat([[read_entry(p) for p in functional]])
+    failing = []
+    for x in read_list(duals, lambda dual: arb_mat([[arb(e)] for e in read_list(dual, read_number, m)])):
+        require((P * x)[0, 0] >= lower, "the lower bound is above x.P")
+        failing.append({n for n, f, s in zip(needs, (H * x).entries(), sigma, strict=True) if not abs(f) <= s})
+
+    def affordable(names: frozenset[str]) -> bool:
+        return sum(prices[name] for name in names) <= most
+
+    def can_buy(bought: frozenset[str]) -> bool:  # what some row of each set needs: of the smallest set without one
+        require(next(budget, False), "more selections than announced")
+        first = min((s for s in failing if not any(n <= bought for n in s)), key=len, default=None)
+        return first is None or any(affordable(bought | n) and can_buy(bought | n) for n in first)
+
+    require(affordable(frozenset().union(*(needs[k] for _, k in used))), "the weights need more than the budget")
+    free = frozenset(name for name, price in prices.items() if price == 0)
+    require(not can_buy(free), "a selection within the budget may do better")
+
+
 # -- 9. Statements and their proofs ------------------------------------------------------------------------------------
 # A goal says that a term is = 0, != 0, >= 0 or > 0 at all points of a box where the term, and other terms that have to
 # exist, are defined. A proof is a tree: an object with a rule, its data and the proofs of its premises, which are goals
@@ -4032,7 +4076,8 @@ def grant(statement: Any, item: Any) -> str:
 # -- 11. The entry -----------------------------------------------------------------------------------------------------
 EVERY_CHECK: tuple[Callable[[Any], None], ...] = (
     check_identity, check_exponential, check_rank, check_observability, check_condition, check_positivity, check_all,
-    check_gap, check_touch, check_exclusion, check_cones, check_proof, check_counterexample, check_words, check_sized,
+    check_gap, check_touch, check_exclusion, check_cones, check_design, check_proof, check_counterexample, check_words,
+    check_sized,
 )  # fmt: skip
 KINDS = {check.__name__.removeprefix("check_"): check for check in EVERY_CHECK}
 KINDS |= {"sliver": check_gap, "range": check_touch}

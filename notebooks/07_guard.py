@@ -136,6 +136,25 @@ print(f"{len(faulty)} injected, {len(accused & faulty)} proved faulty, {len(accu
 assert accused <= faulty and all(row.status == "ACCEPTED" for e in excluding[::25] for row in e.check())
 
 # %% [markdown]
+# ## What to buy
+# Before the drive: a position of bound 5 m, or one of 1 m at five times the price, and a Doppler velocity, at seven
+# instants. The best selection within each budget is proved against all others. `slope` says how the level changes with
+# an instant.
+
+# %%
+OFFER = nav.Model(
+    "p v d", [["0", "1", "0"], ["0", "0", "1"], ["0"] * 3], ["p", "v"], sigma=["5", "1"], targets={"drift": "d"}
+)
+for budget in (4, 8, 12):
+    best = nav.design(OFFER, times=range(0, 70, 10), budget=budget, sensors={"z1": [("5", 1), ("1", 5)], "z2": 2})
+    print(f"budget {budget}: level {float(best.value.upper):.4f} m/s^2 for {best.cost}: {', '.join(best.bought)}")
+    assert best.status == nav.CERTIFIED and best.check()
+for point in best.points:
+    print(
+        f"{point.measurement} at {point.at} s: weight {point.weight:.4g}, share {point.share:.2f}, slope {point.slope}"
+    )
+
+# %% [markdown]
 # ## On board
 # The guard of bounded errors becomes C without allocation, with bounds of all rounding errors. Its stream of test
 # vectors is compiled and replayed before anything is written.

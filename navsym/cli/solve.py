@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ def command(
     set_: list[str] | None = None,
     digits: int = 30,
     compare: bool = False,
+    design: bool = False,
     out: Path | None = None,
     json_: bool = False,
 ) -> int:
@@ -29,16 +31,17 @@ def command(
     """
     import navsym as nav
 
-    estimator = nav.solve(file, target, digits=digits, values=values_of(set_))
+    found = nav.design if design else functools.partial(nav.solve, digits=digits)
+    estimator: Any = found(file, target, values=values_of(set_))
     document = estimator.document()
     if out is not None:
         write_text(out, dumps(document["certificate"]) + "\n")
-    if compare:
+    if compare and not design:
         from navsym.guaranteed.convex import LP_SOLVERS
 
         with Progress("solvers", len(LP_SOLVERS), "without --compare the answer comes at once") as bar:
             document["compare"] = estimator.compare(progress=bar.step).document()
-    emit(document, as_json=json_, text=lambda: as_text(document))
+    emit(document, as_json=json_, text=lambda: (design_text if design else as_text)(document))
     return 0 if document["status"] == "CERTIFIED" else 1
 
 
@@ -58,6 +61,24 @@ def as_text(document: dict[str, Any]) -> str:
     if "compare" in document:
         lines.append(comparison(document["compare"]))
     return "\n".join(lines)
+
+
+def design_text(document: dict[str, Any]) -> str:
+    """What to buy, where to measure, and how the value changes with each bound and instant."""
+    names = ("measurement", "at", "sigma", "weight", "share", "slope")
+    rows = [
+        (*(row[n] for n in names[:3]), *("" if row[n] is None else f"{row[n]:.6g}" for n in names[3:]))
+        for row in document["support"]
+    ]
+    return "\n".join(
+        [
+            f"{document['target']}: {document['status']}",
+            f"guaranteed error  {document['value']['lower']}",
+            f"               …  {document['value']['upper']}",
+            f"needs {', '.join(document['bought'])}: cost {document['cost']}",
+            table(names, rows, right=names[2:]),
+        ]
+    )
 
 
 def comparison(data: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""The guaranteed estimator beside least squares, the Kalman filter and general solvers; its worst noise.
+"""The guaranteed estimator beside least squares, the Kalman filter and general solvers.
 
 An estimator with weights Phi has the guaranteed standard deviation ``sum_j sigma_j integral |Phi_j|``,
 reached by the noise ``r_j(t) = sigma_j sgn(Phi_j(t)) xi`` with one standard normal xi: its covariance is
@@ -152,41 +152,3 @@ def compare_estimators(
         answers.append(SolverAnswer(name, result.status, result.value, error, result.residual, result.seconds))
         progress(name)
     return Comparison(least, kalman, optimum, tuple(answers))
-
-
-# The worst noise
-
-
-def signed_bounds(estimator: Estimator) -> Array:
-    """``sigma sgn(weight)`` on the support: times one standard normal number, the noise that reaches the deviation."""
-    problem = estimator.problem
-    bounds = [float(problem.sigma[problem.measurements.index(point.measurement)]) for point in estimator.support]
-    return np.copysign(bounds, [float(weight) for weight in estimator.weights])
-
-
-def realise_worst_noise(estimator: Estimator, runs: int, seed: int = 0) -> Array:
-    """Errors (runs,) of the estimate in realisations of the worst noise, in units of the target.
-
-    The same seed gives the same errors.
-    """
-    noise = np.random.default_rng(seed).standard_normal(runs)[:, None] * signed_bounds(estimator)
-    errors: Array = noise @ np.array([float(weight) for weight in estimator.weights])
-    return errors
-
-
-def search_correlations(estimator: Estimator, tries: int, seed: int = 0) -> float:
-    """Largest standard deviation that random admissible correlations of the noise produce.
-
-    A correlation matrix is ``U U^T`` with rows of unit length; the search keeps the best and shakes it.
-    """
-    random = np.random.default_rng(seed)
-    loads = np.array([float(weight) for weight in estimator.weights]) * np.abs(signed_bounds(estimator))
-    best, best_U = 0.0, random.standard_normal((loads.size, loads.size))
-    for k in range(tries):
-        fresh = random.standard_normal(best_U.shape)
-        U = fresh if k % 3 == 0 else best_U + 0.3 * fresh
-        U = U / np.linalg.norm(U, axis=1, keepdims=True)
-        deviation = float(np.linalg.norm(loads @ U))
-        if deviation > best:
-            best, best_U = deviation, U
-    return best

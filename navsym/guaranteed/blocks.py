@@ -23,7 +23,7 @@ from navsym.core.balls import precision
 from navsym.core.errors import DomainError, EmptyError, NotEstimableError, ShapeError
 from navsym.core.exact import decimal, from_decimal, to_fmpq, upper_end
 from navsym.core.numbers import Number
-from navsym.guaranteed.search.cones import Cone, Proposal, propose_optimum
+from navsym.guaranteed.search.cones import Cone, Proposal, propose_optima
 from navsym.guaranteed.streaming.numbers import read_exact, to_float, write_rational
 from navsym.language.names import quote
 
@@ -220,13 +220,10 @@ def solve_target(
     narrow = [Cone(pick_columns(cone.H, kept), cone.norm, cone.size) for cone in cones]
     P = fmpq_mat(len(kept), 1, [functional[k, 0] for k in kept])
     with precision(BITS):
-        found = propose_optimum(narrow, P)
-        if found is None:
-            found = Proposal([fmpq(0)] * len(kept), [[fmpq(0)] * cone.rows for cone in narrow])
-        weights = balance_weights(narrow, P, found.weights)
-        dual = admissible_dual(narrow, found.x)
-        costs = [cone.cost(w) for cone, w in zip(narrow, weights, strict=True)]
-        total, least = sum(costs, arb(0)), sum((x * p for x, p in zip(dual, P.entries(), strict=True)), fmpq(0))
+        nothing = Proposal([fmpq(0)] * len(kept), [[fmpq(0)] * cone.rows for cone in narrow])
+        answers = [bound_optimum(narrow, P, found) for found in propose_optima(narrow, P) or [nothing]]
+        weights, dual, costs, least = min(answers, key=lambda one: float((sum(one[2], arb(0)) - one[3]).mid()))
+        total = sum(costs, arb(0))
         whole = [fmpq(0)] * functional.nrows()
         for k, x in zip(kept, dual, strict=True):
             whole[k] = x
@@ -235,6 +232,15 @@ def solve_target(
     certificate = write_certificate(cones, functional, weights, whole, value)
     noise = tuple(tuple((cone.H * fmpq_mat(len(whole), 1, whole)).entries()) for cone in cones)
     return BlockEstimator(name, value, tuple(map(tuple, weights)), tuple(whole), noise, shares, certificate)
+
+
+def bound_optimum(
+    cones: Sequence[Cone], P: fmpq_mat, found: Proposal
+) -> tuple[list[list[fmpq]], list[fmpq], list[arb], fmpq]:
+    """Unbiased weights, an admissible dual, the costs of the weights block by block, and what the dual is worth."""
+    weights, dual = balance_weights(cones, P, found.weights), admissible_dual(cones, found.x)
+    costs = [cone.cost(w) for cone, w in zip(cones, weights, strict=True)]
+    return weights, dual, costs, sum((x * p for x, p in zip(dual, P.entries(), strict=True)), fmpq(0))
 
 
 def state_problem(

@@ -4,8 +4,8 @@ Among the unbiased linear estimators of P^T q from z_i = H(t_i)^T q + r_i, |r_i|
 square and of any correlation, the guaranteed standard deviation is sum_i sigma_i |Phi_i|; its minimum
 is a linear programme (Lidov 1964). Least squares minimises another sum, and is judged here by the same.
 
-A solver's word is a hint: value, constraint residual and lower bound are computed here from the
-weights and multipliers that it returns, and its own status is reported as it stands.
+A solver's word is a hint: value and constraint residual are computed here from the weights that it returns, and
+its own status is reported as it stands.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from __future__ import annotations
 import sys
 import time
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,8 +27,6 @@ from navsym.guaranteed.problem import GuaranteedProblem
 LP_SOLVERS = ("casadi:highs", "casadi:osqp", "cvxpy:HIGHS", "cvxpy:CLARABEL", "cvxpy:OSQP")
 MOST_TIMES = 100_000
 
-#: What a solver says when it believes that it has succeeded.
-SUCCESS = frozenset({"Optimal", "solved", "optimal"})
 SILENT = {"highs": {"highs": {"output_flag": False}}, "osqp": {"osqp": {"verbose": False}}}
 
 
@@ -94,8 +91,6 @@ class ConvexResult:
     weights  : (n,) Phi_i, or None
     residual : max |sum_i H(t_i) Phi_i - P|, computed here; None without weights
     seconds  : wall time of the solver's call
-    lower    : lower bound of the optimum from the returned multipliers, made feasible here; or None
-    claims   : True when the solver calls its answer a success
     """
 
     solver: str
@@ -104,12 +99,6 @@ class ConvexResult:
     weights: Array | None
     residual: float | None
     seconds: float
-    lower: float | None
-    claims: bool
-
-
-#: (weights or None, multipliers or None, status)
-RawAnswer = tuple[Any, Any, str]
 
 
 def guaranteed_lp(problem: GridProblem, *, solver: str = LP_SOLVERS[0]) -> ConvexResult:
@@ -118,7 +107,28 @@ def guaranteed_lp(problem: GridProblem, *, solver: str = LP_SOLVERS[0]) -> Conve
     The weights are split into positive and negative parts. Raises NotEstimableError when P does not
     lie in the range of the regressors, DomainError for an unknown solver.
     """
-    return run_solver(problem, solver, LP_SOLVERS, {"casadi": lp_by_casadi, "cvxpy": lp_by_cvxpy})
+    need_estimable(problem)
+    if solver not in LP_SOLVERS:
+        raise DomainError(f"solver: expected one of {', '.join(LP_SOLVERS)}; got {solver!r}; name one of them")
+    programme, engine = solver.split(":")
+    run = {"casadi": lp_by_casadi, "cvxpy": lp_by_cvxpy}[programme]
+    start = time.perf_counter()
+    found: Any = None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # "may be inaccurate" is in the status too
+            found, status = run(problem, engine)
+    except MemoryError:
+        raise
+    except Exception as reason:  # engines raise types of their own
+        said = (str(reason).strip().splitlines() or [""])[0][:120]
+        status = f"failed: {type(reason).__name__}: {said}"
+    seconds = time.perf_counter() - start
+    weights = None if found is None else np.array(found, dtype=float).reshape(-1)
+    if weights is None or not weights.size or not np.isfinite(weights).all():
+        return ConvexResult(solver, status, None, None, None, seconds)
+    residual = float(np.abs(problem.regressors @ weights - problem.functional).max())
+    return ConvexResult(solver, status, float(problem.bounds @ np.abs(weights)), freeze(weights), residual, seconds)
 
 
 def need_estimable(problem: GridProblem) -> None:
@@ -137,56 +147,6 @@ def need_estimable(problem: GridProblem) -> None:
             f"functional: expected a combination of the regressors at the {H.shape[1]} times; got one "
             f"outside their range (rank {rank} of {H.shape[0]}); add times or estimate fewer unknowns"
         )
-
-
-def run_solver(
-    problem: GridProblem, solver: str, known: tuple[str, ...], runs: dict[str, Callable[[GridProblem, str], RawAnswer]]
-) -> ConvexResult:
-    """Run a solver "programme:engine", measure it, and compute what its answer is worth.
-
-    Raises DomainError for one that is not known.
-    """
-    need_estimable(problem)
-    if solver not in known:
-        raise DomainError(f"solver: expected one of {', '.join(known)}; got {solver!r}; name one of them")
-    programme, engine = solver.split(":")
-    start = time.perf_counter()
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # "may be inaccurate" is in the status too
-            weights, multipliers, status = runs[programme](problem, engine)
-    except MemoryError:
-        raise
-    except Exception as reason:  # engines raise types of their own
-        said = (str(reason).strip().splitlines() or [""])[0][:120]
-        weights, multipliers, status = None, None, f"failed: {type(reason).__name__}: {said}"
-    seconds = time.perf_counter() - start
-    weights = finite_vector(weights)
-    residual = value = None
-    if weights is not None:
-        value = float(problem.bounds @ np.abs(weights))
-        residual = float(np.abs(problem.regressors @ weights - problem.functional).max())
-    lower = dual_lower_bound(problem, finite_vector(multipliers))
-    return ConvexResult(solver, status, value, weights, residual, seconds, lower, status in SUCCESS)
-
-
-def finite_vector(vector: Any) -> Array | None:
-    """A finite read-only vector, or None."""
-    if vector is None:
-        return None
-    array = np.array(vector, dtype=float).reshape(-1)
-    return freeze(array) if array.size and np.isfinite(array).all() else None
-
-
-def dual_lower_bound(problem: GridProblem, multipliers: Array | None) -> float | None:
-    """|x . P| / max_i |x . H(t_i)| / sigma_i: every vector x bounds the optimum from below (weak duality).
-
-    In double precision, hence a bound up to rounding.
-    """
-    if multipliers is None:
-        return None
-    reach = np.abs(multipliers @ problem.regressors / problem.bounds).max()
-    return float(abs(multipliers @ problem.functional) / reach) if reach > 0.0 else None
 
 
 # --- casadi ------------------------------------------------------------------------------------------
@@ -217,7 +177,7 @@ def need_one_highs(engine: str) -> None:
         )
 
 
-def lp_by_casadi(problem: GridProblem, engine: str) -> RawAnswer:
+def lp_by_casadi(problem: GridProblem, engine: str) -> tuple[Any, str]:
     """The linear programme through casadi, with weights = positive part - negative part."""
     import casadi as ca
 
@@ -227,26 +187,18 @@ def lp_by_casadi(problem: GridProblem, engine: str) -> RawAnswer:
     cost = np.concatenate([problem.bounds, problem.bounds])
     answer = solver(g=cost, a=A, lba=problem.functional, uba=problem.functional, lbx=0.0, ubx=np.inf)
     x = np.array(answer["x"]).reshape(-1)
-    return x[:n] - x[n:], np.array(answer["lam_a"]).reshape(-1), str(solver.stats()["return_status"])
+    return x[:n] - x[n:], str(solver.stats()["return_status"])
 
 
 # --- cvxpy -------------------------------------------------------------------------------------------
 
 
-def lp_by_cvxpy(problem: GridProblem, engine: str) -> RawAnswer:
+def lp_by_cvxpy(problem: GridProblem, engine: str) -> tuple[Any, str]:
     """The linear programme through cvxpy, with the absolute value left to it."""
     import cvxpy as cp
 
     weights = cp.Variable(problem.regressors.shape[1])
-    objective = cp.Minimize(problem.bounds @ cp.abs(weights))
-    return solve_by_cvxpy(problem, objective, weights, engine)
-
-
-def solve_by_cvxpy(problem: GridProblem, objective: Any, weights: Any, engine: str) -> RawAnswer:
-    """Run cvxpy, and take weights, multipliers and its own word."""
-    import cvxpy as cp
-
     unbiased = problem.regressors @ weights == problem.functional
-    task = cp.Problem(objective, [unbiased])
+    task = cp.Problem(cp.Minimize(problem.bounds @ cp.abs(weights)), [unbiased])
     task.solve(solver=engine, verbose=False)
-    return weights.value, unbiased.dual_value, str(task.status)
+    return weights.value, str(task.status)

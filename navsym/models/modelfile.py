@@ -176,7 +176,7 @@ Known = Mapping[str, Expr]
 
 def read_basis(document: Table, where: str, parameters: Mapping[str, Parameter], known: Known) -> BasisFile:
     """The [basis] table with its targets."""
-    expect_keys(document, ("basis", "parameters", "targets"), where)
+    expect_keys(document, ("basis", "parameters", "targets", "design"), where)
     place = join_place(where, "basis")
     table = as_table(document["basis"], place)
     expect_keys(table, ("name", "variable", "H", "sigma", "interval"), place)
@@ -245,8 +245,8 @@ def read_targets(document: Table, known: Known, names: tuple[str, ...], where: s
 
 
 TABLES = ("model", "basis", "parameters", "rates", "inputs", "measurement", "piece", "interval", "targets", "ranges")
-#: Tables of the same file that only ``conventions`` reads.
-BESIDE = ("roles", "quantities", "known")
+#: Tables of the same file that only ``conventions`` or ``design`` reads.
+BESIDE = ("roles", "quantities", "known", "design")
 #: Name of the step of a filter among the ranges.
 STEP = "dt"
 

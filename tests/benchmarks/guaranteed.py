@@ -18,11 +18,14 @@ import highspy
 import numpy as np
 import sympy as sp
 
+from navsym.core.simplex import simplex, spread_rows
 from navsym.guaranteed.certificate.basis import cached_basis, make_basis
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
 from navsym.guaranteed.certificate.fixed import certify
 from navsym.guaranteed.phases.family import Family, U
-from navsym.guaranteed.search.exchange import compile_loops, find_contacts
+from navsym.guaranteed.search.alternance import find_alternance, lagrangian, local_maxima
+from navsym.guaranteed.search.exchange import find_contacts
+from navsym.guaranteed.search.kernels import contact_system, grid_values
 from tests.benchmarks.lengths import follow_lengths, values_for_lengths
 
 t = sp.Symbol("t", real=True)
@@ -214,7 +217,8 @@ def compare_lengths(count, grid):
 
 def main(count=10_000, rounds=3, lengths=1000, compiled=False):
     if compiled:
-        compile_loops()
+        for loop in (find_alternance, contact_system, grid_values, lagrangian, local_maxima, simplex, spread_rows):
+            loop.compiled()
         follow_lengths.compiled()
     for name, case in PROBLEMS.items():
         compare_case(name, case, count, rounds)

@@ -291,6 +291,60 @@ FOUR = EXCLUSION | {
     "most": 4,
     "cells": 36,
 }
+# Vector measurements with a bound of each norm; the dual is 1 on the first.
+CONES = {
+    "kind": "cones",
+    "functional": ["1"],
+    "dual": ["1"],
+    "lower": "1",
+    "upper": "1.0001",
+    "bits": 64,
+    "blocks": [
+        {"H": [["3/5"], ["4/5"]], "norm": "l2", "size": [["1", "0"], ["0", "1"]], "weights": ["3/5", "4/5"]},
+        {"H": [["1/2"]], "norm": "linf", "size": [["1"]], "weights": ["0"]},
+        {"H": [["1/4"], ["1/4"]], "norm": "l1", "size": [["1"], ["1"]], "weights": ["0", "0"]},
+    ],
+}
+# Two of four positions, each at the price of 1: a slope is best known from the ends.
+DESIGN = {
+    "kind": "design",
+    "functional": ["0", "1"],
+    "support": [0, 3],
+    "lower": "0.6666",
+    "upper": "0.6667",
+    "bits": 64,
+    "cells": 0,
+    "budget": "2",
+    "costs": {"a": "1", "b": "1", "c": "1", "d": "1"},
+    "duals": [["-0.9999", "0.66663"]],
+    "rows": [{"H": ["1", str(k)], "sigma": "1", "needs": [name]} for k, name in enumerate("abcd")],
+}
+# A sine at an irrational place needs one row only, and the unit vector has a weight that is exactly zero.
+LONELY = DESIGN | {
+    "functional": ["0", "sin(1)"],
+    "support": [1, 2],
+    "lower": "0.99",
+    "upper": "1.01",
+    "duals": [["0", "1.18"]],
+    "rows": [{"H": ["1", "0"], "sigma": "1", "needs": ["a"]}, {"H": ["0", "sin(1)"], "sigma": "1", "needs": ["b"]}],
+}
+# One row at the price of 4 does it, or five rows with one of each kind: 1 + 4 + 16 + 64 + 256 purchases are looked at.
+MANY = DESIGN | {
+    "functional": ["1"] * 5,
+    "support": [0, 21, 22, 23, 24],
+    "lower": "1",
+    "upper": "1",
+    "cells": 36,
+    "budget": "4",
+    "costs": {"all": "4"} | {f"{kind}{k}": "1" for kind in "abcde" for k in range(4)},
+    "duals": [[str(int(i == j)) for i in range(5)] for j in range(5)],
+    "rows": [{"H": ["1"] * 5, "sigma": "1", "needs": ["all"]}]
+    + [
+        {"H": [str(2 * (i == j)) for i in range(5)], "sigma": "1", "needs": [f"{kind}{k}"]}
+        for j, kind in enumerate("abcde")
+        for k in range(4)
+    ],
+}
 # One row; and a dual that is a little off inside its box, as the bounds are not.
 ROW = RANK | {"matrix": [["a", "b"]]}
 OFFSET = (
@@ -464,6 +518,10 @@ GOOD = [
     NONE_GROSS,
     SURE,
     FOUR,
+    CONES,
+    DESIGN,
+    LONELY,
+    MANY,
     POSITIVITY,
     EDGE,
     CELLS,

@@ -19,6 +19,10 @@ UNKNOWNS = ("y1", "y2", "y3")
 VELOCITY = LinearModel([[0, -1, 0], [0, 0, 1], [0, -1, 0]], H=[[1, 0, 0]], states=UNKNOWNS)
 
 
+#: What a solver says when it believes that it has succeeded.
+SUCCESS = ("Optimal", "solved", "optimal")
+
+
 def velocity_correction(T, unknown, intervals=100):
     """z = y1 over [0, T], y1' = -y2, y2' = y3, y3' = -y2; estimate one component of y(T)."""
     times = np.linspace(0.0, T, intervals + 1)
@@ -47,7 +51,7 @@ def optimum(T, unknown):
 def test_on_a_grid_with_the_optimal_instants_the_programme_has_the_closed_value(T, unknown):
     result = guaranteed_lp(velocity_correction(T, unknown, 60))
     assert_allclose(result.value, optimum(T, unknown), rtol=1e-8)
-    assert result.claims
+    assert result.status in SUCCESS
     assert result.residual < 1e-8 * result.value
 
 
@@ -76,13 +80,11 @@ def test_the_support_is_the_beginning_the_middle_and_the_end():
 
 @pytest.mark.parametrize("solver", LP_SOLVERS)
 @pytest.mark.parametrize("unknown", UNKNOWNS)
-def test_every_solver_brackets_the_optimum_of_a_mild_problem(solver, unknown):
+def test_every_solver_finds_the_optimum_of_a_mild_problem(solver, unknown):
     result = guaranteed_lp(velocity_correction(1.5, unknown), solver=solver)
     exact = optimum(1.5, unknown)
     loose = 0.03 if "osqp" in solver.lower() else 1e-6  # a first-order method stops early
     assert_allclose(result.value, exact, rtol=loose)
-    assert result.lower <= exact * (1 + 1e-9)
-    assert_allclose(result.lower, exact, rtol=loose)
     assert result.residual < 1e-4
     assert result.status
 
@@ -103,14 +105,14 @@ def test_a_short_interval_makes_solvers_wrong_one_by_one(solver):
         assert max(misses[:3]) < 1e-6
     if solver == "casadi:osqp":
         assert min(misses) > 1e-6
-        assert any(r.claims for r in results)  # a success claimed and off
+        assert any(r.status in SUCCESS for r in results)  # a success claimed and off
 
 
 def test_a_status_is_no_proof():
     """At T = 1e-4 HiGHS calls a value optimal that is two fifths below the optimum."""
     T = 1e-4
     result = guaranteed_lp(velocity_correction(T, "y2"), solver="casadi:highs")
-    assert result.claims
+    assert result.status in SUCCESS
     assert result.value < 0.6 * optimum(T, "y2")
     assert result.residual > 1e-6  # and its weights are biased
 
@@ -122,8 +124,7 @@ def test_a_solver_that_fails_says_so_and_gives_no_value(monkeypatch):
     monkeypatch.setattr("navsym.guaranteed.convex.lp_by_cvxpy", broken)
     result = guaranteed_lp(velocity_correction(1.0, "y1"), solver="cvxpy:CLARABEL")
     assert result.status == "failed: RuntimeError: licence expired"
-    assert (result.value, result.weights, result.residual, result.lower) == (None, None, None, None)
-    assert not result.claims
+    assert (result.value, result.weights, result.residual) == (None, None, None)
 
 
 def test_a_steep_basis_is_solved_or_shown_to_fail_but_not_called_unestimable():
@@ -153,4 +154,3 @@ def test_a_second_highs_library_is_reported_before_it_ends_the_process(monkeypat
     monkeypatch.setitem(sys.modules, "highspy", SimpleNamespace(__file__=str(tmp_path / "__init__.py")))
     result = guaranteed_lp(velocity_correction(1.0, "y1"), solver="casadi:highs")
     assert result.status.startswith("failed: MissingEngineError: casadi:highs: expected one HiGHS library")
-    assert not result.claims

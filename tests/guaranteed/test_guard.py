@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import resource
+import time
 from fractions import Fraction
 
 import numpy as np
@@ -571,8 +573,6 @@ def test_a_system_that_varies_and_a_parameter_without_a_value_are_refused():
 
 @pytest.mark.slow
 def test_a_hundred_thousand_epochs_need_constant_memory():
-    import resource
-
     model = nav.Model("x v", [["0", "1"], ["-1", "0"]], ["x"], targets={"speed": "v"})
     guard = nav.Guard(model, "speed", memory=50)
     rng = np.random.default_rng(4)
@@ -591,27 +591,37 @@ def test_a_hundred_thousand_epochs_need_constant_memory():
 # Many epochs
 
 
-def stream_long(count):
-    """A stream with gaps and changing bounds; every gap of the bounds is looked at, every thousandth epoch replayed."""
+def stream_long(count, gaps):
+    """A stream with missing measurements and changing bounds: the median processor time of an epoch, in microseconds.
+
+    Every gap between the bounds is looked at, and every thousandth epoch is replayed by the checker.
+    """
     model = nav.Model("x v a", [["0", "1", "0"], ["0", "0", "1"], ["0", "-1", "0"]], ["x", "v"], ["1", "1/2"])
     guard, rng, replayed = nav.Guard(model, "v", "variance", memory=16), np.random.default_rng(6), 0
+    times = np.zeros(count)
     for k in range(count):
-        z = [None if rng.random() < 0.1 else int(rng.integers(-9, 9)) for _ in range(2)]
-        sigma = {"z1": 2} if rng.random() < 0.05 else None
+        z = [None if rng.random() < gaps else int(rng.integers(-9, 9)) for _ in range(2)]
+        sigma = {"z1": 2} if rng.random() < gaps / 2 else None
+        start = time.thread_time()
         estimate = guard.step(z, t=Fraction(k, 4), sigma=sigma)
+        times[k] = time.thread_time() - start
         if estimate.radius is not None:
             assert (estimate.high - estimate.low) <= 1e-12 * estimate.high
         assert len(guard.memory.rows) <= 400 and len(guard.flow.memory) <= 256
         if k % 1000 == 999:
             assert nav.check(estimate)[0].status == "ACCEPTED"
             replayed += 1
-    return replayed
+    assert replayed == count // 1000
+    return float(np.median(times)) * 1e6
 
 
 def test_two_thousand_epochs_keep_their_gap_and_a_constant_memory():
-    assert stream_long(2000) == 2
+    assert stream_long(2000, 0.1) > 0
 
 
 @pytest.mark.slow
 def test_a_million_epochs_keep_their_gap_and_a_constant_memory():
-    assert stream_long(1_000_000) == 1000
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    median = stream_long(1_000_000, 0.005)
+    print(f"median {median:.0f} us an epoch")  # documented, and not asserted: it depends on the machine
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 100_000  # kB; times take 8 MB of it

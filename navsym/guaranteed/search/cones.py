@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from flint import arb, arb_mat, fmpq, fmpq_mat
 from navsym.core.balls import precision
 from navsym.core.exact import to_fmpq
 from navsym.guaranteed.search.kernels import Array
+from navsym.guaranteed.streaming.exchange import Cloud, exchange
 
 #: What a measurement of the dual may be and count as zero, in bounds; and a weight, as part of the largest.
 ACTIVE, NEGLIGIBLE = 1e-6, 1e-7
@@ -79,14 +81,34 @@ class Proposal:
     weights: list[list[fmpq]]
 
 
-def propose_optimum(cones: Sequence[Cone], functional: fmpq_mat) -> Proposal | None:
-    """Dual and weights by clarabel, sharpened where the active constraints determine them; None where it fails."""
+def propose_optima(cones: Sequence[Cone], functional: fmpq_mat) -> list[Proposal]:
+    """Duals and weights, of which one may be the optimum: of boxes alone by the exchange of scalar measurements.
+
+    Of other cones by clarabel, sharpened where the active constraints determine them, and as it is.
+    """
+    if all(cone.norm == "linf" for cone in cones):
+        return exchange_rows(cones, functional)
     found = solve_cones(cones, functional)
     if found is None:
-        return None
+        return []
     x, weights = found
     sharp = sharpen(cones, functional, x, weights)
-    return sharp or Proposal(exact_list(x), [exact_list(w) for w in weights])
+    return [*([] if sharp is None else [sharp]), Proposal(exact_list(x), [exact_list(w) for w in weights])]
+
+
+def exchange_rows(cones: Sequence[Cone], functional: fmpq_mat) -> list[Proposal]:
+    """The optimum over boxes, whose entries are measurements by themselves."""
+    rows = [arb_mat([row]) for cone in cones for row in cone.H.tolist()]
+    sigma = [arb(e) for cone in cones for e in cone.size.entries()]
+    cloud = Cloud(rows, sigma, np.vstack([to_array(cone.scaled()) for cone in cones]))
+    found = exchange(cloud, arb_mat(functional.transpose()), cloud.start() or [])
+    if found is None:
+        return []
+    flat = [fmpq(0)] * len(rows)
+    for k, w in zip(found.basis, found.weights.entries(), strict=True):
+        flat[k] = to_fmpq(w.mid())
+    ends = [sum(cone.rows for cone in cones[:k]) for k in range(len(cones) + 1)]
+    return [Proposal([to_fmpq(e.mid()) for e in found.dual.entries()], [flat[a:b] for a, b in pairwise(ends)])]
 
 
 def exact_list(values: Array) -> list[fmpq]:

@@ -367,12 +367,6 @@ def places_apart(where: Ints, v: Array, panel: Ints, u: Array) -> tuple[tuple[in
     return tuple(rest[:MOST_TOUCHES])
 
 
-def compile_loops() -> None:
-    """Compile the loops of the search now: for many problems, where waiting for the meter would cost more."""
-    for loop in (find_alternance, contact_system, grid_values, lagrangian, local_maxima, simplex, spread_rows):
-        loop.compiled()
-
-
 # Among several optimal duals one that leaves as much room below its bound as it can, off the contacts.
 
 #: Less room than this is none.

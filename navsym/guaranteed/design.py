@@ -1,0 +1,448 @@
+"""Design: the instants, sensors and grades of sensors within a budget whose guaranteed error is least, with a proof.
+
+A selection buys sensors and instants, and may use the rows whose needs it bought. Its error is ``min sum sigma |w|``
+over unbiased weights on these rows. A dual x with ``|h . x| <= sigma`` on the rows of a selection bounds its error from
+below by ``x . P``: so whoever has a smaller error buys, for each dual, the needs of a row at which that dual fails.
+Duals are collected until no purchase within the budget does so for all of them (implicit hitting sets; Moreno-Centeno
+and Karp 2013).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from flint import arb, arb_mat, fmpq, fmpq_mat
+
+from navsym.claims import CERTIFIED, OPEN, Status
+from navsym.claims.display import write_card, write_table
+from navsym.core.answers import Answer
+from navsym.core.balls import precision
+from navsym.core.errors import DomainError, EmptyError, NotEstimableError, TooLargeError, UnknownSymbolError
+from navsym.core.exact import decimal, from_decimal, lower_end, upper_end
+from navsym.core.numbers import Number
+from navsym.guaranteed.streaming.exchange import Cloud, Optimum, bounds_of, exchange, rehearse, solve_basis, to_doubles
+from navsym.guaranteed.streaming.flow import BITS, Flow
+from navsym.guaranteed.streaming.memory import Row
+from navsym.guaranteed.streaming.numbers import middle, read_exact, write_rational
+from navsym.language.files import name_file
+from navsym.language.names import quote, suggest_nearest
+from navsym.language.schema import as_table, expect_keys
+from navsym.language.tomlfile import read_toml
+from navsym.models.model import contents_of, file_in_errors
+
+Needs = frozenset[str]
+
+MOST_ROWS, MOST_DUALS, MOST_CELLS = 400, 3000, 80_000
+DIGITS, PLACES = 24, 40
+#: The proved lower bound is below the value by this part of it.
+MARGIN = fmpq(1, 10**13)
+#: A weight beside the rows costs so many times what the dual of a basis is worth.
+FAR = 10**6
+#: Parts of the way at which a slope in time is taken, in seconds: its error is of this order.
+STEP = fmpq(1, 2**60)
+ORDERS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class DesignPoint:
+    """One measurement of a design.
+
+    at, measurement, sigma : where it stands, and its noise bound, as exact text
+    weight : in units of the target per unit of the measurement
+    share  : part of the value: with this bound 1 % larger the value grows by 1 % of it, to first order; for independent
+             errors these are the shares of repetitions with the least variance (Elfving 1952)
+    slope  : how the value changes with this instant, per unit of time, to first order; None where fewer measurements
+             than unknowns have a weight, because the dual is then not unique
+    """
+
+    at: str
+    measurement: str
+    sigma: str
+    weight: float
+    share: float
+    slope: float | None
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Design(Answer):
+    """The selection within a budget whose guaranteed error is least.
+
+    value       : enclosure of that error; its lower bound holds for every selection within the budget
+    bought      : what the selection needs: instants as "t = 1/2", sensors by name, grades as "name 1/2"
+    cost        : what that costs, at most the budget
+    points      : measurements with a weight, see :class:`DesignPoint`
+    status      : CERTIFIED where the two bounds meet, else OPEN
+    certificate : plain data that the independent checker replays, kind "design"
+
+    >>> import navsym as nav
+    >>> model = nav.Model(states="x v", F=[["0", "1"], ["0", "0"]], H=["x"], targets={"v": "v"})
+    >>> found = nav.design(model, times=range(5), budget=2)
+    >>> found.bought, found.points[0].share, found.points[0].slope, found.check()
+    (('t = 0', 't = 4', 'z1'), 0.5, 0.125, <1 checked, all ACCEPTED>)
+    """
+
+    target: str
+    value: Number
+    bought: tuple[str, ...]
+    cost: str
+    points: tuple[DesignPoint, ...]
+    status: Status
+    certificate: Mapping[str, Any]
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym solve --design``."""
+        points = [{name: getattr(p, name) for name in DesignPoint.__slots__} for p in self.points]
+        head = {"target": self.target, "status": str(self.status), "value": self.value.document()}
+        rest = {"bought": list(self.bought), "cost": self.cost, "support": points}
+        return head | rest | {"certificate": dict(self.certificate)}
+
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """The certificate in a list, for :func:`navsym.check`."""
+        return [self.certificate]
+
+    def __repr__(self) -> str:
+        where = ", ".join(f"{p.measurement} at {p.at}" for p in self.points)
+        return f"Design({quote(self.target)[1:-1]}: {self.value}, cost {self.cost}: {where}; {self.status})"
+
+    def _repr_html_(self) -> str:
+        names = DesignPoint.__slots__
+        rows = [tuple(str(getattr(p, n)) for n in names) for p in self.points]
+        return write_card([repr(self), write_table(names, rows)], str(self.status))
+
+
+def design(
+    model: Any,
+    target: str | None = None,
+    *,
+    times: Sequence[Any] | None = None,
+    budget: Any = None,
+    instant: Any = 1,
+    sensors: Mapping[str, Any] | None = None,
+    values: Mapping[str, Any] | None = None,
+) -> Design:
+    """The instants, sensors and noise bounds within a budget that have the least guaranteed error of a target.
+
+    The target is that of the last of the times. Every measurement needs its instant and its sensor, each bought once.
+    The value is proved to be the least of all selections within the budget: certificate of kind "design".
+
+    model   : a :class:`navsym.Model`, or the path of a model file, whose table [design] holds what is left out here
+    times   : instants to choose from
+    budget  : what all that is bought may cost
+    instant : what an instant costs
+    sensors : measurement -> its cost, or a list of grades (noise bound, cost); those left out are not used; by default
+              all, free of charge, so that the budget counts instants
+
+    Raises NotEstimableError where no selection within the budget is seen to show the target.
+
+    >>> import navsym as nav
+    >>> model = nav.Model(states="x v", F=[["0", "1"], ["0", "0"]], H=["x", "v"], targets={"start": "x - 4*v"})
+    >>> nav.design(model, times=range(5), budget=6, sensors={"z1": 1, "z2": [("2", 1), ("1/2", 4)]})
+    Design(start: 1, cost 2: z1 at 0; CERTIFIED)
+    """
+    with file_in_errors(model):
+        if isinstance(model, str | os.PathLike) and times is None:
+            table = as_table(read_toml(model).get("design", {}), f"{name_file(model)}: design")
+            expect_keys(table, ("times", "budget", "instant", "sensors"), f"{name_file(model)}: design")
+            if "times" in table and "budget" in table:
+                return design(Path(model), target, values=values, **table)
+        if times is None or budget is None:
+            message = "expected times and a budget; got none; give both, or a table [design] in the model file"
+            raise EmptyError(message, where="design")
+        with precision(BITS):
+            flow = Flow(contents_of(model, values, {}, "design"), target, "design")
+            rows, needs, prices = list_candidates(flow, times, instant, sensors)
+            limit = read_exact(budget, "design: budget")
+            return Market(flow, rows, needs, prices, limit).answer()
+
+
+def list_candidates(
+    flow: Flow, times: Sequence[Any], instant: Any, sensors: Mapping[str, Any] | None
+) -> tuple[list[Row], list[Needs], dict[str, fmpq]]:
+    """All rows that may be bought, what each needs, and what things cost. Raises DomainError, TooLargeError."""
+    if isinstance(times, str) or not isinstance(times, Iterable) or not isinstance(sensors, Mapping | None):
+        message = "expected a list of times and a mapping of sensors to costs; got others; write them so"
+        raise DomainError(message, where="design")
+    at = sorted({read_exact(t, "design: times") for t in times})
+    prices = {f"t = {write_rational(t)}": read_exact(instant, "design: instant") for t in at}
+    offers: list[tuple[int, str, fmpq | None]] = []
+    for name, offer in (dict.fromkeys(flow.names, 0) if sensors is None else sensors).items():
+        if name not in flow.names:
+            hint = suggest_nearest(name, flow.names)
+            message = f"expected a measurement of the model; got {quote(name)}; correct it: {hint}"
+            raise UnknownSymbolError(message, where="design: sensors")
+        where = f"design: sensors.{name}"
+        grades: Sequence[Any] = offer if isinstance(offer, list | tuple) else [(None, offer)]
+        for grade in grades:
+            if not isinstance(grade, list | tuple) or len(grade) != 2:
+                message = f"expected a pair (noise bound, cost); got {quote(grade)}; write two numbers"
+                raise DomainError(message, where=where)
+            own = None if grades is not offer else read_exact(grade[0], where)
+            if own is not None and own <= 0:
+                raise DomainError(f"expected a positive noise bound; got {quote(grade[0])}; correct it", where=where)
+            item = name if own is None else f"{name} {write_rational(own)}"
+            prices[item] = read_exact(grade[1], where)
+            offers.append((flow.names.index(name), item, own))
+    negative = [name for name, price in prices.items() if price < 0]
+    if negative or not at or not offers:
+        got = f"a negative one of {quote(negative[0])}" if negative else "no instants or no sensors"
+        raise DomainError(f"expected instants, sensors and costs of at least 0; got {got}; correct it", where="design")
+    if len(at) * len(offers) > MOST_ROWS:
+        got = f"{len(at)} instants of {len(offers)} sensors"
+        raise TooLargeError(f"expected at most {MOST_ROWS} measurements; got {got}; thin them out", where="design")
+    rows, needs = [], []
+    for t in at:
+        for j, item, own in offers:
+            sigma, text = flow.sigma(j, t) if own is None else (arb(own), write_rational(own))
+            rows.append(Row(t, j, fmpq(0), sigma, text, own))
+            needs.append(frozenset({f"t = {write_rational(t)}", item}))
+    return rows, needs, prices
+
+
+class Market:
+    """The rows on offer, and the duals collected so far; unit vectors beside the rows make every selection solvable."""
+
+    def __init__(self, flow: Flow, rows: list[Row], needs: list[Needs], prices: dict[str, fmpq], budget: fmpq):
+        self.flow, self.rows, self.needs, self.prices, self.budget = flow, rows, needs, prices, budget
+        self.now = rows[-1].t
+        flow.choose_unknowns(frozenset(row.j for row in rows))
+        self.m = flow.size
+        self.table = arb_mat([self.row_at(row.j, row.t).entries() for row in rows])
+        self.target = flow.cut(flow.row_of_target)
+        self.exact = [flow.exact_row(row.j, row.t, self.now) for row in rows]
+        self.units = [[fmpq(int(i == k)) for i in range(self.m)] for k in range(self.m)]
+        self.cloud = self.make_cloud()
+        self.names = list(prices)
+        self.bits = [sum(1 << self.names.index(name) for name in n) for n in needs]
+        self.free = sum(1 << k for k, price in enumerate(prices.values()) if price == 0)
+        self.known: dict[int, fmpq] = {}
+        self.duals: dict[frozenset[int], arb_mat] = {}
+        self.best: Optimum | None = None
+        self.first = self.optimum(set(range(len(rows))))
+        self.least = FAR // 1000 * bounds_of(self.cloud, self.first)[1]
+        self.random = np.random.default_rng(0)
+
+    def make_cloud(self) -> Cloud:
+        """The rows and the unit vectors as the exchange takes them."""
+        lines, bounds = self.table.tolist(), [row.sigma for row in self.rows]
+        reach = np.linalg.pinv([[middle(e / s) for e in v] for v, s in zip(lines, bounds, strict=True)])
+        bounds += [arb(int(np.ceil(FAR * max(r, 1e-6)))) for r in np.abs(reach).sum(axis=1)]
+        lines += [list(map(arb, line)) for line in self.units]
+        balls = [[e / s for e in v] for v, s in zip(lines, bounds, strict=True)]
+        wide = max(float(e.rad()) for v in balls for e in v)
+        return Cloud([arb_mat([v]) for v in lines], bounds, np.array([list(map(middle, v)) for v in balls]), wide=wide)
+
+    def price(self, items: int) -> fmpq:
+        """What things cost together; one bit for each."""
+        if items not in self.known:
+            self.known[items] = sum((p for k, p in enumerate(self.prices.values()) if items >> k & 1), fmpq(0))
+        return self.known[items]
+
+    def mask(self, rows: set[int]) -> Any:
+        """Which rows and unit vectors may be used."""
+        return np.array([*(i in rows for i in range(len(self.rows))), *[True] * self.m])
+
+    def optimum(self, rows: set[int]) -> Optimum:
+        """The optimum over some rows and the unit vectors."""
+        n = len(self.rows)
+        found = exchange(replace(self.cloud, active=self.mask(rows)), self.target, range(n, n + self.m))
+        if found is None:
+            raise TooLargeError("expected regressors of like size; got an exchange without end; scale the unknowns")
+        return found
+
+    def weigh(self, found: Optimum) -> list[tuple[int, arb]] | None:
+        """Rows and weights of an optimum; None where a unit vector carries weight, or may."""
+        n = len(self.rows)
+        if max(found.basis) < n:
+            return list(zip(found.basis, found.weights.entries(), strict=True))
+        lines = [None if row is None else [row[c] for c in self.flow.columns] for row in self.exact]
+        exact: list[Any] = [[*lines, *self.units][k] for k in found.basis]
+        goal: list[Any] = [[self.flow.exact_target(k)] for k in self.flow.columns]
+        weights: Any
+        if None in exact or [None] in goal:
+            columns = arb_mat([self.cloud.vectors[k].entries() for k in found.basis]).transpose()
+            weights = columns.solve(self.target.transpose(), algorithm="lu").entries()  # keeps zeros
+        else:
+            weights = fmpq_mat(exact).transpose().solve(fmpq_mat(goal)).entries()
+        zeros = [w == 0 for w in weights]
+        pairs = [(k, arb(w)) for k, w, zero in zip(found.basis, weights, zeros, strict=True) if not zero]
+        return pairs if all(k < n for k, _ in pairs) else None
+
+    def failing(self, dual: arb_mat, value: arb) -> tuple[frozenset[int], arb_mat]:
+        """The needs of rows at which the dual, scaled to the goal, exceeds the bound; and that dual, as decimals."""
+        scale = self.goal / value
+        x = arb_mat([[arb(from_decimal(decimal(e * scale, PLACES)))] for e in dual.entries()])
+        return self.refused(x), x
+
+    def refused(self, x: arb_mat) -> frozenset[int]:
+        """The needs of rows at which a dual exceeds the bound, or may."""
+        sizes = (self.table * x).entries()
+        return frozenset(n for n, f, row in zip(self.bits, sizes, self.rows, strict=True) if not abs(f) <= row.sigma)
+
+    def search(self) -> bool:
+        """Collect duals; whether they exclude every selection that is better than the best."""
+        self.improve(self.fill(0)[1])
+        self.duals = dict([self.failing(self.first.dual, bounds_of(self.cloud, self.first)[0])])
+        while len(self.duals) < MOST_DUALS:
+            nodes = count()
+            bought = self.buy(list(self.duals), self.free, nodes)
+            if bought is None:
+                return True
+            if next(nodes) > MOST_CELLS:
+                return False
+            rows, found = self.fill(bought)
+            before = self.least
+            self.improve(found)
+            if self.least is not before:
+                again = (self.failing(x, (self.target * x)[0, 0]) for x in self.duals.values())
+                self.duals = dict(again)
+            known = len(self.duals)
+            for _ in range(ORDERS):
+                dual = self.refute(set(rows), found)
+                self.duals.setdefault(*self.failing(dual.dual, bounds_of(self.cloud, dual)[0]))
+            if len(self.duals) == known and self.least is before:
+                return False  # balls do not tell whether this selection shows the target
+        return False
+
+    @property
+    def goal(self) -> arb:
+        """What no selection may be shown to fall below: a little less than the least error so far."""
+        return self.least * arb(1 - MARGIN / 2)
+
+    def buy(self, sets: list[frozenset[int]], bought: int, nodes: Iterator[int]) -> int | None:
+        """Things within the budget that meet all sets; the checker goes the same way."""
+        first = min(sets, key=len, default=None)
+        if next(nodes) > MOST_CELLS or first is None:
+            return bought
+        for larger in {bought | n for n in first}:
+            if self.price(larger) <= self.budget:
+                found = self.buy([s for s in sets if all(n & ~larger for n in s)], larger, nodes)
+                if found is not None:
+                    return found
+        return None
+
+    def fill(self, bought: int) -> tuple[set[int], Optimum]:
+        """The rows of a purchase and their optimum; the rest of the budget goes to rows that the dual refuses most."""
+        while True:
+            rows = {i for i, n in enumerate(self.bits) if not n & ~bought}
+            found = self.optimum(rows)
+            sizes = np.abs(self.cloud.scaled[: len(self.rows)] @ [middle(e) for e in found.dual.entries()])
+            wanted = (bought | self.bits[i] for i in np.argsort(-sizes) if sizes[i] > 1 + 1e-9 and i not in rows)
+            larger = next((items for items in wanted if self.price(items) <= self.budget), None)
+            if larger is None:
+                return rows, found
+            bought = larger
+
+    def improve(self, found: Optimum) -> None:
+        """Keep an optimum where it is the best so far, and go on from what its weights need as long as that helps."""
+        while (pairs := self.weigh(found)) is not None and (cost := bounds_of(self.cloud, found)[1]) < self.least:
+            self.least, self.best = cost, found
+            bought = 0
+            for i, w in pairs:
+                bought |= 0 if w.contains(0) else self.bits[i]
+            found = self.fill(bought)[1]
+
+    def refute(self, rows: set[int], found: Optimum) -> Optimum:
+        """A dual that is worth the goal and fails at few rows: in doubles they are allowed one by one while it is."""
+        goal, n = middle(self.goal), len(self.rows)
+        basis, signs, worth = found.basis, found.signs, middle(bounds_of(self.cloud, found)[0])
+        x = np.array([middle(e) for e in found.dual.entries()])
+        active, P = self.mask(rows), to_doubles(self.target)
+        cloud = replace(self.cloud, active=active)
+        for i in self.random.permutation(n):
+            if active[i]:
+                continue
+            active[i] = True
+            if abs(cloud.scaled[i] @ x) * goal < worth:
+                continue
+            other = rehearse(cloud, P, list(basis), list(signs))
+            y = np.linalg.solve(cloud.scaled[other[0]], np.array(other[1], dtype=float))
+            if P @ y >= goal * (1 + 1e-9) and np.abs(cloud.scaled[active] @ y).max() < 1 + 1e-9:
+                (basis, signs), x, worth = other, y, float(P @ y)
+            else:
+                active[i] = False
+        return solve_basis(self.cloud, self.target, list(basis), list(signs)) or found
+
+    def answer(self) -> Design:
+        """The best selection with its certificate."""
+        done = self.search()
+        pairs = self.weigh(self.best) if self.best else None
+        if self.best is None or pairs is None:
+            got = f"none below {middle(self.least):.3g}" if done else "none in so many steps"
+            message = f"expected a selection within the budget that shows {quote(self.flow.target)}; got {got}"
+            raise NotEstimableError(f"{message}; raise the budget or add instants", where="design")
+        cost, found = self.least, self.best
+        duals = self.drop_idle() if done else [self.least_dual()]
+        points = self.list_points(pairs, found.dual, cost)
+        used = {i for i, w in pairs if not w.contains(0)}
+        bought = sum(1 << k for k, name in enumerate(self.names) if any(name in self.needs[i] for i in used))
+        certificate = self.write_certificate(found, duals, cost)
+        value = Number(certificate["lower"], certificate["upper"])
+        words = tuple(name for k, name in enumerate(self.names) if bought >> k & 1)
+        status = CERTIFIED if done else OPEN
+        return Design(self.flow.target, value, words, write_rational(self.price(bought)), points, status, certificate)
+
+    def drop_idle(self) -> list[arb_mat]:
+        """Duals without which a better selection would not be excluded."""
+        needed = dict(self.duals)
+        for sets in self.duals:
+            rest = [s for s in needed if s != sets]
+            if self.buy(rest, self.free, count()) is None:
+                del needed[sets]
+        return list(needed.values())
+
+    def least_dual(self) -> arb_mat:
+        """The dual of all rows, which bounds every selection."""
+        found = self.optimum(set(range(len(self.rows))))
+        return arb_mat([[arb(from_decimal(decimal(e * arb(1 - MARGIN), PLACES)))] for e in found.dual.entries()])
+
+    def list_points(self, pairs: Sequence[tuple[int, arb]], dual: arb_mat, cost: arb) -> tuple[DesignPoint, ...]:
+        """The support with its sensitivities: ``dV/dsigma = |w|``, ``dV/dt = -w h'(t) . x``."""
+        points, used = [], [(i, w) for i, w in sorted(pairs) if not w.contains(0)]
+        for i, w in used:
+            row, slope = self.rows[i], None
+            if len(used) == self.m:
+                slope = middle(
+                    -w * ((self.row_at(row.j, row.t + STEP) - self.row_at(row.j, row.t)) * dual)[0, 0] / STEP
+                )
+            share, name = middle(row.sigma * abs(w) / cost), self.flow.names[row.j]
+            points.append(DesignPoint(write_rational(row.t), name, row.text, middle(w), share, slope))
+        return tuple(points)
+
+    def row_at(self, j: int, t: fmpq) -> arb_mat:
+        """A measurement at a time in the kept unknowns at the time of the estimate; also a little after it."""
+        if t <= self.now or not self.flow.F:
+            return self.flow.cut(arb_mat([self.flow.ball_row(j, t, self.now)]))
+        later = self.flow.transition(self.now, t)
+        return self.flow.cut(self.flow.row(j, t) if later is None else self.flow.row(j, t) * later)
+
+    def write_certificate(self, found: Optimum, duals: Sequence[arb_mat], cost: arb) -> dict[str, Any]:
+        """The certificate of kind design."""
+        flow, columns, rows = self.flow, self.flow.columns, []
+        for row, numbers, needs in zip(self.rows, self.exact, self.needs, strict=True):
+            texts = flow.row_text(row.j, row.t, self.now) if numbers is None else [write_rational(e) for e in numbers]
+            if texts is None:
+                message = "expected an F whose exp(F t) has a formula; got another; simplify F"
+                raise DomainError(message, where="design: model")
+            rows.append({"H": [texts[k] for k in columns], "sigma": row.text, "needs": sorted(needs)})
+        worth = min(((self.target * x)[0, 0] for x in duals), key=middle)
+        nodes = count()
+        self.buy([self.refused(x) for x in duals], self.free, nodes)
+        return {
+            "kind": "design",
+            "rows": rows,
+            "costs": {name: write_rational(price) for name, price in self.prices.items()},
+            "budget": write_rational(self.budget),
+            "functional": [flow.functional_text(k) for k in columns],
+            "support": list(found.basis),
+            "duals": [[decimal(e, PLACES) for e in x.entries()] for x in duals],
+            "lower": lower_end(worth, DIGITS),
+            "upper": upper_end(cost, DIGITS),
+            "bits": BITS + 64,
+            "cells": next(nodes) // 4 + 1,
+        }
