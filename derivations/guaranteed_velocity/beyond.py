@@ -210,7 +210,7 @@ def contacts(dual: tuple, below: sp.Expr, above: sp.Expr) -> Equation:
 
 @claim("range.y1.contacts")
 def velocity_touches_once():
-    """y1, every T: 1 - x.H = sin^2(s/2), s = T - tau, for the dual (1, 0, 1/2): before T < 2 pi no other contact.
+    """y1, every T: 1 - x.H = sin^2(s/2), s = T - tau, for the dual (1, 0, 1/2): for T < 2 pi one contact.
 
     Every optimal weight function lives on the contacts of every optimal dual, so that the estimate is unique for
     T < 2 pi. The argument from (4.11) does not apply, since the dual (1, 0, 0) touches everywhere.

@@ -354,7 +354,7 @@ def dual_of_a_polynomial():
 @claim(
     "3.3.min",
     expect=REFUTED,
-    slip="scan",
+    slip="undecidable",
     reason="z_j stands below the minimum; the polynomial has the coefficients u_j, as (3.4) and (4.2) have them",
 )
 def variables_of_the_minimum():
@@ -426,7 +426,7 @@ def total_variation() -> sp.Expr:
 
 @claim("3.more-measurements")
 def using_all_measurements_can_be_worse():
-    """Least squares on five equal steps is less accurate under its worst correlation than three instants."""
+    """y3, T = pi/2: least squares at 0, pi/8 ... pi/2 has a larger guaranteed error than the three instants."""
     at = [sp.pi / 8 * k for k in range(5)]
     rows = sp.Matrix.hstack(*(H(t).subs(T, sp.pi / 2) for t in at))
     normal = rows * rows.T

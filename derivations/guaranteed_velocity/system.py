@@ -159,7 +159,7 @@ def third_component():
 
 @claim("1.9.root-cause")
 def reversed_argument():
-    """The printed (1.9) is exp(A*(T - tau)) h1: the argument of (1.8) was taken with the other sign."""
+    """The printed (1.9) is exp(A*(T - tau)) h1: (1.8) with the other sign of its argument."""
     printed = sp.Matrix([1, -sp.sin(T - tau), sp.cos(T - tau) - 1])
     reversed_time = transition_matrix(sp.Matrix(CHANNEL.F).T, T - tau).matrix * sp.Matrix([1, 0, 0])
     return Equation(printed=printed, derived=reversed_time)

@@ -34,7 +34,7 @@ ENTRIES: tuple[Claim, ...] = tuple(
 @claim(
     "4.11.N13",
     expect=REFUTED,
-    slip="scan",
+    slip="undecidable",
     reason="H(T) = (1, 0, 0); with a zero column det N would vanish, while the printed determinant is right",
 )
 def last_entry_of_the_first_row():
@@ -228,8 +228,8 @@ def longitudinal_tilt_estimate_corrected():
 @claim(
     "4.16.y6",
     expect=REFUTED,
-    slip="scan",
-    reason="a bracket is missing after 2 cos(T/2): read as it stands, 1 is not multiplied by the measurement",
+    slip="undecidable",
+    reason="(4.14) has the bracket that is missing here after 2 cos(T/2): read as it stands, 1 is not multiplied by z",
 )
 def longitudinal_drift_estimate():
     """The estimate of y6 with the brackets as they stand."""

@@ -72,7 +72,7 @@ STATEMENTS = (
     ),
     (
         "1.6.kalman_unique",
-        "two steady Riccati solutions differ by D with A_1 D + D A_2^T = 0, A_i = G_x - P_i g_x g_x^T/r",
+        "Riccati rates of P_1, P_2 differ by A_1 D + D A_2^T, D = P_1 - P_2: one start, one solution",
         "Theta @ P1 + P1 @ Theta.T - P1 @ g_x.T @ g_x @ P1 - Theta @ P2 - P2 @ Theta.T + P2 @ g_x.T @ g_x @ P2",
         "(Theta - P1 @ g_x.T @ g_x) @ (P1 - P2) + (P1 - P2) @ (Theta - P2 @ g_x.T @ g_x).T",
         "P1 = P1.T",
@@ -92,12 +92,6 @@ STATEMENTS = (
         "the error of (1.11) is driven by that of x through G_z1 alone",
         "Phi_x @ x + Phi_z @ z + q_z - Phi_x @ x_o - Phi_z @ z_o - (g_z @ z + r_z - g_z @ z_o)*K_z",
         "Phi_x @ (x - x_o) + (Phi_z - K_z @ g_z) @ (z - z_o) + q_z - r_z*K_z",
-    ),
-    (
-        "1.12.covariance",
-        "xi° has the error matrix L^-1 A L^-T: outer products, d the error of (x, z) and G for L^-1",
-        "(G @ d) @ (G @ d).T",
-        "G @ (d @ d.T) @ G.T",
     ),
     (
         "1.13.model",

@@ -81,47 +81,6 @@ def transformation_is_invertible():
         yield sp.eye(s.n), L * back
 
 
-@claim("1.9.z")
-def motion_of_z():
-    """dz/dt = G_z1 x + G_z2 z with the blocks of (1.10): equal to L_z G for every state."""
-    for s in systems():
-        C1, C2 = free("x", s.m), free("z", s.rest)
-        L_x, L_z = C1 * s.chain(1, s.m), C2 * s.chain(2, s.rest)
-        phi = phi_of(s)
-        G_z1 = C2 * last_row(s.rest, phi[: s.m]) * exact_inverse("C1", C1)
-        G_z2 = C2 * companion(phi[s.m :]) * exact_inverse("C2", C2)
-        yield G_z1 * L_x + G_z2 * L_z, L_z * s.G
-
-
-@claim("1.9.sigma2")
-def output_of_z():
-    """sigma_2 = g_z^T z: the second measurement is a function of z alone."""
-    derived, printed = [], []
-    for s in systems():
-        _, back = coordinates(s, free("x", s.m), free("z", s.rest))
-        printed += [sp.Integer(0)] * s.m
-        derived += list((s.h(2).T * back)[:, : s.m])
-    return Equation(printed, derived)
-
-
-@claim("1.10.Gz1")
-def drive_of_z():
-    """G_z1 = C_2 Phi_x C_1^-1, the lower left block of the transformed system."""
-    for s in systems():
-        C1, C2 = free("x", s.m), free("z", s.rest)
-        L, back = coordinates(s, C1, C2)
-        yield C2 * last_row(s.rest, phi_of(s)[: s.m]) * exact_inverse("C1", C1), (L * s.G * back)[s.m :, : s.m]
-
-
-@claim("1.10.Gz2")
-def matrix_of_z():
-    """G_z2 = C_2 Phi_z C_2^-1, the lower right block of the transformed system."""
-    for s in systems():
-        C2 = free("z", s.rest)
-        L, back = coordinates(s, free("x", s.m), C2)
-        yield C2 * companion(phi_of(s)[s.m :]) * exact_inverse("C2", C2), (L * s.G * back)[s.m :, s.m :]
-
-
 @claim(
     "1.10.gz",
     expect=REFUTED,
@@ -212,16 +171,6 @@ def closed_loop(b: dict[str, sp.Matrix]) -> sp.Matrix:
 PAIRS = ((1, 1), (2, 1), (1, 2), (2, 2), (3, 2))
 
 
-@claim("1.11.error")
-def error_dynamics():
-    """The error of (1.6), (1.11) is block triangular: x drives z through G_z1, z never drives x."""
-    for m, rest in PAIRS:
-        b = blocks(m, rest)
-        upper = sp.Matrix.hstack(b["Gx"] - b["Kx"] * b["gx"], sp.zeros(m, rest))
-        lower = sp.Matrix.hstack(b["Gz1"], b["Gz2"] - b["Kz"] * b["gz"])
-        yield sp.Matrix.vstack(upper, lower), closed_loop(b)
-
-
 @claim("1.11.gain_unique")
 def second_gain_is_unique():
     """Prescribed roots of |pE - G_z2 + K_z g_z^T| determine K_z uniquely."""
@@ -256,16 +205,6 @@ def characteristic_polynomial_factors():
         first = polynomial_of(b["Gx"] - b["Kx"] * b["gx"])
         second = polynomial_of(b["Gz2"] - b["Kz"] * b["gz"])
         yield first * second, polynomial_of(closed_loop(b))
-
-
-@claim("1.12.xi")
-def estimate_of_the_state():
-    """xi - xi° = L^-1 (x - x°, z - z°)."""
-    for s in systems()[:3]:
-        L, back = coordinates(s, sp.eye(s.m), sp.eye(s.rest))
-        truth, estimate = (sp.Matrix(sp.symbols(f"{name}1:{s.n + 1}", real=True)) for name in ("xi", "eta"))
-        pair = sp.Matrix.vstack(L * truth - estimate)
-        yield back * pair, truth - back * estimate
 
 
 @claim("1.two_stage.separate")

@@ -36,24 +36,6 @@ def general(m: int, rest: int) -> dict[str, sp.Matrix]:
     }
 
 
-@claim("1.13.model")
-def general_model():
-    """With any rows that complete L_x the model keeps its form, and dx/dt has no z.
-
-    dz/dt = G°_z1 x + G°_z2 z, sigma_2 = g_z1 x + g_z2 z.
-    """
-    printed, derived = [], []
-    for m, rest in PAIRS[:4]:
-        b = general(m, rest)
-        x, z = (sp.Matrix(sp.symbols(f"{name}1:{size + 1}", real=True)) for name, size in (("x", m), ("z", rest)))
-        raw = blocks(m, rest)
-        new = b["S"] * x + b["T"] * z
-        printed += list(b["Gz1"] * x + b["Gz2"] * new) + list(b["g1"] * x + b["g2"] * new) + list(b["upper"][:, m:])
-        derived += list(b["S"] * raw["Gx"] * x + b["T"] * (raw["Gz1"] * x + raw["Gz2"] * z))
-        derived += [*list(raw["gz"] * z), *[sp.Integer(0)] * (m * rest)]
-    return Equation(printed, derived)
-
-
 @claim("1.13.error")
 def general_error():
     """In (1.13) the error of x enters that of z with the weight K°_z.

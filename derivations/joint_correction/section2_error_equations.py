@@ -124,7 +124,7 @@ def drift_2():
 @claim(
     "2.2.beta3",
     expect=REFUTED,
-    slip="scan",
+    slip="undecidable",
     reason="index 2 for 1 in the second term: beta x omega has -omega_x1 beta_2, and the paper's own (2.8) for x_3 "
     "follows only with omega_x1; by hand: omega_x1 = beta_2 = 1, all others 0: the platform turns at -1, the print "
     "has 0",

@@ -84,15 +84,3 @@ def equal_models_are_one():
         scheme("pulsating", None), [[one, one]] * 2, [chain] * 2, examples.common_start(0, 1), SERIES[0], ANY_DENSITY
     )
     return Equation(printed, [x for step in steps for x in (step.mean[0], step.covariance[0][0])])
-
-
-def fourth_moment(generating: sp.Expr, variable: sp.Symbol) -> sp.Expr:
-    """E V^4 from the moment generating function."""
-    return sp.diff(generating, variable, 4).subs(variable, 0)
-
-
-@claim("6.gaussian")
-def normal_noise_is_enough():
-    """With normal noise f^i[Y(k)/x(k)] has the fourth central moment 3 R^2 of a Gaussian, for every x(k)."""
-    w, R = sp.symbols("w R", positive=True)
-    return Equation(3 * R**2, fourth_moment(sp.exp(R * w**2 / 2), w))

@@ -60,25 +60,11 @@ def arguments_corrected():
     )
 
 
-@claim("3.zero")
-def ideal_operation():
-    """Without errors the ideal algorithm makes none: S(psi, 0, 0) = 0."""
-    return Equation(printed=sp.zeros(2, 1), derived=at_zero(S), box=SPHERE)
-
-
 @claim("3")
 def linearised():
-    """(3): S1 dpsi + S2 d is the linear part of S."""
-    S1, S2 = RECKONING.linear_parts()
-    errors, sensors = sp.Matrix(RECKONING.errors), sp.Matrix(RECKONING.sensor_errors)
-    along = S.subs({e: scale * e for e in (*RECKONING.errors, *RECKONING.sensor_errors)}, simultaneous=True)
-    return Equation(printed=S1 * errors + S2 * sensors, derived=along.diff(scale).subs(scale, 0), box=SPHERE)
-
-
-@claim("3.jacobians")
-def jacobians():
-    """(3): the matrices S1 and S2 of course and log, differentiated by hand."""
-    S1, S2 = RECKONING.linear_parts()
+    """(3) for course and log: with S1 and S2 differentiated by hand, S1 dpsi + S2 d is the linear part of S."""
+    errors = (*RECKONING.errors, *RECKONING.sensor_errors)
+    along = S.subs({e: scale * e for e in errors}, simultaneous=True)
     k, p, v, u, r = model.heading, model.latitude, model.vy, model.vx, model.radius + model.height
     north, east = v * sp.cos(k) - u * sp.sin(k), v * sp.sin(k) + u * sp.cos(k)
     by_hand = sp.Matrix(
@@ -94,7 +80,7 @@ def jacobians():
             ],
         ]
     )
-    return Equation(printed=by_hand, derived=S1.row_join(S2), box=SPHERE)
+    return Equation(printed=by_hand * sp.Matrix(errors), derived=along.diff(scale).subs(scale, 0), box=SPHERE)
 
 
 @claim("3.time")
@@ -259,7 +245,7 @@ rate = sp.Symbol("Omega", positive=True)
 
 @claim("2.growth")
 def growth():
-    """(2): a constant error of the speed lets the latitude error grow in proportion to time."""
+    """(2), due north: a constant error of the speed lets the latitude error grow in proportion to time."""
     north = {model.d_heading: 0, model.d_height: 0, model.d_vx: 0, model.heading: 0, model.vx: 0}
     printed = model.d_vy * t / (model.radius + model.height)
     return Equation(printed=[printed.diff(t), printed.subs(t, 0)], derived=[S[0].subs(north), 0], box=SPHERE)

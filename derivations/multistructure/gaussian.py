@@ -142,7 +142,7 @@ d = sp.Symbol("d", positive=True)
 @claim(
     "15.gaussian",
     expect=REFUTED,
-    slip="scan",
+    slip="undecidable",
     reason="the index i is lost: pi^i[x(k)] is Gaussian, the sum pi[x(k)] of two or more is not, as its fourth "
     "moment shows; the parameters named beside it carry i; by hand: d = 1 gives 12 against 1 + 6 + 3 = 10",
 )

@@ -7,7 +7,7 @@ from itertools import product
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, claim
-from navsym_papers.multistructure.finite import distribution
+from navsym_papers.multistructure.finite import distribution, frozen
 
 TWO = (0, 1)
 
@@ -145,7 +145,7 @@ def follows():
 def no_switching():
     """(19): with the identity in place of p^ij the mode never changes, over any number of steps up to six."""
     start = distribution("s", 3)
-    identity = sp.eye(3)
+    identity = sp.Matrix(3, 3, frozen)
     for steps in range(1, 7):
         reached = identity**steps * sp.Matrix(start)
         yield start, reached

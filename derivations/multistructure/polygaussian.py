@@ -56,7 +56,7 @@ def partial():
 @claim(
     "20.integral",
     expect=REFUTED,
-    slip="scan",
+    slip="undecidable",
     reason="there are two integral signs and one differential: integrating over x(k) too leaves no function of "
     "x(k); (15) has one; by hand: without information the print is 1 for every x(k)",
 )
@@ -101,20 +101,6 @@ def mixture():
             sum(s.L(i, 0) * predicted(s, i, 0) * s.modes[i] for i in s.I) / below,
             s.probability(Y=0, x=0) / s.probability(Y=0),
         )
-
-
-@claim("21.start")
-def start():
-    """Below (21): g^i(0) = p^i rho^i(0) / sum; equal to p^i when step 0 has no measurement (two to four modes)."""
-    for size in (2, 3, 4):
-        p, seen = finite.free("p", size), finite.free("rho", size)
-        joint = {(i, Y): p[i] * (seen[i] if Y == 0 else 1) for i in range(size) for Y in (0, 1)}
-        for Y in (0, 1):
-            weight = [p[i] * (seen[i] if Y == 0 else 1) for i in range(size)]
-            yield (
-                [w / sum(weight) for w in weight],
-                [joint[i, Y] / sum(joint[j, Y] for j in range(size)) for i in range(size)],
-            )
 
 
 def polygaussian_and_exact(steps: int):

@@ -126,7 +126,7 @@ def folded() -> tuple[Link, ...]:
             "",
             triangle(w[0] * spread[0] + w[1] * spread[1]),
             second_moment,
-            cites=("multistructure:13",),
+            cites=("multistructure:13*",),
         ),
     )
 

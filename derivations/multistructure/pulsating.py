@@ -148,7 +148,7 @@ def differs(first, second) -> Finding:
 
 @claim("17.suboptimal", expect=CERTIFIED)
 def suboptimal():
-    """Below (18): the algorithm is suboptimal: its second estimate differs from the optimal one."""
+    """Below (18): the algorithm is suboptimal: in one model its second estimate differs from the optimal one."""
     series = [[3], [1]]
     pulsating = examples.enclosures("pulsating", MODELS, SWITCHING, series)[1]
     exact = examples.enclosures("exact", MODELS, SWITCHING, series)[1]

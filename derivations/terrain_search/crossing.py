@@ -207,7 +207,7 @@ def crossing_is_not_after_the_end():
 
 @claim("10.minimum")
 def second_order_condition():
-    """The second derivative of the criterion in t is not negative, and the criterion is a parabola."""
+    """The second derivative of the criterion in t is not negative."""
     q = own_slopes(2)
     curvature = sp.diff(sp.expand(misfit([(0, v) for v in q], (0, beta), t)), t, 2)
     return Bound(printed=curvature, relation=">=", derived=sp.Integer(0))

@@ -59,7 +59,7 @@ def crossing():
     reason="the printed arctangents turn the direction a little; for small angles, as the paper has them, they agree",
 )
 def direction():
-    """The direction in (11) is that of (deltaVx, deltaVy) / V; its length does not matter (1 and 2 measurements)."""
+    """The direction in (11) is that of (deltaVx, deltaVy) / V; its length does not matter (2 and 3 measurements)."""
     u, v = sp.symbols("deltaVx deltaVy", positive=True)
     return Equation(
         printed=[crossing_time(slopes(size), (u / speed, v / speed)) for size in PAIRS],
@@ -140,7 +140,7 @@ def printed_sums(name):
 @claim(
     "12.Ax2",
     expect=REFUTED,
-    slip="scan",
+    slip="undecidable",
     reason="the last factor reads h(x_i, y_j)/dx: a del is lost and the point is off the track; A_y2, "
     "its negative, has dh(x_j, y_j)/dx",
 )

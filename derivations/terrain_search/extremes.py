@@ -60,23 +60,13 @@ def axis():
 
 @claim("roots")
 def roots_of_the_quadratic():
-    """The printed roots solve the quadratic when A_2 is not zero and the discriminant not negative."""
-    A2 = sp.Symbol("A2", positive=True)
-    A1, root = sp.Symbol("A1", real=True), sp.Symbol("r", nonnegative=True)
+    """The printed roots are zeros of A_2 b^2 + A_1 b + A_0 when A_2 is not zero and the discriminant not negative."""
+    A2, A1 = sp.Symbol("A2", real=True, nonzero=True), sp.Symbol("A1", real=True)
+    root = sp.Symbol("r", nonnegative=True)
     A0 = (A1**2 - root**2) / (4 * A2)  # any A0 with the discriminant root^2
-    discriminant = sp.sqrt(A1**2 - 4 * A2 * A0)
-    solutions = [(-A1 + root) / (2 * A2), (-A1 - root) / (2 * A2)]
-    return Equation(printed=[(-A1 + discriminant) / (2 * A2), (-A1 - discriminant) / (2 * A2)], derived=solutions)
-
-
-@claim("roots.solve")
-def solutions_solve():
-    """Those two numbers are zeros of A_2 b^2 + A_1 b + A_0."""
-    A2 = sp.Symbol("A2", positive=True)
-    A1, root = sp.Symbol("A1", real=True), sp.Symbol("r", real=True)
-    A0 = (A1**2 - root**2) / (4 * A2)
-    zeros = [(-A1 + root) / (2 * A2), (-A1 - root) / (2 * A2)]
-    return Equation(printed=[sp.Integer(0)] * 2, derived=[A2 * z**2 + A1 * z + A0 for z in zeros])
+    zeros = [(-A1 + sign * root) / (2 * A2) for sign in (1, -1)]
+    value = [A2 * b**2 + A1 * b + A0 for b in zeros]
+    return Equation(printed=[sp.Integer(0)] * 2 + [root**2], derived=[*value, A1**2 - 4 * A2 * A0])
 
 
 def example():
@@ -201,7 +191,7 @@ def mean():
     """The mean of t_G over a uniform direction is tr(G^-1/2 M1) / tr(G^1/2)."""
     root = sp.diag(a, b)
     printed = (inverse(root) * M).trace() / root.trace()
-    return Equation(printed=printed, derived=mean_over_directions(), box=BOX)
+    return Equation(printed=printed, derived=mean_over_directions(), nonzero=(a - b,))
 
 
 @claim("mean.rotated")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import sympy as sp
 
 from navsym.claims import REFUTED, Bound, Equation, claim
@@ -46,7 +48,7 @@ def count_of(first, last):
 
 @claim("1.height")
 def height_error_of_the_model():
-    """The height error b of (1) moves the fix of (2): it adds (n + 1) b^2 and 2 b sum d, which hypotheses share not."""
+    """The height error b of (1) adds (n + 1) b^2 to (2), the same for all hypotheses, and 2 b sum d, which is not."""
     b = sp.Symbol("deltaH", real=True)
     for size in (1, 2, 3):
         d = sp.symbols(f"d0:{size + 1}", real=True)
@@ -135,9 +137,11 @@ def velocity_hypotheses():
 
 @claim("velocity.cost")
 def growth_of_the_cost():
-    """The joint search evaluates MVx MVy times as many hypotheses as the position search."""
-    mx, my, mvx, mvy = sp.symbols("M_x M_y M_Vx M_Vy", positive=True)
-    return Equation(printed=mvx * mvy, derived=mx * my * mvx * mvy / (mx * my))
+    """The joint search evaluates MVx MVy times as many hypotheses as the position search (N = 1, 2; NV to 2)."""
+    for place, vx, vy in product((1, 2), range(3), range(3)):
+        axes = [range(-half, half + 1) for half in (place, place, vx, vy)]
+        joint, position = (len(list(product(*parts))) for parts in (axes, axes[:2]))
+        yield (2 * sp.Integer(vx) + 1) * (2 * vy + 1), sp.Rational(joint, position)
 
 
 @claim("velocity.orders")

@@ -35,14 +35,6 @@ def reference_point_lies_on_the_ellipse():
     return Equation(printed=sp.Integer(1), derived=ellipsoid.ellipse_condition(phi_e, a, e), box=ELLIPSOID)
 
 
-@claim("earth.lambda")
-def longitudes_agree():
-    """Geocentric and geodetic longitude are the same."""
-    axis, _ = ellipsoid.meridian_point(phi_e, h, a, e)
-    x, y = axis * sp.cos(lambda_e), axis * sp.sin(lambda_e)
-    return Equation(printed=sp.tan(lambda_e), derived=y / x, box={**ELLIPSOID, lambda_e: LATITUDES})
-
-
 def geocentric_tangent():
     axis, z = ellipsoid.meridian_point(phi_e, h, a, e)
     return z / axis

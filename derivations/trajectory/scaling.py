@@ -61,34 +61,21 @@ def D_s(n: int) -> sp.Matrix:
 
 @claim("5.Phi")
 def normalised_transition():
-    """In x^q = D x the transition matrix is D Phi D^-1; n = 4."""
-    x = sp.Matrix(X[:SMALL])
-    scale = D(SMALL)
-    moved = scale * step(SMALL) * scale.inv() * (scale * x)
-    return Equation(printed=list(moved), derived=list(scale * (step(SMALL) * x)))
+    """Phi^- = D Phi D^-1: binomial coefficients times |column i| / |column j| of the powers i^(j-1); n = 4."""
+    size = powers(SMALL)
+    derived = sp.Matrix(SMALL, SMALL, lambda i, j: comb(j, i) * size[i] / size[j])
+    return Equation(printed=D(SMALL) * step(SMALL) * D(SMALL).inv(), derived=derived)
+
+
+def powers(n: int) -> list[sp.Expr]:
+    """Lengths of the columns 1^k, 2^k, ..., n^k for k = 0 ... n - 1."""
+    return [sp.sqrt(sum(sp.Integer(i) ** (2 * k) for i in range(1, n + 1))) for k in range(n)]
 
 
 @claim("5.H")
 def normalised_measurement():
-    """In x^q = D x the measurement row is H_p D^-1; n = 4."""
-    x = sp.Matrix(X[:SMALL])
-    scale = D(SMALL)
-    return Equation(printed=(measured(SMALL) * scale.inv() * (scale * x))[0], derived=(measured(SMALL) * x)[0])
-
-
-@claim("5.N")
-def normalised_observability():
-    """The observability matrix of the normalised model is N_p D^-1; n = 4."""
-    scale = D(SMALL)
-    pair = model.stepped_rows(measured(SMALL) * scale.inv(), scale * step(SMALL) * scale.inv())
-    return Equation(printed=N_p(SMALL) * scale.inv(), derived=pair)
-
-
-@claim("5.unit")
-def normalised_columns():
-    """The columns of N_pN have unit length; n = 5."""
-    norms = model.norms_of_columns(N_p(PRINTED) * D(PRINTED).inv())
-    return Equation(printed=[sp.Integer(1)] * PRINTED, derived=norms)
+    """H^- = H_p D^-1: one over the lengths of the columns of the powers i^(j-1); n = 4."""
+    return Equation(printed=list(measured(SMALL) * D(SMALL).inv()), derived=[1 / length for length in powers(SMALL)])
 
 
 def sensitivity(matrix: sp.Matrix) -> list[sp.Expr]:
@@ -126,19 +113,15 @@ def first_stage_measurement():
     return Equation(printed=sp.Matrix([[1, 1, 1, 1, 1]]), derived=in_first_stage(PRINTED)[1])
 
 
+PRINTED_NF = sp.Matrix(
+    [[1, 1, 1, 1, 1], [1, 2, 4, 8, 16], [1, 3, 9, 27, 81], [1, 4, 16, 64, 256], [1, 5, 25, 125, 625]]
+)
+
+
 @claim("6.Nf")
 def first_stage_observability():
     """N_f for n = 5."""
-    printed = sp.Matrix(
-        [
-            [1, 1, 1, 1, 1],
-            [1, 2, 4, 8, 16],
-            [1, 3, 9, 27, 81],
-            [1, 4, 16, 64, 256],
-            [1, 5, 25, 125, 625],
-        ]
-    )  # fmt: skip
-    return Equation(printed=printed, derived=N_f(PRINTED))
+    return Equation(printed=PRINTED_NF, derived=N_f(PRINTED))
 
 
 @lru_cache(maxsize=1)
@@ -290,17 +273,11 @@ def observability_rows_for_every_index():
 # -- two stages: the second ----------------------------------------------------------------------------
 
 
-@claim("6.Ns.unit")
-def second_stage_columns():
-    """N_s = N_f D_s^-1 has columns of unit length; n = 5."""
-    norms = model.norms_of_columns(N_f(PRINTED) * D_s(PRINTED).inv())
-    return Equation(printed=[sp.Integer(1)] * PRINTED, derived=norms)
-
-
 @claim("6.Np")
 def observability_by_stages():
-    """N_p = N_f D_f; n = 5."""
-    return Equation(printed=N_f(PRINTED) * D_f(PRINTED), derived=N_p(PRINTED))
+    """N_p = N_f D_f with the printed matrices; n = 5."""
+    printed = PRINTED_NF * sp.diag(1, rho * tau, rho * tau**2 / 2, rho * tau**3 / 6, rho * tau**4 / 24)
+    return Equation(printed=printed, derived=N_p(PRINTED))
 
 
 @claim("6.Np.rows")
@@ -311,13 +288,6 @@ def observability_row_by_row():
     row = model.first_state(n) * model.nilpotent_exponential(model.dynamics(n, rho), x * tau)
     printed = [x**j * (rho * tau**j / sp.factorial(j) if j else 1) for j in range(n)]
     return Equation(printed=printed, derived=list(row))
-
-
-@claim("6.Np.stages")
-def observability_by_both_stages():
-    """N_p = N_s D_s D_f; n = 5."""
-    N_s = N_f(PRINTED) * D_s(PRINTED).inv()
-    return Equation(printed=N_s * D_s(PRINTED) * D_f(PRINTED), derived=N_p(PRINTED))
 
 
 @claim("6.D")
@@ -338,13 +308,6 @@ def both_procedures_meet():
     """N_s = N_pN for positive rho and tau; n = 5."""
     N_s = N_f(PRINTED) * D_s(PRINTED).inv()
     return Equation(printed=N_s, derived=N_p(PRINTED) * D(PRINTED).inv())
-
-
-@claim("6.S")
-def both_variables_meet():
-    """S = D_s f = x^q; n = 5."""
-    x = sp.Matrix(X)
-    return Equation(printed=list(D_s(PRINTED) * D_f(PRINTED) * x), derived=list(D(PRINTED) * x))
 
 
 @claim("6.more_stages")

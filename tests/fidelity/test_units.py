@@ -20,7 +20,6 @@ NARROWER = {
     "joint_correction:2.scale.period": A_NUMBER,
     "terrain_search:9.small": A_NUMBER,
     "terrain_search:10.equal.sum": A_NUMBER,
-    "joint_correction:1.13.model": CANCELLED,
     "joint_correction:3.bias.velocity": CANCELLED,
 }
 

@@ -94,9 +94,9 @@ EARTH = 6.371e6
 FIGURES = [  # claim, the figure as the sheet has it, and what it is
     ("multistructure:7", "0.41", SQUARED),
     ("multistructure:7", "1.22", (ABOVE + BELOW) / SQUARED),
-    ("multistructure:13.index", "1.21", sum(spread((0.3, 0.7), (0, 1)))),
-    ("multistructure:13.index", "0.894", 2 * spread((0.3, 0.7), (0, 1))[0]),
-    ("multistructure:13.index", "1.526", 2 * spread((0.3, 0.7), (0, 1))[1]),
+    ("multistructure:13", "1.21", sum(spread((0.3, 0.7), (0, 1)))),
+    ("multistructure:13", "0.894", 2 * spread((0.3, 0.7), (0, 1))[0]),
+    ("multistructure:13", "1.526", 2 * spread((0.3, 0.7), (0, 1))[1]),
     ("multistructure:20.integral", "0.74", 0.9 * 0.8 + 0.1 * 0.2),
     ("multistructure:4.type", "5.4", 1e7 * math.tan(math.radians(60)) / (6.37e6 * math.cos(math.radians(60)))),
     ("terrain_search:gain", "17.8", 40.05 / 2.25),
