@@ -52,7 +52,6 @@ def of_every_size(left: str, right: str, *given: str) -> Callable[[], Property]:
         block = {"id": "any", "left": left, "right": right, "given": list(given)}
         return property_of_claim(claims_from({"symbols": shapes(), "claim": [block]}).claims[0])
 
-    derive.__module__ = __name__
     return derive
 
 
@@ -107,6 +106,6 @@ STATEMENTS = (
 )
 
 ANY_SIZE: tuple[Claim, ...] = tuple(
-    claim(f"{number}.any", title=f"Matrices of any size: {title}.")(of_every_size(left, right, *given))
+    claim(f"{number}.any", f"Matrices of any size: {title}.", of_every_size(left, right, *given))
     for number, title, left, right, *given in STATEMENTS
 )

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import PROVED, Bound, Equation, Finding, Property, claim
+from navsym.claims import PROVED, Bound, Equation, Finding, claim, fact
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import numerators
 from navsym.observability.linear import linear_relation, pivot_rows
 from navsym.observability.ring import Ring
-from navsym.observability.splits import companion, exact_inverse, unit_row
+from navsym.observability.splits import companion
+from navsym_papers.joint_correction.matrices import exact_inverse, unit_row
 from navsym_papers.joint_correction.section1_systems import (
     System,
     coefficients_of_polynomial,
@@ -119,15 +120,13 @@ def gain_is_unique():
         jacobian = sp.Matrix(values).jacobian(K)
         linear = not any(jacobian.has(symbol) for symbol in K)
         found = found and linear and rank_of(jacobian) == size
-    return Property(
+    return fact(
         True,
-        Finding(
-            found,
-            "the coefficients are affine in K_x with an invertible matrix",
-            PROVED,
-            scope="m = 1, 2, 3, all theta",
-            assumptions=("det C_1 != 0",),
-        ),
+        found,
+        "the coefficients are affine in K_x with an invertible matrix",
+        PROVED,
+        scope="m = 1, 2, 3, all theta",
+        assumptions=("det C_1 != 0",),
         unsaid="that a map is affine and invertible is said of all its values at once",
     )
 

@@ -17,7 +17,7 @@ from navsym.claims import Finding, Property, state
 from navsym.models.linear import LinearModel
 from navsym.observability.certificates import Certifier
 from navsym.observability.chains import JointObservability, observe_jointly
-from navsym.observability.splits import exact_inverse
+from navsym_papers.joint_correction.matrices import exact_inverse
 
 p = sp.Symbol("p", real=True)
 g = sp.symbols("g1:10", real=True)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, Finding, Property, claim
-from navsym.observability.splits import companion, corner, exact_inverse, last_row, shift, to_lowest_terms, unit_row
+from navsym.claims import PROVED, Equation, claim, fact
+from navsym.observability.splits import companion, last_row
+from navsym_papers.joint_correction.matrices import corner, exact_inverse, shift, to_lowest_terms, unit_row
 from navsym_papers.joint_correction.section1_chains import coefficients, theta_of
 from navsym_papers.joint_correction.section1_systems import System, flat, free, k, overlapping, polynomial_of
 
@@ -163,9 +164,12 @@ def choice_of_i():
     from navsym.observability.splits import best_split
 
     best = best_split(overlapping().found)
-    return Property(
+    return fact(
         (2, 2),
-        Finding((best.i, best.j), "all determinants of a_1 ... a_i, b_1 ... b_j", PROVED, scope="n = 4, m = 3, l = 4"),
+        (best.i, best.j),
+        "all determinants of a_1 ... a_i, b_1 ... b_j",
+        PROVED,
+        scope="n = 4, m = 3, l = 4",
         unsaid="a least value over all bases is found by trying them",
     )
 

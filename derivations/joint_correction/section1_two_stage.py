@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
+from navsym.claims import PROVED, Equation, Finding, claim, fact
 from navsym.models.linear import LinearModel
-from navsym.observability.splits import companion, exact_inverse, last_row, unit_row
+from navsym.observability.splits import companion, last_row
+from navsym_papers.joint_correction.matrices import exact_inverse, unit_row
 from navsym_papers.joint_correction.section1_chains import SIZES, coefficients, rank_of
 from navsym_papers.joint_correction.section1_systems import (
     System,
@@ -57,14 +58,12 @@ def chains_complete_each_other():
         total = sum((t * power[j] for j, t in enumerate(theta)), sp.zeros(size, size))
         identities += [sp.expand(x) == 0 for x in power[size] - total]
     full = tuple(rank_of(sp.Matrix.vstack(s.chain(1, s.m), s.chain(2, s.rest))) == s.n for s in systems())
-    return Property(
+    return fact(
         True,
-        Finding(
-            all(identities) and all(full),
-            "Cayley-Hamilton in the quotient by the first chain",
-            PROVED,
-            scope="n - m = 1, 2, 3 with all entries symbolic, every m",
-        ),
+        all(identities) and all(full),
+        "Cayley-Hamilton in the quotient by the first chain",
+        PROVED,
+        scope="n - m = 1, 2, 3 with all entries symbolic, every m",
         unsaid="that a chain is a basis wherever a pair is observable is said of all sizes",
     )
 
@@ -83,7 +82,6 @@ def transformation_is_invertible():
 
 @claim(
     "1.10.gz",
-    expect=REFUTED,
     slip="paper",
     reason="a transposed row (1 0 ... 0)^T cannot be multiplied by C_2^-1 unless n - m = 1; in (1.5) and after "
     "(1.14) the same row stands without the transposition; by hand: for n - m = 2 a (2, 1) column stands before a "
@@ -92,16 +90,17 @@ def transformation_is_invertible():
 def output_row_of_z_printed():
     """g_z^T = (1 0 ... 0)^T C_2^-1, as printed: a column times a matrix."""
     size = 2
-    column = unit_row(size).T
-    defined = column.cols == free("z", size).rows
-    return Property(
+    return fact(
         True,
-        Finding(defined, "shapes of the factors, n - m = 2", PROVED, scope="n - m = 2"),
+        (unit_row(size).T.cols == free("z", size).rows),
+        "shapes of the factors, n - m = 2",
+        PROVED,
+        scope="n - m = 2",
         unsaid="sides of shapes that do not fit have no value",
     )
 
 
-@claim("1.10.gz*", corrects="1.10.gz")
+@claim("1.10.gz*")
 def output_row_of_z():
     """g_z^T = (1 0 ... 0) C_2^-1."""
     for s in systems():
@@ -116,9 +115,10 @@ def rows_of_phi():
     s = systems()[2]
     phi = phi_of(s)
     basis = sp.Matrix.vstack(s.chain(1, 2), s.chain(2, 2))
-    rows = [coefficients(basis, s.chain(2, 3)[row, :]) for row in (1, 2)]
-    printed = sp.Matrix([[0, 0, 0, 1], [phi[0], phi[1], phi[2], phi[3]]])
-    return Equation(printed, sp.Matrix(rows))
+    return Equation(
+        sp.Matrix([[0, 0, 0, 1], [phi[0], phi[1], phi[2], phi[3]]]),
+        sp.Matrix([coefficients(basis, s.chain(2, 3)[row, :]) for row in (1, 2)]),
+    )
 
 
 @claim("1.10.phi")
@@ -184,15 +184,13 @@ def second_gain_is_unique():
             K
         )
         found = found and rank_of(jacobian) == size and not any(jacobian.has(symbol) for symbol in K)
-    return Property(
+    return fact(
         True,
-        Finding(
-            found,
-            "the coefficients are affine in K_z with an invertible matrix",
-            PROVED,
-            scope="n - m = 1, 2, 3, all phi",
-            assumptions=("det C_2 != 0",),
-        ),
+        found,
+        "the coefficients are affine in K_z with an invertible matrix",
+        PROVED,
+        scope="n - m = 1, 2, 3, all phi",
+        assumptions=("det C_2 != 0",),
         unsaid="that a map is affine and invertible is said of all its values at once",
     )
 
@@ -216,9 +214,12 @@ def first_stage_ignores_the_second():
         rows = closed_loop(b)[:m, :]
         found = found and not rows[:, m:].free_symbols and not any(rows.has(s) for s in b["Kz"])
         found = found and all(value == 0 for value in rows[:, m:])
-    return Property(
+    return fact(
         True,
-        Finding(found, "entries of the closed loop", PROVED, scope=f"(m, n - m) in {PAIRS}, all coefficients"),
+        found,
+        "entries of the closed loop",
+        PROVED,
+        scope=f"(m, n - m) in {PAIRS}, all coefficients",
         unsaid="which symbols a formula has is read off it, not its value",
     )
 

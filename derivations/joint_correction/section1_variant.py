@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, Finding, Property, claim
-from navsym.observability.splits import exact_inverse
+from navsym.claims import PROVED, Equation, claim, fact
+from navsym_papers.joint_correction.matrices import exact_inverse
 from navsym_papers.joint_correction.section1_systems import flat
 from navsym_papers.joint_correction.section1_two_stage import PAIRS, blocks
 
@@ -130,8 +130,11 @@ def first_stage_of_the_variant_ignores_sigma2():
         rows = sp.Matrix.hstack(b["Gx"] - b["Kx"] * b["gx"], b["upper"][:, m:])
         found = found and not any(rows.has(symbol) for symbol in b["Kz"])
         found = found and all(sp.expand(value) == 0 for value in b["upper"][:, m:])
-    return Property(
+    return fact(
         True,
-        Finding(found, "entries of the first rows", PROVED, scope=f"(m, n - m) in {PAIRS[:4]}"),
+        found,
+        "entries of the first rows",
+        PROVED,
+        scope=f"(m, n - m) in {PAIRS[:4]}",
         unsaid="which symbols a formula has is read off it, not its value",
     )

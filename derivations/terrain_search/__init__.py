@@ -42,8 +42,8 @@ PAPER = Paper(
         "1.height 6.rest 9.family 9.small 10.after 10.before 10.sufficient 10.unique 10.flat 11.beta 12.linear* "
         "bias.mirror bias.only_way bias.units cost.experiment middle.trace noise roots.both roots.values "
         "roots.range roots.gram roots.solvable flat mean.* interval.half interval.whole sigma.mean sigma.table "
-        "sigmaV.cell sigmaV.floor table.bias* table.close.mean table.grid* table.percent table.runs* table.quantisation "
-        "table.acceleration* table.real_time table.sequential"
+        "sigmaV.cell sigmaV.floor table.bias* table.close.mean table.grid* table.percent table.runs* "
+        "table.quantisation table.acceleration* table.real_time table.sequential"
     ),
     beyond="joint.* centre sequential.* 14.centre acceleration offset*",
     causes={"13.sign0": "13.Ay0"},

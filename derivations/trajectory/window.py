@@ -53,7 +53,7 @@ def price(r: int) -> Claim:
         return Equation([least_variance(r, d) for d in degrees], [of_derivative(r, d) for d in degrees])
 
     title = f"White noise, window T: least variance of the {NAMES[r]} at its end for motions of degree up to {LARGEST}."
-    return claim(f"window.{NAMES[r]}", title=title)(derive)
+    return claim(f"window.{NAMES[r]}", title, derive)
 
 
 PRICES = tuple(price(r) for r in range(4))
@@ -63,8 +63,7 @@ PRICES = tuple(price(r) for r in range(4))
 def powers_of_the_window():
     """Stretching the window stretches row and column k of the information by T^k (n = 5): T^-(2r+1) follows."""
     stretch = sp.diag(*(T**k for k in range(5)))
-    at_one = information(4).subs({T: 1, q: 1})
-    return Equation(information(4), T / q * stretch * at_one * stretch)
+    return Equation(information(4), T / q * stretch * information(4).subs({T: 1, q: 1}) * stretch)
 
 
 def falling(degree: sp.Expr, r: int) -> sp.Expr:
@@ -108,10 +107,9 @@ def price_of_the_order():
     (The cube root of 400.) n = 3 and n = 4 are 4 and 10 times worse.
     """
     speed = [least_variance(1, d) for d in (1, 2, 3, 4)]
-    stretch = sp.cbrt(400)
-    shorter = of_derivative(1, 1)
     return Equation(
-        [16, 100, 400, shorter], [*(v / speed[0] for v in speed[1:]), of_derivative(1, 4).subs(T, stretch * T)]
+        [16, 100, 400, of_derivative(1, 1)],
+        [*(v / speed[0] for v in speed[1:]), of_derivative(1, 4).subs(T, sp.cbrt(400) * T)],
     )
 
 
@@ -153,8 +151,10 @@ def normalisation_is_optimal_for_two_states():
     Equal at s = sqrt(2/5): a step of 0.63 s in the radius channel, of four million seconds in that of latitude.
     """
     rows = sp.Matrix([[1, s], [1, 2 * s]])
-    value = sum(entry**2 for entry in rows) / sp.sqrt(sp.expand(rows.det()) ** 2)
-    return Equation(2 * sp.sqrt(10) + (sp.sqrt(2) - sp.sqrt(5) * s) ** 2 / s, value)
+    return Equation(
+        2 * sp.sqrt(10) + (sp.sqrt(2) - sp.sqrt(5) * s) ** 2 / s,
+        (sum(entry**2 for entry in rows) / sp.sqrt(sp.expand(rows.det()) ** 2)),
+    )
 
 
 @claim("6.Nf.determinant")

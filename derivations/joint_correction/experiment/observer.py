@@ -18,7 +18,8 @@ import sympy as sp
 
 from navsym.core.arrays import Array, as_array, freeze
 from navsym.core.errors import DomainError, ShapeError
-from navsym.observability.splits import Split, exact_inverse, unit_row
+from navsym.observability.splits import Split
+from navsym_papers.joint_correction.matrices import exact_inverse, unit_row
 
 
 @dataclass(frozen=True, slots=True, eq=False)
