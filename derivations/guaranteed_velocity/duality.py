@@ -11,6 +11,8 @@ from navsym.prove.identities.normal_form import vanishes_identically
 from navsym.prove.signs.bounds import Sign, prove_sign
 from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, weights
 
+A_NAME = "a name is compared, and statements are about numbers"
+
 sigma = sp.Symbol("sigma", positive=True)
 s, b = sp.symbols("s b", real=True)
 
@@ -346,22 +348,14 @@ def dual_of_a_polynomial():
 variables_of_the_minimum = claim(
     "3.3.min",
     "The minimum of (3.3) is taken over z_2, z_3, as printed.",
-    lambda: Property(
-        printed=("z2", "z3"),
-        derived=coefficients_of_the_polynomial(),
-        unsaid="a name is compared, and statements are about numbers",
-    ),
+    lambda: Property(printed=("z2", "z3"), derived=coefficients_of_the_polynomial(), unsaid=A_NAME),
     slip="undecidable",
     reason="z_j stands below the minimum; the polynomial has the coefficients u_j, as (3.4) and (4.2) have them",
 )
 variables_of_the_minimum_corrected = claim(
     "3.3.min*",
     "The minimum of (3.3) is taken over u_2, u_3.",
-    lambda: Property(
-        printed=("u2", "u3"),
-        derived=coefficients_of_the_polynomial(),
-        unsaid="a name is compared, and statements are about numbers",
-    ),
+    lambda: Property(printed=("u2", "u3"), derived=coefficients_of_the_polynomial(), unsaid=A_NAME),
 )
 
 

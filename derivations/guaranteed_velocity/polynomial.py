@@ -56,21 +56,15 @@ def rotated() -> sp.Matrix:
     return sp.Matrix([vector[2], vector[0], vector[1]])
 
 
-first_of_permuted = claim(
-    "4.1.H1", "First component of the permuted H.", lambda: Equation(sp.cos(T - tau) - 1, rotated()[0])
-)
-second_of_permuted = claim(
-    "4.1.H2", "Second component of the permuted H.", lambda: Equation(sp.Integer(1), rotated()[1])
-)
-third_of_permuted = claim(
-    "4.1.H3",
-    "Third component of the permuted H, as printed.",
-    lambda: Equation(-sp.sin(T - tau), rotated()[2]),
+permuted = claim(
+    "4.1",
+    "The permuted H, as printed.",
+    lambda: Equation([sp.cos(T - tau) - 1, 1, -sp.sin(T - tau)], list(rotated())),
     slip="paper",
-    reason="inherits the sign of (1.9)",
+    reason="the third component inherits the sign of (1.9)",
 )
-third_of_permuted_corrected = claim(
-    "4.1.H3*", "Third component of the permuted H.", lambda: Equation(sp.sin(T - tau), rotated()[2])
+permuted_corrected = claim(
+    "4.1*", "The permuted H.", lambda: Equation([sp.cos(T - tau) - 1, 1, sp.sin(T - tau)], list(rotated()))
 )
 permutation_is_a_cycle = claim(
     "4.1.order",
@@ -159,14 +153,10 @@ def value_at(instant: sp.Expr) -> sp.Expr:
     return polynomial(*coefficients()).subs(tau, instant)
 
 
-contact_at_the_start = claim(
-    "4.6.tau1", "S0 takes the value -L1 at tau = 0.", lambda: Equation(-L1_PRINTED, value_at(sp.Integer(0)), STATED)
-)
-contact_in_the_middle = claim(
-    "4.6.tau2", "S0 takes the value +L1 at tau = T/2.", lambda: Equation(L1_PRINTED, value_at(T / 2), STATED)
-)
-contact_at_the_end = claim(
-    "4.6.tau3", "S0 takes the value -L1 at tau = T.", lambda: Equation(-L1_PRINTED, value_at(T), STATED)
+contacts = claim(
+    "4.6",
+    "S0 takes the values -L1, +L1, -L1 at tau = 0, T/2, T.",
+    lambda: Equation([-L1_PRINTED, L1_PRINTED, -L1_PRINTED], [value_at(at) for at in INSTANTS], STATED),
 )
 middle_contact_is_stationary = claim(
     "4.6.stationary",
@@ -180,18 +170,21 @@ same_instants_for_all = claim(
 )
 
 
-@claim("4.6.weights")
-def instants_of_each_state():
-    """Of the weights at (4.6) one is not zero for y1, all three for y2 and y3, as (4.12) prints."""
-    # a weight that is not zero at T = 1 is not zero throughout
-    meaning = tuple(
-        state(to_text(w), "=", "0", {"T": ["0", None, ["open-low"]]})
-        if vanishes_identically(w)
-        else state(to_text(w), "!=", "0", {"T": ["1", "1", []]})
-        for index in range(3)
-        for w in weights(index)
-    )
-    return Property(printed=(1, 3, 3), derived=instants_in_use(), meaning=meaning)
+instants_of_each_state = claim(
+    "4.6.weights",
+    "Of the weights at (4.6) one is not zero for y1, all three for y2 and y3, as (4.12) prints.",
+    lambda: Property(
+        printed=(1, 3, 3),
+        derived=instants_in_use(),
+        meaning=tuple(
+            state(to_text(w), "=", "0", {"T": ["0", None, ["open-low"]]})
+            if vanishes_identically(w)
+            else state(to_text(w), "!=", "0", {"T": ["1", "1", []]})
+            for index in range(3)
+            for w in weights(index)
+        ),
+    ),
+)
 
 
 def instants_in_use() -> Finding:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import sympy as sp
 
 from navsym.claims import Bound, Claim, Equation, Optimum, Statement, claim
@@ -15,30 +13,17 @@ from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, N, T, a
 PRINTED_N = sp.Matrix([[1, 1, 0], [sp.sin(T), sp.sin(T / 2), 0], [sp.cos(T) - 1, sp.cos(T / 2) - 1, 0]])
 
 
-def entry_of_n(i: int, j: int) -> Callable[[], Statement]:
-    def derive() -> Statement:
-        return Equation(PRINTED_N[i, j], N()[i, j])
-
-    return derive
-
-
-ENTRIES: tuple[Claim, ...] = tuple(
-    claim(f"4.11.N{i + 1}{j + 1}", f"Entry ({i + 1}, {j + 1}) of the matrix N.", entry_of_n(i, j))
-    for i in range(3)
-    for j in range(3)
-    if (i, j) != (0, 2)
-)
-
-
-last_entry_of_the_first_row = claim(
-    "4.11.N13",
-    "Entry (1, 3) of the matrix N, as printed.",
-    lambda: Equation(PRINTED_N[0, 2], N()[0, 2]),
+matrix_n = claim(
+    "4.11.N",
+    "The matrix N, as printed.",
+    lambda: Equation(PRINTED_N, N()),
     slip="undecidable",
-    reason="H(T) = (1, 0, 0); with a zero column det N would vanish, while the printed determinant is right",
+    reason="entry (1, 3): H(T) = (1, 0, 0); a zero column would make det N zero, and the printed one is right",
 )
-last_entry_of_the_first_row_corrected = claim(
-    "4.11.N13*", "Entry (1, 3) of the matrix N is 1.", lambda: Equation(sp.Integer(1), N()[0, 2])
+matrix_n_corrected = claim(
+    "4.11.N*",
+    "The matrix N with the last column (1, 0, 0).",
+    lambda: Equation(PRINTED_N + sp.Matrix([[0, 0, 1], [0, 0, 0], [0, 0, 0]]), N()),
 )
 determinant = claim(
     "4.11.det", "det N = 4 sin(T/2) sin^2(T/4).", lambda: Equation(4 * sp.sin(T / 2) * sp.sin(T / 4) ** 2, N().det())
@@ -70,18 +55,12 @@ weights_by_inversion = claim(
 )
 
 
-def weight(state: int, place: int) -> Callable[[], Statement]:
-    def derive() -> Statement:
-        return Equation(PRINTED_WEIGHTS[state][place], weights(state)[place], STATED)
-
-    return derive
+def weight(s: int, j: int) -> Claim:
+    title = f"Weight Phi_{s + 1}{j + 1} of the estimate of y{s + 1}."
+    return claim(f"4.12.Phi{s + 1}{j + 1}", title, lambda: Equation(PRINTED_WEIGHTS[s][j], weights(s)[j], STATED))
 
 
-WEIGHTS: tuple[Claim, ...] = tuple(
-    claim(f"4.12.Phi{s + 1}{j + 1}", f"Weight Phi_{s + 1}{j + 1} of the estimate of y{s + 1}.", weight(s, j))
-    for s in range(3)
-    for j in range(3)
-)
+WEIGHTS = tuple(weight(s, j) for s in range(3) for j in range(3))
 
 
 # -- (4.13), (4.15): guaranteed errors ---------------------------------------
@@ -94,62 +73,38 @@ def dual_of(state: int) -> tuple[sp.Expr, ...]:
     return (sp.Integer(1), sp.Integer(0), sp.Integer(0)) if state == 0 else tuple(alternating())
 
 
-def guaranteed_error(state: int) -> Callable[[], Statement]:
+def guaranteed_error(s: int) -> Claim:
     """The printed error (for sigma = 1) is the optimum of (2.7), proved by weights and dual."""
 
     def derive() -> Statement:
-        return Optimum(
-            regressors=tuple(H()),
-            functional=tuple(int(i == state) for i in range(3)),
-            variable=tau,
-            interval=(sp.Integer(0), T),
-            dual=dual_of(state),
-            support=INSTANTS,
-            weights=weights(state),
-            value=PRINTED_ERRORS[state],
-            box=STATED,
-        )
+        unit, ends = tuple(int(i == s) for i in range(3)), (sp.Integer(0), T)
+        return Optimum(tuple(H()), unit, tau, ends, dual_of(s), INSTANTS, weights(s), PRINTED_ERRORS[s], STATED)
 
-    return derive
+    return claim(
+        f"4.13.y{s + 1}", f"Guaranteed error of y{s + 1}: optimal among all linear unbiased estimates.", derive
+    )
 
 
-def error_with_sigma(state: int, sigma: sp.Symbol) -> Callable[[], Statement]:
-    """The printed error with its factor sigma, against the objective of (2.7): sigma times sum |Phi_j|.
+def errors_with_sigma(sigma: sp.Symbol) -> Equation:
+    """The printed errors with their factor sigma, against the objective of (2.7): sigma times sum |Phi_j|.
 
     The weights of y2 and y3 have the signs -, +, - on the stated range (4.8.signs); y1 has one weight.
     """
-
-    def derive() -> Statement:
-        signs = (1, 1, 1) if state == 0 else (-1, 1, -1)
-        total = sum((sign * w for sign, w in zip(signs, weights(state), strict=True)), sp.Integer(0))
-        return Equation(PRINTED_ERRORS[state] * sigma, sigma * total, STATED)
-
-    return derive
+    signs = ((1, 1, 1), (-1, 1, -1), (-1, 1, -1))
+    totals = [sum(sign * w for sign, w in zip(signs[s], weights(s), strict=True)) for s in range(3)]
+    return Equation([error * sigma for error in PRINTED_ERRORS], [sigma * total for total in totals], STATED)
 
 
-OPTIMAL_ERRORS: tuple[Claim, ...] = tuple(
-    claim(
-        f"4.13.y{s + 1}",
-        f"Guaranteed error of y{s + 1}: optimal among all linear unbiased estimates.",
-        guaranteed_error(s),
-    )
-    for s in range(3)
+OPTIMAL_ERRORS = tuple(guaranteed_error(s) for s in range(3))
+lateral_errors = claim(
+    "4.13.sigma",
+    "d_opt of y1, y2, y3 is sigma1 times the sum of the moduli of its weights.",
+    lambda: errors_with_sigma(sigma1),
 )
-LATERAL_ERRORS: tuple[Claim, ...] = tuple(
-    claim(
-        f"4.13.y{s + 1}.sigma",
-        f"d_opt(y{s + 1}) = sigma1 times the sum of the moduli of its weights.",
-        error_with_sigma(s, sigma1),
-    )
-    for s in range(3)
-)
-LONGITUDINAL_ERRORS: tuple[Claim, ...] = tuple(
-    claim(
-        f"4.15.y{s + 4}",
-        f"d_opt(y{s + 4}) = sigma2 times the sum of the moduli of the same weights.",
-        error_with_sigma(s, sigma2),
-    )
-    for s in range(3)
+longitudinal_errors = claim(
+    "4.15",
+    "d_opt of y4, y5, y6 is sigma2 times the sum of the moduli of the same weights.",
+    lambda: errors_with_sigma(sigma2),
 )
 
 # -- (4.14), (4.16): estimates ---------------------------------------

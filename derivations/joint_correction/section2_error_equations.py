@@ -29,6 +29,8 @@ from navsym_papers.joint_correction.kinematics import (
     error_equations,
 )
 
+EXPONENTS = "units are compared as exponents, and statements are about numbers"
+
 a1, a2, a3 = ALPHA
 b1, b2, b3 = BETA
 p1, p2 = DELTA_P
@@ -49,17 +51,13 @@ def kept(symbol: sp.Symbol) -> sp.Expr:
     return truncate(equations().rates[symbol], PHYSICAL_ORDERS, 2).kept
 
 
-tilt_1 = claim("2.1.alpha1", "alpha_1' = dp_1 + nu_x1.", lambda: Equation(p1 + v1, kept(a1)))
-tilt_2 = claim("2.1.alpha2", "alpha_2' = dp_2 + nu_x2.", lambda: Equation(p2 + v2, kept(a2)))
-momentum_1 = claim(
-    "2.1.dp1",
-    "dp_1' = -omega_0^2 (alpha_1 + epsilon_2) - omega_x2 nu_x3.",
-    lambda: Equation(-(w0**2) * (a1 + e2) - w2 * v3, kept(p1)),
-)
-momentum_2 = claim(
-    "2.1.dp2",
-    "dp_2' = -omega_0^2 (alpha_2 - epsilon_1) + omega_x1 nu_x3.",
-    lambda: Equation(-(w0**2) * (a2 - e1) + w1 * v3, kept(p2)),
+errors_of_the_platform = claim(
+    "2.1",
+    "The rates of alpha_1, alpha_2, dp_1, dp_2 up to terms of order mu^2 rho.",
+    lambda: Equation(
+        [p1 + v1, p2 + v2, -(w0**2) * (a1 + e2) - w2 * v3, -(w0**2) * (a2 - e1) + w1 * v3],
+        [kept(symbol) for symbol in (a1, a2, p1, p2)],
+    ),
 )
 dropped_terms = claim(
     "2.1.dropped",
@@ -116,15 +114,13 @@ drift_3 = claim(
     "beta_3' = omega_x2 beta_1 - omega_x1 beta_2 + nu_x3.",
     lambda: Equation(w2 * b1 - w1 * b2 + v3, equations().rates[b3]),
 )
-position_error_1 = claim(
-    "2.3.gamma1",
-    "gamma_1 = alpha_1 - beta_1 is the turn from Mx to Mu: Poisson's equation gives the same derivative.",
-    lambda: Equation(equations().rates[a1] - equations().rates[b1], turn_of_the_computed_frame()[0]),
-)
-position_error_2 = claim(
-    "2.3.gamma2",
-    "gamma_2 = alpha_2 - beta_2 is the turn from Mx to Mu: Poisson's equation gives the same derivative.",
-    lambda: Equation(equations().rates[a2] - equations().rates[b2], turn_of_the_computed_frame()[1]),
+position_errors = claim(
+    "2.3",
+    "gamma = alpha - beta is the turn from Mx to Mu: Poisson's equation gives the derivatives of gamma_1, gamma_2.",
+    lambda: Equation(
+        [equations().rates[a] - equations().rates[b] for a, b in ((a1, b1), (a2, b2))],
+        list(turn_of_the_computed_frame()[:2]),
+    ),
 )
 
 
@@ -137,15 +133,12 @@ def turn_of_the_computed_frame() -> sp.Matrix:
     return rotation_rate(gamma, computed, OMEGA_X).subs(dict(zip(gamma, ALPHA - BETA, strict=True)))
 
 
-velocity_information_1 = claim(
-    "2.4.sigma1",
-    "sigma_x1^c = dp_1 + u_x3 alpha_2 + u_x2 beta_3 - u_x3 beta_2 + w_x1^c.",
-    lambda: Equation(p1 + u3 * a2 + u2 * b3 - u3 * b2 + W_C[0], equations().velocity[0]),
-)
-velocity_information_2 = claim(
-    "2.4.sigma2",
-    "sigma_x2^c = dp_2 - u_x3 alpha_1 + u_x3 beta_1 - u_x1 beta_3 + w_x2^c.",
-    lambda: Equation(p2 - u3 * a1 + u3 * b1 - u1 * b3 + W_C[1], equations().velocity[1]),
+velocity_information = claim(
+    "2.4",
+    "The velocity correction sigma_x1^c, sigma_x2^c.",
+    lambda: Equation(
+        [p1 + u3 * a2 + u2 * b3 - u3 * b2 + W_C[0], p2 - u3 * a1 + u3 * b1 - u1 * b3 + W_C[1]], equations().velocity
+    ),
 )
 
 
@@ -172,11 +165,7 @@ stationarity_units_printed = claim(
     "2.assumption1.units",
     "(omega_x1^2 + omega_x2^2)^(1/2) < max(omega_x1^2 + omega_x2^2), as printed.",
     lambda: fact(
-        degree(RATE**2),
-        degree(RATE),
-        "powers of 1/s on the right and on the left side",
-        PROVED,
-        unsaid="units are compared as exponents, and statements are about numbers",
+        degree(RATE**2), degree(RATE), "powers of 1/s on the right and on the left side", PROVED, unsaid=EXPONENTS
     ),
     slip="scan",
     reason="a rate (1/s) is compared with a squared rate (1/s^2); the dot of the derivative over the root is lost, "
@@ -191,7 +180,7 @@ stationarity_units = claim(
         degree(sum(sp.diff(RATE, w) * dw for w, dw in zip((w1, w2), OMEGA_X_RATE[:2], strict=True))),
         "powers of 1/s on the right and on the left side",
         PROVED,
-        unsaid="units are compared as exponents, and statements are about numbers",
+        unsaid=EXPONENTS,
     ),
 )
 

@@ -39,6 +39,8 @@ from navsym_papers.joint_correction.inertial import (
 from navsym_papers.joint_correction.kinematics import ALPHA, BETA, EPSILON
 from navsym_papers.joint_correction.section1_systems import say_ranks
 
+ORDER_ONLY = "orders of terms in a small parameter are compared, not values"
+
 mu = MU
 a1, a2 = ALPHA[:2]
 b1, b2, b3 = BETA
@@ -252,7 +254,7 @@ def neglected_terms():
         PROVED,
         scope="alpha, pi, epsilon, nu, w of order rho; beta, gamma of order rho/mu; d omega/d tau of order mu",
         evidence=f"{sum(len(r) for g in (velocity(), position()) for r in g.dropped)} terms, listed by the model",
-        unsaid="orders of terms in a small parameter are compared, not values",
+        unsaid=ORDER_ONLY,
     )
 
 
@@ -268,20 +270,14 @@ def inhomogeneous_terms():
         "bookkeeping of every monomial",
         PROVED,
         scope="orders as declared in 2.8.neglected",
-        unsaid="orders of terms in a small parameter are compared, not values",
+        unsaid=ORDER_ONLY,
     )
 
 
 inhomogeneous_term_as_printed = claim(
     "2.9.inhomogeneous_printed",
     "The printed inhomogeneous term mu omega_2 beta_3 of y_2 has the order mu (times rho).",
-    lambda: fact(
-        1,
-        lowest_order(mu * w2 * b3, ORDERS),
-        "bookkeeping of every monomial",
-        PROVED,
-        unsaid="orders of terms in a small parameter are compared, not values",
-    ),
+    lambda: fact(1, lowest_order(mu * w2 * b3, ORDERS), "bookkeeping of every monomial", PROVED, unsaid=ORDER_ONLY),
     slip="scan",
     reason=DOT,
 )
@@ -289,11 +285,7 @@ inhomogeneous_term = claim(
     "2.9.inhomogeneous_printed*",
     "With the derivative of omega the inhomogeneous term of y_2 has the order mu (times rho).",
     lambda: fact(
-        1,
-        lowest_order(position().linear()[2][1], ORDERS),
-        "bookkeeping of every monomial",
-        PROVED,
-        unsaid="orders of terms in a small parameter are compared, not values",
+        1, lowest_order(position().linear()[2][1], ORDERS), "bookkeeping of every monomial", PROVED, unsaid=ORDER_ONLY
     ),
 )
 

@@ -416,8 +416,10 @@ def velocity_after_a_joint_session():
     """
     A = joint_error_matrix((*VELOCITY_GAINS, *VELOCITY_GAINS), dict.fromkeys((1, 2, 5, 6), sp.Integer(0)))
     A = A.subs(EARTH[2], kappa / MU).applyfunc(sp.expand)
-    first = (p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2
-    return Equation(first * p**2 * (p**2 + mu**2 * (w1**2 + w2**2)), polynomial_of(A))
+    return Equation(
+        ((p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2) * p**2 * (p**2 + mu**2 * (w1**2 + w2**2)),
+        polynomial_of(A),
+    )
 
 
 @claim("3.situations.velocity_after_position")

@@ -44,18 +44,19 @@ def changes_at(formula: sp.Expr, variable: sp.Symbol, order: int, point: dict) -
     return state(f"diff({to_text(formula)}, {variable.name}, {order})", "!=", "0", symbols)
 
 
-@claim("1.arguments")
-def arguments_corrected():
-    """(1): S is a function of coordinates, their errors, sensor errors and readings, and of nothing else."""
-    known = {*RECKONING.reckoned, *RECKONING.errors, *RECKONING.sensor_errors, *RECKONING.readings, model.radius}
-    return fact(
+arguments_corrected = claim(
+    "1.arguments",
+    "(1): S is a function of coordinates, their errors, sensor errors and readings, and of nothing else.",
+    lambda: fact(
         True,
-        S.free_symbols <= known,
+        S.free_symbols
+        <= ({*RECKONING.reckoned, *RECKONING.errors, *RECKONING.sensor_errors, *RECKONING.readings, model.radius}),
         "free symbols of the derived right side",
         PROVED,
         scope="course and log on a sphere",
         unsaid="which symbols a formula has is read off it, not its value",
-    )
+    ),
+)
 
 
 @claim("3")
@@ -144,12 +145,28 @@ type_printed = claim(
 )
 
 
-@claim("4.type*")
-def type_corrected():
-    """(4): the models that (4) switches between are of type (3): A = exp(S1 tau) for the position errors."""
-    east = model.vy * sp.sin(model.heading) + model.vx * sp.cos(model.heading)
-    lever = east * sp.tan(model.latitude) / ((model.radius + model.height) * sp.cos(model.latitude))
-    return Equation(sp.Matrix([[1, 0], [lever * tau, 1]]), discretised(RECKONING.linear_parts()[0], tau), SPHERE)
+type_corrected = claim(
+    "4.type*",
+    "(4): the models that (4) switches between are of type (3): A = exp(S1 tau) for the position errors.",
+    lambda: Equation(
+        sp.Matrix(
+            [
+                [1, 0],
+                [
+                    (
+                        (model.vy * sp.sin(model.heading) + model.vx * sp.cos(model.heading))
+                        * sp.tan(model.latitude)
+                        / ((model.radius + model.height) * sp.cos(model.latitude))
+                    )
+                    * tau,
+                    1,
+                ],
+            ]
+        ),
+        discretised(RECKONING.linear_parts()[0], tau),
+        SPHERE,
+    ),
+)
 
 
 f, df, tilt = sp.symbols("f Deltaf beta", real=True)

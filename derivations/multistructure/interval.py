@@ -18,6 +18,10 @@ from navsym.multimodel.schemes import filters_at, scheme
 from navsym_papers.multistructure import examples
 from navsym_papers.multistructure.pulsating import MODELS, SWITCHING, differs, leaves_by_tree
 
+RUN = "a program is run and what it does is counted"
+NO_FORM = "integrals over a measurement of ratios of Gaussian sums have no closed form"
+BALLS_RUN = "a filter is run in balls over several steps"
+
 
 @claim("count.K")
 def number_in_an_interval():
@@ -33,7 +37,7 @@ def number_in_an_interval():
         "sequences enumerated, filters scheduled",
         PROVED,
         scope="I = 1..4, K = 1..5, four intervals",
-        unsaid="a program is run and what it does is counted",
+        unsaid=RUN,
     )
 
 
@@ -48,7 +52,7 @@ def cost_of_pulsating():
         "filters scheduled, sequences enumerated",
         PROVED,
         scope="I = 2..4, k = 1..4",
-        unsaid="a program is run and what it does is counted",
+        unsaid=RUN,
     )
 
 
@@ -168,33 +172,21 @@ def lower(first, second) -> Finding:
 def longer_is_better():
     """K-pulsating gives the higher quality: in a model seen at step 1 the third estimate is nearer with K = 2."""
     one, two = mean_square_distances()
-    return Property(
-        printed=True,
-        derived=lower(two[2], one[2]),
-        unsaid="integrals over a measurement of ratios of Gaussian sums have no closed form",
-    )
+    return Property(printed=True, derived=lower(two[2], one[2]), unsaid=NO_FORM)
 
 
 @claim("K.better*", expect=CERTIFIED)
 def longer_is_better_on_average():
     """K-pulsating can be better: in a model seen at step 1 K = 2 beats K = 1 in the mean summed over steps 1 to 4."""
     one, two = mean_square_distances()
-    return Property(
-        printed=True,
-        derived=lower(sum(two), sum(one)),
-        unsaid="integrals over a measurement of ratios of Gaussian sums have no closed form",
-    )
+    return Property(printed=True, derived=lower(sum(two), sum(one)), unsaid=NO_FORM)
 
 
 @claim("K.second", expect=CERTIFIED)
 def second_estimate_is_better():
     """K-pulsating: in this model the second estimate is nearer with K = 2 than with K = 1, in the mean."""
     one, two = mean_square_distances()
-    return Property(
-        printed=True,
-        derived=lower(two[1], one[1]),
-        unsaid="integrals over a measurement of ratios of Gaussian sums have no closed form",
-    )
+    return Property(printed=True, derived=lower(two[1], one[1]), unsaid=NO_FORM)
 
 
 @claim("K.third", expect=CERTIFIED)
@@ -206,12 +198,7 @@ def third_estimates():
         raise ArithmeticError("a ball holds two numbers of four digits: finer cells are needed")
     method = "integrals over the measurement by Taylor's formula in balls"
     return fact(
-        (1107, 995),
-        tuple(map(int, digits)),
-        f"{method}, four decimals",
-        CERTIFIED,
-        scope=SCOPE,
-        unsaid="integrals over a measurement of ratios of Gaussian sums have no closed form",
+        (1107, 995), tuple(map(int, digits)), f"{method}, four decimals", CERTIFIED, scope=SCOPE, unsaid=NO_FORM
     )
 
 
@@ -233,7 +220,7 @@ def longer_may_be_worse_on_a_series():
         CERTIFIED,
         scope=finding.scope,
         evidence=finding.evidence,
-        unsaid="a filter is run in balls over several steps",
+        unsaid=BALLS_RUN,
     )
 
 
@@ -252,7 +239,7 @@ def exact_up_to_K():
         "trees compared leaf by leaf in rational arithmetic",
         PROVED,
         scope="one model of two modes; the argument, that no fold comes before the estimate of step K, is general",
-        unsaid="a program is run and what it does is counted",
+        unsaid=RUN,
     )
 
 
@@ -273,7 +260,7 @@ def lossless_fold():
         PROVED,
         scope="this model, every series of measurements: gains do not depend on them",
         evidence="the four leaves of step 2 are one Gaussian, so the fold of K = 2 changes nothing",
-        unsaid="a program is run and what it does is counted",
+        unsaid=RUN,
     )
 
 
@@ -281,6 +268,11 @@ def lossless_fold():
 def longer_may_be_worse():
     """A longer interval can lose: in the same example K = 3 misses the optimal estimate that K = 2 finds."""
     series = [[1], [0], [4], [1]]
-    three = examples.enclosures("k-pulsating", LATE, SWITCHING, series, depth=3)[3]
-    exact = examples.enclosures("exact", LATE, SWITCHING, series)[3]
-    return Property(printed=True, derived=differs(three, exact), unsaid="a filter is run in balls over several steps")
+    return Property(
+        printed=True,
+        derived=differs(
+            examples.enclosures("k-pulsating", LATE, SWITCHING, series, depth=3)[3],
+            examples.enclosures("exact", LATE, SWITCHING, series)[3],
+        ),
+        unsaid=BALLS_RUN,
+    )

@@ -13,6 +13,8 @@ from navsym_papers.multistructure import finite
 from navsym_papers.multistructure.finite import Step, step
 from navsym_papers.multistructure.recursion import UNIT
 
+RUN = "a program is run and what it does is counted"
+
 
 def frozen_steps():
     """Steps under (19), all sizes."""
@@ -128,12 +130,7 @@ def living_sequences():
     _, exact = polygaussian_and_exact(3)
     alive = tuple(sum(1 for leaf in step.leaves if sum(leaf.weights) > 0) for step in exact)
     return fact(
-        (3, 3, 3),
-        alive,
-        "leaves of positive weight counted",
-        PROVED,
-        scope="one model, I = 3, k = 1..3",
-        unsaid="a program is run and what it does is counted",
+        (3, 3, 3), alive, "leaves of positive weight counted", PROVED, scope="one model, I = 3, k = 1..3", unsaid=RUN
     )
 
 
@@ -151,7 +148,7 @@ def optimal():
         "Gaussians of both compared as rationals",
         PROVED,
         scope="one model, I = 3, three steps",
-        unsaid="a program is run and what it does is counted",
+        unsaid=RUN,
     )
 
 
@@ -169,7 +166,7 @@ prior = claim(
         "different Gaussians of the exact tree counted",
         PROVED,
         scope="two modes, L = 1..3, one step",
-        unsaid="a program is run and what it does is counted",
+        unsaid=RUN,
     ),
 )
 

@@ -12,6 +12,8 @@ from navsym_papers.multistructure import examples, finite
 from navsym_papers.multistructure.finite import Step, step
 from navsym_papers.multistructure.recursion import UNIT
 
+RUN = "a program is run and what it does is counted"
+
 
 def forgetful_steps():
     """Steps under (14), all sizes."""
@@ -114,7 +116,7 @@ number_of_sequences = claim(
         "sequences enumerated",
         PROVED,
         scope="I = 1..4, k = 0..5; every step multiplies by I, so for all by induction",
-        unsaid="a program is run and what it does is counted",
+        unsaid=RUN,
     ),
 )
 
@@ -147,10 +149,13 @@ def differs(first, second) -> Finding:
 def suboptimal():
     """Below (18): the algorithm is suboptimal: in one model its second estimate differs from the optimal one."""
     series = [[3], [1]]
-    pulsating = examples.enclosures("pulsating", MODELS, SWITCHING, series)[1]
-    exact = examples.enclosures("exact", MODELS, SWITCHING, series)[1]
     return Property(
-        printed=True, derived=differs(pulsating, exact), unsaid="a filter is run in balls over several steps"
+        printed=True,
+        derived=differs(
+            examples.enclosures("pulsating", MODELS, SWITCHING, series)[1],
+            examples.enclosures("exact", MODELS, SWITCHING, series)[1],
+        ),
+        unsaid="a filter is run in balls over several steps",
     )
 
 
@@ -299,7 +304,7 @@ memory_printed = claim(
         "arrays of the one-pass filter counted",
         PROVED,
         scope="I = 2, 3, 8; n = 1, 2, 6",
-        unsaid="a program is run and what it does is counted",
+        unsaid=RUN,
     ),
     slip="paper",
     reason="beside the probabilities of (17) the sums of (12) and (13) that are being built must be kept, while every "
@@ -315,6 +320,6 @@ memory_corrected = claim(
         "arrays of the one-pass filter counted",
         PROVED,
         scope="I = 2, 3, 8; n = 1, 2, 6",
-        unsaid="a program is run and what it does is counted",
+        unsaid=RUN,
     ),
 )

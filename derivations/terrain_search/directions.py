@@ -261,15 +261,12 @@ def derivative_y():
     )
 
 
-opposite_sums_2 = claim(
-    "13.sign2",
-    "A_x2 = -A_y2.",
-    lambda: Equation([-a for a in printed_sums("Ay2")], [from_x(size)[0] for size in PAIRS]),
-)
-opposite_sums_1 = claim(
-    "13.sign1",
-    "A_x1 = -A_y1.",
-    lambda: Equation([-a for a in printed_sums("Ay1")], [from_x(size)[1] for size in PAIRS]),
+opposite_sums = claim(
+    "13.sign",
+    "A_x2 = -A_y2 and A_x1 = -A_y1.",
+    lambda: Equation(
+        [-a for name in ("Ay2", "Ay1") for a in printed_sums(name)], [from_x(s)[k] for k in (0, 1) for s in PAIRS]
+    ),
 )
 opposite_sums_0_as_printed = claim(
     "13.sign0",

@@ -60,8 +60,9 @@ def joint_hypothesis():
     tau = tk - t0
     moved = [free_motion(tau, a, v, 0)[0] for a, v in ((i * Dx, Vi * DVx), (j * Dy, Vj * DVy))]
     printed = [x + i * Dx + Vi * DVx * tau, y + j * Dy + Vj * DVy * tau]
-    still = [p.subs({Vi: 0, Vj: 0}) for p in printed]
-    return Equation([*printed, *still], [x + moved[0], y + moved[1], x + i * Dx, y + j * Dy])
+    return Equation(
+        [*printed, *[p.subs({Vi: 0, Vj: 0}) for p in printed]], [x + moved[0], y + moved[1], x + i * Dx, y + j * Dy]
+    )
 
 
 @claim("bias.mean")

@@ -17,6 +17,8 @@ from navsym_papers.trajectory.experiment_printed import TAU, ball
 from navsym_papers.trajectory.gain import PERIOD, gain_in_f
 from navsym_papers.trajectory.model import pascal_rows
 
+BESSEL = "Bessel functions are outside the language"
+
 #: Metric gains (per metre: 1, 1/s, 1/s^2, ...) found by a search; what they do is computed below.
 WITNESSES = {
     2: tuple(map(Fraction, ("0.813", "0.0585", "0.00418", "2.6e-5", "1.31e-6"))),
@@ -76,17 +78,13 @@ def hundredths(value: flint.arb) -> str:
 speed_errors_at_two_metres = claim(
     "experiment.sigma_v.2",
     "|V| = 2 m/s: a stable gain gives 0.06 m/s straight, 0.07 m/s yawing, but a position error of 0.83, not 0.1 m.",
-    lambda: Property(
-        printed=("0.06", "0.07", "0.83"), derived=two_figures(2), unsaid="Bessel functions are outside the language"
-    ),
+    lambda: Property(printed=("0.06", "0.07", "0.83"), derived=two_figures(2), unsaid=BESSEL),
     expect=CERTIFIED,
 )
 speed_errors_at_three_hundred_metres = claim(
     "experiment.sigma_v.300",
     "|V| = 300 m/s: a stable gain gives 0.08 m/s straight, 0.09 yawing, but a position error of 0.47, not 0.1 m.",
-    lambda: Property(
-        printed=("0.08", "0.09", "0.47"), derived=two_figures(300), unsaid="Bessel functions are outside the language"
-    ),
+    lambda: Property(printed=("0.08", "0.09", "0.47"), derived=two_figures(300), unsaid=BESSEL),
     expect=CERTIFIED,
 )
 
@@ -138,14 +136,7 @@ def yawing_speed_error_in_full():
     noise, lag = speed_noise(gain_in_f()), speed_lag(gain_in_f(), 100)
     found = hundredths(lag.sqrt()), hundredths((noise + lag).sqrt())
     scope = "printed gain in D_p variables, steady yawing, noise of 1 m"
-    return fact(
-        ("0.81", "0.81"),
-        found,
-        "five harmonics in balls",
-        CERTIFIED,
-        scope=scope,
-        unsaid="Bessel functions are outside the language",
-    )
+    return fact(("0.81", "0.81"), found, "five harmonics in balls", CERTIFIED, scope=scope, unsaid=BESSEL)
 
 
 figures_of_one_sentence = claim(

@@ -20,6 +20,9 @@ from navsym_papers.trajectory.experiment_printed import TAU, ball
 from navsym_papers.trajectory.model import pascal_rows
 from navsym_papers.trajectory.scaling import write_rows
 
+BESSEL = "Bessel functions are outside the language"
+ROUTH = "roots of a polynomial over a box of its coefficients are counted by Routh's column"
+
 PERIOD = Fraction(360)
 
 GAIN = tuple(map(Fraction, ("0.0919", "0.00655", "0.000226", "0.00000404", "0.000000032")))
@@ -41,11 +44,7 @@ def stability(scale: list[flint.arb]) -> Finding:
 constant_gain_in_normalised_variables = claim(
     "experiment.gain",
     "With the printed constant gain in the variables x^q the algorithm goes on working (is stable).",
-    lambda: Property(
-        printed=True,
-        derived=stability(normalised_scale(5)),
-        unsaid="roots of a polynomial over a box of its coefficients are counted by Routh's column",
-    ),
+    lambda: Property(printed=True, derived=stability(normalised_scale(5)), unsaid=ROUTH),
     slip="undecidable",
     reason="in the normalised variables, in which y is said to live, a root of modulus 1.0006 makes the "
     "estimate grow without bound; the same digits are stable in D_p variables (metres, m/s, ...), where the printed "
@@ -54,11 +53,7 @@ constant_gain_in_normalised_variables = claim(
 constant_gain_in_metric_variables = claim(
     "experiment.gain*",
     "With the printed constant gain in the variables D_p x (metres, m/s, ...) the algorithm is stable.",
-    lambda: Property(
-        printed=True,
-        derived=stability(metric_scale(5, TAU)),
-        unsaid="roots of a polynomial over a box of its coefficients are counted by Routh's column",
-    ),
+    lambda: Property(printed=True, derived=stability(metric_scale(5, TAU)), unsaid=ROUTH),
     expect=CERTIFIED,
 )
 
@@ -127,7 +122,7 @@ position_noise = claim(
 yawing_speed_error_printed = claim(
     "experiment.sigma_v.yaw.100",
     "|V| = 100 m/s: error of V_2 while yawing with the printed constant gain.",
-    lambda: Property(printed="0.090", derived=yawing_lag(2, 3), unsaid="Bessel functions are outside the language"),
+    lambda: Property(printed="0.090", derived=yawing_lag(2, 3), unsaid=BESSEL),
     slip="paper",
     reason="the printed gain lags 18 % behind a motion of period 360 s: 0.8 m/s of the 4.4 m/s of V_2, both root mean "
     "squares (the amplitude of V_2 is 6.2 m/s)",
@@ -135,13 +130,13 @@ yawing_speed_error_printed = claim(
 yawing_speed_error = claim(
     "experiment.sigma_v.yaw.100*",
     "|V| = 100 m/s: lag of V_2 behind the first harmonic of the yawing, printed gain.",
-    lambda: Property(printed="0.806", derived=yawing_lag(2, 3), unsaid="Bessel functions are outside the language"),
+    lambda: Property(printed="0.806", derived=yawing_lag(2, 3), unsaid=BESSEL),
     expect=CERTIFIED,
 )
 yawing_acceleration_error_printed = claim(
     "experiment.sigma_a.yaw.100",
     "|V| = 100 m/s: error of the acceleration while yawing with the printed constant gain.",
-    lambda: Property(printed="0.01", derived=yawing_lag(3, 2), unsaid="Bessel functions are outside the language"),
+    lambda: Property(printed="0.01", derived=yawing_lag(3, 2), unsaid=BESSEL),
     slip="paper",
     reason="the printed gain misses 77 % of the acceleration at a period of 360 s; by hand: 0.77 of 6.2 m/s times 2 "
     "pi/360 s over sqrt(2) is 0.06 m/s^2",
@@ -149,6 +144,6 @@ yawing_acceleration_error_printed = claim(
 yawing_acceleration_error = claim(
     "experiment.sigma_a.yaw.100*",
     "|V| = 100 m/s: lag of the acceleration behind the first harmonic of the yawing, printed gain.",
-    lambda: Property(printed="0.06", derived=yawing_lag(3, 2), unsaid="Bessel functions are outside the language"),
+    lambda: Property(printed="0.06", derived=yawing_lag(3, 2), unsaid=BESSEL),
     expect=CERTIFIED,
 )

@@ -7,8 +7,10 @@ from math import comb
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, Finding, Property, claim, fact, state
+from navsym.claims import PROVED, Equation, Property, claim, fact, state
 from navsym_papers.trajectory import model
+
+FOLLOWED = "what rules reach is found by following them to the end"
 
 rho, tau = sp.symbols("rho tau", positive=True)
 
@@ -151,31 +153,12 @@ def say_entries(rows: list[dict[tuple[int, int], int]]) -> tuple[dict, ...]:
 
 @claim("6.Phif.triangular")
 def transition_is_triangular():
-    """Phi_f is upper triangular with integer elements."""
-    Phi = transitions()
-    holds = all(Phi[i, j].is_Integer and (j >= i or Phi[i, j] == 0) for i in range(LARGEST) for j in range(LARGEST))
+    """Phi_f is upper triangular with integer elements, Phi_f,ii = 1 and Phi_f,1j = 1."""
+    Phi, places = transitions(), [(i, j) for i in range(LARGEST) for j in range(LARGEST)]
+    holds = all(Phi[i, j].is_Integer and (j >= i or Phi[i, j] == 0) for i, j in places)
+    holds = holds and all(Phi[i, j] == 1 for i, j in places if i in (0, j))
     rows = [{(i, j): comb(j, i) for j in range(LARGEST)} for i in range(LARGEST)]
     return fact(True, holds, "exact matrix", PROVED, scope=SCOPE, meaning=say_entries(rows))
-
-
-transition_diagonal = claim(
-    "6.Phif.diagonal",
-    "Phi_f,ii = 1.",
-    lambda: Property(
-        printed=(1,) * LARGEST,
-        derived=Finding(tuple(int(transitions()[i, i]) for i in range(LARGEST)), "exact matrix", PROVED, scope=SCOPE),
-        meaning=say_entries([{(i, i): 1 for i in range(LARGEST)}]),
-    ),
-)
-transition_first_row = claim(
-    "6.Phif.first_row",
-    "Phi_f,1j = 1.",
-    lambda: Property(
-        printed=(1,) * LARGEST,
-        derived=Finding(tuple(int(x) for x in transitions()[0, :]), "exact matrix", PROVED, scope=SCOPE),
-        meaning=say_entries([{(0, j): 1 for j in range(LARGEST)}]),
-    ),
-)
 
 
 def recurrence_holds(row_step: int) -> Property:
@@ -231,14 +214,7 @@ def reached(allowed) -> int:
 recurrence_range_printed = claim(
     "6.Phif.range",
     "The recurrence for i >= j determines all 10 elements above the diagonal (n = 5).",
-    lambda: fact(
-        10,
-        reached(lambda i, j: i >= j),
-        "closure of the rules",
-        PROVED,
-        scope="n = 5",
-        unsaid="what rules reach is found by following them to the end",
-    ),
+    lambda: fact(10, reached(lambda i, j: i >= j), "closure of the rules", PROVED, scope="n = 5", unsaid=FOLLOWED),
     slip="paper",
     reason="for i >= j the recurrence only says 0 = 0 + 0 and 1 = 1 + 0: six of the ten elements above the "
     "diagonal stay undetermined; the range has to be i <= j",
@@ -246,14 +222,7 @@ recurrence_range_printed = claim(
 recurrence_range = claim(
     "6.Phif.range*",
     "The recurrence for i <= j determines all 10 elements above the diagonal (n = 5).",
-    lambda: fact(
-        10,
-        reached(lambda i, j: i <= j),
-        "closure of the rules",
-        PROVED,
-        scope="n = 5",
-        unsaid="what rules reach is found by following them to the end",
-    ),
+    lambda: fact(10, reached(lambda i, j: i <= j), "closure of the rules", PROVED, scope="n = 5", unsaid=FOLLOWED),
 )
 
 

@@ -113,17 +113,20 @@ def price_of_the_order():
     )
 
 
-@claim("window.figures", expect=CERTIFIED)
-def windows_of_the_printed_errors():
-    """1 m every 0.2 s as white noise: for 0.019 m/s n = 5 needs 138.5 s of straight course, for 0.09 m/s 49.1 s.
-
-    The yawing has a period of 360 s: the first window is more than a third of it.
-    """
-    windows = [sp.cbrt(4800 * sp.Rational("0.2") / sp.Rational(v) ** 2) for v in ("0.019", "0.09")]
-    check = [of_derivative(1, 4).subs({q: sp.Rational("0.2"), T: sp.Integer(1)})]
-    return Equation(
-        [sp.Rational("138.5"), sp.Rational("49.1"), sp.Integer(960)], [*windows, *check], tolerance=sp.Rational(1, 20)
-    )
+# The yawing has a period of 360 s: the first window is more than a third of it.
+windows_of_the_printed_errors = claim(
+    "window.figures",
+    "1 m every 0.2 s as white noise: for 0.019 m/s n = 5 needs 138.5 s of straight course, for 0.09 m/s 49.1 s.",
+    lambda: Equation(
+        [sp.Rational("138.5"), sp.Rational("49.1"), sp.Integer(960)],
+        [
+            *[sp.cbrt(4800 * sp.Rational("0.2") / sp.Rational(v) ** 2) for v in ("0.019", "0.09")],
+            *[of_derivative(1, 4).subs({q: sp.Rational("0.2"), T: sp.Integer(1)})],
+        ],
+        tolerance=sp.Rational(1, 20),
+    ),
+    expect=CERTIFIED,
+)
 
 
 s = sp.Symbol("s", positive=True)  # rho tau
