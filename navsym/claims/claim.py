@@ -8,7 +8,7 @@ import inspect
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, Literal, cast, overload
+from typing import Any, Literal, cast
 
 from navsym.claims.display import mark_verdict, write_card
 from navsym.claims.statement import Equation, Statement
@@ -76,10 +76,6 @@ class Claim:
 Derive = Callable[[], Statement | Iterator[tuple[Any, Any]]]
 
 
-@overload
-def claim(number: str, title: str, derive: Derive, /, **declared: Any) -> Claim: ...
-@overload
-def claim(number: str, title: str | None = None, **declared: Any) -> Callable[[Derive], Claim]: ...
 def claim(
     number: str,
     title: str | None = None,
@@ -89,7 +85,7 @@ def claim(
     corrects: str | None = None,
     slip: Slip | None = None,
     reason: str = "",
-) -> Claim | Callable[[Derive], Claim]:
+) -> Any:
     """A :class:`Claim` of a number, a title and a function that states it; without the function a decorator of one.
 
     Without a title it is the first line of the docstring. A slip is declared REFUTED, a number with a star corrects

@@ -166,7 +166,9 @@ class Property:
         return display_latex(rf"{latex_of(self.printed)} \overset{{?}}{{=}} {latex_of(self.derived.value)}")
 
 
-def fact(printed: Any, value: Any, method: str, status: Status, *, unsaid: str = "", meaning: Any = (), **found: Any):
+def fact(
+    printed: Any, value: Any, method: str, status: Status, *, unsaid: str = "", meaning: Any = (), **found: Any
+) -> Property:
     """A :class:`Property` of a printed fact and of the value that a method found, with the parts of a :class:`Finding`.
 
     >>> fact(2, 2, "a count", Status.PROVED, scope="one list").derived.value

@@ -64,8 +64,9 @@ def command(
 def as_text(ledger: Ledger, seconds: float) -> str:
     """A table in the order of the papers, and below it what is refuted and the counts: the end is what one sees."""
     papers = ledger.by_paper()
-    name = (lambda r: r.id) if len(papers) > 1 else lambda r: r.number  # several papers have an equation (1)
-    rows = [(name(r), str(r.status), r.title, remark_of(r)) for _, records in papers for r in records]
+    several = len(papers) > 1  # each has an equation (1)
+    every = [r for _, records in papers for r in records]
+    rows = [(r.id if several else r.number, str(r.status), r.title, remark_of(r)) for r in every]
     blocks = [table(("claim", "verdict", "what it says", "remark"), rows)]
     for paper, records in papers:
         counted = f"{paper.equations} numbered equations, {paper.claimed} claimed, {paper.definitions} definitions"
