@@ -183,7 +183,7 @@ noise_of_position = claim(
     "10.position",
     "Noise of variance one gives the position (2 alpha^2 + 2 beta - 3 alpha beta) / (alpha (4 - 2 alpha - beta)).",
     lambda: Equation(
-        ((2 * alpha**2 + 2 * beta - 3 * alpha * beta) / (alpha * (4 - 2 * alpha - beta))), noise_covariance()[0, 0]
+        (2 * alpha**2 + 2 * beta - 3 * alpha * beta) / (alpha * (4 - 2 * alpha - beta)), noise_covariance()[0, 0]
     ),
 )
 noise_of_velocity = claim(

@@ -227,7 +227,7 @@ def tilt_touches_twice():
     """
     size = 2 / sp.sin(T) ** 2
     return contacts(
-        tilt_dual(), size * sp.sin((T + s) / 2) ** 2, (size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - 2 * sp.pi))
+        tilt_dual(), size * sp.sin((T + s) / 2) ** 2, size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - 2 * sp.pi)
     )
 
 
@@ -246,7 +246,7 @@ def drift_touches_twice():
     """
     size = 2 / sp.cos(T) ** 2
     return contacts(
-        drift_dual(), size * sp.cos((T + s) / 2) ** 2, (size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - sp.pi))
+        drift_dual(), size * sp.cos((T + s) / 2) ** 2, size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - sp.pi)
     )
 
 

@@ -136,7 +136,7 @@ polynomial_is_a_shifted_cosine = claim(
     "4.4.closed-form",
     "S0(tau) = (2 cos(tau - T/2) - 1 - cos(T/2)) / (2 cos(T/2)): what the graphs of the paper show.",
     lambda: Equation(
-        ((2 * sp.cos(tau - T / 2) - 1 - sp.cos(T / 2)) / (2 * sp.cos(T / 2))), polynomial(*coefficients()), STATED
+        (2 * sp.cos(tau - T / 2) - 1 - sp.cos(T / 2)) / (2 * sp.cos(T / 2)), polynomial(*coefficients()), STATED
     ),
 )
 largest_deviation = claim(

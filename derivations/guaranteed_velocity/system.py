@@ -150,7 +150,7 @@ reversed_argument = claim(
     "The printed (1.9) is exp(A*(T - tau)) h1: (1.8) with the other sign of its argument.",
     lambda: Equation(
         sp.Matrix([1, -sp.sin(T - tau), sp.cos(T - tau) - 1]),
-        (transition_matrix(sp.Matrix(CHANNEL.F).T, T - tau).matrix * sp.Matrix([1, 0, 0])),
+        transition_matrix(sp.Matrix(CHANNEL.F).T, T - tau).matrix * sp.Matrix([1, 0, 0]),
     ),
 )
 observability = claim(

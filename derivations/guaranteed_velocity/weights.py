@@ -164,7 +164,7 @@ longitudinal_drift_estimate = claim(
     "4.16.y6",
     "The estimate of y6 with the brackets as they stand.",
     lambda: Equation(
-        ((-z0 + 2 * sp.cos(T / 2) * zm + (1 - 2 * sp.cos(T / 2) * zT)) / (4 * SINE)), derived_estimate(2), STATED
+        (-z0 + 2 * sp.cos(T / 2) * zm + (1 - 2 * sp.cos(T / 2) * zT)) / (4 * SINE), derived_estimate(2), STATED
     ),
     slip="undecidable",
     reason="(4.14) has the bracket that is missing here after 2 cos(T/2): read as it stands, 1 is not multiplied by z",
@@ -185,7 +185,7 @@ def bias_of_printed_tilt(state: int) -> sp.Expr:
 printed_tilt_estimate_is_biased = claim(
     "4.14.y2.bias",
     "What the slip costs: a velocity error y1 enters the printed estimate of y2 with this factor.",
-    lambda: Equation(((sp.sin(T / 2) - 1) / (2 * sp.sin(T / 2) ** 2)), bias_of_printed_tilt(0), STATED),
+    lambda: Equation((sp.sin(T / 2) - 1) / (2 * sp.sin(T / 2) ** 2), bias_of_printed_tilt(0), STATED),
 )
 
 

@@ -92,7 +92,7 @@ def output_row_of_z_printed():
     size = 2
     return fact(
         True,
-        (unit_row(size).T.cols == free("z", size).rows),
+        unit_row(size).T.cols == free("z", size).rows,
         "shapes of the factors, n - m = 2",
         PROVED,
         scope="n - m = 2",

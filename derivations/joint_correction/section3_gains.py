@@ -402,7 +402,7 @@ neither_information = claim(
     "3.situations.neither",
     "Neither information: all gains are zero and the estimates are carried along.",
     lambda: Equation(
-        (p**4 * (p**2 + 1) ** 2 * (p**2 + mu**2 * (w1**2 + w2**2))),
+        p**4 * (p**2 + 1) ** 2 * (p**2 + mu**2 * (w1**2 + w2**2)),
         polynomial_of(joint_error_matrix(tuple([sp.Integer(0)] * 6), dict.fromkeys((1, 2, 5, 6), sp.Integer(0)))),
     ),
 )

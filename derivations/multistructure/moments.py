@@ -39,7 +39,7 @@ def partial_mean(s: Step, name: str, i: int):
 def estimate_printed():
     """(12) as printed, summed over j."""
     s = step(2, 2)
-    return Equation((2 * finite.mode(s, 0) * partial_mean(s, "xi", 0)), mean(s, "xi"), UNIT(s))
+    return Equation(2 * finite.mode(s, 0) * partial_mean(s, "xi", 0), mean(s, "xi"), UNIT(s))
 
 
 @claim("12*")

@@ -270,7 +270,7 @@ def near_moments():
     mean = share * gap
     return Equation(
         [mean, 1 + share * (other - 1) + share * (1 - share) * gap**2],
-        [share * gap, ((1 - share) * (1 + mean**2) + share * (other + (gap - mean) ** 2))],
+        [share * gap, (1 - share) * (1 + mean**2) + share * (other + (gap - mean) ** 2)],
     )
 
 

@@ -153,7 +153,7 @@ def mode_definition_printed():
     """The fraction above (10): g^i with a numerator that is not summed over j."""
     s = step(2, 2)
     return Equation(
-        (s.probability(Y=0, i=0, j=1) / total(s.probability(Y=0, i=i, j=j) for i in s.I for j in s.I)),
+        s.probability(Y=0, i=0, j=1) / total(s.probability(Y=0, i=i, j=j) for i in s.I for j in s.I),
         finite.mode(s, 0),
         UNIT(s),
     )

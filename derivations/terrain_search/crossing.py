@@ -87,7 +87,7 @@ def drifted():
 def the_angle_is_close_to_its_tangent():
     """At a velocity error of at most a tenth of the speed angle and tangent differ by under 0.4 per cent."""
     r = sp.Symbol("r", positive=True)
-    return Bound(r - sp.atan(r), "<=", r / 250, ({r: (sp.Rational(1, 1000), sp.Rational(1, 10))}))
+    return Bound(r - sp.atan(r), "<=", r / 250, {r: (sp.Rational(1, 1000), sp.Rational(1, 10))})
 
 
 @claim("9.crossing")
@@ -176,7 +176,7 @@ def weights_sum_to_one():
     shift = sp.Symbol("s", real=True)
     # If the weights sum to one, numbering the measurements from s instead of 0 moves t_G by s.
     return Equation(
-        [sp.Integer(1)], [sp.diff((sum((m + shift) * v**2 for m, v in enumerate(q)) / sum(v**2 for v in q)), shift)]
+        [sp.Integer(1)], [sp.diff(sum((m + shift) * v**2 for m, v in enumerate(q)) / sum(v**2 for v in q), shift)]
     )
 
 
@@ -258,5 +258,5 @@ def equal_slopes():
 informative_end = claim(
     "10.informative",
     "t_G may lie far from the middle: one steep last point among gentle ones puts it near the end.",
-    lambda: Bound(crossing_time(([(0, 1)] * 10 + [(0, 30)]), (0, 1)), ">=", sp.Rational(9, 10) * 10),
+    lambda: Bound(crossing_time([(0, 1)] * 10 + [(0, 30)], (0, 1)), ">=", sp.Rational(9, 10) * 10),
 )

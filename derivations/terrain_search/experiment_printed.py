@@ -181,7 +181,7 @@ def mean_error_in_a_cell():
 velocity_below_the_grid = claim(
     "sigmaV.floor",
     "As values of the printed measure 0.48 and 0.55 mean less than the 0.38 m/s of errors even in cells of 1 m/s.",
-    lambda: Bound(SEQUENTIAL_SPEED**2, "<", ((sp.sqrt(2) + sp.log(1 + sp.sqrt(2))) / 6)),
+    lambda: Bound(SEQUENTIAL_SPEED**2, "<", (sp.sqrt(2) + sp.log(1 + sp.sqrt(2))) / 6),
 )
 sequential_is_better_than_the_position_search = claim(
     "table.better",

@@ -187,7 +187,7 @@ def middle_as_printed():
 def mean():
     """The mean of t_G over a uniform direction is tr(G^-1/2 M1) / tr(G^1/2)."""
     root = sp.diag(a, b)
-    return Equation(((inverse(root) * M).trace() / root.trace()), mean_over_directions(), nonzero=(a - b,))
+    return Equation((inverse(root) * M).trace() / root.trace(), mean_over_directions(), nonzero=(a - b,))
 
 
 @claim("mean.rotated")

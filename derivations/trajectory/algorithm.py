@@ -328,5 +328,5 @@ def matrix_is_not_the_covariance():
     error = root * R / (2 - root)  # E e^2 = (1 - K)^2 E e^2 + K^2 R
     return Equation(
         [R * root * (1 - root) / (2 - root), sp.Integer(0)],
-        [matrix - error, (error - (1 - root) ** 2 * error - root**2 * R)],
+        [matrix - error, error - (1 - root) ** 2 * error - root**2 * R],
     )

@@ -44,7 +44,7 @@ def geocentric_tangent():
 geocentric_latitude_printed = claim(
     "earth.tan_phi",
     "Tangent of the geocentric latitude, as it came out of the scan.",
-    lambda: Equation(((1 - a * e / (a + h * ROOT)) * sp.tan(phi_e)), geocentric_tangent(), ELLIPSOID),
+    lambda: Equation((1 - a * e / (a + h * ROOT)) * sp.tan(phi_e), geocentric_tangent(), ELLIPSOID),
     slip="scan",
     reason="the exponent of e is lost: at h = 0 the factor has to be 1 - e^2, as in the printed radius two lines "
     "below; by hand: for e = 0.082 the factor 0.918 stands for 0.9933",
@@ -52,7 +52,7 @@ geocentric_latitude_printed = claim(
 geocentric_latitude = claim(
     "earth.tan_phi*",
     "Tangent of the geocentric latitude.",
-    lambda: Equation(((1 - a * e**2 / (a + h * ROOT)) * sp.tan(phi_e)), geocentric_tangent(), ELLIPSOID),
+    lambda: Equation((1 - a * e**2 / (a + h * ROOT)) * sp.tan(phi_e), geocentric_tangent(), ELLIPSOID),
 )
 
 
@@ -78,12 +78,12 @@ east_is_common = claim(
 geodetic_north = claim(
     "earth.rotation.xi2",
     "North component in the geodetic trihedron.",
-    lambda: Equation((sp.cos(phi_e - phi) * xi[1] - sp.sin(phi_e - phi) * xi[2]), turned(1)),
+    lambda: Equation(sp.cos(phi_e - phi) * xi[1] - sp.sin(phi_e - phi) * xi[2], turned(1)),
 )
 geodetic_up = claim(
     "earth.rotation.xi3",
     "Component along the normal to the ellipsoid.",
-    lambda: Equation((sp.sin(phi_e - phi) * xi[1] + sp.cos(phi_e - phi) * xi[2]), turned(2)),
+    lambda: Equation(sp.sin(phi_e - phi) * xi[1] + sp.cos(phi_e - phi) * xi[2], turned(2)),
 )
 
 

@@ -236,7 +236,7 @@ measurement_through_a_step = claim(
     "4.Hp",
     "H_p = H Phi = (1, rho tau, ..., rho tau^(n-1)/(n-1)!); n = 8.",
     lambda: Equation(
-        sp.Matrix([([sp.Integer(1)] + [rho * tau**j / sp.factorial(j) for j in range(1, ORDER)])]),
+        sp.Matrix([[sp.Integer(1)] + [rho * tau**j / sp.factorial(j) for j in range(1, ORDER)]]),
         sp.Matrix([moved_state(ORDER, tau)[0]]).jacobian(STATE),
     ),
 )

@@ -252,7 +252,7 @@ observability_by_stages = claim(
     "6.Np",
     "N_p = N_f D_f with the printed matrices; n = 5.",
     lambda: Equation(
-        (PRINTED_NF * sp.diag(1, rho * tau, rho * tau**2 / 2, rho * tau**3 / 6, rho * tau**4 / 24)), N_p(PRINTED)
+        PRINTED_NF * sp.diag(1, rho * tau, rho * tau**2 / 2, rho * tau**3 / 6, rho * tau**4 / 24), N_p(PRINTED)
     ),
 )
 
@@ -282,7 +282,7 @@ scalings_multiply_for_other_orders = claim(
 both_procedures_meet = claim(
     "6.Ns",
     "N_s = N_pN for positive rho and tau; n = 5.",
-    lambda: Equation((N_f(PRINTED) * D_s(PRINTED).inv()), N_p(PRINTED) * D(PRINTED).inv()),
+    lambda: Equation(N_f(PRINTED) * D_s(PRINTED).inv(), N_p(PRINTED) * D(PRINTED).inv()),
 )
 
 

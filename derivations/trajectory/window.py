@@ -156,7 +156,7 @@ def normalisation_is_optimal_for_two_states():
     rows = sp.Matrix([[1, s], [1, 2 * s]])
     return Equation(
         2 * sp.sqrt(10) + (sp.sqrt(2) - sp.sqrt(5) * s) ** 2 / s,
-        (sum(entry**2 for entry in rows) / sp.sqrt(sp.expand(rows.det()) ** 2)),
+        sum(entry**2 for entry in rows) / sp.sqrt(sp.expand(rows.det()) ** 2),
     )
 
 
