@@ -130,47 +130,43 @@ def riccati_is_solved():
     """The covariance in r solves all entries of the Riccati equation when Lambda is its function of r."""
     index = index_of_ratio()
     P = prediction(index)
-    return Equation(printed=P, derived=riccati(P, index), box=RATIO)
+    return Equation(P, riccati(P, index), RATIO)
 
 
 @claim("4")
 def index_from_gains():
     """Lambda^2 = beta^2 / (1 - alpha)."""
     first, second = gains()
-    return Equation(printed=second**2 / (1 - first), derived=index_of_ratio() ** 2, box=RATIO)
+    return Equation(second**2 / (1 - first), index_of_ratio() ** 2, RATIO)
 
 
 @claim("5")
 def gain_relation():
     """beta = 2 (2 - alpha) - 4 sqrt(1 - alpha)."""
     first, second = gains()
-    return Equation(printed=2 * (2 - first) - 4 * sp.sqrt(1 - first), derived=second, box=RATIO)
+    return Equation(2 * (2 - first) - 4 * sp.sqrt(1 - first), second, RATIO)
 
 
-@claim("6")
-def position_gain():
-    """alpha as a function of the tracking index."""
-    root = sp.sqrt(L**2 + 8 * L)
-    return Equation(printed=-(L**2 + 8 * L - (L + 4) * root) / 8, derived=1 - ratio() ** 2)
-
-
-@claim("7")
-def velocity_gain():
-    """beta as a function of the tracking index."""
-    return Equation(printed=(L**2 + 4 * L - L * sp.sqrt(L**2 + 8 * L)) / 4, derived=L * ratio())
-
-
-@claim("8")
-def ratio_in_closed_form():
-    """r = (4 + Lambda - sqrt(8 Lambda + Lambda^2)) / 4, with alpha = 1 - r^2."""
-    return Equation(printed=(4 + L - sp.sqrt(8 * L + L**2)) / 4, derived=ratio())
-
-
-@claim("8.product")
-def ratio_is_below_one():
-    """The other root of the quadratic is 1/r, so that one of the two lies below one."""
-    other = (4 + L + sp.sqrt(8 * L + L**2)) / 4
-    return Equation(printed=1 / other, derived=ratio())
+position_gain = claim(
+    "6",
+    "alpha as a function of the tracking index.",
+    lambda: Equation(-(L**2 + 8 * L - (L + 4) * sp.sqrt(L**2 + 8 * L)) / 8, 1 - ratio() ** 2),
+)
+velocity_gain = claim(
+    "7",
+    "beta as a function of the tracking index.",
+    lambda: Equation((L**2 + 4 * L - L * sp.sqrt(L**2 + 8 * L)) / 4, L * ratio()),
+)
+ratio_in_closed_form = claim(
+    "8",
+    "r = (4 + Lambda - sqrt(8 Lambda + Lambda^2)) / 4, with alpha = 1 - r^2.",
+    lambda: Equation((4 + L - sp.sqrt(8 * L + L**2)) / 4, ratio()),
+)
+ratio_is_below_one = claim(
+    "8.product",
+    "The other root of the quadratic is 1/r, so that one of the two lies below one.",
+    lambda: Equation(1 / ((4 + L + sp.sqrt(8 * L + L**2)) / 4), ratio()),
+)
 
 
 @claim("9")
@@ -180,53 +176,52 @@ def filtered_covariance():
     corner = second * (2 * first - second) / (2 * (1 - first) * T**2)
     printed = sv**2 * sp.Matrix([[first, second / T], [second / T, corner]])
     P = prediction(index_of_ratio())
-    return Equation(printed=printed, derived=P - P * H.T * H * P * r**2 / sv**2, box=RATIO)
+    return Equation(printed, P - P * H.T * H * P * r**2 / sv**2, RATIO)
 
 
-@claim("10.position")
-def noise_of_position():
-    """Noise of variance one gives the position (2 alpha^2 + 2 beta - 3 alpha beta) / (alpha (4 - 2 alpha - beta))."""
-    printed = (2 * alpha**2 + 2 * beta - 3 * alpha * beta) / (alpha * (4 - 2 * alpha - beta))
-    return Equation(printed=printed, derived=noise_covariance()[0, 0])
-
-
-@claim("10.velocity")
-def noise_of_velocity():
-    """Noise of variance one gives the filtered velocity 2 beta^2 / (T^2 alpha (4 - 2 alpha - beta))."""
-    return Equation(printed=2 * beta**2 / (T**2 * alpha * (4 - 2 * alpha - beta)), derived=noise_covariance()[1, 1])
-
-
-@claim("11.position")
-def lag_of_position():
-    """Under a constant acceleration the filtered position lags by (1 - alpha) a T^2 / beta."""
-    return Equation(printed=(1 - alpha) * a * T**2 / beta, derived=lag()[0])
-
-
-@claim("11.velocity")
-def lag_of_velocity():
-    """Under a constant acceleration the filtered velocity lags by (2 alpha - beta) a T / (2 beta)."""
-    return Equation(printed=(2 * alpha - beta) * a * T / (2 * beta), derived=lag()[1])
+noise_of_position = claim(
+    "10.position",
+    "Noise of variance one gives the position (2 alpha^2 + 2 beta - 3 alpha beta) / (alpha (4 - 2 alpha - beta)).",
+    lambda: Equation(
+        (2 * alpha**2 + 2 * beta - 3 * alpha * beta) / (alpha * (4 - 2 * alpha - beta)), noise_covariance()[0, 0]
+    ),
+)
+noise_of_velocity = claim(
+    "10.velocity",
+    "Noise of variance one gives the filtered velocity 2 beta^2 / (T^2 alpha (4 - 2 alpha - beta)).",
+    lambda: Equation(2 * beta**2 / (T**2 * alpha * (4 - 2 * alpha - beta)), noise_covariance()[1, 1]),
+)
+lag_of_position = claim(
+    "11.position",
+    "Under a constant acceleration the filtered position lags by (1 - alpha) a T^2 / beta.",
+    lambda: Equation((1 - alpha) * a * T**2 / beta, lag()[0]),
+)
+lag_of_velocity = claim(
+    "11.velocity",
+    "Under a constant acceleration the filtered velocity lags by (2 alpha - beta) a T / (2 beta).",
+    lambda: Equation((2 * alpha - beta) * a * T / (2 * beta), lag()[1]),
+)
 
 
 @claim("12.characteristic")
 def characteristic_polynomial():
     """The filter has the characteristic polynomial z^2 - (2 - alpha - beta) z + 1 - alpha."""
     z = sp.Symbol("z", real=True)
-    return Equation(printed=z**2 - (2 - alpha - beta) * z + 1 - alpha, derived=(z * sp.eye(2) - closed_loop()).det())
+    return Equation(z**2 - (2 - alpha - beta) * z + 1 - alpha, (z * sp.eye(2) - closed_loop()).det())
 
 
 @claim("12.stable")
 def steady_filter_is_stable():
     """Of the three conditions of stability only 4 - 2 alpha - beta > 0 needs the gains: it is 4 r."""
     first, second = gains()
-    return Equation(printed=4 * r, derived=4 - 2 * first - second, box=RATIO)
+    return Equation(4 * r, 4 - 2 * first - second, RATIO)
 
 
 @claim("12.other-root")
 def other_root_is_not_stable():
     """With the larger root of the Riccati equation the same condition is -4 r: not stable."""
     first, second = gains(sign=1)
-    return Equation(printed=-4 * r, derived=4 - 2 * first - second, box=RATIO)
+    return Equation(-4 * r, 4 - 2 * first - second, RATIO)
 
 
 @claim(
@@ -240,28 +235,28 @@ def optimal_gains_are_called_critical():
     z = sp.Symbol("z", real=True)
     loop = closed_loop().subs({alpha: first, beta: second}, simultaneous=True)
     discriminant = sp.Poly((z * sp.eye(2) - loop).det(), z).discriminant()
-    return Equation(printed=sp.Integer(0), derived=discriminant, box=RATIO)
+    return Equation(sp.Integer(0), discriminant, RATIO)
 
 
-@claim("remark.critical*", corrects="remark.critical")
+@claim("remark.critical*")
 def discriminant_of_optimal_gains():
     """The discriminant is -(1 - r)^2 (6 r - 1 - r^2): negative, hence oscillating, for r > 3 - 2 sqrt(2)."""
     first, second = gains()
     z = sp.Symbol("z", real=True)
     loop = closed_loop().subs({alpha: first, beta: second}, simultaneous=True)
     discriminant = sp.Poly((z * sp.eye(2) - loop).det(), z).discriminant()
-    return Equation(printed=-((1 - r) ** 2) * (6 * r - 1 - r**2), derived=discriminant, box=RATIO)
+    return Equation(-((1 - r) ** 2) * (6 * r - 1 - r**2), discriminant, RATIO)
 
 
 @claim("remark.critical-relation")
 def critical_relation():
     """Critically damped is beta = 2 - alpha - 2 sqrt(1 - alpha), half of the optimal beta."""
     first, second = gains()
-    return Equation(printed=2 * (2 - first - 2 * sp.sqrt(1 - first)), derived=second, box=RATIO)
+    return Equation(2 * (2 - first - 2 * sp.sqrt(1 - first)), second, RATIO)
 
 
 @claim("index-one")
 def gains_at_index_one():
     """At Lambda = 1 the gains are alpha = 3/4 and beta = 1/2."""
     root = ratio().subs(L, 1)
-    return Equation(printed=(sp.Rational(3, 4), sp.Rational(1, 2)), derived=(1 - root**2, root))
+    return Equation((sp.Rational(3, 4), sp.Rational(1, 2)), (1 - root**2, root))

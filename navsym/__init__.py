@@ -98,9 +98,9 @@ _HOMES = {
 
 __all__ = ["__version__", *sorted(_HOMES)]
 
-#: Types of answers and of their parts, for annotations. ``dir(navsym)`` leaves them out: it lists what one calls.
+#: Types of answers and of parts of problems, for annotations. ``dir(navsym)`` leaves them out: it lists what one calls.
 _ANSWERS = {
-    *("Bank", "BlockEstimator", "Comparison", "Conventions", "Derivation", "Design", "Estimate", "Estimator"),
+    *("Bank", "Block", "BlockEstimator", "Comparison", "Conventions", "Derivation", "Design", "Estimate", "Estimator"),
     *("Formulation", "Ledger", "Observability", "PhaseMap"),
     *("Number", "Phases", "ProgressBar", "Reading", "Status", "Verdict", "Verdicts"),
 }

@@ -360,9 +360,6 @@ figure
 # %%
 explain("21.optimal")
 
-# %%
-explain("21.start")
-
 # %% [markdown]
 # ## A real road
 # A car in a city: satellite positions that are fixed or float, and a fix that is wrong now and then. Velocities

@@ -188,7 +188,7 @@ SAID = {
     "joint_correction:3.3.y1": "scan",
     "multistructure:11": "paper",
     "multistructure:12": "paper",
-    "multistructure:13.index": "paper",
+    "multistructure:13": "paper",
     "multistructure:9": "paper",
     "multistructure:14.follows": "paper",
 }

@@ -35,7 +35,10 @@ PAPER = Paper(
         "2.7": "the problem itself: its objective is 2.D, its name 2.7.name",
         "3.5": "the form of a solution, impulses at the chosen times; 4.7 judges it",
     },
-    beside="2.7.name 3.2.contacts 3.2.theorem 4.2.identity-of-channels 4.6.same-instants",
+    beside=(
+        "1.quarter-period 2.7.name 3.remark1 3.more-measurements 3.2.contacts 3.2.theorem 4.2.identity-of-channels "
+        "4.6.same-instants 4.scale"
+    ),
     remarks=(
         "1.3.spectrum 1.9.root-cause 1.observable 1.quarter-period.minute 3.1.terms 3.2.consistent 3.3.back 4.1.order "
         "4.3.unique 4.4.closed-form 4.5.positive 4.6.stationary 4.6.weights 4.8.signs 4.14.y2.bias unique.*"
@@ -47,7 +50,9 @@ PAPER = Paper(
         "section 3: position correction has l = m, hence unique algorithms": "a result of [9], whose model and range "
         "of T are not printed; position.y2 has l = 3 for m = 4 and T >= 2 pi",
         "section 4.1: S0 satisfies the lemma of [9]": "the lemma is not printed; 4.4* proves the optimum without it",
-        "section 3: steps 1 to 4 of the algorithm": "taken step by step by 4.1 to 4.13; for any system by no claim",
+        "section 3: steps 1 to 4 of the algorithm": "3.remark1 and 4.1, 4.4*, 4.10, 3.6* "
+        "with 4.13; for any system they rest on the theorems of [9-11], which are quoted",
+        "(4.14) and (4.16) are easily realised": "a judgement",
         "(2.5): Phi_H as any piecewise continuous function": "2.6.piecewise, 2.D.piecewise, 3.1.piecewise take "
         "polynomials of degree 2 on two pieces",
         "(3.1): both problems have one value, for every system": "proved for this one and every T, by 4.13 and range.*",

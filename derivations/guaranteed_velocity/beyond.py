@@ -46,30 +46,28 @@ def three_instants(state: str, upper: sp.Expr) -> Optimum:
 # -- how far the printed formulas hold ---------------------------------------
 
 
-@claim("range.y1")
-def velocity_for_every_interval():
-    """y1: the last measurement alone is optimal for every T."""
-    return solution("y1", (1, 0, 0), (T,), (sp.Integer(1),), sp.Integer(1), sp.Integer(0), None)
-
-
-@claim("range.y2")
-def tilt_holds_to_four_thirds_of_pi():
-    """y2: the printed weights and error 2 cot(T/4) are optimal up to T = 4 pi/3, not only to pi/2."""
-    return three_instants("y2", 4 * sp.pi / 3)
-
-
-@claim("range.y3")
-def drift_holds_to_two_thirds_of_pi():
-    """y3: the printed weights and error cos(T/2)/sin^2(T/4) are optimal up to T = 2 pi/3."""
-    return three_instants("y3", 2 * sp.pi / 3)
-
-
-@claim(
-    "range.y2.end", expect=REFUTED, reason="a test of sharpness: at the end of this range a weight has the wrong sign"
+velocity_for_every_interval = claim(
+    "range.y1",
+    "y1: the last measurement alone is optimal for every T.",
+    lambda: solution("y1", (1, 0, 0), (T,), (sp.Integer(1),), sp.Integer(1), sp.Integer(0), None),
 )
-def tilt_does_not_hold_further():
-    """y2: the printed solution is optimal up to T = 3 pi/2."""
-    return three_instants("y2", 3 * sp.pi / 2)
+tilt_holds_to_four_thirds_of_pi = claim(
+    "range.y2",
+    "y2: the printed weights and error 2 cot(T/4) are optimal up to T = 4 pi/3, not only to pi/2.",
+    lambda: three_instants("y2", 4 * sp.pi / 3),
+)
+drift_holds_to_two_thirds_of_pi = claim(
+    "range.y3",
+    "y3: the printed weights and error cos(T/2)/sin^2(T/4) are optimal up to T = 2 pi/3.",
+    lambda: three_instants("y3", 2 * sp.pi / 3),
+)
+tilt_does_not_hold_further = claim(
+    "range.y2.end",
+    "y2: the printed solution is optimal up to T = 3 pi/2.",
+    lambda: three_instants("y2", 3 * sp.pi / 2),
+    expect=REFUTED,
+    reason="a test of sharpness: at the end of this range a weight has the wrong sign",
+)
 
 
 def tilt_dual() -> tuple:
@@ -77,7 +75,7 @@ def tilt_dual() -> tuple:
     return (1 - 1 / sp.sin(T) ** 2 + sp.cos(T) / sp.sin(T) ** 2, -1 / sp.sin(T), sp.cos(T) / sp.sin(T) ** 2)
 
 
-@claim("range.y2.end*", corrects="range.y2.end")
+@claim("range.y2.end*")
 def tilt_with_two_instants():
     """y2, 4 pi/3 <= T <= 3 pi/2: two instants, 2(T - pi) and 0, and the error -1/sin T."""
     sine = sp.sin(T)
@@ -92,10 +90,10 @@ def tilt_with_two_instants():
     )
 
 
-@claim("range.y2.last")
-def tilt_with_two_inner_instants():
-    """y2, every T >= 3 pi/2: half the difference of two measurements half a period apart, error 1."""
-    return solution(
+tilt_with_two_inner_instants = claim(
+    "range.y2.last",
+    "y2, every T >= 3 pi/2: half the difference of two measurements half a period apart, error 1.",
+    lambda: solution(
         "y2",
         (0, 1, 0),
         (T - sp.pi / 2, T - 3 * sp.pi / 2),
@@ -103,15 +101,15 @@ def tilt_with_two_inner_instants():
         sp.Integer(1),
         3 * sp.pi / 2,
         None,
-    )
-
-
-@claim(
-    "range.y3.end", expect=REFUTED, reason="a test of sharpness: at the end of this range a weight has the wrong sign"
+    ),
 )
-def drift_does_not_hold_further():
-    """y3: the printed solution is optimal up to T = 3 pi/4."""
-    return three_instants("y3", 3 * sp.pi / 4)
+drift_does_not_hold_further = claim(
+    "range.y3.end",
+    "y3: the printed solution is optimal up to T = 3 pi/4.",
+    lambda: three_instants("y3", 3 * sp.pi / 4),
+    expect=REFUTED,
+    reason="a test of sharpness: at the end of this range a weight has the wrong sign",
+)
 
 
 def drift_dual() -> tuple:
@@ -119,7 +117,7 @@ def drift_dual() -> tuple:
     return (-1 / sp.cos(T) - sp.tan(T) ** 2, sp.sin(T) / sp.cos(T) ** 2, -1 / sp.cos(T))
 
 
-@claim("range.y3.end*", corrects="range.y3.end")
+@claim("range.y3.end*")
 def drift_with_two_instants():
     """y3, 2 pi/3 <= T <= pi: two instants, 2 T - pi and 0, and the error -1/cos T."""
     cosine = sp.cos(T)
@@ -134,12 +132,13 @@ def drift_with_two_instants():
     )
 
 
-@claim("range.y3.last")
-def drift_with_half_a_period():
-    """y3, every T >= pi: half the difference of two measurements half a period apart, error 1."""
-    return solution(
+drift_with_half_a_period = claim(
+    "range.y3.last",
+    "y3, every T >= pi: half the difference of two measurements half a period apart, error 1.",
+    lambda: solution(
         "y3", (1, 0, 1), (T, T - sp.pi), (sp.Rational(1, 2), -sp.Rational(1, 2)), sp.Integer(1), sp.pi, None
-    )
+    ),
+)
 
 
 # -- the errors meet where the regimes meet ---------------------------------------
@@ -147,15 +146,16 @@ def drift_with_half_a_period():
 
 def meeting(left: sp.Expr, right: sp.Expr, at: sp.Expr) -> Callable[[], Statement]:
     def derive() -> Statement:
-        return Equation(printed=left.subs(T, at), derived=right.subs(T, at))
+        return Equation(left.subs(T, at), right.subs(T, at))
 
-    derive.__module__ = __name__
     return derive
 
 
 MEETINGS: tuple[Claim, ...] = tuple(
-    claim(f"range.{state}.meets.{place}", title=f"The errors of {state} on both sides of T = {at} agree there.")(
-        meeting(left, right, at)
+    claim(
+        f"range.{state}.meets.{place}",
+        f"The errors of {state} on both sides of T = {at} agree there.",
+        meeting(left, right, at),
     )
     for state, place, left, right, at in (
         ("y2", "1", 2 * sp.cot(T / 4), -1 / sp.sin(T), 4 * sp.pi / 3),
@@ -176,27 +176,24 @@ def dual_polynomial(at: sp.Expr) -> sp.Expr:
     return (alternating().T * H(at))[0]
 
 
-@claim("unique.upper-bound")
-def upper_bound_touched_once():
-    """1 - x.H > 0 at T/2 - v T/2, 0 < v <= 1, T <= 4 pi/3: by unique.symmetric it touches +1 at T/2 only."""
-    return Bound(1 - dual_polynomial(T / 2 - v * T / 2), ">", 0, UNIQUE_BOX)
-
-
-@claim("unique.symmetric")
-def polynomial_is_symmetric():
-    """x.H is symmetric about T/2 (T <= 4 pi/3), so that one half decides for both."""
-    return Equation(printed=dual_polynomial(T - tau), derived=dual_polynomial(tau), box={T: (0, 4 * sp.pi / 3)})
-
-
-@claim("unique.lower-bound")
-def lower_bound_touched_at_the_ends():
-    """1 + x.H > 0 at v T/2, 0 < v <= 1, T <= 4 pi/3: by unique.symmetric it touches -1 at 0 and T only.
-
-    Every optimal weight function lives on the contacts of an optimal dual; with three contacts
-    and det N != 0 there is one such function for y2 (T <= 4 pi/3) and y3 (T <= 2 pi/3). This is
-    the argument that the paper leaves to (4.11).
-    """
-    return Bound(1 + dual_polynomial(v * T / 2), ">", 0, UNIQUE_BOX)
+upper_bound_touched_once = claim(
+    "unique.upper-bound",
+    "1 - x.H > 0 at T/2 - v T/2, 0 < v <= 1, T <= 4 pi/3: by unique.symmetric it touches +1 at T/2 only.",
+    lambda: Bound(1 - dual_polynomial(T / 2 - v * T / 2), ">", 0, UNIQUE_BOX),
+)
+polynomial_is_symmetric = claim(
+    "unique.symmetric",
+    "x.H is symmetric about T/2 (T <= 4 pi/3), so that one half decides for both.",
+    lambda: Equation(dual_polynomial(T - tau), dual_polynomial(tau), {T: (0, 4 * sp.pi / 3)}),
+)
+# Every optimal weight function lives on the contacts of an optimal dual; with three contacts
+# and det N != 0 there is one such function for y2 (T <= 4 pi/3) and y3 (T <= 2 pi/3). This is
+# the argument that the paper leaves to (4.11).
+lower_bound_touched_at_the_ends = claim(
+    "unique.lower-bound",
+    "1 + x.H > 0 at v T/2, 0 < v <= 1, T <= 4 pi/3: by unique.symmetric it touches -1 at 0 and T only.",
+    lambda: Bound(1 + dual_polynomial(v * T / 2), ">", 0, UNIQUE_BOX),
+)
 
 
 s = sp.Symbol("s", nonnegative=True)  # T - tau, how long before the end
@@ -205,23 +202,21 @@ s = sp.Symbol("s", nonnegative=True)  # T - tau, how long before the end
 def contacts(dual: tuple, below: sp.Expr, above: sp.Expr) -> Equation:
     """1 - x.H and 1 + x.H at T - s beside their closed forms: the contacts are the zeros."""
     value = (sp.Matrix([dual]) * H(T - s))[0]
-    return Equation(printed=[below, above], derived=[1 - value, 1 + value])
+    return Equation([below, above], [1 - value, 1 + value])
 
 
-@claim("range.y1.contacts")
-def velocity_touches_once():
-    """y1, every T: 1 - x.H = sin^2(s/2), s = T - tau, for the dual (1, 0, 1/2): before T < 2 pi no other contact.
-
-    Every optimal weight function lives on the contacts of every optimal dual, so that the estimate is unique for
-    T < 2 pi. The argument from (4.11) does not apply, since the dual (1, 0, 0) touches everywhere.
-    """
-    return contacts((1, 0, sp.Rational(1, 2)), sp.sin(s / 2) ** 2, 1 + sp.cos(s / 2) ** 2)
-
-
-@claim("range.y1.other_dual")
-def other_dual_of_velocity():
-    """y1, every T: the dual (1, 0, 1/2) is feasible and has the value 1."""
-    return solution("y1", (1, 0, sp.Rational(1, 2)), (T,), (sp.Integer(1),), sp.Integer(1), sp.Integer(0), None)
+# Every optimal weight function lives on the contacts of every optimal dual, so that the estimate is unique for
+# T < 2 pi. The argument from (4.11) does not apply, since the dual (1, 0, 0) touches everywhere.
+velocity_touches_once = claim(
+    "range.y1.contacts",
+    "y1, every T: 1 - x.H = sin^2(s/2), s = T - tau, for the dual (1, 0, 1/2): for T < 2 pi one contact.",
+    lambda: contacts((1, 0, sp.Rational(1, 2)), sp.sin(s / 2) ** 2, 1 + sp.cos(s / 2) ** 2),
+)
+other_dual_of_velocity = claim(
+    "range.y1.other_dual",
+    "y1, every T: the dual (1, 0, 1/2) is feasible and has the value 1.",
+    lambda: solution("y1", (1, 0, sp.Rational(1, 2)), (T,), (sp.Integer(1),), sp.Integer(1), sp.Integer(0), None),
+)
 
 
 @claim("range.y2.end.contacts")
@@ -231,8 +226,9 @@ def tilt_touches_twice():
     The last sine has an argument between 0 and pi. Contacts at 2(T - pi) and 0 make the estimate unique.
     """
     size = 2 / sp.sin(T) ** 2
-    above = size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - 2 * sp.pi)
-    return contacts(tilt_dual(), size * sp.sin((T + s) / 2) ** 2, above)
+    return contacts(
+        tilt_dual(), size * sp.sin((T + s) / 2) ** 2, size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - 2 * sp.pi)
+    )
 
 
 @claim("range.y2.last.contacts")
@@ -249,14 +245,16 @@ def drift_touches_twice():
     The last sine has an argument between 0 and pi. Contacts at 2 T - pi and 0 make the estimate unique.
     """
     size = 2 / sp.cos(T) ** 2
-    above = size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - sp.pi)
-    return contacts(drift_dual(), size * sp.cos((T + s) / 2) ** 2, above)
+    return contacts(
+        drift_dual(), size * sp.cos((T + s) / 2) ** 2, size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - sp.pi)
+    )
 
 
-@claim("range.y3.last.contacts")
-def drift_touches_half_a_period_apart():
-    """y3, T >= pi: x.H = cos s touches at s = 0 and pi; no other s below 2 pi, so unique for T < 2 pi."""
-    return contacts((1, 0, 1), 2 * sp.sin(s / 2) ** 2, 2 * sp.cos(s / 2) ** 2)
+drift_touches_half_a_period_apart = claim(
+    "range.y3.last.contacts",
+    "y3, T >= pi: x.H = cos s touches at s = 0 and pi; no other s below 2 pi, so unique for T < 2 pi.",
+    lambda: contacts((1, 0, 1), 2 * sp.sin(s / 2) ** 2, 2 * sp.cos(s / 2) ** 2),
+)
 
 
 def twins(state: str, dual: tuple, times: tuple, weights_: tuple, start: sp.Expr) -> Callable[[], Statement]:
@@ -265,15 +263,16 @@ def twins(state: str, dual: tuple, times: tuple, weights_: tuple, start: sp.Expr
     def derive() -> Statement:
         return solution(state, dual, times, weights_, sp.Integer(1), start, None)
 
-    derive.__module__ = __name__
     return derive
 
 
 HALF = (sp.Rational(1, 2), -sp.Rational(1, 2))
 #: H repeats after 2 pi, so that one time of the last regime may move back by a period as soon as it lies in [0, T].
 TWINS: tuple[Claim, ...] = tuple(
-    claim(f"range.{state}.twin", title=f"{state}, T >= {start}: other times give the same error: no longer unique.")(
-        twins(state, dual, times, weights_, start)
+    claim(
+        f"range.{state}.twin",
+        f"{state}, T >= {start}: other times give the same error: no longer unique.",
+        twins(state, dual, times, weights_, start),
     )
     for state, dual, times, weights_, start in (
         ("y1", (1, 0, 0), (T - 2 * sp.pi,), (sp.Integer(1),), 2 * sp.pi),

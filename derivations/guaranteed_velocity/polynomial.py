@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Optimum, Property, claim, state
+from navsym.claims import PROVED, Bound, Equation, Finding, Optimum, Property, claim, fact, state
 from navsym.language.expression import to_text
 from navsym.prove.identities.normal_form import vanishes_identically
 from navsym.prove.signs.bounds import Sign, prove_sign
@@ -56,36 +56,23 @@ def rotated() -> sp.Matrix:
     return sp.Matrix([vector[2], vector[0], vector[1]])
 
 
-@claim("4.1.H1")
-def first_of_permuted():
-    """First component of the permuted H."""
-    return Equation(printed=sp.cos(T - tau) - 1, derived=rotated()[0])
-
-
-@claim("4.1.H2")
-def second_of_permuted():
-    """Second component of the permuted H."""
-    return Equation(printed=sp.Integer(1), derived=rotated()[1])
-
-
-@claim("4.1.H3", expect=REFUTED, slip="paper", reason="inherits the sign of (1.9)")
-def third_of_permuted():
-    """Third component of the permuted H, as printed."""
-    return Equation(printed=-sp.sin(T - tau), derived=rotated()[2])
-
-
-@claim("4.1.H3*", corrects="4.1.H3")
-def third_of_permuted_corrected():
-    """Third component of the permuted H."""
-    return Equation(printed=sp.sin(T - tau), derived=rotated()[2])
-
-
-@claim("4.1.order")
-def permutation_is_a_cycle():
-    """(4.1) is the cyclic shift (H3, H1, H2), where remark 3.1 speaks of one exchange; nothing depends on it."""
-    return Property(
+permuted = claim(
+    "4.1",
+    "The permuted H, as printed.",
+    lambda: Equation([sp.cos(T - tau) - 1, 1, -sp.sin(T - tau)], list(rotated())),
+    slip="paper",
+    reason="the third component inherits the sign of (1.9)",
+)
+permuted_corrected = claim(
+    "4.1*", "The permuted H.", lambda: Equation([sp.cos(T - tau) - 1, 1, sp.sin(T - tau)], list(rotated()))
+)
+permutation_is_a_cycle = claim(
+    "4.1.order",
+    "(4.1) is the cyclic shift (H3, H1, H2), where remark 3.1 speaks of one exchange; nothing depends on it.",
+    lambda: Property(
         printed="cycle", derived=permutation_kind(), unsaid="a name is compared, and statements are about numbers"
-    )
+    ),
+)
 
 
 def permutation_kind() -> Finding:
@@ -105,33 +92,23 @@ def polynomial_to_be_minimised():
     """S(tau) = cos(T - tau) - 1 + u2 + u3 sin(T - tau), with the sine as in the derived H."""
     u2, u3 = sp.symbols("u2 u3", real=True)
     printed = sp.cos(T - tau) - 1 + u2 + u3 * sp.sin(T - tau)
-    return Equation(printed=printed, derived=polynomial(u2, u3))
+    return Equation(printed, polynomial(u2, u3))
 
 
 # -- (4.3) to (4.6) ---------------------------------------
 
 
-@claim(
+constant_coefficient = claim(
     "4.3.u2",
-    expect=REFUTED,
+    "u2 as printed.",
+    lambda: Equation(U2_PRINTED, coefficients()[0], STATED),
     slip="paper",
     reason="the minus is lost: S(0) = u2 and S(T/2) = 1/cos(T/2) - 1 + u2 are opposite only for u2 < 0",
 )
-def constant_coefficient():
-    """u2 as printed."""
-    return Equation(printed=U2_PRINTED, derived=coefficients()[0], box=STATED)
-
-
-@claim("4.3.u2*", corrects="4.3.u2")
-def constant_coefficient_corrected():
-    """u2 = -sin^2(T/4)/cos(T/2)."""
-    return Equation(printed=-U2_PRINTED, derived=coefficients()[0], box=STATED)
-
-
-@claim("4.3.u3")
-def sine_coefficient():
-    """u3 = tan(T/2)."""
-    return Equation(printed=U3_PRINTED, derived=coefficients()[1], box=STATED)
+constant_coefficient_corrected = claim(
+    "4.3.u2*", "u2 = -sin^2(T/4)/cos(T/2).", lambda: Equation(-U2_PRINTED, coefficients()[0], STATED)
+)
+sine_coefficient = claim("4.3.u3", "u3 = tan(T/2).", lambda: Equation(U3_PRINTED, coefficients()[1], STATED))
 
 
 @claim("4.3.unique")
@@ -143,91 +120,71 @@ def alternance_determines_the_polynomial():
     return Bound(matrix.det(), "!=", 0, STATED)
 
 
-@claim(
+printed_polynomial_deviates_least = claim(
     "4.4",
-    expect=REFUTED,
+    "S0 with the printed u2, u3 deviates least from zero: optimal for y3, as printed.",
+    lambda: optimum((U2_PRINTED / L1_PRINTED, U3_PRINTED / L1_PRINTED, 1 / L1_PRINTED), 2, 1 / L1_PRINTED),
     slip="paper",
     reason="with the printed u2 the polynomial leaves the band [-L1, L1]; the sign of u2 is the only cause",
 )
-def printed_polynomial_deviates_least():
-    """S0 with the printed u2, u3 deviates least from zero: optimal for y3, as printed."""
-    dual = (U2_PRINTED / L1_PRINTED, U3_PRINTED / L1_PRINTED, 1 / L1_PRINTED)
-    return optimum(dual, 2, 1 / L1_PRINTED)
-
-
-@claim("4.4*", corrects="4.4")
-def corrected_polynomial_deviates_least():
-    """S0 with u2 = -sin^2(T/4)/cos(T/2), u3 = tan(T/2) deviates least from zero: optimal for y3."""
-    dual = (-U2_PRINTED / L1_PRINTED, U3_PRINTED / L1_PRINTED, 1 / L1_PRINTED)
-    return optimum(dual, 2, 1 / L1_PRINTED)
-
-
-@claim("4.4.closed-form")
-def polynomial_is_a_shifted_cosine():
-    """S0(tau) = (2 cos(tau - T/2) - 1 - cos(T/2)) / (2 cos(T/2)): what the graphs of the paper show."""
-    printed = (2 * sp.cos(tau - T / 2) - 1 - sp.cos(T / 2)) / (2 * sp.cos(T / 2))
-    return Equation(printed=printed, derived=polynomial(*coefficients()), box=STATED)
-
-
-@claim("4.5")
-def largest_deviation():
-    """The largest deviation L1 = sin^2(T/4)/cos(T/2)."""
-    return Equation(printed=L1_PRINTED, derived=deviation(), box=STATED)
-
-
-@claim("4.5.positive")
-def deviation_is_positive():
-    """L1 is positive on the stated range, so that the bars of modulus in (4.5) may be dropped."""
-    return Bound(L1_PRINTED, ">", 0, STATED)
+corrected_polynomial_deviates_least = claim(
+    "4.4*",
+    "S0 with u2 = -sin^2(T/4)/cos(T/2), u3 = tan(T/2) deviates least from zero: optimal for y3.",
+    lambda: optimum((-U2_PRINTED / L1_PRINTED, U3_PRINTED / L1_PRINTED, 1 / L1_PRINTED), 2, 1 / L1_PRINTED),
+)
+polynomial_is_a_shifted_cosine = claim(
+    "4.4.closed-form",
+    "S0(tau) = (2 cos(tau - T/2) - 1 - cos(T/2)) / (2 cos(T/2)): what the graphs of the paper show.",
+    lambda: Equation(
+        (2 * sp.cos(tau - T / 2) - 1 - sp.cos(T / 2)) / (2 * sp.cos(T / 2)), polynomial(*coefficients()), STATED
+    ),
+)
+largest_deviation = claim(
+    "4.5", "The largest deviation L1 = sin^2(T/4)/cos(T/2).", lambda: Equation(L1_PRINTED, deviation(), STATED)
+)
+deviation_is_positive = claim(
+    "4.5.positive",
+    "L1 is positive on the stated range, so that the bars of modulus in (4.5) may be dropped.",
+    lambda: Bound(L1_PRINTED, ">", 0, STATED),
+)
 
 
 def value_at(instant: sp.Expr) -> sp.Expr:
     return polynomial(*coefficients()).subs(tau, instant)
 
 
-@claim("4.6.tau1")
-def contact_at_the_start():
-    """S0 takes the value -L1 at tau = 0."""
-    return Equation(printed=-L1_PRINTED, derived=value_at(sp.Integer(0)), box=STATED)
+contacts = claim(
+    "4.6",
+    "S0 takes the values -L1, +L1, -L1 at tau = 0, T/2, T.",
+    lambda: Equation([-L1_PRINTED, L1_PRINTED, -L1_PRINTED], [value_at(at) for at in INSTANTS], STATED),
+)
+middle_contact_is_stationary = claim(
+    "4.6.stationary",
+    "The slope of S0 vanishes at tau = T/2: an inner extremum.",
+    lambda: Equation(sp.Integer(0), sp.diff(polynomial(*coefficients()), tau).subs(tau, T / 2), STATED),
+)
+same_instants_for_all = claim(
+    "4.6.same-instants",
+    "The contacts (4.6) serve y1 as well: its dual is that of y3 with the other sign (y2 and y3: 4.13).",
+    lambda: optimum(tuple(-alternating()), 0, sp.Integer(1)),
+)
 
 
-@claim("4.6.tau2")
-def contact_in_the_middle():
-    """S0 takes the value +L1 at tau = T/2."""
-    return Equation(printed=L1_PRINTED, derived=value_at(T / 2), box=STATED)
-
-
-@claim("4.6.tau3")
-def contact_at_the_end():
-    """S0 takes the value -L1 at tau = T."""
-    return Equation(printed=-L1_PRINTED, derived=value_at(T), box=STATED)
-
-
-@claim("4.6.stationary")
-def middle_contact_is_stationary():
-    """The slope of S0 vanishes at tau = T/2: an inner extremum."""
-    slope = sp.diff(polynomial(*coefficients()), tau).subs(tau, T / 2)
-    return Equation(printed=sp.Integer(0), derived=slope, box=STATED)
-
-
-@claim("4.6.same-instants")
-def same_instants_for_all():
-    """The contacts (4.6) serve y1 as well: its dual is that of y3 with the other sign (y2 and y3: 4.13)."""
-    return optimum(tuple(-alternating()), 0, sp.Integer(1))
-
-
-@claim("4.6.weights")
-def instants_of_each_state():
-    """Of the weights at (4.6) one is not zero for y1, all three for y2 and y3, as (4.12) prints."""
-    # a weight that is not zero at T = 1 is not zero throughout
-    meaning = tuple(
-        state(to_text(w), "=", "0", {"T": ["0", None, ["open-low"]]})
-        if vanishes_identically(w)
-        else state(to_text(w), "!=", "0", {"T": ["1", "1", []]})
-        for index in range(3)
-        for w in weights(index)
-    )
-    return Property(printed=(1, 3, 3), derived=instants_in_use(), meaning=meaning)
+instants_of_each_state = claim(
+    "4.6.weights",
+    "Of the weights at (4.6) one is not zero for y1, all three for y2 and y3, as (4.12) prints.",
+    lambda: Property(
+        printed=(1, 3, 3),
+        derived=instants_in_use(),
+        meaning=tuple(
+            state(to_text(w), "=", "0", {"T": ["0", None, ["open-low"]]})
+            if vanishes_identically(w)
+            else state(to_text(w), "!=", "0", {"T": ["1", "1", []]})
+            for index in range(3)
+            for w in weights(index)
+        ),
+    ),
+)
 
 
 def instants_in_use() -> Finding:
@@ -258,27 +215,21 @@ def three_impulses_solve_the_problem():
     )
 
 
-@claim("4.8.L2")
-def second_deviation():
-    """L2 = |u2|/L1 (true because both are equal)."""
-    return Equation(printed=-coefficients()[0] / deviation(), derived=optimal_deviation(0), box=STATED)
-
-
-@claim(
+second_deviation = claim(
+    "4.8.L2",
+    "L2 = |u2|/L1 (true because both are equal).",
+    lambda: Equation(-coefficients()[0] / deviation(), optimal_deviation(0), STATED),
+)
+third_deviation = claim(
     "4.8.L3",
-    expect=REFUTED,
+    "L3 = |u3|/L1, as printed.",
+    lambda: Equation(coefficients()[1] / deviation(), optimal_deviation(1), STATED),
     slip="paper",
     reason="the formula is upside down: (3.4) gives 1/L_s = |u_s|/L1, and (4.9) was computed from that",
 )
-def third_deviation():
-    """L3 = |u3|/L1, as printed."""
-    return Equation(printed=coefficients()[1] / deviation(), derived=optimal_deviation(1), box=STATED)
-
-
-@claim("4.8.L3*", corrects="4.8.L3")
-def third_deviation_corrected():
-    """L3 = L1/|u3|."""
-    return Equation(printed=deviation() / coefficients()[1], derived=optimal_deviation(1), box=STATED)
+third_deviation_corrected = claim(
+    "4.8.L3*", "L3 = L1/|u3|.", lambda: Equation(deviation() / coefficients()[1], optimal_deviation(1), STATED)
+)
 
 
 def optimal_deviation(state: int) -> sp.Expr:
@@ -295,8 +246,7 @@ def signs_of_the_weights():
     found = tuple(proved_sign(weight) for weight in weights(1))
     signs, stated = zip(weights(1), "<><", strict=True), {"T": ["0", "pi/2", ["open-low"]]}
     meaning = tuple(state(to_text(weight), sign, "0", stated) for weight, sign in signs)
-    finding = Finding(found, "signs of the product forms", PROVED, "T in (0, pi/2]")
-    return Property(printed=(-1, 1, -1), derived=finding, meaning=meaning)
+    return fact((-1, 1, -1), found, "signs of the product forms", PROVED, scope="T in (0, pi/2]", meaning=meaning)
 
 
 def proved_sign(weight: sp.Expr) -> int:
@@ -307,13 +257,9 @@ def proved_sign(weight: sp.Expr) -> int:
     return 0
 
 
-@claim("4.9.L2")
-def value_of_second_deviation():
-    """The second deviation L2 is 1."""
-    return Equation(printed=sp.Integer(1), derived=optimal_deviation(0), box=STATED)
-
-
-@claim("4.9.L3")
-def value_of_third_deviation():
-    """The third deviation L3 is tan(T/4)/2."""
-    return Equation(printed=sp.tan(T / 4) / 2, derived=optimal_deviation(1), box=STATED)
+value_of_second_deviation = claim(
+    "4.9.L2", "The second deviation L2 is 1.", lambda: Equation(sp.Integer(1), optimal_deviation(0), STATED)
+)
+value_of_third_deviation = claim(
+    "4.9.L3", "The third deviation L3 is tan(T/4)/2.", lambda: Equation(sp.tan(T / 4) / 2, optimal_deviation(1), STATED)
+)

@@ -92,7 +92,7 @@ def three_steps() -> Equation:
     for measured in z:
         table = dict(zip((SUM, *W, *AT), values, strict=True)) | {Z: measured}
         values = tuple(e.xreplace(table) for e in step_formulas())
-    return Equation(printed=values[0], derived=sum(w * m for w, m in zip(W, z[:3], strict=True)))
+    return Equation(values[0], sum(w * m for w, m in zip(W, z[:3], strict=True)))
 
 
 STEP = Chain(

@@ -23,6 +23,7 @@ PAPER = Paper(
     definitions={
         "1.1": "the given linear system and its measurements",
         "1.2": "definition of the two chains of vectors",
+        "1.12": "the estimate of xi: (1.8) solved for it; 1.8.inverse.any has the inverse",
         "2.5": "defines the position information by gamma of (2.3)",
     },
     beside=(

@@ -37,8 +37,7 @@ def poles() -> Equation:
     schuler = sp.Matrix([[0, 1, 0], [-1, 0, 0], [0, 0, 0]]) - sp.Matrix(gains[:3]) * sp.Matrix([[0, 1, 1]])
     slow = sp.Matrix([[0, 1], [0, 0]]) - sp.Matrix(gains[6:8]) * sp.Matrix([[1, 0]])
     return Equation(
-        printed=[(p + lam_c) ** 3, (p + lam_h) ** 2],
-        derived=[(p * sp.eye(3) - schuler).det(), (p * sp.eye(2) - slow).det()],
+        [(p + lam_c) ** 3, (p + lam_h) ** 2], [(p * sp.eye(3) - schuler).det(), (p * sp.eye(2) - slow).det()]
     )
 
 
@@ -77,7 +76,7 @@ def fourth_order() -> Equation:
     k3 = a * (s + h / 2 * k2) + b
     k4 = a * (s + h * k3) + b
     taylor = s + sum(h**n / sp.factorial(n) * a ** (n - 1) * (a * s + b) for n in range(1, 5))
-    return Equation(printed=s + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4), derived=taylor)
+    return Equation(s + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4), taylor)
 
 
 WORDS = "x y x0 y0 Kc Kh sigma_c sigma_M mu u_3 omega_1 omega_2 h lambda_c lambda_h next_x next_y"

@@ -52,7 +52,6 @@ def of_every_size(left: str, right: str, *given: str) -> Callable[[], Property]:
         block = {"id": "any", "left": left, "right": right, "given": list(given)}
         return property_of_claim(claims_from({"symbols": shapes(), "claim": [block]}).claims[0])
 
-    derive.__module__ = __name__
     return derive
 
 
@@ -72,7 +71,7 @@ STATEMENTS = (
     ),
     (
         "1.6.kalman_unique",
-        "two steady Riccati solutions differ by D with A_1 D + D A_2^T = 0, A_i = G_x - P_i g_x g_x^T/r",
+        "Riccati rates of P_1, P_2 differ by A_1 D + D A_2^T, D = P_1 - P_2: one start, one solution",
         "Theta @ P1 + P1 @ Theta.T - P1 @ g_x.T @ g_x @ P1 - Theta @ P2 - P2 @ Theta.T + P2 @ g_x.T @ g_x @ P2",
         "(Theta - P1 @ g_x.T @ g_x) @ (P1 - P2) + (P1 - P2) @ (Theta - P2 @ g_x.T @ g_x).T",
         "P1 = P1.T",
@@ -94,12 +93,6 @@ STATEMENTS = (
         "Phi_x @ (x - x_o) + (Phi_z - K_z @ g_z) @ (z - z_o) + q_z - r_z*K_z",
     ),
     (
-        "1.12.covariance",
-        "xi° has the error matrix L^-1 A L^-T: outer products, d the error of (x, z) and G for L^-1",
-        "(G @ d) @ (G @ d).T",
-        "G @ (d @ d.T) @ G.T",
-    ),
-    (
         "1.13.model",
         "with z = S A xi + T B xi the form stays, G_z1 and G_z2 as follow",
         "(S @ A + T @ B) @ G",
@@ -113,6 +106,6 @@ STATEMENTS = (
 )
 
 ANY_SIZE: tuple[Claim, ...] = tuple(
-    claim(f"{number}.any", title=f"Matrices of any size: {title}.")(of_every_size(left, right, *given))
+    claim(f"{number}.any", f"Matrices of any size: {title}.", of_every_size(left, right, *given))
     for number, title, left, right, *given in STATEMENTS
 )

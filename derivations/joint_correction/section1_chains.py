@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import PROVED, Bound, Equation, Finding, Property, claim
+from navsym.claims import PROVED, Bound, Equation, Finding, claim, fact
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import numerators
 from navsym.observability.linear import linear_relation, pivot_rows
 from navsym.observability.ring import Ring
-from navsym.observability.splits import companion, exact_inverse, unit_row
+from navsym.observability.splits import companion
+from navsym_papers.joint_correction.matrices import exact_inverse, unit_row
 from navsym_papers.joint_correction.section1_systems import (
     System,
     coefficients_of_polynomial,
-    coordinates,
     direct_sum,
-    flat,
     free,
     k,
     say_ranks,
@@ -83,28 +82,6 @@ def theta_of(s: System) -> tuple[sp.Expr, ...]:
     return s.found.measurements[0].companion
 
 
-@claim("1.5.x")
-def motion_of_x():
-    """dx/dt = G_x x with G_x = C_1 Theta C_1^-1: equal to L_x G for every state."""
-    for s in systems():
-        C1 = free("x", s.m)
-        L_x = C1 * s.chain(1, s.m)
-        yield C1 * companion(theta_of(s)) * exact_inverse("C1", C1) * L_x, L_x * s.G
-
-
-@claim("1.5.Gx")
-def matrix_of_x():
-    """G_x is the upper left block of the transformed system, and z does not enter dx/dt."""
-    for s in systems():
-        C1 = free("x", s.m)
-        L, back = coordinates(s, C1, free("z", s.rest))
-        block = (L * s.G * back)[: s.m, :]
-        yield (
-            flat(C1 * companion(theta_of(s)) * exact_inverse("C1", C1), sp.zeros(s.m, s.rest)),
-            flat(block[:, : s.m], block[:, s.m :]),
-        )
-
-
 @claim("1.5.Theta")
 def companion_matrix():
     """Theta has ones above the diagonal and theta_1 ... theta_m in its last row."""
@@ -125,32 +102,12 @@ def coefficients(basis: sp.MatrixBase, row: sp.MatrixBase) -> list[sp.Expr]:
     return [ring.expression(value) for value in values]
 
 
-@claim("1.5.gx")
-def output_of_x():
-    """sigma_1 = g_x^T x with g_x^T = (1 0 ... 0) C_1^-1."""
-    for s in systems():
-        C1 = free("x", s.m)
-        yield unit_row(s.m) * exact_inverse("C1", C1) * C1 * s.chain(1, s.m), s.h(1).T
-
-
 def observer(size: int) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
     """(G_x, K, g_x) of a general scalar observer of the given order in coordinates with C_1 = free."""
     theta = sp.symbols(f"theta1:{size + 1}", real=True)
     C1 = free("x", size)
     back = exact_inverse("C1", C1)
     return C1 * companion(theta) * back, sp.Matrix(k[:size]), unit_row(size) * back
-
-
-@claim("1.6.error")
-def error_of_x():
-    """The error x - x° of (1.6) obeys de/dt = (G_x - K_x g_x^T) e + q_x - K_x r_x."""
-    for size in (1, 2, 3):
-        G, K, row = observer(size)
-        x, estimate, q = (sp.Matrix(sp.symbols(f"{name}1:{size + 1}", real=True)) for name in ("x", "e", "q"))
-        r = sp.Symbol("r", real=True)
-        truth = G * x + q
-        filtered = G * estimate + K * ((row * x)[0] + r - (row * estimate)[0])
-        yield (G - K * row) * (x - estimate) + q - K * r, truth - filtered
 
 
 @claim("1.6.gain_unique")
@@ -163,15 +120,13 @@ def gain_is_unique():
         jacobian = sp.Matrix(values).jacobian(K)
         linear = not any(jacobian.has(symbol) for symbol in K)
         found = found and linear and rank_of(jacobian) == size
-    return Property(
+    return fact(
         True,
-        Finding(
-            found,
-            "the coefficients are affine in K_x with an invertible matrix",
-            PROVED,
-            scope="m = 1, 2, 3, all theta",
-            assumptions=("det C_1 != 0",),
-        ),
+        found,
+        "the coefficients are affine in K_x with an invertible matrix",
+        PROVED,
+        scope="m = 1, 2, 3, all theta",
+        assumptions=("det C_1 != 0",),
         unsaid="that a map is affine and invertible is said of all its values at once",
     )
 

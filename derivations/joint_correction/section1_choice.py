@@ -63,8 +63,11 @@ def no_overlap_no_choice():
     return Equation([sp.Integer(0)] * len(cases), [basis_determinant(m, rest, i, 0) for m, rest, i in cases])
 
 
-@claim("1.14.next")
-def one_step_below_the_two_stage_split():
-    """The step from i = m to i = m - 1 is possible exactly when phi_m is not zero, whatever the other coefficients."""
-    printed = [sp.Symbol(f"phi{m}", real=True) ** 2 for m, _ in SIZES]
-    return Equation(printed, [basis_determinant(m, rest, m - 1, m) for m, rest in SIZES])
+one_step_below_the_two_stage_split = claim(
+    "1.14.next",
+    "The step from i = m to i = m - 1 is possible exactly when phi_m is not zero, whatever the other coefficients.",
+    lambda: Equation(
+        [sp.Symbol(f"phi{m}", real=True) ** 2 for m, _ in SIZES],
+        [basis_determinant(m, rest, m - 1, m) for m, rest in SIZES],
+    ),
+)

@@ -17,7 +17,7 @@ from navsym.claims import Finding, Property, state
 from navsym.models.linear import LinearModel
 from navsym.observability.certificates import Certifier
 from navsym.observability.chains import JointObservability, observe_jointly
-from navsym.observability.splits import exact_inverse
+from navsym_papers.joint_correction.matrices import exact_inverse
 
 p = sp.Symbol("p", real=True)
 g = sp.symbols("g1:10", real=True)
@@ -116,7 +116,7 @@ def systems() -> tuple[System, ...]:
             [g[0], 0, 1, 0, 0],
             [1, g[1], 0, 0, 0],
             [g[2], 0, 0, 1, 1],
-            [0, 1, 0, g[3], 2],
+            [0, 1, 0, g[3], 2]
         ]
     )  # fmt: skip
     return (

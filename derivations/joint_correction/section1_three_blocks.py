@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, Finding, Property, claim
-from navsym.observability.splits import companion, corner, exact_inverse, last_row, shift, to_lowest_terms, unit_row
+from navsym.claims import PROVED, Equation, claim, fact
+from navsym.observability.splits import companion, last_row
+from navsym_papers.joint_correction.matrices import corner, exact_inverse, shift, to_lowest_terms, unit_row
 from navsym_papers.joint_correction.section1_chains import coefficients, theta_of
 from navsym_papers.joint_correction.section1_systems import System, flat, free, k, overlapping, polynomial_of
 
@@ -28,101 +27,6 @@ def delta_of(s: System, i: int, j: int) -> list[sp.Expr]:
     """delta_1 ... delta_n: b_{j+1} in the basis a_1 ... a_i, b_1 ... b_j."""
     basis = sp.Matrix.vstack(s.chain(1, i), s.chain(2, j))
     return coefficients(basis, s.chain(2, j + 1)[j, :])
-
-
-@cache
-def printed_blocks(i: int, j: int) -> dict[str, sp.ImmutableMatrix]:
-    """The blocks as the paper prints them, with theta and delta of the system."""
-    s, C, _ = parts(i, j)
-    theta, delta = theta_of(s), delta_of(s, i, j)
-    back = {name: exact_inverse(name, matrix) for name, matrix in C.items()}
-    return {
-        "u1": C["u"] * shift(i) * back["u"],
-        "u2": C["u"] * corner(i, s.m - i) * back["v"],
-        "v1": C["v"] * last_row(s.m - i, theta[:i]) * back["u"],
-        "v2": C["v"] * companion(theta[i:]) * back["v"],
-        "w1": C["w"] * last_row(j, delta[:i]) * back["u"],
-        "w2": C["w"] * companion(delta[i:]) * back["w"],
-    }
-
-
-def motion(name: str, first: str, second: str) -> Equation:
-    """d(name)/dt: printed blocks on the rows of two parts, against L_name G."""
-    printed, derived = [], []
-    for i, j in CASES:
-        s, _, rows = parts(i, j)
-        block = printed_blocks(i, j)
-        printed += flat(block[f"{name}1"] * rows[first] + block[f"{name}2"] * rows[second])
-        derived += flat(rows[name] * s.G)
-    return Equation(printed, derived)
-
-
-@claim("1.14.u")
-def motion_of_u():
-    """du/dt = G_u1 u + G_u2 v."""
-    return motion("u", "u", "v")
-
-
-@claim("1.14.v")
-def motion_of_v():
-    """dv/dt = G_v1 u + G_v2 v."""
-    return motion("v", "u", "v")
-
-
-@claim("1.14.w")
-def motion_of_w():
-    """dw/dt = G_w1 u + G_w2 w."""
-    return motion("w", "u", "w")
-
-
-def block_of(name: str, first: str, second: str, number: int) -> Equation:
-    """One printed block against the block solved from L_name G in the rows of two parts."""
-    printed, derived = [], []
-    for i, j in CASES:
-        s, _, rows = parts(i, j)
-        basis = sp.Matrix.vstack(rows[first], rows[second])
-        rates = rows[name] * s.G
-        solved = [coefficients(basis, rates[r, :]) for r in range(rates.rows)]
-        size = rows[first].rows
-        derived += [x for row in solved for x in (row[:size] if number == 1 else row[size:])]
-        printed += flat(printed_blocks(i, j)[f"{name}{number}"])
-    return Equation(printed, derived)
-
-
-@claim("1.14.Gu1")
-def block_u1():
-    """G_u1 = C_11 F C_11^-1."""
-    return block_of("u", "u", "v", 1)
-
-
-@claim("1.14.Gu2")
-def block_u2():
-    """G_u2 = C_11 F° C_12^-1."""
-    return block_of("u", "u", "v", 2)
-
-
-@claim("1.14.Gv1")
-def block_v1():
-    """G_v1 = C_12 Theta_u C_11^-1."""
-    return block_of("v", "u", "v", 1)
-
-
-@claim("1.14.Gv2")
-def block_v2():
-    """G_v2 = C_12 Theta_v C_12^-1."""
-    return block_of("v", "u", "v", 2)
-
-
-@claim("1.14.Gw1")
-def block_w1():
-    """G_w1 = C_22 D_u C_11^-1."""
-    return block_of("w", "u", "w", 1)
-
-
-@claim("1.14.Gw2")
-def block_w2():
-    """G_w2 = C_22 D_w C_22^-1."""
-    return block_of("w", "u", "w", 2)
 
 
 @claim("1.14.matrices")
@@ -260,9 +164,12 @@ def choice_of_i():
     from navsym.observability.splits import best_split
 
     best = best_split(overlapping().found)
-    return Property(
+    return fact(
         (2, 2),
-        Finding((best.i, best.j), "all determinants of a_1 ... a_i, b_1 ... b_j", PROVED, scope="n = 4, m = 3, l = 4"),
+        (best.i, best.j),
+        "all determinants of a_1 ... a_i, b_1 ... b_j",
+        PROVED,
+        scope="n = 4, m = 3, l = 4",
         unsaid="a least value over all bases is found by trying them",
     )
 

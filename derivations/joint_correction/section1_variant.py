@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, Finding, Property, claim
-from navsym.observability.splits import exact_inverse
+from navsym.claims import PROVED, Equation, claim, fact
+from navsym_papers.joint_correction.matrices import exact_inverse
 from navsym_papers.joint_correction.section1_systems import flat
 from navsym_papers.joint_correction.section1_two_stage import PAIRS, blocks
 
@@ -34,24 +34,6 @@ def general(m: int, rest: int) -> dict[str, sp.Matrix]:
         "g2": row[:, m:],
         "upper": turned[:m, :],
     }
-
-
-@claim("1.13.model")
-def general_model():
-    """With any rows that complete L_x the model keeps its form, and dx/dt has no z.
-
-    dz/dt = G°_z1 x + G°_z2 z, sigma_2 = g_z1 x + g_z2 z.
-    """
-    printed, derived = [], []
-    for m, rest in PAIRS[:4]:
-        b = general(m, rest)
-        x, z = (sp.Matrix(sp.symbols(f"{name}1:{size + 1}", real=True)) for name, size in (("x", m), ("z", rest)))
-        raw = blocks(m, rest)
-        new = b["S"] * x + b["T"] * z
-        printed += list(b["Gz1"] * x + b["Gz2"] * new) + list(b["g1"] * x + b["g2"] * new) + list(b["upper"][:, m:])
-        derived += list(b["S"] * raw["Gx"] * x + b["T"] * (raw["Gz1"] * x + raw["Gz2"] * z))
-        derived += [*list(raw["gz"] * z), *[sp.Integer(0)] * (m * rest)]
-    return Equation(printed, derived)
 
 
 @claim("1.13.error")
@@ -148,8 +130,11 @@ def first_stage_of_the_variant_ignores_sigma2():
         rows = sp.Matrix.hstack(b["Gx"] - b["Kx"] * b["gx"], b["upper"][:, m:])
         found = found and not any(rows.has(symbol) for symbol in b["Kz"])
         found = found and all(sp.expand(value) == 0 for value in b["upper"][:, m:])
-    return Property(
+    return fact(
         True,
-        Finding(found, "entries of the first rows", PROVED, scope=f"(m, n - m) in {PAIRS[:4]}"),
+        found,
+        "entries of the first rows",
+        PROVED,
+        scope=f"(m, n - m) in {PAIRS[:4]}",
         unsaid="which symbols a formula has is read off it, not its value",
     )

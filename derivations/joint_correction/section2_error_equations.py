@@ -11,7 +11,7 @@ from functools import cache
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property, claim
+from navsym.claims import CERTIFIED, PROVED, Bound, Equation, claim, fact
 from navsym_papers.joint_correction.inertial import PHYSICAL_ORDERS, truncate
 from navsym_papers.joint_correction.kinematics import (
     ALPHA,
@@ -28,6 +28,8 @@ from navsym_papers.joint_correction.kinematics import (
     ErrorEquations,
     error_equations,
 )
+
+EXPONENTS = "units are compared as exponents, and statements are about numbers"
 
 a1, a2, a3 = ALPHA
 b1, b2, b3 = BETA
@@ -49,36 +51,21 @@ def kept(symbol: sp.Symbol) -> sp.Expr:
     return truncate(equations().rates[symbol], PHYSICAL_ORDERS, 2).kept
 
 
-@claim("2.1.alpha1")
-def tilt_1():
-    """alpha_1' = dp_1 + nu_x1."""
-    return Equation(p1 + v1, kept(a1))
-
-
-@claim("2.1.alpha2")
-def tilt_2():
-    """alpha_2' = dp_2 + nu_x2."""
-    return Equation(p2 + v2, kept(a2))
-
-
-@claim("2.1.dp1")
-def momentum_1():
-    """dp_1' = -omega_0^2 (alpha_1 + epsilon_2) - omega_x2 nu_x3."""
-    return Equation(-(w0**2) * (a1 + e2) - w2 * v3, kept(p1))
-
-
-@claim("2.1.dp2")
-def momentum_2():
-    """dp_2' = -omega_0^2 (alpha_2 - epsilon_1) + omega_x1 nu_x3."""
-    return Equation(-(w0**2) * (a2 - e1) + w1 * v3, kept(p2))
-
-
-@claim("2.1.dropped")
-def dropped_terms():
-    """(2.1) leaves out omega_x1 (omega_x1 alpha_1 + omega_x2 alpha_2) and its like, and nothing else."""
-    printed = [w1 * (w1 * a1 + w2 * a2), w2 * (w1 * a1 + w2 * a2)]
-    derived = [equations().rates[p] - kept(p) for p in (p1, p2)]
-    return Equation(printed, derived)
+errors_of_the_platform = claim(
+    "2.1",
+    "The rates of alpha_1, alpha_2, dp_1, dp_2 up to terms of order mu^2 rho.",
+    lambda: Equation(
+        [p1 + v1, p2 + v2, -(w0**2) * (a1 + e2) - w2 * v3, -(w0**2) * (a2 - e1) + w1 * v3],
+        [kept(symbol) for symbol in (a1, a2, p1, p2)],
+    ),
+)
+dropped_terms = claim(
+    "2.1.dropped",
+    "(2.1) leaves out omega_x1 (omega_x1 alpha_1 + omega_x2 alpha_2) and its like, and nothing else.",
+    lambda: Equation(
+        [w1 * (w1 * a1 + w2 * a2), w2 * (w1 * a1 + w2 * a2)], [equations().rates[p] - kept(p) for p in (p1, p2)]
+    ),
+)
 
 
 @claim("2.1.climb")
@@ -88,14 +75,12 @@ def climb_is_negligible():
     values = [climbing.rates[p] - equations().rates[p] for p in (p1, p2)]
     values += [c - e for c, e in zip(climbing.velocity, equations().velocity, strict=True)]
     orders = tuple(truncate(sp.expand(value), PHYSICAL_ORDERS, 2).kept == 0 for value in values)
-    return Property(
+    return fact(
         (True,) * 4,
-        Finding(
-            orders,
-            "orders of all added terms, climb/(a omega_0) counted as mu^2",
-            PROVED,
-            scope="linear in the errors, alpha_3 up to rho/mu",
-        ),
+        orders,
+        "orders of all added terms, climb/(a omega_0) counted as mu^2",
+        PROVED,
+        scope="linear in the errors, alpha_3 up to rho/mu",
         unsaid="orders of terms in a small parameter are compared, not values",
     )
 
@@ -109,47 +94,34 @@ def height_is_negligible():
     return Bound(1 - (1 + x) ** -3, "<", sp.Rational(1, 50), {x: (0, eccentricity)})
 
 
-@claim("2.2.beta1")
-def drift_1():
-    """beta_1' = -omega_x2 beta_3 + nu_x1."""
-    return Equation(-w2 * b3 + v1, equations().rates[b1])
-
-
-@claim("2.2.beta2")
-def drift_2():
-    """beta_2' = omega_x1 beta_3 + nu_x2."""
-    return Equation(w1 * b3 + v2, equations().rates[b2])
-
-
-@claim(
+drift_1 = claim(
+    "2.2.beta1", "beta_1' = -omega_x2 beta_3 + nu_x1.", lambda: Equation(-w2 * b3 + v1, equations().rates[b1])
+)
+drift_2 = claim(
+    "2.2.beta2", "beta_2' = omega_x1 beta_3 + nu_x2.", lambda: Equation(w1 * b3 + v2, equations().rates[b2])
+)
+drift_3_printed = claim(
     "2.2.beta3",
-    expect=REFUTED,
-    slip="scan",
+    "beta_3' = omega_x2 beta_1 - omega_x2 beta_2 + nu_x3, as printed.",
+    lambda: Equation(w2 * b1 - w2 * b2 + v3, equations().rates[b3]),
+    slip="undecidable",
     reason="index 2 for 1 in the second term: beta x omega has -omega_x1 beta_2, and the paper's own (2.8) for x_3 "
     "follows only with omega_x1; by hand: omega_x1 = beta_2 = 1, all others 0: the platform turns at -1, the print "
     "has 0",
 )
-def drift_3_printed():
-    """beta_3' = omega_x2 beta_1 - omega_x2 beta_2 + nu_x3, as printed."""
-    return Equation(w2 * b1 - w2 * b2 + v3, equations().rates[b3])
-
-
-@claim("2.2.beta3*", corrects="2.2.beta3")
-def drift_3():
-    """beta_3' = omega_x2 beta_1 - omega_x1 beta_2 + nu_x3."""
-    return Equation(w2 * b1 - w1 * b2 + v3, equations().rates[b3])
-
-
-@claim("2.3.gamma1")
-def position_error_1():
-    """gamma_1 = alpha_1 - beta_1 is the turn from Mx to Mu: Poisson's equation gives the same derivative."""
-    return Equation(equations().rates[a1] - equations().rates[b1], turn_of_the_computed_frame()[0])
-
-
-@claim("2.3.gamma2")
-def position_error_2():
-    """gamma_2 = alpha_2 - beta_2 is the turn from Mx to Mu: Poisson's equation gives the same derivative."""
-    return Equation(equations().rates[a2] - equations().rates[b2], turn_of_the_computed_frame()[1])
+drift_3 = claim(
+    "2.2.beta3*",
+    "beta_3' = omega_x2 beta_1 - omega_x1 beta_2 + nu_x3.",
+    lambda: Equation(w2 * b1 - w1 * b2 + v3, equations().rates[b3]),
+)
+position_errors = claim(
+    "2.3",
+    "gamma = alpha - beta is the turn from Mx to Mu: Poisson's equation gives the derivatives of gamma_1, gamma_2.",
+    lambda: Equation(
+        [equations().rates[a] - equations().rates[b] for a, b in ((a1, b1), (a2, b2))],
+        list(turn_of_the_computed_frame()[:2]),
+    ),
+)
 
 
 def turn_of_the_computed_frame() -> sp.Matrix:
@@ -161,16 +133,13 @@ def turn_of_the_computed_frame() -> sp.Matrix:
     return rotation_rate(gamma, computed, OMEGA_X).subs(dict(zip(gamma, ALPHA - BETA, strict=True)))
 
 
-@claim("2.4.sigma1")
-def velocity_information_1():
-    """sigma_x1^c = dp_1 + u_x3 alpha_2 + u_x2 beta_3 - u_x3 beta_2 + w_x1^c."""
-    return Equation(p1 + u3 * a2 + u2 * b3 - u3 * b2 + W_C[0], equations().velocity[0])
-
-
-@claim("2.4.sigma2")
-def velocity_information_2():
-    """sigma_x2^c = dp_2 - u_x3 alpha_1 + u_x3 beta_1 - u_x1 beta_3 + w_x2^c."""
-    return Equation(p2 - u3 * a1 + u3 * b1 - u1 * b3 + W_C[1], equations().velocity[1])
+velocity_information = claim(
+    "2.4",
+    "The velocity correction sigma_x1^c, sigma_x2^c.",
+    lambda: Equation(
+        [p1 + u3 * a2 + u2 * b3 - u3 * b2 + W_C[0], p2 - u3 * a1 + u3 * b1 - u1 * b3 + W_C[1]], equations().velocity
+    ),
+)
 
 
 # Assumptions of the section, with numbers
@@ -191,35 +160,29 @@ def degree(expression: sp.Expr) -> sp.Expr:
 RATE = sp.sqrt(w1**2 + w2**2)
 
 
-@claim(
+# Both sides have one unit.
+stationarity_units_printed = claim(
     "2.assumption1.units",
-    expect=REFUTED,
+    "(omega_x1^2 + omega_x2^2)^(1/2) < max(omega_x1^2 + omega_x2^2), as printed.",
+    lambda: fact(
+        degree(RATE**2), degree(RATE), "powers of 1/s on the right and on the left side", PROVED, unsaid=EXPONENTS
+    ),
     slip="scan",
     reason="a rate (1/s) is compared with a squared rate (1/s^2); the dot of the derivative over the root is lost, "
     "as are the dots in (2.9) and (3.3); by hand: in minutes the left side is 60 times larger, the right one 3600 "
     "times",
 )
-def stationarity_units_printed():
-    """(omega_x1^2 + omega_x2^2)^(1/2) < max(omega_x1^2 + omega_x2^2), as printed.
-
-    Both sides have one unit.
-    """
-    return Property(
+stationarity_units = claim(
+    "2.assumption1.units*",
+    "|d/dt (omega_x1^2 + omega_x2^2)^(1/2)| < max(omega_x1^2 + omega_x2^2): both sides in 1/s^2.",
+    lambda: fact(
         degree(RATE**2),
-        Finding(degree(RATE), "powers of 1/s on the right and on the left side", PROVED),
-        unsaid="units are compared as exponents, and statements are about numbers",
-    )
-
-
-@claim("2.assumption1.units*", corrects="2.assumption1.units")
-def stationarity_units():
-    """|d/dt (omega_x1^2 + omega_x2^2)^(1/2)| < max(omega_x1^2 + omega_x2^2): both sides in 1/s^2."""
-    rate = sum(sp.diff(RATE, w) * dw for w, dw in zip((w1, w2), OMEGA_X_RATE[:2], strict=True))
-    return Property(
-        degree(RATE**2),
-        Finding(degree(rate), "powers of 1/s on the right and on the left side", PROVED),
-        unsaid="units are compared as exponents, and statements are about numbers",
-    )
+        degree(sum(sp.diff(RATE, w) * dw for w, dw in zip((w1, w2), OMEGA_X_RATE[:2], strict=True))),
+        "powers of 1/s on the right and on the left side",
+        PROVED,
+        unsaid=EXPONENTS,
+    ),
+)
 
 
 def stationarity(speed: sp.Expr, course: sp.Expr, place: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
@@ -253,14 +216,12 @@ def where_great_circles_are_not_stationary():
     """Not at every speed: westward at 419 m/s, near that of the ground below, the same condition fails."""
     point = (sp.Rational(9, 10), sp.Rational(-99, 100), sp.Rational(1, 2))
     left, right = stationarity(*point)
-    return Property(
+    return fact(
         False,
-        Finding(
-            bool(left < right),
-            "exact values at one flight",
-            PROVED,
-            scope="speed 0.9 Omega R = 419 m/s, course constant -0.99",
-        ),
+        bool(left < right),
+        "exact values at one flight",
+        PROVED,
+        scope="speed 0.9 Omega R = 419 m/s, course constant -0.99",
         unsaid="a maximum over a flight is compared, and no formula is given for it",
     )
 
@@ -282,16 +243,16 @@ def mu_is_small():
     )
 
 
-@claim("2.scale.tau_low")
-def correction_time_low():
-    """Thirty minutes are more than one in dimensionless time."""
-    return Bound(sp.Integer(1), "<", 1800 * SCHULER_RATE)
-
-
-@claim("2.scale.tau_high")
-def correction_time_high():
-    """Thirty minutes are less than three in dimensionless time."""
-    return Bound(sp.Integer(3), ">", 1800 * SCHULER_RATE)
+correction_time_low = claim(
+    "2.scale.tau_low",
+    "Thirty minutes are more than one in dimensionless time.",
+    lambda: Bound(sp.Integer(1), "<", 1800 * SCHULER_RATE),
+)
+correction_time_high = claim(
+    "2.scale.tau_high",
+    "Thirty minutes are less than three in dimensionless time.",
+    lambda: Bound(sp.Integer(3), ">", 1800 * SCHULER_RATE),
+)
 
 
 @claim("2.scale.period", expect=CERTIFIED)

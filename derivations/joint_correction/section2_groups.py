@@ -12,7 +12,7 @@ from functools import cache
 
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, Claim, Equation, Finding, Property, claim
+from navsym.claims import PROVED, REFUTED, Claim, Equation, Finding, Property, claim, fact
 from navsym.observability.chains import observe_jointly
 from navsym.observability.rank_drops import rank_drops
 from navsym_papers.joint_correction.inertial import (
@@ -38,6 +38,8 @@ from navsym_papers.joint_correction.inertial import (
 )
 from navsym_papers.joint_correction.kinematics import ALPHA, BETA, EPSILON
 from navsym_papers.joint_correction.section1_systems import say_ranks
+
+ORDER_ONLY = "orders of terms in a small parameter are compared, not values"
 
 mu = MU
 a1, a2 = ALPHA[:2]
@@ -245,16 +247,14 @@ def neglected_terms():
     No lower, and nothing of higher order either.
     """
     orders = {term.order for group in (velocity(), position()) for row_ in group.dropped for term in row_}
-    return Property(
+    return fact(
         (2,),
-        Finding(
-            tuple(sorted(orders)),
-            "bookkeeping of every monomial",
-            PROVED,
-            scope="alpha, pi, epsilon, nu, w of order rho; beta, gamma of order rho/mu; d omega/d tau of order mu",
-            evidence=f"{sum(len(r) for g in (velocity(), position()) for r in g.dropped)} terms, listed by the model",
-        ),
-        unsaid="orders of terms in a small parameter are compared, not values",
+        tuple(sorted(orders)),
+        "bookkeeping of every monomial",
+        PROVED,
+        scope="alpha, pi, epsilon, nu, w of order rho; beta, gamma of order rho/mu; d omega/d tau of order mu",
+        evidence=f"{sum(len(r) for g in (velocity(), position()) for r in g.dropped)} terms, listed by the model",
+        unsaid=ORDER_ONLY,
     )
 
 
@@ -264,31 +264,30 @@ def inhomogeneous_terms():
     forcing = [term for group in (velocity(), position()) for term in group.linear()[2]]
     orders = {lowest_order(term, ORDERS) for term in forcing if term != 0}
     found = tuple(sorted(orders)) if {truncate(term, ORDERS, 2).dropped for term in forcing} == {()} else None
-    return Property(
+    return fact(
         (1,),
-        Finding(found, "bookkeeping of every monomial", PROVED, scope="orders as declared in 2.8.neglected"),
-        unsaid="orders of terms in a small parameter are compared, not values",
+        found,
+        "bookkeeping of every monomial",
+        PROVED,
+        scope="orders as declared in 2.8.neglected",
+        unsaid=ORDER_ONLY,
     )
 
 
-@claim("2.9.inhomogeneous_printed", expect=REFUTED, slip="scan", reason=DOT)
-def inhomogeneous_term_as_printed():
-    """The printed inhomogeneous term mu omega_2 beta_3 of y_2 has the order mu (times rho)."""
-    return Property(
-        1,
-        Finding(lowest_order(mu * w2 * b3, ORDERS), "bookkeeping of every monomial", PROVED),
-        unsaid="orders of terms in a small parameter are compared, not values",
-    )
-
-
-@claim("2.9.inhomogeneous_printed*", corrects="2.9.inhomogeneous_printed")
-def inhomogeneous_term():
-    """With the derivative of omega the inhomogeneous term of y_2 has the order mu (times rho)."""
-    return Property(
-        1,
-        Finding(lowest_order(position().linear()[2][1], ORDERS), "bookkeeping of every monomial", PROVED),
-        unsaid="orders of terms in a small parameter are compared, not values",
-    )
+inhomogeneous_term_as_printed = claim(
+    "2.9.inhomogeneous_printed",
+    "The printed inhomogeneous term mu omega_2 beta_3 of y_2 has the order mu (times rho).",
+    lambda: fact(1, lowest_order(mu * w2 * b3, ORDERS), "bookkeeping of every monomial", PROVED, unsaid=ORDER_ONLY),
+    slip="scan",
+    reason=DOT,
+)
+inhomogeneous_term = claim(
+    "2.9.inhomogeneous_printed*",
+    "With the derivative of omega the inhomogeneous term of y_2 has the order mu (times rho).",
+    lambda: fact(
+        1, lowest_order(position().linear()[2][1], ORDERS), "bookkeeping of every monomial", PROVED, unsaid=ORDER_ONLY
+    ),
+)
 
 
 def rank_and_drops(group: Group) -> tuple[int, tuple[str, ...]]:
@@ -298,52 +297,42 @@ def rank_and_drops(group: Group) -> tuple[int, tuple[str, ...]]:
     return found.joint_dimension, conditions
 
 
-@claim("2.8.observable")
-def velocity_group_is_observable():
-    """x_1 ... x_6 are observable by velocity information, except where mu u_3 = 1 or -1."""
-    return Property(
+velocity_group_is_observable = claim(
+    "2.8.observable",
+    "x_1 ... x_6 are observable by velocity information, except where mu u_3 = 1 or -1.",
+    lambda: fact(
         (6, ("mu*u_3 + 1 = 0", "mu*u_3 - 1 = 0")),
-        Finding(
-            rank_and_drops(velocity()),
-            "fraction-free rank, all split determinants",
-            PROVED,
-            scope="homogeneous part of (2.8)",
-        ),
+        rank_and_drops(velocity()),
+        "fraction-free rank, all split determinants",
+        PROVED,
+        scope="homogeneous part of (2.8)",
         unsaid="that a rank drops nowhere else is said of all points at once",
-    )
-
-
-@claim("2.9.observable")
-def position_group_is_observable():
-    """y_1 ... y_8 are observable by position information, for all mu, omega_1, omega_2."""
-    return Property(
+    ),
+)
+position_group_is_observable = claim(
+    "2.9.observable",
+    "y_1 ... y_8 are observable by position information, for all mu, omega_1, omega_2.",
+    lambda: fact(
         (8, ()),
-        Finding(
-            rank_and_drops(position()),
-            "fraction-free rank, a split determinant that is a number",
-            PROVED,
-            scope="homogeneous part of (2.9)",
-        ),
+        rank_and_drops(position()),
+        "fraction-free rank, a split determinant that is a number",
+        PROVED,
+        scope="homogeneous part of (2.9)",
         unsaid="that a rank drops nowhere is said of all points at once",
-    )
-
-
-@claim("2.6.span")
-def velocity_observes_six_combinations():
-    """Velocity information observes exactly six combinations at leading order.
-
-    mu -> 0 in the motion, mu beta is kept; u_1, u_2, u_3 are arbitrary.
-    """
-    return leading_rank((0, 1), 6, "mu = 0 in the motion, mu beta of order rho; u_1, u_2, u_3 arbitrary")
-
-
-@claim("2.7.span")
-def position_observes_eight_combinations():
-    """Position information observes exactly eight combinations at leading order.
-
-    mu -> 0 in the motion, the drift mu beta_3 is kept.
-    """
-    return leading_rank((2, 3), 8, "mu = 0 in the motion, mu beta of order rho; omega_1, omega_2 arbitrary")
+    ),
+)
+# mu -> 0 in the motion, mu beta is kept; u_1, u_2, u_3 are arbitrary.
+velocity_observes_six_combinations = claim(
+    "2.6.span",
+    "Velocity information observes exactly six combinations at leading order.",
+    lambda: leading_rank((0, 1), 6, "mu = 0 in the motion, mu beta of order rho; u_1, u_2, u_3 arbitrary"),
+)
+# mu -> 0 in the motion, the drift mu beta_3 is kept.
+position_observes_eight_combinations = claim(
+    "2.7.span",
+    "Position information observes exactly eight combinations at leading order.",
+    lambda: leading_rank((2, 3), 8, "mu = 0 in the motion, mu beta of order rho; omega_1, omega_2 arbitrary"),
+)
 
 
 def leading_rank(measurements: tuple[int, ...], printed: int, scope: str) -> Property:

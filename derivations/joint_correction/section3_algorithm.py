@@ -175,16 +175,20 @@ RIGHT_5 = y[6] + Kh[5] * (sm2 - y[5])
 RIGHT_6 = mu**2 * w1 * (w2 * y[1] - w1 * y[5]) + Kh[6] * (sm2 - y[5]) - x[3]
 
 
-@claim("3.3.y5", expect=REFUTED, slip="scan", reason=DOT)
-def y5_printed():
-    """Estimate of y_5, as printed: an equation for y_5° without a derivative."""
-    return assignment(5, RIGHT_5)
-
-
-@claim("3.3.y6", expect=REFUTED, slip="scan", reason=DOT)
-def y6_printed():
-    """Estimate of y_6, as printed: an equation for y_6° without a derivative."""
-    return assignment(6, RIGHT_6)
+y5_printed = claim(
+    "3.3.y5",
+    "Estimate of y_5, as printed: an equation for y_5° without a derivative.",
+    lambda: assignment(5, RIGHT_5),
+    slip="scan",
+    reason=DOT,
+)
+y6_printed = claim(
+    "3.3.y6",
+    "Estimate of y_6, as printed: an equation for y_6° without a derivative.",
+    lambda: assignment(6, RIGHT_6),
+    slip="scan",
+    reason=DOT,
+)
 
 
 y5_row = row(

@@ -12,9 +12,9 @@ from itertools import pairwise
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, Equation, Finding, Property, claim
-from navsym.observability.splits import exact_inverse, to_lowest_terms
+from navsym.claims import CERTIFIED, PROVED, Equation, claim, fact
 from navsym_papers.joint_correction.inertial import EARTH, MU
+from navsym_papers.joint_correction.matrices import exact_inverse, to_lowest_terms
 from navsym_papers.joint_correction.section1_systems import coefficients_of_polynomial, p, polynomial_of
 from navsym_papers.joint_correction.section2_groups import mu, position, velocity, w1, w2
 from navsym_papers.joint_correction.section3_algorithm import joint_error_matrix
@@ -40,11 +40,13 @@ def position_block(gains: tuple[sp.Expr, sp.Expr], channel: int = 0) -> sp.Matri
     return F.extract(places, places) - sp.Matrix(gains) * H.extract([channel], places)
 
 
-@claim("3.2.gains")
-def velocity_gains():
-    """Gains 1 - 3 l^2, 3 l - l^3, l^3 with l = lambda_c give (p + lambda_c)^3 in both channels."""
-    derived = [polynomial_of(velocity_block(VELOCITY_GAINS, channel)) for channel in (0, 1)]
-    return Equation([(p + lam) ** 3] * 2, derived)
+velocity_gains = claim(
+    "3.2.gains",
+    "Gains 1 - 3 l^2, 3 l - l^3, l^3 with l = lambda_c give (p + lambda_c)^3 in both channels.",
+    lambda: Equation(
+        [(p + lam) ** 3] * 2, [polynomial_of(velocity_block(VELOCITY_GAINS, channel)) for channel in (0, 1)]
+    ),
+)
 
 
 @claim("3.2.gains_unique")
@@ -66,25 +68,25 @@ def velocity_gains_are_unique():
     )
 
 
-@claim("3.3.gains")
-def position_gains():
-    """K_1^h = 2 lambda_h and K_2^h = lambda_h^2 - mu^2 omega_2^2 give (p + lambda_h)^2 exactly.
-
-    K_6^h has omega_1 in the place of omega_2.
-    """
-    derived = [
-        polynomial_of(position_block((2 * lam_h, lam_h**2 - mu**2 * w**2), channel))
-        for channel, w in ((0, w2), (1, w1))
-    ]
-    return Equation([(p + lam_h) ** 2] * 2, derived)
+# K_6^h has omega_1 in the place of omega_2.
+position_gains = claim(
+    "3.3.gains",
+    "K_1^h = 2 lambda_h and K_2^h = lambda_h^2 - mu^2 omega_2^2 give (p + lambda_h)^2 exactly.",
+    lambda: Equation(
+        [(p + lam_h) ** 2] * 2,
+        [
+            polynomial_of(position_block((2 * lam_h, lam_h**2 - mu**2 * w**2), channel))
+            for channel, w in ((0, w2), (1, w1))
+        ],
+    ),
+)
 
 
 @claim("3.3.gains_unique")
 def position_gains_are_unique():
     """The matrix of the affine map from K^h to the coefficients has determinant 1: no other gains do it."""
     K = sp.symbols("K1:3", real=True)
-    values = sp.Matrix(coefficients_of_polynomial(position_block(K))[1:])
-    return Equation(sp.Integer(1), values.jacobian(K).det())
+    return Equation(sp.Integer(1), sp.Matrix(coefficients_of_polynomial(position_block(K))[1:]).jacobian(K).det())
 
 
 # The coupled velocity stage
@@ -105,19 +107,17 @@ def link_polynomial(variable: sp.Expr) -> sp.Expr:
     return variable * ((1 - 3 * lam**2) * variable + 3 * lam - lam**3)
 
 
-@claim("3.coupled.characteristic")
-def coupled_characteristic_polynomial():
-    """With the link the six errors have (p + l)^6 + kappa^2 p^2 ((1 - 3 l^2) p + 3 l - l^3)^2.
-
-    kappa = mu u_3 and l = lambda_c.
-    """
-    return Equation((p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2, polynomial_of(coupled_velocity_block()))
-
-
-@claim("3.coupled.without_link")
-def coupled_polynomial_without_link():
-    """Without the link, kappa = 0, the six errors have (p + lambda_c)^6, as the choice of gains intends."""
-    return Equation((p + lam) ** 6, polynomial_of(coupled_velocity_block().subs(kappa, 0)))
+# kappa = mu u_3 and l = lambda_c.
+coupled_characteristic_polynomial = claim(
+    "3.coupled.characteristic",
+    "With the link the six errors have (p + l)^6 + kappa^2 p^2 ((1 - 3 l^2) p + 3 l - l^3)^2.",
+    lambda: Equation((p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2, polynomial_of(coupled_velocity_block())),
+)
+coupled_polynomial_without_link = claim(
+    "3.coupled.without_link",
+    "Without the link, kappa = 0, the six errors have (p + lambda_c)^6, as the choice of gains intends.",
+    lambda: Equation((p + lam) ** 6, polynomial_of(coupled_velocity_block().subs(kappa, 0))),
+)
 
 
 def crossing() -> tuple[sp.Expr, sp.Expr]:
@@ -180,15 +180,13 @@ def coupled_system_is_stable_inside():
     counts = tuple(
         poles_on_the_right(sp.Integer(1), value) for value in (sp.Integer(0), sp.Rational(1, 2), sp.Integer(2))
     )
-    return Property(
+    return fact(
         (0, 0, 2, True),
-        Finding(
-            (*counts, parts_never_vanish_together()),
-            "no crossing of the axis, Routh's table at one point of every region",
-            PROVED,
-            scope="all lambda_c > 0, all real kappa",
-            evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}; the parts have no common zero",
-        ),
+        (*counts, parts_never_vanish_together()),
+        "no crossing of the axis, Routh's table at one point of every region",
+        PROVED,
+        scope="all lambda_c > 0, all real kappa",
+        evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}; the parts have no common zero",
         unsaid="roots of a polynomial with free coefficients are counted by regions",
     )
 
@@ -216,12 +214,14 @@ def poles_on_the_right(lambda_value: sp.Expr, kappa_value: sp.Expr) -> int:
     return sum(1 for a, b in pairwise(column) if a * b < 0)
 
 
-@claim("3.coupled.decay", expect=CERTIFIED)
-def true_decay_rate():
-    """lambda_c = 1, mu u_3 = 1/20 (latitude near 58 degrees): the true decay rate is 0.577 instead of 1."""
-    return Equation(
+true_decay_rate = claim(
+    "3.coupled.decay",
+    "lambda_c = 1, mu u_3 = 1/20 (latitude near 58 degrees): the true decay rate is 0.577 instead of 1.",
+    lambda: Equation(
         sp.Rational(577, 1000), decay_rate(sp.Integer(1), sp.Rational(1, 20)), tolerance=sp.Rational(1, 2000)
-    )
+    ),
+    expect=CERTIFIED,
+)
 
 
 def decay_rate(lambda_value: sp.Rational, kappa_value: sp.Rational) -> sp.Rational:
@@ -242,13 +242,12 @@ def decay_rate(lambda_value: sp.Rational, kappa_value: sp.Rational) -> sp.Ration
     return sp.Rational(digits.numerator, digits.denominator)
 
 
-@claim("3.coupled.small_link")
-def decay_for_a_small_link():
-    """For a small link the poles leave -lambda_c by the cube roots of 2 i kappa l^2 (1 + l^2).
-
-    To leading order, l = lambda_c; this is minus the link polynomial at p = -l, times i kappa.
-    """
-    return Equation(-2 * lam**2 * (1 + lam**2), sp.expand(link_polynomial(p).subs(p, -lam)))
+# To leading order, l = lambda_c; this is minus the link polynomial at p = -l, times i kappa.
+decay_for_a_small_link = claim(
+    "3.coupled.small_link",
+    "For a small link the poles leave -lambda_c by the cube roots of 2 i kappa l^2 (1 + l^2).",
+    lambda: Equation(-2 * lam**2 * (1 + lam**2), sp.expand(link_polynomial(p).subs(p, -lam))),
+)
 
 
 @claim("3.coupled.repaired")
@@ -282,25 +281,25 @@ def coupled_position_block(second: tuple[sp.Expr, sp.Expr]) -> sp.Matrix:
     return joint_error_matrix(Ky=gains)[6:, 6:]
 
 
-@claim("3.coupled.position")
-def coupled_position_polynomial():
-    """With gains that cancel mu^2 omega^2 the link leaves (p + l)^4 - mu^4 omega_1^2 omega_2^2.
-
-    Stable only for l = lambda_h > mu |omega_1 omega_2|^(1/2); the decay rate is
-    lambda_h - mu |omega_1 omega_2|^(1/2).
-    """
-    A = coupled_position_block((lam_h**2 - mu**2 * w2**2, lam_h**2 - mu**2 * w1**2))
-    return Equation((p + lam_h) ** 4 - mu**4 * w1**2 * w2**2, polynomial_of(A))
-
-
-@claim("3.coupled.position_plain")
-def plain_position_gains_are_better():
-    """With K_2^h = K_6^h = lambda_h^2 the coupled position stage decays with lambda_h exactly.
-
-    Its polynomial is (p + lambda_h)^2 ((p + lambda_h)^2 + mu^2 (omega_1^2 + omega_2^2)): always stable.
-    """
-    A = coupled_position_block((lam_h**2, lam_h**2))
-    return Equation((p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2)), polynomial_of(A))
+# Stable only for l = lambda_h > mu |omega_1 omega_2|^(1/2); the decay rate is
+# lambda_h - mu |omega_1 omega_2|^(1/2).
+coupled_position_polynomial = claim(
+    "3.coupled.position",
+    "With gains that cancel mu^2 omega^2 the link leaves (p + l)^4 - mu^4 omega_1^2 omega_2^2.",
+    lambda: Equation(
+        (p + lam_h) ** 4 - mu**4 * w1**2 * w2**2,
+        polynomial_of(coupled_position_block((lam_h**2 - mu**2 * w2**2, lam_h**2 - mu**2 * w1**2))),
+    ),
+)
+# Its polynomial is (p + lambda_h)^2 ((p + lambda_h)^2 + mu^2 (omega_1^2 + omega_2^2)): always stable.
+plain_position_gains_are_better = claim(
+    "3.coupled.position_plain",
+    "With K_2^h = K_6^h = lambda_h^2 the coupled position stage decays with lambda_h exactly.",
+    lambda: Equation(
+        (p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2)),
+        polynomial_of(coupled_position_block((lam_h**2, lam_h**2))),
+    ),
+)
 
 
 @claim("3.coupled.whole")
@@ -336,9 +335,10 @@ def steady_error_of_the_position_stage():
     d gathers the steady error of x_1° and the terms left out.
     """
     d = sp.Symbol("d", real=True)
-    steady = sp.Matrix([-d / lam_h**2, -2 * d / lam_h])
-    A = position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2))
-    return Equation(list(A * steady), [sp.Integer(0), d])
+    return Equation(
+        list(position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2)) * sp.Matrix([-d / lam_h**2, -2 * d / lam_h])),
+        [sp.Integer(0), d],
+    )
 
 
 # Pre-estimation and the situations of the last paragraph
@@ -364,8 +364,10 @@ def transient_driven_by_the_velocity_stage():
     Delta y_1 has the transfer -1/(p + lambda_h)^2 from Delta x_1.
     """
     A = position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2))
-    transfer = (p * sp.eye(2) - A).adjugate() * sp.Matrix([0, -1])
-    return Equation([sp.Integer(-1), (p + lam_h) ** 2], [transfer[0], (p * sp.eye(2) - A).det()])
+    return Equation(
+        [sp.Integer(-1), (p + lam_h) ** 2],
+        [((p * sp.eye(2) - A).adjugate() * sp.Matrix([0, -1]))[0], (p * sp.eye(2) - A).det()],
+    )
 
 
 def position_only_block(gains: tuple[sp.Expr, ...]) -> sp.Matrix:
@@ -374,33 +376,36 @@ def position_only_block(gains: tuple[sp.Expr, ...]) -> sp.Matrix:
     return F.extract(range(4), range(4)).subs(MU, 0) - sp.Matrix(gains) * H.extract([0], range(4))
 
 
-@claim("3.situations.position_only")
-def position_only():
-    """Only position, mu^2 left out: four gains in closed form give (p + lambda_h)^4 on y_1, y_2, x_1, x_2.
-
-    They are 4 l, 6 l^2 - 1, 4 l - 4 l^3, 6 l^2 - l^4 - 1 with l = lambda_h.
-    """
-    gains = (4 * lam_h, 6 * lam_h**2 - 1, 4 * lam_h - 4 * lam_h**3, 6 * lam_h**2 - lam_h**4 - 1)
-    return Equation((p + lam_h) ** 4, polynomial_of(position_only_block(gains)))
-
-
-@claim("3.situations.zeroing")
-def position_only_by_zeroing_oscillates():
-    """Only position with K^c = 0.
-
-    The polynomial keeps the factor p^2 (p^2 + 1)^2 of the uncorrected Schuler errors.
-    """
-    A = joint_error_matrix(tuple([sp.Integer(0)] * 6), {1: 2 * lam_h, 2: lam_h**2, 5: 2 * lam_h, 6: lam_h**2})
-    slow = (p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))
-    return Equation(p**2 * (p**2 + 1) ** 2 * slow, polynomial_of(A))
-
-
-@claim("3.situations.neither")
-def neither_information():
-    """Neither information: all gains are zero and the estimates are carried along."""
-    A = joint_error_matrix(tuple([sp.Integer(0)] * 6), dict.fromkeys((1, 2, 5, 6), sp.Integer(0)))
-    polynomial = p**4 * (p**2 + 1) ** 2 * (p**2 + mu**2 * (w1**2 + w2**2))
-    return Equation(polynomial, polynomial_of(A))
+# They are 4 l, 6 l^2 - 1, 4 l - 4 l^3, 6 l^2 - l^4 - 1 with l = lambda_h.
+position_only = claim(
+    "3.situations.position_only",
+    "Only position, mu^2 left out: four gains in closed form give (p + lambda_h)^4 on y_1, y_2, x_1, x_2.",
+    lambda: Equation(
+        (p + lam_h) ** 4,
+        polynomial_of(
+            position_only_block((4 * lam_h, 6 * lam_h**2 - 1, 4 * lam_h - 4 * lam_h**3, 6 * lam_h**2 - lam_h**4 - 1))
+        ),
+    ),
+)
+# The polynomial keeps the factor p^2 (p^2 + 1)^2 of the uncorrected Schuler errors.
+position_only_by_zeroing_oscillates = claim(
+    "3.situations.zeroing",
+    "Only position with K^c = 0.",
+    lambda: Equation(
+        p**2 * (p**2 + 1) ** 2 * ((p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))),
+        polynomial_of(
+            joint_error_matrix(tuple([sp.Integer(0)] * 6), {1: 2 * lam_h, 2: lam_h**2, 5: 2 * lam_h, 6: lam_h**2})
+        ),
+    ),
+)
+neither_information = claim(
+    "3.situations.neither",
+    "Neither information: all gains are zero and the estimates are carried along.",
+    lambda: Equation(
+        p**4 * (p**2 + 1) ** 2 * (p**2 + mu**2 * (w1**2 + w2**2)),
+        polynomial_of(joint_error_matrix(tuple([sp.Integer(0)] * 6), dict.fromkeys((1, 2, 5, 6), sp.Integer(0)))),
+    ),
+)
 
 
 @claim("3.situations.velocity_after_joint")
@@ -411,8 +416,10 @@ def velocity_after_a_joint_session():
     """
     A = joint_error_matrix((*VELOCITY_GAINS, *VELOCITY_GAINS), dict.fromkeys((1, 2, 5, 6), sp.Integer(0)))
     A = A.subs(EARTH[2], kappa / MU).applyfunc(sp.expand)
-    first = (p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2
-    return Equation(first * p**2 * (p**2 + mu**2 * (w1**2 + w2**2)), polynomial_of(A))
+    return Equation(
+        ((p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2) * p**2 * (p**2 + mu**2 * (w1**2 + w2**2)),
+        polynomial_of(A),
+    )
 
 
 @claim("3.situations.velocity_after_position")

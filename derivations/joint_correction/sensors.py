@@ -9,7 +9,7 @@ from itertools import combinations
 import flint
 import sympy as sp
 
-from navsym.claims import PROVED, Finding, Property, claim
+from navsym.claims import PROVED, Finding, Property, claim, fact
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import prove_rank
 from navsym.observability.sensors import Restoration, restore_observability
@@ -153,5 +153,4 @@ def complete_model_while_turning():
     parts = [LinearModel(model.F, None, model.H.extract(list(kept), list(range(16)))) for kept in ((0, 1), (2, 3))]
     frozen = tuple(prove_rank(part).rank for part in (*parts, model))
     found = (ranks_while_turning(), frozen)
-    finding = Finding(found, METHOD, PROVED, scope=scope)
-    return Property(printed=((11, 9, 14), (9, 9, 11)), derived=finding, unsaid="ranks from below alone")
+    return fact(((11, 9, 14), (9, 9, 11)), found, METHOD, PROVED, scope=scope, unsaid="ranks from below alone")

@@ -33,16 +33,20 @@ PAPER = Paper(
     beside=(
         "1.inertial 1.nonlinear 2.drift.polar 2.growth* 3.time 4.type 6.markov 8.correct 8.definition 8.posterior "
         "8.predict 10.definition 11.form 12.optimal 13.sequences 14.follows 15.gaussian 17.cost 17.memory "
-        "17.suboptimal 18.next 19.count 20.rho 21.mixture 21.optimal"
+        "17.suboptimal K.better accumulate count.growth near 18.next 19.count 20.rho 21.mixture 21.optimal"
     ),
     remarks=(
-        "1.arguments 2.form 2.drift.across 2.drift.equation 3.inertial 5.prediction 6.gaussian 8.joseph 11.parts "
-        "12.selection 13.densities 13.every 17.first 17.fold 17.same 21.prior 21.start K.second K.third K.series "
+        "1.arguments 2.form 2.drift.across 2.drift.equation 3.inertial 5.prediction 8.joseph 11.parts "
+        "12.selection 13.densities 13.every 17.first 17.fold 17.same 21.prior K.second K.third K.series "
         "near.* accumulate.all"
     ),
     beyond="10.forgets* 10.error* 17.error* K.exact K.fold K.longer",
     left_out={
         "(18), exponent: v^T/(2D) v": "a division by a matrix, read as the inverse",
+        "above (4): S(psi, 0, 0) = 0": "the definition of an error model: what is shown less what is true",
+        "(6): V(k) is white noise": "Gaussian densities, as they are used below (13), need normal noise; an assumption",
+        "(8): a sign = behind the sign of multiplication": "damage of the copy, read as the product that (15*) has too",
+        "below (21): g^i(0) = p^i": "a first value, given; it holds when step 0 has no measurement",
         "unlike existing methods": "a comparison without a method named",
         "(8) to (21) for any number of modes and values": "claimed for the numbers that each title names",
         "below (4): W(k)": "its covariance is not printed",

@@ -6,7 +6,7 @@ import re
 
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Property, claim, state
+from navsym.claims import PROVED, Bound, Equation, Finding, Property, claim, fact, state
 from navsym.language.expression import to_text
 from navsym_papers.multistructure import model
 
@@ -44,41 +44,26 @@ def changes_at(formula: sp.Expr, variable: sp.Symbol, order: int, point: dict) -
     return state(f"diff({to_text(formula)}, {variable.name}, {order})", "!=", "0", symbols)
 
 
-@claim("1.arguments")
-def arguments_corrected():
-    """(1): S is a function of coordinates, their errors, sensor errors and readings, and of nothing else."""
-    known = {*RECKONING.reckoned, *RECKONING.errors, *RECKONING.sensor_errors, *RECKONING.readings, model.radius}
-    return Property(
-        printed=True,
-        derived=Finding(
-            S.free_symbols <= known,
-            "free symbols of the derived right side",
-            PROVED,
-            scope="course and log on a sphere",
-        ),
+arguments_corrected = claim(
+    "1.arguments",
+    "(1): S is a function of coordinates, their errors, sensor errors and readings, and of nothing else.",
+    lambda: fact(
+        True,
+        S.free_symbols
+        <= ({*RECKONING.reckoned, *RECKONING.errors, *RECKONING.sensor_errors, *RECKONING.readings, model.radius}),
+        "free symbols of the derived right side",
+        PROVED,
+        scope="course and log on a sphere",
         unsaid="which symbols a formula has is read off it, not its value",
-    )
-
-
-@claim("3.zero")
-def ideal_operation():
-    """Without errors the ideal algorithm makes none: S(psi, 0, 0) = 0."""
-    return Equation(printed=sp.zeros(2, 1), derived=at_zero(S), box=SPHERE)
+    ),
+)
 
 
 @claim("3")
 def linearised():
-    """(3): S1 dpsi + S2 d is the linear part of S."""
-    S1, S2 = RECKONING.linear_parts()
-    errors, sensors = sp.Matrix(RECKONING.errors), sp.Matrix(RECKONING.sensor_errors)
-    along = S.subs({e: scale * e for e in (*RECKONING.errors, *RECKONING.sensor_errors)}, simultaneous=True)
-    return Equation(printed=S1 * errors + S2 * sensors, derived=along.diff(scale).subs(scale, 0), box=SPHERE)
-
-
-@claim("3.jacobians")
-def jacobians():
-    """(3): the matrices S1 and S2 of course and log, differentiated by hand."""
-    S1, S2 = RECKONING.linear_parts()
+    """(3) for course and log: with S1 and S2 differentiated by hand, S1 dpsi + S2 d is the linear part of S."""
+    errors = (*RECKONING.errors, *RECKONING.sensor_errors)
+    along = S.subs({e: scale * e for e in errors}, simultaneous=True)
     k, p, v, u, r = model.heading, model.latitude, model.vy, model.vx, model.radius + model.height
     north, east = v * sp.cos(k) - u * sp.sin(k), v * sp.sin(k) + u * sp.cos(k)
     by_hand = sp.Matrix(
@@ -94,7 +79,7 @@ def jacobians():
             ],
         ]
     )
-    return Equation(printed=by_hand, derived=S1.row_join(S2), box=SPHERE)
+    return Equation(by_hand * sp.Matrix(errors), along.diff(scale).subs(scale, 0), SPHERE)
 
 
 @claim("3.time")
@@ -113,15 +98,13 @@ def unsteady():
     rational = point | {model.latitude: 1, model.heading: 1}
     meaning = tuple(changes_at(part[1, 0], model.latitude, 1, rational) for part in (S1, S2))
     slopes = [S1.diff(model.latitude)[1, 0].subs(point), S2.diff(model.latitude)[1, 0].subs(point)]
-    return Property(
-        printed=True,
-        derived=Finding(
-            all(bool(slope != 0) for slope in slopes),
-            "derivative by latitude at an exact point",
-            PROVED,
-            scope="course and log on a sphere",
-            evidence=f"dS1/dphi = {slopes[0]}, dS2/dphi = {slopes[1]} at 45 degrees, heading east",
-        ),
+    return fact(
+        True,
+        all(bool(slope != 0) for slope in slopes),
+        "derivative by latitude at an exact point",
+        PROVED,
+        scope="course and log on a sphere",
+        evidence=f"dS1/dphi = {slopes[0]}, dS2/dphi = {slopes[1]} at 45 degrees, heading east",
         meaning=meaning,
     )
 
@@ -135,9 +118,9 @@ def feedback():
     lever = east * sp.tan(model.latitude) / ((model.radius + model.height) * sp.cos(model.latitude))
     linear = S1 * sp.Matrix(RECKONING.errors) + sensors
     return Equation(
-        printed=[S[0].subs(dict.fromkeys(RECKONING.errors, 0)), sensors[1] + lever * model.d_latitude],
-        derived=[S[0], linear[1]],
-        box=SPHERE,
+        [S[0].subs(dict.fromkeys(RECKONING.errors, 0)), sensors[1] + lever * model.d_latitude],
+        [S[0], linear[1]],
+        SPHERE,
     )
 
 
@@ -151,27 +134,39 @@ def discretised(S1, step):
 tau = sp.Symbol("tau", positive=True)
 
 
-@claim(
+type_printed = claim(
     "4.type",
-    expect=REFUTED,
+    "(4): the models that (4) switches between are of type (2) (course and log, one step).",
+    lambda: Equation(sp.eye(2), discretised(RECKONING.linear_parts()[0], tau), SPHERE),
     slip="paper",
     reason="below (5) the models of (4) are said to be of type (2), but (2) without position errors on the right "
     "gives the identity for their block of A; it is (3) that (4) samples; by hand: due east at 45 degrees with v "
     "tau = R the entry below the diagonal is sqrt(2), not 0",
 )
-def type_printed():
-    """(4): the models that (4) switches between are of type (2) (course and log, one step)."""
-    return Equation(printed=sp.eye(2), derived=discretised(RECKONING.linear_parts()[0], tau), box=SPHERE)
 
 
-@claim("4.type*", corrects="4.type")
-def type_corrected():
-    """(4): the models that (4) switches between are of type (3): A = exp(S1 tau) for the position errors."""
-    east = model.vy * sp.sin(model.heading) + model.vx * sp.cos(model.heading)
-    lever = east * sp.tan(model.latitude) / ((model.radius + model.height) * sp.cos(model.latitude))
-    return Equation(
-        printed=sp.Matrix([[1, 0], [lever * tau, 1]]), derived=discretised(RECKONING.linear_parts()[0], tau), box=SPHERE
-    )
+type_corrected = claim(
+    "4.type*",
+    "(4): the models that (4) switches between are of type (3): A = exp(S1 tau) for the position errors.",
+    lambda: Equation(
+        sp.Matrix(
+            [
+                [1, 0],
+                [
+                    (
+                        (model.vy * sp.sin(model.heading) + model.vx * sp.cos(model.heading))
+                        * sp.tan(model.latitude)
+                        / ((model.radius + model.height) * sp.cos(model.latitude))
+                    )
+                    * tau,
+                    1,
+                ],
+            ]
+        ),
+        discretised(RECKONING.linear_parts()[0], tau),
+        SPHERE,
+    ),
+)
 
 
 f, df, tilt = sp.symbols("f Deltaf beta", real=True)
@@ -198,15 +193,13 @@ def inertial_is_nonlinear():
     at_rest = {tilt: 0, df: 0}
     level = re.sub(rf"\b({tilt}|{df})\b", "0", to_text(rate))
     curvature = rate.diff(tilt, 2).subs(at_rest).subs({f: 1, gravity: 10})
-    return Property(
-        printed=(0, True),
-        derived=Finding(
-            (int(rate.subs(at_rest)), bool(curvature != 0)),
-            "value, second derivative at a point",
-            PROVED,
-            scope="one horizontal axis, a tilted platform",
-            evidence=f"d2S/dbeta2 = {curvature} at f = 1",
-        ),
+    return fact(
+        (0, True),
+        (int(rate.subs(at_rest)), bool(curvature != 0)),
+        "value, second derivative at a point",
+        PROVED,
+        scope="one horizontal axis, a tilted platform",
+        evidence=f"d2S/dbeta2 = {curvature} at f = 1",
         meaning=(
             state(level, "=", "0", {s.name: FREE for s in (f, gravity)}),
             changes_at(rate, tilt, 2, {tilt: 0, df: 0, f: 1, gravity: 10}),
@@ -219,8 +212,7 @@ def inertial_linearised():
     """(3) for one inertial axis: the velocity error grows with the accelerometer error plus g times the tilt."""
     rate = inertial_rate()
     at_rest = {tilt: 0, df: 0}
-    linear = sum(rate.diff(s).subs(at_rest) * s for s in (tilt, df))
-    return Equation(printed=df + gravity * tilt, derived=linear)
+    return Equation(df + gravity * tilt, sum(rate.diff(s).subs(at_rest) * s for s in (tilt, df)))
 
 
 def latitude_rates(heading):
@@ -231,7 +223,6 @@ def latitude_rates(heading):
 
 @claim(
     "2.growth.every",
-    expect=REFUTED,
     slip="paper",
     reason="true on straight courses; on a circle the rate turns with the course, its mean is zero, the error comes "
     "back; by hand: the integral of cos over a whole turn is 0",
@@ -243,14 +234,14 @@ def every_sensor_error_grows_on_every_course():
         north * (sp.sin(2 * sp.pi) - sp.sin(0)) - east * (sp.cos(2 * sp.pi) - sp.cos(0))
         for north, east in zip(latitude_rates(sp.Integer(0)), latitude_rates(sp.pi / 2), strict=True)
     ]
-    return Bound(printed=sum(value**2 for value in over_turn), relation=">", derived=sp.Integer(0))
+    return Bound(sum(value**2 for value in over_turn), ">", sp.Integer(0))
 
 
-@claim("2.growth.every*", corrects="2.growth.every")
+@claim("2.growth.every*")
 def every_sensor_error_grows_on_a_straight_course():
     """Below (2): north-east at constant speed each constant sensor error gives latitude a constant rate, not zero."""
     half = sp.sqrt(2) / 2
-    return Equation(printed=[half, -half, -half, -half], derived=latitude_rates(sp.pi / 4))
+    return Equation([half, -half, -half, -half], latitude_rates(sp.pi / 4))
 
 
 t, drift = sp.symbols("t epsilon_p", real=True)
@@ -259,10 +250,10 @@ rate = sp.Symbol("Omega", positive=True)
 
 @claim("2.growth")
 def growth():
-    """(2): a constant error of the speed lets the latitude error grow in proportion to time."""
+    """(2), due north: a constant error of the speed lets the latitude error grow in proportion to time."""
     north = {model.d_heading: 0, model.d_height: 0, model.d_vx: 0, model.heading: 0, model.vx: 0}
     printed = model.d_vy * t / (model.radius + model.height)
-    return Equation(printed=[printed.diff(t), printed.subs(t, 0)], derived=[S[0].subs(north), 0], box=SPHERE)
+    return Equation([printed.diff(t), printed.subs(t, 0)], [S[0].subs(north), 0], SPHERE)
 
 
 def platform():
@@ -282,14 +273,14 @@ def platform():
 def drift_equation():
     """Misalignment under constant drift: the closed form solves d psi/dt = -Omega x psi + drift from zero."""
     A, psi, drifts = platform()
-    return Equation(printed=[*(A * psi + drifts), 0, 0, 0], derived=[*psi.diff(t), *psi.subs(t, 0)])
+    return Equation([*(A * psi + drifts), 0, 0, 0], [*psi.diff(t), *psi.subs(t, 0)])
 
 
 @claim("2.drift.polar")
 def drift_about_the_axis():
     """Gyro drift about the Earth's axis accumulates: the misalignment about it grows in proportion to time."""
     _, psi, _ = platform()
-    return Equation(printed=drift * t, derived=psi[0])
+    return Equation(drift * t, psi[0])
 
 
 @claim("2.drift.across")
@@ -297,4 +288,4 @@ def drift_across_the_axis():
     """Gyro drift across the Earth's axis does not accumulate: (2 drift/Omega) |sin(Omega t/2)| at all times."""
     _, psi, drifts = platform()
     across = drifts[1] ** 2 + drifts[2] ** 2
-    return Equation(printed=4 * across * sp.sin(rate * t / 2) ** 2 / rate**2, derived=psi[1] ** 2 + psi[2] ** 2)
+    return Equation(4 * across * sp.sin(rate * t / 2) ** 2 / rate**2, psi[1] ** 2 + psi[2] ** 2)

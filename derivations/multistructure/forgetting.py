@@ -46,20 +46,19 @@ def kappa() -> sp.Expr:
     return (a * d - b * c) / (a * d + b * c)
 
 
-@claim("10.forgets")
-def modes_are_forgotten():
-    """(10) with rho^i, two modes: an error of the log-odds is multiplied by kappa less a square over a positive number.
-
-    For p11 p22 >= p12 p21 the multiplier lies between 0 and kappa < 1; else the modes change places, kappa its size.
-    """
-    below = (a**2 * x + b**2) * (c**2 * x + d**2)
-    return Equation(kappa() * (1 - (a * c * x - b * d) ** 2 / below), amplification(CHAIN))
-
-
-@claim("10.forgets.sharp")
-def the_bound_is_reached():
-    """(10) with rho^i, two modes: at the odds sqrt(p12 p22/(p11 p21)) the multiplier is kappa: no bound is smaller."""
-    return Equation(kappa(), amplification(CHAIN).subs(x, b * d / (a * c)))
+# For p11 p22 >= p12 p21 the multiplier lies between 0 and kappa < 1; else the modes change places, kappa its size.
+modes_are_forgotten = claim(
+    "10.forgets",
+    "(10) with rho^i, two modes: an error of the log-odds is multiplied by kappa less a square over a positive number.",
+    lambda: Equation(
+        kappa() * (1 - (a * c * x - b * d) ** 2 / ((a**2 * x + b**2) * (c**2 * x + d**2))), amplification(CHAIN)
+    ),
+)
+the_bound_is_reached = claim(
+    "10.forgets.sharp",
+    "(10) with rho^i, two modes: at the odds sqrt(p12 p22/(p11 p21)) the multiplier is kappa: no bound is smaller.",
+    lambda: Equation(kappa(), amplification(CHAIN).subs(x, b * d / (a * c))),
+)
 
 
 @claim("10.forgets.cases")
@@ -74,7 +73,7 @@ def the_three_chains():
     # The symmetric chain is worst at even odds, the others are the same at all odds.
     derived = [amplification(chain).subs(x, 1) for chain in chains]
     box = {first: (0, 1), change: (0, sp.Rational(1, 2))}
-    return Equation([sp.Integer(0), 1 - 2 * change, sp.Integer(1)], derived, box=box)
+    return Equation([sp.Integer(0), 1 - 2 * change, sp.Integer(1)], derived, box)
 
 
 @claim("17.error")
@@ -89,7 +88,7 @@ def one_wrong_likelihood():
     largest = (E - 1) / (E + 1)
     square = largest * (1 - share * (E + 1)) ** 2 / (1 + share * (E**2 - 1))
     hyperbolic = sp.sinh(error / 2) / sp.cosh(error / 2)
-    return Equation([largest - square, hyperbolic], [wrong - share, largest], box={share: (0, 1), error: (0, None)})
+    return Equation([largest - square, hyperbolic], [wrong - share, largest], {share: (0, 1), error: (0, None)})
 
 
 @claim("17.error.sharp")
@@ -98,7 +97,7 @@ def the_worst_probability():
     E = sp.exp(error)
     start = 1 / (1 + E)
     wrong = start * E / (start * E + (1 - start) / E)
-    return Equation([E / (1 + E), (E - 1) / (E + 1)], [wrong, wrong - start], box={error: (0, None)})
+    return Equation([E / (1 + E), (E - 1) / (E + 1)], [wrong, wrong - start], {error: (0, None)})
 
 
 @claim("10.error.steady")
@@ -111,4 +110,4 @@ def errors_do_not_pile_up():
     bound = 2 * error / (1 - k)
     after = k * now + 2 * error
     below_one = {k: (0, sp.Rational(99, 100))}
-    return Equation([bound, k * (bound - now)], [after.subs(now, bound), bound - after], box=below_one)
+    return Equation([bound, k * (bound - now)], [after.subs(now, bound), bound - after], below_one)

@@ -47,7 +47,7 @@ def moments(i: int) -> Equation:
         sum(A[i][j, a] * A[i][k, b] * symmetric(P)[a, b] for a in (0, 1) for b in (0, 1)) + symmetric(Q[i])[j, k]
         for j, k in ((0, 0), (0, 1), (1, 1))
     ]
-    return Equation(printed=list(triangle(A[i] * symmetric(P) * A[i].T + symmetric(Q[i]))), derived=derived)
+    return Equation(list(triangle(A[i] * symmetric(P) * A[i].T + symmetric(Q[i]))), derived)
 
 
 def corrected(i: int) -> tuple[Link, ...]:
@@ -70,7 +70,7 @@ def information(i: int) -> Equation:
     D = (h_.T * N * h_)[0] + r
     K = N * h_ / D
     after = N - K * K.T * D
-    return Equation(printed=list(after + N * h_ * (h_.T * after) / r), derived=list(N))
+    return Equation(list(after + N * h_ * (h_.T * after) / r), list(N))
 
 
 def names(i: int, text: str) -> tuple[str, ...]:
@@ -106,10 +106,7 @@ def bayes() -> Equation:
     d = sp.symbols("d_1 d_2", positive=True)
     shifted = [sp.exp(least - e[k]) * p[k] / d[k] for k in (0, 1)]
     density = [sp.exp(-e[k]) / (sp.sqrt(2 * sp.pi) * d[k]) * p[k] for k in (0, 1)]
-    return Equation(
-        printed=[s / (shifted[0] + shifted[1]) for s in shifted],
-        derived=[f / (density[0] + density[1]) for f in density],
-    )
+    return Equation([s / (shifted[0] + shifted[1]) for s in shifted], [f / (density[0] + density[1]) for f in density])
 
 
 def folded() -> tuple[Link, ...]:
@@ -126,7 +123,7 @@ def folded() -> tuple[Link, ...]:
             "",
             triangle(w[0] * spread[0] + w[1] * spread[1]),
             second_moment,
-            cites=("multistructure:13",),
+            cites=("multistructure:13*",),
         ),
     )
 
@@ -142,7 +139,7 @@ def second_moment() -> Equation:
     mean = w[0] * c[0] + w[1] * c[1]
     folded_ = sum((w[k] * (C[k] + (c[k] - mean) * (c[k] - mean).T) for k in (0, 1)), sp.zeros(2, 2))
     mixture = sum((w[k] * (C[k] + c[k] * c[k].T) for k in (0, 1)), sp.zeros(2, 2))
-    return Equation(printed=list(folded_ + mean * mean.T), derived=list(mixture))
+    return Equation(list(folded_ + mean * mean.T), list(mixture))
 
 
 # -- the program ---------------------------------------

@@ -51,8 +51,10 @@ def four_measurements():
     Their determinant is [12][34](t1 - t4)(t2 - t3) + [14][23](t1 - t2)(t4 - t3), [ij] the area between two slopes.
     """
     points = slopes(3)
-    rows = sp.Matrix.vstack(*(row(g, t) for g, t in zip(points, times, strict=True)))
-    return Equation(printed=four(points, times), derived=rows.det(method="berkowitz"))
+    return Equation(
+        four(points, times),
+        sp.Matrix.vstack(*(row(g, t) for g, t in zip(points, times, strict=True))).det(method="berkowitz"),
+    )
 
 
 @claim("joint.determinant")
@@ -75,24 +77,20 @@ def place(k: int) -> sp.Matrix:
 def unseen(points: list, position: sp.Matrix, velocity: sp.Matrix) -> Equation:
     """J times an error that no measurement sees is zero."""
     error = sp.Matrix.vstack(position, velocity)
-    return Equation(printed=[sp.Integer(0)] * 4, derived=list(joint_information(points) * error))
+    return Equation([sp.Integer(0)] * 4, list(joint_information(points) * error))
 
 
-@claim("joint.hill")
-def hill_of_revolution():
-    """Over a hill of revolution of any profile, a turn about its summit is not seen: no search finds all four numbers.
-
-    Slopes s_k (x_k - summit) with free s_k; the error is c = R x_0, v = R V, R the quarter turn.
-    """
-    points = [tuple(s[k] * place(k)) for k in range(LONGEST)]
-    return unseen(points, TURN * start, TURN * move)
-
-
-@claim("joint.fan")
-def fan():
-    """Over ground that keeps its height along the rays from a point, a stretch from that point is not seen."""
-    points = [tuple(s[k] * TURN * place(k)) for k in range(LONGEST)]
-    return unseen(points, start, move)
+# Slopes s_k (x_k - summit) with free s_k; the error is c = R x_0, v = R V, R the quarter turn.
+hill_of_revolution = claim(
+    "joint.hill",
+    "Over a hill of revolution of any profile, a turn about its summit is not seen: no search finds all four numbers.",
+    lambda: unseen([tuple(s[k] * place(k)) for k in range(LONGEST)], TURN * start, TURN * move),
+)
+fan = claim(
+    "joint.fan",
+    "Over ground that keeps its height along the rays from a point, a stretch from that point is not seen.",
+    lambda: unseen([tuple(s[k] * TURN * place(k)) for k in range(LONGEST)], start, move),
+)
 
 
 def quadratic_ground() -> tuple[sp.Matrix, sp.Matrix]:
@@ -120,20 +118,24 @@ def second_stage_is_blind():
     """There the second stage of the sequential search answers zero to the velocity R w: S R w = 0."""
     _, w = quadratic_ground()
     G, M1, M2 = (moment(quadratic_points(4), power) for power in range(3))
-    return Equation(printed=[sp.Integer(0)] * 2, derived=list((M2 - M1 * inverse(G) * M1) * TURN * w))
+    return Equation([sp.Integer(0)] * 2, list((M2 - M1 * inverse(G) * M1) * TURN * w))
 
 
-@claim("joint.cubic")
-def cubic_ground_is_enough():
-    """Cubic ground is enough: flown along x over the heights x + x^2 y, four measurements fix all four numbers."""
-    points = [(sp.Integer(1), sp.Integer(k) ** 2) for k in range(4)]
-    return Bound(printed=joint_information(points).det(method="berkowitz"), relation=">", derived=sp.Integer(0))
+cubic_ground_is_enough = claim(
+    "joint.cubic",
+    "Cubic ground is enough: flown along x over the heights x + x^2 y, four measurements fix all four numbers.",
+    lambda: Bound(
+        joint_information([(sp.Integer(1), sp.Integer(k) ** 2) for k in range(4)]).det(method="berkowitz"),
+        ">",
+        sp.Integer(0),
+    ),
+)
 
 
 @claim("joint.narrow")
 def one_direction_of_slope():
     """Where all slopes have one direction, even the position is not seen across it, and neither is the velocity."""
     across = sp.Matrix(sp.symbols("n_x n_y", real=True))
-    points = [tuple(s[k] * across) for k in range(LONGEST)]
-    free = sp.Symbol("q", real=True)
-    return unseen(points, TURN * across, free * (TURN * across))
+    return unseen(
+        [tuple(s[k] * across) for k in range(LONGEST)], TURN * across, sp.Symbol("q", real=True) * (TURN * across)
+    )

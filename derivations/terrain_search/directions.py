@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim, state
+from navsym.claims import PROVED, Equation, claim, fact, state
 from navsym.language.expression import to_text
 from navsym_papers.terrain_search.model import (
     SIZES,
@@ -34,7 +34,6 @@ def quotient(points, way=DIRECTION):
 
 @claim(
     "11",
-    expect=REFUTED,
     slip="paper",
     reason="the numerator carries a factor Delta s that (10) and the range [0, n] exclude: it would be a length; by "
     "hand: two equal slopes make t_G = 1/2, the print half of 50 m",
@@ -42,16 +41,16 @@ def quotient(points, way=DIRECTION):
 def crossing_as_printed():
     """t_G for a velocity error in two directions, as printed."""
     points = slopes(1)
-    return Equation(printed=step * quotient(points), derived=crossing_time(points, DIRECTION))
+    return Equation(step * quotient(points), crossing_time(points, DIRECTION))
 
 
-@claim("11*", corrects="11")
-def crossing():
-    """t_G for a velocity error in two directions: a Rayleigh quotient."""
-    return Equation(
-        printed=[quotient(slopes(size)) for size in SIZES],
-        derived=[crossing_time(slopes(size), DIRECTION) for size in SIZES],
-    )
+crossing = claim(
+    "11*",
+    "t_G for a velocity error in two directions: a Rayleigh quotient.",
+    lambda: Equation(
+        [quotient(slopes(size)) for size in SIZES], [crossing_time(slopes(size), DIRECTION) for size in SIZES]
+    ),
+)
 
 
 @claim(
@@ -59,11 +58,11 @@ def crossing():
     reason="the printed arctangents turn the direction a little; for small angles, as the paper has them, they agree",
 )
 def direction():
-    """The direction in (11) is that of (deltaVx, deltaVy) / V; its length does not matter (1 and 2 measurements)."""
+    """The direction in (11) is that of (deltaVx, deltaVy) / V; its length does not matter (2 and 3 measurements)."""
     u, v = sp.symbols("deltaVx deltaVy", positive=True)
     return Equation(
-        printed=[crossing_time(slopes(size), (u / speed, v / speed)) for size in PAIRS],
-        derived=[crossing_time(slopes(size), (u, v)) for size in PAIRS],
+        [crossing_time(slopes(size), (u / speed, v / speed)) for size in PAIRS],
+        [crossing_time(slopes(size), (u, v)) for size in PAIRS],
     )
 
 
@@ -72,8 +71,14 @@ def crossing_depends_on_the_direction():
     """A single t_G for all directions need not exist: with slopes (1, 0), (0, 1) it is 0 in one and 1 in the other."""
     points = [(1, 0), (0, 1)]
     found = tuple(crossing_time(points, way) for way in ((1, 0), (0, 1)))
-    finding = Finding(found[0] != found[1], "exact example", PROVED, evidence=f"t_G = {found}")
-    return Property(True, finding, (*say_least(points, (1, 0), 0), *say_least(points, (0, 1), 1)))
+    return fact(
+        True,
+        found[0] != found[1],
+        "exact example",
+        PROVED,
+        evidence=f"t_G = {found}",
+        meaning=(*say_least(points, (1, 0), 0), *say_least(points, (0, 1), 1)),
+    )
 
 
 def say_least(points: list, way: tuple, crossing: int) -> tuple[dict, ...]:
@@ -137,76 +142,36 @@ def printed_sums(name):
     return [double_sum(size, PRINTED[name]) for size in PAIRS]
 
 
-@claim(
+ax2_as_printed = claim(
     "12.Ax2",
-    expect=REFUTED,
-    slip="scan",
+    "The sum A_x2, as printed.",
+    lambda: Equation(printed_sums("Ax2"), [from_x(size)[0] for size in PAIRS]),
+    slip="undecidable",
     reason="the last factor reads h(x_i, y_j)/dx: a del is lost and the point is off the track; A_y2, "
     "its negative, has dh(x_j, y_j)/dx",
 )
-def ax2_as_printed():
-    """The sum A_x2, as printed."""
-    return Equation(printed=printed_sums("Ax2"), derived=[from_x(size)[0] for size in PAIRS])
-
-
-@claim("12.Ax2*", corrects="12.Ax2")
-def ax2():
-    """The sum A_x2."""
-    return Equation(printed=printed_sums("Ax2*"), derived=[from_x(size)[0] for size in PAIRS])
-
-
-@claim("12.Ax1")
-def ax1():
-    """The sum A_x1."""
-    return Equation(printed=printed_sums("Ax1"), derived=[from_x(size)[1] for size in PAIRS])
-
-
-@claim(
+ax2 = claim("12.Ax2*", "The sum A_x2.", lambda: Equation(printed_sums("Ax2*"), [from_x(size)[0] for size in PAIRS]))
+ax1 = claim("12.Ax1", "The sum A_x1.", lambda: Equation(printed_sums("Ax1"), [from_x(size)[1] for size in PAIRS]))
+ax0_as_printed = claim(
     "12.Ax0",
-    expect=REFUTED,
+    "The sum A_x0, as printed.",
+    lambda: Equation(printed_sums("Ax0"), [from_x(size)[2] for size in PAIRS]),
     slip="paper",
     reason="the last product is (dh_j/dy)(dh_j/dy) where the derivative of (11) gives (dh_i/dy)(dh_j/dx); by hand: "
     "slopes (0, 1), (1, 1) make it 1, the print 0",
 )
-def ax0_as_printed():
-    """The sum A_x0, as printed."""
-    return Equation(printed=printed_sums("Ax0"), derived=[from_x(size)[2] for size in PAIRS])
-
-
-@claim("12.Ax0*", corrects="12.Ax0")
-def ax0():
-    """The sum A_x0."""
-    return Equation(printed=printed_sums("Ax0*"), derived=[from_x(size)[2] for size in PAIRS])
-
-
-@claim("13.Ay2")
-def ay2():
-    """The sum A_y2."""
-    return Equation(printed=printed_sums("Ay2"), derived=[from_y(size)[0] for size in PAIRS])
-
-
-@claim("13.Ay1")
-def ay1():
-    """The sum A_y1."""
-    return Equation(printed=printed_sums("Ay1"), derived=[from_y(size)[1] for size in PAIRS])
-
-
-@claim(
+ax0 = claim("12.Ax0*", "The sum A_x0.", lambda: Equation(printed_sums("Ax0*"), [from_x(size)[2] for size in PAIRS]))
+ay2 = claim("13.Ay2", "The sum A_y2.", lambda: Equation(printed_sums("Ay2"), [from_y(size)[0] for size in PAIRS]))
+ay1 = claim("13.Ay1", "The sum A_y1.", lambda: Equation(printed_sums("Ay1"), [from_y(size)[1] for size in PAIRS]))
+ay0_as_printed = claim(
     "13.Ay0",
-    expect=REFUTED,
+    "The sum A_y0, as printed.",
+    lambda: Equation(printed_sums("Ay0"), [from_y(size)[2] for size in PAIRS]),
     slip="paper",
     reason="the bracket is (dh_i/dy)(dh_j/dy) - (dh_j/dy)^2, without any slope along x; the derivative of (11) "
     "gives (dh_i/dy)(dh_j/dx) - (dh_i/dx)(dh_j/dy); by hand: slopes (0, 1), (1, 1) make it -1, the print 0",
 )
-def ay0_as_printed():
-    """The sum A_y0, as printed."""
-    return Equation(printed=printed_sums("Ay0"), derived=[from_y(size)[2] for size in PAIRS])
-
-
-@claim("13.Ay0*", corrects="13.Ay0")
-def ay0():
-    """The sum A_y0."""
-    return Equation(printed=printed_sums("Ay0*"), derived=[from_y(size)[2] for size in PAIRS])
+ay0 = claim("13.Ay0*", "The sum A_y0.", lambda: Equation(printed_sums("Ay0*"), [from_y(size)[2] for size in PAIRS]))
 
 
 @claim("12.linear")
@@ -235,7 +200,7 @@ def sums_in_one_pass_for_any_track():
         (i * p * q) * (w * w) - (i * q * q) * (u * w),
     ]
     terms = [PRINTED[name]((p, q), (u, w), 0, 0) for name in ("Ax2*", "Ax1", "Ax0*")]
-    return Equation(printed=printed, derived=[i * term for term in terms])
+    return Equation(printed, [i * term for term in terms])
 
 
 def quadratic_form(sums):
@@ -249,88 +214,78 @@ def scaled(size, variable):
     return 2 * variable / squares**2
 
 
-@claim(
+derivative_x_as_printed = claim(
     "12",
-    expect=REFUTED,
+    "The derivative of t_G by beta_x is the quadratic form itself.",
+    lambda: Equation(
+        quadratic_form([double_sum(1, PRINTED[name]) for name in ("Ax2*", "Ax1", "Ax0*")]),
+        derivative(slopes(1), beta_x),
+    ),
     slip="paper",
     reason="the derivative is the quadratic form times 2 beta_y / D^2; only the equation '= 0' survives without the "
     "factor, and it also vanishes at beta_y = 0; by hand: slopes (1, 0), (0, 1) at beta = (1, 1): the derivative is "
     "-1/2, the form -1",
 )
-def derivative_x_as_printed():
-    """The derivative of t_G by beta_x is the quadratic form itself."""
-    sums = [double_sum(1, PRINTED[name]) for name in ("Ax2*", "Ax1", "Ax0*")]
-    return Equation(printed=quadratic_form(sums), derived=derivative(slopes(1), beta_x))
 
 
-@claim("12*", corrects="12")
+@claim("12*")
 def derivative_x():
     """The derivative of t_G by beta_x is the quadratic form times 2 beta_y / D^2, D the sum of squares."""
     forms = [quadratic_form([double_sum(s, PRINTED[name]) for name in ("Ax2*", "Ax1", "Ax0*")]) for s in PAIRS]
     return Equation(
-        printed=[scaled(s, beta_y) * form for s, form in zip(PAIRS, forms, strict=True)],
-        derived=[derivative(slopes(s), beta_x) for s in PAIRS],
+        [scaled(s, beta_y) * form for s, form in zip(PAIRS, forms, strict=True)],
+        [derivative(slopes(s), beta_x) for s in PAIRS],
     )
 
 
-@claim(
+derivative_y_as_printed = claim(
     "13",
-    expect=REFUTED,
+    "The derivative of t_G by beta_y is the quadratic form itself.",
+    lambda: Equation(
+        quadratic_form([double_sum(1, PRINTED[name]) for name in ("Ay2", "Ay1", "Ay0*")]), derivative(slopes(1), beta_y)
+    ),
     slip="paper",
     reason="the derivative is the quadratic form times 2 beta_x / D^2; only the equation '= 0' survives without the "
     "factor, and it also vanishes at beta_x = 0; by hand: slopes (1, 0), (0, 1) at beta = (1, 1): the derivative is "
     "1/2, the form 1",
 )
-def derivative_y_as_printed():
-    """The derivative of t_G by beta_y is the quadratic form itself."""
-    sums = [double_sum(1, PRINTED[name]) for name in ("Ay2", "Ay1", "Ay0*")]
-    return Equation(printed=quadratic_form(sums), derived=derivative(slopes(1), beta_y))
 
 
-@claim("13*", corrects="13")
+@claim("13*")
 def derivative_y():
     """The derivative of t_G by beta_y is the quadratic form times 2 beta_x / D^2, D the sum of squares."""
     forms = [quadratic_form([double_sum(s, PRINTED[name]) for name in ("Ay2", "Ay1", "Ay0*")]) for s in PAIRS]
     return Equation(
-        printed=[scaled(s, beta_x) * form for s, form in zip(PAIRS, forms, strict=True)],
-        derived=[derivative(slopes(s), beta_y) for s in PAIRS],
+        [scaled(s, beta_x) * form for s, form in zip(PAIRS, forms, strict=True)],
+        [derivative(slopes(s), beta_y) for s in PAIRS],
     )
 
 
-@claim("13.sign2")
-def opposite_sums_2():
-    """A_x2 = -A_y2."""
-    return Equation(printed=[-a for a in printed_sums("Ay2")], derived=[from_x(size)[0] for size in PAIRS])
-
-
-@claim("13.sign1")
-def opposite_sums_1():
-    """A_x1 = -A_y1."""
-    return Equation(printed=[-a for a in printed_sums("Ay1")], derived=[from_x(size)[1] for size in PAIRS])
-
-
-@claim(
+opposite_sums = claim(
+    "13.sign",
+    "A_x2 = -A_y2 and A_x1 = -A_y1.",
+    lambda: Equation(
+        [-a for name in ("Ay2", "Ay1") for a in printed_sums(name)], [from_x(s)[k] for k in (0, 1) for s in PAIRS]
+    ),
+)
+opposite_sums_0_as_printed = claim(
     "13.sign0",
-    expect=REFUTED,
+    "A_x0 = -A_y0, with A_y0 as printed.",
+    lambda: Equation([-a for a in printed_sums("Ay0")], [from_x(size)[2] for size in PAIRS]),
     slip="paper",
     reason="with A_y0 as printed the two sums are not opposite: both brackets are misprinted, differently; by hand: "
     "slopes (0, 1), (1, 1) make A_x0 = 1 and the printed A_y0 = 0",
 )
-def opposite_sums_0_as_printed():
-    """A_x0 = -A_y0, with A_y0 as printed."""
-    return Equation(printed=[-a for a in printed_sums("Ay0")], derived=[from_x(size)[2] for size in PAIRS])
-
-
-@claim("13.sign0*", corrects="13.sign0")
-def opposite_sums_0():
-    """A_x0 = -A_y0, with both sums as the derivatives give them."""
-    return Equation(printed=[-a for a in printed_sums("Ay0*")], derived=[from_x(size)[2] for size in PAIRS])
-
-
-@claim("13.same")
-def one_equation():
-    """Both conditions are one equation: beta_x d/dbeta_x and -beta_y d/dbeta_y of t_G are equal."""
-    return Equation(
-        printed=[-beta_y * derivative(slopes(size), beta_y) for size in SIZES],
-        derived=[beta_x * derivative(slopes(size), beta_x) for size in SIZES],
-    )
+opposite_sums_0 = claim(
+    "13.sign0*",
+    "A_x0 = -A_y0, with both sums as the derivatives give them.",
+    lambda: Equation([-a for a in printed_sums("Ay0*")], [from_x(size)[2] for size in PAIRS]),
+)
+one_equation = claim(
+    "13.same",
+    "Both conditions are one equation: beta_x d/dbeta_x and -beta_y d/dbeta_y of t_G are equal.",
+    lambda: Equation(
+        [-beta_y * derivative(slopes(size), beta_y) for size in SIZES],
+        [beta_x * derivative(slopes(size), beta_x) for size in SIZES],
+    ),
+)

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from navsym.claims import OPEN, PROVED, REFUTED, UNDECIDED, Bound, Equation, Finding, Property, claim, state
+from navsym.claims import OPEN, PROVED, UNDECIDED, Bound, Equation, Finding, Property, claim, fact, state
 from navsym_papers.terrain_search.directions import quotient, say_least
 from navsym_papers.terrain_search.model import beta_x, beta_y, crossing_time, inverse, moment, slopes, symmetric
 
@@ -34,20 +34,18 @@ def slope_at_the_axis(size):
     return sp.cancel(sp.diff(quotient(slopes(size)), beta_y).subs(beta_y, 0))
 
 
-@claim(
+axis_as_printed = claim(
     "case1",
-    expect=REFUTED,
+    "Read as a case of the solution: beta_y = 0 always solves the necessary conditions.",
+    lambda: Equation(sp.Integer(0), slope_at_the_axis(1)),
     slip="paper",
     reason="read as a case of solving (12), (13), which is how it is introduced: at beta_y = 0 only the derivative "
     "by beta_x vanishes, and t_G is stationary there if and only if A_2 = 0; its value is right (case1.value); by "
     "hand: slopes (1, 0), (1, 1) at beta = (1, 0): the derivative is 1/2",
 )
-def axis_as_printed():
-    """Read as a case of the solution: beta_y = 0 always solves the necessary conditions."""
-    return Equation(printed=sp.Integer(0), derived=slope_at_the_axis(1))
 
 
-@claim("case1*", corrects="case1")
+@claim("case1*")
 def axis():
     """At beta_y = 0 the derivative of t_G by beta_y is -2 A_2 / (beta_x (sum h_x^2)^2)."""
     printed = []
@@ -55,28 +53,18 @@ def axis():
         points = slopes(size)
         A2 = form_sums(moment(points, 0), moment(points, 1))[0]
         printed.append(-2 * A2 / (beta_x * sum(p**2 for p, _ in points) ** 2))
-    return Equation(printed=printed, derived=[slope_at_the_axis(size) for size in (1, 2)])
+    return Equation(printed, [slope_at_the_axis(size) for size in (1, 2)])
 
 
 @claim("roots")
 def roots_of_the_quadratic():
-    """The printed roots solve the quadratic when A_2 is not zero and the discriminant not negative."""
-    A2 = sp.Symbol("A2", positive=True)
-    A1, root = sp.Symbol("A1", real=True), sp.Symbol("r", nonnegative=True)
+    """The printed roots are zeros of A_2 b^2 + A_1 b + A_0 when A_2 is not zero and the discriminant not negative."""
+    A2, A1 = sp.Symbol("A2", real=True, nonzero=True), sp.Symbol("A1", real=True)
+    root = sp.Symbol("r", nonnegative=True)
     A0 = (A1**2 - root**2) / (4 * A2)  # any A0 with the discriminant root^2
-    discriminant = sp.sqrt(A1**2 - 4 * A2 * A0)
-    solutions = [(-A1 + root) / (2 * A2), (-A1 - root) / (2 * A2)]
-    return Equation(printed=[(-A1 + discriminant) / (2 * A2), (-A1 - discriminant) / (2 * A2)], derived=solutions)
-
-
-@claim("roots.solve")
-def solutions_solve():
-    """Those two numbers are zeros of A_2 b^2 + A_1 b + A_0."""
-    A2 = sp.Symbol("A2", positive=True)
-    A1, root = sp.Symbol("A1", real=True), sp.Symbol("r", real=True)
-    A0 = (A1**2 - root**2) / (4 * A2)
-    zeros = [(-A1 + root) / (2 * A2), (-A1 - root) / (2 * A2)]
-    return Equation(printed=[sp.Integer(0)] * 2, derived=[A2 * z**2 + A1 * z + A0 for z in zeros])
+    zeros = [(-A1 + sign * root) / (2 * A2) for sign in (1, -1)]
+    value = [A2 * b**2 + A1 * b + A0 for b in zeros]
+    return Equation([sp.Integer(0)] * 2 + [root**2], [*value, A1**2 - 4 * A2 * A0])
 
 
 def example():
@@ -118,7 +106,7 @@ def a_root_is_an_eigenvector():
     A2, A1, A0 = form_sums(G, M)
     W = A2 * beta_x**2 + A1 * beta_x * beta_y + A0 * beta_y**2
     residual = (v.T * G * v)[0] * (M * v) - (v.T * M * v)[0] * (G * v)
-    return Equation(printed=[W * beta_y, -W * beta_x], derived=list(residual))
+    return Equation([W * beta_y, -W * beta_x], list(residual))
 
 
 @claim("roots.range")
@@ -128,7 +116,7 @@ def every_value_lies_between_the_roots():
     A2, A1, A0 = form_sums(G, M)
     W = A2 * beta_x**2 + A1 * beta_x * beta_y + A0 * beta_y**2
     square = (v.T * G * v)[0]
-    return Equation(printed=-((W / square) ** 2), derived=(M - (v.T * M * v)[0] / square * G).det())
+    return Equation(-((W / square) ** 2), (M - (v.T * M * v)[0] / square * G).det())
 
 
 @claim("roots.solvable")
@@ -136,7 +124,7 @@ def always_solvable():
     """The solvability that the paper tests always holds: G11^2 times the discriminant is a sum of squares."""
     A2, A1, A0 = form_sums(G, M)
     squares = (G[0, 0] * A1 - 2 * G[0, 1] * A2) ** 2 + 4 * G.det() * A2**2
-    return Equation(printed=squares, derived=G[0, 0] ** 2 * (A1**2 - 4 * A2 * A0))
+    return Equation(squares, G[0, 0] ** 2 * (A1**2 - 4 * A2 * A0))
 
 
 @claim("roots.gram")
@@ -147,7 +135,7 @@ def information_is_not_negative():
         g = slopes(size)
         pairs = [(i, j) for i in range(size + 1) for j in range(i)]
         printed.append(sum((g[i][0] * g[j][1] - g[i][1] * g[j][0]) ** 2 for i, j in pairs))
-    return Equation(printed=printed, derived=[moment(slopes(size), 0).det() for size in (1, 2, 3)])
+    return Equation(printed, [moment(slopes(size), 0).det() for size in (1, 2, 3)])
 
 
 @claim("flat")
@@ -158,7 +146,7 @@ def slopes_of_one_direction():
     for size in (1, 2, 3):
         points = [(p, c * p) for p, _ in slopes(size)]
         found += form_sums(moment(points, 0), moment(points, 1))
-    return Equation(printed=[sp.Integer(0)] * len(found), derived=found)
+    return Equation([sp.Integer(0)] * len(found), found)
 
 
 # The middle of the interval as a mean over directions
@@ -184,7 +172,6 @@ BOX = {a: (2, 3), b: (sp.Rational(1, 2), 1)}
 
 @claim(
     "mean",
-    expect=REFUTED,
     slip="paper",
     reason="t_G is not spread evenly over [t_min, t_max] when the direction is uniform: the direction with the "
     "larger slopes counts for more; equal only when both slopes are equally strong; by hand: G = diag(4, 1), M1 = "
@@ -193,15 +180,14 @@ BOX = {a: (2, 3), b: (sp.Rational(1, 2), 1)}
 def middle_as_printed():
     """The mean of t_G over a uniform direction is the middle of [t_min, t_max], half the trace of G^-1 M1."""
     centre = inverse(sp.diag(a**2, b**2)) * M
-    return Equation(printed=(centre[0, 0] + centre[1, 1]) / 2, derived=mean_over_directions(), box=BOX)
+    return Equation((centre[0, 0] + centre[1, 1]) / 2, mean_over_directions(), BOX)
 
 
-@claim("mean*", corrects="mean")
+@claim("mean*")
 def mean():
     """The mean of t_G over a uniform direction is tr(G^-1/2 M1) / tr(G^1/2)."""
     root = sp.diag(a, b)
-    printed = (inverse(root) * M).trace() / root.trace()
-    return Equation(printed=printed, derived=mean_over_directions(), box=BOX)
+    return Equation((inverse(root) * M).trace() / root.trace(), mean_over_directions(), nonzero=(a - b,))
 
 
 @claim("mean.rotated")
@@ -213,7 +199,7 @@ def mean_in_any_axes():
     s = a * b  # the determinant does not change
     adjugate = sp.Matrix([[turned[1, 1], -turned[0, 1]], [-turned[1, 0], turned[0, 0]]])
     printed = ((adjugate * moments).trace() + s * moments.trace()) / (s * (turned.trace() + 2 * s))
-    return Equation(printed=printed, derived=(M[0, 0] / a + M[1, 1] / b) / (a + b))
+    return Equation(printed, (M[0, 0] / a + M[1, 1] / b) / (a + b))
 
 
 @claim("mean.primitives")
@@ -221,8 +207,7 @@ def primitives():
     """The two integrals of the mean: primitives arctan(u) and arctan(b u / a) / (a b)."""
     u = sp.Symbol("u", real=True)
     return Equation(
-        printed=[sp.diff(sp.atan(u), u), sp.diff(sp.atan(b * u / a) / (a * b), u)],
-        derived=[1 / (1 + u**2), 1 / (a**2 + b**2 * u**2)],
+        [sp.diff(sp.atan(u), u), sp.diff(sp.atan(b * u / a) / (a * b), u)], [1 / (1 + u**2), 1 / (a**2 + b**2 * u**2)]
     )
 
 
@@ -234,16 +219,22 @@ def middle_is_half_the_trace():
     c2, c1, c0 = quadratic.all_coeffs()
     A2, A1, A0 = form_sums(G, M)
     return Equation(
-        printed=[(inverse(G) * M).trace(), (A1**2 - 4 * A2 * A0) / G.det() ** 2],
-        derived=[-c1 / c2, (c1**2 - 4 * c2 * c0) / c2**2],
+        [(inverse(G) * M).trace(), (A1**2 - 4 * A2 * A0) / G.det() ** 2], [-c1 / c2, (c1**2 - 4 * c2 * c0) / c2**2]
     )
 
 
-@claim("interval.tenth", expect=OPEN)
-def width_in_the_figure():
-    """In the experiment of figure 4 the interval [t_min, t_max] is at most a tenth of the track."""
-    why = "neither figure 4 nor the terrain of figure 3 is in the text, so that the interval cannot be computed again"
-    return Property(True, Finding(UNDECIDED, "reading", OPEN, evidence=why))
+width_in_the_figure = claim(
+    "interval.tenth",
+    "In the experiment of figure 4 the interval [t_min, t_max] is at most a tenth of the track.",
+    lambda: fact(
+        True,
+        UNDECIDED,
+        "reading",
+        OPEN,
+        evidence="neither figure 4 nor the terrain of figure 3 is in the text: the interval cannot be computed again",
+    ),
+    expect=OPEN,
+)
 
 
 def width_of_an_example():
@@ -253,14 +244,13 @@ def width_of_an_example():
     return sp.sqrt(A1**2 - 4 * A2 * A0) / moment(points, 0).det() / 10
 
 
-@claim(
+width = claim(
     "interval.whole",
+    "On other terrain the interval [t_min, t_max] may be the whole track.",
+    lambda: Equation(sp.Integer(1), width_of_an_example()),
     reason="the tenth of the track is printed for figure 4 only; where the terrain slopes one way in one part of the "
     "track and across it in the other, [t_min, t_max] is the whole track",
 )
-def width():
-    """On other terrain the interval [t_min, t_max] may be the whole track."""
-    return Equation(printed=sp.Integer(1), derived=width_of_an_example())
 
 
 @claim("interval.accuracy")
@@ -270,10 +260,10 @@ def accuracy_of_the_middle():
     share = sp.Symbol("s", nonnegative=True)
     # t_G = t_min + s L, s in [0, 1]; the track is 10 L + e long. The other side is the same with 1 - s for s.
     return Bound(
-        printed=length * share - length / 2,
-        relation="<=",
-        derived=(10 * length + rest) / 20,
-        box={share: (0, 1), length: (0, None), rest: (0, None)},
+        length * share - length / 2,
+        "<=",
+        (10 * length + rest) / 20,
+        {share: (0, 1), length: (0, None), rest: (0, None)},
     )
 
 
@@ -286,4 +276,4 @@ def distance_from_the_middle():
     square = (v.T * G * v)[0]
     middle = (inverse(G) * M).trace() / 2
     quarter = (A1**2 - 4 * A2 * A0) / G.det() ** 2 / 4
-    return Equation(printed=(W / square) ** 2 / G.det(), derived=quarter - ((v.T * M * v)[0] / square - middle) ** 2)
+    return Equation((W / square) ** 2 / G.det(), quarter - ((v.T * M * v)[0] / square - middle) ** 2)

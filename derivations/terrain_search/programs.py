@@ -46,9 +46,7 @@ def quotient() -> Equation:
         table = dict(zip((*G, *M, k), values, strict=True)) | dict(zip((p, q), slope, strict=True))
         values = tuple(e.xreplace(table) for e in one_more())
     squares = [(a * bx + b * by) ** 2 for a, b in slopes]
-    return Equation(
-        printed=along(values[3:6]) / along(values[:3]), derived=sum(n * s for n, s in enumerate(squares)) / sum(squares)
-    )
+    return Equation(along(values[3:6]) / along(values[:3]), sum(n * s for n, s in enumerate(squares)) / sum(squares))
 
 
 CROSSING = Program(
@@ -114,7 +112,7 @@ def roots() -> Equation:
     t, x = sp.symbols("t x", real=True)
     quadratic = sp.Poly(sp.expand((symmetric(M) - (t + x) * symmetric(G)).det()), x)
     c2, c1, c0 = (c.subs(t, centre.xreplace(known)) for c in quadratic.all_coeffs())
-    return Equation(printed=[sp.S.Zero, sp.S.Zero], derived=[c1, c0 + c2 * (distance**2).xreplace(known)])
+    return Equation([sp.S.Zero, sp.S.Zero], [c1, c0 + c2 * (distance**2).xreplace(known)])
 
 
 def rotated() -> Equation:
@@ -126,7 +124,7 @@ def rotated() -> Equation:
     g, turned, s = R * sp.diag(a**2, b**2) * R.T, R * m * R.T, a * b
     trace = g[1, 1] * turned[0, 0] - 2 * g[0, 1] * turned[0, 1] + g[0, 0] * turned[1, 1]
     printed = (trace + s * turned.trace()) / (s * (g.trace() + 2 * s))
-    return Equation(printed=printed, derived=(m[0, 0] / a + m[1, 1] / b) / (a + b))
+    return Equation(printed, (m[0, 0] / a + m[1, 1] / b) / (a + b))
 
 
 EXTREMES = Chain(

@@ -18,8 +18,8 @@ PAPER = Paper(
     equations=("1", "2", "3", "4", "5", "6"),
     definitions={},
     beside=(
-        "1.degree 3.nilpotent 3.nonzero 4.hadamard 4.smaller_step 5.unit 5.independent 6.Phif.* 6.Nf.elements "
-        "6.N[sp]* 6.D 6.S 6.more_stages"
+        "1.degree 3.nilpotent 3.nonzero 4.hadamard 4.smaller_step 5.independent 6.Phif.* 6.Nf.elements "
+        "6.N[sp]* 6.D 6.more_stages"
     ),
     remarks=(
         "4.Phi.series 6.D.orders 6.Nf.row_step 6.Np.rows 6.first_stage.worse 6.second_stage earth.ellipse "
@@ -35,6 +35,9 @@ PAPER = Paper(
         },
     },
     left_out={
+        "lambda = lambda^e": "one meridian plane: true whatever the meridian is",
+        "(5): N_pN = N_p D^-1 is the observability matrix of (5), with columns of unit length": "what x^q = D x means",
+        "S_k = x_k^q, N_p = N_s D_s D_f": "follow from 6.D and 6.Np by N_s = N_f D_s^-1",
         "the algorithm: P(0) = P_0": "a first value, given",
         "sigma_v = 0.019 m, sigma_a = 0.003 m/s^2 on straight courses": "no interval is given; after yawing the gain "
         "forgets for minutes, and some start gives any value from 0.36 to 0.017 m/s",

@@ -11,7 +11,7 @@ from itertools import product
 
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim, state
+from navsym.claims import PROVED, Equation, claim, fact, state
 from navsym_papers.trajectory.model import dynamics, first_state, nilpotent_exponential, pascal_rows
 
 N = 3
@@ -56,69 +56,59 @@ def estimator_form(row: sp.Matrix) -> Equation:
     """C y + K z with C = Phi^- - K row, beside prediction and correction."""
     predicted = PHI * F
     derived = predicted + K * (z - (row_after_step() * predicted)[0])
-    return Equation(printed=list((PHI - K * row) * F + K * z), derived=list(derived))
+    return Equation(list((PHI - K * row) * F + K * z), list(derived))
 
 
-@claim(
+estimator_form_printed = claim(
     "algorithm.C",
-    expect=REFUTED,
+    "C = Phi^- - K H^0 for any row H^0, as it came out of the scan; n = 3.",
+    lambda: estimator_form(sp.Matrix([sp.symbols(f"h1:{N + 1}", real=True)])),
     slip="scan",
     reason="H^0 is defined nowhere: the minus over H of equation 5 came out as a nought; by hand: n = 1, C = 1 - K H^0 "
     "is 1 - K only for H^0 = 1",
 )
-def estimator_form_printed():
-    """C = Phi^- - K H^0 for any row H^0, as it came out of the scan; n = 3."""
-    return estimator_form(sp.Matrix([sp.symbols(f"h1:{N + 1}", real=True)]))
-
-
-@claim("algorithm.C*", corrects="algorithm.C")
-def estimator_form_corrected():
-    """y_(k+1) = C y_k + K z_(k+1) with C = Phi^- - K H^- is prediction and correction; n = 3."""
-    return estimator_form(H_STEP)
+estimator_form_corrected = claim(
+    "algorithm.C*",
+    "y_(k+1) = C y_k + K z_(k+1) with C = Phi^- - K H^- is prediction and correction; n = 3.",
+    lambda: estimator_form(H_STEP),
+)
 
 
 SCALE = sp.symbols(f"d1:{N + 1}", positive=True)
 NORMALISED = sp.Matrix(sp.symbols(f"y1:{N + 1}", real=True))
 
 
-@claim(
+estimate_printed = claim(
     "algorithm.estimate",
-    expect=REFUTED,
+    "The estimate of x^q, which is y, is D^-1 y, as it came out of the scan; n = 3.",
+    lambda: Equation(list(sp.diag(*SCALE).inv() * NORMALISED), list(NORMALISED)),
     slip="scan",
     reason="one line names y_k the estimate of x^q and then x^q = D^-1 p y_k that of x: the second superscript has "
     "to be the star that J uses, and the p belongs to no factor; by hand: D = 2, y = 4: x^q is 4, and 2 is x",
 )
-def estimate_printed():
-    """The estimate of x^q, which is y, is D^-1 y, as it came out of the scan; n = 3."""
-    return Equation(printed=list(sp.diag(*SCALE).inv() * NORMALISED), derived=list(NORMALISED))
-
-
-@claim("algorithm.estimate*", corrects="algorithm.estimate")
-def estimate_in_physical_variables():
-    """The estimate of x, the solution of D x = y, is x^* = D^-1 y; n = 3."""
-    solved = [own / scale for own, scale in zip(NORMALISED, SCALE, strict=True)]
-    return Equation(printed=list(sp.diag(*SCALE).inv() * NORMALISED), derived=solved)
-
-
-@claim(
+estimate_in_physical_variables = claim(
+    "algorithm.estimate*",
+    "The estimate of x, the solution of D x = y, is x^* = D^-1 y; n = 3.",
+    lambda: Equation(
+        list(sp.diag(*SCALE).inv() * NORMALISED), [own / scale for own, scale in zip(NORMALISED, SCALE, strict=True)]
+    ),
+)
+gain_printed = claim(
     "algorithm.K",
-    expect=REFUTED,
+    "Gain with the row H^- of equation 5, as printed; n = 3.",
+    lambda: Equation(list(printed_gain()), list(regression_gain()), example_box()),
     slip="paper",
     reason="P^- is the matrix of the state after the step, but H^- = H_p D^-1 of equation 5 reads the state before "
     "it: the row has to be H D^-1, the same slip as in the second measurement equation of 4; by hand: n = 2, P^- = "
     "E, R = 1: the gain is (1/2, 0), the print has (1/3, 1/3)",
 )
-def gain_printed():
-    """Gain with the row H^- of equation 5, as printed; n = 3."""
-    return Equation(printed=list(printed_gain()), derived=list(regression_gain()), box=example_box())
 
 
-@claim("algorithm.K*", corrects="algorithm.K")
+@claim("algorithm.K*")
 def gain():
     """Gain with the row H D^-1, which reads the state after the step; n = 3."""
     row = sp.Matrix([[1] + [0] * (N - 1)])
-    printed = P_AHEAD * row.T / ((row * P_AHEAD * row.T)[0] + R)
-    return Equation(printed=list(printed), derived=list(regression_gain()))
+    return Equation(list(P_AHEAD * row.T / ((row * P_AHEAD * row.T)[0] + R)), list(regression_gain()))
 
 
 def example_box() -> dict[sp.Symbol, tuple[int, int]]:
@@ -126,11 +116,14 @@ def example_box() -> dict[sp.Symbol, tuple[int, int]]:
     return {x: ((2, 3) if x == P_AHEAD[i, i] else (-1, 1)) for i in range(N) for x in P_AHEAD[i, i:]}
 
 
-@claim("algorithm.P_ahead")
-def predicted_matrix():
-    """P^- = Phi P Phi^T + Q is the matrix of Phi e + w for independent e and w; n = 3."""
-    derived = sp.Matrix(N, N, lambda i, j: covariance(PHI[i, :], PHI[j, :]) + (Q[i, i] if i == j else 0))
-    return Equation(printed=PHI * P_BEFORE * PHI.T + Q, derived=derived)
+predicted_matrix = claim(
+    "algorithm.P_ahead",
+    "P^- = Phi P Phi^T + Q is the matrix of Phi e + w for independent e and w; n = 3.",
+    lambda: Equation(
+        PHI * P_BEFORE * PHI.T + Q,
+        sp.Matrix(N, N, lambda i, j: covariance(PHI[i, :], PHI[j, :]) + (Q[i, i] if i == j else 0)),
+    ),
+)
 
 
 def covariance(left: sp.Matrix, right: sp.Matrix) -> sp.Expr:
@@ -146,7 +139,6 @@ def matrix_after(gain: sp.Matrix) -> sp.Matrix:
 
 @claim(
     "algorithm.P",
-    expect=REFUTED,
     slip="paper",
     reason="with the row H^- of equation 5 and its gain; by hand: n = 2, P^- = E, R = 1, K = (1/3, 1/3): the print has "
     "2/3, -1/3, 2/3 where the errors have 5/9, -1/9, 11/9",
@@ -154,14 +146,14 @@ def matrix_after(gain: sp.Matrix) -> sp.Matrix:
 def corrected_matrix_printed():
     """P = (E - K H^-) P^-, with the printed gain, is the matrix of the corrected error; n = 3."""
     gain = printed_gain()
-    return Equation(printed=(sp.eye(N) - gain * H_STEP) * P_AHEAD, derived=matrix_after(gain), box=example_box())
+    return Equation((sp.eye(N) - gain * H_STEP) * P_AHEAD, matrix_after(gain), example_box())
 
 
-@claim("algorithm.P*", corrects="algorithm.P")
+@claim("algorithm.P*")
 def corrected_matrix():
     """P = (E - K H D^-1) P^- is the matrix of the corrected error, for the gain of algorithm.K*; n = 3."""
     best = regression_gain()
-    return Equation(printed=(sp.eye(N) - best * row_after_step()) * P_AHEAD, derived=matrix_after(best))
+    return Equation((sp.eye(N) - best * row_after_step()) * P_AHEAD, matrix_after(best))
 
 
 # -- the field of Q ----------------------------------------------------------------------------------------
@@ -172,27 +164,30 @@ def say_field(count: int, n: int) -> dict:
     return state(str(count), "=", f"product(3, k, 1, {n})")
 
 
-@claim("algorithm.NQ", expect=REFUTED, slip="paper", reason="3^5 = 243; one candidate of the field is not counted")
-def field_size_printed():
-    """Number of values in the field for n = 5, as printed."""
-    found = Finding(len(field(5)), "enumeration", PROVED, scope="n = 5")
-    return Property(printed=242, derived=found, meaning=(say_field(242, 5),))
-
-
-@claim("algorithm.NQ*", corrects="algorithm.NQ")
-def field_size():
-    """Number of values in the field for n = 5."""
-    found = Finding(len(field(5)), "enumeration", PROVED, scope="n = 5")
-    return Property(printed=243, derived=found, meaning=(say_field(243, 5),))
-
-
-@claim("algorithm.NQ.power")
-def field_size_power():
-    """The field has 3^n candidates: each of n elements may fall, stay or rise."""
-    found = tuple(len(field(n)) for n in range(1, 8))
-    meaning = tuple(say_field(3**n, n) for n in range(1, 8))
-    finding = Finding(found, "enumeration", PROVED, scope="n = 1..7")
-    return Property(printed=tuple(3**n for n in range(1, 8)), derived=finding, meaning=meaning)
+field_size_printed = claim(
+    "algorithm.NQ",
+    "Number of values in the field for n = 5, as printed.",
+    lambda: fact(242, len(field(5)), "enumeration", PROVED, scope="n = 5", meaning=(say_field(242, 5),)),
+    slip="paper",
+    reason="3^5 = 243; one candidate of the field is not counted",
+)
+field_size = claim(
+    "algorithm.NQ*",
+    "Number of values in the field for n = 5.",
+    lambda: fact(243, len(field(5)), "enumeration", PROVED, scope="n = 5", meaning=(say_field(243, 5),)),
+)
+field_size_power = claim(
+    "algorithm.NQ.power",
+    "The field has 3^n candidates: each of n elements may fall, stay or rise.",
+    lambda: fact(
+        tuple(3**n for n in range(1, 8)),
+        tuple(len(field(n)) for n in range(1, 8)),
+        "enumeration",
+        PROVED,
+        scope="n = 1..7",
+        meaning=tuple(say_field(3**n, n) for n in range(1, 8)),
+    ),
+)
 
 
 COUNTED = "the different values of a list are counted, and statements are about one value"
@@ -235,23 +230,31 @@ def terms(n: int, row: list[int], residual_after: bool) -> list[tuple[Fraction, 
     return values
 
 
-@claim("algorithm.field")
-def field_values():
-    """For one centre and one start the 3^5 candidates give as many values of J (equal elements would merge some)."""
-    found = len(criteria(5, [1] * 5, residual_after=False))
-    finding = Finding(found, "exact enumeration", PROVED, scope=FIELD_SCOPE)
-    return Property(printed=3**5, derived=finding, unsaid=COUNTED)
-
-
-@claim("algorithm.J.first")
-def first_term_of_the_criterion():
-    """With x*_k, as printed, the first term of J is one number for all candidates; with x*_(k+1) it takes 216 values.
-
-    The candidates differ in K_(k+1), and so in x*_(k+1); what was estimated before cannot show which of them fits.
-    """
-    found = tuple(len({first for first, _ in terms(5, [1] * 5, after)}) for after in (False, True))
-    finding = Finding(found, "exact enumeration", PROVED, scope=FIELD_SCOPE)
-    return Property(printed=(1, 216), derived=finding, unsaid=COUNTED)
+field_values = claim(
+    "algorithm.field",
+    "For one centre and one start the 3^5 candidates give as many values of J (equal elements would merge some).",
+    lambda: fact(
+        3**5,
+        len(criteria(5, [1] * 5, residual_after=False)),
+        "exact enumeration",
+        PROVED,
+        scope=FIELD_SCOPE,
+        unsaid=COUNTED,
+    ),
+)
+# The candidates differ in K_(k+1), and so in x*_(k+1); what was estimated before cannot show which of them fits.
+first_term_of_the_criterion = claim(
+    "algorithm.J.first",
+    "With x*_k, as printed, the first term of J is one number for all candidates; with x*_(k+1) it takes 216 values.",
+    lambda: fact(
+        (1, 216),
+        tuple(len({first for first, _ in terms(5, [1] * 5, after)}) for after in (False, True)),
+        "exact enumeration",
+        PROVED,
+        scope=FIELD_SCOPE,
+        unsaid=COUNTED,
+    ),
+)
 
 
 @claim("algorithm.J.still")
@@ -271,7 +274,7 @@ def criterion_prefers_standing_still():
     change = ahead + gain * (measured - ahead[0]) - estimate
     derived = (measured - (first_state(5) * estimate)[0]) ** 2 + change[1] ** 2 * tau + change[2] ** 2 * tau**2
     printed = (rho * tau * x2 + nu) ** 2 + nu**2 * (K2**2 * tau + K3**2 * tau**2)
-    return Equation(printed=printed, derived=sp.expand(derived))
+    return Equation(printed, sp.expand(derived))
 
 
 def values_with_corrected_gain() -> int:
@@ -300,11 +303,17 @@ def units_of_terms(speed_power: int, acceleration_power: int) -> set[tuple[int, 
     return {unit((POSITION, 2)), unit((SPEED, 2), speed), unit((ACCELERATION, 2), acceleration)}
 
 
-@claim("algorithm.J.units")
-def criterion_units():
-    """The terms of J have three units as printed (m^2, m^2/s, m^2/s^2), and one when weighted by tau^2 and tau^4."""
-    found = len(units_of_terms(1, 2)), len(units_of_terms(2, 4))
-    return Property(printed=(3, 1), derived=Finding(found, "exponents of metre and second", PROVED), unsaid=UNITS)
+criterion_units = claim(
+    "algorithm.J.units",
+    "The terms of J have three units as printed (m^2, m^2/s, m^2/s^2), and one when weighted by tau^2 and tau^4.",
+    lambda: fact(
+        (3, 1),
+        (len(units_of_terms(1, 2)), len(units_of_terms(2, 4))),
+        "exponents of metre and second",
+        PROVED,
+        unsaid=UNITS,
+    ),
+)
 
 
 @claim("algorithm.P.not_covariance")
@@ -317,5 +326,7 @@ def matrix_is_not_the_covariance():
     root = sp.Symbol("K", positive=True)  # steady gain, 0 < K < 1
     matrix = root * R  # P = K R for H = 1
     error = root * R / (2 - root)  # E e^2 = (1 - K)^2 E e^2 + K^2 R
-    balance = error - (1 - root) ** 2 * error - root**2 * R
-    return Equation(printed=[R * root * (1 - root) / (2 - root), sp.Integer(0)], derived=[matrix - error, balance])
+    return Equation(
+        [R * root * (1 - root) / (2 - root), sp.Integer(0)],
+        [matrix - error, error - (1 - root) ** 2 * error - root**2 * R],
+    )

@@ -63,7 +63,7 @@ def spherical_axes(latitude: Any, longitude: Any) -> sp.Matrix:
         [
             [-sin(longitude), cos(longitude), 0],
             [-sin(latitude) * cos(longitude), -sin(latitude) * sin(longitude), cos(latitude)],
-            [cos(latitude) * cos(longitude), cos(latitude) * sin(longitude), sin(latitude)],
+            [cos(latitude) * cos(longitude), cos(latitude) * sin(longitude), sin(latitude)]
         ]
     )  # fmt: skip
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 import flint
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, REFUTED, Claim, Equation, Finding, Property, claim, state
+from navsym.claims import CERTIFIED, PROVED, Claim, Equation, Finding, Property, claim, fact, state
 
 RADIUS = Fraction(6371000)
 TAU = Fraction(1, 5)
@@ -23,7 +23,7 @@ def rms_of_the_uniform_error():
     x = sp.Symbol("x", real=True)
     end = sp.sqrt(3)
     antiderivative = x**3 / 3 / (2 * end)
-    return Equation(printed=sp.Integer(1), derived=antiderivative.subs(x, end) - antiderivative.subs(x, -end))
+    return Equation(sp.Integer(1), antiderivative.subs(x, end) - antiderivative.subs(x, -end))
 
 
 @claim("experiment.parts")
@@ -38,22 +38,31 @@ def three_parts_fill_the_run():
         "where(t > 2080, 1, 0)",
     )
     meaning = (state(f"{first} + {second} + {third}", "=", "1", {"t": ["0", "3600", []]}),)
-    return Property((0, 3600, True), Finding(found, "ends of the parts", PROVED), meaning)
+    return fact((0, 3600, True), found, "ends of the parts", PROVED, meaning=meaning)
 
 
-@claim("experiment.heading")
-def heading():
-    """The printed heading leaves the straight course by a jump of 0.87 degrees at 1000 and at 2080 s: three periods."""
-    jumps = [5 * sp.cos(2 * sp.pi * sp.Integer(t) / 360) for t in (1000, 2080)]
-    return Equation(printed=[5 * sp.cos(14 * sp.pi / 9)] * 2 + [3], derived=[*jumps, sp.Rational(2080 - 1000, 360)])
+heading = claim(
+    "experiment.heading",
+    "The printed heading leaves the straight course by a jump of 0.87 degrees at 1000 and at 2080 s: three periods.",
+    lambda: Equation(
+        [5 * sp.cos(14 * sp.pi / 9)] * 2 + [3],
+        [*[5 * sp.cos(2 * sp.pi * sp.Integer(t) / 360) for t in (1000, 2080)], sp.Rational(2080 - 1000, 360)],
+    ),
+)
 
 
 @claim("experiment.stop")
 def tuning_stops_at_a_step():
     """Tuning stops at 168.8 s, a whole number of steps of 0.2 s."""
     steps = Fraction("168.8") / TAU
-    found = Finding(steps.denominator == 1, "exact division", PROVED, evidence=f"{steps} steps")
-    return Property(printed=True, derived=found, meaning=(state("168.8/0.2", "=", str(round(steps))),))
+    return fact(
+        True,
+        steps.denominator == 1,
+        "exact division",
+        PROVED,
+        evidence=f"{steps} steps",
+        meaning=(state("168.8/0.2", "=", str(round(steps))),),
+    )
 
 
 # -- printed errors of position ------------------------------------------------------------------------
@@ -92,21 +101,19 @@ def metres_per_radian() -> flint.arb:
     return ball(RADIUS)
 
 
-@claim(
+position_error_printed = claim(
     "experiment.sigma_phi.100",
-    expect=REFUTED,
+    "|V| = 100 m/s: 1.2e-8 degrees are 0.06 m.",
+    lambda: agreement("1.2e-8", "0.05e-8", "0.06", "0.005", "degree"),
     slip="paper",
     reason="1.2e-8 degrees are 1.3 mm; the unit is the radian, and even then it is 0.08 m (111.2 km to a degree)",
 )
-def position_error_printed():
-    """|V| = 100 m/s: 1.2e-8 degrees are 0.06 m."""
-    return agreement("1.2e-8", "0.05e-8", "0.06", "0.005", "degree")
-
-
-@claim("experiment.sigma_phi.100*", expect=CERTIFIED, corrects="experiment.sigma_phi.100")
-def position_error():
-    """|V| = 100 m/s: 1.2e-8 radians are 0.08 m."""
-    return agreement("1.2e-8", "0.05e-8", "0.08", "0.005", "radian")
+position_error = claim(
+    "experiment.sigma_phi.100*",
+    "|V| = 100 m/s: 1.2e-8 radians are 0.08 m.",
+    lambda: agreement("1.2e-8", "0.05e-8", "0.08", "0.005", "radian"),
+    expect=CERTIFIED,
+)
 
 
 def other_speed(speed: int) -> tuple[Claim, Claim]:
@@ -115,14 +122,18 @@ def other_speed(speed: int) -> tuple[Claim, Claim]:
     figures = ("2.2e-8", "0.05e-8", "0.1", "0.05")
     wrong = claim(
         number,
-        expect=REFUTED,
+        f"|V| = {speed} m/s: 2.2e-8 degrees are 0.1 m",
+        lambda: agreement(*figures, "degree"),
         slip="paper",
         reason="2.2e-8 degrees are 2.4 mm; the unit is the radian",
-        title=f"|V| = {speed} m/s: 2.2e-8 degrees are 0.1 m",
-    )(lambda: agreement(*figures, "degree"))
+    )
     right = claim(
-        f"{number}*", expect=CERTIFIED, corrects=number, title=f"|V| = {speed} m/s: 2.2e-8 radians are 0.1 m"
-    )(lambda: agreement(*figures, "radian"))
+        f"{number}*",
+        f"|V| = {speed} m/s: 2.2e-8 radians are 0.1 m",
+        lambda: agreement(*figures, "radian"),
+        expect=CERTIFIED,
+        corrects=number,
+    )
     return wrong, right
 
 
@@ -138,24 +149,20 @@ def rate(unit: tuple[int, int]) -> Finding:
     return Finding((unit[0], unit[1] - 1), "unit of a time derivative, exponents of metre and second", PROVED)
 
 
-@claim(
+speed_error_unit_printed = claim(
     "experiment.sigma_v.unit",
-    expect=REFUTED,
+    "The error of the speed V_2 at |V| = 100 m/s is printed in metres.",
+    lambda: Property(printed=UNITS["m"], derived=rate(UNITS["m"]), unsaid=EXPONENTS),
     slip="paper",
     reason="an error of V_2 is in m/s; the same figures for 2 and 300 m/s are printed with m/s",
 )
-def speed_error_unit_printed():
-    """The error of the speed V_2 at |V| = 100 m/s is printed in metres."""
-    return Property(printed=UNITS["m"], derived=rate(UNITS["m"]), unsaid=EXPONENTS)
-
-
-@claim("experiment.sigma_v.unit*", corrects="experiment.sigma_v.unit")
-def speed_error_unit():
-    """The error of a speed is in metres per second."""
-    return Property(printed=UNITS["m/s"], derived=rate(UNITS["m"]), unsaid=EXPONENTS)
-
-
-@claim("experiment.sigma_a.unit")
-def acceleration_error_unit():
-    """The error of the acceleration dV_2/dt is in metres per second squared."""
-    return Property(printed=UNITS["m/s^2"], derived=rate(UNITS["m/s"]), unsaid=EXPONENTS)
+speed_error_unit = claim(
+    "experiment.sigma_v.unit*",
+    "The error of a speed is in metres per second.",
+    lambda: Property(printed=UNITS["m/s"], derived=rate(UNITS["m"]), unsaid=EXPONENTS),
+)
+acceleration_error_unit = claim(
+    "experiment.sigma_a.unit",
+    "The error of the acceleration dV_2/dt is in metres per second squared.",
+    lambda: Property(printed=UNITS["m/s^2"], derived=rate(UNITS["m/s"]), unsaid=EXPONENTS),
+)

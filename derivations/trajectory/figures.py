@@ -11,11 +11,13 @@ from fractions import Fraction
 
 import flint
 
-from navsym.claims import CERTIFIED, OPEN, UNDECIDED, Finding, Property, claim
+from navsym.claims import CERTIFIED, OPEN, UNDECIDED, Finding, Property, claim, fact
 from navsym_papers.trajectory.experiment.stability import gain_stability, harmonic_lag, stationary_covariance
 from navsym_papers.trajectory.experiment_printed import TAU, ball
 from navsym_papers.trajectory.gain import PERIOD, gain_in_f
 from navsym_papers.trajectory.model import pascal_rows
+
+BESSEL = "Bessel functions are outside the language"
 
 #: Metric gains (per metre: 1, 1/s, 1/s^2, ...) found by a search; what they do is computed below.
 WITNESSES = {
@@ -73,20 +75,18 @@ def hundredths(value: flint.arb) -> str:
     return text
 
 
-@claim("experiment.sigma_v.2", expect=CERTIFIED)
-def speed_errors_at_two_metres():
-    """|V| = 2 m/s: a stable gain gives 0.06 m/s straight, 0.07 m/s yawing, but a position error of 0.83, not 0.1 m."""
-    return Property(
-        printed=("0.06", "0.07", "0.83"), derived=two_figures(2), unsaid="Bessel functions are outside the language"
-    )
-
-
-@claim("experiment.sigma_v.300", expect=CERTIFIED)
-def speed_errors_at_three_hundred_metres():
-    """|V| = 300 m/s: a stable gain gives 0.08 m/s straight, 0.09 yawing, but a position error of 0.47, not 0.1 m."""
-    return Property(
-        printed=("0.08", "0.09", "0.47"), derived=two_figures(300), unsaid="Bessel functions are outside the language"
-    )
+speed_errors_at_two_metres = claim(
+    "experiment.sigma_v.2",
+    "|V| = 2 m/s: a stable gain gives 0.06 m/s straight, 0.07 m/s yawing, but a position error of 0.83, not 0.1 m.",
+    lambda: Property(printed=("0.06", "0.07", "0.83"), derived=two_figures(2), unsaid=BESSEL),
+    expect=CERTIFIED,
+)
+speed_errors_at_three_hundred_metres = claim(
+    "experiment.sigma_v.300",
+    "|V| = 300 m/s: a stable gain gives 0.08 m/s straight, 0.09 yawing, but a position error of 0.47, not 0.1 m.",
+    lambda: Property(printed=("0.08", "0.09", "0.47"), derived=two_figures(300), unsaid=BESSEL),
+    expect=CERTIFIED,
+)
 
 
 # -- |V| = 100 m/s, where the gain is printed ---------------------------------------------------------------
@@ -118,16 +118,14 @@ def straight_speed_error_is_not_noise_alone():
     steps = int((1000 - Fraction("168.8")) / TAU)
     variance, scatter = sample_scatter(steps)
     away = (ball(Fraction("0.019")) ** 2 - variance) / scatter
-    return Property(
-        printed=False,
-        derived=Finding(
-            bool(abs(away) < 3),
-            "exact covariances of the error at all lags, balls",
-            CERTIFIED,
-            scope="printed gain in D_p variables, first straight course after the tuning, Gaussian noise of 1 m",
-            evidence=f"expected {float(variance.sqrt()):.4f} m/s; the printed square is "
-            f"{float(away):.2f} standard deviations off",
-        ),
+    return fact(
+        False,
+        bool(abs(away) < 3),
+        "exact covariances of the error at all lags, balls",
+        CERTIFIED,
+        scope="printed gain in D_p variables, first straight course after the tuning, Gaussian noise of 1 m",
+        evidence=f"expected {float(variance.sqrt()):.4f} m/s; the printed square is "
+        f"{float(away):.2f} standard deviations off",
         unsaid="a sum over four thousand lags is added up in balls",
     )
 
@@ -138,22 +136,24 @@ def yawing_speed_error_in_full():
     noise, lag = speed_noise(gain_in_f()), speed_lag(gain_in_f(), 100)
     found = hundredths(lag.sqrt()), hundredths((noise + lag).sqrt())
     scope = "printed gain in D_p variables, steady yawing, noise of 1 m"
-    return Property(
-        printed=("0.81", "0.81"),
-        derived=Finding(found, "five harmonics in balls", CERTIFIED, scope=scope),
-        unsaid="Bessel functions are outside the language",
-    )
+    return fact(("0.81", "0.81"), found, "five harmonics in balls", CERTIFIED, scope=scope, unsaid=BESSEL)
 
 
-@claim("experiment.together", expect=OPEN)
-def figures_of_one_sentence():
-    """For 2, 100 and 300 m/s some stable gain gives all three errors of a sentence: position, straight, yawing."""
-    why = "searches found no such gain, and no proof excludes one"
-    return Property(printed=True, derived=Finding(UNDECIDED, "search", OPEN, evidence=why))
-
-
-@claim("experiment.figures", expect=OPEN)
-def figures_look_alike():
-    """The curves for 2 and 300 m/s look like those of figures 1 to 4."""
-    why = "the curves are not published as numbers; tuning, first values and noise are not given"
-    return Property(printed=True, derived=Finding(UNDECIDED, "reading", OPEN, evidence=why))
+figures_of_one_sentence = claim(
+    "experiment.together",
+    "For 2, 100 and 300 m/s some stable gain gives all three errors of a sentence: position, straight, yawing.",
+    lambda: fact(True, UNDECIDED, "search", OPEN, evidence="searches found no such gain, and no proof excludes one"),
+    expect=OPEN,
+)
+figures_look_alike = claim(
+    "experiment.figures",
+    "The curves for 2 and 300 m/s look like those of figures 1 to 4.",
+    lambda: fact(
+        True,
+        UNDECIDED,
+        "reading",
+        OPEN,
+        evidence="the curves are not published as numbers; tuning, first values and noise are not given",
+    ),
+    expect=OPEN,
+)

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property, claim, state
+from navsym.claims import CERTIFIED, PROVED, Bound, Equation, Finding, Property, claim, fact, state
 from navsym.models import earth as motion
 from navsym.trajectory.conditioning import condition_number
 from navsym_papers.trajectory import model
@@ -63,53 +63,36 @@ def degree_of_the_speed():
     return Property(printed=tuple(n - 2 for n in orders), derived=found, meaning=meaning)
 
 
-@claim("1.row1")
-def first_row():
-    """Rate of the coordinate: rho times the speed."""
-    return Equation(printed=rho * moved_state(ORDER, t)[1], derived=rate_of_state(ORDER)[0])
-
-
-@claim(
+first_row = claim(
+    "1.row1",
+    "Rate of the coordinate: rho times the speed.",
+    lambda: Equation(rho * moved_state(ORDER, t)[1], rate_of_state(ORDER)[0]),
+)
+second_row_printed = claim(
     "1.row2",
-    expect=REFUTED,
+    "Second row, dx_1/dt = x_2, as it came out of the scan.",
+    lambda: Equation(moved_state(ORDER, t)[1], rate_of_state(ORDER)[0]),
     slip="scan",
     reason="indices are lost: the second row cannot be a second equation for dx_1/dt; by hand: a latitude in "
     "radians does not change at metres per second",
 )
-def second_row_printed():
-    """Second row, dx_1/dt = x_2, as it came out of the scan."""
-    return Equation(printed=moved_state(ORDER, t)[1], derived=rate_of_state(ORDER)[0])
-
-
-@claim("1.row2*", corrects="1.row2")
-def second_row():
-    """Second row: dx_2/dt = x_3."""
-    return Equation(printed=moved_state(ORDER, t)[2], derived=rate_of_state(ORDER)[1])
-
-
-@claim(
+second_row = claim(
+    "1.row2*", "Second row: dx_2/dt = x_3.", lambda: Equation(moved_state(ORDER, t)[2], rate_of_state(ORDER)[1])
+)
+last_row_printed = claim(
     "1.rown",
-    expect=REFUTED,
+    "Last row, dx_1/dt = 0, as it came out of the scan.",
+    lambda: Equation(sp.Integer(0), rate_of_state(ORDER)[0]),
     slip="scan",
     reason="an index is lost: the last row is that of x_n, whose initial value stands beside it; by hand: a "
     "coordinate at rest whatever the speed",
 )
-def last_row_printed():
-    """Last row, dx_1/dt = 0, as it came out of the scan."""
-    return Equation(printed=sp.Integer(0), derived=rate_of_state(ORDER)[0])
-
-
-@claim("1.rown*", corrects="1.rown")
-def last_row():
-    """Last row: dx_n/dt = 0."""
-    return Equation(printed=sp.Integer(0), derived=rate_of_state(ORDER)[-1])
-
-
-@claim("1.general")
-def matrix_form():
-    """The general form dx/dt = A x with A of equation 3."""
-    A = model.dynamics(ORDER, rho)
-    return Equation(printed=list(A * sp.Matrix(moved_state(ORDER, t))), derived=rate_of_state(ORDER))
+last_row = claim("1.rown*", "Last row: dx_n/dt = 0.", lambda: Equation(sp.Integer(0), rate_of_state(ORDER)[-1]))
+matrix_form = claim(
+    "1.general",
+    "The general form dx/dt = A x with A of equation 3.",
+    lambda: Equation(list(model.dynamics(ORDER, rho) * sp.Matrix(moved_state(ORDER, t))), rate_of_state(ORDER)),
+)
 
 
 # -- equations 2 and 3 -------------------------------------------------------------------------------
@@ -120,22 +103,19 @@ def measured_row(n: int) -> sp.Matrix:
     return sp.Matrix([moved_state(n, sp.Integer(0))[0]]).jacobian(STATE[:n])
 
 
-@claim(
+measurement_row_printed = claim(
     "2.H",
-    expect=REFUTED,
+    "Row of the measurement, printed with three entries for every n; here n = 8.",
+    lambda: Equation(sp.Matrix([[1, 0, 0]]), measured_row(ORDER)),
     slip="undecidable",
     reason="H has as many entries as the state: (1, 0, 0) is the case n = 3 only, and after equation 4 it is "
     "printed as (1, 0, ..., 0)",
 )
-def measurement_row_printed():
-    """Row of the measurement, printed with three entries for every n; here n = 8."""
-    return Equation(printed=sp.Matrix([[1, 0, 0]]), derived=measured_row(ORDER))
-
-
-@claim("2.H*", corrects="2.H")
-def measurement_row():
-    """Row of the measurement: one and n - 1 zeros; here n = 8."""
-    return Equation(printed=sp.Matrix([[1] + [0] * (ORDER - 1)]), derived=measured_row(ORDER))
+measurement_row = claim(
+    "2.H*",
+    "Row of the measurement: one and n - 1 zeros; here n = 8.",
+    lambda: Equation(sp.Matrix([[1] + [0] * (ORDER - 1)]), measured_row(ORDER)),
+)
 
 
 def nilpotency_index(n: int) -> int:
@@ -147,19 +127,19 @@ def nilpotency_index(n: int) -> int:
     return q
 
 
-@claim("3.nilpotent")
-def nilpotency():
-    """A is nilpotent of index n."""
-    found = Finding(
+nilpotency = claim(
+    "3.nilpotent",
+    "A is nilpotent of index n.",
+    lambda: fact(
+        tuple(n for n in ORDERS),
         tuple(map(nilpotency_index, ORDERS)),
         "exact powers",
         PROVED,
         scope="n = 2..12; for every n the power k moves the diagonal k places up",
         assumptions=("rho != 0",),
-    )
-    return Property(
-        printed=tuple(n for n in ORDERS), derived=found, unsaid="a claim of eleven matrices and their powers"
-    )
+        unsaid="a claim of eleven matrices and their powers",
+    ),
+)
 
 
 @claim("3.nonzero")
@@ -169,8 +149,15 @@ def nonzero_elements():
     def count(n: int) -> int:
         return sum(x != 0 for x in model.dynamics(n, rho))
 
-    found = Finding(tuple(map(count, ORDERS)), "count", PROVED, scope="n = 2..12", assumptions=("rho != 0",))
-    return Property(printed=tuple(n - 1 for n in ORDERS), derived=found, unsaid="a count of entries")
+    return fact(
+        tuple(n - 1 for n in ORDERS),
+        tuple(map(count, ORDERS)),
+        "count",
+        PROVED,
+        scope="n = 2..12",
+        assumptions=("rho != 0",),
+        unsaid="a count of entries",
+    )
 
 
 @claim("3.elements")
@@ -181,7 +168,7 @@ def elements_of_A():
     printed[0, 1] = rho
     for i in range(1, ORDER - 1):
         printed[i, i + 1] = 1
-    return Equation(printed=printed, derived=rate.jacobian(STATE))
+    return Equation(printed, rate.jacobian(STATE))
 
 
 # -- equation 4 --------------------------------------------------------------------------------------
@@ -202,18 +189,16 @@ def printed_transition(n: int) -> sp.Matrix:
     return sp.Matrix(n, n, entry)
 
 
-@claim("4.Phi")
-def transition_matrix():
-    """Transition matrix over a step; n = 8, smaller orders are its leading blocks."""
-    return Equation(printed=printed_transition(ORDER), derived=derived_transition(ORDER))
-
-
-@claim("4.Phi.series")
-def transition_matrix_is_the_finite_series():
-    """The transition matrix is the series of exp(A tau), which ends because A is nilpotent; n = 8."""
-    return Equation(
-        printed=printed_transition(ORDER), derived=model.nilpotent_exponential(model.dynamics(ORDER, rho), tau)
-    )
+transition_matrix = claim(
+    "4.Phi",
+    "Transition matrix over a step; n = 8, smaller orders are its leading blocks.",
+    lambda: Equation(printed_transition(ORDER), derived_transition(ORDER)),
+)
+transition_matrix_is_the_finite_series = claim(
+    "4.Phi.series",
+    "The transition matrix is the series of exp(A tau), which ends because A is nilpotent; n = 8.",
+    lambda: Equation(printed_transition(ORDER), model.nilpotent_exponential(model.dynamics(ORDER, rho), tau)),
+)
 
 
 @claim("4.smaller_step")
@@ -222,12 +207,11 @@ def better_for_smaller_steps():
     r, climb, speed = sp.symbols("r V3 V2", positive=True)
     # d/dtau of the integral of (rho(s) - rho(0)) V2 ds: of one sign, so the error only grows.
     growth = sp.factor((1 / (r + climb * tau) - 1 / r) * speed)
-    return Bound(printed=growth, relation="<", derived=sp.Integer(0))
+    return Bound(growth, "<", sp.Integer(0))
 
 
 @claim(
     "4.z",
-    expect=REFUTED,
     slip="paper",
     reason="H_p = H Phi acts on the state before the step: the index of x is k, as in equations 5 and 6; by hand: n "
     "= 2, rho tau = 1, x_k = (0, 1): the coordinate after the step is 1, the print gives 2",
@@ -235,28 +219,27 @@ def better_for_smaller_steps():
 def stepped_measurement_printed():
     """The measurement z_(k+1) = H_p x_(k+1), as printed; n = 5."""
     after = sp.Matrix(moved_state(5, tau))
-    return Equation(printed=(measured_row(5) * printed_transition(5) * after)[0], derived=after[0])
+    return Equation((measured_row(5) * printed_transition(5) * after)[0], after[0])
 
 
-@claim("4.z*", corrects="4.z")
+@claim("4.z*")
 def stepped_measurement():
     """The measurement after a step by the state before it: z_(k+1) = H_p x_k; n = 5."""
     before, after = sp.Matrix(STATE[:5]), sp.Matrix(moved_state(5, tau))
-    return Equation(printed=(measured_row(5) * printed_transition(5) * before)[0], derived=after[0])
+    return Equation((measured_row(5) * printed_transition(5) * before)[0], after[0])
 
 
-@claim("4.H")
-def measured_coordinate():
-    """H = (1, 0, ..., 0); n = 8."""
-    return Equation(printed=sp.Matrix([[1] + [0] * (ORDER - 1)]), derived=measured_row(ORDER))
-
-
-@claim("4.Hp")
-def measurement_through_a_step():
-    """H_p = H Phi = (1, rho tau, ..., rho tau^(n-1)/(n-1)!); n = 8."""
-    printed = [sp.Integer(1)] + [rho * tau**j / sp.factorial(j) for j in range(1, ORDER)]
-    later = sp.Matrix([moved_state(ORDER, tau)[0]]).jacobian(STATE)
-    return Equation(printed=sp.Matrix([printed]), derived=later)
+measured_coordinate = claim(
+    "4.H", "H = (1, 0, ..., 0); n = 8.", lambda: Equation(sp.Matrix([[1] + [0] * (ORDER - 1)]), measured_row(ORDER))
+)
+measurement_through_a_step = claim(
+    "4.Hp",
+    "H_p = H Phi = (1, rho tau, ..., rho tau^(n-1)/(n-1)!); n = 8.",
+    lambda: Equation(
+        sp.Matrix([[sp.Integer(1)] + [rho * tau**j / sp.factorial(j) for j in range(1, ORDER)]]),
+        sp.Matrix([moved_state(ORDER, tau)[0]]).jacobian(STATE),
+    ),
+)
 
 
 # -- smaller steps and conditioning ------------------------------------------------------------------
@@ -281,7 +264,6 @@ def improves(n: int, longer: sp.Rational, shorter: sp.Rational) -> bool:
 
 @claim(
     "4.hadamard",
-    expect=REFUTED,
     slip="paper",
     reason="not inevitably: at n = 20 the smaller step 0.94 s is better than 1 s (6.05e16 against 8.09e16), "
     "and at n = 10 the best step is 2.56 s",
@@ -289,17 +271,18 @@ def improves(n: int, longer: sp.Rational, shorter: sp.Rational) -> bool:
 def smaller_steps_always_worsen():
     """A smaller step inevitably worsens the condition number (n = 20, 1 s against 0.94 s)."""
     longer, shorter = sp.Integer(1), sp.Rational("0.94")
-    found = Finding(
+    return fact(
+        True,
         improves(20, longer, shorter),
         "certified condition numbers",
         CERTIFIED,
         scope="n = 20, rho = 1/6371000, tau = 1 and 0.94",
         evidence=f"{conditioning(20, longer).rounded(5)} at 1 s, {conditioning(20, shorter).rounded(5)} at 0.94 s",
+        unsaid=TWO_NUMBERS,
     )
-    return Property(printed=True, derived=found, unsaid=TWO_NUMBERS)
 
 
-@claim("4.hadamard*", expect=CERTIFIED, corrects="4.hadamard")
+@claim("4.hadamard*", expect=CERTIFIED)
 def smaller_steps_worsen_below_a_second():
     """Each halving of the step from 1 s down to 1/32 s worsens the condition number, n of the table."""
     steps = [sp.Rational(1, 2**k) for k in range(6)]
@@ -311,5 +294,6 @@ def smaller_steps_worsen_below_a_second():
         enclosed += [end[0] for end in ends]
         relations += [(shorter[1], ">", longer[2]) for longer, shorter in pairwise(ends)]
     meaning, certificate = say_comparison(enclosed, relations)
-    found = Finding(holds, "certified condition numbers", CERTIFIED, scope=scope, certificate=certificate)
-    return Property(printed=True, derived=found, meaning=meaning)
+    return fact(
+        True, holds, "certified condition numbers", CERTIFIED, scope=scope, certificate=certificate, meaning=meaning
+    )

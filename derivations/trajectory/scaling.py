@@ -7,8 +7,10 @@ from math import comb
 
 import sympy as sp
 
-from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim, state
+from navsym.claims import PROVED, Equation, Property, claim, fact, state
 from navsym_papers.trajectory import model
+
+FOLLOWED = "what rules reach is found by following them to the end"
 
 rho, tau = sp.symbols("rho tau", positive=True)
 
@@ -61,34 +63,23 @@ def D_s(n: int) -> sp.Matrix:
 
 @claim("5.Phi")
 def normalised_transition():
-    """In x^q = D x the transition matrix is D Phi D^-1; n = 4."""
-    x = sp.Matrix(X[:SMALL])
-    scale = D(SMALL)
-    moved = scale * step(SMALL) * scale.inv() * (scale * x)
-    return Equation(printed=list(moved), derived=list(scale * (step(SMALL) * x)))
+    """Phi^- = D Phi D^-1: binomial coefficients times |column i| / |column j| of the powers i^(j-1); n = 4."""
+    size = powers(SMALL)
+    return Equation(
+        D(SMALL) * step(SMALL) * D(SMALL).inv(), sp.Matrix(SMALL, SMALL, lambda i, j: comb(j, i) * size[i] / size[j])
+    )
 
 
-@claim("5.H")
-def normalised_measurement():
-    """In x^q = D x the measurement row is H_p D^-1; n = 4."""
-    x = sp.Matrix(X[:SMALL])
-    scale = D(SMALL)
-    return Equation(printed=(measured(SMALL) * scale.inv() * (scale * x))[0], derived=(measured(SMALL) * x)[0])
+def powers(n: int) -> list[sp.Expr]:
+    """Lengths of the columns 1^k, 2^k, ..., n^k for k = 0 ... n - 1."""
+    return [sp.sqrt(sum(sp.Integer(i) ** (2 * k) for i in range(1, n + 1))) for k in range(n)]
 
 
-@claim("5.N")
-def normalised_observability():
-    """The observability matrix of the normalised model is N_p D^-1; n = 4."""
-    scale = D(SMALL)
-    pair = model.stepped_rows(measured(SMALL) * scale.inv(), scale * step(SMALL) * scale.inv())
-    return Equation(printed=N_p(SMALL) * scale.inv(), derived=pair)
-
-
-@claim("5.unit")
-def normalised_columns():
-    """The columns of N_pN have unit length; n = 5."""
-    norms = model.norms_of_columns(N_p(PRINTED) * D(PRINTED).inv())
-    return Equation(printed=[sp.Integer(1)] * PRINTED, derived=norms)
+normalised_measurement = claim(
+    "5.H",
+    "H^- = H_p D^-1: one over the lengths of the columns of the powers i^(j-1); n = 4.",
+    lambda: Equation(list(measured(SMALL) * D(SMALL).inv()), [1 / length for length in powers(SMALL)]),
+)
 
 
 def sensitivity(matrix: sp.Matrix) -> list[sp.Expr]:
@@ -100,45 +91,36 @@ def independent_of_rho_and_tau():
     """The normalised matrices Phi^- and H^- do not depend on rho and tau; n = 5."""
     scale = D(PRINTED)
     changes = sensitivity(scale * step(PRINTED) * scale.inv()) + sensitivity(measured(PRINTED) * scale.inv())
-    return Equation(printed=[sp.Integer(0)] * len(changes), derived=changes)
+    return Equation([sp.Integer(0)] * len(changes), changes)
 
 
 # -- two stages: the first -----------------------------------------------------------------------------
 
 
-@claim("6.Df")
-def first_stage_scaling():
-    """D_f = diag(1, rho tau, rho tau^2/2!, rho tau^3/3!, rho tau^4/4!) turns H_p into a row of ones."""
-    printed = sp.diag(1, rho * tau, rho * tau**2 / 2, rho * tau**3 / 6, rho * tau**4 / 24)
-    return Equation(printed=printed, derived=D_f(PRINTED))
+first_stage_scaling = claim(
+    "6.Df",
+    "D_f = diag(1, rho tau, rho tau^2/2!, rho tau^3/3!, rho tau^4/4!) turns H_p into a row of ones.",
+    lambda: Equation(sp.diag(1, rho * tau, rho * tau**2 / 2, rho * tau**3 / 6, rho * tau**4 / 24), D_f(PRINTED)),
+)
+first_stage_transition = claim(
+    "6.Phif",
+    "Phi_f for n = 5.",
+    lambda: Equation(
+        sp.Matrix([[1, 1, 1, 1, 1], [0, 1, 2, 3, 4], [0, 0, 1, 3, 6], [0, 0, 0, 1, 4], [0, 0, 0, 0, 1]]),
+        in_first_stage(PRINTED)[0],
+    ),
+)
+first_stage_measurement = claim(
+    "6.Hf", "H_f = (1, 1, 1, 1, 1).", lambda: Equation(sp.Matrix([[1, 1, 1, 1, 1]]), in_first_stage(PRINTED)[1])
+)
 
 
-@claim("6.Phif")
-def first_stage_transition():
-    """Phi_f for n = 5."""
-    printed = sp.Matrix([[1, 1, 1, 1, 1], [0, 1, 2, 3, 4], [0, 0, 1, 3, 6], [0, 0, 0, 1, 4], [0, 0, 0, 0, 1]])
-    return Equation(printed=printed, derived=in_first_stage(PRINTED)[0])
+PRINTED_NF = sp.Matrix(
+    [[1, 1, 1, 1, 1], [1, 2, 4, 8, 16], [1, 3, 9, 27, 81], [1, 4, 16, 64, 256], [1, 5, 25, 125, 625]]
+)
 
 
-@claim("6.Hf")
-def first_stage_measurement():
-    """H_f = (1, 1, 1, 1, 1)."""
-    return Equation(printed=sp.Matrix([[1, 1, 1, 1, 1]]), derived=in_first_stage(PRINTED)[1])
-
-
-@claim("6.Nf")
-def first_stage_observability():
-    """N_f for n = 5."""
-    printed = sp.Matrix(
-        [
-            [1, 1, 1, 1, 1],
-            [1, 2, 4, 8, 16],
-            [1, 3, 9, 27, 81],
-            [1, 4, 16, 64, 256],
-            [1, 5, 25, 125, 625],
-        ]
-    )  # fmt: skip
-    return Equation(printed=printed, derived=N_f(PRINTED))
+first_stage_observability = claim("6.Nf", "N_f for n = 5.", lambda: Equation(PRINTED_NF, N_f(PRINTED)))
 
 
 @lru_cache(maxsize=1)
@@ -171,27 +153,12 @@ def say_entries(rows: list[dict[tuple[int, int], int]]) -> tuple[dict, ...]:
 
 @claim("6.Phif.triangular")
 def transition_is_triangular():
-    """Phi_f is upper triangular with integer elements."""
-    Phi = transitions()
-    holds = all(Phi[i, j].is_Integer and (j >= i or Phi[i, j] == 0) for i in range(LARGEST) for j in range(LARGEST))
+    """Phi_f is upper triangular with integer elements, Phi_f,ii = 1 and Phi_f,1j = 1."""
+    Phi, places = transitions(), [(i, j) for i in range(LARGEST) for j in range(LARGEST)]
+    holds = all(Phi[i, j].is_Integer and (j >= i or Phi[i, j] == 0) for i, j in places)
+    holds = holds and all(Phi[i, j] == 1 for i, j in places if i in (0, j))
     rows = [{(i, j): comb(j, i) for j in range(LARGEST)} for i in range(LARGEST)]
-    return Property(True, Finding(holds, "exact matrix", PROVED, scope=SCOPE), say_entries(rows))
-
-
-@claim("6.Phif.diagonal")
-def transition_diagonal():
-    """Phi_f,ii = 1."""
-    found = Finding(tuple(int(transitions()[i, i]) for i in range(LARGEST)), "exact matrix", PROVED, scope=SCOPE)
-    meaning = say_entries([{(i, i): 1 for i in range(LARGEST)}])
-    return Property(printed=(1,) * LARGEST, derived=found, meaning=meaning)
-
-
-@claim("6.Phif.first_row")
-def transition_first_row():
-    """Phi_f,1j = 1."""
-    found = Finding(tuple(int(x) for x in transitions()[0, :]), "exact matrix", PROVED, scope=SCOPE)
-    meaning = say_entries([{(0, j): 1 for j in range(LARGEST)}])
-    return Property(printed=(1,) * LARGEST, derived=found, meaning=meaning)
+    return fact(True, holds, "exact matrix", PROVED, scope=SCOPE, meaning=say_entries(rows))
 
 
 def recurrence_holds(row_step: int) -> Property:
@@ -211,24 +178,19 @@ def recurrence_holds(row_step: int) -> Property:
         before = [write_rows([Phi[i + k, j] for j in columns]) for k in (0, 1)]
         return state(write_rows([Phi[target(i), j + 1] for j in columns]), "=", " + ".join(before))
 
-    return Property(True, Finding(found, "exact matrix", PROVED, scope=SCOPE), tuple(map(say, rows)))
+    return fact(True, found, "exact matrix", PROVED, scope=SCOPE, meaning=tuple(map(say, rows)))
 
 
-@claim(
+recurrence_printed = claim(
     "6.Phif.recurrence",
-    expect=REFUTED,
+    "Phi_(i+i, j+1) = Phi_ij + Phi_(i+1)j, as it came out of the scan.",
+    lambda: recurrence_holds(0),
     slip="scan",
     reason="the first index is i + 1: with i + i, i = 2, j = 3 the rule asks Phi_4,4 = 2 + 1, but it is 1",
 )
-def recurrence_printed():
-    """Phi_(i+i, j+1) = Phi_ij + Phi_(i+1)j, as it came out of the scan."""
-    return recurrence_holds(0)
-
-
-@claim("6.Phif.recurrence*", corrects="6.Phif.recurrence")
-def recurrence():
-    """Phi_(i+1, j+1) = Phi_ij + Phi_(i+1)j: Pascal's triangle."""
-    return recurrence_holds(1)
+recurrence = claim(
+    "6.Phif.recurrence*", "Phi_(i+1, j+1) = Phi_ij + Phi_(i+1)j: Pascal's triangle.", lambda: recurrence_holds(1)
+)
 
 
 def reached(allowed) -> int:
@@ -249,24 +211,19 @@ def reached(allowed) -> int:
     return sum(j > i for i, j in known)
 
 
-@claim(
+recurrence_range_printed = claim(
     "6.Phif.range",
-    expect=REFUTED,
+    "The recurrence for i >= j determines all 10 elements above the diagonal (n = 5).",
+    lambda: fact(10, reached(lambda i, j: i >= j), "closure of the rules", PROVED, scope="n = 5", unsaid=FOLLOWED),
     slip="paper",
     reason="for i >= j the recurrence only says 0 = 0 + 0 and 1 = 1 + 0: six of the ten elements above the "
     "diagonal stay undetermined; the range has to be i <= j",
 )
-def recurrence_range_printed():
-    """The recurrence for i >= j determines all 10 elements above the diagonal (n = 5)."""
-    found = Finding(reached(lambda i, j: i >= j), "closure of the rules", PROVED, scope="n = 5")
-    return Property(printed=10, derived=found, unsaid="what rules reach is found by following them to the end")
-
-
-@claim("6.Phif.range*", corrects="6.Phif.range")
-def recurrence_range():
-    """The recurrence for i <= j determines all 10 elements above the diagonal (n = 5)."""
-    found = Finding(reached(lambda i, j: i <= j), "closure of the rules", PROVED, scope="n = 5")
-    return Property(printed=10, derived=found, unsaid="what rules reach is found by following them to the end")
+recurrence_range = claim(
+    "6.Phif.range*",
+    "The recurrence for i <= j determines all 10 elements above the diagonal (n = 5).",
+    lambda: fact(10, reached(lambda i, j: i <= j), "closure of the rules", PROVED, scope="n = 5", unsaid=FOLLOWED),
+)
 
 
 @claim("6.Nf.elements")
@@ -276,31 +233,28 @@ def observability_elements():
     printed = tuple(i**j for i in range(1, 17) for j in range(16))
     rows = [[f"{i}**{j}" for j in range(16)] for i in range(1, 17)]
     meaning = (state(write_rows(rows), "=", write_rows(N_f(16).tolist())),)
-    return Property(printed, Finding(found, "exact matrix", PROVED, scope="n = 16"), meaning)
+    return fact(printed, found, "exact matrix", PROVED, scope="n = 16", meaning=meaning)
 
 
 @claim("6.Nf.row_step")
 def observability_rows_for_every_index():
     """Row x of N_f times Phi_f is row x + 1, for every x: the binomial theorem, columns 1 to 16."""
     x = sp.Symbol("x", real=True)
-    derived = [sum(x**m * comb(j, m) for m in range(j + 1)) for j in range(16)]
-    return Equation(printed=[(x + 1) ** j for j in range(16)], derived=derived)
+    return Equation(
+        [(x + 1) ** j for j in range(16)], [sum(x**m * comb(j, m) for m in range(j + 1)) for j in range(16)]
+    )
 
 
 # -- two stages: the second ----------------------------------------------------------------------------
 
 
-@claim("6.Ns.unit")
-def second_stage_columns():
-    """N_s = N_f D_s^-1 has columns of unit length; n = 5."""
-    norms = model.norms_of_columns(N_f(PRINTED) * D_s(PRINTED).inv())
-    return Equation(printed=[sp.Integer(1)] * PRINTED, derived=norms)
-
-
-@claim("6.Np")
-def observability_by_stages():
-    """N_p = N_f D_f; n = 5."""
-    return Equation(printed=N_f(PRINTED) * D_f(PRINTED), derived=N_p(PRINTED))
+observability_by_stages = claim(
+    "6.Np",
+    "N_p = N_f D_f with the printed matrices; n = 5.",
+    lambda: Equation(
+        PRINTED_NF * sp.diag(1, rho * tau, rho * tau**2 / 2, rho * tau**3 / 6, rho * tau**4 / 24), N_p(PRINTED)
+    ),
+)
 
 
 @claim("6.Np.rows")
@@ -308,43 +262,28 @@ def observability_row_by_row():
     """Row x of N_p, H Phi(x tau), is row (x^0, x^1, ...) of N_f times D_f, for every real x; n = 12."""
     x = sp.Symbol("x", positive=True)
     n = 12
-    row = model.first_state(n) * model.nilpotent_exponential(model.dynamics(n, rho), x * tau)
-    printed = [x**j * (rho * tau**j / sp.factorial(j) if j else 1) for j in range(n)]
-    return Equation(printed=printed, derived=list(row))
+    return Equation(
+        [x**j * (rho * tau**j / sp.factorial(j) if j else 1) for j in range(n)],
+        list(model.first_state(n) * model.nilpotent_exponential(model.dynamics(n, rho), x * tau)),
+    )
 
 
-@claim("6.Np.stages")
-def observability_by_both_stages():
-    """N_p = N_s D_s D_f; n = 5."""
-    N_s = N_f(PRINTED) * D_s(PRINTED).inv()
-    return Equation(printed=N_s * D_s(PRINTED) * D_f(PRINTED), derived=N_p(PRINTED))
-
-
-@claim("6.D")
-def scalings_multiply():
-    """D = D_s D_f for positive rho and tau; n = 5."""
-    return Equation(printed=D_s(PRINTED) * D_f(PRINTED), derived=D(PRINTED))
-
-
-@claim("6.D.orders")
-def scalings_multiply_for_other_orders():
-    """D = D_s D_f for positive rho and tau, column by column, n = 2 to 8."""
-    printed = [x for n in range(2, 9) for x in (D_s(n) * D_f(n)).diagonal()]
-    return Equation(printed=printed, derived=[x for n in range(2, 9) for x in D(n).diagonal()])
-
-
-@claim("6.Ns")
-def both_procedures_meet():
-    """N_s = N_pN for positive rho and tau; n = 5."""
-    N_s = N_f(PRINTED) * D_s(PRINTED).inv()
-    return Equation(printed=N_s, derived=N_p(PRINTED) * D(PRINTED).inv())
-
-
-@claim("6.S")
-def both_variables_meet():
-    """S = D_s f = x^q; n = 5."""
-    x = sp.Matrix(X)
-    return Equation(printed=list(D_s(PRINTED) * D_f(PRINTED) * x), derived=list(D(PRINTED) * x))
+scalings_multiply = claim(
+    "6.D", "D = D_s D_f for positive rho and tau; n = 5.", lambda: Equation(D_s(PRINTED) * D_f(PRINTED), D(PRINTED))
+)
+scalings_multiply_for_other_orders = claim(
+    "6.D.orders",
+    "D = D_s D_f for positive rho and tau, column by column, n = 2 to 8.",
+    lambda: Equation(
+        [x for n in range(2, 9) for x in (D_s(n) * D_f(n)).diagonal()],
+        [x for n in range(2, 9) for x in D(n).diagonal()],
+    ),
+)
+both_procedures_meet = claim(
+    "6.Ns",
+    "N_s = N_pN for positive rho and tau; n = 5.",
+    lambda: Equation(N_f(PRINTED) * D_s(PRINTED).inv(), N_p(PRINTED) * D(PRINTED).inv()),
+)
 
 
 @claim("6.more_stages")
@@ -352,4 +291,4 @@ def an_earlier_stage_takes_rho_out():
     """With D_p = diag(1, rho, ..., rho) as a first stage the model no longer contains rho; n = 5."""
     D_p = sp.diag(1, *([rho] * (PRINTED - 1)))
     changes = [*(D_p * step(PRINTED) * D_p.inv()).diff(rho), *(measured(PRINTED) * D_p.inv()).diff(rho)]
-    return Equation(printed=[sp.Integer(0)] * len(changes), derived=changes)
+    return Equation([sp.Integer(0)] * len(changes), changes)

@@ -12,7 +12,7 @@ from functools import cache
 from itertools import pairwise
 from typing import Any
 
-from navsym.claims import CERTIFIED, Finding, Property, claim
+from navsym.claims import CERTIFIED, claim, fact
 from navsym.trajectory.conditioning import Enclosure
 from navsym_papers.trajectory.table import (
     COLUMNS,
@@ -81,15 +81,16 @@ def each_state_costs_nearly_a_digit():
     rising.append((ends[3][2], "<", Fraction("6.35") * ends[2][1]))
     rising.append((ends[LARGEST][1], ">", Fraction("7.75") * ends[LARGEST - 1][2]))
     meaning, certificate = say_comparison((end[0] for end in ends.values()), rising)
-    found = Finding(
+    return fact(
+        ("6.3", "7.8"),
         (f"{float(low):.1f}", f"{float(high):.1f}"),
         METHOD,
         CERTIFIED,
         scope="n = 3 ... 20 against n - 1",
         evidence=f"{float(low):.4f} to {float(high):.4f}; sixteen digits are used up at n = 20",
         certificate=certificate,
+        meaning=meaning,
     )
-    return Property(printed=("6.3", "7.8"), derived=found, meaning=meaning)
 
 
 @claim("table.curse.first", expect=CERTIFIED)
@@ -104,8 +105,9 @@ def the_first_stage_alone_grows_faster_than_any_power():
         steps += [(after[1], ">", Fraction(least) * before[2]), (after[2], "<", Fraction(most) * before[1])]
     meaning, certificate = say_comparison((end[0] for end in said_of), steps)
     scope = "n = 3 ... 20 against n - 1"
-    found = Finding((rising, *ends), METHOD, CERTIFIED, scope=scope, certificate=certificate)
-    return Property(printed=(True, "10.3", "104"), derived=found, meaning=meaning)
+    return fact(
+        (True, "10.3", "104"), (rising, *ends), METHOD, CERTIFIED, scope=scope, certificate=certificate, meaning=meaning
+    )
 
 
 @claim("6.second_stage", expect=CERTIFIED)
@@ -118,8 +120,9 @@ def the_second_stage_always_helps():
     tenth = [(first[1], ">", Fraction("1.105") * second[2]), (first[2], "<", Fraction("1.115") * second[1])]
     meaning, certificate = say_order(pairs, tenth)
     value = (all(found), f"{float(gain):.2f}")
-    finding = Finding(value, METHOD, CERTIFIED, scope="n = 2 ... 20", certificate=certificate)
-    return Property(printed=(True, "1.11"), derived=finding, meaning=meaning)
+    return fact(
+        (True, "1.11"), value, METHOD, CERTIFIED, scope="n = 2 ... 20", certificate=certificate, meaning=meaning
+    )
 
 
 @claim("6.first_stage.worse", expect=CERTIFIED)
@@ -138,5 +141,6 @@ def the_first_stage_alone_can_worsen():
         for step in STEPS
     ]
     meaning, certificate = say_order(pairs)
-    found = Finding(worse, METHOD, CERTIFIED, scope="n and tau of the table", certificate=certificate)
-    return Property(printed=expected, derived=found, meaning=meaning)
+    return fact(
+        expected, worse, METHOD, CERTIFIED, scope="n and tau of the table", certificate=certificate, meaning=meaning
+    )

@@ -11,7 +11,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
-from navsym.claims import CERTIFIED, REFUTED, UNDECIDED, Claim, Finding, Property, state
+from navsym.claims import CERTIFIED, REFUTED, UNDECIDED, Claim, Property, fact, state
 from navsym.models.earth import observability_rows, power_rows
 from navsym.trajectory.conditioning import Enclosure, certify_condition, condition_number, state_condition
 
@@ -114,7 +114,8 @@ def entry(n: int, step: str, column: str, printed: str) -> Property:
     found = true_value(n, step, column)
     lower, upper = found.decimal(12)
     meaning = state_condition(entry_rows(n, step, column), *ends_of(printed), equilibrate=column in UNIT_COLUMNS)
-    finding = Finding(
+    return fact(
+        printed,
         in_printed_format(found, printed),
         "exact matrix, certified singular values",
         CERTIFIED,
@@ -122,8 +123,8 @@ def entry(n: int, step: str, column: str, printed: str) -> Property:
         evidence=f"condition number in [{lower}, {upper}]; printed value off by "
         f"{float(relative_error(printed, found)):+.1e}",
         certificate=certify_condition(meaning),
+        meaning=(meaning,),
     )
-    return Property(printed, finding, (meaning,))
 
 
 def entry_claim(n: int, step: str, column: str, printed: str, corrects: bool, wrong: bool) -> Claim:

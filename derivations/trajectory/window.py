@@ -53,7 +53,7 @@ def price(r: int) -> Claim:
         return Equation([least_variance(r, d) for d in degrees], [of_derivative(r, d) for d in degrees])
 
     title = f"White noise, window T: least variance of the {NAMES[r]} at its end for motions of degree up to {LARGEST}."
-    return claim(f"window.{NAMES[r]}", title=title)(derive)
+    return claim(f"window.{NAMES[r]}", title, derive)
 
 
 PRICES = tuple(price(r) for r in range(4))
@@ -63,8 +63,7 @@ PRICES = tuple(price(r) for r in range(4))
 def powers_of_the_window():
     """Stretching the window stretches row and column k of the information by T^k (n = 5): T^-(2r+1) follows."""
     stretch = sp.diag(*(T**k for k in range(5)))
-    at_one = information(4).subs({T: 1, q: 1})
-    return Equation(information(4), T / q * stretch * at_one * stretch)
+    return Equation(information(4), T / q * stretch * information(4).subs({T: 1, q: 1}) * stretch)
 
 
 def falling(degree: sp.Expr, r: int) -> sp.Expr:
@@ -108,24 +107,26 @@ def price_of_the_order():
     (The cube root of 400.) n = 3 and n = 4 are 4 and 10 times worse.
     """
     speed = [least_variance(1, d) for d in (1, 2, 3, 4)]
-    stretch = sp.cbrt(400)
-    shorter = of_derivative(1, 1)
     return Equation(
-        [16, 100, 400, shorter], [*(v / speed[0] for v in speed[1:]), of_derivative(1, 4).subs(T, stretch * T)]
+        [16, 100, 400, of_derivative(1, 1)],
+        [*(v / speed[0] for v in speed[1:]), of_derivative(1, 4).subs(T, sp.cbrt(400) * T)],
     )
 
 
-@claim("window.figures", expect=CERTIFIED)
-def windows_of_the_printed_errors():
-    """1 m every 0.2 s as white noise: for 0.019 m/s n = 5 needs 138.5 s of straight course, for 0.09 m/s 49.1 s.
-
-    The yawing has a period of 360 s: the first window is more than a third of it.
-    """
-    windows = [sp.cbrt(4800 * sp.Rational("0.2") / sp.Rational(v) ** 2) for v in ("0.019", "0.09")]
-    check = [of_derivative(1, 4).subs({q: sp.Rational("0.2"), T: sp.Integer(1)})]
-    return Equation(
-        [sp.Rational("138.5"), sp.Rational("49.1"), sp.Integer(960)], [*windows, *check], tolerance=sp.Rational(1, 20)
-    )
+# The yawing has a period of 360 s: the first window is more than a third of it.
+windows_of_the_printed_errors = claim(
+    "window.figures",
+    "1 m every 0.2 s as white noise: for 0.019 m/s n = 5 needs 138.5 s of straight course, for 0.09 m/s 49.1 s.",
+    lambda: Equation(
+        [sp.Rational("138.5"), sp.Rational("49.1"), sp.Integer(960)],
+        [
+            *[sp.cbrt(4800 * sp.Rational("0.2") / sp.Rational(v) ** 2) for v in ("0.019", "0.09")],
+            *[of_derivative(1, 4).subs({q: sp.Rational("0.2"), T: sp.Integer(1)})],
+        ],
+        tolerance=sp.Rational(1, 20),
+    ),
+    expect=CERTIFIED,
+)
 
 
 s = sp.Symbol("s", positive=True)  # rho tau
@@ -153,8 +154,10 @@ def normalisation_is_optimal_for_two_states():
     Equal at s = sqrt(2/5): a step of 0.63 s in the radius channel, of four million seconds in that of latitude.
     """
     rows = sp.Matrix([[1, s], [1, 2 * s]])
-    value = sum(entry**2 for entry in rows) / sp.sqrt(sp.expand(rows.det()) ** 2)
-    return Equation(2 * sp.sqrt(10) + (sp.sqrt(2) - sp.sqrt(5) * s) ** 2 / s, value)
+    return Equation(
+        2 * sp.sqrt(10) + (sp.sqrt(2) - sp.sqrt(5) * s) ** 2 / s,
+        sum(entry**2 for entry in rows) / sp.sqrt(sp.expand(rows.det()) ** 2),
+    )
 
 
 @claim("6.Nf.determinant")

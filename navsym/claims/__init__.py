@@ -14,6 +14,7 @@ from navsym.claims.statement import (
     Property,
     Statement,
     Worded,
+    fact,
     state,
 )
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Status, Verdict, Verdicts
@@ -45,5 +46,6 @@ __all__ = [
     "claims_of",
     "compare_equations",
     "equation_of",
+    "fact",
     "state",
 ]

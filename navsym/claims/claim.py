@@ -12,7 +12,7 @@ from typing import Any, Literal, cast
 
 from navsym.claims.display import mark_verdict, write_card
 from navsym.claims.statement import Equation, Statement
-from navsym.claims.verdict import PROVED, Status, Verdict
+from navsym.claims.verdict import PROVED, REFUTED, Status, Verdict
 from navsym.core.errors import MissingEngineError
 
 #: Who slipped: the authors, the copy that was read, or one of the two, nobody can tell which.
@@ -78,16 +78,18 @@ Derive = Callable[[], Statement | Iterator[tuple[Any, Any]]]
 
 def claim(
     number: str,
+    title: str | None = None,
+    derive: Derive | None = None,
     *,
-    expect: Status = PROVED,
+    expect: Status | None = None,
     corrects: str | None = None,
     slip: Slip | None = None,
     reason: str = "",
-    title: str | None = None,
-) -> Callable[[Derive], Claim]:
-    """Decorator that turns a function without arguments into a :class:`Claim`.
+) -> Any:
+    """A :class:`Claim` of a number, a title and a function that states it; without the function a decorator of one.
 
-    A function that yields pairs of a printed and a derived side states that each pair is equal.
+    Without a title it is the first line of the docstring. A slip is declared REFUTED, a number with a star corrects
+    the one without. A function that yields pairs of a printed and a derived side states that each pair is equal.
     """
 
     def make(derive: Derive) -> Claim:
@@ -97,13 +99,13 @@ def claim(
             number=number,
             title=title if title is not None else title_of(derive),
             derive=cast(Callable[[], Statement], collect_pairs(derive) if is_generator else derive),
-            expect=expect,
-            corrects=corrects,
+            expect=expect or (REFUTED if slip else PROVED),
+            corrects=corrects or (number.removesuffix("*") if number.endswith("*") else None),
             slip=slip,
             reason=reason,
         )
 
-    return make
+    return make if derive is None else make(derive)
 
 
 def collect_pairs(derive: Callable[[], Any]) -> Callable[[], Statement]:

@@ -166,6 +166,17 @@ class Property:
         return display_latex(rf"{latex_of(self.printed)} \overset{{?}}{{=}} {latex_of(self.derived.value)}")
 
 
+def fact(
+    printed: Any, value: Any, method: str, status: Status, *, unsaid: str = "", meaning: Any = (), **found: Any
+) -> Property:
+    """A :class:`Property` of a printed fact and of the value that a method found, with the parts of a :class:`Finding`.
+
+    >>> fact(2, 2, "a count", Status.PROVED, scope="one list").derived.value
+    2
+    """
+    return Property(printed, Finding(value, method, status, **found), tuple(meaning), unsaid)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Worded(Property):
     """Whether a formula in the words of files holds, with that formula and a point where it fails.

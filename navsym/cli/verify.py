@@ -61,7 +61,9 @@ def as_text(ledger: Ledger, seconds: float) -> str:
     from navsym.claims.display import count_in_words as counted
 
     papers = ledger.by_paper()
-    rows = [(r.number, str(r.status), r.title, remark_of(r)) for _, records in papers for r in records]
+    several = len(papers) > 1  # each has an equation (1)
+    every = [r for _, records in papers for r in records]
+    rows = [(r.id if several else r.number, str(r.status), r.title, remark_of(r)) for r in every]
     blocks = [table(("claim", "verdict", "what it says", "remark"), rows)]
     for paper, records in papers:
         numbered = [counted(paper.equations, "numbered equation"), f"{paper.claimed} claimed"]

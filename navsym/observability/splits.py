@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from navsym.core.errors import DomainError, ShapeError
-from navsym.core.rational_functions import Quotient, cancel_fraction, clear_denominators
+from navsym.core.rational_functions import Quotient, cancel_fraction
 from navsym.observability.chains import Chain, JointObservability, chain_rows, need_observable
 from navsym.observability.linear import Matrix, determinant, linear_relation
 from navsym.observability.ring import Ring
@@ -88,16 +88,6 @@ def companion(coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
 def last_row(rows: int, coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
     """Zeros, and the coefficients in the last row."""
     return sp.ImmutableMatrix(rows, len(coefficients), lambda r, c: coefficients[c] if r == rows - 1 else sp.Integer(0))
-
-
-def shift(size: int) -> sp.ImmutableMatrix:
-    """F of (1.14): ones above the diagonal and nothing else."""
-    return companion([sp.Integer(0)] * size)
-
-
-def corner(rows: int, columns: int) -> sp.ImmutableMatrix:
-    """F° of (1.14): a single one at the lower left."""
-    return sp.ImmutableMatrix(rows, columns, lambda r, c: int(r == rows - 1 and c == 0))
 
 
 # Which splits there are
@@ -205,30 +195,3 @@ def not_a_basis(found: JointObservability, i: int, j: int) -> DomainError:
     return DomainError(
         f"split {i},{j}: expected a basis; got det({', '.join(rows)}) = 0 for all parameters; choose one of {feasible}"
     )
-
-
-def exact_inverse(name: str, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """Exact inverse of a matrix of rational functions; DomainError when the determinant vanishes."""
-    size = matrix.rows
-    ring = Ring.of(matrix)
-    columns = [[ring.quotient(matrix[r, c]) for r in range(size)] for c in range(size)]
-    vectors, bottom = clear_denominators(columns, ring.constant(1))
-    if determinant(vectors, ring) == 0:
-        raise DomainError(f"{name}: expected an invertible matrix; got determinant 0 for all parameters; change it")
-    result = sp.zeros(size, size)
-    for c in range(size):
-        target = [bottom if r == c else ring.constant(0) for r in range(size)]
-        for r, value in enumerate(linear_relation(vectors, target, ring) or []):
-            result[r, c] = ring.expression(value)
-    return sp.ImmutableMatrix(result)
-
-
-def unit_row(size: int) -> sp.ImmutableMatrix:
-    """(1 0 ... 0)."""
-    return sp.ImmutableMatrix(1, size, lambda _, c: int(c == 0))
-
-
-def to_lowest_terms(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
-    """Entries as quotients of polynomials in lowest terms."""
-    ring = Ring.of(matrix)
-    return sp.ImmutableMatrix(*matrix.shape, [ring.expression(ring.quotient(x)) for x in matrix])

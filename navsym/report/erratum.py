@@ -34,12 +34,14 @@ class Check:
     """Arithmetic that a reader can repeat: both sides at a point (the whole line where there is none).
 
     entry : which entry of a matrix or a list is meant, from 1; 0 where the sides are single
+    whole : the printed statement is a whole equation, and these are its two sides
     """
 
     at: tuple[Formula, ...]
     entry: int
     printed: str
     derived: str
+    whole: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,4 +195,5 @@ def check_of(record: Record) -> Check | None:
     line = next((line for line in arithmetic(record) if line.differs), None)
     if line is None or len(point) > MOST_COORDINATES or (not point and line.entry):
         return None
-    return Check(coordinates(point), line.entry, ball_words(line.printed), ball_words(line.derived))
+    printed, derived = ball_words(line.printed), ball_words(line.derived)
+    return Check(coordinates(point), line.entry, printed, derived, whole=not record.derived)

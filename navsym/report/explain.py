@@ -152,8 +152,10 @@ def arithmetic(record: Record) -> list[Arithmetic]:
     point = record.counterexample
     if point is None:
         return []
-    printed = entries_of(record.printed.split(" +- ")[0])
-    derived = entries_of(record.derived)
+    left, right = record.printed.split(" +- ")[0], record.derived
+    if not right and left.count(" = ") == 1:  # a whole equation was stated
+        left, right = left.split(" = ")
+    printed, derived = entries_of(left), entries_of(right)
     if not derived or len(printed) != len(derived):
         return []
     single, found = len(printed) == 1, []
@@ -321,8 +323,9 @@ def counterexample_steps(record: Record) -> list[Step]:
     for line in arithmetic(record):
         if line.differs:
             start = f"Entry {line.entry}: the" if line.entry else "The"
+            first, second = ("printed", "derived") if record.derived else ("left", "right")
             printed, derived = ball_words(line.printed), ball_words(line.derived)
-            found.append(Step("", ended(f"{start} printed side is {printed}, the derived side is {derived}")))
+            found.append(Step("", ended(f"{start} {first} side is {printed}, the {second} side is {derived}")))
     if record.difference:
         low, high = record.difference.lower, record.difference.upper
         value = f"is {ball_words((low, high))}" if low == high else f"lies between {low} and {high}"

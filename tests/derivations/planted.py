@@ -84,7 +84,12 @@ class Places(ast.NodeTransformer):
         return node if node.arg in ("printed", "title", "reason", "tolerance") else self.generic_visit(node)
 
     def visit_Call(self, node: ast.Call) -> ast.Call:
-        return node if ast.unparse(node.func).startswith("printed.") else self.generic_visit(node)
+        name = ast.unparse(node.func)
+        if name in ("Equation", "Bound", "Property", "fact") and node.args:  # the first argument is what is printed
+            node.args[1:] = [self.visit(argument) for argument in node.args[1:]]
+            node.keywords = [self.visit(keyword) for keyword in node.keywords]
+            return node
+        return node if name.startswith("printed.") else self.generic_visit(node)
 
     def visit_JoinedStr(self, node: ast.JoinedStr) -> ast.JoinedStr:
         return node

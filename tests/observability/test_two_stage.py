@@ -11,7 +11,7 @@ import sympy as sp
 from navsym.core.errors import DomainError, ShapeError
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
-from navsym.observability.splits import choose_split, companion, unit_row
+from navsym.observability.splits import choose_split, companion
 from navsym.observability.two_stage import (
     POLE,
     companion_gains,
@@ -26,6 +26,7 @@ from navsym_papers.joint_correction.experiment.observer import (
     observer_of,
     two_stage_blocks,
 )
+from navsym_papers.joint_correction.matrices import unit_row
 
 p = POLE
 lam, nu = sp.symbols("lam nu", positive=True)

@@ -72,6 +72,7 @@ def card() -> Paper:
         "English",
         ("1", "2", "3", "4", "5", "6", "7"),
         definitions={"5": "notation"},
+        left_out={"section 2: <easily> realised": "a judgement & no figure"},
     )
 
 

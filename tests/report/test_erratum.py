@@ -94,9 +94,10 @@ EARTH = 6.371e6
 FIGURES = [  # claim, the figure as the sheet has it, and what it is
     ("multistructure:7", "0.41", SQUARED),
     ("multistructure:7", "1.22", (ABOVE + BELOW) / SQUARED),
-    ("multistructure:13.index", "1.21", sum(spread((0.3, 0.7), (0, 1)))),
-    ("multistructure:13.index", "0.894", 2 * spread((0.3, 0.7), (0, 1))[0]),
-    ("multistructure:13.index", "1.526", 2 * spread((0.3, 0.7), (0, 1))[1]),
+    ("multistructure:13", "1.21", sum(spread((0.3, 0.7), (0, 1)))),
+    ("multistructure:13", "0.894", 2 * spread((0.3, 0.7), (0, 1))[0]),
+    ("multistructure:13", "1.526", 2 * spread((0.3, 0.7), (0, 1))[1]),
+    ("guaranteed_velocity:4.11.N", "0.414", 4 * math.sin(math.pi / 4) * math.sin(math.pi / 8) ** 2),
     ("multistructure:20.integral", "0.74", 0.9 * 0.8 + 0.1 * 0.2),
     ("multistructure:4.type", "5.4", 1e7 * math.tan(math.radians(60)) / (6.37e6 * math.cos(math.radians(60)))),
     ("terrain_search:gain", "17.8", 40.05 / 2.25),
@@ -125,6 +126,15 @@ def test_a_refuted_statement_without_a_slip_is_not_dropped(module, number, slip)
     entries = erratum_of(card, [own]).entries
     assert [entry.slip for entry in entries] == ([slip] if slip else [])
     assert all(entry.reason == "The statement is refuted." for entry in entries)
+
+
+def test_a_whole_equation_is_checked_by_its_two_sides():
+    record = next(r for r in LEDGER if r.status == "REFUTED" and r.slip and not r.cause)
+    stated = {"printed": "sin(2*a) = sin(a)*cos(a)", "derived": "", "counterexample": {"a": "1"}}
+    card = Paper("own", "T", (), 2020, "", "", ("1",))
+    ((one,),) = [erratum_of(card, [replace(record, id="own:1", paper="own", number="1", **stated)]).entries]
+    assert one.check.whole and float(one.check.printed.rstrip("…")) == pytest.approx(math.sin(2), abs=1e-9)
+    assert float(one.check.derived.rstrip("…")) == pytest.approx(math.sin(1) * math.cos(1), abs=1e-9)
 
 
 def test_what_covers_several_figures_becomes_a_table():

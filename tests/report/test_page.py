@@ -52,6 +52,11 @@ def pages(files):
     return {name: Reading(text) for name, text in files.items() if name.endswith(".html")}
 
 
+def test_a_page_says_what_no_claim_judges_and_why(files, card):
+    text = Reading(files["sample.html"]).text
+    assert all(statement in text and why in text for statement, why in card.left_out.items())
+
+
 def test_a_report_has_an_index_a_page_and_an_erratum_sheet_for_each_paper(files):
     assert {"index.html", "sample.html", "sample.erratum.html", "sample.erratum.tex", "verdicts.json"} <= set(files)
     assert "certificates/sample_1-" in " ".join(files)

@@ -267,9 +267,9 @@ def chain_matrix(kappa: float) -> Array:
             [0, -1, 0, -kappa, 0, 0],
             [-kappa, 0, 0, 0, 1, 1],
             [0, -kappa, 0, -1, 0, 0],
-            [kappa, 0, 0, 0, -1, 0],
+            [kappa, 0, 0, 0, -1, 0]
         ],
-        dtype=float,
+        dtype=float
     )  # fmt: skip
 
 

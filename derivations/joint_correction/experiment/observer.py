@@ -18,7 +18,8 @@ import sympy as sp
 
 from navsym.core.arrays import Array, as_array, freeze
 from navsym.core.errors import DomainError, ShapeError
-from navsym.observability.splits import Split, exact_inverse, unit_row
+from navsym.observability.splits import Split
+from navsym_papers.joint_correction.matrices import exact_inverse, unit_row
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,10 +49,10 @@ def two_stage_blocks(chosen: Split, C1: sp.MatrixBase | None = None, C2: sp.Matr
     two, C2_inverse = free_matrix("C2", C2, chosen.j)
     return TwoStageBlocks(
         L=sp.ImmutableMatrix.vstack(one * chosen.L[: chosen.i, :], two * chosen.L[chosen.i :, :]),
-        G_x=one * chosen.Theta * C1_inverse,  # joint_correction:1.5.Gx
-        g_x=unit_row(chosen.i) * C1_inverse,  # joint_correction:1.5.gx
-        G_z1=two * chosen.Phi_x * C1_inverse,  # joint_correction:1.10.Gz1
-        G_z2=two * chosen.Phi_z * C2_inverse,  # joint_correction:1.10.Gz2
+        G_x=one * chosen.Theta * C1_inverse,  # joint_correction:1.5.x.any
+        g_x=unit_row(chosen.i) * C1_inverse,  # joint_correction:1.5.gx.any
+        G_z1=two * chosen.Phi_x * C1_inverse,  # joint_correction:1.9.z.any
+        G_z2=two * chosen.Phi_z * C2_inverse,  # joint_correction:1.9.z.any
         g_z1=sp.ImmutableMatrix.zeros(1, chosen.i),
         g_z2=unit_row(chosen.j) * C2_inverse,  # joint_correction:1.10.gz*
     )

@@ -145,7 +145,7 @@ def scaled_model(model: SteppedModel, scale: Array) -> SteppedModel:
 
 
 def normalised_scale(n: int) -> Array:
-    """D_s: x^q = D_s f, column norms of N_f (trajectory:6.S), (n,)."""
+    """D_s: x^q = D_s f, column norms of N_f (trajectory:6.D), (n,)."""
     return np.linalg.norm(np.array(power_rows(n), dtype=float), axis=0)
 
 
