@@ -31,6 +31,20 @@ def command(
         list[str] | None,
         typer.Option(help='what could be measured, such as "gps = x + a*v"; may be repeated; default: each state'),
     ] = None,
+    accuracy: Annotated[
+        bool, typer.Option("--accuracy", help="the least standard deviations that the flight allows, enclosed")
+    ] = False,
+    until: Annotated[str | None, typer.Option(help="length of the flight; default: the interval of the model")] = None,
+    every: Annotated[
+        str | None, typer.Option(help="time between samples; default: noise that is white in time")
+    ] = None,
+    demand: Annotated[
+        list[str] | None, typer.Option(help='a wanted deviation, such as "bias = 1/100"; may be repeated')
+    ] = None,
+    scale: Annotated[
+        list[str] | None, typer.Option(help='unit of a state for the weakest direction, such as "tilt = 1/1000"')
+    ] = None,
+    start: Annotated[list[str] | None, typer.Option(help='first value of what moves, such as "x = 0"')] = None,
     html: Annotated[Path | None, typer.Option(help="write the decomposition to this HTML file")] = None,
     latex: Annotated[Path | None, typer.Option(help="write the decomposition to this LaTeX file")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
@@ -40,10 +54,13 @@ def command(
     Example: navsym observe examples/schuler-velocity.toml
 
     Further measurements: navsym observe model.toml --restore --candidate "gps = x"
+
+    How well a flight shows the states: navsym observe model.toml --accuracy --demand "bias = 1/100"
     """
     import navsym as nav
 
     form, twice = "NAME = formula of the states", "expected one formula of {}; got two; rename one"
+    settings = {"demand": demand, "scale": scale, "start": start}
     named = values_of(candidate, "--candidate", form, '"gps = x"', twice)
     try:
         answer = nav.observe(
@@ -57,6 +74,11 @@ def command(
     if latex is not None:
         write_text(latex, answer.latex())
     data = answer.document()
+    if accuracy or until or every or demand or scale or start:
+        given = {
+            f"{word}s".replace("starts", "start"): values_of(texts, f"--{word}") for word, texts in settings.items()
+        }
+        data["accuracy"] = answer.accuracy(until, every=every, **given).document()
     emit(data, as_json=json_, text=lambda: as_text(data))
 
 
@@ -73,7 +95,9 @@ def as_text(data: Mapping[str, Any]) -> str:
     ]
     splits = table(["i", "j", "det L", ""], rows) if rows else ""
     gains = [f"{name} = ({', '.join(row)})\n" for name, row in data["gains"].items() if name != "stable" and row]
-    return "\n".join(block for block in (overview(data), restored, drops_text(data), splits, chosen, *gains) if block)
+    reached = accuracy_text(data["accuracy"]) if "accuracy" in data else ""
+    blocks = (overview(data), restored, drops_text(data), splits, chosen, *gains, reached)
+    return "\n".join(block for block in blocks if block)
 
 
 def overview(data: Mapping[str, Any]) -> str:
@@ -156,3 +180,17 @@ def restored_text(data: Mapping[str, Any]) -> str:
         lines.append(f"enough ({fewer}):")
         lines += ["  " + ", ".join(names) for names in data["sets"]]
     return "\n".join(lines) + "\n"
+
+
+def accuracy_text(data: Mapping[str, Any]) -> str:
+    """Deviations of the targets, when demands are met, and the weakest direction."""
+    rows = []
+    for found in data["targets"]:
+        met = "" if "demand" not in found else f"{found['demand']} from t = {found['reached'] or 'later'}"
+        known = found["status"] == "certified"
+        rows.append((found["target"], f"{float(found['lower']):.9g}" if known else found["status"], met))
+    weakest = data["weakest"]
+    parts = ", ".join(f"{value:.4g} {state}" for state, value in weakest["direction"].items())
+    size = "" if weakest["deviation"] is None else f", deviation {float(weakest['deviation']['lower']):.9g}"
+    lines = [table([f"at t = {data['at']}", "least standard deviation", "demand"], rows)]
+    return "".join([*lines, f"weakest direction: {parts}{size}\n" if parts else ""])

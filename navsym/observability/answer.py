@@ -22,6 +22,7 @@ from navsym.models.along import model_along_motion
 from navsym.models.linear import LinearModel, linear_row
 from navsym.models.model import Model, contents_of, file_in_errors
 from navsym.models.modelfile import ModelFile
+from navsym.observability.accuracy import Accuracy, ask_accuracy
 from navsym.observability.certificates import Certifier, list_nested
 from navsym.observability.chains import (
     JointObservability,
@@ -64,6 +65,7 @@ class Observability(Answer):
     gains               : of the stages, None unless poles were asked for
     restoration         : the fewest further measurements, None unless asked for
     candidates          : names of what could be measured
+    contents            : what the model says beside its matrices: noise, interval and targets
 
     >>> import navsym as nav
     >>> nav.observe("examples/schuler-velocity.toml")
@@ -86,6 +88,7 @@ class Observability(Answer):
     pieces: tuple[Mapping[str, Any], ...] = ()
     inputs: tuple[str, ...] = ()
     rank_drops_open: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    contents: ModelFile | None = None
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -133,6 +136,36 @@ class Observability(Answer):
     def unobservable_basis(self) -> sp.ImmutableMatrix:
         """Rows (n - rank, n) of the directions that no measurement shows."""
         return self.joint.unobservable
+
+    def accuracy(
+        self,
+        T: Any = None,
+        *,
+        every: Any = None,
+        demands: Mapping[str, Any] | None = None,
+        scales: Mapping[str, Any] | None = None,
+        start: Mapping[str, Any] | None = None,
+    ) -> Accuracy:
+        """How well a flight shows the targets: their least standard deviations at its end, enclosed (Cramer and Rao).
+
+        T       : length of the flight, a fraction; by default the interval of the model
+        every   : time between samples, the first at 0; by default noise that is white in time, of density sigma**2
+        demands : target -> wanted deviation; the answer says when it is met
+        scales  : state -> the unit in which it counts for the weakest direction; by default 1
+        start   : what moves -> its value at the start: states of a nonlinear model, and parameters with rates
+
+        Raises DomainError for parameters without a value, for inputs and for relations, EmptyError without an interval,
+        UnobservableError for pieces that leave a direction open, UnknownSymbolError, and TooLargeError.
+
+        >>> import navsym as nav
+        >>> track = nav.Model("p v", F=[[0, 1], [0, 0]], H=["p"], sigma=["1/2"], interval=8)
+        >>> nav.observe(track).accuracy()
+        Accuracy(navsym model at t = 8: p 0.353553390593274, v 0.0765465544619743)
+        """
+        assert self.contents is not None
+        moving = self.model.rates
+        question = ask_accuracy(self.contents, self.joint, moving, T, every, demands or {}, scales or {}, start or {})
+        return question.answer(self.name)
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym observe``; expressions are text of the language of files."""
@@ -238,6 +271,7 @@ def observe(
         asked = restore or bool(candidates)
         chosen = rows if asked else None
         found = observe_linear(model_along_motion(contents), contents.name, request, polynomials, chosen, contents.box)
+        found = replace(found, contents=contents)
         # A two-stage split is a statement on dx/dt = F x.
         if contents.Phi is not None:
             return replace(found, kind="discrete", splits=(), best_split=None, split=None)
@@ -253,8 +287,8 @@ def observe_in_parts(contents: ModelFile) -> Observability:
     else:
         model, joint, pieces = observe_pieces(contents)
         kind = "pieces"
-    inputs = tuple(contents.inputs)
-    return Observability(contents.name, model, joint, (), {"joint": False}, kind=kind, pieces=pieces, inputs=inputs)
+    more = {"kind": kind, "pieces": pieces, "inputs": tuple(contents.inputs), "contents": contents}
+    return Observability(contents.name, model, joint, (), {"joint": False}, **more)
 
 
 def need_one_matrix(contents: ModelFile) -> None:
