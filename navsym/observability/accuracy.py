@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import reduce
 from typing import Any
 
 import sympy as sp
@@ -34,7 +33,7 @@ from navsym.observability.ring import Ring
 #: Working precisions, one after the other, digits of an answer, times of the history, and halvings of a search.
 BITS, DIGITS, NODES, HALVINGS = (256, 512, 1024, 2048), 15, 24, 24
 #: Squarings of the power iteration.
-ROUNDS = 12
+ROUNDS = 48
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +159,7 @@ class Question:
         history = tuple(filter(None, (self.describe(reach) for reach in path)))
         full = self.unseen.rows == 0 and last is not None
         weakest = {} if not history else history[-1][2]
-        deviation = as_number(largest_eigenvalue(self.scaled(last)).sqrt()) if full and last is not None else None
+        deviation = as_number(largest_eigenvalue(self.scaled(last))[0].sqrt()) if full and last is not None else None
         return Accuracy(name, write_time(self.end), tuple(listed), weakest, deviation, history, self, last)
 
     def list_nodes(self) -> list[Reach]:
@@ -220,9 +219,9 @@ class Question:
         time = float(to_fmpq(reach.at).p) / float(reach.at.q)
         if self.unseen.rows:
             return time, deviations, {}, float("inf")
-        direction, variance = strongest_direction(self.scaled(found))
+        variance, direction = largest_eigenvalue(self.scaled(found))
         named = {self.states[k]: x for k, x in zip(found.places, direction, strict=True)}
-        return time, deviations, {s: named[s] for s in self.states}, variance**0.5
+        return time, deviations, {s: named[s] for s in self.states}, float(variance.sqrt().mid())
 
     # Time until a demand is met
 
@@ -341,22 +340,23 @@ def pivot_places(M: arb_mat, scales: Sequence[fmpq], rank: int) -> list[int] | N
     return sorted(chosen)
 
 
-def strongest_direction(C: arb_mat) -> tuple[list[float], float]:
-    """The direction of the largest eigenvalue of a covariance, by its powers, and its quotient of Rayleigh; doubles."""
-    n, power = C.nrows(), C.mid()
-    for _ in range(ROUNDS):
-        power = (power * power * (1 / power.trace())).mid()
-    column = max(range(n), key=lambda k: float(power[k, k]))
-    x = arb_mat([[power[k, column]] for k in range(n)])
-    square = (x.transpose() * x)[0, 0]
-    size = float(square.sqrt())
-    return [float(v) / size for v in x.entries()], float((x.transpose() * C.mid() * x)[0, 0] / square)
+def largest_eigenvalue(C: arb_mat) -> tuple[arb, list[float]]:
+    """The largest eigenvalue of a covariance in a ball, and its direction in doubles.
 
-
-def largest_eigenvalue(C: arb_mat) -> arb:
-    """The largest eigenvalue of a symmetric matrix of balls, enclosed."""
-    values = [value.real for value in C.eig(multiple=True)]
-    return reduce(arb.max, [v.lower() for v in values]).union(reduce(arb.max, [v.upper() for v in values]))
+    ``tr C^m / n <= lambda^m <= tr C^m``, where m doubles with each squaring; numbers s are taken out on the way.
+    """
+    n, value = C.nrows(), arb(0)
+    for k in range(ROUNDS):
+        size = C.trace().mid()
+        C = C * (1 / size)
+        value += size.log() / 2**k
+        C = C * C
+    trace = C.trace()
+    value = (value + (trace / n).log().union(trace.log()) / 2**ROUNDS).exp()
+    column = max(range(n), key=lambda k: float(C[k, k].mid()))
+    x = [float(C[k, column].mid()) for k in range(n)]
+    size = sum(v * v for v in x) ** 0.5
+    return value, [v / size for v in x]
 
 
 # Certificates
@@ -365,8 +365,8 @@ def largest_eigenvalue(C: arb_mat) -> arb:
 def certify(found: Information, p: Sequence[sp.Expr]) -> dict[str, Any] | None:
     """That M between two rational matrices gives a deviation between two numbers; None where none is granted.
 
-    With a diagonal E above the radii of M, ``M - E <= M <= M + E``, and a deviation falls where information grows. Each
-    end is the least cost of weights with ``M w = p`` in noise of covariance M: the kind ``cones``.
+    With a diagonal E above the radii, M lies between ``M - E`` and ``M + E``, and a deviation falls where information
+    grows. Each end is the least cost of weights with ``M w = p`` in noise of covariance M: the kind ``cones``.
     """
     if not all(entry.is_Rational for entry in p):
         return None
@@ -381,7 +381,7 @@ def certify(found: Information, p: Sequence[sp.Expr]) -> dict[str, Any] | None:
 
 
 def round_block(block: arb_mat, bits: int) -> tuple[fmpq_mat, fmpq_mat]:
-    """A rational matrix near a block, and the diagonal E: sums of the radii and of the rounding in each row."""
+    """A rational matrix near a block, and the diagonal E: ``|r x y| <= (r/2) (x**2 u/v + y**2 v/u)`` in units u, v."""
     n = block.nrows()
     sizes = [
         int(to_fmpq(block[k, k]).ceil()).bit_length() // 2
@@ -394,7 +394,8 @@ def round_block(block: arb_mat, bits: int) -> tuple[fmpq_mat, fmpq_mat]:
         for j in range(n):
             grid = fmpq(2) ** (sizes[i] + sizes[j] - bits)
             middle[i, j] = (to_fmpq(block[min(i, j), max(i, j)]) / grid).floor() * grid
-            radius[i, i] += 2 * grid + to_fmpq(block[i, j].rad()) + to_fmpq(block[j, i].rad())
+            reach = 2 * grid + to_fmpq(block[i, j].rad()) + to_fmpq(block[j, i].rad())
+            radius[i, i] += reach * fmpq(2) ** (sizes[i] - sizes[j])
     return middle, radius
 
 
@@ -413,7 +414,7 @@ def least_deviation(M: fmpq_mat, p: Sequence[fmpq]) -> dict[str, Any] | None:
     lower, upper = lower_end(root, DIGITS), upper_end(root, DIGITS)
     rows = [[str(x) for x in row] for row in M.tolist()]
     block = {"H": rows, "norm": "l2", "size": rows, "weights": [str(w) for w in weights]}
-    dual = [str(w / from_decimal(upper)) for w in weights]
+    dual = [str(w / from_decimal(upper_end(root, 2 * DIGITS))) for w in weights]
     functional = [str(x) for x in p]
     ends = {"lower": lower, "upper": upper, "bits": BITS[0]}
     return {"kind": "cones", "blocks": [block], "functional": functional, "dual": dual, **ends}

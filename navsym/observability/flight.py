@@ -1,9 +1,9 @@
 """A model along a given flight, in balls: transition matrix and information, from node to node.
 
 ``Phi' = F Phi`` and ``W' = (H Phi)^T R^-1 (H Phi)`` start at the unit matrix and at zero. Over a constant piece both
-are blocks of one exponential (Van Loan 1978). Where F or H move they are Taylor polynomials in the time with the remainder
-of Lagrange: its coefficient is taken over a box that holds all that moves (Moore, Interval Analysis, chapter 11). A
-model in steps multiplies. Samples add ``(H Phi)^T R^-1 (H Phi)`` at their times.
+are blocks of one exponential (Van Loan 1978). Where F or H move they are Taylor polynomials in the time with the
+remainder of Lagrange: its coefficient is taken over a box that holds all that moves (Moore, Interval Analysis, chapter
+11). A model in steps multiplies. Samples add ``(H Phi)^T R^-1 (H Phi)`` at their times.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from navsym.models.along import model_along_motion
 from navsym.models.modelfile import ModelFile
 
 #: Terms of a Taylor polynomial, halvings of one step, tries of a box, and samples of a flight.
-ORDER, HALVINGS, BOXES, SAMPLES = 24, 16, 30, 20_000
+ORDER, HALVINGS, BOXES, SAMPLES = 30, 16, 30, 20_000
 #: Largest remainder of a Taylor polynomial.
-SMALL = arb(2) ** -128
+SMALL = arb(2) ** -100
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -127,14 +127,15 @@ class Flight:
     # Where F or H move
 
     def taylor_step(self, reach: Reach, until: fmpq, F: list[Tape]) -> Reach:
-        """A step that is halved until its remainder is small; the next one starts with twice its size."""
+        """A step that is halved until its remainder is small; the next one starts from there."""
         whole = until - reach.at
-        span = min(whole, self.sizes[0]) if self.sizes else whole
+        before = list(self.sizes)
+        span = first = min([whole, *before])
         while True:
             box = self.box_over(reach.values, arb(span))
             found = self.try_step(reach, span, F, box) if box is not None else None
             if found is not None:
-                self.sizes[:] = [2 * span]
+                self.sizes[:] = [max([*self.sizes, *(before if span == first else [])])]
                 return found
             if span * 2**HALVINGS < self.end:
                 break
@@ -167,8 +168,10 @@ class Flight:
         around = arb_mat(n, n, [arb(0, bound.exp().upper())] * (n * n))  # |Phi| <= exp(|F| h)
         thin, wide = self.expand(reach.values, unit_matrix(n), F), self.expand(box, around, F)
         rest = [part[ORDER] * h**ORDER for part in wide]
-        if not all(abs(x) < SMALL for part in rest for x in part.entries()):
+        largest = reduce(arb.max, [abs(x).upper() for part in rest for x in part.entries()])
+        if not largest < SMALL:
             return None
+        self.sizes[:] = [2 * span if largest * 2**ORDER < SMALL else span]
         moved, Phi, W = (
             sum((part[k] * h**k for k in range(1, ORDER)), part[0] + last)
             for part, last in zip(thin, rest, strict=True)

@@ -130,7 +130,7 @@ def test_legs_are_carried_into_each_other():
     pieces = [("0", "2", leg("0")), ("2", "5", leg("3"))]
     found = deviations(nav.observe(nav.Model("v tilt bias", pieces=pieces, H=["v"], interval=5)).accuracy())
     whole = sp.zeros(3, 3)
-    for start, end, force, reached in ((0, 2, 0, 0), (2, 5, 3, 3)):
+    for start, end, force in ((0, 2, 0), (2, 5, 3)):
         row = sp.Matrix([[1, force * (t - start), t]])
         whole += (row.T * row).applyfunc(lambda e, s=start, u=end: sp.integrate(sp.expand(e), (t, s, u)))
     end = sp.Matrix([[1, 9, 5], [0, 1, 0], [0, 0, 1]])
