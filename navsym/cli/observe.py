@@ -45,6 +45,9 @@ def command(
         list[str] | None, typer.Option(help='unit of a state for the weakest direction, such as "tilt = 1/1000"')
     ] = None,
     start: Annotated[list[str] | None, typer.Option(help='first value of what moves, such as "x = 0"')] = None,
+    jacobians: Annotated[
+        Path | None, typer.Option(help="a filter's H and Phi, step by step (TOML): do they keep what is not shown?")
+    ] = None,
     html: Annotated[Path | None, typer.Option(help="write the decomposition to this HTML file")] = None,
     latex: Annotated[Path | None, typer.Option(help="write the decomposition to this LaTeX file")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
@@ -58,6 +61,7 @@ def command(
     How well a flight shows the states: navsym observe model.toml --accuracy --demand "bias = 1/100"
     """
     import navsym as nav
+    from navsym.observability.null_space import read_jacobians
 
     form, twice = "NAME = formula of the states", "expected one formula of {}; got two; rename one"
     settings = {"demand": demand, "scale": scale, "start": start}
@@ -79,7 +83,13 @@ def command(
             f"{word}s".replace("starts", "start"): values_of(texts, f"--{word}") for word, texts in settings.items()
         }
         data["accuracy"] = answer.accuracy(until, every=every, **given).document()
+    kept = None
+    if jacobians is not None:
+        kept = answer.null_space(**read_jacobians(jacobians))
+        data["null_space"] = kept.document()
     emit(data, as_json=json_, text=lambda: as_text(data))
+    if kept is not None and not kept.holds:
+        raise typer.Exit(1)
 
 
 # Text for people
@@ -96,7 +106,8 @@ def as_text(data: Mapping[str, Any]) -> str:
     splits = table(["i", "j", "det L", ""], rows) if rows else ""
     gains = [f"{name} = ({', '.join(row)})\n" for name, row in data["gains"].items() if name != "stable" and row]
     reached = accuracy_text(data["accuracy"]) if "accuracy" in data else ""
-    blocks = (overview(data), restored, drops_text(data), splits, chosen, *gains, reached)
+    kept = null_space_text(data["null_space"]["directions"]) if "null_space" in data else ""
+    blocks = (overview(data), restored, drops_text(data), splits, chosen, *gains, reached, kept)
     return "\n".join(block for block in blocks if block)
 
 
@@ -194,3 +205,13 @@ def accuracy_text(data: Mapping[str, Any]) -> str:
     size = "" if weakest["deviation"] is None else f", deviation {float(weakest['deviation']['lower']):.9g}"
     lines = [table([f"at t = {data['at']}", "least standard deviation", "demand"], rows)]
     return "".join([*lines, f"weakest direction: {parts}{size}\n" if parts else ""])
+
+
+def null_space_text(directions: Sequence[Mapping[str, Any]]) -> str:
+    """Which directions the Jacobians of a filter keep, and the step that sees the others."""
+    rows = []
+    for found in directions:
+        place = ", ".join(f"{name} = {value}" for name, value in (found["counterexample"] or {}).items())
+        step = "" if found["step"] is None else f"step {found['step']}"
+        rows.append((found["direction"], found["status"], f"{step}: {place}" if place else step))
+    return table(["not shown by the model", "kept by the filter", "seen at"], rows)

@@ -35,6 +35,7 @@ from navsym.observability.chains import (
 )
 from navsym.observability.document import as_html, as_latex, document_of_observability
 from navsym.observability.inputs import observe_driven
+from navsym.observability.null_space import NullSpace, follow_directions, read_points
 from navsym.observability.pieces import observe_pieces
 from navsym.observability.rank_drops import RankDrop, find_drops
 from navsym.observability.sensors import Restoration, restore_observability
@@ -166,6 +167,32 @@ class Observability(Answer):
         moving = self.model.rates
         question = ask_accuracy(self.contents, self.joint, moving, T, every, demands or {}, scales or {}, start or {})
         return question.answer(self.name)
+
+    def null_space(
+        self,
+        H: Sequence[Any],
+        Phi: Sequence[Any] = (),
+        *,
+        first: Mapping[str, Any] | None = None,
+        symbols: Mapping[str, Any] | None = None,
+    ) -> NullSpace:
+        """Whether the Jacobians of a filter keep the directions that no measurement shows, each PROVED or REFUTED.
+
+        H, Phi  : matrices of formulas for each step: H_k as it is evaluated, and Phi_k from there to the next step
+        first   : state -> formula of the point at which the first step is linearised; by default its own name
+        symbols : declarations of names in H and Phi, as in :func:`navsym.prove`; real without one
+
+        A direction N is kept where all of ``H_0 N, H_1 Phi_0 N, H_2 Phi_1 Phi_0 N, ...`` vanish for all symbols.
+        Raises UnobservableError for a model that shows all, ShapeError, and the errors of the prover.
+
+        >>> import navsym as nav
+        >>> world = nav.Model("x m", dynamics=["u", "0"], H=["(m - x)**2"], u="real")
+        >>> nav.observe(world).null_space([["-2*(m0 - x0)", "2*(m0 - x0)"]])
+        NullSpace((x, m) = (1, 1) PROVED)
+        """
+        rows = self.unobservable_basis
+        listed = {name: list(rows.row(k)) for k, name in enumerate(self.unobservable)}
+        return follow_directions(listed, H, Phi, read_points(first or {}, self.states), symbols or {})
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym observe``; expressions are text of the language of files."""
