@@ -105,6 +105,7 @@ def as_text(data: Mapping[str, Any]) -> str:
     ]
     splits = table(["i", "j", "det L", ""], rows) if rows else ""
     gains = [f"{name} = ({', '.join(row)})\n" for name, row in data["gains"].items() if name != "stable" and row]
+    gains += [f"stage of {s['measurement']}: K = ({', '.join(s['K'])})\n" for s in data.get("stages", [])]
     reached = accuracy_text(data["accuracy"]) if "accuracy" in data else ""
     kept = null_space_text(data["null_space"]["directions"]) if "null_space" in data else ""
     blocks = (overview(data), restored, drops_text(data), splits, chosen, *gains, reached, kept)

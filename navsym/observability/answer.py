@@ -40,7 +40,7 @@ from navsym.observability.pieces import observe_pieces
 from navsym.observability.rank_drops import RankDrop, find_drops
 from navsym.observability.sensors import Restoration, restore_observability
 from navsym.observability.splits import FeasibleSplit, Split, best_split, choose_split, feasible_splits
-from navsym.observability.two_stage import POLE, StageGains, gains_by_poles, stage_gains
+from navsym.observability.two_stage import POLE, Stage, StageGains, gains_by_poles, list_stages, stage_gains
 
 #: Variable of polynomials that prescribe poles.
 VARIABLE = "p"
@@ -67,6 +67,7 @@ class Observability(Answer):
     restoration         : the fewest further measurements, None unless asked for
     candidates          : names of what could be measured
     contents            : what the model says beside its matrices: noise, interval and targets
+    staged              : of three and more measurements the stages with gains, where poles were asked for
 
     >>> import navsym as nav
     >>> nav.observe("examples/schuler-velocity.toml")
@@ -90,6 +91,7 @@ class Observability(Answer):
     inputs: tuple[str, ...] = ()
     rank_drops_open: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     contents: ModelFile | None = None
+    staged: tuple[Stage, ...] = ()
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -167,6 +169,35 @@ class Observability(Answer):
         moving = self.model.rates
         question = ask_accuracy(self.contents, self.joint, moving, T, every, demands or {}, scales or {}, start or {})
         return question.answer(self.name)
+
+    def stages(self, poles: Any = (), piece: int | None = None) -> tuple[Stage, ...]:
+        """The estimator in stages, one for each measurement, with gains by wanted polynomials.
+
+        poles : characteristic polynomials in p, one per stage: "(p + 1)**2; p + 2; p + 3", or a list; none by default
+        piece : of a model in pieces the leg, from 1, which has to show all states by itself
+
+        Raises DomainError for models that move and for roots that are not on the left, ShapeError for a wrong number or
+        degree, UnobservableError.
+
+        >>> import navsym as nav
+        >>> three = nav.Model("x v b", F=[[0, 1, 0], [0, 0, 1], [0, 0, 0]], H=["x", "b", "v"])
+        >>> [(stage.measurement, stage.K) for stage in nav.observe(three).stages("(p + 1)**3")]
+        [('z1', (3, 3, 1))]
+        """
+        contents, joint = self.contents, self.joint
+        assert contents is not None
+        if self.kind == "pieces":
+            if piece is None or not 1 <= piece <= len(contents.pieces):
+                message = f"expected the number of a piece, 1 to {len(contents.pieces)}; got {piece}; choose one"
+                raise DomainError(message, where="observe: piece")
+            model = model_along_motion(contents, contents.pieces[piece - 1])
+            joint = observe_jointly(model)
+        else:
+            model = self.model
+        if contents.inputs or contents.Phi is not None or not model.constant:
+            message = "expected constant F and H for stages; got a model that moves, steps or inputs; leave them out"
+            raise DomainError(message, where="observe: stages")
+        return list_stages(joint, read_poles(poles, contents) if poles else ())
 
     def null_space(
         self,
@@ -264,7 +295,8 @@ def observe(
 
     model      : a :class:`navsym.Model`, a LinearModel, or the path of a model file
     split      : (i, j), vectors taken from each of two measurements; by default (m, n - m)
-    poles      : characteristic polynomials in p, one per stage: "(p + 1)**2; p + 2", or a list
+    poles      : characteristic polynomials in p, one per stage: "(p + 1)**2; p + 2", or a list; of three and more
+                 measurements one for each that shows something new, see :meth:`Observability.stages`
     restore    : find the fewest further measurements that show every state
     candidates : name -> formula of the states that could be measured, for ``restore``; by default each state
     parameters : exact values of parameters, such as ``w="1/2"``; ``values`` is the same as a mapping
@@ -293,12 +325,15 @@ def observe(
         if contents.inputs or len(contents.pieces) > 1:
             return observe_in_parts(contents)
         request = read_split(split) if split is not None else None
-        polynomials = read_poles(poles, contents) if poles is not None else ()
+        many = len(contents.measurements) > 2
+        polynomials = read_poles(poles, contents) if poles is not None and not many else ()
         rows = read_candidate_rows(candidates or {}, contents)
         asked = restore or bool(candidates)
         chosen = rows if asked else None
         found = observe_linear(model_along_motion(contents), contents.name, request, polynomials, chosen, contents.box)
         found = replace(found, contents=contents)
+        if poles is not None and many:
+            found = replace(found, staged=found.stages(poles))
         # A two-stage split is a statement on dx/dt = F x.
         if contents.Phi is not None:
             return replace(found, kind="discrete", splits=(), best_split=None, split=None)
