@@ -131,3 +131,37 @@ def test_declared_ranges_exclude_a_condition():
     outside = nav.observe(nav.Model("p q", F=F, H=["p"], x=["1", "2"], w=["3", "4"]))
     assert [drop.excluded for drop in inside.rank_drops] == [False, False]
     assert [drop.excluded for drop in outside.rank_drops] == [True, True]
+
+
+def place_on(zeros, source) -> dict[sp.Symbol, sp.Rational] | None:
+    """A point on a condition: one symbol after the other is solved for where it stands to the first power."""
+    at = {s: sp.Rational(source.randint(-40, 40), source.randint(1, 9)) for s in (a, b, c)}
+    for zero in zeros:
+        for s in sorted(zero.free_symbols, key=str):
+            rest = sp.Poly(zero.subs({other: value for other, value in at.items() if other != s}), s)
+            if rest.degree() == 1:
+                at[s] = -rest.coeff_monomial(1) / rest.coeff_monomial(s)
+                break
+    return at if holds(zeros, at) else None
+
+
+@pytest.mark.slow
+def test_ten_thousand_points_on_the_listed_sets_and_beside_them_have_the_rank_that_is_said():
+    """Places of integers, where equations hold often, and places put on each listed set."""
+    on = beside = seed = 0
+    while on + beside < 10_000:
+        seed += 1
+        model = random_model(100 + seed)
+        found, source = find_drops(observe_jointly(model)), random.Random(seed)
+        drops = [drop for drop in found.drops if drop.subspace == "joint"]
+        if not found.complete["joint"]:
+            continue
+        generic, placed = observe_jointly(model).joint_dimension, (place_on(d.zeros, source) for d in drops * 12)
+        for at in (*grid(seed), *grid(-seed), *filter(None, placed)):
+            listed = [drop.rank for drop in drops if holds(drop.zeros, at) and drop.rank is not None]
+            hit = any(holds(drop.zeros, at) for drop in drops)
+            rank = exact_rank(model, at)
+            assert (rank < generic) == hit and (not listed or rank <= min(listed)), (seed, at)
+            on, beside = on + hit, beside + (not hit)
+    print(f"{seed} models, {on} points on the listed sets, {beside} beside them")
+    assert on > 2000
