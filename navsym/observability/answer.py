@@ -163,7 +163,7 @@ class Observability(Answer):
         >>> import navsym as nav
         >>> track = nav.Model("p v", F=[[0, 1], [0, 0]], H=["p"], sigma=["1/2"], interval=8)
         >>> nav.observe(track).accuracy()
-        Accuracy(navsym model at t = 8: p 0.353553390593274, v 0.0765465544619743)
+        Accuracy(model at t = 8: p 0.35355339059327, v 0.076546554461974)
         """
         assert self.contents is not None
         moving = self.model.rates
