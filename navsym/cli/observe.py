@@ -12,6 +12,22 @@ from navsym.cli._settings import values_of
 from navsym.cli.output import emit, table, write_text
 from navsym.core.errors import NavsymError
 
+Candidates = Annotated[
+    list[str] | None,
+    typer.Option(help='what could be measured, such as "gps = x + a*v"; may be repeated; default: each state'),
+]
+Reached = Annotated[
+    bool, typer.Option("--accuracy", help="the least standard deviations that the flight allows, enclosed")
+]
+Samples = Annotated[str | None, typer.Option(help="time between samples; default: noise that is white in time")]
+Demands = Annotated[list[str] | None, typer.Option(help='a wanted deviation, such as "bias = 1/100"; may be repeated')]
+Scales = Annotated[
+    list[str] | None, typer.Option(help='unit of a state for the weakest direction, such as "tilt = 1/1000"')
+]
+Jacobians = Annotated[
+    Path | None, typer.Option(help="a filter's H and Phi, step by step (TOML): do they keep what is not shown?")
+]
+
 
 def command(
     file: Annotated[Path, typer.Argument(help="model file (TOML): F and h, pieces, or dynamics and z")],
@@ -27,27 +43,14 @@ def command(
     restoring: Annotated[
         bool, typer.Option("--restore", help="the fewest further measurements that would show every state")
     ] = False,
-    candidate: Annotated[
-        list[str] | None,
-        typer.Option(help='what could be measured, such as "gps = x + a*v"; may be repeated; default: each state'),
-    ] = None,
-    accuracy: Annotated[
-        bool, typer.Option("--accuracy", help="the least standard deviations that the flight allows, enclosed")
-    ] = False,
+    candidate: Candidates = None,
+    accuracy: Reached = False,
     until: Annotated[str | None, typer.Option(help="length of the flight; default: the interval of the model")] = None,
-    every: Annotated[
-        str | None, typer.Option(help="time between samples; default: noise that is white in time")
-    ] = None,
-    demand: Annotated[
-        list[str] | None, typer.Option(help='a wanted deviation, such as "bias = 1/100"; may be repeated')
-    ] = None,
-    scale: Annotated[
-        list[str] | None, typer.Option(help='unit of a state for the weakest direction, such as "tilt = 1/1000"')
-    ] = None,
+    every: Samples = None,
+    demand: Demands = None,
+    scale: Scales = None,
     start: Annotated[list[str] | None, typer.Option(help='first value of what moves, such as "x = 0"')] = None,
-    jacobians: Annotated[
-        Path | None, typer.Option(help="a filter's H and Phi, step by step (TOML): do they keep what is not shown?")
-    ] = None,
+    jacobians: Jacobians = None,
     html: Annotated[Path | None, typer.Option(help="write the decomposition to this HTML file")] = None,
     latex: Annotated[Path | None, typer.Option(help="write the decomposition to this LaTeX file")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
@@ -78,15 +81,11 @@ def command(
     if latex is not None:
         write_text(latex, answer.latex())
     data = answer.document()
-    if accuracy or until or every or demand or scale or start:
-        given = {
-            f"{word}s".replace("starts", "start"): values_of(texts, f"--{word}") for word, texts in settings.items()
-        }
-        data["accuracy"] = answer.accuracy(until, every=every, **given).document()
-    kept = None
-    if jacobians is not None:
-        kept = answer.null_space(**read_jacobians(jacobians))
-        data["null_space"] = kept.document()
+    if accuracy or until or every or any(settings.values()):
+        demands, scales, first = (values_of(texts, f"--{word}") for word, texts in settings.items())
+        data["accuracy"] = answer.accuracy(until, every=every, demands=demands, scales=scales, start=first).document()
+    kept = answer.null_space(**read_jacobians(jacobians)) if jacobians is not None else None
+    data |= {"null_space": kept.document()} if kept is not None else {}
     emit(data, as_json=json_, text=lambda: as_text(data))
     if kept is not None and not kept.holds:
         raise typer.Exit(1)

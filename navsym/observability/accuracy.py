@@ -273,13 +273,13 @@ def ask_accuracy(
 ) -> Question:
     """The question about a flight; arguments as in :meth:`Observability.accuracy`."""
     where, moving, n = "accuracy", {s.name: s for s in rates}, len(contents.states)
-    if T is None and contents.T is None:
+    end = read_values({"T": T}, ["T"], where)["T"] if T is not None else contents.T
+    if end is None:
         raise EmptyError("expected the length of the flight; got no interval; give T", where=where)
     if contents.pieces[1:]:
         need_observable(joint)
     states = {name: [sp.Integer(i == k) for i in range(n)] for k, name in enumerate(contents.states)}
     targets = contents.targets or states
-    end = contents.T if T is None else read_values({"T": T}, ["T"], where)["T"]
     step = None if every is None else read_values({"every": every}, ["every"], where)["every"]
     units = {name: sp.Integer(1) for name in states} | read_values(scales, states, f"{where}: scales")
     wanted = read_values(demands, targets, f"{where}: demands")
@@ -289,7 +289,7 @@ def ask_accuracy(
             raise DomainError(message, where=f"{where}: {name}")
     first = {moving[name]: value for name, value in read_values(start, moving, f"{where}: start").items()}
     flight = flight_of(contents, first, to_fmpq(end), None if step is None else to_fmpq(step), where)
-    if flight.steps and end.q != 1:
+    if flight.steps and not end.is_Integer:
         raise DomainError(f"expected a whole number of steps; got {end}; round it", where=f"{where}: T")
     sizes = [to_fmpq(unit) for unit in units.values()]
     met = {name: to_fmpq(value) for name, value in wanted.items()}

@@ -218,7 +218,7 @@ class Observability(Answer):
 
         >>> import navsym as nav
         >>> world = nav.Model("x m", dynamics=["u", "0"], H=["(m - x)**2"], u="real")
-        >>> nav.observe(world).null_space([["-2*(m0 - x0)", "2*(m0 - x0)"]])
+        >>> nav.observe(world).null_space([[["-2*(m0 - x0)", "2*(m0 - x0)"]]])
         NullSpace((x, m) = (1, 1) PROVED)
         """
         rows = self.unobservable_basis
@@ -295,8 +295,7 @@ def observe(
 
     model      : a :class:`navsym.Model`, a LinearModel, or the path of a model file
     split      : (i, j), vectors taken from each of two measurements; by default (m, n - m)
-    poles      : characteristic polynomials in p, one per stage: "(p + 1)**2; p + 2", or a list; of three and more
-                 measurements one for each that shows something new, see :meth:`Observability.stages`
+    poles      : characteristic polynomials in p, one per stage (:meth:`Observability.stages`): "(p + 1)**2; p + 2"
     restore    : find the fewest further measurements that show every state
     candidates : name -> formula of the states that could be measured, for ``restore``; by default each state
     parameters : exact values of parameters, such as ``w="1/2"``; ``values`` is the same as a mapping
@@ -327,17 +326,13 @@ def observe(
         request = read_split(split) if split is not None else None
         many = len(contents.measurements) > 2
         polynomials = read_poles(poles, contents) if poles is not None and not many else ()
-        rows = read_candidate_rows(candidates or {}, contents)
-        asked = restore or bool(candidates)
-        chosen = rows if asked else None
-        found = observe_linear(model_along_motion(contents), contents.name, request, polynomials, chosen, contents.box)
+        rows = read_candidate_rows(candidates or {}, contents) if restore or candidates else None
+        found = observe_linear(model_along_motion(contents), contents.name, request, polynomials, rows, contents.box)
         found = replace(found, contents=contents)
-        if poles is not None and many:
-            found = replace(found, staged=found.stages(poles))
         # A two-stage split is a statement on dx/dt = F x.
         if contents.Phi is not None:
             return replace(found, kind="discrete", splits=(), best_split=None, split=None)
-        return found
+        return replace(found, staged=found.stages(poles)) if poles is not None and many else found
 
 
 def observe_in_parts(contents: ModelFile) -> Observability:
@@ -349,7 +344,7 @@ def observe_in_parts(contents: ModelFile) -> Observability:
     else:
         model, joint, pieces = observe_pieces(contents)
         kind = "pieces"
-    more = {"kind": kind, "pieces": pieces, "inputs": tuple(contents.inputs), "contents": contents}
+    more: dict[str, Any] = {"kind": kind, "pieces": pieces, "inputs": tuple(contents.inputs), "contents": contents}
     return Observability(contents.name, model, joint, (), {"joint": False}, **more)
 
 
