@@ -245,7 +245,7 @@ def flight_of(
     along = model_along_motion(found)
     states = [symbol(name) for name in found.states]
     listed = [[sp.diff(m.z, x) for x in states] if m.z is not None else m.h for m in found.measurements]
-    H = [sp.sympify(x / m.sigma) for row, m in zip(listed, found.measurements, strict=True) for x in row]
+    H = [sp.sympify(x / m.sigma, strict=True) for row, m in zip(listed, found.measurements, strict=True) for x in row]
     given = [along.F] if found.Phi is not None or found.dynamics else [piece.F for piece in found.pieces]
     ends = [*[piece.end for piece in found.pieces][:-1], None]
     rates = {found.time: sp.Integer(1), **along.rates}

@@ -139,6 +139,34 @@ def test_legs_are_carried_into_each_other():
     assert all(encloses(found[name], Fraction(str(covariance[k, k]))) for k, name in enumerate(names))
 
 
+def test_samples_add_up_where_the_model_moves_and_over_the_seam_of_two_legs():
+    moving = nav.Model("p v", F=[[0, "t"], [0, 0]], H=["p"], sigma=["2"], interval="7/2")
+    found = deviations(nav.observe(moving).accuracy(every="1/2"))
+    W = sp.zeros(2, 2)
+    for k in range(8):
+        row = sp.Matrix([[1, sp.Rational(k, 2) ** 2 / 2]])
+        W += row.T * row / 4
+    end = sp.Matrix([[1, sp.Rational(49, 8)], [0, 1]])
+    covariance = end * W.inv() * end.T
+    assert all(encloses(found[name], Fraction(str(covariance[k, k]))) for k, name in enumerate("pv"))
+    legs = nav.Model("v q b", pieces=[("0", "3/4", leg("0")), ("3/4", "2", leg("3"))], H=["v"], interval=2)
+    found = deviations(nav.observe(legs).accuracy(every="1/2"))
+    rows = [[1, 3 * max(Fraction(0), t - Fraction(3, 4)), t] for t in (Fraction(k, 2) for k in range(5))]
+    rows = sp.Matrix([[sp.Rational(str(x)) for x in row] for row in rows])
+    end = sp.Matrix([[1, sp.Rational(15, 4), 2], [0, 1, 0], [0, 0, 1]])
+    covariance = end * (rows.T * rows).inv() * end.T
+    assert all(encloses(found[name], Fraction(str(covariance[k, k]))) for k, name in enumerate("vqb"))
+
+
+def test_a_direction_that_turns_with_the_time_is_never_called_certified():
+    # (0, 1, t) is never shown: what is known of b and c is t b - c
+    F = [[0, "t", -1], [0, 0, 0], [0, 1, 0]]
+    targets = {"a": "a", "mix": "3*b - c", "b": "b"}
+    answer = nav.observe(nav.Model("a b c", F=F, H=["a"], interval=3, targets=targets))
+    assert answer.unobservable == ("(b, c) = (1, t)",)
+    assert [target.status for target in answer.accuracy().targets] == ["certified", "open", "unobservable"]
+
+
 def test_what_is_never_shown_is_said_and_the_rest_is_enclosed():
     targets = {"v": "v", "sum": "4*tilt + bias", "tilt": "tilt"}
     model = nav.Model("v tilt bias", F=leg("4"), H=["v"], interval=5, targets=targets)
