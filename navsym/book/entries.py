@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from navsym.claims import OPEN, Status, Verdict
-from navsym.core.errors import DuplicateError, UnknownSymbolError
+from navsym.core.catalogue import Catalogue
+from navsym.core.errors import DuplicateError
 from navsym.language.names import quote
 from navsym.language.schema import Table, expect_keys, join_place, require_key
 from navsym.language.shapes import NOTES
@@ -115,7 +115,7 @@ class Entry:
         return f"<{self.status}: {self.id}; {self.statement}>"
 
 
-class Book(Mapping[str, Entry]):
+class Book(Catalogue[Entry]):
     """All entries by id, in the order of the chapters.
 
     >>> import navsym as nav
@@ -124,6 +124,8 @@ class Book(Mapping[str, Entry]):
     >>> [entry.id for entry in nav.book.search("melbourne")]
     ['melbourne-wubbena']
     """
+
+    name, expected, remedy = "book", "the id of an entry", "search with nav.book.search"
 
     @cached_property
     def entries(self) -> dict[str, Entry]:
@@ -141,22 +143,6 @@ class Book(Mapping[str, Entry]):
     def kept(self) -> dict[str, dict[str, Any]]:
         """What was granted: entry -> hash of its statement, status, hash of its certificate, the same of misprints."""
         return dict(json.loads(KEPT.read_text(encoding="utf-8")))
-
-    def __getitem__(self, name: str) -> Entry:
-        if name not in self.entries:
-            near = get_close_matches(str(name), self.entries, n=1)
-            remedy = f"did you mean {near[0]}?" if near else "search with nav.book.search"
-            raise UnknownSymbolError(f"expected the id of an entry; got {quote(str(name))}; {remedy}", where="book")
-        return self.entries[name]
-
-    def __contains__(self, name: object) -> bool:
-        return name in self.entries
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.entries)
-
-    def __len__(self) -> int:
-        return len(self.entries)
 
     def __repr__(self) -> str:
         return f"<book: {len(self)} entries>"

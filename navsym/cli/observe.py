@@ -19,6 +19,13 @@ def command(
     set_: list[str] | None = None,
     restoring: bool = False,
     candidate: list[str] | None = None,
+    accuracy: bool = False,
+    until: str | None = None,
+    every: str | None = None,
+    demand: list[str] | None = None,
+    scale: list[str] | None = None,
+    start: list[str] | None = None,
+    jacobians: Path | None = None,
     html: Path | None = None,
     latex: Path | None = None,
     json_: bool = False,
@@ -28,10 +35,14 @@ def command(
     Example: navsym observe examples/schuler-velocity.toml
 
     Further measurements: navsym observe model.toml --restore --candidate "gps = x"
+
+    How well a flight shows the states: navsym observe model.toml --accuracy --demand "bias = 1/100"
     """
     import navsym as nav
+    from navsym.observability.null_space import read_jacobians
 
     form, twice = "NAME = formula of the states", "expected one formula of {}; got two; rename one"
+    settings = {"demand": demand, "scale": scale, "start": start}
     named = values_of(candidate, "--candidate", form, '"gps = x"', twice)
     try:
         answer = nav.observe(
@@ -45,7 +56,14 @@ def command(
     if latex is not None:
         write_text(latex, answer.latex())
     data = answer.document()
+    if accuracy or until or every or any(settings.values()):
+        demands, scales, first = (values_of(texts, f"--{word}") for word, texts in settings.items())
+        data["accuracy"] = answer.accuracy(until, every=every, demands=demands, scales=scales, start=first).document()
+    kept = answer.null_space(**read_jacobians(jacobians)) if jacobians is not None else None
+    data |= {"null_space": kept.document()} if kept is not None else {}
     emit(data, as_json=json_, text=lambda: as_text(data))
+    if kept is not None and not kept.holds:
+        raise typer.Exit(1)
 
 
 # Text for people
@@ -61,7 +79,11 @@ def as_text(data: Mapping[str, Any]) -> str:
     ]
     splits = table(["i", "j", "det L", ""], rows) if rows else ""
     gains = [f"{name} = ({', '.join(row)})\n" for name, row in data["gains"].items() if name != "stable" and row]
-    return "\n".join(block for block in (overview(data), restored, drops_text(data), splits, chosen, *gains) if block)
+    gains += [f"stage of {s['measurement']}: K = ({', '.join(s['K'])})\n" for s in data.get("stages", [])]
+    reached = accuracy_text(data["accuracy"]) if "accuracy" in data else ""
+    kept = null_space_text(data["null_space"]["directions"]) if "null_space" in data else ""
+    blocks = (overview(data), restored, drops_text(data), splits, chosen, *gains, reached, kept)
+    return "\n".join(block for block in blocks if block)
 
 
 def overview(data: Mapping[str, Any]) -> str:
@@ -144,3 +166,27 @@ def restored_text(data: Mapping[str, Any]) -> str:
         lines.append(f"enough ({fewer}):")
         lines += ["  " + ", ".join(names) for names in data["sets"]]
     return "\n".join(lines) + "\n"
+
+
+def accuracy_text(data: Mapping[str, Any]) -> str:
+    """Deviations of the targets, when demands are met, and the weakest direction."""
+    rows = []
+    for found in data["targets"]:
+        met = "" if "demand" not in found else f"{found['demand']} from t = {found['reached'] or 'later'}"
+        known = found["status"] == "certified"
+        rows.append((found["target"], f"{float(found['lower']):.9g}" if known else found["status"], met))
+    weakest = data["weakest"]
+    parts = ", ".join(f"{value:.4g} {state}" for state, value in weakest["direction"].items())
+    size = "" if weakest["deviation"] is None else f", deviation {float(weakest['deviation']['lower']):.9g}"
+    lines = [table([f"at t = {data['at']}", "least standard deviation", "demand"], rows)]
+    return "".join([*lines, f"weakest direction: {parts}{size}\n" if parts else ""])
+
+
+def null_space_text(directions: Sequence[Mapping[str, Any]]) -> str:
+    """Which directions the Jacobians of a filter keep, and the step that sees the others."""
+    rows = []
+    for found in directions:
+        place = ", ".join(f"{name} = {value}" for name, value in (found["counterexample"] or {}).items())
+        step = "" if found["step"] is None else f"step {found['step']}"
+        rows.append((found["direction"], found["status"], f"{step}: {place}" if place else step))
+    return table(["not shown by the model", "kept by the filter", "seen at"], rows)

@@ -22,6 +22,7 @@ from navsym.models.along import model_along_motion
 from navsym.models.linear import LinearModel, linear_row
 from navsym.models.model import Model, contents_of, file_in_errors
 from navsym.models.modelfile import ModelFile
+from navsym.observability.accuracy import Accuracy, ask_accuracy
 from navsym.observability.certificates import Certifier, list_nested
 from navsym.observability.chains import (
     JointObservability,
@@ -34,11 +35,12 @@ from navsym.observability.chains import (
 )
 from navsym.observability.document import as_html, as_latex, document_of_observability
 from navsym.observability.inputs import observe_driven
+from navsym.observability.null_space import NullSpace, follow_directions, read_points
 from navsym.observability.pieces import observe_pieces
 from navsym.observability.rank_drops import RankDrop, find_drops
 from navsym.observability.sensors import Restoration, restore_observability
 from navsym.observability.splits import FeasibleSplit, Split, best_split, choose_split, feasible_splits
-from navsym.observability.two_stage import POLE, StageGains, gains_by_poles, stage_gains
+from navsym.observability.two_stage import POLE, Stage, StageGains, gains_by_poles, list_stages, stage_gains
 
 #: Variable of polynomials that prescribe poles.
 VARIABLE = "p"
@@ -64,6 +66,8 @@ class Observability(Answer):
     gains               : of the stages, None unless poles were asked for
     restoration         : the fewest further measurements, None unless asked for
     candidates          : names of what could be measured
+    contents            : what the model says beside its matrices: noise, interval and targets
+    staged              : of three and more measurements the stages with gains, where poles were asked for
 
     >>> import navsym as nav
     >>> nav.observe("examples/schuler-velocity.toml")
@@ -86,6 +90,8 @@ class Observability(Answer):
     pieces: tuple[Mapping[str, Any], ...] = ()
     inputs: tuple[str, ...] = ()
     rank_drops_open: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    contents: ModelFile | None = None
+    staged: tuple[Stage, ...] = ()
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -133,6 +139,91 @@ class Observability(Answer):
     def unobservable_basis(self) -> sp.ImmutableMatrix:
         """Rows (n - rank, n) of the directions that no measurement shows."""
         return self.joint.unobservable
+
+    def accuracy(
+        self,
+        T: Any = None,
+        *,
+        every: Any = None,
+        demands: Mapping[str, Any] | None = None,
+        scales: Mapping[str, Any] | None = None,
+        start: Mapping[str, Any] | None = None,
+    ) -> Accuracy:
+        """How well a flight shows the targets: their least standard deviations at its end, enclosed (Cramer and Rao).
+
+        T       : length of the flight, a fraction; by default the interval of the model
+        every   : time between samples, the first at 0; by default noise that is white in time, of density sigma**2
+        demands : target -> wanted deviation; the answer says when it is met
+        scales  : state -> the unit in which it counts for the weakest direction; by default 1
+        start   : what moves -> its value at the start: states of a nonlinear model, and parameters with rates
+
+        Raises DomainError for parameters without a value, for inputs and for relations, EmptyError without an interval,
+        UnobservableError for pieces that leave a direction open, UnknownSymbolError, and TooLargeError.
+
+        >>> import navsym as nav
+        >>> track = nav.Model("p v", F=[[0, 1], [0, 0]], H=["p"], sigma=["1/2"], interval=8)
+        >>> nav.observe(track).accuracy()
+        Accuracy(model at t = 8: p 0.35355339059327, v 0.076546554461974)
+        """
+        assert self.contents is not None
+        moving = self.model.rates
+        question = ask_accuracy(self.contents, self.joint, moving, T, every, demands or {}, scales or {}, start or {})
+        return question.answer(self.name)
+
+    def stages(self, poles: Any = (), piece: int | None = None) -> tuple[Stage, ...]:
+        """The estimator in stages, one for each measurement, with gains by wanted polynomials.
+
+        poles : characteristic polynomials in p, one per stage: "(p + 1)**2; p + 2; p + 3", or a list; none by default
+        piece : of a model in pieces the leg, from 1, which has to show all states by itself
+
+        Raises DomainError for models that move and for roots that are not on the left, ShapeError for a wrong number or
+        degree, UnobservableError.
+
+        >>> import navsym as nav
+        >>> three = nav.Model("x v b", F=[[0, 1, 0], [0, 0, 1], [0, 0, 0]], H=["x", "b", "v"])
+        >>> [(stage.measurement, stage.K) for stage in nav.observe(three).stages("(p + 1)**3")]
+        [('z1', (3, 3, 1))]
+        """
+        contents, joint = self.contents, self.joint
+        assert contents is not None
+        if self.kind == "pieces":
+            if piece is None or not 1 <= piece <= len(contents.pieces):
+                message = f"expected the number of a piece, 1 to {len(contents.pieces)}; got {piece}; choose one"
+                raise DomainError(message, where="observe: piece")
+            model = model_along_motion(contents, contents.pieces[piece - 1])
+            joint = observe_jointly(model)
+        else:
+            model = self.model
+        if contents.inputs or contents.Phi is not None or not model.constant:
+            message = "expected constant F and H for stages; got a model that moves, steps or inputs; leave them out"
+            raise DomainError(message, where="observe: stages")
+        return list_stages(joint, read_poles(poles, contents) if poles else ())
+
+    def null_space(
+        self,
+        H: Sequence[Any],
+        Phi: Sequence[Any] = (),
+        *,
+        first: Mapping[str, Any] | None = None,
+        symbols: Mapping[str, Any] | None = None,
+    ) -> NullSpace:
+        """Whether the Jacobians of a filter keep the directions that no measurement shows, each PROVED or REFUTED.
+
+        H, Phi  : matrices of formulas for each step: H_k as it is evaluated, and Phi_k from there to the next step
+        first   : state -> formula of the point at which the first step is linearised; by default its own name
+        symbols : declarations of names in H and Phi, as in :func:`navsym.prove`; real without one
+
+        A direction N is kept where all of ``H_0 N, H_1 Phi_0 N, H_2 Phi_1 Phi_0 N, ...`` vanish for all symbols.
+        Raises UnobservableError for a model that shows all, ShapeError, and the errors of the prover.
+
+        >>> import navsym as nav
+        >>> world = nav.Model("x m", dynamics=["u", "0"], H=["(m - x)**2"], u="real")
+        >>> nav.observe(world).null_space([[["-2*(m0 - x0)", "2*(m0 - x0)"]]])
+        NullSpace((x, m) = (1, 1) PROVED)
+        """
+        rows = self.unobservable_basis
+        listed = {name: list(rows.row(k)) for k, name in enumerate(self.unobservable)}
+        return follow_directions(listed, H, Phi, read_points(first or {}, self.states), symbols or {})
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym observe``; expressions are text of the language of files."""
@@ -204,7 +295,7 @@ def observe(
 
     model      : a :class:`navsym.Model`, a LinearModel, or the path of a model file
     split      : (i, j), vectors taken from each of two measurements; by default (m, n - m)
-    poles      : characteristic polynomials in p, one per stage: "(p + 1)**2; p + 2", or a list
+    poles      : characteristic polynomials in p, one per stage (:meth:`Observability.stages`): "(p + 1)**2; p + 2"
     restore    : find the fewest further measurements that show every state
     candidates : name -> formula of the states that could be measured, for ``restore``; by default each state
     parameters : exact values of parameters, such as ``w="1/2"``; ``values`` is the same as a mapping
@@ -233,15 +324,15 @@ def observe(
         if contents.inputs or len(contents.pieces) > 1:
             return observe_in_parts(contents)
         request = read_split(split) if split is not None else None
-        polynomials = read_poles(poles, contents) if poles is not None else ()
-        rows = read_candidate_rows(candidates or {}, contents)
-        asked = restore or bool(candidates)
-        chosen = rows if asked else None
-        found = observe_linear(model_along_motion(contents), contents.name, request, polynomials, chosen, contents.box)
+        many = len(contents.measurements) > 2
+        polynomials = read_poles(poles, contents) if poles is not None and not many else ()
+        rows = read_candidate_rows(candidates or {}, contents) if restore or candidates else None
+        found = observe_linear(model_along_motion(contents), contents.name, request, polynomials, rows, contents.box)
+        found = replace(found, contents=contents)
         # A two-stage split is a statement on dx/dt = F x.
         if contents.Phi is not None:
             return replace(found, kind="discrete", splits=(), best_split=None, split=None)
-        return found
+        return replace(found, staged=found.stages(poles)) if poles is not None and many else found
 
 
 def observe_in_parts(contents: ModelFile) -> Observability:
@@ -253,8 +344,8 @@ def observe_in_parts(contents: ModelFile) -> Observability:
     else:
         model, joint, pieces = observe_pieces(contents)
         kind = "pieces"
-    inputs = tuple(contents.inputs)
-    return Observability(contents.name, model, joint, (), {"joint": False}, kind=kind, pieces=pieces, inputs=inputs)
+    more: dict[str, Any] = {"kind": kind, "pieces": pieces, "inputs": tuple(contents.inputs), "contents": contents}
+    return Observability(contents.name, model, joint, (), {"joint": False}, **more)
 
 
 def need_one_matrix(contents: ModelFile) -> None:

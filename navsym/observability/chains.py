@@ -363,7 +363,7 @@ class ProvedRank:
     """Generic rank of an observability matrix with the reasons for both bounds.
 
     point : integers for the parameters at which a minor of this size is not zero modulo a prime
-    upper : why it is not larger
+    upper : why it is not larger; "" where that is not proved
     """
 
     rank: int
@@ -385,7 +385,9 @@ def prove_rank(model: LinearModel) -> ProvedRank:
     if find_unobservable(rows, motion, rank, point) is not None:
         count = model.size - rank
         return ProvedRank(rank, point, f"{count} hidden directions, invariant and seen by no measurement")
-    return ProvedRank(chains_of(model).joint_dimension, point, "relations close the staircase")
+    chains = chains_of(model)
+    upper = "relations close the staircase" if chains.directions is not None else ""
+    return ProvedRank(chains.joint_dimension, point, upper)
 
 
 # The answer in sympy

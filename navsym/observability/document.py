@@ -12,7 +12,7 @@ from navsym.observability.certificates import Certifier
 from navsym.observability.chains import MeasurementObservability
 from navsym.observability.rank_drops import RankDrop
 from navsym.observability.splits import Split
-from navsym.observability.two_stage import StageGains
+from navsym.observability.two_stage import Stage, StageGains
 
 if TYPE_CHECKING:
     from navsym.observability.answer import Observability
@@ -46,6 +46,7 @@ def document_of_observability(answer: Observability) -> dict[str, Any]:
         "split": split_data(answer.split) if answer.split is not None else None,
         "gains": gains_data(answer.gains),
     }
+    data |= {"stages": list(map(stage_data, answer.staged))} if answer.staged else {}
     return data | ({"restore": restoration_data(answer)} if answer.restoration is not None else {})
 
 
@@ -121,6 +122,12 @@ def split_data(chosen: Split) -> dict[str, Any]:
     if chosen.tail.rows:
         data["v"] = text_rows(chosen.tail)
     return data
+
+
+def stage_data(stage: Stage) -> dict[str, Any]:
+    """A stage of an estimator as texts."""
+    listed = {name: [to_text(x) for x in getattr(stage, name)] for name in ("companion", "drive", "K")}
+    return {"measurement": stage.measurement, "L": text_rows(stage.rows), **listed, "stable": stage.stable}
 
 
 def gains_data(gains: StageGains | None) -> dict[str, Any]:

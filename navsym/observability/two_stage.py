@@ -16,8 +16,9 @@ import sympy as sp
 
 from navsym.core.errors import DomainError, ShapeError
 from navsym.core.rational_functions import cancel_fraction, clear_denominators, powers_apart
-from navsym.observability.linear import determinant
-from navsym.observability.ring import Ring
+from navsym.observability.chains import JointObservability, chain_rows, need_observable
+from navsym.observability.linear import Matrix, determinant, linear_relation
+from navsym.observability.ring import Poly, Ring
 from navsym.observability.splits import Split
 
 #: Variable of characteristic polynomials.
@@ -166,3 +167,59 @@ def stage_gains(
             "a stable factor is (p + lam) with lam > 0"
         )
     return companion_gains(theta, wanted), stable
+
+
+# One stage for each measurement
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stage:
+    """One stage of an estimator: what a measurement shows beside those before it, in chain coordinates.
+
+    rows      : (k, n) of L, the first k vectors of the chain; y = rows x, and the measurement is y_1
+    companion : last row of dy/dt = Theta y, k coefficients;  drive : the same for the coordinates of earlier stages
+    K, stable : gain for the wanted polynomial, none without one
+    """
+
+    measurement: str
+    rows: sp.ImmutableMatrix
+    companion: tuple[sp.Expr, ...]
+    drive: tuple[sp.Expr, ...]
+    K: tuple[sp.Expr, ...] = ()
+    stable: bool | None = None
+
+
+def list_stages(found: JointObservability, poles: Sequence[sp.Expr] = ()) -> tuple[Stage, ...]:
+    """The stages of any number of measurements of a constant model, in their order; redundant ones have none.
+
+    With the staircase as basis the next vector of a chain depends on this chain and on earlier ones only, so that the
+    error of a stage feels those of earlier stages only: the characteristic polynomial is the product of the stages'.
+
+    poles : one polynomial for each stage; raises ShapeError for other numbers and degrees, DomainError for roots that
+            are not on the left, and UnobservableError
+    """
+    need_observable(found)
+    chains, ring = found.chains, found.chains.ring
+    taken = [(chain, count) for chain, count in zip(chains.chains, found.staircase, strict=True) if count]
+    if poles and len(poles) != len(taken):
+        degrees = ", ".join(str(count) for _, count in taken)
+        message = f"expected {len(taken)} polynomials, of degrees {degrees}; got {len(poles)}; give one per stage"
+        raise ShapeError(message, where="observe: poles")
+    basis: Matrix = []
+    scales, stages = list[Poly](), list[Stage]()
+    for place, (chain, count) in enumerate(taken):
+        *own, following = chains.first(chain, count + 1)
+        basis += own
+        scales += [chain.bottom * chain.clock**r for r in range(count)]
+        values = linear_relation(basis, following, ring)
+        if values is None:
+            raise ArithmeticError("stages: the next vector lies outside of the basis")
+        last = chain.bottom * chain.clock**count
+        entries = [
+            ring.expression(cancel_fraction(value.top * scale, value.bottom * last))
+            for value, scale in zip(values, scales, strict=True)
+        ]
+        drive, companion = tuple(entries[:-count]), tuple(entries[-count:])
+        K, stable = stage_gains(companion, poles[place], f"{place + 1}.", POLE) if poles else ((), None)
+        stages.append(Stage(chain.name, chain_rows(own, chain, ring), companion, drive, K, stable))
+    return tuple(stages)

@@ -28,7 +28,7 @@ def list_sheets() -> list[Sheet]:
         own = [parts for parts in split.values() if parts[0] == model]
         aidings = tuple(dict.fromkeys(parts[2] for parts in own))
         rows = {
-            manoeuvre: tuple(atlas.cells.get(f"{model}: {manoeuvre}: {aiding}") for aiding in aidings)
+            manoeuvre: tuple(atlas.entries.get(f"{model}: {manoeuvre}: {aiding}") for aiding in aidings)
             for manoeuvre in dict.fromkeys(parts[1] for parts in own)
         }
         sheets.append(Sheet(model, aidings, rows))

@@ -28,6 +28,7 @@ from navsym.guaranteed.solver import Estimator
 from navsym.language.expression import parse, symbol, to_text
 from navsym.language.names import quote
 from navsym.multimodel.engine import Estimates
+from navsym.observability.accuracy import Accuracy
 from navsym.report.explain import entries_of
 from navsym.report.names import latex_name
 from navsym.terrain.locate import Fix
@@ -159,7 +160,8 @@ def plot(answer: Any) -> Figure:
 
     An Estimator shows its dual polynomials within their bounds, and its weights; Phases show value and times by the
     parameter; a map shows its regions; estimates of a filter show the probabilities of the modes; a track shows
-    velocities with their deviations; condition numbers are compared with doubles; a ledger shows its verdicts; a
+    velocities with their deviations; an accuracy least deviations and weakest directions along the flight; condition
+    numbers are compared with doubles; a ledger shows its verdicts; a
     refuted record both sides.
 
     Raises DomainError for an answer without a picture.
@@ -285,6 +287,24 @@ def plot_track(found: Track) -> Figure:
     return made
 
 
+def plot_accuracy(found: Accuracy) -> Figure:
+    """Least deviations along the flight, and below them the components of the weakest direction."""
+    made, drawn = panels((3, 2) if found.weakest else (1,), 5.2 if found.weakest else 3.5)
+    times = [time for time, *_ in found.history]
+    for k, name in enumerate(dict.fromkeys(name for _, shown, *_ in found.history for name in shown)):
+        values = [shown.get(name, np.nan) for _, shown, *_ in found.history]
+        drawn[0].semilogy(times, values, STYLES[k % 4], color=COLOURS[k % 7], label=name)
+    if found.weakest:
+        drawn[0].semilogy(times, [size for *_, size in found.history], ":", color="0.3", label="weakest direction")
+        for k, state in enumerate(found.weakest):
+            parts = [abs(direction[state]) for _, _, direction, _ in found.history]
+            drawn[1].plot(times, parts, STYLES[k % 4], color=COLOURS[k % 7], label=state)
+        drawn[1].set(xlabel=f"time, {MODEL_UNIT}", ylabel="weakest direction, 1")
+    drawn[0].set(xlabel=f"time, {MODEL_UNIT}", ylabel="standard deviation, unit of the target")
+    drawn[0].legend(loc="best", frameon=False)
+    return made
+
+
 def plot_conditions(found: Conditions) -> Figure:
     """Certified condition numbers beside those of double precision, logarithmic."""
     made, axes = figure(height=3.0)
@@ -337,6 +357,7 @@ PICTURES: dict[type, Callable[[Any], Figure]] = {
     Estimates: plot_filter,
     Track: plot_track,
     Conditions: plot_conditions,
+    Accuracy: plot_accuracy,
     Fix: plot_fix,
     Ledger: plot_ledger,
 }

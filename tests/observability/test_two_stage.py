@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+import navsym as nav
 from navsym.core.errors import DomainError, ShapeError
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
@@ -130,3 +131,68 @@ def test_a_symbol_without_a_value_is_named():
     found = gains_by_poles(chosen, (p + lam) ** 3, p + nu)
     with pytest.raises(DomainError, match="nu"):
         observer_of(two_stage_blocks(chosen), found.K_x, found.K_z, {a: 1, b: 1, lam: 1})
+
+
+def observer_matrix(model, stages):
+    """L F L^-1 minus the gains: the error of the running estimator in the coordinates of all stages."""
+    L = sp.Matrix.vstack(*(stage.rows for stage in stages))
+    moved = sp.Matrix((L * model.F * L.inv()).applyfunc(sp.cancel))
+    first = 0
+    for stage in stages:
+        for k, gain in enumerate(stage.K):
+            moved[first + k, first] -= gain
+        first += len(stage.companion)
+    return L, moved
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_three_measurements_get_three_stages_and_the_whole_the_product_of_their_polynomials(seed):
+    source = random.Random(seed)
+    a, p = sp.Symbol("a", real=True), sp.Symbol("p", real=True)
+    F = sp.zeros(6, 6)
+    for block in range(3):  # each pair of states is seen by one measurement; the later ones feel the earlier
+        for i in range(2):
+            for j in range(2 * block + 2):
+                F[2 * block + i, j] = source.randint(-3, 3)
+        F[2 * block, 2 * block + 1] = source.choice((1, 2, a))
+    H = sp.Matrix(3, 6, lambda i, j: int(j == 2 * i))
+    H[2, 0] = sp.Rational(1, 3)
+    model = LinearModel(F, None, H)
+    answer = nav.observe(model, poles="(p + 1)**2; (p + 2)*(p + 3); p**2 + 4*p + 5")
+    assert [len(stage.companion) for stage in answer.staged] == [2, 2, 2] and not answer.document()["splits"]
+    L, error = observer_matrix(model, answer.staged)
+    first = 0
+    for stage in answer.staged:  # measurement i is the first coordinate of its stage
+        assert (
+            sp.Matrix([answer.model.H.row(answer.model.measurements.index(stage.measurement))]) - L[first, :]
+        ).is_zero_matrix
+        last = first + len(stage.companion) - 1
+        shown = [*stage.drive, *stage.companion, *[0] * (5 - last)]
+        row = (L * F * L.inv())[last, :]
+        assert all(sp.cancel(x - y) == 0 for x, y in zip(row, shown, strict=True))
+        first = last + 1
+    wanted = (p + 1) ** 2 * (p + 2) * (p + 3) * (p**2 + 4 * p + 5)
+    assert error.charpoly(p).all_coeffs() == sp.Poly(wanted, p, domain="QQ[a]").all_coeffs()
+
+
+def test_two_measurements_have_the_stages_of_their_split():
+    F = [[0, 1, 0, 0], [0, 0, "a", 0], [0, 0, 0, 1], ["b", 0, 0, 0]]
+    answer = nav.observe(nav.Model("x v f g", F=F, H=["x + f", "g"], a="nonzero", b="real"), split=(4, 0))
+    (stage,) = answer.stages()
+    assert stage.rows == answer.split.L and stage.companion == answer.split.theta
+
+
+def test_each_leg_has_stages_of_its_own():
+    leg = lambda f: [[0, f, 1], [0, 0, 0], [0, 0, 0]]  # noqa: E731
+    model = nav.Model("v q b", pieces=[("0", "1", leg("2")), ("1", "3", leg("5"))], H=["v", "q"])
+    answer = nav.observe(model)
+    for piece, force in ((1, 2), (2, 5)):
+        stages = answer.stages("(p + 1)**2; p + 2", piece=piece)
+        whole = sp.Matrix.vstack(*(stage.rows for stage in stages))
+        assert whole == sp.Matrix([[1, 0, 0], [0, force, 1], [0, 1, 0]])
+        assert [stage.K for stage in stages] == [(2, 1), (2,)]
+    for wrong in (None, 0, 3):
+        with pytest.raises(nav.NavsymError, match="number of a piece"):
+            answer.stages(piece=wrong)
+    with pytest.raises(nav.NavsymError, match="of degrees 2, 1"):
+        answer.stages("(p + 1)**3", piece=1)

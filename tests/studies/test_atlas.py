@@ -71,6 +71,11 @@ def test_the_page_of_the_report_shows_every_cell_once_and_closes_its_tags():
     assert all(text.count(f"<h3>{name}</h3>") == 1 for name in nav.atlas)
 
 
+def test_an_unknown_name_of_a_catalogue_gives_the_default_where_one_is_asked_for():
+    assert nav.atlas.get("unknown") is None and nav.book.get("unknown", 7) == 7
+    assert nav.book.get("transport-rate") is nav.book["transport-rate"]
+
+
 def test_a_name_that_is_no_cell_is_refused():
     with pytest.raises(NavsymError, match="did you mean INS: rest: position"):
         nav.atlas["INS: rest: positions"]

@@ -160,7 +160,7 @@ def vector_of(aiding: Aiding, parts: Mapping[str, sp.Matrix]) -> list[sp.Expr]:
 
 def keep_atlas(cells: Iterable[Cell]) -> None:
     """Write cells to ``atlas.json``, in the place of those with the same names. All of them take some minutes."""
-    known = {**(atlas.cells if KEPT.exists() else {}), **{cell.name: cell for cell in cells}}
+    known = {**(atlas.entries if KEPT.exists() else {}), **{cell.name: cell for cell in cells}}
     listed = [known[name] for name in cell_names() if name in known]
     lines = []
     for cell in listed:

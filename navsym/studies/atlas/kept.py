@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from navsym.core.errors import UnknownSymbolError
-from navsym.language.names import quote
+from navsym.core.catalogue import Catalogue
 from navsym.language.printer import to_text
 from navsym.models.model import Model
 
@@ -62,7 +60,7 @@ class Cell:
         return f"<{self.name}: rank {self.rank} of {self.size}>"
 
 
-class Atlas(Mapping[str, Cell]):
+class Atlas(Catalogue[Cell]):
     """All cells by name. They are recomputed by tests, not when they are read.
 
     >>> import navsym as nav
@@ -73,29 +71,15 @@ class Atlas(Mapping[str, Cell]):
     12
     """
 
+    name, expected, remedy = "atlas", "the name of a cell", "list them with list(nav.atlas)"
+
     @cached_property
-    def cells(self) -> dict[str, Cell]:
+    def entries(self) -> dict[str, Cell]:
         """The cells in the order of models, manoeuvres and aidings."""
         kept = json.loads(KEPT.read_text(encoding="utf-8"))
         return {
             name: Cell(name, **{**cell, "unobservable": tuple(cell["unobservable"])}) for name, cell in kept.items()
         }
-
-    def __getitem__(self, name: str) -> Cell:
-        if name not in self.cells:
-            near = get_close_matches(str(name), self.cells, n=1)
-            remedy = f"did you mean {near[0]}?" if near else "list them with list(nav.atlas)"
-            raise UnknownSymbolError(f"expected the name of a cell; got {quote(str(name))}; {remedy}", where="atlas")
-        return self.cells[name]
-
-    def __contains__(self, name: object) -> bool:
-        return name in self.cells
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.cells)
-
-    def __len__(self) -> int:
-        return len(self.cells)
 
     def __repr__(self) -> str:
         return f"<atlas: {len(self)} cells>"
