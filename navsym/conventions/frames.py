@@ -203,6 +203,23 @@ def turn_state(A: Grid, x: State, is_geodetic: bool) -> State:
 # The card in another frame
 
 
+def restore_terms(card: Card, frame: str, radii: int) -> Card:
+    """The card with the terms that the same motion has in another frame; ``neglected`` names what is added or taken."""
+    if LEVEL == card.frame != frame:
+        slope = card.radius_variation and (KEPT if card.position_error else DROPPED)
+        return replace(card, transport_rate=KEPT, height_variation=KEPT, radius_variation=slope)
+    if LEVEL == frame != card.frame:
+        card = replace(card, centrifugal=card.centrifugal and DROPPED)
+        central = card.gravity_gradient == "central" and radii == 1
+        if card.position_error and not central and card.gravity_gradient != "normal":
+            shape, name = ("sphere", "R") if radii == 1 else ("ellipsoid", "third radius" if radii == 3 else "RE")
+            radius = None if card.gravity_gradient == "none" else name
+            return replace(card, earth=shape, gravity_gradient="normal", gravity_radius=radius)
+    if ("earth", "inertial") == (card.frame, frame) and card.centrifugal == DROPPED:
+        return replace(card, centrifugal=KEPT)
+    return card
+
+
 def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool, turning: bool, alone: bool) -> Card:
     """The card of the same motion in another frame; raises DomainError where no card has its gravity.
 
@@ -212,55 +229,42 @@ def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool,
     alone   : True for velocities without positions, whose errors would drive them in another frame
     """
     frame = words["frame"]
-    refuse(alone, "position among the roles")
-    if LEVEL in (frame, card.frame):
-        plain = {"angle": "phi", "vector_error": "difference"}
-        for name, word in plain.items():
-            wanted = words.get(name, getattr(card, name) or word)
-            refuse(wanted != word or getattr(card, name) not in (None, word), f"{name} {word} on both sides")
+    refuse(alone, "position among the roles: errors of position drive those of velocity in another frame")
+    refuse(card.frame == LEVEL and card.earth == "none", "a curved Earth: a flat one has no centre to go to")
     hub = replace(card, frame="earth", axes=None, angle=None, transport_rate=None, height_variation=None)
     hub = replace(hub, radius_variation=None, position_error=card.position_error and "metres")
     if card.frame == LEVEL:
-        require_whole(card)
         normal = "normal" if card.position_error else "none"
         hub = replace(hub, gravity_gradient=normal, centrifugal=DROPPED)
     elif card.frame == "inertial":
         hub = replace(hub, earth_rate=KEPT if turning else DROPPED, centrifugal=KEPT)
     if hub.earth_rate == DROPPED or hub.position_error is None:
         hub = replace(hub, centrifugal=None)
-    if "inertial" in (frame, card.frame) and hub.centrifugal == KEPT:
-        refuse(hub.gravity_gradient in ("radial", "normal"), "a gradient of gravitation alone, central or none")
+    if "inertial" in (frame, card.frame) and hub.centrifugal:
+        apart = hub.centrifugal == KEPT and hub.gravity_gradient in ("central", "none")
+        refuse(not apart, "a centrifugal term beside gravitation: without one the gradient of gravity has no equal")
     if frame == "earth":
         return hub
     if frame == "inertial":
-        refuse(hub.centrifugal == DROPPED, "a centrifugal term that is kept")
         return replace(hub, frame=frame, earth_rate=None, centrifugal=None)
     refuse(not radii, "quantities with radii")
-    refuse(hub.centrifugal == KEPT, "gravity with its centrifugal part in one")
+    refuse(hub.centrifugal == KEPT, "gravity with its centrifugal part in one: along the normal there is no other")
     shape, lifted = "sphere" if radii == 1 else "ellipsoid", "R + h" if height else "R"
-    central = hub.gravity_gradient == "central" and shape == "sphere"
-    vertical = lifted if central else card.gravity_radius if hub.gravity_gradient == "normal" else None
-    fits = central or hub.position_error is None or hub.gravity_gradient == "normal"
-    refuse(not fits, "a gradient of gravity, central or normal")
+    vertical = lifted if hub.gravity_gradient == "central" else card.gravity_radius
     slope = None if shape == "sphere" else KEPT if hub.position_error else DROPPED
-    level: dict[str, Any] = {"axes": words.get("axes", "NED"), "angle": words.get("angle", "phi"), "earth": shape}
-    kind: dict[str, Any] = {
-        "gravity_gradient": "vertical" if vertical else "none",
-        "gravity_radius": vertical,
-        "centrifugal": None,
-    }
     return replace(
-        hub, frame=frame, **level, **kind, transport_rate=KEPT, height_variation=KEPT, radius_variation=slope
+        hub,
+        frame=frame,
+        axes=words.get("axes", "NED"),
+        angle=words.get("angle", "phi"),
+        earth=shape,
+        gravity_gradient="vertical" if vertical else "none",
+        gravity_radius=vertical,
+        centrifugal=None,
+        transport_rate=KEPT,
+        height_variation=KEPT,
+        radius_variation=slope,
     )
-
-
-def require_whole(card: Card) -> None:
-    """Refuse a local level that drops what belongs to its motion."""
-    refuse(card.earth == "none", "a curved Earth below the local level")
-    refuse(card.transport_rate != KEPT, "a transport rate that is kept")
-    if card.position_error:
-        refuse(card.height_variation == DROPPED, "radii that change with the height")
-        refuse(card.radius_variation not in (None, KEPT), "radii that change with the latitude everywhere")
 
 
 def refuse(wrong: bool, expected: str) -> None:
