@@ -13,7 +13,12 @@ from navsym.conventions.card import HEADINGS, attitude_formula
 
 
 def command(
-    file: Annotated[Path, typer.Argument(help="conventions file (TOML) with [model] or [card], [roles], [quantities]; [[code]] for F of a source")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="conventions file (TOML) with [model] or [card], [roles], [quantities]; [[code]] for F of a source"
+        ),
+    ],
     card: Annotated[Path | None, typer.Option(help="file with a table [card]: is the model right under it?")] = None,
     html: Annotated[Path | None, typer.Option(help="page to write: cards, and what excludes their neighbours")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
@@ -84,7 +89,7 @@ def conflicts_text(data: Mapping[str, Any]) -> str:
 def conflict_row(conflict: Mapping[str, Any]) -> list[str]:
     """One block that must change."""
     entries = " ".join(f"{conflict['matrix']}[{i},{j}]" for i, j in conflict["entries"])
-    entries += f" ({', '.join(conflict['places'])})" * ("places" in conflict)
+    entries += f" ({', '.join(conflict['places'])})" if "places" in conflict else ""
     return [" by ".join(conflict["block"]), entries, conflict["change"], conflict["status"]]
 
 

@@ -134,6 +134,21 @@ class Conventions(Answer):
         matrices = {name: print_matrix(getattr(self.problem, name)) for name in names}
         return {"name": self.name, "states": list(self.problem.states), **matrices}
 
+    def latex(self) -> str:
+        r"""The first card, or the nearest one, and F in LaTeX, block by block.
+
+        >>> import navsym as nav
+        >>> print(nav.conventions("examples/conventions.toml").latex().splitlines()[1])
+        \delta v = \hat v - v \\
+        """
+        from navsym.conventions.typeset import model_latex
+
+        card = self.cards[0] if self.cards else self.nearest
+        return "" if card is None else model_latex(self.problem, card, {"F": print_matrix(self.problem.F)}, card)
+
+    def _repr_latex_(self) -> str:
+        return rf"$\displaystyle {self.latex()}$"
+
     def document(self) -> dict[str, Any]:
         """The answer as plain data: the JSON document of the verb."""
         return {

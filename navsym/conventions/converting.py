@@ -30,7 +30,8 @@ from navsym.language.printer import print_tree
 
 #: What a conversion changes exactly: the definition of the errors, and where they are resolved.
 CONVERTED = (
-    "error", "attitude_error", "angle", "rotation_sign", "bias_sign", "position_error", "vector_error", "axes", "frame",
+    "error", "attitude_error", "angle", "rotation_sign", "bias_sign", "position_error", "vector_error", "axes",
+    "azimuth", "frame",
 )  # fmt: skip
 #: Terms that a conversion may keep or drop within a frame; what that changes is ``neglected``.
 TERMS = (
@@ -53,7 +54,8 @@ class Conversion(Answer):
     F, H, G, reset : of the target; empty where the model has none; Q and R stay. In other axes or another frame a
                      measurement stays as it was resolved; the corrections of the reset are those of the target
     problem        : the model that was converted; ``export`` writes T and its inverse as code
-    proved         : True where it is granted that F_to T = T (F + neglected) + T', T inverse = E, H_to T = H, G_to = T G
+    proved         : True where the checker grants F_to T = T (F + neglected) + T', T inverse = E, H_to T = H and
+                     G_to = T G
     """
 
     source: Card
@@ -81,6 +83,16 @@ class Conversion(Answer):
         rest = f", up to {len(self.neglected_entries())} named entries" * bool(self.neglected_entries())
         return f"Conversion(to {words or 'the same card'}; {'PROVED' if self.proved else 'not all is proved'}{rest})"
 
+    def latex(self) -> str:
+        """The new card, T, F and what is neglected in LaTeX, block by block."""
+        from navsym.conventions.typeset import model_latex
+
+        matrices = {"T": self.T, "F": self.F, r"\Delta F": self.neglected}
+        return model_latex(self.problem, self.target, matrices, self.source)
+
+    def _repr_latex_(self) -> str:
+        return rf"$\displaystyle {self.latex()}$"
+
     def neglected_entries(self) -> list[tuple[int, int]]:
         """The entries of ``neglected`` that are not zero, from 1."""
         return [(i + 1, j + 1) for i, row in enumerate(self.neglected) for j, x in enumerate(row) if x != "0"]
@@ -100,7 +112,7 @@ def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> t
     given, frame = problem.quantities, changes.get("frame", source.frame)
     whole = change(source, {**terms, "dropped": ()})
     moved = whole
-    if frame != source.frame:
+    if frame != source.frame or changes.get("azimuth", source.azimuth) != source.azimuth:
         sizes = len(given.get("radii", ())), "height" in given, "earth_rate" in given
         whole = restore_terms(whole, frame, sizes[0])
         alone = "velocity" in problem.roles and "position" not in problem.roles
@@ -160,7 +172,7 @@ class Converter:
         """F, H, G and the reset of the target."""
         problem, signs, own = self.problem, self.target.signs(), self.source.signs()
         matrices = {name: print_matrix(getattr(problem, name)) for name in ("F", "H", "G", "reset")}
-        moves = (self.source.frame, self.source.axes) != (self.target.frame, self.target.axes)
+        moves = any(getattr(self.source, n) != getattr(self.target, n) for n in ("frame", "axes", "azimuth"))
 
         def sign(block: tuple[str, str]) -> int:
             if block[1].startswith(NOISE_MARK):  # the sign of a noise is that of the model as it was
@@ -177,7 +189,9 @@ class Converter:
         n, F = range(self.n), print_matrix(self.problem.F)
         whole = [list(row) for row in F]
         flow = Mechanisation(plain_card(self.source), self.formulas.world)
-        write_blocks(self.problem, flow, self.formulas, lambda b: self.comparison.block_sign(self.source, b), {"F": whole})
+        write_blocks(
+            self.problem, flow, self.formulas, lambda b: self.comparison.block_sign(self.source, b), {"F": whole}
+        )
         return [[self.subtract(whole[i][j], F[i][j]) for j in n] for i in n]
 
     def subtract(self, x: str, y: str) -> str:
@@ -243,10 +257,7 @@ def convert(problem: Problem, source: Card, changes: Mapping[str, str]) -> Conve
     require_names("convert", T, inverse, rate, neglected, F, H, G, reset)
     unit = [["1" if i == j else "0" for j in range(len(T))] for i in range(len(T))]
     before = print_matrix(problem.F) if exact else add_texts(print_matrix(problem.F), neglected)
-    pairs = [
-        (multiply_texts(T, inverse), unit),
-        (multiply_texts(F, T), add_texts(multiply_texts(T, before), rate)),
-    ]
+    pairs = [(multiply_texts(T, inverse), unit), (multiply_texts(F, T), add_texts(multiply_texts(T, before), rate))]
     if H:
         pairs.append((multiply_texts(H, T), print_matrix(problem.H)))
     if G:

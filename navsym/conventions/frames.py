@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from navsym.conventions.card import DROPPED, KEPT, Card
-from navsym.conventions.mechanisation import Mechanisation, State, plus_height, rotate_about_pole
+from navsym.conventions.card import DROPPED, KEPT, NORTH, WANDER, Card
+from navsym.conventions.mechanisation import AXES, Mechanisation, State, plus_height, rotate_about_pole
 from navsym.conventions.nilpotent import (
     NOTHING,
     Grid,
@@ -26,6 +26,7 @@ from navsym.conventions.nilpotent import (
     multiply,
     negate,
     skew,
+    subtract,
     times,
     transpose,
 )
@@ -48,14 +49,16 @@ class Passage:
 
     @property
     def stays(self) -> bool:
-        """True where only the axes of a local level change, or nothing."""
-        return self.source.card.frame == self.card.frame
+        """True where only the names of the axes of a local level change, or nothing."""
+        wander = [card.azimuth == WANDER for card in (self.source.card, self.card)]
+        return self.source.card.frame == self.card.frame and wander[0] == wander[1]
 
     def turn(self) -> Grid:
         """Rotation from the axes of the source to those of the card."""
         if self.card.frame != LEVEL:
             return identity()
-        return multiply(self.target.turn, transpose(self.source.turn))
+        target, source = ([constant(row) for row in AXES[card.axes]] for card in (self.card, self.source.card))
+        return multiply(target, transpose(source))
 
     def spin(self) -> Any:
         """The rate of the Earth; 0 where both cards drop it."""
@@ -83,11 +86,11 @@ class Passage:
             R = transpose(rotate_about_pole(flow.world.angle, self.spin()))
             return self.slow_down(R, estimate), self.slow_down(R, x)
         R, moved = flow.level(x), add_vectors(estimate.position, negate(x.position))
-        tilted = multiply(R, add(identity(), skew(flow.tilt(x, moved))))
+        tilted = multiply(R, add(identity(), skew(apply(flow.turn(x), flow.tilt(x, estimate)))))
         velocity = apply(R, x.velocity)
         r = [Nilpotent(at, 0, v.value) for at, v in zip(self.centre(), velocity, strict=True)]
         along = [part * unit for part, unit in zip(moved, flow.metres(x), strict=True)]
-        there = add_vectors(r, apply(R, apply(flow.turn, along)))
+        there = add_vectors(r, apply(R, apply(flow.turn(x), along)))
         truth = replace(x, attitude=multiply(R, x.attitude), velocity=velocity, position=r)
         outer = multiply(tilted, estimate.attitude)
         return replace(estimate, attitude=outer, velocity=apply(tilted, estimate.velocity), position=there), truth
@@ -121,23 +124,23 @@ class Passage:
         flow, at = self.target, replace(x, position=[NOTHING] * 3)
         now = [Nilpotent(part.value) for part in apply(transpose(flow.level(at)), x.velocity)]
         rate = flow.position_rate(replace(at, velocity=now))
-        at = replace(at, position=[Nilpotent(0, 0, part.value) for part in rate])
+        azimuth = Nilpotent(0, 0, flow.azimuth_rate(at, rate).value)
+        at = replace(at, position=[Nilpotent(0, 0, part.value) for part in rate], azimuth=azimuth)
         R = transpose(flow.level(at))
-        away = apply(transpose(flow.turn), apply(R, add_vectors(estimate.position, negate(x.position))))
+        away = apply(transpose(flow.turn(at)), apply(R, add_vectors(estimate.position, negate(x.position))))
         moved = [part / unit for part, unit in zip(away, flow.metres(at), strict=True)]
-        tilted = multiply(add(identity(), skew(negate(flow.tilt(at, moved)))), R)
+        place = {"position": add_vectors(at.position, moved), "azimuth": at.azimuth + flow.least_turn(at, moved)}
+        tilt = apply(flow.turn(at), flow.tilt(at, replace(at, **place)))
+        tilted = multiply(subtract(identity(), skew(tilt)), R)
         truth = replace(at, attitude=multiply(R, x.attitude), velocity=apply(R, x.velocity))
-        there, outer = add_vectors(at.position, moved), multiply(tilted, estimate.attitude)
-        return replace(estimate, attitude=outer, velocity=apply(tilted, estimate.velocity), position=there), truth
+        outer, velocity = multiply(tilted, estimate.attitude), apply(tilted, estimate.velocity)
+        return replace(estimate, attitude=outer, velocity=velocity, **place), truth
 
 
 def carry_motion(source: Mechanisation, card: Card) -> Mechanisation:
     """The mechanisation of a card in the motion of another one."""
-    way, world, moves = (
-        Passage(source, Mechanisation(card, source.world)),
-        source.world,
-        source.card.frame != card.frame,
-    )
+    way, world = Passage(source, Mechanisation(card, source.world)), source.world
+    moves = not way.stays
     if not moves and card.axes == source.card.axes:
         return way.target
     out = transpose(axes_of(way.target)) if moves else identity()
@@ -161,7 +164,7 @@ def carry_motion(source: Mechanisation, card: Card) -> Mechanisation:
         gravity, velocity = add_vectors(gravity, whirl), add_vectors(velocity, cross(way.pole(), at))
     gravity, rate = apply(out, gravity), [0, 0, W]
     if card.frame == LEVEL:
-        gravity = apply(transpose(way.target.turn), gravity)[2:]
+        gravity = apply(transpose(way.target.turn(source.truth())), gravity)[2:]
         rate = [times(W, world.cos), times(-1, times(W, world.sin))]
     names = {"v": apply(out, velocity), "r": apply(out, at), "gravity": gravity}
     same |= {name: [x.value for x in vector] for name, vector in names.items()}
@@ -205,17 +208,17 @@ def turn_state(A: Grid, x: State, is_geodetic: bool) -> State:
 
 def restore_terms(card: Card, frame: str, radii: int) -> Card:
     """The card with the terms that the same motion has in another frame; ``neglected`` names what is added or taken."""
-    if LEVEL == card.frame != frame:
+    if card.frame == LEVEL:
         slope = card.radius_variation and (KEPT if card.position_error else DROPPED)
         return replace(card, transport_rate=KEPT, height_variation=KEPT, radius_variation=slope)
-    if LEVEL == frame != card.frame:
+    if frame == LEVEL:
         card = replace(card, centrifugal=card.centrifugal and DROPPED)
         central = card.gravity_gradient == "central" and radii == 1
         if card.position_error and not central and card.gravity_gradient != "normal":
             shape, name = ("sphere", "R") if radii == 1 else ("ellipsoid", "third radius" if radii == 3 else "RE")
             radius = None if card.gravity_gradient == "none" else name
             return replace(card, earth=shape, gravity_gradient="normal", gravity_radius=radius)
-    if ("earth", "inertial") == (card.frame, frame) and card.centrifugal == DROPPED:
+    if (card.frame, frame) == ("earth", "inertial") and card.centrifugal == DROPPED:
         return replace(card, centrifugal=KEPT)
     return card
 
@@ -223,7 +226,7 @@ def restore_terms(card: Card, frame: str, radii: int) -> Card:
 def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool, turning: bool, alone: bool) -> Card:
     """The card of the same motion in another frame; raises DomainError where no card has its gravity.
 
-    words   : frame, and axes and angle of a local level
+    words   : frame, and axes, azimuth and angle of a local level
     radii   : how many radii of the Earth the model has; height : True where it has the height
     turning : True where the model has the rate of the Earth
     alone   : True for velocities without positions, whose errors would drive them in another frame
@@ -231,7 +234,7 @@ def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool,
     frame = words["frame"]
     refuse(alone, "position among the roles: errors of position drive those of velocity in another frame")
     refuse(card.frame == LEVEL and card.earth == "none", "a curved Earth: a flat one has no centre to go to")
-    hub = replace(card, frame="earth", axes=None, angle=None, transport_rate=None, height_variation=None)
+    hub = replace(card, frame="earth", axes=None, azimuth=None, angle=None, transport_rate=None, height_variation=None)
     hub = replace(hub, radius_variation=None, position_error=card.position_error and "metres")
     if card.frame == LEVEL:
         normal = "normal" if card.position_error else "none"
@@ -255,8 +258,9 @@ def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool,
     return replace(
         hub,
         frame=frame,
-        axes=words.get("axes", "NED"),
-        angle=words.get("angle", "phi"),
+        axes=words.get("axes", card.axes or "NED"),
+        azimuth=words.get("azimuth", NORTH),
+        angle=words.get("angle", card.angle or "phi"),
         earth=shape,
         gravity_gradient="vertical" if vertical else "none",
         gravity_radius=vertical,

@@ -12,9 +12,9 @@ from itertools import chain
 from typing import Any
 
 from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
-from navsym.conventions.card import DROPPED, Card
+from navsym.conventions.card import DROPPED, WANDER, Card
 from navsym.conventions.measuring import MEASURED_MARK, RESET_MARK
-from navsym.conventions.mechanisation import AXES, BIASES
+from navsym.conventions.mechanisation import BIASES, axes_rows
 from navsym.conventions.points import BITS, Sampler, evaluate
 from navsym.conventions.reading import Problem
 from navsym.conventions.search import Block, narrow_card
@@ -37,6 +37,15 @@ def euler_texts() -> list[str]:
         f"{s1}*{c2}", f"{s1}*{s2}*{s3} + {c1}*{c3}", f"{s1}*{s2}*{c3} - {c1}*{s3}",
         f"-{s2}", f"{c2}*{s3}", f"{c2}*{c3}",
     ]  # fmt: skip
+
+
+class Text(str):
+    """A factor that can be negated."""
+
+    __slots__ = ()
+
+    def __neg__(self) -> str:
+        return f"-{self}"
 
 
 class Prover:
@@ -166,7 +175,9 @@ class Prover:
         height = f" + ({texts['height'][0]})" if "height" in texts else ""
         radii = texts.get("radii", [f"{HIDDEN}RN"])
         across = radii[1] if len(radii) > 1 else f"{HIDDEN}RE" if card.earth == "ellipsoid" else radii[0]
-        A = AXES[card.axes]
+        (angle,) = texts.get("wander_angle", [f"{HIDDEN}wander_angle"])
+        rows = axes_rows(card, Text(f"sin({angle})"), Text(f"cos({angle})"))
+        A = [[str(x) if x else "" for x in row] for row in rows]
 
         def turned(ned: Sequence[str]) -> list[str]:
             return [" + ".join(f"({x})*({y})" for x, y in zip(row, ned, strict=True) if x) for row in A]
@@ -177,7 +188,7 @@ class Prover:
         rate = [
             f"({east})/(({across}){height})",
             f"-({north})/(({radii[0]}){height})",
-            f"-({east})*sin({latitude})/((({across}){height})*cos({latitude}))",
+            "0" if card.azimuth == WANDER else f"-({east})*sin({latitude})/((({across}){height})*cos({latitude}))",
         ]
         bind("transport_rate", turned(rate))
         if len(texts.get("gravity", ())) == 3:

@@ -44,6 +44,7 @@ QUANTITIES: Mapping[str, tuple[int, ...]] = {
     "latitude": (1,),
     "longitude": (1,),
     "earth_angle": (1,),
+    "wander_angle": (1,),
     "height": (1,),
     "earth_rate": (1, 3),
     "transport_rate": (3,),

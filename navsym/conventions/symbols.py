@@ -15,10 +15,11 @@ from typing import Any
 
 from flint import fmpq_mpoly_ctx
 
-from navsym.conventions.card import Card
+from navsym.conventions.card import WANDER, Card
 from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED, full_column
-from navsym.conventions.mechanisation import Mechanisation, World
+from navsym.conventions.mechanisation import AXES, Mechanisation, World, axes_rows
+from navsym.conventions.nilpotent import times
 from navsym.conventions.points import gradient_names, turn_about_pole
 from navsym.conventions.reading import Problem
 from navsym.core.rational_functions import Quotient, add_fractions, multiply_fractions
@@ -41,6 +42,8 @@ GENERATORS = (
         "ahead",
         "turned",
         "straight",
+        "wander_sin",
+        "wander_cos",
         "h",
         "RN",
         "RE",
@@ -145,6 +148,10 @@ class Formulas:
         h: Any = self.symbol("h", self.text("height")) if "height" in given else 0
         RN, RE, third = self.radii()
         circles = self.circle("longitude", "east", "ahead"), self.circle("earth_angle", "turned", "straight")
+        wander: Any = (0, 1)
+        if card.azimuth == WANDER:
+            angle = self.text("wander_angle") or HIDDEN + "wander_angle"
+            wander = self.symbol("wander_sin", f"sin({angle})"), self.symbol("wander_cos", f"cos({angle})")
         r = self.vector("r", "position")
         if {"latitude", "longitude", "radii"} <= set(given) and card.frame != "local-level":
             u = locate(sine, cosine, circles[0], h, RN, RE)
@@ -162,7 +169,7 @@ class Formulas:
             self.vector("w", "angular_rate"),
             self.vector("v", "velocity"),
             r,
-            self.earth_rate(sine, cosine),
+            self.earth_rate(sine, cosine, axes_rows(card, *wander)),
             sine,
             cosine,
             h,
@@ -179,6 +186,7 @@ class Formulas:
             tuple(self.problem.measured),
             {r: self.vector(f"c{r[0]}", f"{r}_correction") for r in CORRECTED} if self.problem.reset else {},
             *circles,
+            wander,
         )
 
     def circle(self, quantity: str, sine: str, cosine: str) -> tuple[Any, Any]:
@@ -218,23 +226,19 @@ class Formulas:
 
     def down(self) -> Ratio:
         """Gravity along down from its components in the axes."""
-        from navsym.conventions.mechanisation import AXES
-
         column = [row[2] for row in AXES[self.card.axes]]
         place = next(k for k, x in enumerate(column) if x)
         return self.symbol("gravity", self.text("gravity", place)) * column[place]
 
-    def earth_rate(self, sine: Ratio, cosine: Ratio) -> list[Ratio]:
+    def earth_rate(self, sine: Ratio, cosine: Ratio, rows: list[list[Any]]) -> list[Ratio]:
         """The Earth's rate in the frame, or (north, down)."""
-        from navsym.conventions.mechanisation import AXES
-
         size = len(self.problem.quantities.get("earth_rate", ()))
         if size == 3:
             components = self.vector("e", "earth_rate")
             if self.card.frame != "local-level":
                 return components
-            A = AXES[self.card.axes]
-            return [next(components[k] * A[k][j] for k in range(3) if A[k][j]) for j in (0, 2)]
+            terms = [[times(rows[k][j], components[k]) for k in range(3)] for j in (0, 2)]
+            return [sum(x for x in parts if type(x) is not int) for parts in terms]
         rate = self.symbol("rate", self.text("earth_rate"))
         if self.card.frame == "local-level":
             return [rate * cosine, rate * sine * -1]
@@ -371,7 +375,7 @@ def relation_rows(columns: Sequence[tuple[int, ...]]) -> Iterator[list[Fraction]
             yield row({plus: 1, minus: -1, (3 * i + j,): -1})
 
 
-CIRCLES = (("sin", "cos"), ("east", "ahead"), ("turned", "straight"))
+CIRCLES = (("sin", "cos"), ("east", "ahead"), ("turned", "straight"), ("wander_sin", "wander_cos"))
 
 
 def reduce_terms(poly: Any) -> Terms:

@@ -12,21 +12,20 @@ from typing import TYPE_CHECKING, Any
 from navsym.audit.answer import read_sources
 from navsym.audit.decide import differentiate
 from navsym.audit.questions import Question, list_askings
-from navsym.audit.values import Array, Cell, Unread, Value, multiply, raise_to, total
+from navsym.audit.values import Array, Unread, Value, multiply, raise_to, total
 from navsym.conventions.answer import Conventions, find_conventions
 from navsym.conventions.generating import fill_model
 from navsym.conventions.reading import read_problem
-from navsym.core.errors import DomainError, NavsymError, UnknownSymbolError
+from navsym.core.errors import DomainError
 from navsym.language.files import name_file
 from navsym.language.names import join_place, quote
 from navsym.language.printer import print_tree
 from navsym.language.schema import as_table, require_key
 from navsym.language.tomlfile import read_toml
-from navsym.language.tree import NUMBER, ONE, POWER, PRODUCT, SUM, ZERO, Tree, build, build_symbol, fold_tree
+from navsym.language.tree import NUMBER, ONE, POWER, PRODUCT, SUM, ZERO, Tree, build, fold_tree
 
 if TYPE_CHECKING:
     from navsym.audit.names import Names
-    from navsym.audit.sources import Source
     from navsym.conventions.card import Card
 
 MATRICES = ("F", "G", "H", "reset", "Phi")
@@ -165,9 +164,13 @@ def read_code(document: Mapping[str, Any], folder: Path, where: str) -> CodedMod
                 places |= {("F", i, j): spot for (name, i, j), spot in places.items() if name == "Phi"}
             model["F" if key == "Phi" else key] = [[print_tree(tree) for tree in row] for row in trees]
     given, spot = as_table(document.get("quantities", {}), join_place(where, "quantities")), "quantities"
-    quantities = {name: read(name, value, join_place(join_place(where, spot), name), False) for name, value in given.items()}
+    quantities = {
+        name: read(name, value, join_place(join_place(where, spot), name), False) for name, value in given.items()
+    }
     texts = {
-        name: [[print_tree(x) for x in row] for row in rows] if name == "rotation" else [print_tree(x) for r in rows for x in r]
+        name: [[print_tree(x) for x in row] for row in rows]
+        if name == "rotation"
+        else [print_tree(x) for r in rows for x in r]
         for name, rows in quantities.items()
     }
     whole = {name: value for name, value in document.items() if name != "code"}
@@ -179,7 +182,9 @@ def read_code(document: Mapping[str, Any], folder: Path, where: str) -> CodedMod
 def settle_cases(question: Question) -> Value:
     """What a reference means; raises DomainError where that depends on a case of the code."""
     values = [(asking, asking.resolve(question.keys["of"], "of")) for asking in list_askings(question)]
-    texts = {repr([getattr(cell, "tree", cell) for row in list_rows(v, question.where) for cell in row]) for _, v in values}
+    texts = {
+        repr([getattr(cell, "tree", cell) for row in list_rows(v, question.where) for cell in row]) for _, v in values
+    }
     if len(texts) > 1:
         words = " and ".join(c.text for c in values[0][0].conditions)
         message = f"expected one value; got several, by whether {words}; fix a constant, or give the lines of one case"

@@ -45,7 +45,8 @@ def measurement(flight: Flight, kind: str, x: dict[str, Any], y: dict[str, Any])
 
     def shown(s: dict[str, Any]) -> Any:
         spin = (
-            skew(flight.w - s["gyro_bias"] - s["C"].T * flight.turning(s["position"][0] if curved else flight.L)) * ARM
+            skew(flight.w - s["gyro_bias"] - s["C"].T * flight.turning(s["position"][0] if curved else flight.L, s))
+            * ARM
         )
         return {
             "velocity": s["velocity"] + s["C"] * spin,
