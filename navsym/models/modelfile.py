@@ -248,6 +248,7 @@ TABLES = ("model", "basis", "parameters", "rates", "inputs", "measurement", "pie
 #: Tables of the same file that only ``conventions`` reads, and keys of [model].
 BESIDE = ("card", "code", "roles", "quantities", "known", "measured", "noises")
 BESIDE_F = ("G", "H", "reset", "step")
+KEYS = ("name", "states", "F", "Phi", "dynamics", "relations")
 #: Name of the step of a filter among the ranges.
 STEP = "dt"
 
@@ -306,7 +307,7 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
     expect_keys(document, (*(key for key in TABLES if key != "basis"), *BESIDE), where)
     place = join_place(where, "model")
     model = as_table(document["model"], place)
-    expect_keys(model, ("name", "states", "F", "Phi", "dynamics", "relations", *BESIDE_F), place)
+    expect_keys(model, (*KEYS, *BESIDE_F), place)
     states = read_names(require_key(model, "states", place), join_place(place, "states"))
     require_distinct((*known, "t", *states), join_place(place, "states"))
     time = symbol("t")
