@@ -194,31 +194,15 @@ class Sampler:
         radius = sum((x * x for x in r), arb(0)).sqrt()
         pull, gravity = self.gravitation(r, radius, level, normal)
         earth = self.rotation_of_earth(sine, cosine, level)
+        motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.settle("radius_slope")[0]
         world = World(
-            C,
-            f,
-            w,
-            v,
-            r,
-            earth,
-            sine,
-            cosine,
-            h,
-            RN,
-            RE,
-            self.settle("radius_slope")[0],
-            gravity,
-            pull,
-            radius,
-            gradient_names(RN, RE, h, third, (RN * RE).sqrt()),
-            None,
+            *motion,
+            *(gravity, pull, radius, gradient_names(RN, RE, h, third, (RN * RE).sqrt()), None),
             self.settle("lever_arm") if "lever_arm" in given else (0, 0, 0),
             self.vector("known_vector"),
             tuple(self.problem.measured),
             {r: self.vector(f"{r}_correction") for r in CORRECTED} if self.problem.reset else {},
-            meridian,
-            angle,
-            wander,
+            *(meridian, angle, wander),
         )
         transport = self.transport(world) if level and "transport_rate" in given else None
         if transport is None and "transport_rate" in given:

@@ -22,7 +22,7 @@ from navsym.conventions.mechanisation import AXES, Mechanisation, World, axes_ro
 from navsym.conventions.nilpotent import times
 from navsym.conventions.points import gradient_names, turn_about_pole
 from navsym.conventions.reading import Problem
-from navsym.core.rational_functions import Quotient, add_fractions, multiply_fractions
+from navsym.core.rational_functions import Quotient, Ratio
 from navsym.language.expression import read_tree
 from navsym.language.printer import print_tree
 from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, Tree, build, fold_tree
@@ -35,64 +35,9 @@ NUMERAL = re.compile(r"-?\d+(/\d+)?")
 GENERATORS = (
     *(f"c{i}{j}" for i in range(3) for j in range(3)),
     *(f"{name}{k}" for name in ("f", "w", "v", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp") for k in range(3)),
-    *(
-        "sin",
-        "cos",
-        "east",
-        "ahead",
-        "turned",
-        "straight",
-        "wander_sin",
-        "wander_cos",
-        "h",
-        "RN",
-        "RE",
-        "third",
-        "mean",
-        "slope",
-        "rate",
-        "gravity",
-        "pull",
-        "radius",
-    ),
+    *"sin cos east ahead turned straight wander_sin wander_cos".split(),
+    *"h RN RE third mean slope rate gravity pull radius".split(),
 )
-
-
-class Ratio:
-    """A quotient of polynomials with the operations that a coefficient needs."""
-
-    __slots__ = ("value",)
-
-    def __init__(self, value: Quotient):
-        self.value = value
-
-    def lift(self, other: Any) -> Ratio:
-        """An integer as a quotient."""
-        if isinstance(other, Ratio):
-            return other
-        context = self.value.bottom.context()
-        return Ratio(Quotient(context.constant(other), context.constant(1)))
-
-    def __add__(self, other: Any) -> Ratio:
-        return Ratio(add_fractions(self.value, self.lift(other).value))
-
-    def __mul__(self, other: Any) -> Ratio:
-        return Ratio(multiply_fractions(self.value, self.lift(other).value))
-
-    __radd__, __rmul__ = __add__, __mul__
-
-    def __neg__(self) -> Ratio:
-        return self * -1
-
-    def __sub__(self, other: Any) -> Ratio:
-        return self + self.lift(other) * -1
-
-    def __truediv__(self, other: Any) -> Ratio:
-        top, bottom = self.lift(other).value
-        return Ratio(multiply_fractions(self.value, Quotient(bottom, top)))
-
-    def __rtruediv__(self, other: Any) -> Ratio:
-        return self.lift(other) / self
 
 
 class Formulas:
@@ -163,30 +108,18 @@ class Formulas:
             radius = RN + h
         pull, gravity = self.gravitation(r, radius)
         mean = self.symbol("mean", f"sqrt(({self.texts['RN']})*({self.texts.get('RE', self.texts['RN'])}))")
+        w, v, slope = self.vector("w", "angular_rate"), self.vector("v", "velocity"), self.text("radius_slope")
+        earth = self.earth_rate(sine, cosine, axes_rows(card, *wander))
+        motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.symbol("slope", slope)
         return World(
-            C,
-            f,
-            self.vector("w", "angular_rate"),
-            self.vector("v", "velocity"),
-            r,
-            self.earth_rate(sine, cosine, axes_rows(card, *wander)),
-            sine,
-            cosine,
-            h,
-            RN,
-            RE,
-            self.symbol("slope", self.text("radius_slope")),
-            gravity,
-            pull,
-            radius,
-            gradient_names(RN, RE, h, third, mean),
+            *motion,
+            *(gravity, pull, radius, gradient_names(RN, RE, h, third, mean)),
             self.vector("t", "transport_rate") if "transport_rate" in given else None,
             self.vector("l", "lever_arm") if "lever_arm" in given else (0, 0, 0),
             self.vector("m", "known_vector") if self.problem.measured else (0, 0, 0),
             tuple(self.problem.measured),
             {r: self.vector(f"c{r[0]}", f"{r}_correction") for r in CORRECTED} if self.problem.reset else {},
-            *circles,
-            wander,
+            *(*circles, wander),
         )
 
     def circle(self, quantity: str, sine: str, cosine: str) -> tuple[Any, Any]:
@@ -279,7 +212,7 @@ class Formulas:
         """A coefficient in the user's names."""
         if type(value) is int:
             return str(sign * value)
-        top, bottom = value.value
+        top, bottom = value.quotient
         terms = reduce_terms(top)
         above = self.write_terms({e: c * sign for e, c in terms.items()})
         if above == "0" or bottom == 1:

@@ -53,6 +53,8 @@ LEVEL: dict[str, dict[str, Any]] = {
     "PSINS": {"axes": "ENU", "angle": "phi", "rotation_sign": "-", "bias_sign": MINUS, "position_error": "geodetic"},
     "NaveGo 2014": {"axes": "NED", "angle": "phi", "rotation_sign": "-", "bias_sign": MINUS, "earth": "sphere"},
     "NaveGo, issue 107": {"axes": "NED", "angle": "phi", "rotation_sign": "-", "bias_sign": PLUS, "earth": "sphere"},
+    "Savage": {"axes": "ENU", "azimuth": "wander", "angle": "psi", "rotation_sign": "-", "bias_sign": MINUS},
+    "Farrell and Barth": {"axes": "NED", "angle": "phi", "rotation_sign": "+", "earth": "sphere"},
     "psi angle": {"angle": "psi", "rotation_sign": "-", "bias_sign": MINUS, "position_error": "metres"},
 }
 
