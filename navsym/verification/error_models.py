@@ -22,7 +22,7 @@ from navsym.language.names import join_place, quote
 from navsym.language.printer import print_tree
 from navsym.language.schema import as_table, require_key
 from navsym.language.tomlfile import read_toml
-from navsym.language.tree import NUMBER, ONE, POWER, PRODUCT, SUM, ZERO, Tree, build, fold_tree
+from navsym.language.tree import NUMBER, ONE, POWER, PRODUCT, SUM, SYMBOL, ZERO, Tree, build, fold_tree
 
 if TYPE_CHECKING:
     from navsym.audit.names import Names
@@ -205,6 +205,8 @@ def list_rows(value: Value, where: str) -> list[list[Any]]:
 
 def slope_of(tree: Tree, step: Tree, diagonal: bool, where: str) -> Tree:
     """An entry of F from that of Phi(step): its derivative where the step is zero; Phi is the unit matrix there."""
+    if step.head != SYMBOL:
+        raise DomainError(f"expected an input as step; got {print_tree(step)}; name one of the code", where=where)
     if put_zero(tree, step) is not (ONE if diagonal else ZERO):
         message = "expected a transition that is the unit matrix for a step of zero; got another one; give F instead"
         raise DomainError(message, where=where)

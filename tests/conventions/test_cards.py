@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import copy
 import random
+import re
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -268,3 +270,44 @@ def test_a_conversion_leaves_as_code_in_both_directions(tmp_path):
     spoiled = replace(conversion, proved=False)
     with pytest.raises(NavsymError, match="proved"):
         nav.export(spoiled, to="python", out=str(tmp_path / "other"))
+
+
+# -- LaTeX ------------------------------------------------------------------------------------------------
+
+
+def test_blocks_in_latex_are_the_blocks_of_the_model_again():
+    conversion = nav.conventions(EXAMPLES / "conventions.toml").convert(attitude_error="body", error="truth - estimate")
+    lines = conversion.latex().split("\n")
+    roles = {r"\delta v": (0, 3), r"\varphi": (3, 6), r"\delta b_g": (6, 9), r"\delta b_a": (9, 12)}
+    found = {"T": 0, "F": 0}
+    for line in lines:
+        head = re.fullmatch(r"([TF])_\{(.*),\\,(.*)\} = (\\begin\{bmatrix\}.*\\end\{bmatrix\})(?: \\\\)?", line)
+        if head is None:
+            continue
+        name, row, column, block = head.groups()
+        a, c = roles[row][0], roles[column][0]
+        cells = [[cell.strip() for cell in part.split("&")] for part in block[15:-13].split(r"\\")]
+        for i, j in product(range(3), range(3)):
+            spaced = re.sub(r"_\{(\d+)\}", r"\1", cells[i][j])
+            text = re.sub(r"(?<=[0-9]) (?=[a-z])", "*", spaced)
+            assert nav.prove(text, "=", getattr(conversion, name)[a + i][c + j]).status == nav.PROVED
+        found[name] += 1
+    rows = [(p, q) for p in roles.values() for q in roles.values()]
+    for name, count in found.items():
+        M = getattr(conversion, name)
+        assert count == sum(any(M[i][j] != "0" for i in range(*p) for j in range(*q)) for p, q in rows) > 0
+
+
+@pytest.mark.parametrize(
+    ("changes", "lines"),
+    [
+        ({}, [r"\hat C = \left(E + [\varphi \times]\right) C", r"\delta v = \hat v - v"]),
+        ({"rotation_sign": "-", "attitude_error": "body"}, [r"\hat C = C \left(E - [\varphi \times]\right)"]),
+        ({"error": "truth - estimate", "vector_error": "body"}, [r"\delta v = C^T \left(v - \hat v\right)"]),
+        ({"vector_error": "rotated", "frame": "inertial"}, [r"\delta r = \hat r - \hat C C^T r"]),
+        ({"vector_error": "rotated", "angle": "psi"}, [r"\delta r = \hat r - r", r"[\psi \times]"]),
+    ],
+)
+def test_a_card_in_latex_is_its_definition_of_errors(changes, lines):
+    text = replace(LEVEL, **changes)._repr_latex_()
+    assert all(line in text for line in lines)

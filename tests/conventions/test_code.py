@@ -85,6 +85,7 @@ CASES = PYTHON.replace("    return F", "    if late > 0:\n        F[3:6, 9:12] =
     [
         (PYTHON, {"Phi": "kf:return"}, "empty", "step"),
         (PYTHON.replace("np.eye(15)", "2*np.eye(15)"), {"Phi": "kf:return", "step": "dt"}, "domain", "unit matrix"),
+        (PYTHON, {"Phi": "kf:return", "step": "1/10"}, "domain", "input as step"),
         (PYTHON, {"F": "kf:G"}, "unknown-symbol", "G"),
         (PYTHON, {"F": "ekf:return"}, "unknown-symbol", "ekf"),
         (PYTHON, {"F": 3}, "shape", "expected"),
