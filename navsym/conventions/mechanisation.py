@@ -237,10 +237,7 @@ class Mechanisation:
 
     def normal_change(self, moved: Vector) -> Vector:
         """The same for gravity along the normal of the Earth, by its curvature and its gradient along the normal."""
-        world = self.world
-        level = level_rows(*constant((world.sin, world.cos, *world.meridian)))
-        if self.card.frame == "inertial":
-            level = multiply(rotate_about_pole(world.angle), level)
+        world, level = self.world, self.normal_axes()
         north, east, sunk = apply(transpose(level), moved)
         down = apply(transpose(level), constant(world.gravity))[2]
         meridian, across = (Nilpotent(plus_height(radius, world.h)) for radius in (world.RN, world.RE))
@@ -248,6 +245,11 @@ class Mechanisation:
         if self.card.gravity_radius:
             grown = Nilpotent(2) * down * sunk / Nilpotent(world.gradient_radii[self.card.gravity_radius])
         return apply(level, [-down * north / meridian, -down * east / across, grown])
+
+    def normal_axes(self) -> Grid:
+        """Rotation from north, east, down to a frame of the Earth or of inertial space."""
+        level = level_rows(*constant((self.world.sin, self.world.cos, *self.world.meridian)))
+        return multiply(rotate_about_pole(self.world.angle), level) if self.card.frame == "inertial" else level
 
     def position_rate(self, x: State) -> Vector:
         """Rate of the position."""
