@@ -129,7 +129,10 @@ class Passage:
         R = transpose(flow.level(at))
         away = apply(transpose(flow.turn(at)), apply(R, add_vectors(estimate.position, negate(x.position))))
         moved = [part / unit for part, unit in zip(away, flow.metres(at), strict=True)]
-        place = {"position": add_vectors(at.position, moved), "azimuth": at.azimuth + flow.least_turn(at, moved)}
+        place: dict[str, Any] = {
+            "position": add_vectors(at.position, moved),
+            "azimuth": at.azimuth + flow.least_turn(at, moved),
+        }
         tilt = apply(flow.turn(at), flow.tilt(at, replace(at, **place)))
         tilted = multiply(subtract(identity(), skew(tilt)), R)
         truth = replace(at, attitude=multiply(R, x.attitude), velocity=apply(R, x.velocity))

@@ -24,6 +24,7 @@ from navsym.conventions.nilpotent import (
     add,
     add_vectors,
     apply,
+    combine,
     constant,
     cross,
     identity,
@@ -108,15 +109,11 @@ class State:
 
     def advance(self, rate: State) -> State:
         """The state after the infinitesimal time tau."""
-        attitude = [
-            [x.advance(y) for x, y in zip(*rows, strict=True)]
-            for rows in zip(self.attitude, rate.attitude, strict=True)
-        ]
-        moved = [
-            [x.advance(y) for x, y in zip(getattr(self, name), getattr(rate, name), strict=True)]
-            for name in ("velocity", "position", "gyro_bias", "accelerometer_bias")
-        ]
-        return State(attitude, *moved, self.azimuth.advance(rate.azimuth))
+        attitude = combine(Nilpotent.advance, self.attitude, rate.attitude)
+        names = ("velocity", "position", "gyro_bias", "accelerometer_bias")
+        now, after = ([getattr(x, name) for name in names] for x in (self, rate))
+        velocity, position, gyro, accelerometer = combine(Nilpotent.advance, now, after)
+        return State(attitude, velocity, position, gyro, accelerometer, self.azimuth.advance(rate.azimuth))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
