@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 from navsym.conventions.card import Card
@@ -65,14 +65,8 @@ class Exclusion:
 
     def document(self) -> dict[str, Any]:
         """The exclusion as JSON data."""
-        return {
-            "card": self.card.document(),
-            "field": self.field,
-            "block": None if self.block is None else list(self.block),
-            "entry": None if self.entry is None else list(self.entry),
-            "point": dict(self.point),
-            "why": self.why,
-        }
+        sides = {"block": self.block and list(self.block), "entry": self.entry and list(self.entry)}
+        return {**asdict(self), "card": self.card.document(), **sides}
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,10 +13,10 @@ from navsym.audit.answer import read_sources
 from navsym.audit.decide import differentiate
 from navsym.audit.questions import Question, list_askings
 from navsym.audit.values import Array, Unread, Value, multiply, raise_to, total
-from navsym.conventions.answer import Conventions, find_conventions
+from navsym.conventions.answer import Conflict, Conventions, find_conventions
 from navsym.conventions.generating import fill_model
 from navsym.conventions.reading import read_problem
-from navsym.core.errors import DomainError
+from navsym.core.errors import DomainError, DuplicateError
 from navsym.language.files import name_file
 from navsym.language.names import join_place, quote
 from navsym.language.printer import print_tree
@@ -117,27 +117,21 @@ class CodedModel:
 
     def point_out(self, answer: Conventions) -> Conventions:
         """The answer with the changes in the spelling of the code, and the lines that they concern."""
-        conflicts = tuple(
-            replace(
-                conflict,
-                change=self.names.show(conflict.change),
-                places=tuple(
-                    dict.fromkeys(
-                        self.places[conflict.matrix, i, j]
-                        for i, j in conflict.entries
-                        if (conflict.matrix, i, j) in self.places
-                    )
-                ),
-            )
-            for conflict in answer.conflicts
-        )
-        return replace(answer, conflicts=conflicts)
+
+        def respell(conflict: Conflict) -> Conflict:
+            places = (self.places.get((conflict.matrix, i, j)) for i, j in conflict.entries)
+            found = tuple(dict.fromkeys(place for place in places if place))
+            return replace(conflict, change=self.names.show(conflict.change), places=found)
+
+        return replace(answer, conflicts=tuple(map(respell, answer.conflicts)))
 
 
 def read_code(document: Mapping[str, Any], folder: Path, where: str) -> CodedModel:
     """The matrices and quantities of a document from the code that they name; nothing of it is executed."""
     place = join_place(where, "model")
     model = dict(as_table(require_key(dict(document), "model", where), place))
+    if {"F", "Phi"} <= set(model):
+        raise DuplicateError("expected F or Phi; got both; remove one of them", where=place)
     names, sources = read_sources(document, folder, where)
     for name, declaration in as_table(document.get("parameters", {}), join_place(where, "parameters")).items():
         names.declare(name, declaration, join_place(join_place(where, "parameters"), name))

@@ -88,6 +88,7 @@ CASES = PYTHON.replace("    return F", "    if late > 0:\n        F[3:6, 9:12] =
         (PYTHON, {"Phi": "kf:return", "step": "1/10"}, "domain", "input as step"),
         (PYTHON, {"F": "kf:G"}, "unknown-symbol", "G"),
         (PYTHON, {"F": "ekf:return"}, "unknown-symbol", "ekf"),
+        (PYTHON, {"F": "kf:return", "Phi": "kf:return", "step": "dt"}, "duplicate", "both"),
         (PYTHON, {"F": 3}, "shape", "expected"),
         (CASES, {"Phi": "kf:return", "step": "dt"}, "domain", "late > 0"),
         (PYTHON.replace("return F", "return load(F)"), {"F": "kf:return"}, "domain", "not read"),
