@@ -135,6 +135,7 @@ class Flight:
             "gyro_bias": vec(0, 0, 0),
             "accelerometer_bias": vec(0, 0, 0),
             "azimuth": vec(self.alpha),
+            "least turn": vec(mp.sin(self.L) if curved and self.card.azimuth == "wander" else 0),
         }
 
     # Errors by the definitions of a card
@@ -210,6 +211,8 @@ def push(x: dict[str, Any], j: int, size: Any) -> dict[str, Any]:
         y["C"] = exp(axis) * y["C"]
     else:
         y[name][k] += size
+        if j == 1:  # by which the axes of the estimate do not turn about the vertical
+            y["azimuth"][0] += size * x["least turn"][0]
     return y
 
 
