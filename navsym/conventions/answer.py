@@ -132,7 +132,7 @@ class Conventions(Answer):
         r"""The first card, or the nearest one, and F in LaTeX, block by block.
 
         >>> import navsym as nav
-        >>> print(nav.conventions("examples/conventions.toml").latex().splitlines()[1])
+        >>> print(nav.conventions("examples/conventions.toml").latex().splitlines()[2])
         \delta v = \hat v - v \\
         """
         from navsym.conventions.typeset import model_latex
