@@ -72,7 +72,8 @@ _HOMES = {
     **dict.fromkeys(("Reading", "read"), "navsym.language.latex.reading"),
     **dict.fromkeys(("new_claim", "new_paper"), "navsym.prove.drafts"),
     "Bank": "navsym.multimodel.bank",
-    **dict.fromkeys(("Conventions", "conventions"), "navsym.conventions.answer"),
+    "Conventions": "navsym.conventions.answer",
+    "conventions": "navsym.verification.error_models",
     "condition": "navsym.trajectory.conditioning",
     "data": "navsym.core.datasets",
     "filter": "navsym.multimodel.filters",
@@ -118,7 +119,6 @@ if TYPE_CHECKING:
     from navsym.claims import Verdicts as Verdicts
     from navsym.claims.workspace import init as init
     from navsym.conventions.answer import Conventions as Conventions
-    from navsym.conventions.answer import conventions as conventions
     from navsym.core.datasets import data as data
     from navsym.core.errors import NavsymError as NavsymError
     from navsym.core.machine import doctor as doctor
@@ -170,6 +170,7 @@ if TYPE_CHECKING:
     from navsym.trajectory.motion import track as track
     from navsym.verification.decide import show as show
     from navsym.verification.decide import verify as verify
+    from navsym.verification.error_models import conventions as conventions
     from navsym.verification.ledger import Ledger as Ledger
 
 

@@ -251,25 +251,30 @@ def audit_specification(path: Path, only: str | None = None) -> Audit:
 
 def read_specification(path: Path) -> tuple[list[Source], list[Question]]:
     """The sources and questions of a file."""
-    from navsym.audit.names import Names
     from navsym.audit.questions import read_question
-    from navsym.audit.sources import read_source
 
     document, where = read_toml(path), name_file(path)
     expect_keys(document, ("code", "question"), where)
-    names = Names()
-    sources: list[Source] = []
-    for i, block in enumerate(read_blocks(document, "code", where)):
-        sources.append(read_source(block, path.parent, names, join_place(join_place(where, "code"), i)))
-    require_distinct((source.name for source in sources), join_place(where, "code"))
-    by_name = {source.name: source for source in sources}
+    names, by_name = read_sources(document, path.parent, where)
     blocks = read_blocks(document, "question", where)
     place = join_place(where, "question")
     questions = [
         read_question(block, by_name, names, path.parent, join_place(place, i)) for i, block in enumerate(blocks)
     ]
     require_distinct((question.name for question in questions), place)
-    return sources, questions
+    return [*by_name.values()], questions
+
+
+def read_sources(document: Mapping[str, Any], folder: Path, where: str) -> tuple[Names, dict[str, Source]]:
+    """The blocks ``[[code]]`` of a file, by their names, and the table of names that they share."""
+    from navsym.audit.names import Names
+    from navsym.audit.sources import read_source
+
+    names, place = Names(), join_place(where, "code")
+    blocks = read_blocks(document, "code", where)
+    sources = [read_source(block, folder, names, join_place(place, i)) for i, block in enumerate(blocks)]
+    require_distinct((source.name for source in sources), place)
+    return names, {source.name: source for source in sources}
 
 
 def read_blocks(document: Mapping[str, Any], key: str, where: str) -> list[Any]:

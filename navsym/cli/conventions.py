@@ -82,4 +82,5 @@ def conflicts_text(data: Mapping[str, Any]) -> str:
 def conflict_row(conflict: Mapping[str, Any]) -> list[str]:
     """One block that must change."""
     entries = " ".join(f"{conflict['matrix']}[{i},{j}]" for i, j in conflict["entries"])
+    entries += f" ({', '.join(conflict['places'])})" if "places" in conflict else ""
     return [" by ".join(conflict["block"]), entries, conflict["change"], conflict["status"]]

@@ -1,19 +1,17 @@
-"""The conventions of a model: :func:`conventions`, its answer and document."""
+"""The conventions of a model: :func:`find_conventions`, its answer and document."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 from navsym.conventions.card import Card
 from navsym.conventions.converting import Conversion, convert, print_matrix
-from navsym.conventions.generating import fill_model
 from navsym.conventions.measuring import RESET_MARK
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
-from navsym.conventions.reading import Problem, matrix_of, read_problem
+from navsym.conventions.reading import Problem, matrix_of
 from navsym.conventions.search import (
     SIGNS,
     Block,
@@ -28,27 +26,30 @@ from navsym.conventions.search import (
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
-from navsym.language.files import name_file
-from navsym.language.names import quote
-from navsym.language.schema import require_key
-from navsym.language.tomlfile import read_toml
 
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """A block that must change: its sides, entries that differ (from 1), mended rows, how that is known, its matrix."""
+    """A block that must change.
+
+    block, entries : its sides, and the entries that differ, from 1
+    change, status : the mended rows, and how it is known that they differ
+    places         : of a matrix of source code, where the entries are assigned
+    """
 
     block: tuple[str, str]
     entries: tuple[tuple[int, int], ...]
     change: str
     status: str
     matrix: str = "F"
+    places: tuple[str, ...] = ()
 
     def document(self) -> dict[str, Any]:
         """The conflict as JSON data."""
         entries = [list(entry) for entry in self.entries]
         words = {"change": self.change, "status": self.status, "matrix": self.matrix}
-        return {"block": list(self.block), "entries": entries, **words}
+        places = {"places": list(self.places)} if self.places else {}
+        return {"block": list(self.block), "entries": entries, **words, **places}
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,14 +65,8 @@ class Exclusion:
 
     def document(self) -> dict[str, Any]:
         """The exclusion as JSON data."""
-        return {
-            "card": self.card.document(),
-            "field": self.field,
-            "block": None if self.block is None else list(self.block),
-            "entry": None if self.entry is None else list(self.entry),
-            "point": dict(self.point),
-            "why": self.why,
-        }
+        sides = {"block": self.block and list(self.block), "entry": self.entry and list(self.entry)}
+        return {**asdict(self), "card": self.card.document(), **sides}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -133,6 +128,21 @@ class Conventions(Answer):
         matrices = {name: print_matrix(getattr(self.problem, name)) for name in names}
         return {"name": self.name, "states": list(self.problem.states), **matrices}
 
+    def latex(self) -> str:
+        r"""The first card, or the nearest one, and F in LaTeX, block by block.
+
+        >>> import navsym as nav
+        >>> print(nav.conventions("examples/conventions.toml").latex().splitlines()[2])
+        \delta v = \hat v - v \\
+        """
+        from navsym.conventions.typeset import model_latex
+
+        card = self.cards[0] if self.cards else self.nearest
+        return "" if card is None else model_latex(self.problem, card, {"F": print_matrix(self.problem.F)}, card)
+
+    def _repr_latex_(self) -> str:
+        return rf"$\displaystyle {self.latex()}$"
+
     def document(self) -> dict[str, Any]:
         """The answer as plain data: the JSON document of the verb."""
         return {
@@ -157,42 +167,12 @@ class Conventions(Answer):
         return f"Conventions({self.name}: no card; change {blocks})"
 
 
-def conventions(
-    model: Any,
-    *,
-    roles: Mapping[str, Sequence[str]] | None = None,
-    quantities: Mapping[str, Any] | None = None,
-    known: Mapping[str, str] | None = None,
-    card: Card | Mapping[str, str] | str | os.PathLike[str] | None = None,
-) -> Conventions:
-    """All cards of conventions under which the error dynamics of a model are right.
+def find_conventions(problem: Problem) -> Conventions:
+    """All cards under which a model is right, or with none the fewest blocks that must change.
 
     For each card the error equations are derived from the nonlinear mechanisation, to first order along the true flow,
     and compared with F block by block: by the prover where they agree, at an exact point where they differ.
-
-    model      : path of a conventions file, its document, or a :class:`navsym.Model`
-    roles      : role (position, velocity, attitude, gyro_bias, accelerometer_bias) -> names of its three states
-    quantities : quantity (specific_force, rotation, latitude, velocity, radii, ...) -> names or expressions
-    known      : parts of the card that are certain, such as ``{"frame": "inertial"}``
-    card       : a card, its words, or the path of a file with the table [card], as the table of a model's file. Without
-                 F the model of the card is derived, and the answer has all cards that are equal to it
-
-    With no card the answer names the fewest blocks that must change. Raises a NavsymError for bad input: roles that are
-    no states, unknown quantities, wrong numbers of components, a matrix that is no rotation.
-
-    >>> states = "v1 v2 v3 p1 p2 p3".split()
-    >>> F = [["0"] * 6 for _ in range(6)]
-    >>> F[0][4], F[0][5], F[1][3], F[1][5], F[2][3], F[2][4] = "f3", "-f2", "-f3", "f1", "f2", "-f1"
-    >>> answer = conventions(
-    ...     {"model": {"states": states, "F": F}, "parameters": dict.fromkeys(("f1", "f2", "f3"), "real")},
-    ...     roles={"velocity": states[:3], "attitude": states[3:]},
-    ...     quantities={"specific_force": ["f1", "f2", "f3"]},
-    ...     known={"frame": "inertial", "error": "estimate - truth"},
-    ... )
-    >>> [(card.attitude_error, card.rotation_sign) for card in answer.cards], answer.complete
-    ([('frame', '+')], True)
     """
-    problem = problem_of(model, roles, quantities, known, card)
     prover, comparison = Prover(problem), Comparison(problem)
     findings = find_candidates(problem, comparison)
     proved = {card: is_card_proved(card, comparison, prover) for card in findings.candidates}
@@ -212,38 +192,6 @@ def conventions(
     return Conventions(
         problem.name, cards, complete, conflicts, nearest, alternatives, excluded, examined, problem.unused, problem
     )
-
-
-def problem_of(model: Any, roles: Any, quantities: Any, known: Any, card: Any) -> Problem:
-    """The problem that the arguments mean."""
-    from navsym.models.model import Model
-
-    extra = {"roles": roles, "quantities": quantities, "known": known}
-    given = {name: plain_lists(value) for name, value in extra.items() if value is not None}
-    where = name_file(model) if isinstance(model, str | os.PathLike) else "conventions"
-    if isinstance(model, str | os.PathLike):
-        model = read_toml(model)
-    if isinstance(model, Model):
-        model = model.document()
-    if not isinstance(model, Mapping):
-        message = f"expected a model, a document or the path of a file; got {quote(model)}; give one of these"
-        raise DomainError(message, where="conventions: model")
-    document = {**model, **given, **({} if card is None else {"card": words_of(card)})}
-    return read_problem(fill_model(document, where) if "card" in document else document, where)
-
-
-def words_of(card: Any) -> Any:
-    """A card as the table of a file."""
-    if isinstance(card, str | os.PathLike):
-        return require_key(read_toml(card), "card", name_file(card))
-    return card.words() if isinstance(card, Card) else card
-
-
-def plain_lists(value: Any) -> Any:
-    """Tuples as lists, in tables too."""
-    if isinstance(value, Mapping):
-        return {key: plain_lists(item) for key, item in value.items()}
-    return [plain_lists(item) for item in value] if isinstance(value, tuple | list) else value
 
 
 def is_card_proved(card: Card, comparison: Comparison, prover: Prover) -> bool:

@@ -9,12 +9,14 @@ from typing import Any
 
 ESTIMATE, TRUTH = "estimate - truth", "truth - estimate"
 KEPT, DROPPED = "kept", "dropped"
+NORTH, WANDER = "north", "wander"
 MEASURED_LESS, PREDICTED_LESS = "measurement - prediction", "prediction - measurement"
 
 #: Words that the fields of a card may have; None where a field says nothing.
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "frame": ("inertial", "earth", "local-level"),
     "axes": ("NED", "ENU", "NWU"),
+    "azimuth": (NORTH, WANDER),
     "error": (ESTIMATE, TRUTH),
     "attitude_error": ("frame", "body"),
     "angle": ("phi", "psi"),
@@ -39,6 +41,8 @@ class Card:
     """One set of conventions of an error model.
 
     frame, axes      : where velocity is resolved; axes of a local level
+    azimuth          : ``north``, or ``wander``: the axes are turned about down by the wander angle, from north to east,
+                       and do not turn beside the Earth about the vertical
     error            : sign of velocity and position errors
     attitude_error   : ``frame``: C_est = (E +- [p x]) C; ``body``: C_est = C (E +- [p x]); C leads from body to frame
     angle            : ``phi``: beside the true local level; ``psi``: beside the local level at the estimated position
@@ -59,6 +63,7 @@ class Card:
 
     frame: str
     axes: str | None = None
+    azimuth: str | None = None
     error: str = ESTIMATE
     attitude_error: str | None = "frame"
     angle: str | None = None
@@ -85,6 +90,11 @@ class Card:
         """What the card says, as the table [card] of a file."""
         return {name: word for name, word in asdict(self).items() if name in CHOICES and word is not None}
 
+    def _repr_latex_(self) -> str:
+        from navsym.conventions.typeset import card_latex
+
+        return rf"$\displaystyle {card_latex(self)}$"
+
     def signs(self) -> dict[str, int]:
         """Role -> +1 where the state is estimate minus truth (for an attitude: the sign of its rotation), else -1."""
         error = 1 if self.error == ESTIMATE else -1
@@ -100,7 +110,12 @@ class Card:
 
 
 def list_structures(
-    roles: frozenset[str], radii: int, frames: tuple[str, ...], height: bool = True, placed: bool = False
+    roles: frozenset[str],
+    radii: int,
+    frames: tuple[str, ...],
+    height: bool = True,
+    placed: bool = False,
+    azimuth: str = NORTH,
 ) -> Iterator[Card]:
     """Every card without its signs, for a model of these roles.
 
@@ -108,13 +123,16 @@ def list_structures(
     frames : the frames to list
     height : False where radii contain the height
     placed : True where latitude and longitude are given, so that gravity may follow the normal
+    azimuth : of local levels
     """
     vectors = CHOICES["vector_error"] if {"attitude", "velocity"} <= roles else ("difference",)
     sides = CHOICES["attitude_error"] if "attitude" in roles else ("frame",)
     for frame in frames:
         level = frame == "local-level"
         cards = list(
-            list_level(frame, roles, radii, height) if level else list_cartesian(frame, roles, radii * placed, height)
+            list_level(frame, azimuth, roles, radii, height)
+            if level
+            else list_cartesian(frame, roles, radii * placed, height)
         )
         for side, vector in product(sides, vectors):
             for card in cards:
@@ -144,12 +162,12 @@ def list_cartesian(frame: str, roles: frozenset[str], radii: int = 0, height: bo
             )
 
 
-def list_level(frame: str, roles: frozenset[str], radii: int, height: bool) -> Iterator[Card]:
+def list_level(frame: str, azimuth: str, roles: frozenset[str], radii: int, height: bool) -> Iterator[Card]:
     """Cards of a local level: over a flat Earth, a sphere, an ellipsoid."""
     metres = "metres" if "position" in roles else None
     shapes = {0: ("sphere", "ellipsoid"), 1: ("sphere",)}.get(radii, ("ellipsoid",))
     for axes, angle in product(CHOICES["axes"], CHOICES["angle"]):
-        flat = Card(frame, axes, angle=angle, position_error=metres, transport_rate=DROPPED)
+        flat = Card(frame, axes, azimuth, angle=angle, position_error=metres, transport_rate=DROPPED)
         for rate in (KEPT, DROPPED):
             yield replace(flat, earth_rate=rate)
         for shape in shapes:
@@ -192,6 +210,7 @@ def list_curved(flat: Card, radii: int, height: bool) -> Iterator[Card]:
 HEADINGS: Mapping[str, str] = {
     "frame": "frame",
     "axes": "axes",
+    "azimuth": "azimuth of the axes",
     "error": "error of velocity and position",
     "attitude_error": "attitude error in the",
     "rotation_sign": "sign of its rotation",

@@ -13,14 +13,14 @@ from typing import Any
 
 from navsym.claims.verdict import PROVED
 from navsym.conventions.card import CHOICES, Card
-from navsym.conventions.frames import Passage, carry_motion, change_frame
+from navsym.conventions.frames import Passage, carry_motion, change_frame, restore_terms
 from navsym.conventions.generating import require_names, write_blocks
-from navsym.conventions.measuring import NOISE_MARK, RESET_MARK, unit_error
+from navsym.conventions.measuring import NOISE_MARK, unit_error
 from navsym.conventions.mechanisation import ROLES, Mechanisation
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
-from navsym.conventions.reading import Problem
-from navsym.conventions.search import Comparison, change, plain_card
+from navsym.conventions.reading import Problem, matrix_of
+from navsym.conventions.search import Comparison, change, list_cards, plain_card
 from navsym.conventions.symbols import Formulas
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
@@ -28,9 +28,15 @@ from navsym.core.errors import DomainError
 from navsym.language.names import quote
 from navsym.language.printer import print_tree
 
-#: What a conversion may change: the definition of the errors, and where they are resolved; not what is kept.
+#: What a conversion changes exactly: the definition of the errors, and where they are resolved.
 CONVERTED = (
-    "error", "attitude_error", "angle", "rotation_sign", "bias_sign", "position_error", "vector_error", "axes", "frame",
+    "error", "attitude_error", "angle", "rotation_sign", "bias_sign", "position_error", "vector_error", "axes",
+    "azimuth", "frame",
+)  # fmt: skip
+#: Terms that a conversion may keep or drop within a frame; what that changes is ``neglected``.
+TERMS = (
+    "earth_rate", "transport_rate", "gravity_gradient", "gravity_radius", "centrifugal", "height_variation",
+    "radius_variation",
 )  # fmt: skip
 LONG = 400  # letters of a statement that are too many for the checker
 Texts = tuple[tuple[str, ...], ...]
@@ -43,10 +49,13 @@ class Conversion(Answer):
     source, target : the cards
     T, inverse     : x_to = T x and x = inverse x_to, in the order of the states; P_to = T P T'
     rate           : dT/dt along the true flow
+    neglected      : what the target has and the model has not, or the reverse, in the errors of the source: where
+                     terms are dropped, F + neglected is converted; zeros where the conversion is exact
     F, H, G, reset : of the target; empty where the model has none; Q and R stay. In other axes or another frame a
                      measurement stays as it was resolved; the corrections of the reset are those of the target
     problem        : the model that was converted; ``export`` writes T and its inverse as code
-    proved         : True where the checker grants F_to T = T F + T', T inverse = E, H_to T = H and G_to = T G
+    proved         : True where the checker grants F_to T = T (F + neglected) + T', T inverse = E, H_to T = H and
+                     G_to = T G
     """
 
     source: Card
@@ -54,6 +63,7 @@ class Conversion(Answer):
     T: Texts
     inverse: Texts
     rate: Texts
+    neglected: Texts
     F: Texts
     H: Texts
     G: Texts
@@ -63,49 +73,67 @@ class Conversion(Answer):
 
     def document(self) -> dict[str, Any]:
         """The conversion as JSON data."""
-        names = ("T", "inverse", "rate", "F", "H", "G", "reset")
+        names = ("T", "inverse", "rate", "neglected", "F", "H", "G", "reset")
         matrices = {name: [list(row) for row in getattr(self, name)] for name in names}
         return {"from": self.source.document(), "to": self.target.document(), **matrices, "proved": self.proved}
 
     def __repr__(self) -> str:
         changed = [f.name for f in fields(Card) if getattr(self.source, f.name) != getattr(self.target, f.name)]
         words = ", ".join(f"{name} {getattr(self.target, name)}" for name in changed)
-        return f"Conversion(to {words or 'the same card'}; {'PROVED' if self.proved else 'not all is proved'})"
+        rest = f", up to {len(self.neglected_entries())} named entries" * bool(self.neglected_entries())
+        return f"Conversion(to {words or 'the same card'}; {'PROVED' if self.proved else 'not all is proved'}{rest})"
+
+    def latex(self) -> str:
+        """The new card, T, F and what is neglected in LaTeX, block by block."""
+        from navsym.conventions.typeset import model_latex
+
+        matrices = {"T": self.T, "F": self.F, r"\Delta F": self.neglected}
+        return model_latex(self.problem, self.target, matrices, self.source)
+
+    def _repr_latex_(self) -> str:
+        return rf"$\displaystyle {self.latex()}$"
+
+    def neglected_entries(self) -> list[tuple[int, int]]:
+        """The entries of ``neglected`` that are not zero, from 1."""
+        return [(i + 1, j + 1) for i, row in enumerate(self.neglected) for j, x in enumerate(row) if x != "0"]
 
 
-def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> Card:
-    """The card to convert to; raises DomainError for what is no definition of an error, or has no transformation."""
-    given = problem.quantities
-    frame = changes.get("frame", source.frame)
-    moved = source
-    if frame != source.frame and frame in CHOICES["frame"]:
-        words = {"frame": frame, **changes}
-        sizes = (
-            len(given.get("radii", ())),
-            "height" in given,
-            "earth_rate" in given,
-            "velocity" in problem.roles and "position" not in problem.roles,
-        )
-        moved = change_frame(source, words, *sizes)
+def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> tuple[Card, Card]:
+    """The card to convert to, and the source with the terms that it then has.
+
+    Raises DomainError for what is no definition of an error and no term, or has no transformation.
+    """
+    for name, word in changes.items():
+        if name not in CHOICES or word not in CHOICES[name]:
+            known = ", ".join(CHOICES.get(name, (*CONVERTED, *TERMS)))
+            got = quote(word if name in CHOICES else name)
+            raise DomainError(f"expected one of {known}; got {got}; correct it", where=f"convert: {name}")
+    terms = {name: word for name, word in changes.items() if name in TERMS}
+    given, frame = problem.quantities, changes.get("frame", source.frame)
+    whole = change(source, {**terms, "dropped": ()})
+    moved = whole
+    if frame != source.frame or changes.get("azimuth", source.azimuth) != source.azimuth:
+        sizes = len(given.get("radii", ())), "height" in given, "earth_rate" in given
+        whole = restore_terms(whole, frame, sizes[0])
+        alone = "velocity" in problem.roles and "position" not in problem.roles
+        moved = change_frame(whole, {**changes, "frame": frame}, *sizes, alone)
+    elif terms and plain_card(whole) not in map(plain_card, list_cards(problem)):
+        message = f"expected terms of one card; got {', '.join(terms)} beside others; change what belongs to them, too"
+        raise DomainError(message, where="convert")
     curved = moved.frame == "local-level" and moved.earth != "none"
     names = [n for n in CONVERTED if getattr(moved, n) is not None and (curved or n != "position_error")]
-    for name, word in changes.items():
-        if name not in names:
-            known = ", ".join(names)
-            message = f"expected one of {known}; got {quote(name)}; the mechanisation itself stays"
-            raise DomainError(message, where="convert")
-        if word not in CHOICES[name]:
-            message = f"expected one of {', '.join(CHOICES[name])}; got {quote(word)}; correct it"
-            raise DomainError(message, where=f"convert: {name}")
-    dropped = [block for block in source.dropped if not block[0].startswith(RESET_MARK)]
-    if dropped:
-        got = "; ".join(f"zeros in {row} by {column}" for row, column in dropped)
-        raise DomainError(f"expected a model without dropped blocks; got {got}; write them out", where="convert")
-    target = change(moved, changes)
+    for name in (name for name in changes if name not in (*names, *TERMS) or (name in terms and moved != whole)):
+        message = f"expected one of {', '.join(names)}; got {quote(name)}; it says nothing beside the others"
+        raise DomainError(message, where="convert")
+    for block in source.dropped:
+        if matrix_of(block) in ("G", "H"):
+            got = f"zeros in {' by '.join(block)}"
+            raise DomainError(f"expected H and G without dropped blocks; got {got}; write them out", where="convert")
+    target = change(moved, {name: word for name, word in changes.items() if name not in TERMS})
     if "position" in problem.measured and target.position_error != source.position_error:
         message = "expected a measured position in the units of the error; got another unit; convert without it"
         raise DomainError(message, where="convert: position_error")
-    return target
+    return target, whole
 
 
 def transform(way: Passage, role: str, component: int) -> dict[str, list[Any]]:
@@ -144,7 +172,7 @@ class Converter:
         """F, H, G and the reset of the target."""
         problem, signs, own = self.problem, self.target.signs(), self.source.signs()
         matrices = {name: print_matrix(getattr(problem, name)) for name in ("F", "H", "G", "reset")}
-        moves = (self.source.frame, self.source.axes) != (self.target.frame, self.target.axes)
+        moves = any(getattr(self.source, n) != getattr(self.target, n) for n in ("frame", "axes", "azimuth"))
 
         def sign(block: tuple[str, str]) -> int:
             if block[1].startswith(NOISE_MARK):  # the sign of a noise is that of the model as it was
@@ -155,6 +183,23 @@ class Converter:
         if moves and matrices["H"]:
             matrices["H"] = multiply_texts(matrices["H"], inverse)
         return list(matrices.values())
+
+    def neglected(self) -> list[list[str]]:
+        """F of the source with all its terms less F of the model."""
+        n, F = range(self.n), print_matrix(self.problem.F)
+        whole = [list(row) for row in F]
+        flow = Mechanisation(plain_card(self.source), self.formulas.world)
+        write_blocks(
+            self.problem, flow, self.formulas, lambda b: self.comparison.block_sign(self.source, b), {"F": whole}
+        )
+        return [[self.subtract(whole[i][j], F[i][j]) for j in n] for i in n]
+
+    def subtract(self, x: str, y: str) -> str:
+        """x - y as a text."""
+        left, right = self.formulas.read(x), self.formulas.read(y)
+        if x == y or None in (left, right):
+            return "0" if x == y or self.is_equal(x, y) else f"{x} - ({y})"
+        return self.formulas.write(left - right)
 
     def is_proved(self, pairs: Sequence[tuple[list[list[str]], list[list[str]]]]) -> bool:
         """True where matrices are equal, entry by entry."""
@@ -200,24 +245,24 @@ def add_texts(A: list[list[str]], B: list[list[str]]) -> list[list[str]]:
 
 def convert(problem: Problem, source: Card, changes: Mapping[str, str]) -> Conversion:
     """The model of a problem, which is right under ``source``, in the errors of another card."""
-    target = read_target(source, changes, problem)
-    converter = Converter(problem, source, target)
-    flow = Mechanisation(plain_card(source), converter.formulas.world)
+    target, whole = read_target(source, changes, problem)
+    converter = Converter(problem, whole, target)
+    flow = Mechanisation(plain_card(whole), converter.formulas.world)
     way = Passage(flow, carry_motion(flow, plain_card(target)))
     (T, rate), (inverse, _) = converter.transformation(way), converter.transformation(way, back=True)
     with precision(BITS):
         F, H, G, reset = converter.matrices(way, inverse)
-    require_names("convert", T, inverse, rate, F, H, G, reset)
+        exact = whole == source
+        neglected = [["0"] * len(T) for _ in T] if exact else converter.neglected()
+    require_names("convert", T, inverse, rate, neglected, F, H, G, reset)
     unit = [["1" if i == j else "0" for j in range(len(T))] for i in range(len(T))]
-    pairs = [
-        (multiply_texts(T, inverse), unit),
-        (multiply_texts(F, T), add_texts(multiply_texts(T, print_matrix(problem.F)), rate)),
-    ]
+    before = print_matrix(problem.F) if exact else add_texts(print_matrix(problem.F), neglected)
+    pairs = [(multiply_texts(T, inverse), unit), (multiply_texts(F, T), add_texts(multiply_texts(T, before), rate))]
     if H:
         pairs.append((multiply_texts(H, T), print_matrix(problem.H)))
     if G:
         pairs.append((G, multiply_texts(T, print_matrix(problem.G))))
-    frozen = (freeze(M) for M in (T, inverse, rate, F, H, G, reset))
+    frozen = (freeze(M) for M in (T, inverse, rate, neglected, F, H, G, reset))
     return Conversion(source, target, *frozen, proved=converter.is_proved(pairs), problem=problem)  # type: ignore[misc,arg-type]
 
 

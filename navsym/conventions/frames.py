@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from navsym.conventions.card import DROPPED, KEPT, Card
-from navsym.conventions.mechanisation import Mechanisation, State, plus_height, rotate_about_pole
+from navsym.conventions.card import DROPPED, KEPT, NORTH, WANDER, Card
+from navsym.conventions.mechanisation import AXES, Mechanisation, State, plus_height, rotate_about_pole
 from navsym.conventions.nilpotent import (
     NOTHING,
     Grid,
@@ -26,6 +26,7 @@ from navsym.conventions.nilpotent import (
     multiply,
     negate,
     skew,
+    subtract,
     times,
     transpose,
 )
@@ -48,14 +49,16 @@ class Passage:
 
     @property
     def stays(self) -> bool:
-        """True where only the axes of a local level change, or nothing."""
-        return self.source.card.frame == self.card.frame
+        """True where only the names of the axes of a local level change, or nothing."""
+        wander = [card.azimuth == WANDER for card in (self.source.card, self.card)]
+        return self.source.card.frame == self.card.frame and wander[0] == wander[1]
 
     def turn(self) -> Grid:
         """Rotation from the axes of the source to those of the card."""
         if self.card.frame != LEVEL:
             return identity()
-        return multiply(self.target.turn, transpose(self.source.turn))
+        target, source = ([constant(row) for row in AXES[card.axes]] for card in (self.card, self.source.card))
+        return multiply(target, transpose(source))
 
     def spin(self) -> Any:
         """The rate of the Earth; 0 where both cards drop it."""
@@ -83,11 +86,11 @@ class Passage:
             R = transpose(rotate_about_pole(flow.world.angle, self.spin()))
             return self.slow_down(R, estimate), self.slow_down(R, x)
         R, moved = flow.level(x), add_vectors(estimate.position, negate(x.position))
-        tilted = multiply(R, add(identity(), skew(flow.tilt(x, moved))))
+        tilted = multiply(R, add(identity(), skew(apply(flow.turn(x), flow.tilt(x, estimate)))))
         velocity = apply(R, x.velocity)
         r = [Nilpotent(at, 0, v.value) for at, v in zip(self.centre(), velocity, strict=True)]
         along = [part * unit for part, unit in zip(moved, flow.metres(x), strict=True)]
-        there = add_vectors(r, apply(R, apply(flow.turn, along)))
+        there = add_vectors(r, apply(R, apply(flow.turn(x), along)))
         truth = replace(x, attitude=multiply(R, x.attitude), velocity=velocity, position=r)
         outer = multiply(tilted, estimate.attitude)
         return replace(estimate, attitude=outer, velocity=apply(tilted, estimate.velocity), position=there), truth
@@ -121,23 +124,26 @@ class Passage:
         flow, at = self.target, replace(x, position=[NOTHING] * 3)
         now = [Nilpotent(part.value) for part in apply(transpose(flow.level(at)), x.velocity)]
         rate = flow.position_rate(replace(at, velocity=now))
-        at = replace(at, position=[Nilpotent(0, 0, part.value) for part in rate])
+        azimuth = Nilpotent(0, 0, flow.azimuth_rate(at, rate).value)
+        at = replace(at, position=[Nilpotent(0, 0, part.value) for part in rate], azimuth=azimuth)
         R = transpose(flow.level(at))
-        away = apply(transpose(flow.turn), apply(R, add_vectors(estimate.position, negate(x.position))))
+        away = apply(transpose(flow.turn(at)), apply(R, add_vectors(estimate.position, negate(x.position))))
         moved = [part / unit for part, unit in zip(away, flow.metres(at), strict=True)]
-        tilted = multiply(add(identity(), skew(negate(flow.tilt(at, moved)))), R)
+        place: dict[str, Any] = {
+            "position": add_vectors(at.position, moved),
+            "azimuth": at.azimuth + flow.least_turn(at, moved),
+        }
+        tilt = apply(flow.turn(at), flow.tilt(at, replace(at, **place)))
+        tilted = multiply(subtract(identity(), skew(tilt)), R)
         truth = replace(at, attitude=multiply(R, x.attitude), velocity=apply(R, x.velocity))
-        there, outer = add_vectors(at.position, moved), multiply(tilted, estimate.attitude)
-        return replace(estimate, attitude=outer, velocity=apply(tilted, estimate.velocity), position=there), truth
+        outer, velocity = multiply(tilted, estimate.attitude), apply(tilted, estimate.velocity)
+        return replace(estimate, attitude=outer, velocity=velocity, **place), truth
 
 
 def carry_motion(source: Mechanisation, card: Card) -> Mechanisation:
     """The mechanisation of a card in the motion of another one."""
-    way, world, moves = (
-        Passage(source, Mechanisation(card, source.world)),
-        source.world,
-        source.card.frame != card.frame,
-    )
+    way, world = Passage(source, Mechanisation(card, source.world)), source.world
+    moves = not way.stays
     if not moves and card.axes == source.card.axes:
         return way.target
     out = transpose(axes_of(way.target)) if moves else identity()
@@ -161,7 +167,7 @@ def carry_motion(source: Mechanisation, card: Card) -> Mechanisation:
         gravity, velocity = add_vectors(gravity, whirl), add_vectors(velocity, cross(way.pole(), at))
     gravity, rate = apply(out, gravity), [0, 0, W]
     if card.frame == LEVEL:
-        gravity = apply(transpose(way.target.turn), gravity)[2:]
+        gravity = apply(transpose(way.target.turn(source.truth())), gravity)[2:]
         rate = [times(W, world.cos), times(-1, times(W, world.sin))]
     names = {"v": apply(out, velocity), "r": apply(out, at), "gravity": gravity}
     same |= {name: [x.value for x in vector] for name, vector in names.items()}
@@ -203,64 +209,69 @@ def turn_state(A: Grid, x: State, is_geodetic: bool) -> State:
 # The card in another frame
 
 
+def restore_terms(card: Card, frame: str, radii: int) -> Card:
+    """The card with the terms that the same motion has in another frame; ``neglected`` names what is added or taken."""
+    if card.frame == LEVEL:
+        slope = card.radius_variation and (KEPT if card.position_error else DROPPED)
+        return replace(card, transport_rate=KEPT, height_variation=KEPT, radius_variation=slope)
+    if frame == LEVEL:
+        card = replace(card, centrifugal=card.centrifugal and DROPPED)
+        central = card.gravity_gradient == "central" and radii == 1
+        if card.position_error and not central and card.gravity_gradient != "normal":
+            shape, name = ("sphere", "R") if radii == 1 else ("ellipsoid", "third radius" if radii == 3 else "RE")
+            radius = None if card.gravity_gradient == "none" else name
+            return replace(card, earth=shape, gravity_gradient="normal", gravity_radius=radius)
+    if (card.frame, frame) == ("earth", "inertial") and card.centrifugal == DROPPED:
+        return replace(card, centrifugal=KEPT)
+    return card
+
+
 def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool, turning: bool, alone: bool) -> Card:
     """The card of the same motion in another frame; raises DomainError where no card has its gravity.
 
-    words   : frame, and axes and angle of a local level
+    words   : frame, and axes, azimuth and angle of a local level
     radii   : how many radii of the Earth the model has; height : True where it has the height
     turning : True where the model has the rate of the Earth
     alone   : True for velocities without positions, whose errors would drive them in another frame
     """
     frame = words["frame"]
-    refuse(alone, "position among the roles")
-    if LEVEL in (frame, card.frame):
-        plain = {"angle": "phi", "vector_error": "difference"}
-        for name, word in plain.items():
-            wanted = words.get(name, getattr(card, name) or word)
-            refuse(wanted != word or getattr(card, name) not in (None, word), f"{name} {word} on both sides")
-    hub = replace(card, frame="earth", axes=None, angle=None, transport_rate=None, height_variation=None)
+    refuse(alone, "position among the roles: errors of position drive those of velocity in another frame")
+    refuse(card.frame == LEVEL and card.earth == "none", "a curved Earth: a flat one has no centre to go to")
+    hub = replace(card, frame="earth", axes=None, azimuth=None, angle=None, transport_rate=None, height_variation=None)
     hub = replace(hub, radius_variation=None, position_error=card.position_error and "metres")
     if card.frame == LEVEL:
-        require_whole(card)
         normal = "normal" if card.position_error else "none"
         hub = replace(hub, gravity_gradient=normal, centrifugal=DROPPED)
     elif card.frame == "inertial":
         hub = replace(hub, earth_rate=KEPT if turning else DROPPED, centrifugal=KEPT)
     if hub.earth_rate == DROPPED or hub.position_error is None:
         hub = replace(hub, centrifugal=None)
-    if "inertial" in (frame, card.frame) and hub.centrifugal == KEPT:
-        refuse(hub.gravity_gradient in ("radial", "normal"), "a gradient of gravitation alone, central or none")
+    if "inertial" in (frame, card.frame) and hub.centrifugal:
+        apart = hub.centrifugal == KEPT and hub.gravity_gradient in ("central", "none")
+        refuse(not apart, "a centrifugal term beside gravitation: without one the gradient of gravity has no equal")
     if frame == "earth":
         return hub
     if frame == "inertial":
-        refuse(hub.centrifugal == DROPPED, "a centrifugal term that is kept")
         return replace(hub, frame=frame, earth_rate=None, centrifugal=None)
     refuse(not radii, "quantities with radii")
-    refuse(hub.centrifugal == KEPT, "gravity with its centrifugal part in one")
+    refuse(hub.centrifugal == KEPT, "gravity with its centrifugal part in one: along the normal there is no other")
     shape, lifted = "sphere" if radii == 1 else "ellipsoid", "R + h" if height else "R"
-    central = hub.gravity_gradient == "central" and shape == "sphere"
-    vertical = lifted if central else card.gravity_radius if hub.gravity_gradient == "normal" else None
-    fits = central or hub.position_error is None or hub.gravity_gradient == "normal"
-    refuse(not fits, "a gradient of gravity, central or normal")
+    vertical = lifted if hub.gravity_gradient == "central" else card.gravity_radius
     slope = None if shape == "sphere" else KEPT if hub.position_error else DROPPED
-    level: dict[str, Any] = {"axes": words.get("axes", "NED"), "angle": words.get("angle", "phi"), "earth": shape}
-    kind: dict[str, Any] = {
-        "gravity_gradient": "vertical" if vertical else "none",
-        "gravity_radius": vertical,
-        "centrifugal": None,
-    }
     return replace(
-        hub, frame=frame, **level, **kind, transport_rate=KEPT, height_variation=KEPT, radius_variation=slope
+        hub,
+        frame=frame,
+        axes=words.get("axes", card.axes or "NED"),
+        azimuth=words.get("azimuth", NORTH),
+        angle=words.get("angle", card.angle or "phi"),
+        earth=shape,
+        gravity_gradient="vertical" if vertical else "none",
+        gravity_radius=vertical,
+        centrifugal=None,
+        transport_rate=KEPT,
+        height_variation=KEPT,
+        radius_variation=slope,
     )
-
-
-def require_whole(card: Card) -> None:
-    """Refuse a local level that drops what belongs to its motion."""
-    refuse(card.earth == "none", "a curved Earth below the local level")
-    refuse(card.transport_rate != KEPT, "a transport rate that is kept")
-    if card.position_error:
-        refuse(card.height_variation == DROPPED, "radii that change with the height")
-        refuse(card.radius_variation not in (None, KEPT), "radii that change with the latitude everywhere")
 
 
 def refuse(wrong: bool, expected: str) -> None:

@@ -73,15 +73,15 @@ def measure_position(flow: Mechanisation, estimate: State, x: State) -> Vector:
     metres = flow.metres(x)
     if flow.card.position_error == "metres":
         along = [part * unit for part, unit in zip(moved, metres, strict=True)]
-        return add_vectors(apply(flow.turn, along), arm)
-    ned = apply(transpose(flow.turn), arm)
+        return add_vectors(apply(flow.turn(x), along), arm)
+    ned = apply(transpose(flow.turn(x)), arm)
     return add_vectors(moved, [part / unit for part, unit in zip(ned, metres, strict=True)])
 
 
 def position_along(flow: Mechanisation, estimate: State, x: State) -> Nilpotent:
     """Height."""
     moved = add_vectors(estimate.position, negate(x.position))
-    return moved[2] if flow.is_geodetic else -apply(transpose(flow.turn), moved)[2]
+    return moved[2] if flow.is_geodetic else -apply(transpose(flow.turn(x)), moved)[2]
 
 
 def spin(flow: Mechanisation, x: State) -> Vector:

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from navsym.conventions.card import DROPPED, KEPT, Card
+from navsym.conventions.card import DROPPED, KEPT, WANDER, Card
 from navsym.conventions.nilpotent import (
     NOTHING,
     ONE,
@@ -24,6 +24,7 @@ from navsym.conventions.nilpotent import (
     add,
     add_vectors,
     apply,
+    combine,
     constant,
     cross,
     identity,
@@ -89,29 +90,30 @@ class World:
     corrections: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     meridian: tuple[Any, Any] = (0, 1)
     angle: tuple[Any, Any] = (0, 1)
+    wander: tuple[Any, Any] = (0, 1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class State:
-    """Attitude, velocity, biases, position; on the Earth its small change in latitude, longitude and height."""
+    """Attitude, velocity, biases, position; on the Earth its small change in latitude, longitude and height.
+
+    azimuth : small change of the wander angle, from north to east
+    """
 
     attitude: Grid
     velocity: Vector
     position: Vector
     gyro_bias: Vector
     accelerometer_bias: Vector
+    azimuth: Nilpotent = NOTHING
 
     def advance(self, rate: State) -> State:
         """The state after the infinitesimal time tau."""
-        attitude = [
-            [x.advance(y) for x, y in zip(*rows, strict=True)]
-            for rows in zip(self.attitude, rate.attitude, strict=True)
-        ]
-        moved = [
-            [x.advance(y) for x, y in zip(getattr(self, name), getattr(rate, name), strict=True)]
-            for name in ("velocity", "position", "gyro_bias", "accelerometer_bias")
-        ]
-        return State(attitude, *moved)
+        attitude = combine(Nilpotent.advance, self.attitude, rate.attitude)
+        names = ("velocity", "position", "gyro_bias", "accelerometer_bias")
+        now, after = ([getattr(x, name) for name in names] for x in (self, rate))
+        velocity, position, gyro, accelerometer = combine(Nilpotent.advance, now, after)
+        return State(attitude, velocity, position, gyro, accelerometer, self.azimuth.advance(rate.azimuth))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -126,10 +128,11 @@ class Mechanisation:
         """True where the position is latitude, longitude and height."""
         return self.card.frame == "local-level" and self.card.earth != "none"
 
-    @property
-    def turn(self) -> Grid:
+    def turn(self, x: State) -> Grid:
         """Rotation from north, east, down to the axes."""
-        return [constant(row) for row in AXES[self.card.axes]]
+        sine, cosine = constant(self.world.wander)
+        rows = axes_rows(self.card, sine + cosine * x.azimuth, cosine - sine * x.azimuth)
+        return [[part if type(part) is Nilpotent else Nilpotent(part) for part in row] for row in rows]
 
     def truth(self) -> State:
         """The true state; its biases are taken from the sensors' output and are zero."""
@@ -148,7 +151,13 @@ class Mechanisation:
         coriolis = cross(add_vectors(earth, earth, transport), x.velocity)
         velocity = add_vectors(force, self.gravity(x), negate(coriolis))
         zero = [NOTHING] * 3
-        return State(attitude, velocity, self.position_rate(x), zero, zero)
+        position = self.position_rate(x)
+        return State(attitude, velocity, position, zero, zero, self.azimuth_rate(x, position))
+
+    def azimuth_rate(self, x: State, position: Vector) -> Nilpotent:
+        """Rate of the wander angle: the axes do not turn beside the Earth about the vertical."""
+        wanders = self.is_geodetic and self.card.azimuth == WANDER
+        return position[1] * self.trigonometry(x)[0] if wanders else NOTHING
 
     def trigonometry(self, x: State) -> tuple[Nilpotent, Nilpotent]:
         """Sine and cosine of the latitude."""
@@ -175,16 +184,18 @@ class Mechanisation:
             return constant(self.world.earth_rate)
         north, down = constant(self.world.earth_rate)
         change = x.position[0] if self.is_geodetic else NOTHING
-        return apply(self.turn, [north + down * change, NOTHING, down - north * change])
+        return apply(self.turn(x), [north + down * change, NOTHING, down - north * change])
 
     def transport_rate(self, x: State) -> Vector:
         """Rate of a local level beside the Earth, in its axes."""
         if self.card.transport_rate != KEPT:
             return [NOTHING] * 3
-        north, east, _ = apply(transpose(self.turn), x.velocity)
+        turn = self.turn(x)
+        north, east, _ = apply(transpose(turn), x.velocity)
         sine, cosine = self.trigonometry(x)
         meridian, across = self.radii(x, (KEPT,))
-        rate = apply(self.turn, [east / across, -north / meridian, -east * sine / (across * cosine)])
+        down = NOTHING if self.card.azimuth == WANDER else -east * sine / (across * cosine)
+        rate = apply(turn, [east / across, -north / meridian, down])
         if self.world.transport is not None:
             names = self.world.transport
             rate = [Nilpotent(name, *part.parts()[1:]) for name, part in zip(names, rate, strict=True)]
@@ -198,7 +209,7 @@ class Mechanisation:
             if card.gravity_gradient == "vertical":
                 radius = Nilpotent(world.gradient_radii[str(card.gravity_radius)])
                 down = down - Nilpotent(2) * down * x.position[2] / radius
-            return apply(self.turn, [NOTHING, NOTHING, down])
+            return apply(self.turn(x), [NOTHING, NOTHING, down])
         moved = add_vectors(x.position, negate(constant(world.r)))
         value = add_vectors(constant(world.gravity), self.pull_change(moved))
         if card.centrifugal == KEPT:
@@ -223,10 +234,7 @@ class Mechanisation:
 
     def normal_change(self, moved: Vector) -> Vector:
         """The same for gravity along the normal of the Earth, by its curvature and its gradient along the normal."""
-        world = self.world
-        level = level_rows(*constant((world.sin, world.cos, *world.meridian)))
-        if self.card.frame == "inertial":
-            level = multiply(rotate_about_pole(world.angle), level)
+        world, level = self.world, self.normal_axes()
         north, east, sunk = apply(transpose(level), moved)
         down = apply(transpose(level), constant(world.gravity))[2]
         meridian, across = (Nilpotent(plus_height(radius, world.h)) for radius in (world.RN, world.RE))
@@ -235,11 +243,16 @@ class Mechanisation:
             grown = Nilpotent(2) * down * sunk / Nilpotent(world.gradient_radii[self.card.gravity_radius])
         return apply(level, [-down * north / meridian, -down * east / across, grown])
 
+    def normal_axes(self) -> Grid:
+        """Rotation from north, east, down to a frame of the Earth or of inertial space."""
+        level = level_rows(*constant((self.world.sin, self.world.cos, *self.world.meridian)))
+        return multiply(rotate_about_pole(self.world.angle), level) if self.card.frame == "inertial" else level
+
     def position_rate(self, x: State) -> Vector:
         """Rate of the position."""
         if not self.is_geodetic:
             return x.velocity
-        north, east, down = apply(transpose(self.turn), x.velocity)
+        north, east, down = apply(transpose(self.turn(x)), x.velocity)
         _, cosine = self.trigonometry(x)
         meridian, across = self.radii(x)
         return [north / meridian, east / (across * cosine), -down]
@@ -252,33 +265,44 @@ class Mechanisation:
         _, cosine = self.trigonometry(x)
         return [meridian, across * cosine, Nilpotent(-1)]
 
-    def reference(self, x: State, moved: Vector) -> Grid:
-        """Rotation from the true frame to that in which the errors are resolved: another one for psi."""
-        if self.card.angle != "psi" or not self.is_geodetic:
-            return identity()
-        return subtract(identity(), skew(self.tilt(x, moved)))
+    def reference(self, x: State, estimate: State) -> Grid:
+        """Rotation from the true frame to that in which the errors are resolved.
 
-    def tilt(self, x: State, moved: Vector) -> Vector:
-        """The small rotation, in the axes, by which a change of the position turns the local level."""
+        For psi it is the axes at the estimated position. Where axes wander they are told by the least turn for phi.
+        """
+        if not self.is_geodetic or (self.card.angle != "psi" and self.card.azimuth != WANDER):
+            return identity()
+        tilt = self.tilt(x, estimate)
+        tilt = tilt if self.card.angle == "psi" else [NOTHING, NOTHING, tilt[2]]
+        return subtract(identity(), skew(apply(self.turn(x), tilt)))
+
+    def tilt(self, x: State, estimate: State) -> Vector:
+        """The small rotation, in north, east, down, from the axes at the truth to those at the estimate."""
         sine, cosine = self.trigonometry(x)
-        latitude, longitude, _ = moved
-        return apply(self.turn, [longitude * cosine, -latitude, -longitude * sine])
+        latitude, longitude, _ = add_vectors(estimate.position, negate(x.position))
+        return [longitude * cosine, -latitude, estimate.azimuth - x.azimuth - longitude * sine]
+
+    def least_turn(self, x: State, moved: Vector) -> Nilpotent:
+        """The change of the wander angle with a change of the position by which the axes turn least."""
+        wanders = self.is_geodetic and self.card.azimuth == WANDER
+        return moved[1] * self.trigonometry(x)[0] if wanders else NOTHING
 
     def level(self, x: State) -> Grid:
         """Rotation from the axes of the local level at the state to the frame of the Earth."""
         sine, cosine = self.trigonometry(x)
         east, ahead = constant(self.world.meridian)
         east, ahead = east + ahead * x.position[1], ahead - east * x.position[1]
-        return multiply(level_rows(sine, cosine, east, ahead), transpose(self.turn))
+        return multiply(level_rows(sine, cosine, east, ahead), transpose(self.turn(x)))
 
     def estimate(self, x: State, error: Mapping[str, Vector]) -> State:
         """The estimate that has this error; every sign is plus."""
         card = self.card
         moved = error["position"]
         if self.is_geodetic and card.position_error == "metres":
-            along = apply(transpose(self.turn), moved)
+            along = apply(transpose(self.turn(x)), moved)
             moved = [part / unit for part, unit in zip(along, self.metres(x), strict=True)]
-        frame = self.reference(x, moved if self.is_geodetic else [NOTHING] * 3)
+        azimuth = x.azimuth + self.least_turn(x, moved)
+        frame = self.reference(x, replace(x, position=add_vectors(x.position, moved), azimuth=azimuth))
         attitude = multiply(frame, x.attitude)
         small = add(identity(), skew(error["attitude"]))
         velocity = apply(frame, x.velocity)
@@ -289,6 +313,7 @@ class Mechanisation:
             add_vectors(x.position, moved) if self.is_geodetic else self.shift(x.position, moved, attitude, turned),
             add_vectors(x.gyro_bias, error["gyro_bias"]),
             add_vectors(x.accelerometer_bias, error["accelerometer_bias"]),
+            azimuth,
         )
 
     def shift(self, vector: Vector, error: Vector, attitude: Grid, turned: Grid) -> Vector:
@@ -303,7 +328,7 @@ class Mechanisation:
         """The error of an estimate; every sign is plus."""
         card = self.card
         moved = add_vectors(estimate.position, negate(x.position))
-        frame = self.reference(x, moved)
+        frame = self.reference(x, estimate)
         attitude, velocity = multiply(frame, x.attitude), apply(frame, x.velocity)
         inverse = transpose(attitude)
         outer = multiply(estimate.attitude, inverse)
@@ -313,7 +338,7 @@ class Mechanisation:
         if not self.is_geodetic:
             moved = self.unshift(estimate.position, x.position, outer, inverse)
         elif card.position_error == "metres":
-            moved = apply(self.turn, [part * unit for part, unit in zip(moved, self.metres(x), strict=True)])
+            moved = apply(self.turn(x), [part * unit for part, unit in zip(moved, self.metres(x), strict=True)])
         return {
             "attitude": angle,
             "velocity": self.unshift(estimate.velocity, velocity, outer, inverse),
@@ -346,6 +371,18 @@ class Mechanisation:
         estimate = self.estimate(truth, error)
         after = self.compare(estimate.advance(self.rate(estimate)), truth.advance(self.rate(truth)))
         return {name: [part.mixed for part in vector] for name, vector in after.items()}
+
+
+def axes_rows(card: Card, sine: Any, cosine: Any) -> list[list[Any]]:
+    """Rotation from north, east, down to the axes, by sine and cosine of the wander angle where the card has one."""
+    rows: list[list[Any]] = [list(row) for row in AXES[card.axes or "NED"]]
+    if card.azimuth == WANDER:
+        for k, (ahead, aside, _) in enumerate(rows):
+            if ahead:
+                rows[k] = [cosine, sine, 0]
+            elif aside:
+                rows[k] = [-sine, cosine, 0] if aside > 0 else [sine, -cosine, 0]
+    return rows
 
 
 def level_rows(sine: Nilpotent, cosine: Nilpotent, east: Nilpotent, ahead: Nilpotent) -> Grid:

@@ -13,10 +13,10 @@ from typing import Any
 
 from flint import arb, fmpq
 
-from navsym.conventions.card import Card
+from navsym.conventions.card import WANDER, Card
 from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED
-from navsym.conventions.mechanisation import AXES, World
+from navsym.conventions.mechanisation import World, axes_rows
 from navsym.conventions.reading import Problem
 from navsym.core.balls import OPERATIONS, exact_ball, general_power, integer_power, rational_power
 from navsym.core.errors import DomainError
@@ -80,6 +80,7 @@ class Sampler:
     def __init__(self, problem: Problem, card: Card, seed: int, free: bool = False):
         self.problem, self.card = problem, card
         self.random = random.Random(seed)
+        self.rows: list[list[Any]] = []
         self.values: dict[str, Any] = {}
         bound = [tree for trees in problem.quantities.values() for tree in trees if tree.head != SYMBOL]
         for name in list_names(*bound):
@@ -162,7 +163,7 @@ class Sampler:
 
     def turned(self, ned: Sequence[Any]) -> list[Any]:
         """A vector in the axes from north, east, down."""
-        return [sum((a * x for a, x in zip(row, ned, strict=True)), arb(0)) for row in AXES[self.card.axes]]
+        return [sum((a * x for a, x in zip(row, ned, strict=True)), arb(0)) for row in self.rows]
 
     def along(self, name: str, ned: Sequence[Any], scalar: Any) -> list[Any]:
         """A quantity of a local level, given by its size or by components in the axes."""
@@ -179,6 +180,8 @@ class Sampler:
         f, w, v = self.forces(C), self.vector("angular_rate"), self.vector("velocity")
         (latitude,) = self.settle("latitude", None, -1.2, 1.2)
         sine, cosine = latitude.sin(), latitude.cos()
+        wander = self.circle("wander_angle")
+        self.rows = axes_rows(card, *wander)
         h: Any = self.settle("height", None, 0.25, 1.0)[0] if "height" in given else 0
         RN, RE, third = self.radii()
         meridian, angle = self.circle("longitude"), self.circle("earth_angle")
@@ -191,30 +194,15 @@ class Sampler:
         radius = sum((x * x for x in r), arb(0)).sqrt()
         pull, gravity = self.gravitation(r, radius, level, normal)
         earth = self.rotation_of_earth(sine, cosine, level)
+        motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.settle("radius_slope")[0]
         world = World(
-            C,
-            f,
-            w,
-            v,
-            r,
-            earth,
-            sine,
-            cosine,
-            h,
-            RN,
-            RE,
-            self.settle("radius_slope")[0],
-            gravity,
-            pull,
-            radius,
-            gradient_names(RN, RE, h, third, (RN * RE).sqrt()),
-            None,
+            *motion,
+            *(gravity, pull, radius, gradient_names(RN, RE, h, third, (RN * RE).sqrt()), None),
             self.settle("lever_arm") if "lever_arm" in given else (0, 0, 0),
             self.vector("known_vector"),
             tuple(self.problem.measured),
             {r: self.vector(f"{r}_correction") for r in CORRECTED} if self.problem.reset else {},
-            meridian,
-            angle,
+            *(meridian, angle, wander),
         )
         transport = self.transport(world) if level and "transport_rate" in given else None
         if transport is None and "transport_rate" in given:
@@ -252,7 +240,7 @@ class Sampler:
                 trees = self.problem.quantities["gravity"]
                 if any(t.head != SYMBOL or t.args[0] in self.values for t in trees):
                     found = self.settle("gravity")
-                    scalar = sum((AXES[self.card.axes][k][2] * found[k] for k in range(3)), arb(0))
+                    scalar = sum((self.rows[k][2] * found[k] for k in range(3)), arb(0))
                 self.settle("gravity", self.turned([arb(0), arb(0), scalar]))
             return pull, [scalar]
         if size == 3:
@@ -275,9 +263,7 @@ class Sampler:
             return self.settle("earth_rate")
         if all(tree.head != SYMBOL for tree in trees):
             found = self.settle("earth_rate")
-            north, east, down = (
-                sum((AXES[self.card.axes][k][j] * found[k] for k in range(3)), arb(0)) for j in range(3)
-            )
+            north, east, down = (sum((self.rows[k][j] * found[k] for k in range(3)), arb(0)) for j in range(3))
             if not east.contains(0):
                 raise ImpossibleError("earth_rate")
             return [north, down]
@@ -287,10 +273,10 @@ class Sampler:
 
     def transport(self, world: World) -> list[Any]:
         """The transport rate in the axes, in the names that it has."""
-        v, A = world.v, AXES[self.card.axes]
-        north, east = (sum((A[k][j] * v[k] for k in range(3)), arb(0)) for j in range(2))
+        north, east = (sum((self.rows[k][j] * world.v[k] for k in range(3)), arb(0)) for j in range(2))
         meridian, across = world.RN + world.h, world.RE + world.h
-        wanted = self.turned([east / across, -north / meridian, -east * world.sin / (across * world.cos)])
+        down = arb(0) if self.card.azimuth == WANDER else -east * world.sin / (across * world.cos)
+        wanted = self.turned([east / across, -north / meridian, down])
         return self.settle("transport_rate", wanted)
 
 

@@ -7,14 +7,15 @@ a rotation by three angles, the force in the frame by that in the body, the rate
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import chain
 from typing import Any
 
 from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
-from navsym.conventions.card import DROPPED, Card
+from navsym.conventions.card import DROPPED, KEPT, Card
 from navsym.conventions.measuring import MEASURED_MARK, RESET_MARK
-from navsym.conventions.mechanisation import AXES, BIASES
+from navsym.conventions.mechanisation import BIASES, Mechanisation
 from navsym.conventions.points import BITS, Sampler, evaluate
 from navsym.conventions.reading import Problem
 from navsym.conventions.search import Block, narrow_card
@@ -22,7 +23,8 @@ from navsym.conventions.symbols import HIDDEN, Formulas
 from navsym.core.balls import precision
 from navsym.language.expression import read_tree
 from navsym.language.printer import print_tree
-from navsym.language.tree import SYMBOL, Tree, build_symbol, list_names, replace
+from navsym.language.tree import SYMBOL, Tree, build_symbol, list_names
+from navsym.language.tree import replace as replace_parts
 from navsym.prove.claimfile import claims_from, decide_claim, statement_of
 from navsym.prove.grant import grant_verdict
 
@@ -133,58 +135,35 @@ class Prover:
                 "specific_force",
                 [" + ".join(f"({rotation[3 * i + k]})*({body[k]})" for k in range(3)) for i in range(3)],
             )
+        flow, formulas = self.free_motion(card)
+        vectors: dict[str, Any] = {}
         if card.frame == "local-level":
-            self.bind_level(card, texts, bind)
-        else:
-            normal = self.bind_place(card, texts, bind)
-            if card.gravity_gradient == "central" and len(given.get("gravity", ())) == 3 and "position" in texts:
-                position = [result.get(x, x) for x in texts["position"]]
-                bind("gravity", [f"-{HIDDEN}pull*({x})" for x in position])
+            for name in ("earth_rate", "transport_rate", "gravity"):
+                vectors[name] = getattr(flow, name)(flow.truth())
+        elif formulas.derived:
+            vectors["position"] = flow.truth().position
             if card.gravity_gradient == "normal":
-                bind("gravity", [f"{HIDDEN}gravity*({x})" for x in normal])
+                vectors["gravity"] = [row[2].value * formulas.symbol("gravity", None) for row in flow.normal_axes()]
+        for name, vector in vectors.items():
+            if len(given.get(name, ())) == 3:
+                bind(name, [formulas.write(getattr(x, "value", x)) for x in vector])
+        if card.gravity_gradient == "central" and len(given.get("gravity", ())) == 3 and "position" in texts:
+            bind("gravity", [f"-{HIDDEN}pull*({result.get(x, x)})" for x in texts["position"]])
         return result
 
-    def bind_place(self, card: Card, texts: Mapping[str, list[str]], bind: Any) -> list[str]:
-        """The position by latitude, longitude and radii; returns the direction of the normal, downwards."""
-        if not {"latitude", "longitude", "radii"} <= set(texts):
-            return []
-        (latitude,), (longitude,), radii = texts["latitude"], texts["longitude"], texts["radii"]
-        turn = f" + ({texts['earth_angle'][0]})" if "earth_angle" in texts and card.frame == "inertial" else ""
-        h = f" + ({texts['height'][0]})" if "height" in texts else ""
-        south, cosine = f"sin({latitude})", f"cos({latitude})"
-        east, ahead = f"sin(({longitude}){turn})", f"cos(({longitude}){turn})"
-        share = f"({radii[0]})*{cosine}**2/(({radii[1]}) - ({radii[0]})*{south}**2)" if len(radii) > 1 else "1"
-        prime = radii[min(1, len(radii) - 1)]
-        across, up = f"(({prime}){h})*{cosine}", f"(({prime})*{share}{h})"
-        bind("position", [f"{across}*{ahead}", f"{across}*{east}", f"{up}*{south}"])
-        return [f"-{cosine}*{ahead}", f"-{cosine}*{east}", f"-{south}"]
-
-    def bind_level(self, card: Card, texts: Mapping[str, list[str]], bind: Any) -> None:
-        """The rates of the Earth and of the local level."""
-        latitude = texts.get("latitude", [f"{HIDDEN}latitude"])[0]
-        velocity = texts.get("velocity", [f"{HIDDEN}v{k}" for k in range(3)])
-        height = f" + ({texts['height'][0]})" if "height" in texts else ""
-        radii = texts.get("radii", [f"{HIDDEN}RN"])
-        across = radii[1] if len(radii) > 1 else f"{HIDDEN}RE" if card.earth == "ellipsoid" else radii[0]
-        A = AXES[card.axes]
-
-        def turned(ned: Sequence[str]) -> list[str]:
-            return [" + ".join(f"({x})*({y})" for x, y in zip(row, ned, strict=True) if x) for row in A]
-
-        north, east = (" + ".join(f"({A[k][j]})*({velocity[k]})" for k in range(3) if A[k][j]) for j in range(2))
-        if len(texts.get("earth_rate", ())) == 3:
-            bind("earth_rate", turned([f"{HIDDEN}rate*cos({latitude})", "0", f"-{HIDDEN}rate*sin({latitude})"]))
-        rate = [
-            f"({east})/(({across}){height})",
-            f"-({north})/(({radii[0]}){height})",
-            f"-({east})*sin({latitude})/((({across}){height})*cos({latitude}))",
-        ]
-        bind("transport_rate", turned(rate))
-        if len(texts.get("gravity", ())) == 3:
-            bind("gravity", turned(["0", "0", f"{HIDDEN}gravity"]))
+    def free_motion(self, card: Card) -> tuple[Mechanisation, Formulas]:
+        """A motion with all its rates, in which nothing is given that follows from the rest."""
+        shape = "ellipsoid" if len(self.problem.quantities.get("radii", ())) > 1 else "sphere"
+        earth = card.earth if card.earth != "none" else shape
+        whole = replace(card, earth=earth, earth_rate=KEPT, transport_rate=KEPT)
+        following = ("earth_rate", "transport_rate", "gravity", "position")
+        given = self.problem.quantities.items()
+        free = {name: trees for name, trees in given if name not in following or len(trees) == 1}
+        formulas = Formulas(replace(self.problem, quantities=free), whole)
+        return Mechanisation(whole, formulas.world), formulas
 
 
 def substitute(tree: Tree, bound: Mapping[str, str]) -> Tree:
     """The tree with bound names written by free ones."""
     by = {build_symbol(name): read_tree(text, None) for name, text in bound.items() if name in list_names(tree)}
-    return replace(tree, by)
+    return replace_parts(tree, by)

@@ -31,7 +31,7 @@ from navsym.language.schema import (
     require_key,
 )
 from navsym.language.tree import MINUS_ONE, ONE, ZERO, Tree, build_sum
-from navsym.models.modelfile import STEP, read_ranges
+from navsym.models.modelfile import BESIDE, STEP, TABLES, read_ranges
 
 #: Quantities -> the numbers of components that they may have.
 QUANTITIES: Mapping[str, tuple[int, ...]] = {
@@ -44,6 +44,7 @@ QUANTITIES: Mapping[str, tuple[int, ...]] = {
     "latitude": (1,),
     "longitude": (1,),
     "earth_angle": (1,),
+    "wander_angle": (1,),
     "height": (1,),
     "earth_rate": (1, 3),
     "transport_rate": (3,),
@@ -58,10 +59,8 @@ QUANTITIES: Mapping[str, tuple[int, ...]] = {
     "position_correction": (3,),
 }
 
-TABLES = ("model", "parameters", "roles", "quantities", "known", "measured", "noises")
 #: Tables of a model file that say nothing about the error dynamics.
-BESIDE = ("measurement", "interval", "targets", "ranges")
-
+UNUSED = tuple(name for name in TABLES if name not in ("model", "parameters"))
 
 Grid = tuple[tuple[Tree, ...], ...]
 
@@ -144,7 +143,7 @@ def read_problem(document: Table, where: str = "") -> Problem:
         roles=read_roles(require_key(document, "roles", where), states, join_place(where, "roles")),
         quantities=read_quantities(document.get("quantities", {}), parameters, join_place(where, "quantities")),
         known=read_known(document.get("known", {}), join_place(where, "known")),
-        unused=tuple(name for name in BESIDE if name in document and not (name == "measurement" and "H" in more)),
+        unused=tuple(name for name in UNUSED if name in document and not (name == "measurement" and "H" in more)),
         ranges=read_ranges(document, (*states, *parameters, STEP), where),
         **more,
     )

@@ -12,7 +12,17 @@ from functools import cache
 from itertools import islice, product
 from typing import Any
 
-from navsym.conventions.card import CHOICES, DROPPED, ESTIMATE, MEASURED_LESS, TRUTH, Card, list_structures
+from navsym.conventions.card import (
+    CHOICES,
+    DROPPED,
+    ESTIMATE,
+    MEASURED_LESS,
+    NORTH,
+    TRUTH,
+    WANDER,
+    Card,
+    list_structures,
+)
 from navsym.conventions.measuring import MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
 from navsym.conventions.mechanisation import BIASES, ROLES, Mechanisation, flat_card
 from navsym.conventions.points import BITS, ImpossibleError, Point, draw_point, evaluate
@@ -53,7 +63,7 @@ def key_of_points(card: Card) -> Card:
     """The card without what has no influence on the points."""
     shape = card.earth if card.frame == "local-level" else "none"
     field = card.gravity_gradient if card.gravity_gradient in ("central", "normal") else "none"
-    return Card(card.frame, card.axes, earth=shape, gravity_gradient=field)
+    return Card(card.frame, card.axes, card.azimuth, earth=shape, gravity_gradient=field)
 
 
 def plain_card(card: Card) -> Card:
@@ -233,7 +243,9 @@ def list_problem_structures(problem: Problem, frames: tuple[str, ...] = CHOICES[
     """Every card without its signs that a model with these roles and quantities may have."""
     given = problem.quantities
     placed = {"latitude", "longitude"} <= set(given)
-    return list_structures(frozenset(problem.roles), len(given.get("radii", ())), frames, "height" in given, placed)
+    azimuth = WANDER if "wander_angle" in given else NORTH
+    sizes = len(given.get("radii", ())), frames, "height" in given, placed, azimuth
+    return list_structures(frozenset(problem.roles), *sizes)
 
 
 def list_cards(problem: Problem) -> Iterator[Card]:

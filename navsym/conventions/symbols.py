@@ -15,13 +15,14 @@ from typing import Any
 
 from flint import fmpq_mpoly_ctx
 
-from navsym.conventions.card import Card
+from navsym.conventions.card import WANDER, Card
 from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED, full_column
-from navsym.conventions.mechanisation import Mechanisation, World
+from navsym.conventions.mechanisation import AXES, Mechanisation, World, axes_rows
+from navsym.conventions.nilpotent import times
 from navsym.conventions.points import gradient_names, turn_about_pole
 from navsym.conventions.reading import Problem
-from navsym.core.rational_functions import Quotient, add_fractions, multiply_fractions
+from navsym.core.rational_functions import Quotient, Ratio
 from navsym.language.expression import read_tree
 from navsym.language.printer import print_tree
 from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, Tree, build, fold_tree
@@ -34,62 +35,9 @@ NUMERAL = re.compile(r"-?\d+(/\d+)?")
 GENERATORS = (
     *(f"c{i}{j}" for i in range(3) for j in range(3)),
     *(f"{name}{k}" for name in ("f", "w", "v", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp") for k in range(3)),
-    *(
-        "sin",
-        "cos",
-        "east",
-        "ahead",
-        "turned",
-        "straight",
-        "h",
-        "RN",
-        "RE",
-        "third",
-        "mean",
-        "slope",
-        "rate",
-        "gravity",
-        "pull",
-        "radius",
-    ),
+    *"sin cos east ahead turned straight wander_sin wander_cos".split(),
+    *"h RN RE third mean slope rate gravity pull radius".split(),
 )
-
-
-class Ratio:
-    """A quotient of polynomials with the operations that a coefficient needs."""
-
-    __slots__ = ("value",)
-
-    def __init__(self, value: Quotient):
-        self.value = value
-
-    def lift(self, other: Any) -> Ratio:
-        """An integer as a quotient."""
-        if isinstance(other, Ratio):
-            return other
-        context = self.value.bottom.context()
-        return Ratio(Quotient(context.constant(other), context.constant(1)))
-
-    def __add__(self, other: Any) -> Ratio:
-        return Ratio(add_fractions(self.value, self.lift(other).value))
-
-    def __mul__(self, other: Any) -> Ratio:
-        return Ratio(multiply_fractions(self.value, self.lift(other).value))
-
-    __radd__, __rmul__ = __add__, __mul__
-
-    def __neg__(self) -> Ratio:
-        return self * -1
-
-    def __sub__(self, other: Any) -> Ratio:
-        return self + self.lift(other) * -1
-
-    def __truediv__(self, other: Any) -> Ratio:
-        top, bottom = self.lift(other).value
-        return Ratio(multiply_fractions(self.value, Quotient(bottom, top)))
-
-    def __rtruediv__(self, other: Any) -> Ratio:
-        return self.lift(other) / self
 
 
 class Formulas:
@@ -145,6 +93,10 @@ class Formulas:
         h: Any = self.symbol("h", self.text("height")) if "height" in given else 0
         RN, RE, third = self.radii()
         circles = self.circle("longitude", "east", "ahead"), self.circle("earth_angle", "turned", "straight")
+        wander: Any = (0, 1)
+        if card.azimuth == WANDER:
+            angle = self.text("wander_angle") or HIDDEN + "wander_angle"
+            wander = self.symbol("wander_sin", f"sin({angle})"), self.symbol("wander_cos", f"cos({angle})")
         r = self.vector("r", "position")
         if {"latitude", "longitude", "radii"} <= set(given) and card.frame != "local-level":
             u = locate(sine, cosine, circles[0], h, RN, RE)
@@ -156,29 +108,18 @@ class Formulas:
             radius = RN + h
         pull, gravity = self.gravitation(r, radius)
         mean = self.symbol("mean", f"sqrt(({self.texts['RN']})*({self.texts.get('RE', self.texts['RN'])}))")
+        w, v, slope = self.vector("w", "angular_rate"), self.vector("v", "velocity"), self.text("radius_slope")
+        earth = self.earth_rate(sine, cosine, axes_rows(card, *wander))
+        motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.symbol("slope", slope)
         return World(
-            C,
-            f,
-            self.vector("w", "angular_rate"),
-            self.vector("v", "velocity"),
-            r,
-            self.earth_rate(sine, cosine),
-            sine,
-            cosine,
-            h,
-            RN,
-            RE,
-            self.symbol("slope", self.text("radius_slope")),
-            gravity,
-            pull,
-            radius,
-            gradient_names(RN, RE, h, third, mean),
+            *motion,
+            *(gravity, pull, radius, gradient_names(RN, RE, h, third, mean)),
             self.vector("t", "transport_rate") if "transport_rate" in given else None,
             self.vector("l", "lever_arm") if "lever_arm" in given else (0, 0, 0),
             self.vector("m", "known_vector") if self.problem.measured else (0, 0, 0),
             tuple(self.problem.measured),
             {r: self.vector(f"c{r[0]}", f"{r}_correction") for r in CORRECTED} if self.problem.reset else {},
-            *circles,
+            *(*circles, wander),
         )
 
     def circle(self, quantity: str, sine: str, cosine: str) -> tuple[Any, Any]:
@@ -218,23 +159,19 @@ class Formulas:
 
     def down(self) -> Ratio:
         """Gravity along down from its components in the axes."""
-        from navsym.conventions.mechanisation import AXES
-
         column = [row[2] for row in AXES[self.card.axes]]
         place = next(k for k, x in enumerate(column) if x)
         return self.symbol("gravity", self.text("gravity", place)) * column[place]
 
-    def earth_rate(self, sine: Ratio, cosine: Ratio) -> list[Ratio]:
+    def earth_rate(self, sine: Ratio, cosine: Ratio, rows: list[list[Any]]) -> list[Ratio]:
         """The Earth's rate in the frame, or (north, down)."""
-        from navsym.conventions.mechanisation import AXES
-
         size = len(self.problem.quantities.get("earth_rate", ()))
         if size == 3:
             components = self.vector("e", "earth_rate")
             if self.card.frame != "local-level":
                 return components
-            A = AXES[self.card.axes]
-            return [next(components[k] * A[k][j] for k in range(3) if A[k][j]) for j in (0, 2)]
+            terms = [[times(rows[k][j], components[k]) for k in range(3)] for j in (0, 2)]
+            return [sum(x for x in parts if type(x) is not int) for parts in terms]
         rate = self.symbol("rate", self.text("earth_rate"))
         if self.card.frame == "local-level":
             return [rate * cosine, rate * sine * -1]
@@ -275,7 +212,7 @@ class Formulas:
         """A coefficient in the user's names."""
         if type(value) is int:
             return str(sign * value)
-        top, bottom = value.value
+        top, bottom = value.quotient
         terms = reduce_terms(top)
         above = self.write_terms({e: c * sign for e, c in terms.items()})
         if above == "0" or bottom == 1:
@@ -371,7 +308,7 @@ def relation_rows(columns: Sequence[tuple[int, ...]]) -> Iterator[list[Fraction]
             yield row({plus: 1, minus: -1, (3 * i + j,): -1})
 
 
-CIRCLES = (("sin", "cos"), ("east", "ahead"), ("turned", "straight"))
+CIRCLES = (("sin", "cos"), ("east", "ahead"), ("turned", "straight"), ("wander_sin", "wander_cos"))
 
 
 def reduce_terms(poly: Any) -> Terms:

@@ -89,6 +89,53 @@ def multiply_fractions(first: Quotient, *others: Quotient) -> Quotient:
     return cancel_fraction(top, bottom)
 
 
+class Ratio:
+    """A quotient with the operations of numbers; a number beside it is lifted.
+
+    >>> x = fmpq_mpoly_ctx.get(("x",), "lex").gen(0)
+    >>> (1 / Ratio(Quotient(x, x * 0 + 1)) - 1).quotient
+    Quotient(top=-x + 1, bottom=x)
+    """
+
+    __slots__ = ("quotient",)
+
+    def __init__(self, quotient: Quotient):
+        self.quotient = quotient
+
+    def lift(self, other: Any) -> Ratio:
+        """A number as a quotient."""
+        top, bottom = self.quotient
+        return other if isinstance(other, Ratio) else Ratio(Quotient(top * 0 + other, bottom * 0 + 1))
+
+    def __add__(self, other: Any) -> Ratio:
+        return Ratio(add_fractions(self.quotient, self.lift(other).quotient))
+
+    def __mul__(self, other: Any) -> Ratio:
+        return Ratio(multiply_fractions(self.quotient, self.lift(other).quotient))
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __neg__(self) -> Ratio:
+        return self * -1
+
+    def __sub__(self, other: Any) -> Ratio:
+        return self + self.lift(other) * -1
+
+    def __truediv__(self, other: Any) -> Ratio:
+        top, bottom = self.lift(other).quotient
+        return Ratio(multiply_fractions(self.quotient, cancel_fraction(bottom, top)))
+
+    def __rtruediv__(self, other: Any) -> Ratio:
+        return self.lift(other) / self
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Ratio):
+            return self.quotient == other.quotient
+        return bool(self.quotient.top == other and self.quotient.bottom == 1)
+
+    __hash__ = None  # type: ignore[assignment]
+
+
 def raise_fraction(base: Quotient, exponent: int) -> Quotient:
     """Integer power of a quotient; DomainError for a negative power of zero."""
     if exponent >= 0:

@@ -245,8 +245,10 @@ def read_targets(document: Table, known: Known, names: tuple[str, ...], where: s
 
 
 TABLES = ("model", "basis", "parameters", "rates", "inputs", "measurement", "piece", "interval", "targets", "ranges")
-#: Tables of the same file that only ``conventions`` or ``design`` reads.
-BESIDE = ("roles", "quantities", "known", "design")
+#: Tables of the same file that only ``conventions`` or ``design`` reads, and keys of [model].
+BESIDE = ("card", "code", "roles", "quantities", "known", "measured", "noises", "design")
+BESIDE_F = ("G", "H", "reset", "step")
+KEYS = ("name", "states", "F", "Phi", "dynamics", "relations")
 #: Name of the step of a filter among the ranges.
 STEP = "dt"
 
@@ -313,7 +315,7 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
     expect_keys(document, (*(key for key in TABLES if key != "basis"), *BESIDE), where)
     place = join_place(where, "model")
     model = as_table(document["model"], place)
-    expect_keys(model, ("name", "states", "F", "Phi", "dynamics", "relations"), place)
+    expect_keys(model, (*KEYS, *BESIDE_F), place)
     states = read_names(require_key(model, "states", place), join_place(place, "states"))
     require_distinct((*known, "t", *states), join_place(place, "states"))
     kind = "Phi" if "Phi" in model else "dynamics" if {"dynamics", "relations"} & model.keys() else "F"

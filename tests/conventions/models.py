@@ -227,6 +227,52 @@ def psi_level() -> dict[str, Any]:
     return document("pvagb", blocks, quantities, **declared(quantities))
 
 
+def savage() -> dict[str, Any]:
+    """Savage, psi form in his wander azimuth frame with its third axis up: the level does not turn about it."""
+    turn = ["t1", "t2", "0"]
+    quantities = {
+        "specific_force": F_N, "rotation": C, "earth_rate": ["e1", "e2", "e3"], "transport_rate": turn, "gravity": "g",
+        "radii": ["R"], "latitude": "L", "velocity": ["v1", "v2", "v3"], "wander_angle": "alpha",
+    }  # fmt: skip
+    both, twice = ["e1 + t1", "e2 + t2", "e3"], ["2*e1 + t1", "2*e2 + t2", "2*e3"]
+    blocks = {
+        "aa": neg(skew(both)), "ag": neg(C), "va": skew(F_N), "vb": C, "vv": neg(skew(twice)), "pv": E,
+        "pp": neg(skew(turn)), "vp": [["-g/R", "0", "0"], ["0", "-g/R", "0"], ["0", "0", "2*g/R"]],
+    }  # fmt: skip
+    known = {"frame": "local-level", "axes": "ENU"}
+    return document("avpgb", blocks, quantities, known, **declared(quantities))
+
+
+def farrell() -> dict[str, Any]:
+    """Farrell and Barth 1999, tables 6.1 and 6.2: geodetic position, one radius, the turn of the navigation axes."""
+    quantities = {**NED, "radii": ["R"]}
+    quantities.pop("height")
+    rho, earth, k = ["vE/R", "-vN/R", "-vE*tan(L)/R"], ["W*cos(L)", "0", "-W*sin(L)"], "vD/R"
+    (n, e, d), (N, _, D) = rho, earth
+    whole = [f"{x} + {y}" for x, y in zip(earth, rho, strict=True)]
+    twice = [f"({x}) + ({y})" for x, y in zip(whole, earth, strict=True)]
+    secant = f"({n})/cos(L)**2"
+    blocks = {
+        "pp": [["0", "0", f"({e})/R"], [f"-({d})/cos(L)", "0", f"-({n})/(R*cos(L))"], ["0", "0", "0"]],
+        "pv": [["1/R", "0", "0"], ["0", "1/(R*cos(L))", "0"], ["0", "0", "-1"]],
+        "vp": [
+            [f"-2*{N}*vE - {secant}*vE", "0", f"({e})*{k} - ({n})*({d})"],
+            [f"2*({N}*vN + ({D})*vD) + {secant}*vN", "0", f"-({e})*({d}) - {k}*({n})"],
+            [f"-2*vE*({D})", "0", f"({n})**2 + ({e})**2 - 2*g/R"],
+        ],
+        "vv": [
+            [k, f"2*({whole[2]})", f"-({e})"],
+            [f"-({twice[2]})", f"{k} - ({e})*tan(L)", twice[0]],
+            [f"2*({e})", f"-2*({whole[0]})", "0"],
+        ],
+        "va": neg(skew(F_N)),
+        "ap": [[f"-({D})", "0", f"({n})/R"], ["0", "0", f"({e})/R"], [f"{N} + {secant}", "0", f"({d})/R"]],
+        "av": [["0", "-1/R", "0"], ["1/R", "0", "0"], ["0", "tan(L)/R", "0"]],
+        "aa": neg(skew(whole)),
+    }  # fmt: skip
+    return document("pva", blocks, quantities, **declared(quantities))
+
+
 def right_invariant() -> dict[str, Any]:
     """Barrau and Bonnabel; Hartley et al. 2020: right-invariant error with biases, world frame."""
     quantities = {
@@ -437,4 +483,6 @@ PUBLISHED = {
     "NaveGo 2014": navego_2014,
     "NaveGo, issue 107": navego_107,
     "pyins": pyins,
+    "Savage": savage,
+    "Farrell and Barth": farrell,
 }

@@ -64,31 +64,38 @@ class Flight:
         self.g = some(low=1, high=3)
         self.mu = mp.mpf(9)
         self.L0 = self.L
+        self.alpha = mp.mpf("0.8") if card.azimuth == "wander" else mp.mpf(0)
+
+    def axes(self, x: dict[str, Any]) -> Any:
+        """Rotation from north, east, down to the axes."""
+        s, c = mp.sin(x["azimuth"][0]), mp.cos(x["azimuth"][0])
+        return AXES[self.card.axes] * mp.matrix([[c, s, 0], [-s, c, 0], [0, 0, 1]])
 
     def radii(self, L: Any) -> tuple[Any, Any]:
         w = 1 - self.e2 * mp.sin(L) ** 2
         return self.a * (1 - self.e2) / w ** mp.mpf("1.5"), self.a / mp.sqrt(w)
 
-    def turning(self, L: Any) -> Any:
+    def turning(self, L: Any, x: dict[str, Any]) -> Any:
         """The Earth's rate in the frame."""
         if self.card.earth_rate != "kept":
             return vec(0, 0, 0)
         if self.card.frame == "earth":
             return vec(0, 0, self.rate)
-        return AXES[self.card.axes] * vec(self.rate * mp.cos(L), 0, -self.rate * mp.sin(L))
+        return self.axes(x) * vec(self.rate * mp.cos(L), 0, -self.rate * mp.sin(L))
 
     def derivative(self, x: dict[str, Any]) -> dict[str, Any]:
-        card, A = self.card, AXES[self.card.axes]
+        card, A = self.card, self.axes(x)
         w, f = self.w - x["gyro_bias"], self.f - x["accelerometer_bias"]
         curved = card.frame == "local-level" and card.earth != "none"
-        transport, position = vec(0, 0, 0), x["velocity"]
-        turning = self.turning(x["position"][0] if curved else self.L)
+        transport, position, azimuth = vec(0, 0, 0), x["velocity"], vec(0)
+        turning = self.turning(x["position"][0] if curved else self.L, x)
         if curved:
             L, _, h = x["position"]
             N, Ea, D = A.T * x["velocity"]
             RN, RE = self.radii(L)
+            azimuth = vec(Ea * mp.tan(L) / (RE + h) if card.azimuth == "wander" else 0)
             if card.transport_rate == "kept":
-                transport = A * vec(Ea / (RE + h), -N / (RN + h), -Ea * mp.tan(L) / (RE + h))
+                transport = A * vec(Ea / (RE + h), -N / (RN + h), azimuth[0] - Ea * mp.tan(L) / (RE + h))
             position = vec(N / (RN + h), Ea / ((RE + h) * mp.cos(L)), -D)
         gravity = self.gravity(x)
         acceleration = x["C"] * f + gravity - skew(2 * turning + transport) * x["velocity"]
@@ -96,6 +103,7 @@ class Flight:
             "C": x["C"] * skew(w) - skew(turning + transport) * x["C"],
             "velocity": acceleration,
             "position": position,
+            "azimuth": azimuth,
         }
 
     def gravity(self, x: dict[str, Any]) -> Any:
@@ -113,7 +121,7 @@ class Flight:
         r = x["position"]
         value = self.g if card.gravity_gradient == "none" else -self.mu * r / mp.norm(r) ** 3
         if card.centrifugal == "kept":
-            spin = skew(self.turning(self.L))
+            spin = skew(self.turning(self.L, x))
             value = value - spin * spin * (r - self.r)
         return value
 
@@ -126,6 +134,8 @@ class Flight:
             "position": position,
             "gyro_bias": vec(0, 0, 0),
             "accelerometer_bias": vec(0, 0, 0),
+            "azimuth": vec(self.alpha),
+            "least turn": vec(mp.sin(self.L) if curved and self.card.azimuth == "wander" else 0),
         }
 
     # Errors by the definitions of a card
@@ -140,17 +150,20 @@ class Flight:
         )
 
     def moved(self, x: dict[str, Any], y: dict[str, Any]) -> Any:
-        """From the true to the estimated local level, for psi."""
-        if self.card.angle != "psi" or self.card.earth == "none" or self.card.frame != "local-level":
+        """From the true to the estimated local level for psi; its turn about the vertical for wandering axes."""
+        if self.card.earth == "none" or self.card.frame != "local-level":
             return mp.eye(3)
-        A = AXES[self.card.axes]
 
-        def level(p: Any) -> Any:
+        def level(state: dict[str, Any]) -> Any:
             """Rotation from the Earth to the axes."""
+            p = state["position"]
             s, c, sl, cl = mp.sin(p[0]), mp.cos(p[0]), mp.sin(p[1]), mp.cos(p[1])
-            return A * mp.matrix([[-s * cl, -s * sl, c], [-sl, cl, 0], [-c * cl, -c * sl, -s]])
+            return self.axes(state) * mp.matrix([[-s * cl, -s * sl, c], [-sl, cl, 0], [-c * cl, -c * sl, -s]])
 
-        return level(y["position"]) * level(x["position"]).T
+        whole = level(y) * level(x).T
+        if self.card.angle == "psi":
+            return whole
+        return exp(mp.diag([0, 0, 1]) * log(whole)) if self.card.azimuth == "wander" else mp.eye(3)
 
     def error(self, x: dict[str, Any], y: dict[str, Any]) -> dict[str, Any]:
         """The error of the estimate y of the truth x."""
@@ -170,7 +183,7 @@ class Flight:
             if card.position_error == "metres":
                 L, _, h = x["position"]
                 RN, RE = self.radii(L)
-                position = AXES[card.axes] * mp.diag([RN + h, (RE + h) * mp.cos(L), -1]) * position
+                position = self.axes(x) * mp.diag([RN + h, (RE + h) * mp.cos(L), -1]) * position
         else:
             position = vector(y["position"], x["position"])
         biases = {k: b * (y[k] - x[k]) for k in ("gyro_bias", "accelerometer_bias")}
@@ -198,6 +211,8 @@ def push(x: dict[str, Any], j: int, size: Any) -> dict[str, Any]:
         y["C"] = exp(axis) * y["C"]
     else:
         y[name][k] += size
+        if j == 1:  # by which the axes of the estimate do not turn about the vertical
+            y["azimuth"][0] += size * x["least turn"][0]
     return y
 
 
@@ -206,6 +221,7 @@ def flow(flight: Flight, x: dict[str, Any], time: Any) -> dict[str, Any]:
     y = {k: v.copy() for k, v in x.items()}
     y["velocity"] += time * rate["velocity"]
     y["position"] += time * rate["position"]
+    y["azimuth"] += time * rate["azimuth"]
     # an orthogonal step: C' = C [u x] with u from C' itself
     u = x["C"].T * rate["C"]
     y["C"] = x["C"] * exp(time * vec(u[2, 1], u[0, 2], u[1, 0]))

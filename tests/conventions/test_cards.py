@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import random
+import re
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +18,11 @@ from navsym.conventions.card import Card
 from navsym.conventions.converting import convert
 from navsym.conventions.generating import choose_card
 from navsym.conventions.reading import read_problem
-from navsym.conventions.search import list_cards
+from navsym.conventions.search import Comparison, find_candidates, list_cards
 from navsym.core.errors import NavsymError
 from navsym.language.tomlfile import read_toml
 from tests.conventions import models
-from tests.conventions.test_finding import document_of
+from tests.conventions.test_finding import cards_of, document_of
 from tests.conventions.test_measuring import sola
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -103,7 +106,7 @@ PLACED = {
 PLACED.pop("specific_force")
 ABROAD = PLACED | {"velocity": ["v1", "v2", "v3"], "position": ["r1", "r2", "r3"], "gravitational_parameter": "mu"}
 LEVEL = Card(
-    "local-level", "NED", angle="phi", earth="sphere", earth_rate="kept", transport_rate="kept",
+    "local-level", "NED", "north", angle="phi", earth="sphere", earth_rate="kept", transport_rate="kept",
     gravity_gradient="vertical", gravity_radius="R + h", height_variation="kept", position_error="metres",
 )  # fmt: skip
 EARTH = Card(
@@ -144,20 +147,110 @@ def test_a_model_in_another_frame_is_what_the_generator_gives_there(card, quanti
     assert all(getattr(conversion.target, name) == word for name, word in changes.items())
 
 
+FLAT = replace(LEVEL, earth="none", height_variation=None, transport_rate="dropped", gravity_gradient="none")
+RADIAL = replace(EARTH, gravity_gradient="radial")
+
+
 @pytest.mark.parametrize(
     ("card", "quantities", "changes", "named"),
     [
-        (replace(LEVEL, earth_rate="kept"), PLACED, {"frame": "inertial"}, "centrifugal"),
-        (replace(LEVEL, height_variation="dropped"), PLACED, {"frame": "earth"}, "height"),
-        (replace(LEVEL, angle="psi"), PLACED, {"frame": "earth"}, "phi"),
-        (replace(EARTH, centrifugal="kept"), ABROAD, {"frame": "local-level"}, "centrifugal"),
-        (replace(EARTH, gravity_gradient="radial"), ABROAD, {"frame": "local-level"}, "gradient"),
+        (LEVEL, PLACED, {"frame": "inertial"}, "centrifugal"),
+        (replace(FLAT, gravity_radius=None), PLACED, {"frame": "earth"}, "flat"),
+        (EARTH, {k: v for k, v in ABROAD.items() if k != "radii"}, {"frame": "local-level"}, "radii"),
+        (replace(RADIAL, centrifugal="kept"), ABROAD, {"frame": "inertial"}, "gradient"),
+        (LEVEL, PLACED, {"frame": "earth", "transport_rate": "dropped"}, "transport_rate"),
+        (LEVEL, PLACED, {"gravity_gradient": "central"}, "one card"),
+        (LEVEL, PLACED, {"transport_rate": "lost"}, "dropped"),
+        (LEVEL, PLACED, {"azimuth": "free"}, "wander"),
     ],
 )
-def test_a_card_that_has_no_equal_in_the_other_frame_is_refused(card, quantities, changes, named):
+def test_a_card_that_has_no_equal_is_refused_with_the_reason(card, quantities, changes, named):
     problem = read_problem(models.document("pvagb", {}, quantities, **models.declared(quantities)))
     with pytest.raises(NavsymError, match=named):
         convert(problem, card, changes)
+
+
+LOST = replace(LEVEL, transport_rate="dropped", height_variation="dropped")
+DROPPING = [
+    (EARTH, replace(EARTH, centrifugal="kept"), ABROAD, {"frame": "inertial"}, {"velocity by position"}),
+    (
+        LEVEL,
+        replace(LEVEL, earth_rate="dropped"),
+        PLACED,
+        {"earth_rate": "dropped", "angle": "psi"},
+        {f"{a} by {b}" for a in ("velocity", "attitude") for b in ("position", "velocity", "attitude")}
+        - {"velocity by attitude", "attitude by velocity"},
+    ),
+    (
+        LOST,
+        LEVEL,
+        PLACED,
+        {"frame": "earth", "vector_error": "body"},
+        {f"{a} by {b}" for a in ("position", "velocity", "attitude") for b in ("position", "velocity", "attitude")}
+        - {"position by velocity", "position by attitude", "velocity by attitude"},
+    ),
+    (RADIAL, replace(EARTH, gravity_gradient="normal", gravity_radius="R"), ABROAD, {"frame": "local-level"},
+     {"velocity by position"}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("card", "whole", "quantities", "changes", "blocks"),
+    [pytest.param(*row, marks=[] if k < 2 else [pytest.mark.long]) for k, row in enumerate(DROPPING)],
+)
+def test_terms_that_the_target_has_and_the_model_has_not_are_named(card, whole, quantities, changes, blocks):
+    found = convert(read_problem(document_of(card, "pvagb", quantities)), card, changes)
+    exact = {name: word for name, word in changes.items() if name != "earth_rate"}
+    same = convert(read_problem(document_of(whole, "pvagb", quantities)), whole, exact)
+    assert found.proved and same.proved and not same.neglected_entries()
+    assert (found.F, found.T, found.rate) == (same.F, same.T, same.rate)
+    roles = ["position", "velocity", "attitude", "gyro_bias", "accelerometer_bias"]
+    named = {f"{roles[(i - 1) // 3]} by {roles[(j - 1) // 3]}" for i, j in found.neglected_entries()}
+    assert named == blocks
+    assert "named entries" in repr(found) and found.document()["neglected"] == [list(r) for r in found.neglected]
+
+
+def test_blocks_that_a_model_drops_are_named_by_its_conversion():
+    document = document_of(LEVEL, "pvagb", PLACED)
+    for i in (6, 7, 8):
+        document["model"]["F"][i][0:3] = ["0", "0", "0"]  # attitude by position
+    problem = read_problem(document)
+    card = replace(LEVEL, dropped=(("attitude", "position"),))
+    assert any(c.dropped == card.dropped for c in find_candidates(problem, Comparison(problem)).candidates)
+    found = convert(problem, card, {"error": "truth - estimate"})
+    assert found.proved and {(i > 6, j < 4) for i, j in found.neglected_entries()} == {(True, True)}
+    assert found.target.dropped == ()
+
+
+WANDER = PLACED | {"wander_angle": "alpha", "velocity": ["v1", "v2", "v3"]}
+TURNED = replace(LEVEL, azimuth="wander")
+
+
+@pytest.mark.parametrize(
+    ("card", "quantities", "changes"),
+    [
+        (TURNED, WANDER, {"angle": "psi", "axes": "ENU"}),
+        pytest.param(TURNED, WANDER, {"frame": "earth"}, marks=pytest.mark.long),
+        pytest.param(LEVEL, WANDER, {"azimuth": "wander", "angle": "psi"}, marks=pytest.mark.long),
+        pytest.param(
+            EARTH, ABROAD | {"wander_angle": "alpha"}, {"frame": "local-level", "azimuth": "wander"},
+            marks=pytest.mark.long,
+        ),
+        pytest.param(replace(LEVEL, angle="psi"), PLACED, {"frame": "earth"}, marks=pytest.mark.long),
+        pytest.param(EARTH, ABROAD, {"frame": "local-level", "angle": "psi"}, marks=pytest.mark.long),
+    ],
+)  # fmt: skip
+def test_axes_that_wander_and_the_psi_angle_are_left_and_reached_exactly(card, quantities, changes):
+    found = convert(read_problem(document_of(card, "pvagb", quantities)), card, changes)
+    assert found.proved and not found.neglected_entries()
+
+
+def test_a_model_with_axes_that_wander_has_that_card_and_no_other():
+    document = document_of(TURNED, "pvagb", WANDER)
+    assert {(c.azimuth, c.axes, c.angle) for c in cards_of(document)} == {("wander", "NED", "phi")}
+    north = copy.deepcopy(document)
+    north["quantities"].pop("wander_angle")
+    assert not any(c.azimuth == "wander" for c in cards_of(north))
 
 
 def test_a_wrong_model_is_not_proved_in_another_frame():
@@ -177,3 +270,44 @@ def test_a_conversion_leaves_as_code_in_both_directions(tmp_path):
     spoiled = replace(conversion, proved=False)
     with pytest.raises(NavsymError, match="proved"):
         nav.export(spoiled, to="python", out=str(tmp_path / "other"))
+
+
+# -- LaTeX ------------------------------------------------------------------------------------------------
+
+
+def test_blocks_in_latex_are_the_blocks_of_the_model_again():
+    conversion = nav.conventions(EXAMPLES / "conventions.toml").convert(attitude_error="body", error="truth - estimate")
+    lines = conversion.latex().split("\n")
+    roles = {r"\delta v": (0, 3), r"\varphi": (3, 6), r"\delta b_g": (6, 9), r"\delta b_a": (9, 12)}
+    found = {"T": 0, "F": 0}
+    for line in lines:
+        head = re.fullmatch(r"([TF])_\{(.*),\\,(.*)\} = (\\begin\{bmatrix\}.*\\end\{bmatrix\})(?: \\\\)?", line)
+        if head is None:
+            continue
+        name, row, column, block = head.groups()
+        a, c = roles[row][0], roles[column][0]
+        cells = [[cell.strip() for cell in part.split("&")] for part in block[15:-13].split(r"\\")]
+        for i, j in product(range(3), range(3)):
+            spaced = re.sub(r"_\{(\d+)\}", r"\1", cells[i][j])
+            text = re.sub(r"(?<=[0-9]) (?=[a-z])", "*", spaced)
+            assert nav.prove(text, "=", getattr(conversion, name)[a + i][c + j]).status == nav.PROVED
+        found[name] += 1
+    rows = [(p, q) for p in roles.values() for q in roles.values()]
+    for name, count in found.items():
+        M = getattr(conversion, name)
+        assert count == sum(any(M[i][j] != "0" for i in range(*p) for j in range(*q)) for p, q in rows) > 0
+
+
+@pytest.mark.parametrize(
+    ("changes", "lines"),
+    [
+        ({}, [r"\hat C = \left(E + [\varphi \times]\right) C", r"\delta v = \hat v - v"]),
+        ({"rotation_sign": "-", "attitude_error": "body"}, [r"\hat C = C \left(E - [\varphi \times]\right)"]),
+        ({"error": "truth - estimate", "vector_error": "body"}, [r"\delta v = C^T \left(v - \hat v\right)"]),
+        ({"vector_error": "rotated", "frame": "inertial"}, [r"\delta r = \hat r - \hat C C^T r"]),
+        ({"vector_error": "rotated", "angle": "psi"}, [r"\delta r = \hat r - r", r"[\psi \times]"]),
+    ],
+)
+def test_a_card_in_latex_is_its_definition_of_errors(changes, lines):
+    text = replace(LEVEL, **changes)._repr_latex_()
+    assert all(line in text for line in lines)

@@ -14,7 +14,7 @@ from flint import arb
 import navsym as nav
 from navsym.conventions.card import CHOICES, Card
 from navsym.conventions.converting import CONVERTED, Converter, transform
-from navsym.conventions.frames import Passage, carry_motion, change_frame
+from navsym.conventions.frames import Passage, carry_motion, change_frame, restore_terms
 from navsym.conventions.mechanisation import ROLES, Mechanisation, World
 from navsym.conventions.points import BITS, draw_point
 from navsym.conventions.reading import read_problem
@@ -31,20 +31,19 @@ def random_pair(pick: random.Random, moves: bool = False) -> tuple[Card, Card]:
     """A card, and one with other definitions of the errors and other axes, or in another frame where that can be."""
     while True:
         card = random_card(pick, EXACT)
-        if moves and card.frame == "local-level":
-            card = replace(card, angle="phi", vector_error="difference")
         target = card
         if moves:
             frame = pick.choice([f for f in CHOICES["frame"] if f != card.frame])
             radii = {"sphere": 1, "ellipsoid": 2}.get(card.earth, 1)
             try:
-                words = {"frame": frame, "axes": pick.choice(CHOICES["axes"])}
+                words = {name: pick.choice(CHOICES[name]) for name in ("axes", "azimuth", "angle")} | {"frame": frame}
+                card = restore_terms(card, frame, radii)
                 target = change_frame(card, words, radii, True, card.earth_rate != "dropped", False)
             except DomainError:
                 continue
         curved = target.frame == "local-level" and target.earth != "none"
         names = [n for n in CONVERTED if getattr(target, n) is not None and (curved or n != "position_error")]
-        free = [n for n in names if n != "frame" and not (moves and n in ("angle", "vector_error"))]
+        free = [n for n in names if n not in ("frame", "azimuth")]
         return card, replace(target, **{name: pick.choice(CHOICES[name]) for name in free})
 
 
@@ -54,6 +53,7 @@ ANGLE, LONGITUDE = mp.mpf("0.9"), mp.mpf("0.4")
 def carry(flight: Flight, target: Card, x: dict[str, Any]) -> dict[str, Any]:
     """A state in the axes or the frame of another card, typed from the definitions of the frames."""
     card, C, v, r = flight.card, x["C"], x["velocity"], x["position"]
+    turned = flight.axes(x)
     if card.frame == target.frame:
         A = AXES[target.axes] * AXES[card.axes].T
         flat = card.frame != "local-level" or card.earth == "none"
@@ -63,7 +63,7 @@ def carry(flight: Flight, target: Card, x: dict[str, Any]) -> dict[str, Any]:
     if card.frame == "local-level":
         L, lon, h = r
         s, c, sl, cl = mp.sin(L), mp.cos(L), mp.sin(lon), mp.cos(lon)
-        M = mp.matrix([[-s * cl, -sl, -c * cl], [-s * sl, cl, -c * sl], [c, 0, -s]]) * AXES[card.axes].T
+        M = mp.matrix([[-s * cl, -sl, -c * cl], [-s * sl, cl, -c * sl], [c, 0, -s]]) * turned.T
         E = flight.radii(L)[1]
         C, v, r = M * C, M * v, vec((E + h) * c * cl, (E + h) * c * sl, ((1 - flight.e2) * E + h) * s)
     elif card.frame == "inertial":

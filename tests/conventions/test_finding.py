@@ -10,9 +10,12 @@ import pytest
 
 import navsym as nav
 from navsym.conventions.card import CHOICES, Card, list_structures
+from navsym.conventions.points import evaluate
 from navsym.conventions.reading import read_problem
 from navsym.conventions.search import Comparison, find_candidates
 from navsym.conventions.symbols import Formulas
+from navsym.language.expression import read_tree
+from navsym.language.tree import list_names
 from tests.conventions import models
 
 PLUS, MINUS = "estimate - truth", "truth - estimate"
@@ -53,6 +56,8 @@ LEVEL: dict[str, dict[str, Any]] = {
     "PSINS": {"axes": "ENU", "angle": "phi", "rotation_sign": "-", "bias_sign": MINUS, "position_error": "geodetic"},
     "NaveGo 2014": {"axes": "NED", "angle": "phi", "rotation_sign": "-", "bias_sign": MINUS, "earth": "sphere"},
     "NaveGo, issue 107": {"axes": "NED", "angle": "phi", "rotation_sign": "-", "bias_sign": PLUS, "earth": "sphere"},
+    "Savage": {"axes": "ENU", "azimuth": "wander", "angle": "psi", "rotation_sign": "-", "bias_sign": MINUS},
+    "Farrell and Barth": {"axes": "NED", "angle": "phi", "rotation_sign": "+", "earth": "sphere"},
     "psi angle": {"angle": "psi", "rotation_sign": "-", "bias_sign": MINUS, "position_error": "metres"},
 }
 
@@ -158,7 +163,8 @@ def list_mutants(document: dict[str, Any]) -> list[dict[str, Any]]:
     size = len(document["model"]["F"])
     for i in range(size):
         for j in range(size):
-            spoil(lambda F, i=i, j=j: F[i].__setitem__(j, F[i][j] if F[i][j] == "0" else f"-({F[i][j]})"))
+            if not is_zero(document["model"]["F"][i][j]):
+                spoil(lambda F, i=i, j=j: F[i].__setitem__(j, f"-({F[i][j]})"))
     for a in range(0, size, 3):
         for b in range(0, size, 3):
 
@@ -170,6 +176,12 @@ def list_mutants(document: dict[str, Any]) -> list[dict[str, Any]]:
             spoil(transpose)
             spoil(lambda F, a=a, b=b: swap_frame(F, a, b))
     return mutants
+
+
+def is_zero(text: str) -> bool:
+    """True for what is zero however it is written, such as -(-(0)): its sign is no mutant."""
+    tree = read_tree(text, None)
+    return not list_names(tree) and evaluate(tree, {}) == 0
 
 
 def swap_frame(F: Any, a: int, b: int) -> None:

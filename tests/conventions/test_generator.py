@@ -10,7 +10,7 @@ import mpmath as mp
 import pytest
 from flint import arb
 
-from navsym.conventions.card import CHOICES, Card, list_structures
+from navsym.conventions.card import CHOICES, NORTH, WANDER, Card, list_structures
 from navsym.conventions.mechanisation import ROLES, Mechanisation, World
 from navsym.conventions.points import BITS, draw_point, evaluate, gradient_names
 from navsym.conventions.reading import read_problem
@@ -20,7 +20,11 @@ from navsym.core.balls import precision
 from navsym.language.expression import read_tree
 from tests.conventions import models, reference
 
-STRUCTURES = [card for radii in (1, 2) for card in list_structures(frozenset(ROLES), radii, CHOICES["frame"])]
+STRUCTURES = [
+    card
+    for radii, azimuth in ((1, NORTH), (2, NORTH), (1, WANDER), (2, WANDER))
+    for card in list_structures(frozenset(ROLES), radii, CHOICES["frame"], azimuth=azimuth)
+]
 #: Cards that drop no part of a derivative: what they say is the exact linearisation of their mechanisation.
 EXACT = [
     card
@@ -57,7 +61,9 @@ def world_of(flight: reference.Flight) -> World:
     vectors = [[ball(x) for x in v] for v in (flight.f, flight.w, flight.v, flight.r, earth)]
     scalars = [ball(sine), ball(cosine), ball(flight.h), RN, RE, ball(slope)]
     names = gradient_names(RN, RE, ball(flight.h), RN, (RN * RE).sqrt())
-    return World(rows, *vectors, *scalars, [ball(x) for x in gravity], ball(pull), ball(distance), names)
+    wander = ball(mp.sin(flight.alpha)), ball(mp.cos(flight.alpha))
+    gravity = [ball(x) for x in gravity]
+    return World(rows, *vectors, *scalars, gravity, ball(pull), ball(distance), names, wander=wander)
 
 
 def worst_difference(flight: reference.Flight) -> Any:
@@ -75,10 +81,10 @@ def worst_difference(flight: reference.Flight) -> Any:
     return worst
 
 
-@pytest.mark.parametrize("frame", CHOICES["frame"])
+@pytest.mark.parametrize("frame", [*CHOICES["frame"], WANDER])
 def test_error_dynamics_are_the_linearisation_along_a_flight(frame):
     pick = random.Random(frame)
-    card = random_card(pick, [card for card in EXACT if card.frame == frame])
+    card = random_card(pick, [card for card in EXACT if frame in (card.frame, card.azimuth)])
     assert worst_difference(reference.Flight(card, 1)) < 1e-9, card
 
 
@@ -103,6 +109,7 @@ def full_problem() -> Any:
     """A problem in which every quantity has a name."""
     quantities = {
         **models.NED, "specific_force_body": models.F_B, "angular_rate": models.W_B, "position": ["r1", "r2", "r3"],
+        "wander_angle": "alpha",
     }  # fmt: skip
     quantities.pop("specific_force")
     return read_problem(models.document("pvagb", {}, quantities, **models.declared(quantities)))

@@ -18,7 +18,7 @@ from navsym.conventions.points import BITS
 from navsym.core.balls import precision
 from navsym.core.errors import NavsymError
 from tests.conventions import models, reference
-from tests.conventions.reference import AXES, STEP, Flight, exp, log, push, skew, vec
+from tests.conventions.reference import STEP, Flight, exp, log, push, skew, vec
 from tests.conventions.test_generator import EXACT, ball, random_card, world_of
 
 ARM, SEEN, CORRECTION = vec("0.3", "-0.7", "0.2"), vec("0.9", "0.1", "-0.5"), vec("0.4", "-0.3", "0.8")
@@ -28,7 +28,7 @@ def measurement(flight: Flight, kind: str, x: dict[str, Any], y: dict[str, Any])
     """What the estimate y predicts less what the truth x shows, by the definitions of the measurements."""
     level = flight.card.frame == "local-level"
     curved = level and flight.card.earth != "none"
-    A = AXES[flight.card.axes]
+    A = flight.axes(x)
     if kind in ("position", "height"):
         moved = y["position"] - x["position"]
         arm = (y["C"] - x["C"]) * ARM
@@ -45,7 +45,8 @@ def measurement(flight: Flight, kind: str, x: dict[str, Any], y: dict[str, Any])
 
     def shown(s: dict[str, Any]) -> Any:
         spin = (
-            skew(flight.w - s["gyro_bias"] - s["C"].T * flight.turning(s["position"][0] if curved else flight.L)) * ARM
+            skew(flight.w - s["gyro_bias"] - s["C"].T * flight.turning(s["position"][0] if curved else flight.L, s))
+            * ARM
         )
         return {
             "velocity": s["velocity"] + s["C"] * spin,

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import random
 import re
+from itertools import product
 from typing import Any
 
 import pytest
 
 from tests.conventions import models
 from tests.conventions.test_finding import cards_of, list_mutants
+from tests.conventions.test_measuring import sola
 
 SQUARES = "(q0**2 + q1**2 + q2**2 + q3**2)"
 #: Rotation from the body of a quaternion whose scalar is q0 (Hamilton).
@@ -49,12 +51,33 @@ def test_a_quaternion_in_another_order_is_noticed():
     assert all(cards_of(mutant) != right for mutant in list_order_mutants())
 
 
+def list_measured_mutants() -> list[dict[str, Any]]:
+    """One sign of an entry of H, G or the reset."""
+    document, mutants = sola(), list[dict[str, Any]]()
+    for name in ("H", "G", "reset"):
+        M = document["model"][name]
+        for i, j in product(range(len(M)), range(len(M[0]))):
+            if M[i][j] != "0":
+                rows = [list(row) for row in M]
+                rows[i][j] = f"-({M[i][j]})"
+                mutants.append({**document, "model": {**document["model"], name: rows}})
+    return mutants
+
+
+@pytest.mark.long
+def test_signs_of_measurements_noise_and_reset_are_noticed():
+    right = cards_of(sola())
+    mutants = list_measured_mutants()
+    assert len(mutants) > 40 and all(cards_of(mutant) != right for mutant in random.Random(5).sample(mutants, 20))
+
+
 @pytest.mark.slow
-def test_of_a_thousand_spoiled_models_nearly_all_are_noticed():
-    pick, noticed, total = random.Random(1000), 0, 0
-    for build in models.PUBLISHED.values():
+def test_of_more_than_a_thousand_spoiled_models_nearly_all_are_noticed():
+    noticed, total = sum(cards_of(m) != cards_of(sola()) for m in list_measured_mutants()), len(list_measured_mutants())
+    for build in (quaternion_model, sola, *models.PUBLISHED.values()):
         document = build()
-        right, mutants = cards_of(document), list_mutants(document)
-        for mutant in pick.sample(mutants, min(42, len(mutants))) if right else []:
+        right = cards_of(document)
+        mutants = list_order_mutants() if build is quaternion_model else list_mutants(document)
+        for mutant in mutants if right else []:
             total, noticed = total + 1, noticed + (cards_of(mutant) != right)
-    assert total > 800 and noticed >= 0.97 * total
+    assert total > 1000 and noticed >= 0.97 * total

@@ -11,7 +11,10 @@ import navsym as nav
 from navsym.audit.questions import KINDS, NOTES, more_keys
 from navsym.claims import Status
 from navsym.claims.workspace import ENDINGS, SCHEMAS
+from navsym.conventions import card, measuring, mechanisation
+from navsym.conventions import reading as conventions_file
 from navsym.language import shapes
+from navsym.language.tomlfile import read_toml
 from navsym.models import modelfile
 from navsym.prove.claimfile import NOTES as CLAIM_NOTES
 from navsym.prove.relations import reading
@@ -19,7 +22,7 @@ from navsym.prove.relations import reading
 ROOT = Path(__file__).parents[2]
 FILES = {
     "claims": [ROOT / "examples" / "formulas.toml"],
-    "models": [ROOT / "examples" / name for name in ("guard.toml", "schuler-velocity.toml", "conventions.toml")],
+    "models": [p for p in sorted((ROOT / "examples").glob("*.toml")) if {"model", "card"} & {*read_toml(p)}],
     "audits": sorted((ROOT / "examples" / "audit").glob("*.toml")),
 }
 
@@ -35,6 +38,23 @@ def test_every_example_is_valid(kind, path):
     assert not errors
 
 
+@pytest.mark.parametrize("path", FILES["models"], ids=lambda path: path.name)
+def test_a_file_that_the_schema_accepts_is_read_by_the_verb_that_it_is_for(path):
+    tables = read_toml(path)
+    if "roles" in tables:
+        assert nav.conventions(path).problem.states
+    if "measurement" in tables:  # the tables of one verb do not disturb another
+        assert modelfile.read_model(path).states == tuple(tables["model"]["states"])
+
+
+def test_tables_and_keys_that_only_conventions_read_do_not_disturb_other_verbs():
+    document = read_toml(ROOT / "examples" / "conventions.toml")
+    document["model"] |= {"H": [["1"] + ["0"] * 11], "G": [["0"]] * 12, "reset": [["0"] * 12] * 12}
+    document |= {"measured": {"height": [1]}, "noises": {}, "card": {}}
+    assert not [*Draft7Validator(schema("models")).iter_errors(document)]
+    assert modelfile.model_from(document).F.shape == (12, 12)
+
+
 def test_chapters_of_the_book_are_claims_under_the_schema():
     validator = Draft7Validator(schema("claims"))
     for entry in nav.book.values():
@@ -47,7 +67,19 @@ def test_the_schemas_have_the_keys_that_the_readers_have():
     assert set(claim["expect"]["enum"]) == {str(status) for status in Status}
     declaration = schema("claims")["definitions"]["declaration"]["anyOf"][-1]["properties"]
     assert set(declaration) == set(shapes.KEYS)
-    assert set(schema("models")["properties"]) == {*modelfile.TABLES, *modelfile.BESIDE}
+    tables = schema("models")["properties"]
+    assert set(tables) == {*modelfile.TABLES, *modelfile.BESIDE}
+    assert set(tables["model"]["properties"]) == {*modelfile.KEYS, *modelfile.BESIDE_F}
+    for name in ("card", "known"):
+        assert {key: tuple(words["enum"]) for key, words in tables[name]["properties"].items()} == card.CHOICES
+    for name, words in {
+        "roles": mechanisation.ROLES,
+        "quantities": conventions_file.QUANTITIES,
+        "measured": measuring.MEASURED,
+        "noises": measuring.NOISES,
+    }.items():
+        assert set(tables[name]["properties"]) == {*words}, name
+    assert tables["code"]["items"] == schema("audits")["properties"]["code"]["items"]
     question = schema("audits")["properties"]["question"]["items"]["properties"]
     assert set(question["kind"]["enum"]) == set(KINDS)
     own = {key for kind, keys in KINDS.items() for key in (*keys, *more_keys(kind))}

@@ -12,7 +12,7 @@ from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx
 
-from navsym.core.rational_functions import Quotient, add_fractions, cancel_fraction, multiply_fractions
+from navsym.core.rational_functions import Ratio, cancel_fraction
 from navsym.prove.relations.cofactors import read_terms, write_polynomial
 from navsym.prove.rooms.goals import Term, player, write_term
 from navsym.prove.words.completion import Completion, complete
@@ -21,45 +21,6 @@ Word = tuple[tuple[str, bool], ...]
 Share = dict[str, Any]
 MOST_TRACES = 60
 MOST_DEGREE = 4  # of a number in a symbol that is replaced
-
-
-class Ratio:
-    """A rational function of numbers of the statement."""
-
-    __slots__ = ("quotient",)
-
-    def __init__(self, quotient: Quotient):
-        self.quotient = quotient
-
-    def __add__(self, other: Any) -> Ratio:
-        if not isinstance(other, Ratio):
-            other = Ratio(Quotient(self.quotient.top * 0 + other, self.quotient.bottom * 0 + 1))
-        return Ratio(add_fractions(self.quotient, other.quotient))
-
-    __radd__ = __add__
-
-    def __mul__(self, other: Any) -> Ratio:
-        if isinstance(other, Ratio):
-            return Ratio(multiply_fractions(self.quotient, other.quotient))
-        return Ratio(Quotient(self.quotient.top * other, self.quotient.bottom))
-
-    __rmul__ = __mul__
-
-    def __neg__(self) -> Ratio:
-        return self * -1
-
-    def __truediv__(self, other: Any) -> Ratio:
-        return self * Ratio(cancel_fraction(other.quotient.bottom, other.quotient.top))
-
-    def __rtruediv__(self, other: Any) -> Ratio:
-        return Ratio(cancel_fraction(self.quotient.bottom, self.quotient.top)) * other
-
-    def __eq__(self, other: object) -> bool:
-        if isinstance(other, Ratio):
-            return self.quotient == other.quotient
-        return bool(self.quotient.top == other and self.quotient.bottom == 1)
-
-    __hash__ = None  # type: ignore[assignment]
 
 
 class Letters:
