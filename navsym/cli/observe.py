@@ -29,7 +29,7 @@ def command(
     html: Path | None = None,
     latex: Path | None = None,
     json_: bool = False,
-) -> None:
+) -> int:
     """Show the exact observability of a model: dimensions, rank drops, splits, gains by poles.
 
     Example: navsym observe examples/schuler-velocity.toml
@@ -62,8 +62,7 @@ def command(
     kept = answer.null_space(**read_jacobians(jacobians)) if jacobians is not None else None
     data |= {"null_space": kept.document()} if kept is not None else {}
     emit(data, as_json=json_, text=lambda: as_text(data))
-    if kept is not None and not kept.holds:
-        raise typer.Exit(1)
+    return 0 if kept is None or kept.holds else 1
 
 
 # Text for people
