@@ -11,7 +11,7 @@ import pytest
 import navsym as nav
 from navsym import checker
 from navsym.audit.decide import Scope, decide_entry
-from navsym.audit.shared import shorten_sides
+from navsym.audit.shared import shorten_pairs
 from navsym.language.expression import read_tree
 from navsym.language.tree import build_symbol, replace
 
@@ -114,12 +114,12 @@ def test_shared_parts_decide_as_the_whole_text_does(monkeypatch, left, right, is
 
 def test_the_meanings_put_back_give_the_sides_again():
     left, right = (read_tree(text, NAMES) for text in (PAIRS[2][0], "x*((a + b)*c + a) + (a + b)"))
-    short = shorten_sides(left, right)
-    assert short is not None and short.meanings
-    sides = short.left, short.right
+    ((_, short),) = shorten_pairs([(left, right)])
+    ((one, two),) = short.pairs
+    assert short.meanings and (one, two) != (left, right)
     for name, tree in reversed(short.meanings.items()):
-        sides = tuple(replace(side, {build_symbol(name): tree}) for side in sides)
-    assert sides == (left, right)
+        one, two = (replace(side, {build_symbol(name): tree}) for side in (one, two))
+    assert (one, two) == (left, right)
 
 
 @pytest.mark.long
