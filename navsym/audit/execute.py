@@ -269,6 +269,8 @@ class Machine(Evaluator):
     def run_unread(self, why: str, names: tuple[str, ...], statement: Part) -> None:
         raise Unreadable(statement.line, why)
 
+    run_jump = run_unread
+
     def run_fail(self, why: str, statement: Part) -> None:
         raise Failing(why)
 
@@ -285,9 +287,6 @@ class Machine(Evaluator):
             if target.kind != "name":
                 raise Unreadable(statement.line, "entries among several names assigned at once")
             self.rename(target.parts[0], call, value, statement)
-
-    def run_jump(self, why: str, names: tuple[str, ...], statement: Part) -> None:
-        raise Unreadable(statement.line, why)
 
     def run_declare(
         self, name: str, number: str, shape: Any, value: Part | None, is_link: bool, statement: Part

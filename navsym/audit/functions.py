@@ -152,25 +152,9 @@ def sizes_of(values: Sequence[Value], unit: Unit) -> tuple[int, ...]:
     return sizes * 2 if unit.language == "matlab" and len(sizes) == 1 else sizes
 
 
-def make_zeros(values: Sequence[Value], unit: Unit) -> Value:
-    return filled(sizes_of(values, unit), 0)
-
-
-def make_ones(values: Sequence[Value], unit: Unit) -> Value:
-    return filled(sizes_of(values, unit), 1)
-
-
 def make_eye(values: Sequence[Value], unit: Unit) -> Value:
     sizes = sizes_of(values, unit)
     return identity_array(sizes[0], sizes[-1])
-
-
-def make_copy(values: Sequence[Value], unit: Unit) -> Value:
-    """An array of the same cells; one of integers would cut what is assigned to it."""
-    value = values[0]
-    if isinstance(value, Array) and unit.language == "python":
-        return Array(value.shape, tuple(value.cells))
-    return value
 
 
 def make_diagonal(values: Sequence[Value], unit: Unit) -> Value:
@@ -202,14 +186,6 @@ def multiply_arrays(values: Sequence[Value], unit: Unit) -> Value:
     return matrix_product(values[0], values[1])
 
 
-def cross_of(values: Sequence[Value], unit: Unit) -> Value:
-    return cross_product(values[0], values[1])
-
-
-def transpose_of(values: Sequence[Value], unit: Unit) -> Value:
-    return transpose(values[0], unit.rules.matrix)
-
-
 def dot_of(values: Sequence[Value], unit: Unit) -> Value:
     """The product of two vectors; of numpy's matrices, their product."""
     a, b = values
@@ -222,9 +198,11 @@ def dot_of(values: Sequence[Value], unit: Unit) -> Value:
 
 
 ARRAYS: dict[str, Callable[[Sequence[Value], Unit], Value]] = {
-    "zeros": make_zeros, "ones": make_ones, "eye": make_eye, "identity": make_eye, "array": make_copy,
-    "asarray": make_copy, "copy": make_copy, "diag": make_diagonal, "outer": make_outer, "cross": cross_of,
-    "dot": dot_of, "matmul": multiply_arrays, "norm": norm_of, "linalg.norm": norm_of, "transpose": transpose_of,
+    "zeros": lambda values, unit: filled(sizes_of(values, unit), 0), "eye": make_eye, "identity": make_eye,
+    "ones": lambda values, unit: filled(sizes_of(values, unit), 1), "diag": make_diagonal, "outer": make_outer,
+    **dict.fromkeys(("array", "asarray", "copy"), lambda values, unit: values[0]), "norm": norm_of,
+    "cross": lambda values, unit: cross_product(values[0], values[1]), "dot": dot_of, "matmul": multiply_arrays,
+    "linalg.norm": norm_of, "transpose": lambda values, unit: transpose(values[0], unit.rules.matrix),
 }  # fmt: skip
 
 
@@ -290,7 +268,7 @@ METHODS: dict[str, Method] = {
     "copy": lambda value, _, unit: value,
     "eval": lambda value, _, unit: value,
     "dot": lambda value, others, unit: dot_of([value, *others], unit),
-    "cross": lambda value, others, unit: cross_of([value, *others], unit),
+    "cross": lambda value, others, unit: cross_product(value, *others),
     "norm": lambda value, _, unit: norm_of([value], unit),
     "squaredNorm": lambda value, _, unit: square_sum(value),
     "norm_squared": lambda value, _, unit: square_sum(value),

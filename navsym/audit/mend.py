@@ -225,37 +225,30 @@ def right_sides(statement: Part) -> list[Part]:
     """The expressions of a statement that may be wrong: the items of a list one by one, the bounds of a loop."""
     if statement.kind == "for":
         return [bound for bound in statement.parts[1:4] if bound.span[0] < bound.span[1]]
-    value = whole_side(statement)
-    if value is None:
-        return []
-    if value.kind == "call" and len(value.parts[1]) == 1 and value.parts[1][0].kind == "list":
-        value = value.parts[1][0]
-    waiting, done = [value], []
+    waiting, done = [unwrap(whole_side(statement))], list[Part]()
     while waiting:
         part = waiting.pop(0)
-        if part.kind == "list":
+        if part is not None and part.kind == "list":
             waiting += part.parts[0]
-        else:
+        elif part is not None:
             done.append(part)
     return done
 
 
+def unwrap(value: Part | None) -> Part | None:
+    """The list inside a call that makes an array of it, or the value itself."""
+    is_made = value is not None and value.kind == "call" and len(value.parts[1]) == 1
+    return value.parts[1][0] if value is not None and is_made and value.parts[1][0].kind == "list" else value
+
+
 def right_side(statement: Part, place: tuple[int, int]) -> Part | None:
     """What a statement assigns to a place: the item of a list, or the whole right side."""
-    if statement.kind not in ("declare", "assign"):  # the argument of a call
-        return None
-    value = statement.parts[3] if statement.kind == "declare" else statement.parts[2]
-    if statement.kind not in ("declare", "assign") or value is None:
-        return None
-    if value.kind == "call" and len(value.parts[1]) == 1 and value.parts[1][0].kind == "list":
-        value = value.parts[1][0]
+    value = unwrap(whole_side(statement)) if statement.kind in ("declare", "assign") else None
     for at in place:
-        if value.kind != "list":
+        if value is None or value.kind != "list":
             break
-        if at > len(value.parts[0]):
-            return None
-        value = value.parts[0][at - 1]
-    return None if value.kind == "list" else value
+        value = value.parts[0][at - 1] if at <= len(value.parts[0]) else None
+    return None if value is not None and value.kind == "list" else value
 
 
 def is_right(mend: Mend, entry: Entry, source: Source, scope: Scope, probes: list[dict[str, float]]) -> bool:

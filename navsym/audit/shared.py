@@ -29,7 +29,6 @@ from navsym.language.tree import (
     parts_of,
 )
 
-
 Pair = tuple[Tree, Tree]
 
 

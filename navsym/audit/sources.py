@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,7 +14,7 @@ from navsym.audit.execute import read_function
 from navsym.audit.form import Argument, Function, Part, Unit, names_in
 from navsym.audit.fragment import take_lines
 from navsym.audit.names import Names
-from navsym.audit.syntax import SIZE, read_decimal
+from navsym.audit.syntax import SIZE, parse_source, read_decimal
 from navsym.audit.values import (
     Array,
     Index,
@@ -143,40 +144,22 @@ def load_unit(
 
 def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | None) -> Unit:
     """A source in the one form."""
-    if language == "python":
-        from navsym.audit.python_source import read_python
-
-        return read_python(data, where)
-    if language == "matlab":
-        from navsym.audit.matlab_source import read_matlab
-
-        return read_matlab(data, where)
-    if language == "rust":
-        from navsym.audit.rust_source import read_rust
-
-        return read_rust(data, where)
-    from navsym.audit.c_source import read_c
-
-    return read_c(data, where, language, defined)
+    module = load_reader(language)
+    rules = module.RULES_OF_CPP if language == "cpp" else module.RULES
+    unit = Unit(where, language, rules, data, defined=defined)
+    module.Reader(unit).read_file(parse_source(data, language, where))
+    return unit
 
 
 def read_expression(text: str, unit: Unit) -> Part:
     """One expression in the language of a source."""
-    if unit.language == "python":
-        from navsym.audit.python_source import read_python_expression
+    part: Part = load_reader(unit.language).Reader.read_text(text, unit)
+    return part
 
-        return read_python_expression(text, unit)
-    if unit.language == "matlab":
-        from navsym.audit.matlab_source import read_matlab_expression
 
-        return read_matlab_expression(text, unit)
-    if unit.language == "rust":
-        from navsym.audit.rust_source import read_rust_expression
-
-        return read_rust_expression(text, unit)
-    from navsym.audit.c_source import read_c_expression
-
-    return read_c_expression(text, unit)
+def load_reader(language: str) -> Any:
+    """The module of a language: its ``Reader`` and its ``RULES``."""
+    return importlib.import_module(f"navsym.audit.{'c' if language == 'cpp' else language}_source")
 
 
 def find_function(unit: Unit, name: str, where: str, line: int | None = None) -> Function:

@@ -83,7 +83,9 @@ class Subject:
         assert head is not None
         known, done = dict(self.shapes), []
         for text in head[1].split(","):
-            name = re.findall(r"[a-z_]\w*", text.partition(":" if self.language == "rust" else "[")[0], re.IGNORECASE)[-1]
+            name = re.findall(r"[a-z_]\w*", text.partition(":" if self.language == "rust" else "[")[0], re.IGNORECASE)[
+                -1
+            ]
             sizes = tuple(int(n) for n in re.findall(r"(?:\[|; )(\d+)\]", text)) or known.get(name)
             sizes = sizes or ((1,) if "*" in text else None)
             is_changed = "&mut" in text or (self.language == "c" and "const" not in text and sizes is not None)
@@ -179,7 +181,10 @@ def compute(sources: list[str], subject: Subject, seed: int) -> list[list[float]
     """What each source computes at the same points; None for what cannot be run."""
     chosen = random.Random(seed)
     points = [
-        [np.array([chosen.uniform(0.2, 0.9) for _ in range(math.prod(sizes or ()))]) for _, sizes, _ in subject.parameters()]
+        [
+            np.array([chosen.uniform(0.2, 0.9) for _ in range(math.prod(sizes or ()))])
+            for _, sizes, _ in subject.parameters()
+        ]
         for _ in range(POINTS)
     ]
     with tempfile.TemporaryDirectory() as folder:
