@@ -389,7 +389,7 @@ class Reader(SourceReader):
             owner = self.expression(function)
             if owner.kind == "name":
                 return self.part("call", node, owner.parts[0], arguments)
-            if not re.fullmatch(r"[\w.:>-]+\(\)", name) or name.removesuffix("()").split(".")[-1] in METHODS:
+            if not re.fullmatch(r"[\w.:>-]+\(\)", name) or (name.removesuffix("()").split(".")[-1], 0) in METHODS:
                 return self.part("index", node, owner, arguments)
             return self.part("call", node, name, arguments)
         if found or function.type in ("identifier", "qualified_identifier", "template_function"):

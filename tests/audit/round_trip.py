@@ -12,6 +12,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -36,14 +37,14 @@ def list_claims() -> list[str]:
     return [claim["id"] for claim in document["claims"] if claim["status"] in ("PROVED", "CERTIFIED")]
 
 
-def find_lines(text: str, name: str, first: str, last: str) -> tuple[int, int]:
+def find_lines(text: str, name: str, first: str, last: str) -> tuple[int, int] | None:
     """The lines between the one with the first mark, inside a function, and the next with the last."""
     head = re.search(rf"(?:^|[ >]){re.escape(name)}\s?\(", text, re.MULTILINE)
     assert head is not None
     before, lines = text[: head.start()].count("\n"), text[head.start() :].split("\n")
-    start = next(i for i, line in enumerate(lines) if re.match(first, line))
-    end = next(i for i, line in enumerate(lines) if i > start and re.match(last, line))
-    return before + start + 2, before + end
+    start = next((i for i, line in enumerate(lines) if re.match(first, line)), len(lines))
+    end = next((i for i, line in enumerate(lines) if i > start and re.match(last, line)), None)
+    return None if end is None else (before + start + 2, before + end)
 
 
 def read_back(claim: str, folder: Path) -> dict[str, str]:
@@ -64,6 +65,8 @@ def compare(function: dict[str, Any], language: str, folder: Path) -> str:
     path = Path("out") / file.format(function["name"])
     text = (folder / path).read_text()
     lines = find_lines(text, function["name"], first, last)
+    if lines is None:
+        return "not read (another layout)"
     formulas = [line.partition(" = ")[2] for line in function["pieces"][0]["source"]["formula"]]
     inside = "\n".join(text.split("\n")[lines[0] - 1 : lines[1]])
     written = re.findall(r"^ *(result\.[^=]*?) = ", inside, re.MULTILINE)
@@ -71,9 +74,7 @@ def compare(function: dict[str, Any], language: str, folder: Path) -> str:
     spelled = spell_inputs(function, language)
     spec = f'[[code]]\nname = "c"\nfile = "{path}"\nfunction = "{function["name"]}"\nlines = {[*lines]}\n'
     spec += HELPERS.get(language, "") + "[code.symbols]\n"
-    spec += "".join(
-        f'"{spelled[i["symbol"]]}" = "{sign_of(i)}"\n' for i in function["inputs"] if i["symbol"] in spelled
-    )
+    spec += "".join(f'"{spelled[i["symbol"]]}" = {range_of(i)}\n' for i in function["inputs"] if i["symbol"] in spelled)
     asked = [*zip(names, names, formulas, strict=True), ("wrong", names[0], f"{formulas[0]} + 1")]
     for key, name, formula in asked:
         right = json.dumps(rename(formula, spelled))
@@ -99,10 +100,12 @@ def spell_inputs(function: dict[str, Any], language: str) -> dict[str, str]:
     return spelled
 
 
-def sign_of(given: dict[str, Any]) -> str:
-    """The sign that the domain of an input shows."""
-    low, high = given["low"], given["high"]
-    return "positive" if low is not None and low > 0 else "negative" if high is not None and high < 0 else "real"
+def range_of(given: dict[str, Any]) -> str:
+    """The range of an input as a mapping has it."""
+    low, high = (Fraction(given[end]) if given[end] is not None else end for end in ("low", "high"))
+    if "low" in (low, high) or "high" in (low, high):
+        return '"positive"' if low != "low" and low > 0 else '"real"'
+    return f'{{ range = ["{low}", "{high}"] }}'
 
 
 def rename(formula: str, spelled: dict[str, str]) -> str:

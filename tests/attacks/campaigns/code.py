@@ -179,14 +179,7 @@ def list_changes(token: str, names: list[str]) -> list[str]:
 
 def compute(sources: list[str], subject: Subject, seed: int) -> list[list[float] | None]:
     """What each source computes at the same points; None for what cannot be run."""
-    chosen = random.Random(seed)
-    points = [
-        [
-            np.array([chosen.uniform(0.2, 0.9) for _ in range(math.prod(sizes or ()))])
-            for _, sizes, _ in subject.parameters()
-        ]
-        for _ in range(POINTS)
-    ]
+    points = draw_points(subject, seed)
     with tempfile.TemporaryDirectory() as folder:
         if subject.language == "python":
             return [run_python(source, subject, points) for source in sources]
@@ -194,6 +187,12 @@ def compute(sources: list[str], subject: Subject, seed: int) -> list[list[float]
             return run_octave(sources, subject, points, Path(folder))
         library, alive = compile_all(sources, subject, Path(folder))
         return call_all(library, alive, len(sources), subject, points)
+
+
+def draw_points(subject: Subject, seed: int) -> list[list[Any]]:
+    """Numbers for all cells of all parameters, some times."""
+    chosen, sizes = random.Random(seed), [math.prod(sizes or ()) for _, sizes, _ in subject.parameters()]
+    return [[np.array([chosen.uniform(0.2, 0.9) for _ in range(n)]) for n in sizes] for _ in range(POINTS)]
 
 
 def run_python(source: str, subject: Subject, points: list[list[Any]]) -> list[float] | None:
