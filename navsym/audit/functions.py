@@ -193,10 +193,12 @@ def multiply_arrays(values: Sequence[Value], unit: Unit) -> Value:
 def dot_of(values: Sequence[Value], unit: Unit) -> Value:
     """The product of two vectors; of numpy's matrices, their product."""
     a, b = values
-    if not (isinstance(a, Array) and isinstance(b, Array)) or unit.language == "python":
+    if unit.language == "python":
         return matrix_product(a, b)
-    if count_cells(a.shape) != count_cells(b.shape):
-        raise Unreadable(0, "a dot product of different sizes")
+    if not (isinstance(a, Array) and isinstance(b, Array)):
+        raise Unreadable(0, "a dot product of what are no vectors")
+    if count_cells(a.shape) != count_cells(b.shape) or any(len(v.shape) == 2 and 1 not in v.shape for v in (a, b)):
+        raise Unreadable(0, "a dot product of different sizes, or of matrices")
     flat = (len(a.cells),)
     return matrix_product(Array(flat, a.cells), Array(flat, b.cells))
 

@@ -83,7 +83,7 @@ def compare(function: dict[str, Any], language: str, folder: Path) -> str:
     try:
         verdicts = {q.name: q for q in nav.audit(folder / f"{language}.toml").questions}
     except nav.NavsymError as error:
-        return f"not read ({error.kind})"
+        return f"not read ({error.kind}: {error.message[:80]})"
     assert verdicts.pop("wrong").status != nav.PROVED
     bad = next((q for q in verdicts.values() if not q.status.holds), None)
     return "PROVED" if bad is None else f"{bad.status} ({bad.entries[0].why[:50]})"
@@ -102,10 +102,10 @@ def spell_inputs(function: dict[str, Any], language: str) -> dict[str, str]:
 
 def range_of(given: dict[str, Any]) -> str:
     """The range of an input as a mapping has it."""
-    low, high = (Fraction(given[end]) if given[end] is not None else end for end in ("low", "high"))
-    if "low" in (low, high) or "high" in (low, high):
-        return '"positive"' if low != "low" and low > 0 else '"real"'
-    return f'{{ range = ["{low}", "{high}"] }}'
+    low, high = given["low"], given["high"]
+    if low is None or high is None or not low < high:
+        return '"positive"' if low is not None and low > 0 else '"real"'
+    return f'{{ range = ["{Fraction(low)}", "{Fraction(high)}"] }}'
 
 
 def rename(formula: str, spelled: dict[str, str]) -> str:

@@ -3,6 +3,7 @@
 import json
 import random
 import re
+import resource
 import time
 from importlib import import_module
 
@@ -129,3 +130,14 @@ def test_twice_the_states_cost_no_more_than_twelve_times_the_time(tmp_path):
     large, second = ask(tmp_path, 24, write_covariance(24, 4))
     assert small.holds and large.holds
     assert second < 12 * first
+
+
+@pytest.mark.long
+def test_sixty_generated_functions_take_less_than_a_minute_and_a_gigabyte(tmp_path):
+    seconds = 0.0
+    for k in range(60):
+        n = 4 + k % 6
+        answer, spent = ask(tmp_path, n, write_covariance(n, 1 + k % (n - 1)))
+        assert answer.holds
+        seconds += spent
+    assert seconds < 60 and resource.getrusage(resource.RUSAGE_SELF).ru_maxrss < 2**20

@@ -254,7 +254,8 @@ def compile_all(sources: list[str], subject: Subject, folder: Path) -> tuple[Pat
         if subject.language == "rust":
             command = ["rustc", "--crate-type", "cdylib", "--error-format=short", "-A", "warnings", path, "-o", library]
         else:
-            flags = "-O0 -w -shared -fPIC -Dfloat=double -Dsinf=sin -Dcosf=cos -Dsqrtf=sqrt -include math.h".split()
+            flags = "-O0 -shared -fPIC -Dfloat=double -Dsinf=sin -Dcosf=cos -Dsqrtf=sqrt -include math.h".split()
+            flags += ["-Werror=implicit-function-declaration"]
             command = ["gcc", *flags, path, "-o", library, "-lm"]
         said = subprocess.run(command, capture_output=True, check=False, text=True)
         if said.returncode == 0:
