@@ -307,11 +307,13 @@ def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQue
     from navsym.audit.decide import decide_together
     from navsym.audit.mend import Budget
     from navsym.audit.questions import list_entries
-    from navsym.audit.senses import is_read, weaken
+    from navsym.audit.senses import weaken
+    from navsym.audit.values import Scalar
 
     relations, entries = question.relations(), list_entries(question)
     scopes = [make_scope(question.names, entry, relations) for entry in entries]
-    pairs = {(e.code.tree, e.expected.tree): None for e in entries if is_read(e)}
+    cells = [(e.code, e.expected) for e in entries]
+    pairs = {(x.tree, y.tree): None for x, y in cells if isinstance(x, Scalar) and isinstance(y, Scalar)}
     decided: dict[Any, Decision] = {**decide_together([*pairs], scopes[0])} if entries else {}
     decisions = [decide_cells(entry, scope, decided) for entry, scope in zip(entries, scopes, strict=True)]
     weaken(question, entries, decisions, scopes)
