@@ -6,8 +6,6 @@ the point, goes to the checker as text. Nothing else makes an entry PROVED or RE
 
 from __future__ import annotations
 
-import functools
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -160,7 +158,7 @@ def prove_shared(pairs: Sequence[tuple[Tree, Tree]], scope: Scope) -> dict[tuple
     done = dict[tuple[Tree, Tree], Document]()
     for equal, short in shorten_pairs(pairs):
         inputs, (left, right) = short.inputs(), zip(*short.pairs, strict=True)
-        numbers = [simple_number(json.dumps(scope.ranges[name]), i % 2) for i, name in enumerate(inputs)]
+        numbers = [simple_point(player.read_range(scope.ranges[name]), i % 2) for i, name in enumerate(inputs)]
         point = {name: Fraction(int(q.p), int(q.q)) for name, q in zip(inputs, numbers, strict=True)}
         document: Document = {
             "left": f"[{', '.join(map(print_tree, left))}]",
@@ -181,12 +179,6 @@ def prove_shared(pairs: Sequence[tuple[Tree, Tree]], scope: Scope) -> dict[tuple
         except REFUSALS:
             continue
     return done
-
-
-@functools.cache
-def simple_number(limits: str, trial: int) -> fmpq:
-    """A simple number of a range that is written down."""
-    return simple_point(player.read_range(json.loads(limits)), trial)
 
 
 def search_proof(document: Document, scope: Scope, seconds: float, why: str = "") -> Decision:

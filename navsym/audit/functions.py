@@ -156,11 +156,6 @@ def sizes_of(values: Sequence[Value], unit: Unit) -> tuple[int, ...]:
     return sizes * 2 if unit.language == "matlab" and len(sizes) == 1 else sizes
 
 
-def make_eye(values: Sequence[Value], unit: Unit) -> Value:
-    sizes = sizes_of(values, unit)
-    return identity_array(sizes[0], sizes[-1])
-
-
 def make_diagonal(values: Sequence[Value], unit: Unit) -> Value:
     (value,) = values
     if not isinstance(value, Array) or len(value.shape) != 1:
@@ -206,7 +201,7 @@ def dot_of(values: Sequence[Value], unit: Unit) -> Value:
 Known = Callable[[Sequence[Value], Unit], Value]
 #: Functions of arrays by name and number of arguments: with others they mean something else.
 ARRAYS: dict[tuple[str, int], Known] = {
-    **dict.fromkeys((("eye", 1), ("eye", 2), ("identity", 1)), make_eye),
+    **dict.fromkeys((("eye", 1), ("eye", 2), ("identity", 1)), lambda v, u: identity_array(*(sizes_of(v, u) * 2)[:2])),
     **dict.fromkeys((("zeros", 1), ("zeros", 2)), lambda values, unit: filled(sizes_of(values, unit), 0)),
     **dict.fromkeys((("ones", 1), ("ones", 2)), lambda values, unit: filled(sizes_of(values, unit), 1)),
     **dict.fromkeys((("array", 1), ("asarray", 1), ("copy", 1)), lambda values, unit: values[0]),

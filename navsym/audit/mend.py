@@ -89,7 +89,7 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     near = [place for place in near if place.part is value] or near
     places = near + [place for place in places if place not in near]
     price, tried = 1 + len(source.read().met) // SHORT, set[tuple[Any, ...]]()
-    probes = list_probes(entry, scope)
+    probes = list_probes(scope)
     for mend in itertools.chain(
         budget.known,
         (mend for place in places for mend in place.change(SMALL_EDITS)),
@@ -275,12 +275,9 @@ def is_right(mend: Mend, entry: Entry, source: Source, scope: Scope, probes: lis
     return decide_entry(cell.tree, expected.tree, scope).status == PROVED
 
 
-def list_probes(entry: Entry, scope: Scope) -> list[dict[str, float]]:
+def list_probes(scope: Scope) -> list[dict[str, float]]:
     """Points in doubles at which wrong candidates are dropped before anything is proved."""
     box = {name: player.read_range(limits) for name, limits in scope.ranges.items()}
-    assert isinstance(entry.expected, Scalar)
-    related = {name for relation in scope.relations for name in list_names(relation)}
-    box = {name: limits for name, limits in box.items() if name in related or not scope.relations} | box
     points = itertools.islice(draw_points(box, scope), 3)
     return [{name: int(v.p) / int(v.q) for name, v in point.items()} for point in points]
 

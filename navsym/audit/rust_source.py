@@ -191,10 +191,8 @@ class Reader(SourceReader):
             return self.unread(node, "a condition with a pattern")
         then, other = field_of(node, "consequence"), field_of(node, "alternative")
         inner = named(other)[0] if other is not None else None
-        if inner is not None and inner.type == "if_expression":
-            rest: tuple[Part, ...] = (self.branch(inner, reading),)
-        else:
-            rest = tuple(reading(inner)) if inner is not None else ()
+        is_chain = inner is not None and inner.type == "if_expression"
+        rest: tuple[Part, ...] = (self.branch(inner, reading),) if is_chain else tuple(reading(inner))
         return self.part("if", node, self.expression(test), tuple(reading(then)), rest)
 
     def loop(self, node: Any) -> Part:

@@ -159,10 +159,6 @@ class SourceReader:
     unit: Unit
     shift: int = 0
 
-    def read_file(self, root: Any) -> None:
-        """The functions and constants of a file."""
-        raise NotImplementedError
-
     def read_statement(self, node: Any) -> Iterable[Part] | None:
         """What a statement does, as several of the one form."""
         raise NotImplementedError
