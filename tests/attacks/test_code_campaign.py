@@ -1,4 +1,4 @@
-"""One-token mutants of code in four languages: a few in every run, thousands by ``python -m tests.attacks.campaigns.code``."""
+"""One-token mutants of code in four languages: a few here, thousands by ``python -m tests.attacks.campaigns.code``."""
 
 from __future__ import annotations
 
