@@ -166,6 +166,17 @@ def test_the_columns_of_a_rotation_are_orthonormal_and_those_of_another_matrix_a
     assert wrong.status == nav.REFUTED
 
 
+def test_a_rotation_turns_a_cross_product_and_another_matrix_does_not(tmp_path):
+    head = "Vector3d {}(const Matrix3d &R, const Vector3d &u, const Vector3d &v)\n{{\n    Vector3d y = {};\n"
+    code = "".join(
+        f"{head.format(*each)}    return y;\n}}\n" for each in (("f", "(R * u).cross(R * v)"), ("g", "R * u.cross(v)"))
+    )
+    question = 'kind = "equal"\nleft = "f:return"\nright = "g:return"'
+    answer = ask(tmp_path, code, question, ROTATION, ("f", "g"), "cpp")
+    assert answer.status == nav.PROVED and answer.sense == "manifold"
+    assert ask(tmp_path, code, question, "", ("f", "g"), "cpp").status == nav.REFUTED
+
+
 @pytest.mark.parametrize("declared", ["matrix = [2, 2], rotation = true", 'matrix = [3, 3], rotation = "yes"'])
 def test_a_rotation_is_three_by_three_and_declared_with_true(tmp_path, declared):
     with pytest.raises(nav.NavsymError, match="rotation = true"):
