@@ -338,7 +338,7 @@ def evaluate(term: Term, names: dict[str, Jet], field: Any) -> Jet:
     raise Refused("not an expression")
 
 
-@lru_cache
+@lru_cache(1 << 14)
 def symbols_of(term: Term) -> frozenset[str]:
     """The names in a term."""
     own = {term[1]} if term[0] == "symbol" else set()

@@ -309,13 +309,17 @@ def describe_files(sources: Sequence[Source]) -> tuple[AuditedFile, ...]:
 
 def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQuestion:
     """The verdicts on the entries of a question; of several cases the worst stands for the entry."""
+    from navsym.audit.decide import decide_together
     from navsym.audit.mend import Budget
     from navsym.audit.questions import list_entries
     from navsym.audit.senses import weaken
+    from navsym.audit.values import Scalar
 
     relations, entries = question.relations(), list_entries(question)
     scopes = [make_scope(question.names, entry, relations) for entry in entries]
-    decided: dict[Any, Decision] = {}
+    cells = [(e.code, e.expected) for e in entries]
+    pairs = {(x.tree, y.tree): None for x, y in cells if isinstance(x, Scalar) and isinstance(y, Scalar)}
+    decided: dict[Any, Decision] = {**decide_together([*pairs], scopes[0])} if entries else {}
     decisions = [decide_cells(entry, scope, decided) for entry, scope in zip(entries, scopes, strict=True)]
     weaken(question, entries, decisions, scopes)
     worst: dict[tuple[int, int], AuditedEntry] = {}
@@ -338,6 +342,8 @@ def decide_cells(entry: Entry, scope: Scope, decided: dict[Any, Decision]) -> De
     if isinstance(code, Unread) or isinstance(expected, Unread):
         unread = code if isinstance(code, Unread) else expected
         return Decision(OPEN, why=f"not read: {unread.why if isinstance(unread, Unread) else ''}")
+    if (code.tree, expected.tree) in decided:  # for all points, whatever the conditions
+        return decided[code.tree, expected.tree]
     key = (code.tree, expected.tree, entry.conditions)
     if key not in decided:
         try:
@@ -383,4 +389,4 @@ def make_scope(names: Names, entry: Entry, relations: tuple[Any, ...]) -> Scope:
     trees = [cell.tree for cell in (entry.code, entry.expected) if isinstance(cell, Scalar)]
     used = set(list_names(*trees, *(t for c in entry.conditions for t in (c.left, c.right) if t is not None)))
     near = tuple(relation for relation in relations if used & set(list_names(relation)))
-    return Scope(names.ranges(), near, entry.conditions)
+    return Scope(names.ranges(), near, entry.conditions, rotations=tuple(names.rotations.values()))

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules, Unit
+from navsym.audit.form import Argument, Function, Part, Rules
 from navsym.audit.functions import METHODS
-from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, parse_source, read_decimal, text_of
+from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, read_decimal, text_of
 
-RULES = {"c": Rules(integer=True), "cpp": Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))}
+RULES = Rules(integer=True)
+RULES_OF_CPP = Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))
 REAL = frozenset("float double real_t ftype Scalar scalar_t Real postype_t T float32_t float64_t f32 f64".split())
 WHOLE = re.compile(
     r"(unsigned |signed )*(int|long|short|char|size_t|(u?int\d+(_t)?)|bool|unsigned|Eigen::Index)( int)?"
@@ -20,26 +22,6 @@ MATRIX = re.compile(
     r"(?:\w+::)*(?:(?:Square)?Matrix([2-9]|[1-5]\d)[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
 )
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
-COMPARISONS = {"<", "<=", ">", ">=", "==", "!="}
-WORDS = {"&&": "both", "||": "either", "and": "both", "or": "either"}
-
-
-def read_c(source: bytes, file: str, language: str, defined: frozenset[str] | None = None) -> Unit:
-    """The functions, constants and object-like macros of a source in C (``language`` "c") or C++ ("cpp")."""
-    unit = Unit(file, language, RULES[language], source, defined=defined)
-    Reader(unit).read_file(parse_source(source, language, file))
-    return unit
-
-
-def read_c_expression(text: str, unit: Unit) -> Part:
-    """One expression; its spans count from its own beginning."""
-    head = "int a_ = "
-    root = parse_source(f"{head}{text};".encode(), unit.language, unit.file)
-    declarations = [node for node in root.children if node.type == "declaration"]
-    value = field_of(field_of(declarations[0], "declarator"), "value") if declarations and not root.has_error else None
-    if value is None or len(root.children) != 1:
-        return Part("refused", 1, ("no expression",))
-    return Reader(unit, -len(head)).expression(value)
 
 
 def shape_of_type(text: str) -> tuple[int, ...] | None:
@@ -60,7 +42,14 @@ def shape_of_type(text: str) -> tuple[int, ...] | None:
 class Reader(SourceReader):
     """Walks the syntax tree of C and C++; ``locals`` are the names that the function being read declares."""
 
+    HEAD = "int a_ = "
+    OPEN = ("if_statement", "for_statement", "compound_statement")
+
     locals: set[str] = field(default_factory=set)
+
+    @staticmethod
+    def find_value(node: Any) -> Any:
+        return field_of(field_of(node, "declarator"), "value") if node.type == "declaration" else None
 
     # -- the file --
 
@@ -111,7 +100,7 @@ class Reader(SourceReader):
         """An object-like macro; a second definition refuses the name."""
         name, value = text_of(field_of(node, "name")), field_of(node, "value")
         body = "" if value is None else re.sub(r"//.*|/\*.*?\*/", "", text_of(value)).strip()
-        meaning: Part | str = "a macro without a value" if not body else read_c_expression(body, self.unit)
+        meaning: Part | str = "a macro without a value" if not body else Reader.read_text(body, self.unit)
         if isinstance(meaning, Part) and meaning.kind == "refused":
             meaning = "a macro that is no expression"
         if isinstance(meaning, Part) and meaning.kind not in ("number", "name", "call", "minus") and body[0] != "(":
@@ -138,13 +127,9 @@ class Reader(SourceReader):
         """A parameter with its sizes; pointers, references and arrays are shared with the caller."""
         kind = text_of(field_of(node, "type")) if field_of(node, "type") else ""
         name, sizes, shared = self.declared(field_of(node, "declarator"))
-        shape = sizes or self.type_sizes(node, kind)
+        shape = sizes or self.sizes(node, shape_of_type(kind))
         constant = any(text_of(child) == "const" for child in node.children)
         return Argument(name, number_of(kind), shape, shared and not constant)
-
-    def type_sizes(self, node: Any, kind: str) -> tuple[Part, ...] | None:
-        shape = shape_of_type(kind)
-        return None if shape is None else tuple(self.part("number", node, n, "int") for n in shape)
 
     def declared(self, node: Any) -> tuple[str, tuple[Part, ...] | None, bool]:
         """Name, sizes and whether it is shared, of a declarator."""
@@ -167,17 +152,10 @@ class Reader(SourceReader):
 
     def block(self, node: Any) -> tuple[Part, ...]:
         """The statements of a body, or the one that stands for it."""
-        if node is None:
-            return ()
-        nodes = named(node) if node.type == "compound_statement" else [node]
-        if node.type == "else_clause":
-            nodes = named(node)
-            return tuple(s for child in nodes for s in self.block(child))
-        return tuple(s for child in nodes for s in self.statement(child))
+        is_body = node is None or node.type in ("compound_statement", "else_clause")
+        return tuple(s for child in (named(node) if is_body else [node]) for s in self.statement(child))
 
-    def statement(self, node: Any) -> tuple[Part, ...]:
-        if node.has_error and node.type not in ("if_statement", "for_statement", "compound_statement"):
-            return (self.unread(node, "a syntax error, or a macro that hides one"),)
+    def read_statement(self, node: Any) -> Iterable[Part] | None:
         match node.type:
             case "compound_statement":
                 return (self.part("block", node, self.block(node)),)
@@ -200,7 +178,7 @@ class Reader(SourceReader):
                 return tuple(s for child in named(node) for s in self.statement(child))
             case "static_assert_declaration" | "using_declaration" | "empty_statement" | "type_definition":
                 return ()
-        return (self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})"),)
+        return None
 
     def branch(self, node: Any) -> Part:
         test = field_of(node, "condition")
@@ -251,7 +229,7 @@ class Reader(SourceReader):
             value = field_of(child, "value") if child.type == "init_declarator" else None
             inner = field_of(child, "declarator") if child.type == "init_declarator" else child
             name, sizes, shared = self.declared(inner)
-            shape = sizes or self.type_sizes(child, kind)
+            shape = sizes or self.sizes(child, shape_of_type(kind))
             if value is not None and value.type == "argument_list":
                 items = tuple(map(self.expression, named(value)))
                 start = self.part("list", value, items) if len(items) > 1 else items[0] if items else None
@@ -319,7 +297,7 @@ class Reader(SourceReader):
 
     # -- expressions --
 
-    def expression(self, node: Any) -> Part:
+    def read_expression(self, node: Any) -> Part | None:
         match node.type:
             case "number_literal":
                 return self.number(node)
@@ -328,17 +306,12 @@ class Reader(SourceReader):
             case "identifier" | "field_identifier" | "qualified_identifier" | "this":
                 return self.part("name", node, text_of(node))
             case "parenthesized_expression":
-                inner = named(node)
-                return self.expression(inner[0]) if len(inner) == 1 else self.refuse(node, "empty parentheses")
+                return self.inside(node)
             case "binary_expression":
-                return self.binary(node)
+                sign, *sides = (field_of(node, key) for key in ("operator", "left", "right"))
+                return self.operate(node, text_of(sign), *sides)
             case "unary_expression":
-                value = self.expression(field_of(node, "argument"))
-                sign = text_of(field_of(node, "operator"))
-                if sign == "+":
-                    return value
-                kind = {"-": "minus", "!": "not", "not": "not"}.get(sign)
-                return self.part(kind, node, value) if kind else self.refuse(node, f"the operator {sign}")
+                return self.operate_alone(node, text_of(field_of(node, "operator")), field_of(node, "argument"))
             case "subscript_expression":
                 index = field_of(node, "index") or field_of(node, "indices")
                 places = named(index) if index.type == "subscript_argument_list" else [index]
@@ -373,37 +346,20 @@ class Reader(SourceReader):
                     return self.part("first", node, pointed)
                 if pointed.kind == "op" and pointed.parts[0] == "+" and pointed.parts[1].kind == "name":  # *(p + k)
                     return self.part("index", node, pointed.parts[1], (pointed.parts[2],))
-        return self.refuse(node, f"an expression outside the language of audit ({node.type.replace('_', ' ')})")
+        return None
 
     def number(self, node: Any) -> Part:
         text = text_of(node)
         if text.startswith("-"):  # the grammar takes the sign of some numbers for a part of them
             value = read_decimal(text[1:].rstrip("fFlL"))
             kind = "real" if "." in text or "e" in text.lower() else "int"
-            return (
-                self.refuse(node, f"the number {text[:20]}")
-                if value is None
-                else self.part("number", node, -value, kind)
-            )
+            known = None if value is None else self.part("number", node, -value, kind)
+            return known or self.refuse(node, f"the number {text[:20]}")
         if re.fullmatch(r"0\d+", text):
             return self.refuse(node, "an octal number")
         suffix = "" if text.lower().startswith("0x") else text.lstrip("0123456789.eE+-")
-        value = read_decimal(text.removesuffix(suffix)) if suffix.lower() in ("", "f", "l", "u", "ul") else None
-        if value is None:
-            return self.refuse(node, f"the number {text[:20]}")
-        is_real = any(char in text.lower() for char in ".ef")
-        return self.part("number", node, value, "real" if is_real else "int")
-
-    def binary(self, node: Any) -> Part:
-        left, right = (self.expression(field_of(node, name)) for name in ("left", "right"))
-        sign = text_of(field_of(node, "operator"))
-        if sign in ("+", "-", "*", "/", "%"):
-            return self.part("op", node, sign, left, right)
-        if sign in COMPARISONS:
-            return self.part("compare", node, sign, left, right)
-        if sign in WORDS:
-            return self.part(WORDS[sign], node, left, right)
-        return self.refuse(node, f"the operator {sign}")
+        is_known = suffix.lower() in ("", "f", "l", "u", "ul")
+        return self.literal(node, text.removesuffix(suffix) if is_known else "", any(c in text.lower() for c in ".ef"))
 
     def call(self, node: Any) -> Part:
         """A function, a method, an entry ``M(i, j)``, or an accessor without arguments, which is a name."""
@@ -433,19 +389,12 @@ class Reader(SourceReader):
             owner = self.expression(function)
             if owner.kind == "name":
                 return self.part("call", node, owner.parts[0], arguments)
-            if not re.fullmatch(r"[\w.:>-]+\(\)", name) or name.removesuffix("()").split(".")[-1] in METHODS:
+            if not re.fullmatch(r"[\w.:>-]+\(\)", name) or (name.removesuffix("()").split(".")[-1], 0) in METHODS:
                 return self.part("index", node, owner, arguments)
             return self.part("call", node, name, arguments)
         if found or function.type in ("identifier", "qualified_identifier", "template_function"):
             return self.part("call", node, name, arguments)
         return self.refuse(node, "a call of an expression")
-
-    def entry_of_call(self, node: Any, name: str, owner: Part, arguments: tuple[Part, ...]) -> Part:
-        """``s.q()(0)`` is an entry of an accessor, ``M.transpose()(0, 1)`` one of a value."""
-        if owner.kind == "name":
-            return self.part("call", node, owner.parts[0], arguments)
-        is_accessor = re.fullmatch(r"[\w.:>-]+\(\)", name) and name.removesuffix("()").split(".")[-1] not in METHODS
-        return self.part("call", node, name, arguments) if is_accessor else self.part("index", node, owner, arguments)
 
     def block_of(self, node: Any, base: Part, method: str, arguments: tuple[Part, ...]) -> Part | None:
         """``M.block<p, q>(i, j)``, ``M.block(i, j, p, q)`` and the like of vectors as slices; None for others."""

@@ -6,14 +6,12 @@ the point, goes to the checker as text. Nothing else makes an entry PROVED or RE
 
 from __future__ import annotations
 
-import functools
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
-from flint import fmpq
+from flint import fmpq, fmpq_mat
 
 from navsym.audit.evaluate import Condition
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
@@ -31,6 +29,7 @@ from navsym.prove.search import find_proof, rules_of
 SECONDS = 4.0
 REAL: list[Any] = [None, None, []]  # the range of a symbol that stands for a part
 LONG = 1_500  # characters of both sides: shared parts are named
+TOGETHER = 40  # long entries that are proved at once
 LONGEST = 200_000  # characters of one side
 POINTS = 24
 BITS = 128
@@ -68,19 +67,21 @@ class Scope:
     relations  : polynomials of the symbols that are zero
     conditions : of the case in which the code is
     order      : a small symbol -> n, where the sides have to be equal up to O(symbol**n) only
+    rotations  : nine symbols each, row by row
     """
 
     ranges: Mapping[str, Any]
     relations: tuple[Tree, ...] = ()
     conditions: tuple[Condition, ...] = ()
     order: Mapping[str, int] = field(default_factory=dict)
+    rotations: tuple[tuple[str, ...], ...] = ()
 
 
 def decide_entry(code: Tree, expected: Tree, scope: Scope, seconds: float = SECONDS) -> Decision:
     """Whether the code computes what is expected, at all points of the scope."""
     length = measure(code) + measure(expected)
     if length > LONG:
-        granted = prove_shared(code, expected, scope)
+        granted = prove_shared([(code, expected)], scope).get((code, expected))
         if granted is not None:
             return Decision(PROVED, certificate=granted)
     if length > LONGEST:
@@ -103,6 +104,14 @@ def decide_entry(code: Tree, expected: Tree, scope: Scope, seconds: float = SECO
         return search_proof(document, scope, seconds, why)
     except REFUSALS as refusal:
         return Decision(OPEN, why=f"not granted: {refusal}")
+
+
+def decide_together(pairs: Sequence[tuple[Tree, Tree]], scope: Scope) -> dict[tuple[Tree, Tree], Decision]:
+    """The verdicts on long entries that are proved by the parts that they share, many by one certificate."""
+    long, done = [pair for pair in pairs if sum(map(measure, pair)) > LONG], dict[tuple[Tree, Tree], Document]()
+    for first in range(0, len(long), TOGETHER):
+        done |= prove_shared(long[first : first + TOGETHER], scope)
+    return {pair: Decision(PROVED, certificate=certificate) for pair, certificate in done.items()}
 
 
 def measure(tree: Tree) -> int:
@@ -142,39 +151,34 @@ def write_proof(document: Document, witness: Mapping[str, str], proofs: list[Any
     return {"kind": "proof", "statement": document, "bits": BITS, "witness": witness, "proofs": proofs}
 
 
-def prove_shared(code: Tree, expected: Tree, scope: Scope) -> Document | None:
-    """The certificate of an identity in shared parts, with their meanings as hypotheses; None where it has none."""
-    from navsym.audit.shared import shorten_sides
+def prove_shared(pairs: Sequence[tuple[Tree, Tree]], scope: Scope) -> dict[tuple[Tree, Tree], Document]:
+    """The certificates of identities in shared parts, with their meanings as hypotheses; one for several pairs."""
+    from navsym.audit.shared import shorten_pairs
 
-    short = shorten_sides(code, expected)
-    if short is None:
-        return None
-    inputs = short.inputs()
-    numbers = [simple_number(json.dumps(scope.ranges[name]), i % 2) for i, name in enumerate(inputs)]
-    point = {name: Fraction(int(q.p), int(q.q)) for name, q in zip(inputs, numbers, strict=True)}
-    document: Document = {
-        "left": print_tree(short.left),
-        "relation": "=",
-        "right": print_tree(short.right),
-        "symbols": {**{name: scope.ranges[name] for name in inputs}, **{name: REAL for name in short.meanings}},
-        "exists": [],
-        "tolerance": None,
-        "shapes": {},
-        "given": [f"{name} = {print_tree(tree)}" for name, tree in short.meanings.items()],
-        "rates": {},
-    }
-    witness = {name: str(value) for name, value in short.complete(point).items()}
-    certificate = write_proof(document, witness, [IDENTITY])
-    try:
-        return certificate if grant([document], certificate) == "HOLDS" else None
-    except REFUSALS:
-        return None
-
-
-@functools.cache
-def simple_number(limits: str, trial: int) -> fmpq:
-    """A simple number of a range that is written down."""
-    return simple_point(player.read_range(json.loads(limits)), trial)
+    done = dict[tuple[Tree, Tree], Document]()
+    for equal, short in shorten_pairs(pairs):
+        inputs, (left, right) = short.inputs(), zip(*short.pairs, strict=True)
+        numbers = [simple_point(player.read_range(scope.ranges[name]), i % 2) for i, name in enumerate(inputs)]
+        point = {name: Fraction(int(q.p), int(q.q)) for name, q in zip(inputs, numbers, strict=True)}
+        document: Document = {
+            "left": f"[{', '.join(map(print_tree, left))}]",
+            "relation": "=",
+            "right": f"[{', '.join(map(print_tree, right))}]",
+            "symbols": {**{name: scope.ranges[name] for name in inputs}, **{name: REAL for name in short.meanings}},
+            "exists": [],
+            "tolerance": None,
+            "shapes": {},
+            "given": [f"{name} = {print_tree(tree)}" for name, tree in short.meanings.items()],
+            "rates": {},
+        }
+        witness = {name: str(value) for name, value in short.complete(point).items()}
+        certificate = write_proof(document, witness, [IDENTITY for _ in equal])
+        try:
+            if grant([document], certificate) == "HOLDS":
+                done |= dict.fromkeys(equal, certificate)
+        except REFUSALS:
+            continue
+    return done
 
 
 def search_proof(document: Document, scope: Scope, seconds: float, why: str = "") -> Decision:
@@ -232,9 +236,21 @@ def draw_points(box: Mapping[str, Any], scope: Scope) -> Iterator[Point]:
     names = sorted(box)
     for k in range(POINTS):
         point = {name: choose_value(box[name], k, i) for i, name in enumerate(names)}
-        solved = all(meet(relation, point, box) for relation in scope.relations)
+        for entries in scope.rotations:
+            if {*entries} <= {*names}:
+                turn(entries, point, k)
+        solved = all(value_at(r, point) == 0 or meet(r, point, box) for r in scope.relations)
         if solved and all(value_at(relation, point) == 0 for relation in scope.relations):
             yield point
+
+
+def turn(entries: Sequence[str], point: Point, trial: int) -> None:
+    """Give nine symbols the entries of a rotation, E + 2 (w S + S S)/(w w + v v) with the skew matrix S of v."""
+    w, *v = (SIMPLE[(trial + 3 * i) % len(SIMPLE)] for i in range(4))
+    skew = fmpq_mat([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+    square = w * w + sum(x * x for x in v)
+    whole = fmpq_mat(3, 3, [int(i == j) for i in range(3) for j in range(3)]) + (skew * w + skew * skew) * (2 / square)
+    point |= dict(zip(entries, whole.entries(), strict=True))
 
 
 def choose_value(limits: Any, trial: int, place: int) -> fmpq:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
-from navsym.audit.functions import CONSTANTS, METHODS, call_known, extreme_of, is_known
+from navsym.audit.functions import CONSTANTS, METHODS, call_known, extreme_of, is_known, is_method
 from navsym.audit.values import (
     Array,
     Cell,
@@ -569,11 +569,13 @@ class Evaluator:
         """``M.transpose()`` and the like; an accessor without arguments is a name."""
         base, name, arguments = part.parts
         is_array = base.kind != "name" or name == "T" or bool(self.variable_shape(base.parts[0]))
-        if name in METHODS and is_array:
-            return METHODS[name](self.value(base), [self.value(a) for a in arguments], self.unit)
+        if is_method(name, len(arguments), self.unit.language) and is_array:
+            return METHODS[name, len(arguments)](self.value(base), [self.value(a) for a in arguments], self.unit)
         if base.kind == "name" and self.variable_shape(base.parts[0]):
             return self.component(part)
-        if name in METHODS:  # never an accessor: without its size nobody knows what it gives
+        if is_method(
+            name, len(arguments), self.unit.language
+        ):  # never an accessor: without its size nobody knows what it gives
             raise Unreadable(part.line, f"{name} of what has no known size; declare it under [code.symbols]")
         if base.kind == "name" and self.unit.language in ("c", "cpp"):
             accessor = f"{base.parts[0]}.{name}"

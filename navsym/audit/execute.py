@@ -21,7 +21,7 @@ from navsym.audit.evaluate import (
     head_of,
 )
 from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
-from navsym.audit.functions import HARMLESS, METHODS, PURE, is_known
+from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, is_known, is_method
 from navsym.audit.values import (
     Array,
     Cell,
@@ -240,7 +240,7 @@ class Machine(Evaluator):
     def is_plain(self, part: Part) -> bool:
         """True for a call that writes nothing: of a known function or method, or an entry ``M(i, j)``."""
         if part.kind == "method":
-            return part.parts[1] in METHODS
+            return is_method(part.parts[1], len(part.parts[2]), self.unit.language)
         name = part.parts[0]
         is_entry = name in self.frame and not self.is_closure(name)
         is_pure = name in HARMLESS or name in PURE.get(self.unit.language, ())
@@ -269,6 +269,8 @@ class Machine(Evaluator):
     def run_unread(self, why: str, names: tuple[str, ...], statement: Part) -> None:
         raise Unreadable(statement.line, why)
 
+    run_jump = run_unread
+
     def run_fail(self, why: str, statement: Part) -> None:
         raise Failing(why)
 
@@ -285,9 +287,6 @@ class Machine(Evaluator):
             if target.kind != "name":
                 raise Unreadable(statement.line, "entries among several names assigned at once")
             self.rename(target.parts[0], call, value, statement)
-
-    def run_jump(self, why: str, names: tuple[str, ...], statement: Part) -> None:
-        raise Unreadable(statement.line, why)
 
     def run_declare(
         self, name: str, number: str, shape: Any, value: Part | None, is_link: bool, statement: Part
@@ -455,6 +454,9 @@ class Machine(Evaluator):
             base, name, arguments = call.parts
             if name in ("setZero", "zero", "setIdentity", "identity", "fill", "setAll"):
                 self.reset(base, name, arguments, statement)
+                return
+            if name in IN_PLACE and self.unit.language == "cpp" and not arguments:
+                self.run_assign(base, "", Part("method", call.line, (base, IN_PLACE[name], ()), call.span), statement)
                 return
         elif call.kind == "call" and (call.parts[0] in HARMLESS or call.parts[0] in self.unit.ignored):
             return

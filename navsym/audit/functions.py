@@ -14,6 +14,7 @@ from navsym.audit.values import (
     Unread,
     Unreadable,
     Value,
+    add,
     constant_of,
     count_cells,
     cross_product,
@@ -41,6 +42,7 @@ PLAIN = {
 ANGLES = {"deg2rad": Fraction(1, 180), "radians": Fraction(1, 180), "rad2deg": Fraction(180), "degrees": Fraction(180)}
 CONSTANTS: dict[str, Tree] = dict.fromkeys(("M_PI", "math.pi", "np.pi", "numpy.pi", "pi", "M_PI_F", "PI"), PI)
 CONSTANTS |= dict.fromkeys(("M_PI_2", "M_PI_2_F"), multiply(build_number(Fraction(1, 2)), PI))
+TWICE = build_number(2)
 HARMLESS = frozenset(("printf", "fprintf", "print", "assert", "disp", "static_assert", "puts"))
 #: Functions without a formula that write nothing, by language.
 PURE = {
@@ -54,9 +56,6 @@ PURE = {
     "rust": frozenset(),
 }
 PREFIX = re.compile(r"(std::|::|math\.|np\.|numpy\.|matrix::|Eigen::)")
-MAKERS = frozenset(
-    "zeros ones eye identity array asarray copy diag outer cross dot matmul norm transpose linalg.norm".split()
-)
 
 
 def bare_name(name: str) -> str:
@@ -70,14 +69,19 @@ def is_known(name: str, language: str) -> bool:
     """True for a function that has a meaning of its own in the language."""
     bare = bare_name(name)
     if language == "python":
-        known = bare in PLAIN or bare in TWO or bare in MAKERS or bare in ("arctan2", "power", "square", *ANGLES)
+        known = (
+            bare in PLAIN
+            or bare in TWO
+            or bare in {known for known, _ in ARRAYS}
+            or bare in ("arctan2", "power", "square", *ANGLES)
+        )
         return known and (PREFIX.match(name) is not None or name == "abs")
-    if language == "rust" and (name in NALGEBRA or bare in ("zeros", "eye")):
+    if language == "rust" and (name in {known for known, _ in NALGEBRA} or bare in ("zeros", "eye")):
         return True
     if bare in TWO or (bare in PLAIN and not bare.startswith("arc") and bare != "absolute"):
         return True
     if language == "matlab":
-        return bare in MAKERS or bare in ("deg2rad", "rad2deg")
+        return bare in {known for known, _ in ARRAYS} or bare in ("deg2rad", "rad2deg")
     return language == "cpp" and (bare == "cross" or MAKE.search(name) is not None)
 
 
@@ -116,13 +120,13 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
     if bare in ("atan2", "arctan2") and len(values) == 2:
         return as_real(map_cells(lambda y, x: build_call("atan2", y, x), *values))
     if bare == "hypot" and len(values) == 2:
-        return map_cells(root, square_sum(Array((2,), tuple(values))))  # type: ignore[arg-type]
+        return map_cells(lambda x, y: root(add(raise_to(x, TWICE), raise_to(y, TWICE))), *values)
     if bare == "square" and len(values) == 1:
-        return map_cells(lambda x: raise_to(x, build_number(2)), values[0])
-    if unit.language == "rust" and name in NALGEBRA:
-        return NALGEBRA[name](values, unit)
-    if bare in ARRAYS and len(values) in (1, 2):
-        return ARRAYS[bare](values, unit)
+        return map_cells(lambda x: raise_to(x, TWICE), values[0])
+    if unit.language == "rust" and (name, len(values)) in NALGEBRA:
+        return NALGEBRA[name, len(values)](values, unit)
+    if (bare, len(values)) in ARRAYS:
+        return ARRAYS[bare, len(values)](values, unit)
     if found := MAKE.search(name):
         sides = sizes_of(values, unit) or tuple(
             int(side) for side in (found[1] or found[2], found[1] or found[3]) if side
@@ -152,27 +156,6 @@ def sizes_of(values: Sequence[Value], unit: Unit) -> tuple[int, ...]:
     return sizes * 2 if unit.language == "matlab" and len(sizes) == 1 else sizes
 
 
-def make_zeros(values: Sequence[Value], unit: Unit) -> Value:
-    return filled(sizes_of(values, unit), 0)
-
-
-def make_ones(values: Sequence[Value], unit: Unit) -> Value:
-    return filled(sizes_of(values, unit), 1)
-
-
-def make_eye(values: Sequence[Value], unit: Unit) -> Value:
-    sizes = sizes_of(values, unit)
-    return identity_array(sizes[0], sizes[-1])
-
-
-def make_copy(values: Sequence[Value], unit: Unit) -> Value:
-    """An array of the same cells; one of integers would cut what is assigned to it."""
-    value = values[0]
-    if isinstance(value, Array) and unit.language == "python":
-        return Array(value.shape, tuple(value.cells))
-    return value
-
-
 def make_diagonal(values: Sequence[Value], unit: Unit) -> Value:
     (value,) = values
     if not isinstance(value, Array) or len(value.shape) != 1:
@@ -197,34 +180,35 @@ def norm_of(values: Sequence[Value], unit: Unit) -> Value:
 
 
 def multiply_arrays(values: Sequence[Value], unit: Unit) -> Value:
-    if len(values) != 2:
-        raise Unreadable(0, "a product of other than two")
+    if not all(isinstance(value, Array) for value in values):
+        raise Unreadable(0, "a product of matrices with a number")
     return matrix_product(values[0], values[1])
-
-
-def cross_of(values: Sequence[Value], unit: Unit) -> Value:
-    return cross_product(values[0], values[1])
-
-
-def transpose_of(values: Sequence[Value], unit: Unit) -> Value:
-    return transpose(values[0], unit.rules.matrix)
 
 
 def dot_of(values: Sequence[Value], unit: Unit) -> Value:
     """The product of two vectors; of numpy's matrices, their product."""
     a, b = values
-    if not (isinstance(a, Array) and isinstance(b, Array)) or unit.language == "python":
+    if unit.language == "python":
         return matrix_product(a, b)
-    if count_cells(a.shape) != count_cells(b.shape):
-        raise Unreadable(0, "a dot product of different sizes")
+    if not (isinstance(a, Array) and isinstance(b, Array)):
+        raise Unreadable(0, "a dot product of what are no vectors")
+    if count_cells(a.shape) != count_cells(b.shape) or any(len(v.shape) == 2 and 1 not in v.shape for v in (a, b)):
+        raise Unreadable(0, "a dot product of different sizes, or of matrices")
     flat = (len(a.cells),)
     return matrix_product(Array(flat, a.cells), Array(flat, b.cells))
 
 
-ARRAYS: dict[str, Callable[[Sequence[Value], Unit], Value]] = {
-    "zeros": make_zeros, "ones": make_ones, "eye": make_eye, "identity": make_eye, "array": make_copy,
-    "asarray": make_copy, "copy": make_copy, "diag": make_diagonal, "outer": make_outer, "cross": cross_of,
-    "dot": dot_of, "matmul": multiply_arrays, "norm": norm_of, "linalg.norm": norm_of, "transpose": transpose_of,
+Known = Callable[[Sequence[Value], Unit], Value]
+#: Functions of arrays by name and number of arguments: with others they mean something else.
+ARRAYS: dict[tuple[str, int], Known] = {
+    **dict.fromkeys((("eye", 1), ("eye", 2), ("identity", 1)), lambda v, u: identity_array(*(sizes_of(v, u) * 2)[:2])),
+    **dict.fromkeys((("zeros", 1), ("zeros", 2)), lambda values, unit: filled(sizes_of(values, unit), 0)),
+    **dict.fromkeys((("ones", 1), ("ones", 2)), lambda values, unit: filled(sizes_of(values, unit), 1)),
+    **dict.fromkeys((("array", 1), ("asarray", 1), ("copy", 1)), lambda values, unit: values[0]),
+    **dict.fromkeys((("norm", 1), ("linalg.norm", 1)), norm_of), ("diag", 1): make_diagonal, ("outer", 2): make_outer,
+    ("cross", 2): lambda values, unit: cross_product(values[0], values[1]), ("dot", 2): dot_of,
+    ("matmul", 2): multiply_arrays,
+    ("transpose", 1): lambda values, unit: transpose(values[0], unit.rules.matrix),
 }  # fmt: skip
 
 
@@ -260,12 +244,14 @@ def require_quaternion(values: Sequence[Value], unit: Unit) -> Value:
 
 
 #: Constructors of nalgebra; the reader of Rust writes the sizes of a type before the entries.
-NALGEBRA: dict[str, Callable[[Sequence[Value], Unit], Value]] = {
-    "Matrix::new": make_matrix, "Quaternion::new": make_quaternion, "Quaternion::from_parts": make_of_parts,
-    "Quaternion::new_unchecked": require_quaternion,
-    "Quaternion::from_quaternion": lambda values, unit: normalize(require_quaternion(values, unit), (), unit),
-    "Quaternion::new_normalize": lambda values, unit: normalize(require_quaternion(values, unit), (), unit),
-    "Quaternion::identity": lambda values, unit: Quaternion((4,), (*[Scalar(ZERO)] * 3, Scalar(ONE))),
+NALGEBRA: dict[tuple[str, int], Known] = {
+    ("Matrix::new", 2): make_matrix, ("Matrix::new", 3): make_matrix, ("Quaternion::new", 4): make_quaternion,
+    ("Quaternion::from_parts", 2): make_of_parts, ("Quaternion::new_unchecked", 1): require_quaternion,
+    **dict.fromkeys(
+        (("Quaternion::from_quaternion", 1), ("Quaternion::new_normalize", 1)),
+        lambda values, unit: normalize(require_quaternion(values, unit), (), unit),
+    ),
+    ("Quaternion::identity", 0): lambda values, unit: Quaternion((4,), (*[Scalar(ZERO)] * 3, Scalar(ONE))),
 }  # fmt: skip
 
 Method = Callable[[Value, Sequence[Value], Unit], Value]
@@ -284,18 +270,28 @@ def conjugate(value: Value, _: Sequence[Value], unit: Unit) -> Value:
     return Quaternion((4,), (*(map_cell(minus, cell) for cell in value.cells[:3]), value.cells[3]))
 
 
-METHODS: dict[str, Method] = {
-    "transpose": lambda value, _, unit: transpose(value, unit.rules.matrix),
-    "T": lambda value, _, unit: transpose(value, unit.rules.matrix),
-    "copy": lambda value, _, unit: value,
-    "eval": lambda value, _, unit: value,
-    "dot": lambda value, others, unit: dot_of([value, *others], unit),
-    "cross": lambda value, others, unit: cross_of([value, *others], unit),
-    "norm": lambda value, _, unit: norm_of([value], unit),
-    "squaredNorm": lambda value, _, unit: square_sum(value),
-    "norm_squared": lambda value, _, unit: square_sum(value),
-    "normalized": normalize,
-    "normalize": normalize,
-    "conjugate": conjugate,
-    "unit": normalize,
+def transposed(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+    return transpose(value, unit.rules.matrix)
+
+
+#: Methods by name and number of arguments.
+METHODS: dict[tuple[str, int], Method] = {
+    **dict.fromkeys((("transpose", 0), ("T", 0)), transposed),
+    **dict.fromkeys((("copy", 0), ("eval", 0)), lambda value, _, unit: value),
+    **dict.fromkeys((("squaredNorm", 0), ("norm_squared", 0)), lambda value, _, unit: square_sum(value)),
+    **dict.fromkeys((("normalized", 0), ("normalize", 0), ("unit", 0)), normalize),
+    ("dot", 1): lambda value, others, unit: dot_of([value, *others], unit),
+    ("cross", 1): lambda value, others, unit: cross_product(value, others[0]),
+    ("norm", 0): lambda value, _, unit: norm_of([value], unit),
+    ("conjugate", 0): conjugate,
 }
+#: What changes its own vector or matrix in C++, and what gives the changed one.
+IN_PLACE = {"normalize": "normalized", "transposeInPlace": "transpose"}
+
+
+def is_method(name: str, count: int, language: str) -> bool:
+    """True for a method that gives a value and writes nothing."""
+    is_there = (
+        name in ("T", "transpose", "copy", "dot") if language == "python" else language != "cpp" or name not in IN_PLACE
+    )
+    return (name, count) in METHODS and is_there

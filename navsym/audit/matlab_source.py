@@ -2,41 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules, Unit
-from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, parse_source, read_decimal, text_of
+from navsym.audit.form import Argument, Function, Part, Rules
+from navsym.audit.syntax import (
+    OPERATORS,
+    SourceReader,
+    descend,
+    field_of,
+    line_of,
+    named,
+    read_decimal,
+    sign_of,
+    text_of,
+)
 
 RULES = Rules(first=1, matrix=True, entry=("{}({})", "{}({},{})"))
 POWERS = ("^", ".^")
-SIGNS = {"+": "+", "-": "-", "*": "*", "/": "/", "^": "**", ".*": ".*", "./": "./", ".^": ".^"}
-COMPARISONS = {"<": "<", "<=": "<=", ">": ">", ">=": ">=", "==": "==", "~=": "!=", "!=": "!="}
-
-
-def read_matlab(source: bytes, file: str) -> Unit:
-    """The functions of a source in MATLAB."""
-    unit = Unit(file, "matlab", RULES, source)
-    reader = Reader(unit)
-    for node in descend(parse_source(source, "matlab", file)):
-        if node.type == "function_definition":
-            reader.read_function(node)
-    return unit
-
-
-def read_matlab_expression(text: str, unit: Unit) -> Part:
-    """One expression; its spans count from its own beginning."""
-    head = "a_ = "
-    root = parse_source(f"{head}{text};".encode(), "matlab", unit.file)
-    nodes = named(root)
-    if root.has_error or len(nodes) != 1 or nodes[0].type != "assignment":
-        return Part("refused", 1, ("no expression",))
-    return Reader(unit, -len(head)).expression(field_of(nodes[0], "right"))
+SIGNS = {**{sign: sign for sign in (".*", "./", ".^")}, "^": "**"}
+OTHERS: dict[str, tuple[str, ...]] = {"~=": ("compare", "!="), "&": ("both",), "|": ("either",)}
 
 
 @dataclass(slots=True, eq=False)
 class Reader(SourceReader):
     """Walks the syntax tree of MATLAB."""
+
+    OPERATORS = OPERATORS | {sign: ("op", meaning) for sign, meaning in SIGNS.items()} | OTHERS
+
+    @staticmethod
+    def find_value(node: Any) -> Any:
+        return field_of(node, "right") if node.type == "assignment" else None
+
+    def read_file(self, root: Any) -> None:
+        """The functions of a source in MATLAB."""
+        for node in descend(root):
+            if node.type == "function_definition":
+                self.read_function(node)
 
     def read_function(self, node: Any) -> None:
         name = text_of(field_of(node, "name"))
@@ -50,49 +53,35 @@ class Reader(SourceReader):
 
     # -- statements --
 
-    def block(self, node: Any) -> tuple[Part, ...]:
-        return () if node is None else tuple(self.statement(child) for child in named(node))
-
-    def statement(self, node: Any) -> Part:
-        if node.has_error and node.type not in ("if_statement", "for_statement"):
-            return self.unread(node, "a syntax error")
+    def read_statement(self, node: Any) -> Iterable[Part] | None:
         match node.type:
             case "assignment":
-                left, right = field_of(node, "left"), field_of(node, "right")
-                if left.type == "multioutput_variable":
-                    targets = tuple(map(self.expression, named(left)))
-                    return self.part("several", node, targets, self.expression(right))
-                if left.type not in ("identifier", "function_call", "field_expression"):
-                    return self.unread(node, "several names assigned at once")
-                return self.part("assign", node, self.expression(left), "", self.expression(right))
+                return (self.assignment(node),)
             case "if_statement":
                 clauses = [c for c in named(node) if c.type in ("elseif_clause", "else_clause")]
-                return self.branch(node, clauses)
+                return (self.chain(node, clauses, find_block),)
             case "for_statement":
-                return self.loop(node)
+                return (self.loop(node),)
             case "return_statement":
-                return self.unread(node, "a return before the end")
+                return (self.unread(node, "a return before the end"),)
             case "function_call" if text_of(field_of(node, "name")) == "error":
-                return self.part("fail", node, "an error is raised")
+                return (self.part("fail", node, "an error is raised"),)
             case "function_call":
-                return self.part("do", node, self.expression(node))
-        return self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})")
+                return (self.part("do", node, self.expression(node)),)
+        return None
 
-    def branch(self, node: Any, clauses: list[Any]) -> Part:
-        """``if``, with ``elseif`` as a branch of the other way."""
-        then = next((c for c in node.named_children if c.type == "block"), None)
-        test = self.expression(field_of(node, "condition"))
-        if not clauses:
-            return self.part("if", node, test, self.block(then), ())
-        if clauses[0].type == "elseif_clause":
-            return self.part("if", node, test, self.block(then), (self.branch(clauses[0], clauses[1:]),))
-        other = next((c for c in clauses[0].named_children if c.type == "block"), None)
-        return self.part("if", node, test, self.block(then), self.block(other))
+    def assignment(self, node: Any) -> Part:
+        left, right = field_of(node, "left"), field_of(node, "right")
+        if left.type == "multioutput_variable":
+            targets = tuple(map(self.expression, named(left)))
+            return self.part("several", node, targets, self.expression(right))
+        if left.type not in ("identifier", "function_call", "field_expression"):
+            return self.unread(node, "several names assigned at once")
+        return self.part("assign", node, self.expression(left), "", self.expression(right))
 
     def loop(self, node: Any) -> Part:
         """``for i = a:b`` and ``for i = a:step:b``."""
         iterator = next((c for c in named(node) if c.type == "iterator"), None)
-        body = next((c for c in named(node) if c.type == "block"), None)
         parts = named(iterator) if iterator is not None else []
         if len(parts) != 2 or parts[1].type != "range":
             return self.unread(node, "a loop over something else than a range")
@@ -101,46 +90,27 @@ class Reader(SourceReader):
         if len(ends) == 3:
             return self.unread(node, "a loop with a step")
         stop = self.part("op", node, "+", ends[1], one)
-        return self.part("for", node, text_of(parts[0]), ends[0], stop, one, self.block(body))
+        return self.part("for", node, text_of(parts[0]), ends[0], stop, one, self.block(find_block(node)))
 
     # -- expressions --
 
-    def expression(self, node: Any) -> Part:
+    def read_expression(self, node: Any) -> Part | None:
         match node.type:
             case "number":
                 value = read_decimal(text_of(node))
-                if value is None:
-                    return self.refuse(node, f"the number {text_of(node)[:20]}")
-                return self.part("number", node, value, "int" if value.denominator == 1 else "real")
+                return self.literal(node, text_of(node), value is not None and value.denominator != 1)
             case "boolean":
                 return self.part("number", node, int(text_of(node) == "true"), "int")
             case "identifier":
                 return self.part("name", node, text_of(node))
             case "parenthesis":
-                inner = named(node)
-                return self.expression(inner[0]) if len(inner) == 1 else self.refuse(node, "parentheses")
+                return self.inside(node)
             case "binary_operator" if sign_of(node) in POWERS:
                 return self.power(node)
-            case "binary_operator":
-                sides = [self.expression(field_of(node, side)) for side in ("left", "right")]
-                sign = sign_of(node)
-                if sign not in SIGNS:
-                    return self.refuse(node, f"the operator {sign}")
-                return self.part("op", node, SIGNS[sign], *sides)
-            case "unary_operator":
-                operand = self.expression(field_of(node, "operand"))
-                return operand if text_of(node).startswith("+") else self.part("minus", node, operand)
-            case "not_operator":
-                return self.part("not", node, self.expression(named(node)[0]))
-            case "boolean_operator":
-                kind = "both" if any(text_of(c) in ("&&", "&") for c in node.children) else "either"
-                return self.part(kind, node, *(self.expression(field_of(node, side)) for side in ("left", "right")))
-            case "comparison_operator":
-                sign = next(text_of(child) for child in node.children if not child.is_named)
-                pair = named(node)
-                if sign not in COMPARISONS or len(pair) != 2:
-                    return self.refuse(node, f"the comparison {sign}")
-                return self.part("compare", node, COMPARISONS[sign], *map(self.expression, pair))
+            case "binary_operator" | "boolean_operator" | "comparison_operator" if len(named(node)) == 2:
+                return self.operate(node, sign_of(node), *named(node))
+            case "unary_operator" | "not_operator":
+                return self.operate_alone(node, sign_of(node), named(node)[0])
             case "postfix_operator":
                 return self.part("method", node, self.expression(field_of(node, "operand")), "T", ())
             case "matrix":
@@ -153,7 +123,7 @@ class Reader(SourceReader):
                 if not name.replace(".", "").replace("_", "").isalnum():
                     return self.refuse(node, "a member of an expression")
                 return self.part("name", node, name)
-        return self.refuse(node, f"an expression outside the language of audit ({node.type.replace('_', ' ')})")
+        return None
 
     def power(self, node: Any) -> Part:
         """Powers from left to right, before a sign in front: the grammar groups ``-x^2`` and ``a^b^c`` otherwise."""
@@ -192,9 +162,9 @@ class Reader(SourceReader):
         return self.expression(node)
 
 
-def sign_of(node: Any) -> str:
-    """The operator between two operands."""
-    return next(text_of(child) for child in node.children if not child.is_named)
+def find_block(node: Any) -> Any:
+    """The body of a statement."""
+    return next((child for child in named(node) if child.type == "block"), None)
 
 
 def list_powers(node: Any, signs: list[str]) -> list[Any]:

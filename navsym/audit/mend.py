@@ -89,7 +89,7 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     near = [place for place in near if place.part is value] or near
     places = near + [place for place in places if place not in near]
     price, tried = 1 + len(source.read().met) // SHORT, set[tuple[Any, ...]]()
-    probes = list_probes(entry, scope)
+    probes = list_probes(scope)
     for mend in itertools.chain(
         budget.known,
         (mend for place in places for mend in place.change(SMALL_EDITS)),
@@ -225,37 +225,30 @@ def right_sides(statement: Part) -> list[Part]:
     """The expressions of a statement that may be wrong: the items of a list one by one, the bounds of a loop."""
     if statement.kind == "for":
         return [bound for bound in statement.parts[1:4] if bound.span[0] < bound.span[1]]
-    value = whole_side(statement)
-    if value is None:
-        return []
-    if value.kind == "call" and len(value.parts[1]) == 1 and value.parts[1][0].kind == "list":
-        value = value.parts[1][0]
-    waiting, done = [value], []
+    waiting, done = [unwrap(whole_side(statement))], list[Part]()
     while waiting:
         part = waiting.pop(0)
-        if part.kind == "list":
+        if part is not None and part.kind == "list":
             waiting += part.parts[0]
-        else:
+        elif part is not None:
             done.append(part)
     return done
 
 
+def unwrap(value: Part | None) -> Part | None:
+    """The list inside a call that makes an array of it, or the value itself."""
+    is_made = value is not None and value.kind == "call" and len(value.parts[1]) == 1
+    return value.parts[1][0] if value is not None and is_made and value.parts[1][0].kind == "list" else value
+
+
 def right_side(statement: Part, place: tuple[int, int]) -> Part | None:
     """What a statement assigns to a place: the item of a list, or the whole right side."""
-    if statement.kind not in ("declare", "assign"):  # the argument of a call
-        return None
-    value = statement.parts[3] if statement.kind == "declare" else statement.parts[2]
-    if statement.kind not in ("declare", "assign") or value is None:
-        return None
-    if value.kind == "call" and len(value.parts[1]) == 1 and value.parts[1][0].kind == "list":
-        value = value.parts[1][0]
+    value = unwrap(whole_side(statement)) if statement.kind in ("declare", "assign") else None
     for at in place:
-        if value.kind != "list":
+        if value is None or value.kind != "list":
             break
-        if at > len(value.parts[0]):
-            return None
-        value = value.parts[0][at - 1]
-    return None if value.kind == "list" else value
+        value = value.parts[0][at - 1] if at <= len(value.parts[0]) else None
+    return None if value is not None and value.kind == "list" else value
 
 
 def is_right(mend: Mend, entry: Entry, source: Source, scope: Scope, probes: list[dict[str, float]]) -> bool:
@@ -282,12 +275,9 @@ def is_right(mend: Mend, entry: Entry, source: Source, scope: Scope, probes: lis
     return decide_entry(cell.tree, expected.tree, scope).status == PROVED
 
 
-def list_probes(entry: Entry, scope: Scope) -> list[dict[str, float]]:
+def list_probes(scope: Scope) -> list[dict[str, float]]:
     """Points in doubles at which wrong candidates are dropped before anything is proved."""
     box = {name: player.read_range(limits) for name, limits in scope.ranges.items()}
-    assert isinstance(entry.expected, Scalar)
-    related = {name for relation in scope.relations for name in list_names(relation)}
-    box = {name: limits for name, limits in box.items() if name in related or not scope.relations} | box
     points = itertools.islice(draw_points(box, scope), 3)
     return [{name: int(v.p) / int(v.q) for name, v in point.items()} for point in points]
 

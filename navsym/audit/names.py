@@ -28,6 +28,7 @@ class Names:
     spellings    : name of a symbol -> how the source writes it
     declarations : name of a symbol -> its declaration, as in [symbols]
     inputs       : names that no source assigns, which an expression may hold though no source reads them
+    rotations    : matrices that are rotations, with the names of their nine symbols row by row
     """
 
     symbols: dict[str, str] = field(default_factory=dict)
@@ -35,6 +36,7 @@ class Names:
     declarations: dict[str, Any] = field(default_factory=dict)
     written: dict[str, Any] = field(default_factory=dict)
     inputs: set[str] = field(default_factory=set)
+    rotations: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
     def symbol(self, spelling: str) -> Tree:
         """The symbol of an input, made when it is first met."""

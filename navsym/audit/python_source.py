@@ -2,41 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules, Unit, names_in
-from navsym.audit.syntax import SourceReader, field_of, line_of, named, parse_source, read_decimal, text_of
+from navsym.audit.form import Argument, Function, Part, Rules, names_in
+from navsym.audit.syntax import OPERATORS, SourceReader, field_of, line_of, named, sign_of, text_of
 
 RULES = Rules(entry=("{}[{}]", "{}[{}, {}]"))
 MODULES = {"numpy": "np.", "math": "math.", "numpy.linalg": "np.linalg."}
-SIGNS = {"+", "-", "*", "/", "%", "//", "@", "**"}
-
-
-def read_python(source: bytes, file: str) -> Unit:
-    """The functions and constants of a source in Python."""
-    unit = Unit(file, "python", RULES, source)
-    reader = Reader(unit)
-    nodes = named(parse_source(source, "python", file))
-    reader.read_imports(nodes)
-    reader.read_body(nodes)
-    return unit
-
-
-def read_python_expression(text: str, unit: Unit) -> Part:
-    """One expression; its spans count from its own beginning."""
-    root = parse_source(f"({text})".encode(), "python", unit.file)
-    nodes = named(root)
-    if root.has_error or len(nodes) != 1 or nodes[0].type != "expression_statement":
-        return Part("refused", 1, ("no expression",))
-    return Reader(unit, -1).expression(named(nodes[0])[0])
 
 
 @dataclass(slots=True, eq=False)
 class Reader(SourceReader):
     """Walks the syntax tree of Python; ``imported`` says what names of numpy and math are called here."""
 
+    HEAD, TAIL = "(", ")"
+    OPERATORS = OPERATORS | {sign: ("op", sign) for sign in ("//", "@", "**")}
+
     imported: dict[str, str] = field(default_factory=dict)
+
+    @staticmethod
+    def find_value(node: Any) -> Any:
+        return named(node)[0] if node.type == "expression_statement" else None
+
+    def read_file(self, root: Any) -> None:
+        """The functions and constants of a source in Python."""
+        self.read_imports(named(root))
+        self.read_body(named(root))
 
     def read_imports(self, nodes: list[Any]) -> None:
         """``from numpy import dot`` and its like; a name that the file defines again is not taken."""
@@ -81,12 +74,7 @@ class Reader(SourceReader):
 
     # -- statements --
 
-    def block(self, node: Any) -> tuple[Part, ...]:
-        return () if node is None else tuple(s for child in named(node) for s in self.statement(child))
-
-    def statement(self, node: Any) -> tuple[Part, ...]:
-        if node.has_error and node.type not in ("if_statement", "for_statement"):
-            return (self.unread(node, "a syntax error"),)
+    def read_statement(self, node: Any) -> Iterable[Part] | None:
         match node.type:
             case "expression_statement":
                 return tuple(s for child in named(node) for s in self.effect(child))
@@ -94,23 +82,15 @@ class Reader(SourceReader):
                 values = named(node)
                 return (self.part("return", node, self.expression(values[0]) if values else None),)
             case "if_statement":
-                return (self.branch(node, [*node.children_by_field_name("alternative")]),)
+                clauses = [*node.children_by_field_name("alternative")]
+                return (self.chain(node, clauses, lambda n: field_of(n, "consequence") or field_of(n, "body")),)
             case "for_statement":
                 return (self.loop(node),)
             case "raise_statement":
                 return (self.part("fail", node, "an error is raised"),)
             case "pass_statement" | "assert_statement" | "import_statement" | "import_from_statement":
                 return ()
-        return (self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})"),)
-
-    def branch(self, node: Any, others: list[Any]) -> Part:
-        """``if``, with ``elif`` as a branch of the other way."""
-        test, then = self.expression(field_of(node, "condition")), self.block(field_of(node, "consequence"))
-        if not others:
-            return self.part("if", node, test, then, ())
-        if others[0].type == "elif_clause":
-            return self.part("if", node, test, then, (self.branch(others[0], others[1:]),))
-        return self.part("if", node, test, then, self.block(field_of(others[0], "body")))
+        return None
 
     def loop(self, node: Any) -> Part:
         """``for i in range(...)``."""
@@ -170,42 +150,25 @@ class Reader(SourceReader):
 
     # -- expressions --
 
-    def expression(self, node: Any) -> Part:
+    def read_expression(self, node: Any) -> Part | None:
         match node.type:
             case "integer" | "float":
-                text = text_of(node)
-                value = read_decimal(text)
-                if value is None:
-                    return self.refuse(node, f"the number {text[:20]}")
-                return self.part("number", node, value, "int" if node.type == "integer" else "real")
+                return self.literal(node, text_of(node), node.type == "float")
             case "true" | "false":
                 return self.part("number", node, int(node.type == "true"), "int")
             case "identifier":
                 return self.part("name", node, text_of(node))
             case "parenthesized_expression":
-                inner = named(node)
-                return self.expression(inner[0]) if len(inner) == 1 else self.refuse(node, "parentheses")
-            case "binary_operator":
-                sign = text_of(field_of(node, "operator"))
-                if sign not in SIGNS:
-                    return self.refuse(node, f"the operator {sign}")
-                operands = (self.expression(field_of(node, side)) for side in ("left", "right"))
-                return self.part("op", node, sign, *operands)
-            case "unary_operator":
-                value_, sign = self.expression(field_of(node, "argument")), text_of(field_of(node, "operator"))
-                if sign == "+":
-                    return value_
-                return self.part("minus", node, value_) if sign == "-" else self.refuse(node, f"the operator {sign}")
-            case "not_operator":
-                return self.part("not", node, self.expression(field_of(node, "argument")))
-            case "boolean_operator":
-                kind = "both" if text_of(field_of(node, "operator")) == "and" else "either"
-                return self.part(kind, node, *(self.expression(field_of(node, side)) for side in ("left", "right")))
+                return self.inside(node)
+            case "binary_operator" | "boolean_operator":
+                sign, *sides = (field_of(node, key) for key in ("operator", "left", "right"))
+                return self.operate(node, text_of(sign), *sides)
+            case "unary_operator" | "not_operator":
+                return self.operate_alone(node, sign_of(node), field_of(node, "argument"))
             case "comparison_operator":
-                signs, sides = [c for c in node.children if not c.is_named], named(node)
-                if len(sides) != 2 or text_of(signs[0]) not in ("<", "<=", ">", ">=", "==", "!="):
+                if len(named(node)) != 2:
                     return self.refuse(node, "a chain of comparisons")
-                return self.part("compare", node, text_of(signs[0]), *map(self.expression, sides))
+                return self.operate(node, sign_of(node), *named(node))
             case "conditional_expression":
                 then, test, other = named(node)
                 return self.part("choose", node, *map(self.expression, (test, then, other)))
@@ -223,7 +186,7 @@ class Reader(SourceReader):
                 return self.attribute(node)
             case "call":
                 return self.call(node)
-        return self.refuse(node, f"an expression outside the language of audit ({node.type.replace('_', ' ')})")
+        return None
 
     def slice(self, node: Any) -> Part:
         ends: list[Part | None] = [None]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules, Unit
-from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, parse_source, read_decimal, text_of
+from navsym.audit.form import Argument, Function, Part, Rules
+from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, text_of
 
 RULES = Rules(integer=True, matrix=True, entry=("{}[{}]", "{}[{}][{}]"))
 REAL = ("f32", "f64", "N", "T", "R", "Real", "Self")
@@ -16,43 +17,13 @@ VECTOR = re.compile(r"(?:\w+::)*(?:S?Vector(\d)(?:<\w+>)?|SVector<\w+,(\d+)>|Poi
 MATRIX = re.compile(r"(?:\w+::)*(?:Matrix(\d)(?:x(\d))?(?:<\w+>)?|SMatrix<\w+,(\d+),(\d+)>)")
 ARRAY = re.compile(r"\[(.+);(\d+)\]")
 QUATERNION = re.compile(r"(?:\w+::)*(Unit)?Quaternion(?:<\w+>)?")
-SIGNS = ("+", "-", "*", "/", "%")
-COMPARISONS = ("<", "<=", ">", ">=", "==", "!=")
-WORDS = {"&&": "both", "||": "either"}
 #: Methods of numbers that are functions in the other languages.
 NUMBERS = dict.fromkeys("sin cos tan asin acos atan sinh cosh tanh exp sqrt atan2 hypot".split(), "") | {
     "ln": "log", "abs": "fabs", "powf": "pow", "powi": "pow", "max": "fmax", "min": "fmin"
 }  # fmt: skip
 #: Methods that give what they are called on.
 SAME = ("clone", "as_ref", "to_owned", "into_inner", "into", "quaternion", "as_vector", "copied", "eval", "coords")
-QUIET = (
-    "println",
-    "eprintln",
-    "debug_assert",
-    "debug_assert_eq",
-    "assert",
-    "assert_eq",
-    "trace",
-    "debug",
-    "info",
-    "warn",
-)
-
-
-def read_rust(source: bytes, file: str) -> Unit:
-    """The functions and constants of a source in Rust, and the fields of its structures."""
-    unit = Unit(file, "rust", RULES, source)
-    Reader(unit).read_file(parse_source(source, "rust", file))
-    return unit
-
-
-def read_rust_expression(text: str, unit: Unit) -> Part:
-    """One expression; its spans count from its own beginning."""
-    head = "const A: f64 = "
-    root = parse_source(f"{head}{text};".encode(), "rust", unit.file)
-    if root.has_error or len(root.children) != 1 or root.children[0].type != "const_item":
-        return Part("refused", 1, ("no expression",))
-    return Reader(unit, -len(head), {*unit.functions}).expression(field_of(root.children[0], "value"))
+QUIET = "println eprintln debug_assert debug_assert_eq assert assert_eq trace debug info warn".split()
 
 
 def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
@@ -77,7 +48,14 @@ def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
 class Reader(SourceReader):
     """Walks the syntax tree of Rust; ``own`` are the functions of the file."""
 
+    HEAD = "const A: f64 = "
+    OPEN = ("if_expression", "for_expression", "block", "expression_statement")
+
     own: set[str] = field(default_factory=set)
+
+    @staticmethod
+    def find_value(node: Any) -> Any:
+        return field_of(node, "value") if node.type == "const_item" else None
 
     def read_file(self, root: Any) -> None:
         """Functions, constants and fields, also inside modules and implementations."""
@@ -116,9 +94,6 @@ class Reader(SourceReader):
         body = tuple(self.body(field_of(node, "body")))
         self.unit.functions.setdefault(name, []).append(Function(name, line_of(node), tuple(arguments), body))
 
-    def sizes(self, node: Any, shape: tuple[int, ...] | None) -> tuple[Part, ...] | None:
-        return None if shape is None else tuple(self.part("number", node, n, "int") for n in shape)
-
     # -- statements --
 
     def body(self, node: Any) -> list[Part]:
@@ -142,13 +117,7 @@ class Reader(SourceReader):
             return next(iter(self.effect(node)), self.part("return", node, None))
         return self.part("return", node, None if node.type == "unit_expression" else self.expression(node))
 
-    def block(self, node: Any) -> list[Part]:
-        """The statements of a block that is no value."""
-        return [] if node is None else [s for child in named(node) for s in self.statement(child)]
-
-    def statement(self, node: Any) -> tuple[Part, ...]:
-        if node.has_error and node.type not in ("if_expression", "for_expression", "block", "expression_statement"):
-            return (self.unread(node, "a syntax error"),)
+    def read_statement(self, node: Any) -> Iterable[Part] | None:
         match node.type:
             case "expression_statement":
                 return tuple(s for child in named(node) for s in self.effect(child))
@@ -164,7 +133,7 @@ class Reader(SourceReader):
             case "assignment_expression":
                 left, right = (self.expression(field_of(node, side)) for side in ("left", "right"))
                 return (self.part("assign", node, left, "", right),)
-            case "compound_assignment_expr" if text_of(field_of(node, "operator"))[:-1] in SIGNS:
+            case "compound_assignment_expr" if text_of(field_of(node, "operator")) in ("+=", "-=", "*=", "/=", "%="):
                 left, right = (self.expression(field_of(node, side)) for side in ("left", "right"))
                 return (self.part("assign", node, left, text_of(field_of(node, "operator"))[:-1], right),)
             case "if_expression":
@@ -172,7 +141,7 @@ class Reader(SourceReader):
             case "for_expression":
                 return (self.loop(node),)
             case "block":
-                return (self.part("block", node, tuple(self.block(node))),)
+                return (self.part("block", node, self.block(node)),)
             case "return_expression":
                 return (self.ending(named(node)[0]) if named(node) else self.part("return", node, None),)
             case "call_expression":
@@ -212,7 +181,7 @@ class Reader(SourceReader):
         length = self.part("method", value, vector, "norm", ())
         test = self.part("compare", value, ">", length, least)
         start = self.part("method", value, vector, "normalize", ())
-        return (self.part("if", value, test, (), tuple(self.block(other))),
+        return (self.part("if", value, test, (), self.block(other)),
                 self.part("declare", node, found[1], "auto", None, start, False))  # fmt: skip
 
     def branch(self, node: Any, reading: Any) -> Part:
@@ -222,10 +191,8 @@ class Reader(SourceReader):
             return self.unread(node, "a condition with a pattern")
         then, other = field_of(node, "consequence"), field_of(node, "alternative")
         inner = named(other)[0] if other is not None else None
-        if inner is not None and inner.type == "if_expression":
-            rest: tuple[Part, ...] = (self.branch(inner, reading),)
-        else:
-            rest = tuple(reading(inner)) if inner is not None else ()
+        is_chain = inner is not None and inner.type == "if_expression"
+        rest: tuple[Part, ...] = (self.branch(inner, reading),) if is_chain else tuple(reading(inner))
         return self.part("if", node, self.expression(test), tuple(reading(then)), rest)
 
     def loop(self, node: Any) -> Part:
@@ -238,20 +205,17 @@ class Reader(SourceReader):
         one = self.part("number", node, 1, "int")
         if any(text_of(child) == "..=" for child in source.children):
             stop = self.part("op", source, "+", stop, one)
-        return self.part("for", node, text_of(name), start, stop, one, tuple(self.block(field_of(node, "body"))))
+        return self.part("for", node, text_of(name), start, stop, one, self.block(field_of(node, "body")))
 
     # -- expressions --
 
-    def expression(self, node: Any) -> Part:
+    def read_expression(self, node: Any) -> Part | None:
         match node.type:
             case "integer_literal" | "float_literal":
                 text = text_of(node).replace("_f", "f").replace("_", "")
                 bare = re.sub(r"(f32|f64|[iu](8|16|32|64|128|size))$", "", text)
-                value = None if re.match(r"0[xob]", bare) else read_decimal(bare.removesuffix(".") or "x")
                 is_real = node.type == "float_literal" or text.endswith(("f32", "f64"))
-                if value is None:
-                    return self.refuse(node, f"the number {text_of(node)[:20]}")
-                return self.part("number", node, value, "real" if is_real else "int")
+                return self.literal(node, bare.removesuffix("."), is_real)
             case "boolean_literal":
                 return self.part("number", node, int(text_of(node) == "true"), "int")
             case "identifier" | "self":
@@ -262,10 +226,10 @@ class Reader(SourceReader):
             case "parenthesized_expression" | "reference_expression":
                 return self.expression(field_of(node, "value") or named(node)[-1])
             case "unary_expression":
-                value_, sign = self.expression(named(node)[-1]), text_of(node)[0]
-                return value_ if sign == "*" else self.part("minus" if sign == "-" else "not", node, value_)
+                return self.operate_alone(node, text_of(node)[0].replace("*", "+"), named(node)[-1])  # *x is x here
             case "binary_expression":
-                return self.binary(node)
+                sign, *sides = (field_of(node, key) for key in ("operator", "left", "right"))
+                return self.operate(node, text_of(sign), *sides)
             case "index_expression":
                 base, place = named(node)
                 places = named(place) if place.type == "tuple_expression" else [place]
@@ -282,16 +246,7 @@ class Reader(SourceReader):
                 return self.choice(node)
             case "call_expression":
                 return self.call(node)
-        return self.refuse(node, f"an expression outside the language of audit ({node.type.replace('_', ' ')})")
-
-    def binary(self, node: Any) -> Part:
-        left, right = (self.expression(field_of(node, side)) for side in ("left", "right"))
-        sign = text_of(field_of(node, "operator"))
-        if sign in SIGNS:
-            return self.part("op", node, sign, left, right)
-        if sign in COMPARISONS:
-            return self.part("compare", node, sign, left, right)
-        return self.part(WORDS[sign], node, left, right) if sign in WORDS else self.refuse(node, f"the operator {sign}")
+        return None
 
     def choice(self, node: Any) -> Part:
         """``if a { x } else { y }`` as a value."""
@@ -339,7 +294,7 @@ class Reader(SourceReader):
         base, name = self.expression(field_of(function, "value")), text_of(field_of(function, "field"))
         if base.kind == "name" and base.parts[0] == "self":
             return self.part("call", node, name, arguments)
-        if name in self.own:
+        if name in self.own or name in self.unit.functions:
             return self.refuse(node, f"the method {name} of this file on another value")
         if name in SAME and not arguments:
             return base

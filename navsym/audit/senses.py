@@ -9,9 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from functools import cached_property
-from itertools import combinations_with_replacement
+from itertools import combinations, combinations_with_replacement
 from typing import Any
 
 from navsym.audit.decide import (
@@ -206,51 +205,64 @@ def hold(table: Table, at: int, sense: str, seconds: float) -> Decision | None:
 
 
 def read_tangent(table: Table) -> Iterator[Reading]:
-    """Rows that agree on all vectors v with grad r v = 0 for each relation r = 0: code = expected + factor grad r.
+    """Rows that agree on all vectors v tangent to the relations: code v = expected v for moves v that span these.
 
-    For r(x) = p(x) - c with p homogeneous of degree m, Euler's p' x = m p leaves one factor: (code - expected) x/(m c).
+    Of r(x) = p(x) - c with p homogeneous and c not zero, whose gradient is nowhere zero, they have r_j at i and -r_i at
+    j; of a rotation matrix C they are C skew(e_k). Other columns have to agree as they are.
     """
     m, n = table.shape
-    normals = find_normals(table) if table.is_whole and table.by else []
+    moves, words = list_moves(table) if table.is_whole and table.by else ([], [])
     rows = [range(i * n, i * n + n) for i in range(m)] if n == len(table.by) else [range(m)] if n == 1 else []
-    for row in rows if normals and all(len(row) == len(table.by) for row in rows) else []:
-        pairs = [table.pair(k) for k in row]
-        for relation, scale in normals:
-            inside = [j for j, x in enumerate(table.by) if x.args[0] in list_names(relation)]
-            terms = [
-                build_product(build_sum(pairs[j][0], negate(table.pair(row[j])[1])), table.by[j]) for j in inside
-            ]  # fmt: skip
-            factor = build_product(build_number(1 / scale), build_sum(*terms))
-            for j in inside:
-                slope = build_product(factor, differentiate(relation, table.by[j]))
-                pairs[j] = pairs[j][0], build_sum(pairs[j][1], slope)
-        note = f"equal on the tangent space of {' and '.join(f'{show(table, r)} = 0' for r, _ in normals)}"
-        yield Reading(note, frozenset(row), tuple(pairs))
+    for row in rows if moves and all(len(row) == len(table.by) for row in rows) else []:
+        sides = {x: table.pair(k) for x, k in zip(table.by, row, strict=True)}
+        pairs = [pair for x, pair in sides.items() if not any(x in move for move in moves)]
+        for move in moves:
+            code, expected = (
+                build_sum(*(build_product(sides[x][side], slope) for x, slope in move.items())) for side in (0, 1)
+            )
+            pairs.append((code, expected))
+        yield Reading(f"equal on the tangent space of {' and '.join(words)}", frozenset(row), tuple(pairs))
 
 
-def find_normals(table: Table) -> list[tuple[Tree, Any]]:
-    """The relations of the columns with m c; none where one has another form, or two have a symbol in common."""
-    known, found = {x.args[0] for x in table.by}, list[tuple[Tree, Any]]()
+def list_moves(table: Table) -> tuple[list[dict[Tree, Tree]], list[str]]:
+    """Vectors that span the tangent space, by columns, and the relations in words.
+
+    There are none where a relation has another form, or two of them have a symbol in common.
+    """
+    by, taken, moves, words = {x.args[0]: x for x in table.by}, set[str](), list[dict[Tree, Tree]](), list[str]()
+    of_rotations = set[str]()
+    for name, entries in table.question.names.rotations.items():
+        of_rotations |= {*entries}
+        if not {*entries} & {*by}:
+            continue
+        if not {*entries} <= {*by}:
+            return [], []
+        columns = [[by[entry] for entry in entries[j::3]] for j in range(3)]
+        for a, b in ((0, 1), (1, 2), (2, 0)):
+            turned = zip(columns[a], columns[b], strict=True)
+            moves.append({x: slope for p, q in turned for x, slope in ((p, q), (q, negate(p)))})
+        words.append(f"the rotation {name}")
     for relation in table.scope.relations:
         names = list_names(relation)
-        if not known & {*names}:
+        if {*names} <= of_rotations or not {*names} & {*by}:
             continue
-        try:
-            terms = to_polynomial(relation, names).to_dict()
-        except NavsymError:
-            return []
-        degrees = {int(sum(powers)) for powers in terms}
-        taken = {name for other, _ in found for name in list_names(other)}
-        if not {*names} <= known or taken & {*names} or len(degrees) != 2 or 0 not in degrees:
-            return []
-        constant = -terms[(0,) * len(names)]
-        found.append((relation, max(degrees) * fraction_of(constant)))
-    return found
+        is_new = {*names} <= {*by} and not {*names} & (taken | of_rotations)
+        if not is_new or not is_level(relation, names):
+            return [], []
+        taken |= {*names}
+        slopes = {by[name]: differentiate(relation, by[name]) for name in names}
+        moves += [{x: slopes[y], y: negate(slopes[x])} for x, y in combinations(slopes, 2)]
+        words.append(f"{show(table, relation)} = 0")
+    return moves, words
 
 
-def fraction_of(value: Any) -> Any:
-    """A number of polynomials as a fraction."""
-    return Fraction(int(value.p), int(value.q))
+def is_level(relation: Tree, names: list[str]) -> bool:
+    """True for p(x) - c with p homogeneous and c not zero: by Euler p' x = m p, so that p' is not zero where p = c."""
+    try:
+        terms = to_polynomial(relation, names).to_dict()
+    except NavsymError:
+        return False
+    return len({int(sum(powers)) for powers in terms}) == 2 and (0,) * len(names) in terms and len(names) > 1
 
 
 def read_order(table: Table) -> Iterator[Reading]:

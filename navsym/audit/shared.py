@@ -7,8 +7,9 @@ one: each symbol stands for a polynomial, which has one value at every point. Th
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -28,21 +29,22 @@ from navsym.language.tree import (
     parts_of,
 )
 
+Pair = tuple[Tree, Tree]
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shortened:
-    """Two sides in which shared parts are symbols.
+    """Pairs of sides in which shared parts are symbols.
 
     meanings : symbol -> what it stands for, in the symbols of its own parts and the inputs
     """
 
-    left: Tree
-    right: Tree
+    pairs: tuple[Pair, ...]
     meanings: Mapping[str, Tree]
 
     def inputs(self) -> list[str]:
         """The other symbols."""
-        names = list_names(self.left, self.right, *self.meanings.values())
+        names = list_names(*itertools.chain(*self.pairs), *self.meanings.values())
         return [name for name in names if name not in self.meanings]
 
     def complete(self, point: Mapping[str, Fraction]) -> dict[str, Fraction]:
@@ -53,36 +55,44 @@ class Shortened:
         return known
 
 
-def shorten_sides(code: Tree, expected: Tree) -> Shortened | None:
-    """Both sides by shared parts, equal as polynomials then; None where no choice of parts makes them so."""
-    parts = list_parts(code, expected)
-    for shared in choose_shared(code, expected, parts):
-        short = name_parts(code, expected, parts, shared)
-        names = list_names(short.left, short.right)
-        try:
-            if to_polynomial(short.left, names) == to_polynomial(short.right, names):
-                return short
-        except (DomainError, TooLargeError):
-            return None
-    return None
+def shorten_pairs(pairs: Sequence[Pair]) -> Iterator[tuple[list[Pair], Shortened]]:
+    """Those pairs whose sides are equal as polynomials in shared parts, as they are and by these parts.
+
+    The parts are the sums that both sides have: all of them, then only those without another one inside.
+    """
+    waiting = list(pairs)
+    for is_inner in (False, True):
+        codes, expected = ({*list_parts(*side)} for side in zip(*waiting, strict=True))
+        parts = list_parts(*itertools.chain(*waiting))
+        total: set[Tree] = set()
+        for part in parts:
+            if is_polynomial_head(part) and all(inner in total for inner in parts_of(part)):
+                total.add(part)
+        shared = {part for part in codes & expected & total if part.head == SUM} - {*itertools.chain(*waiting)}
+        above: set[Tree] = set()  # parts with a shared one inside
+        for part in parts:
+            if any(inner in above or inner in shared for inner in parts_of(part)):
+                above.add(part)
+        shared = shared - above if is_inner else shared
+        if not shared:
+            return
+        short = name_parts(waiting, parts, shared)
+        equal = [is_same(*pair) for pair in short.pairs]
+        if any(equal):
+            kept = tuple(itertools.compress(short.pairs, equal))
+            yield list(itertools.compress(waiting, equal)), Shortened(kept, short.meanings)
+        waiting = [pair for pair, is_equal in zip(waiting, equal, strict=True) if not is_equal]
+        if not waiting:
+            return
 
 
-def choose_shared(code: Tree, expected: Tree, parts: list[Tree]) -> Iterator[set[Tree]]:
-    """The sums that both sides have: all of them, then only those without another one inside."""
-    total: set[Tree] = set()
-    for part in parts:
-        if is_polynomial_head(part) and all(inner in total for inner in parts_of(part)):
-            total.add(part)
-    both = {*list_parts(code)} & {*list_parts(expected)}
-    shared = {part for part in both if part.head == SUM and part in total} - {code, expected}
-    above: set[Tree] = set()  # parts with a shared one inside
-    for part in parts:
-        if any(inner in above or inner in shared for inner in parts_of(part)):
-            above.add(part)
-    if shared:
-        yield shared
-    if shared & above:
-        yield shared - above
+def is_same(left: Tree, right: Tree) -> bool:
+    """True for two polynomials that are equal."""
+    names = list_names(left, right)
+    try:
+        return bool(to_polynomial(left, names) == to_polynomial(right, names))
+    except (DomainError, TooLargeError):
+        return False
 
 
 def is_polynomial_head(part: Tree) -> bool:
@@ -93,7 +103,7 @@ def is_polynomial_head(part: Tree) -> bool:
     return exponent.head == NUMBER and exponent.args[0].denominator == 1 and 0 < exponent.args[0] <= 64
 
 
-def name_parts(code: Tree, expected: Tree, parts: list[Tree], shared: set[Tree]) -> Shortened:
+def name_parts(pairs: Sequence[Pair], parts: list[Tree], shared: set[Tree]) -> Shortened:
     """The sides with a symbol for each shared part, under names that occur nowhere in them."""
     taken = {part.args[0] for part in parts if part.head == SYMBOL}
     letter = "shared"
@@ -107,12 +117,7 @@ def name_parts(code: Tree, expected: Tree, parts: list[Tree], shared: set[Tree])
         if part in shared:
             name = f"{letter}{len(meanings) + 1}"
             meanings[name], renamed[part] = renamed[part], build_symbol(name)
-    left, right = renamed[code], renamed[expected]
-    used = {*list_names(left, right)}
-    for name in reversed(meanings):
-        if name in used:
-            used |= {*list_names(meanings[name])}
-    return Shortened(left, right, {name: tree for name, tree in meanings.items() if name in used})
+    return Shortened(tuple((renamed[code], renamed[expected]) for code, expected in pairs), meanings)
 
 
 def evaluate_polynomial(tree: Tree, point: Mapping[str, Fraction]) -> Fraction:

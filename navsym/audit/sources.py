@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,8 +14,21 @@ from navsym.audit.execute import read_function
 from navsym.audit.form import Argument, Function, Part, Unit, names_in
 from navsym.audit.fragment import take_lines
 from navsym.audit.names import Names
-from navsym.audit.syntax import SIZE, read_decimal
-from navsym.audit.values import Index, places_of
+from navsym.audit.syntax import SIZE, parse_source, read_decimal
+from navsym.audit.values import (
+    Array,
+    Index,
+    Scalar,
+    Value,
+    add,
+    cross_product,
+    identity_array,
+    map_cells,
+    matrix_product,
+    minus,
+    places_of,
+    transpose,
+)
 from navsym.core.choice import one_of
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
 from navsym.language.expression import read_tree
@@ -130,40 +144,22 @@ def load_unit(
 
 def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | None) -> Unit:
     """A source in the one form."""
-    if language == "python":
-        from navsym.audit.python_source import read_python
-
-        return read_python(data, where)
-    if language == "matlab":
-        from navsym.audit.matlab_source import read_matlab
-
-        return read_matlab(data, where)
-    if language == "rust":
-        from navsym.audit.rust_source import read_rust
-
-        return read_rust(data, where)
-    from navsym.audit.c_source import read_c
-
-    return read_c(data, where, language, defined)
+    module = load_reader(language)
+    rules = module.RULES_OF_CPP if language == "cpp" else module.RULES
+    unit = Unit(where, language, rules, data, defined=defined)
+    module.Reader(unit).read_file(parse_source(data, language, where))
+    return unit
 
 
 def read_expression(text: str, unit: Unit) -> Part:
     """One expression in the language of a source."""
-    if unit.language == "python":
-        from navsym.audit.python_source import read_python_expression
+    part: Part = load_reader(unit.language).Reader.read_text(text, unit)
+    return part
 
-        return read_python_expression(text, unit)
-    if unit.language == "matlab":
-        from navsym.audit.matlab_source import read_matlab_expression
 
-        return read_matlab_expression(text, unit)
-    if unit.language == "rust":
-        from navsym.audit.rust_source import read_rust_expression
-
-        return read_rust_expression(text, unit)
-    from navsym.audit.c_source import read_c_expression
-
-    return read_c_expression(text, unit)
+def load_reader(language: str) -> Any:
+    """The module of a language: its ``Reader`` and its ``RULES``."""
+    return importlib.import_module(f"navsym.audit.{'c' if language == 'cpp' else language}_source")
 
 
 def find_function(unit: Unit, name: str, where: str, line: int | None = None) -> Function:
@@ -207,10 +203,11 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
         fixed = as_table(table.get("constants", {}), where)  # such as the counter of a loop around the lines
         function = replace(function, arguments=tuple(a for a in function.arguments if a.name not in fixed))
     place = join_place(where, "symbols")
-    shapes, symmetric = read_symbols(as_table(table.get("symbols", {}), place), names, place)
+    symbols = as_table(table.get("symbols", {}), place)
+    shapes, symmetric = read_symbols(symbols, names, place)
     starts = {
         spell_entry(unit, spelling, p): ONE if len({*p}) == 1 and declaration["start"] == "identity" else ZERO
-        for spelling, declaration in as_table(table.get("symbols", {}), place).items()
+        for spelling, declaration in symbols.items()
         if isinstance(declaration, dict) and read_start(declaration, join_place(place, spelling))
         for p in places_of(shapes[spelling])
     }
@@ -218,12 +215,35 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
     names.inputs |= list_inputs(source, whole)
     relations, approximations = (read_equations(table, key, names, where) for key in ("relations", "approximations"))
     source.relations = tuple(build_sum(left, negate(right)) for left, right in relations)
+    for spelling in [s for s, declaration in symbols.items() if is_rotation(declaration, join_place(place, s))]:
+        cells = tuple(Scalar(source.symbol(spell_entry(unit, spelling, p))) for p in places_of((3, 3)))
+        names.rotations[spelling] = tuple(cell.tree.args[0] for cell in cells)
+        source.relations += relate_rotation(Array((3, 3), cells))
     for left, right in approximations:
         if left.head in (NUMBER, SUM, PRODUCT, POWER, "pi") or left is right:
             message = "expected a name or a function on the left; got something else; write sin(a) = a, or w1 = w0"
             raise DomainError(message, where=join_place(where, "approximations"))
     source.approximations = tuple(approximations)
     return source
+
+
+def is_rotation(declaration: Any, where: str) -> bool:
+    """True for an input that is declared as a rotation matrix; raises ShapeError for another size."""
+    given = declaration.get("rotation", False) if isinstance(declaration, dict) else False
+    if given is not False and (given is not True or declaration.get("matrix") != [3, 3]):
+        raise ShapeError("expected matrix = [3, 3] and rotation = true; got something else; correct it", where=where)
+    return bool(given)
+
+
+def relate_rotation(matrix: Array) -> tuple[Tree, ...]:
+    """What is zero of a rotation: C C' - E, C' C - E, and c_i x c_j - c_k for its rows."""
+    mirror = transpose(matrix, True)
+    rows = [Array((3,), matrix.cells[3 * i : 3 * i + 3]) for i in range(3)]
+    pairs: list[tuple[Value, Value]] = [(matrix_product(matrix, mirror), identity_array(3, 3))]
+    pairs += [(matrix_product(mirror, matrix), identity_array(3, 3))]
+    pairs += [(cross_product(rows[i], rows[(i + 1) % 3]), rows[(i + 2) % 3]) for i in range(3)]
+    cells = [c for p in pairs for c in map_cells(lambda a, b: add(a, minus(b)), *p).cells]  # type: ignore[union-attr]
+    return tuple(dict.fromkeys(cell.tree for cell in cells if isinstance(cell, Scalar)))
 
 
 def read_names(table: Table, key: str, where: str) -> list[str] | None:
@@ -293,7 +313,7 @@ def read_symbols(table: Table, names: Names, where: str) -> tuple[dict[str, Inde
                 expect_keys(declaration, ("name", "range", "sign"), place)
             names.declare(spelling, declaration, place)
             continue
-        expect_keys(declaration, ("matrix", "vector", "symmetric", "start"), place)
+        expect_keys(declaration, ("matrix", "vector", "symmetric", "start", "rotation"), place)
         given = sizes if isinstance(sizes, list) else [sizes]
         if not all(isinstance(n, int) and not isinstance(n, bool) and 0 < n <= LARGEST_SIDE for n in given):
             message = f"expected sizes from 1 to {LARGEST_SIDE}, such as [3, 3]; got {quote(sizes)}; correct them"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, ClassVar
 
 from navsym.audit.form import Part, Unit
 from navsym.core.errors import MissingEngineError, TooLargeError
@@ -61,8 +61,8 @@ def bound_tree(root: Any, where: str) -> None:
 
 
 def text_of(node: Any) -> str:
-    """The source of a node."""
-    return str(node.text.decode("utf-8", "replace"))
+    """The source of a node; nothing of one that is not there."""
+    return "" if node is None else str(node.text.decode("utf-8", "replace"))
 
 
 def line_of(node: Any) -> int:
@@ -74,14 +74,19 @@ def named(node: Any) -> list[Any]:
     """The children that are more than signs; comments left out."""
     return [
         child
-        for child in node.named_children
+        for child in (node.named_children if node is not None else ())
         if child.type not in ("comment", "line_continuation", "line_comment", "block_comment")
     ]
 
 
 def field_of(node: Any, name: str) -> Any:
     """The child in a field, or None."""
-    return node.child_by_field_name(name)
+    return None if node is None else node.child_by_field_name(name)
+
+
+def sign_of(node: Any) -> str:
+    """The operator between two operands, or before one."""
+    return next((text_of(child) for child in node.children if not child.is_named), "")
 
 
 def descend(node: Any) -> Iterator[Any]:
@@ -127,12 +132,114 @@ WRITES = frozenset(
 )
 
 
+#: Sign -> kind of the part, and the sign in it, where one is there; a language adds its own.
+OPERATORS: dict[str, tuple[str, ...]] = {
+    **{sign: ("op", sign) for sign in "+ - * / %".split()},
+    **{sign: ("compare", sign) for sign in "< <= > >= == !=".split()},
+    **dict.fromkeys(("&&", "and"), ("both",)),
+    **dict.fromkeys(("||", "or"), ("either",)),
+}
+UNARY = {"-": "minus", "!": "not", "not": "not", "~": "not"}
+
+
 @dataclass(slots=True, eq=False)
 class SourceReader:
-    """Walks the syntax tree of one language; ``shift`` moves the spans of a text that was read alone."""
+    """Walks the syntax tree of one language; ``shift`` moves the spans of a text that was read alone.
+
+    A language has ``read_file``, ``read_statement``, ``read_expression``, which give None for what is outside of it,
+    and ``find_value``, the expression in the tree of HEAD, a text and TAIL. A node with an error in it is refused as a
+    whole, unless it is a statement of a kind in OPEN, whose own statements are looked at.
+    """
+
+    HEAD: ClassVar[str] = "a_ = "
+    TAIL: ClassVar[str] = ";"
+    OPEN: ClassVar[tuple[str, ...]] = ("if_statement", "for_statement")
+    OPERATORS: ClassVar[dict[str, tuple[str, ...]]] = OPERATORS
 
     unit: Unit
     shift: int = 0
+
+    def read_statement(self, node: Any) -> Iterable[Part] | None:
+        """What a statement does, as several of the one form."""
+        raise NotImplementedError
+
+    def read_expression(self, node: Any) -> Part | None:
+        """An expression without errors."""
+        raise NotImplementedError
+
+    @staticmethod
+    def find_value(node: Any) -> Any:
+        """The expression in the one node that a text makes."""
+        raise NotImplementedError
+
+    @classmethod
+    def read_text(cls, text: str, unit: Unit) -> Part:
+        """One expression; its spans count from its own beginning."""
+        root = parse_source(f"{cls.HEAD}{text}{cls.TAIL}".encode(), unit.language, unit.file)
+        nodes = named(root)
+        value = cls.find_value(nodes[0]) if len(nodes) == 1 and not root.has_error else None
+        return Part("refused", 1, ("no expression",)) if value is None else cls(unit, -len(cls.HEAD)).expression(value)
+
+    def statement(self, node: Any) -> tuple[Part, ...]:
+        """A statement; a wrong one is not read, and neither is one outside the language of audit."""
+        if node.has_error and node.type not in self.OPEN:
+            return (self.unread(node, "a syntax error, or a macro that hides one"),)
+        several = self.read_statement(node)
+        kind = node.type.replace("_", " ")
+        outside = f"a statement outside the language of audit ({kind})"
+        return (self.unread(node, outside),) if several is None else tuple(several)
+
+    def block(self, node: Any) -> tuple[Part, ...]:
+        """The statements of a body."""
+        return tuple(s for child in named(node) for s in self.statement(child))
+
+    def expression(self, node: Any) -> Part:
+        """An expression; a wrong or missing one is refused, and so is one outside the language of audit."""
+        if node is None:
+            return Part("refused", 0, ("a syntax error", (), True, True))
+        if node.has_error:
+            return self.refuse(node, "a syntax error")
+        found = self.read_expression(node)
+        kind = node.type.replace("_", " ")
+        return self.refuse(node, f"an expression outside the language of audit ({kind})") if found is None else found
+
+    def inside(self, node: Any) -> Part:
+        """What stands in parentheses."""
+        inner = named(node)
+        return self.expression(inner[0]) if len(inner) == 1 else self.refuse(node, "parentheses")
+
+    def operate(self, node: Any, sign: str, *operands: Any) -> Part:
+        """Two operands with an operator between them."""
+        if sign not in self.OPERATORS:
+            return self.refuse(node, f"the operator {sign}")
+        kind, *more = self.OPERATORS[sign]
+        return self.part(kind, node, *more, *map(self.expression, operands))
+
+    def operate_alone(self, node: Any, sign: str, operand: Any) -> Part:
+        """One operand with an operator before it."""
+        if sign == "+":
+            return self.expression(operand)
+        known = self.part(UNARY[sign], node, self.expression(operand)) if sign in UNARY else None
+        return known or self.refuse(node, f"the operator {sign}")
+
+    def literal(self, node: Any, text: str, is_real: bool) -> Part:
+        """A number in decimal digits."""
+        value = read_decimal(text)
+        if value is None:
+            return self.refuse(node, f"the number {text_of(node)[:20]}")
+        return self.part("number", node, value, "real" if is_real else "int")
+
+    def chain(self, node: Any, clauses: list[Any], body: Callable[[Any], Any]) -> Part:
+        """``if`` with the clauses behind it, the first as its other way."""
+        test, then, other = self.expression(field_of(node, "condition")), self.block(body(node)), tuple[Part, ...]()
+        if clauses:
+            is_if = field_of(clauses[0], "condition") is not None
+            other = (self.chain(clauses[0], clauses[1:], body),) if is_if else self.block(body(clauses[0]))
+        return self.part("if", node, test, then, other)
+
+    def sizes(self, node: Any, shape: tuple[int, ...] | None) -> tuple[Part, ...] | None:
+        """A shape as parts."""
+        return None if shape is None else tuple(self.part("number", node, n, "int") for n in shape)
 
     def part(self, kind: str, node: Any, *parts: Any) -> Part:
         """A part with its line and span."""

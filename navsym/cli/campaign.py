@@ -18,7 +18,7 @@ NAMES = {
     "fuzz": "every reader of files by inputs that coverage guides",
     "certificates": "altered certificates",
     "statements": "statements of known truth, judged by another arithmetic",
-    "code": "one-token mutants of C, judged by a compiler",
+    "code": "one-token mutants of C, Python, MATLAB and Rust, judged by what runs",
     "kills": "writers of the store killed at random moments",
     "disk": "full disk, read-only folder, stale lock, clock set back",
     "engines": "engines: known wrong answers",

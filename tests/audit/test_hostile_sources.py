@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import random
+import re
 import time
+from collections import Counter
+from pathlib import Path
 
 import pytest
 
@@ -71,3 +75,58 @@ def test_line_ends_and_tabs_change_nothing(ends, tmp_path):
     path = tmp_path / "code.c"
     path.write_bytes(text.replace("\n", ends).encode())
     assert [f.formula for f in nav.audit(path, function="f").formulas] == ["2*a"]
+
+
+GALLERY = Path(__file__).resolve().parents[2] / "examples" / "audit" / "gallery"
+TOKEN = re.compile(rb"\w+|\s+|[^\w\s]")
+PIECES = rb"( ) { } [ ] ; ' \ /* # = * & -> :: end else for return @ % < ? : lambda if while goto .. 0x 1e999".split()
+PIECES += [b"", b"\n", b"\t", b"\r", b"\0", b"\xff", b"\xef\xbb\xbf", b"9" * 40, b"#if 0\n"]
+
+
+def spoil(source, draw):
+    """The source with one to three bytes or tokens lost, doubled, exchanged or replaced."""
+    for _ in range(draw.randint(1, 3)):
+        spans = [m.span() for m in TOKEN.finditer(source)] or [(0, 0)]
+        (a, b), (c, d) = draw.choice(spans), draw.choice(spans)
+        kind, at = draw.randrange(6), draw.randrange(len(source) + 1)
+        if kind == 0:
+            source = source[:at] + bytes([draw.randrange(256)]) + source[at + 1 :]
+        elif kind == 1:
+            source = source[:at]
+        elif kind == 2:
+            source = source[:a] + source[c:d] + source[b:]
+        elif kind == 3:
+            source = source[:a] + source[a:b] * draw.choice((0, 2, 50)) + source[b:]
+        elif kind == 4:
+            source = source[:a] + source[min(a, c) : max(b, d)] + source[b:]
+        else:
+            source = source[:a] + draw.choice(PIECES) + source[draw.choice((a, b)) :]
+    return source
+
+
+def attack(folder, path, number, seed):
+    """The counts of answers and of errors for spoiled copies of a file, and the longest time."""
+    draw, counts, longest = random.Random(f"{path.name}{seed}"), Counter(), 0.0
+    for _ in range(number):
+        copy, start = folder / f"copy{path.suffix}", time.process_time()
+        copy.write_bytes(spoil(path.read_bytes(), draw))
+        try:
+            nav.audit(copy, function=draw.choice(("before", "after")))
+            counts["answer"] += 1
+        except NavsymError as error:
+            assert error.expected and error.remedy and "\n" not in str(error)
+            counts[error.kind] += 1
+        longest = max(longest, time.process_time() - start)
+    return counts, longest
+
+
+@pytest.mark.parametrize("end", [".c", ".cpp", ".py", ".m", ".rs"])
+@pytest.mark.parametrize("number", [60, pytest.param(2000, marks=pytest.mark.slow)])
+def test_spoiled_copies_of_the_examples_are_answered_or_refused_in_bounded_time(end, number, tmp_path):
+    files = sorted(path for path in GALLERY.iterdir() if path.suffix == end)
+    total, longest = Counter(), 0.0
+    for path in files:
+        counts, seconds = attack(tmp_path, path, -(-number // len(files)), number)
+        total, longest = total + counts, max(longest, seconds)
+    print(end, dict(total), f"longest {longest:.2f} s")
+    assert total["answer"] > total.total() / 5 and longest < 8.0

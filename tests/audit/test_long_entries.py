@@ -3,6 +3,7 @@
 import json
 import random
 import re
+import resource
 import time
 from importlib import import_module
 
@@ -11,7 +12,7 @@ import pytest
 import navsym as nav
 from navsym import checker
 from navsym.audit.decide import Scope, decide_entry
-from navsym.audit.shared import shorten_sides
+from navsym.audit.shared import shorten_pairs
 from navsym.language.expression import read_tree
 from navsym.language.tree import build_symbol, replace
 
@@ -114,12 +115,12 @@ def test_shared_parts_decide_as_the_whole_text_does(monkeypatch, left, right, is
 
 def test_the_meanings_put_back_give_the_sides_again():
     left, right = (read_tree(text, NAMES) for text in (PAIRS[2][0], "x*((a + b)*c + a) + (a + b)"))
-    short = shorten_sides(left, right)
-    assert short is not None and short.meanings
-    sides = short.left, short.right
+    ((_, short),) = shorten_pairs([(left, right)])
+    ((one, two),) = short.pairs
+    assert short.meanings and (one, two) != (left, right)
     for name, tree in reversed(short.meanings.items()):
-        sides = tuple(replace(side, {build_symbol(name): tree}) for side in sides)
-    assert sides == (left, right)
+        one, two = (replace(side, {build_symbol(name): tree}) for side in (one, two))
+    assert (one, two) == (left, right)
 
 
 @pytest.mark.long
@@ -129,3 +130,14 @@ def test_twice_the_states_cost_no_more_than_twelve_times_the_time(tmp_path):
     large, second = ask(tmp_path, 24, write_covariance(24, 4))
     assert small.holds and large.holds
     assert second < 12 * first
+
+
+@pytest.mark.long
+def test_sixty_generated_functions_take_less_than_a_minute_and_a_gigabyte(tmp_path):
+    seconds = 0.0
+    for k in range(60):
+        n = 4 + k % 6
+        answer, spent = ask(tmp_path, n, write_covariance(n, 1 + k % (n - 1)))
+        assert answer.holds
+        seconds += spent
+    assert seconds < 60 and resource.getrusage(resource.RUSAGE_SELF).ru_maxrss < 2**20

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import shutil
 from collections import Counter
 
 import pytest
@@ -79,15 +78,13 @@ def test_a_fault_of_two_places_is_not_mended_by_one_and_no_suggestion_is_made_up
     assert entry.suggestion is None or "dt" in entry.suggestion  # the whole formula, written at the place of the entry
 
 
-@pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
-def test_random_faults_of_one_token_are_mended_nearly_always(tmp_path):
+def test_random_faults_of_one_token_are_mended_nearly_always():
+    """In C, Python, MATLAB and Rust."""
     chosen, counts = random.Random(2026), Counter()
     subjects = [s for s in list_subjects() if s.function in ("before", "after")]
     while counts.total() < 12:
         subject = chosen.choice(subjects)
         counts.update(
-            [mended]
-            if (mended := decide_mutant(subject, chosen.choice(list_mutants(subject)), tmp_path, True)[1])
-            else []
+            [mended] if (mended := decide_mutant(subject, chosen.choice(list_mutants(subject)), True)[1]) else []
         )
     assert counts["mended"] >= 11

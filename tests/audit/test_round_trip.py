@@ -10,6 +10,7 @@ import re
 import pytest
 
 import navsym as nav
+from tests.audit.round_trip import count, list_claims, read_back
 
 #: A sample of claims with the ranges of their symbols: powers, quotients, roots, angles, several symbols.
 CLAIMS = {
@@ -63,3 +64,18 @@ def test_exported_code_reads_back_as_the_claim_from_which_it_was_made(claim, tmp
         (tmp_path / "spec.toml").write_text(spec)
         verdicts = {question.name: question.status for question in nav.audit(tmp_path / "spec.toml").questions}
         assert verdicts == {"left": nav.PROVED, "right": nav.PROVED, "wrong": nav.REFUTED}, language
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(20))
+def test_every_exported_claim_of_the_ledger_reads_back(first, capsys):
+    """A twentieth of the ledger at a time; what is not proved is listed with its reason, and nothing is refuted."""
+    counts, _ = count(list_claims()[first::20])
+    with capsys.disabled():
+        print(first, dict(sorted(counts.items())))
+    assert not [key for key in counts if "REFUTED" in key]
+    assert sum(counts[f"{language} PROVED"] for language in FILES) >= counts["exported"]
+
+
+def test_a_claim_of_the_ledger_reads_back_in_every_language(tmp_path):
+    assert read_back("alpha_beta_filter:4", tmp_path) == dict.fromkeys(FILES, "PROVED")

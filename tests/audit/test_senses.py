@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from importlib import import_module
 
 import pytest
@@ -115,6 +116,71 @@ def test_columns_that_leave_out_a_symbol_of_the_relation_have_no_tangent_space(t
     code = "void f(const double q[2], double H[1])\n{\n    H[0] = q[0];\n}\n"
     question = 'kind = "equal"\nleft = "f:H[0]"\nright = "0"\nby = ["f:q[0]"]\nsenses = ["tangent"]'
     assert ask(tmp_path, code, question, 'relations = ["q[0]**2 + q[1]**2 = 1"]\n').status == nav.OPEN
+
+
+ROTATION = "[code.symbols]\nR = { matrix = [3, 3], rotation = true }\n"
+#: A weighted trace, and its gradient G as it is projected to the rotations: (G - R G' R)/2.
+TRACE = """
+void f(const double R[3][3], const double a[3], double t[1], double H[3][3], double S[3][3])
+{
+    t[0] = a[0]*R[0][0] + a[1]*R[1][1] + a[2]*R[2][2];
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            double turned = 0.0;
+            S[i][j] = 0.0;
+            for (int k = 0; k < 3; k++) { turned += R[i][k]*a[k]*R[k][j]; S[i][j] += R[k][i]*R[k][j]; }
+            H[i][j] = -turned/2.0;
+        }
+        H[i][i] += a[i]/2.0;
+    }
+}
+"""
+GRADIENT = 'kind = "jacobian"\nof = "f:t"\nby = "f:R"\nis = "f:H"'
+
+
+def test_a_projected_gradient_agrees_on_the_tangent_space_of_rotations(tmp_path):
+    plain, _ = check_both(tmp_path, TRACE, GRADIENT, "tangent", ROTATION)
+    assert plain.weaker == "tangent" and all("the rotation R" in entry.why for entry in plain.entries)
+    for entry in plain.entries:  # the point at which it is not exact is a rotation
+        R = [[Fraction(entry.counterexample[f"R[{i}][{j}]"]) for j in range(3)] for i in range(3)]
+        products = [sum(x * y for x, y in zip(R[i], R[j], strict=True)) for i in range(3) for j in range(3)]
+        assert products == [1, 0, 0, 0, 1, 0, 0, 0, 1]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("-turned/2.0", "turned/2.0"), ("a[i]/2.0", "a[i]/3.0"), ("a[k]*R[k][j]", "a[k]*R[j][k]"),
+     ("H[i][j] = -turned/2.0", "H[i][j] = -R[i][j]/2.0")],
+)  # fmt: skip
+def test_a_wrong_gradient_is_not_equal_on_the_tangent_space_of_rotations(tmp_path, old, new):
+    assert TRACE.count(old) == 1
+    refuse(tmp_path, TRACE.replace(old, new), GRADIENT, "tangent", ROTATION)
+
+
+def test_the_columns_of_a_rotation_are_orthonormal_and_those_of_another_matrix_are_not(tmp_path):
+    question = 'kind = "equal"\nleft = "f:S"\nright = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]'
+    answer = ask(tmp_path, TRACE, question, ROTATION)
+    assert answer.status == nav.PROVED and answer.sense == "manifold"
+    assert ask(tmp_path, TRACE, question, "").status == nav.REFUTED
+    wrong = ask(tmp_path, TRACE.replace("R[k][i]*R[k][j]", "R[k][i]*R[j][k]"), question, ROTATION)
+    assert wrong.status == nav.REFUTED
+
+
+def test_a_rotation_turns_a_cross_product_and_another_matrix_does_not(tmp_path):
+    head = "Vector3d {}(const Matrix3d &R, const Vector3d &u, const Vector3d &v)\n{{\n    Vector3d y = {};\n"
+    code = "".join(
+        f"{head.format(*each)}    return y;\n}}\n" for each in (("f", "(R * u).cross(R * v)"), ("g", "R * u.cross(v)"))
+    )
+    question = 'kind = "equal"\nleft = "f:return"\nright = "g:return"'
+    answer = ask(tmp_path, code, question, ROTATION, ("f", "g"), "cpp")
+    assert answer.status == nav.PROVED and answer.sense == "manifold"
+    assert ask(tmp_path, code, question, "", ("f", "g"), "cpp").status == nav.REFUTED
+
+
+@pytest.mark.parametrize("declared", ["matrix = [2, 2], rotation = true", 'matrix = [3, 3], rotation = "yes"'])
+def test_a_rotation_is_three_by_three_and_declared_with_true(tmp_path, declared):
+    with pytest.raises(nav.NavsymError, match="rotation = true"):
+        ask(tmp_path, TRACE, GRADIENT, f"[code.symbols]\nR = {{ {declared} }}\n")
 
 
 # Orders

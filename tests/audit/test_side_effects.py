@@ -88,3 +88,28 @@ def test_what_is_read_is_proved_and_its_false_variant_falls(tmp_path, body, righ
 
 def test_a_view_that_nobody_changes_is_read(tmp_path):
     assert ask(tmp_path, write_python("Q = P[0:2]", "return Q[0]"), of="return", end="py") == "PROVED"
+
+
+@pytest.mark.parametrize(
+    ("body", "right", "status"),
+    [
+        ("v.normalize();", "v(0)/sqrt(v(0)**2 + v(1)**2 + v(2)**2)", "PROVED"),
+        ("v.normalize();", "v(0)", "REFUTED"),
+        ("v.normalized();", "v(0)", "PROVED"),
+        ("v = v.normalize();", "v(0)", "OPEN"),  # it gives nothing in Eigen
+        ("v.reverseInPlace();", "v(0)", "OPEN"),
+    ],
+)
+def test_a_method_that_changes_its_vector_changes_it(tmp_path, body, right, status):
+    text = (
+        f"void step(const Vector3d &v0, float out[3])\n{{\n    Vector3d v = v0;\n    {body}\n    out[0] = v(0);\n}}\n"
+    )
+    assert ask(tmp_path, text, right.replace("v(", "v0(")) == status
+
+
+@pytest.mark.parametrize(
+    ("call", "status"), [("R.T", "PROVED"), ("R.transpose()", "PROVED"), ("R.transpose(0, 1)", "OPEN")]
+)
+def test_a_transposition_with_an_order_of_axes_is_not_taken_for_one_without(tmp_path, call, status):
+    text = f"def step(a, b, c, d):\n    R = np.array([[a, b], [c, d]])\n    S = {call}\n    return S\n"
+    assert ask(tmp_path, f"import numpy as np\n\n\n{text}", "c", "return[0][1]", end="py") == status

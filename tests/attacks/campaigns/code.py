@@ -1,7 +1,7 @@
-"""One-token mutants of readable C: one that is proved equal to its original must compute the same when it is compiled.
+"""One-token mutants of readable code: one that is proved equal to its original must compute the same when it is run.
 
-The functions are those of the gallery and what navsym exports. ``python -m tests.attacks.campaigns.code NUMBER SEED``
-prints the counts.
+The functions are those of the gallery and what navsym exports, in C, Python, MATLAB and Rust. The judges are two
+compilers, numpy and Octave. ``python -m tests.attacks.campaigns.code NUMBER SEED`` prints the counts.
 """
 
 from __future__ import annotations
@@ -12,78 +12,113 @@ import math
 import multiprocessing
 import random
 import re
+import signal
 import subprocess
 import sys
 import tempfile
+import tomllib
+import warnings
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import navsym as nav
-from navsym.audit.answer import make_scope, read_specification
+from navsym.audit.answer import make_scope
 from navsym.audit.decide import decide_entry
 from navsym.audit.mend import Budget, suggest
-from navsym.audit.questions import list_entries
+from navsym.audit.names import Names
+from navsym.audit.questions import Question, list_entries
+from navsym.audit.sources import Source, find_function, list_inputs, read_unit
 from navsym.audit.values import Scalar
 from navsym.core.errors import NavsymError
 from tests.attacks.campaigns.batches import Batch, Result, result
 
 SIZE = 100
+#: Functions of our own, with the sizes of what comes in where the language does not say them.
+OWN = Path(__file__).resolve().parents[1] / "code"
+SIZES = {"earth_place": {"x": (3,)}, "joseph_step": {"P": (2, 2)}, "pendulum_step": {"x": (2,)}}
 GALLERY = Path(__file__).resolve().parents[3] / "examples" / "audit" / "gallery"
-#: Claims whose C is short enough to be read by eye, of several papers.
+#: Claims whose code is short enough to be read by eye.
 CLAIMS = ("alpha_beta_filter:5", "alpha_beta_filter:4")
-TOKEN = re.compile(r"[A-Za-z_]\w*|\d+\.?\d*(?:[eE][+-]?\d+)?f?|[-+*/]=?|\S")
-BODY = re.compile(r"^[a-z][\w ]* \w+\([^)]*\)\s*\{(.*?)^\}", re.MULTILINE | re.DOTALL)
-SIGNS = {sign: [*"+-*/"] for sign in "+-*/"} | {"+=": ["-="], "-=": ["+="]}
+LANGUAGES = {".c": "c", ".py": "python", ".m": "matlab", ".rs": "rust"}
+TOKEN = re.compile(r"[A-Za-z_]\w*|\d+\.?\d*(?:[eE][+-]?\d+)?f?|\*\*|[-+*/]=?|\S")
+#: The body of each function, behind its head.
+BODIES = {
+    "c": re.compile(r"^[a-z][\w ]* \w+\([^)]*\)\s*\{(.*?)^\}", re.MULTILINE | re.DOTALL),
+    "rust": re.compile(r"^pub fn \w+\([^)]*\)[^{]*\{(.*?)^\}", re.MULTILINE | re.DOTALL),
+    "matlab": re.compile(r"^function \w+ = \w+\([^)]*\)(.*?)^end", re.MULTILINE | re.DOTALL),
+    "python": re.compile(r"^def \w+\([^)]*\):(.*?)(?=^def|\Z)", re.MULTILINE | re.DOTALL),
+}
+SIGNS = {sign: [*"+-*/"] for sign in "+-*/"} | {"+=": ["-="], "-=": ["+="], "**": ["*"], "@": ["*"]}
 NUMBERS = ("0.0", "1.0", "2.0", "3.0", "0.5", "0.25")
-CALLS = {"sin": "cos", "cos": "sin", "sinf": "cosf", "cosf": "sinf", "sqrt": "cos", "tan": "sin"}
-#: Every how many of the refuted mutants a mend is sought.
-MENDED = 50
+CALLS = {"sin": "cos", "cos": "sin", "sinf": "cosf", "cosf": "sinf", "sqrt": "cos", "tan": "sin", "powi": "powf"}
+WORDS = {
+    *"double float int for const return if else void np array math T let mut f64 pub fn end function in range".split(),
+    *CALLS,
+}  # fmt: skip
 SIDES = ("before", "after")
 POINTS = 4
-#: What a compiled function may take.
-SECONDS = 2.0
+#: Processor time that a compiled function may take; a mutant may loop for ever.
+SECONDS = 0.5
+ROUNDS = 12
 
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """A function of C: ``const`` arrays and numbers come in, the others are changed."""
+    """A function: some of its parameters come in, the others are changed; ``shapes`` say what the source does not."""
 
     name: str
     text: str
     function: str
+    language: str = "c"
+    shapes: tuple[tuple[str, tuple[int, ...]], ...] = ()
 
-    def parameters(self) -> list[tuple[str, int, bool]]:
-        """Name, number of cells (0 for a number) and whether it is changed, of each parameter."""
+    def parameters(self) -> list[tuple[str, tuple[int, ...] | None, bool]]:
+        """Name, sizes (None for a number) and whether it is changed, of each parameter."""
         head = re.search(rf"\b{self.function}\(([^)]*)\)", self.text)
         assert head is not None
-        done = []
+        known, done = dict(self.shapes), []
         for text in head[1].split(","):
-            sizes = [int(n) for n in re.findall(r"\[(\d+)\]", text)]
-            is_changed = "const" not in text and (bool(sizes) or "*" in text)
-            done.append(
-                (
-                    re.findall(r"\w+", text.partition("[")[0])[-1],
-                    math.prod(sizes) * bool(sizes or "*" in text),
-                    is_changed,
-                )
-            )
+            name = re.findall(r"[a-z_]\w*", text.partition(":" if self.language == "rust" else "[")[0], re.IGNORECASE)[
+                -1
+            ]
+            sizes = tuple(int(n) for n in re.findall(r"(?:\[|; )(\d+)\]", text)) or known.get(name)
+            sizes = sizes or ((1,) if "*" in text else None)
+            is_changed = "&mut" in text or (self.language == "c" and "const" not in text and sizes is not None)
+            done.append((name, sizes, is_changed))
         return done
-
-    def returns(self) -> bool:
-        """True for a function with a value."""
-        return re.search(rf"(double|float)\s+{self.function}\(", self.text) is not None
 
     def outputs(self) -> list[str]:
         """What is compared."""
+        if found := re.search(rf"function (\w+) = {self.function}\(", self.text):
+            return [found[1]]
         return [name for name, _, is_changed in self.parameters() if is_changed] + ["return"] * self.returns()
+
+    def returns(self) -> bool:
+        """True for a function with a value."""
+        pattern = rf"(double|float)\s+{self.function}\(|{self.function}\([^)]*\) ->"
+        return self.language == "python" or re.search(pattern, self.text) is not None
 
 
 @functools.cache
 def list_subjects() -> list[Subject]:
-    """The functions ``before`` and ``after`` of the gallery, and exported ones."""
-    texts = [(f"{path.stem}.{f}", path.read_text(), f) for path in sorted(GALLERY.glob("*.c")) for f in SIDES]
+    """The functions ``before`` and ``after`` of the gallery, our own, and exported ones."""
+    done = []
+    for path in sorted(p for p in GALLERY.iterdir() if p.suffix in LANGUAGES):
+        blocks = tomllib.loads(path.with_suffix(".toml").read_text())["code"]
+        for side in SIDES:
+            language, text = LANGUAGES[path.suffix], leave_out(path, next(s for s in SIDES if s != side))
+            symbols = next(b for b in blocks if b["function"] == side).get("symbols", {})
+            sizes = {n: d.get("vector", d.get("matrix")) for n, d in symbols.items() if isinstance(d, dict)}
+            shapes = tuple((n, (s,) if isinstance(s, int) else tuple(s)) for n, s in sizes.items() if s)
+            done.append(Subject(f"{path.stem}.{side}", text, side, language, shapes))
+    for path in sorted(OWN.iterdir()):
+        shapes = tuple(SIZES.get(path.stem, {}).items())
+        done.append(Subject(path.stem, path.read_text(), path.stem, LANGUAGES[path.suffix], shapes))
     with tempfile.TemporaryDirectory() as folder:
         for claim in CLAIMS:
             try:
@@ -91,8 +126,15 @@ def list_subjects() -> list[Subject]:
             except NavsymError:
                 continue
             for path in sorted((made.out / "c").glob(f"{claim.split(':')[0]}*.c")):
-                texts.append((path.stem, plain_c(path.read_text()), path.stem))
-    return [Subject(*each) for each in texts]
+                done.append(Subject(path.stem, plain_c(path.read_text()), path.stem))
+    return done
+
+
+def leave_out(path: Path, other: str) -> str:
+    """A source without one of its functions."""
+    text = path.read_text()
+    found = next((m for m in BODIES[LANGUAGES[path.suffix]].finditer(text) if re.search(rf"\b{other}\(", m[0])), None)
+    return text if found is None else text[: found.start()] + text[found.end() :]
 
 
 def plain_c(text: str) -> str:
@@ -104,16 +146,14 @@ def plain_c(text: str) -> str:
 
 def list_mutants(subject: Subject) -> list[str]:
     """The source with one token of the function, or of what it calls, replaced: all that there are."""
-    other = next((side for side in SIDES if side != subject.function), "")
-    bodies = [body.span(1) for body in BODY.finditer(subject.text) if not re.search(rf"\b{other}\(", body[0])]
-    return [mutant for body in bodies for mutant in mutate_body(subject.text, *body)]
+    spans = [body.span(1) for body in BODIES[subject.language].finditer(subject.text)]
+    return [mutant for span in spans for mutant in mutate_body(subject.text, *span)]
 
 
 def mutate_body(text: str, start: int, end: int) -> list[str]:
     """The source with one token of a body replaced."""
     tokens = [m for m in TOKEN.finditer(text, start, end)]
-    words = ("double", "float", "int", "for", "const", "return", "if", "else", "void", *CALLS)
-    names = sorted({m[0] for m in tokens if m[0][0].isalpha() and m[0] not in words})
+    names = sorted({m[0] for m in tokens if m[0][0].isalpha() and m[0] not in WORDS})
     done = []
     for m in tokens:
         if text.rfind("/*", 0, m.start()) <= text.rfind("*/", 0, m.start()):
@@ -134,82 +174,199 @@ def list_changes(token: str, names: list[str]) -> list[str]:
     return [other for other in others if other != token]
 
 
-# What a compiler says
+# What a compiler and two interpreters say
 
 
 def compute(sources: list[str], subject: Subject, seed: int) -> list[list[float] | None]:
-    """What each source computes at the same points; None for what the compiler refuses."""
-    with tempfile.TemporaryDirectory() as name:
-        folder, chosen = Path(name), random.Random(seed)
-        points = [[[chosen.uniform(0.2, 0.9) for _ in range(max(cells, 1))] for _, cells, _ in subject.parameters()]
-                  for _ in range(POINTS)]  # fmt: skip
-        return [run_source(source, subject, points, folder / f"m{k}") for k, source in enumerate(sources)]
+    """What each source computes at the same points; None for what cannot be run."""
+    points = draw_points(subject, seed)
+    with tempfile.TemporaryDirectory() as folder:
+        if subject.language == "python":
+            return [run_python(source, subject, points) for source in sources]
+        if subject.language == "matlab":
+            return run_octave(sources, subject, points, Path(folder))
+        library, alive = compile_all(sources, subject, Path(folder))
+        return call_all(library, alive, len(sources), subject, points)
 
 
-def run_source(source: str, subject: Subject, points: list[list[list[float]]], path: Path) -> list[float] | None:
-    """The results of one source at the points."""
-    path.with_suffix(".c").write_text("#include <math.h>\n" + source)
-    flags = ["-O0", "-w", "-shared", "-fPIC", "-Dfloat=double", "-Dsinf=sin", "-Dcosf=cos", "-Dsqrtf=sqrt"]
-    command = ["gcc", *flags, str(path.with_suffix(".c")), "-o", str(path.with_suffix(".so")), "-lm"]
-    if subprocess.run(command, capture_output=True, check=False).returncode:
+def draw_points(subject: Subject, seed: int) -> list[list[Any]]:
+    """Numbers for all cells of all parameters, some times."""
+    chosen, sizes = random.Random(seed), [math.prod(sizes or ()) for _, sizes, _ in subject.parameters()]
+    return [[np.array([chosen.uniform(0.2, 0.9) for _ in range(n)]) for n in sizes] for _ in range(POINTS)]
+
+
+def run_python(source: str, subject: Subject, points: list[list[Any]]) -> list[float] | None:
+    """The results of a function with numpy."""
+    scope: dict[str, Any] = {}
+    try:
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("ignore", SyntaxWarning)
+            exec(compile(source, "mutant", "exec"), scope)
+            shapes = [sizes or () for _, sizes, _ in subject.parameters()]
+            values = [
+                scope[subject.function](*(v.copy().reshape(s)[()] for v, s in zip(point, shapes, strict=True)))
+                for point in points
+            ]
+            return [float(x) for value in values for x in np.ravel(np.array(value, dtype=float))]
+    except (ArithmeticError, LookupError, NameError, TypeError, ValueError, SyntaxError, AttributeError):
         return None
-    reading, writing = multiprocessing.Pipe(duplex=False)
-    task = (path.with_suffix(".so"), subject, points, writing)
-    child = multiprocessing.get_context("fork").Process(target=call_library, args=task)
-    child.start()
-    child.join(SECONDS)
-    child.kill()  # a mutant may loop for ever, or write where it must not
-    child.join()
-    return reading.recv() if reading.poll() else None
 
 
-def call_library(library: Path, subject: Subject, points: list[list[list[float]]], writing: Any) -> None:
-    """Send the results of a compiled function at the points."""
-    function = getattr(ctypes.CDLL(str(library)), subject.function)
-    function.restype = ctypes.c_double if subject.returns() else ctypes.c_int
-    results: list[float] = []
+def run_octave(sources: list[str], subject: Subject, points: list[list[Any]], folder: Path) -> list[list[float] | None]:
+    """The results of functions in Octave, one text after the other."""
+    lines = ["1;"]
+    calls = []
     for point in points:
-        given = [
-            (ctypes.c_double * (len(v) + 8))(*v) if cells else ctypes.c_double(v[0])
-            for v, (_, cells, _) in zip(point, subject.parameters(), strict=True)
-        ]
-        value = function(*given)
-        results += [value] * subject.returns()
-        for cells, (_, count, is_changed) in zip(given, subject.parameters(), strict=True):
-            results += [*cells[:count]] if is_changed else []
-    writing.send(results)
+        shaped = zip(point, subject.parameters(), strict=True)
+        given = [f"reshape([{' '.join(map(repr, map(float, v)))}], {rows_of(s)})" for v, (_, s, _) in shaped]
+        calls.append(f"{subject.function}({', '.join(given)})(:)'")
+    for k, source in enumerate(sources):
+        (folder / f"m{k}.m").write_text(source)
+        lines += [f"try; eval(fileread('m{k}.m')); r = [{', '.join(calls)}];",
+                  f"printf('%d', {k}); printf(' %.17g', r); printf('\\n'); catch; end"]  # fmt: skip
+    (folder / "all.m").write_text("\n".join(lines) + "\n")
+    command = ["octave", "--norc", "--quiet", "--no-gui", "all.m"]
+    text = subprocess.run(command, capture_output=True, check=False, cwd=folder, text=True).stdout
+    rows = {int(row.split()[0]): [float(x) for x in row.split()[1:]] for row in text.splitlines() if row}
+    return [rows.get(k) for k in range(len(sources))]
+
+
+def rows_of(sizes: tuple[int, ...] | None) -> str:
+    """The size of an array for Octave."""
+    return ", ".join(map(str, (*(sizes or ()), 1, 1)[:2]))
+
+
+def compile_all(sources: list[str], subject: Subject, folder: Path) -> tuple[Path, list[int]]:
+    """One library with a function ``m<k>_...`` for each source, and the places of those that the compiler takes."""
+    names = sorted({*re.findall(r"^(?:\w+ )+(\w+)\(", subject.text, re.MULTILINE)})
+    library, alive = folder / "all.so", [*range(len(sources))]
+    for _ in range(ROUNDS):
+        lines = list[str]()
+        starts = []
+        for k in alive:
+            text = re.sub(rf"\b({'|'.join(names)})\b", rf"m{k}_\1", sources[k])
+            if subject.language == "rust":
+                text = text.replace("pub fn ", '#[no_mangle]\npub extern "C" fn ')
+            starts.append(len(lines))
+            lines += text.split("\n")
+        path = folder / ("all.rs" if subject.language == "rust" else "all.c")
+        path.write_text("\n".join(lines))
+        if subject.language == "rust":
+            command = ["rustc", "--crate-type", "cdylib", "--error-format=short", "-A", "warnings", path, "-o", library]
+        else:
+            flags = "-O0 -shared -fPIC -Dfloat=double -Dsinf=sin -Dcosf=cos -Dsqrtf=sqrt -include math.h".split()
+            flags += ["-Werror=implicit-function-declaration"]
+            command = ["gcc", *flags, path, "-o", library, "-lm"]
+        said = subprocess.run(command, capture_output=True, check=False, text=True)
+        if said.returncode == 0:
+            return library, alive
+        bad = {int(n) - 1 for n in re.findall(r"^[^\s:]*all\.\w+:(\d+):\d+: .*error", said.stderr, re.MULTILINE)}
+        ends = [*starts[1:], len(lines)]
+        alive = [k for k, a, b in zip(alive, starts, ends, strict=True) if not any(a <= n < b for n in bad)]
+        if not bad:
+            break
+    return library, []
+
+
+def call_all(
+    library: Path, alive: list[int], number: int, subject: Subject, points: list[list[Any]]
+) -> list[list[float] | None]:
+    """The results of compiled functions; one that fails ends its process, and the others go on in a new one."""
+    results: list[list[float] | None] = [None] * number
+    waiting = [*alive]
+    while waiting:
+        reading, writing = multiprocessing.Pipe(duplex=False)
+        child = multiprocessing.get_context("fork").Process(
+            target=call_library, args=(library, waiting, subject, points, writing)
+        )
+        child.start()
+        writing.close()
+        done = 0
+        try:
+            while True:
+                results[waiting[done]] = reading.recv()
+                done += 1
+        except (EOFError, IndexError):
+            child.join()
+        waiting = waiting[done + 1 :]
+    return results
+
+
+def call_library(library: Path, places: list[int], subject: Subject, points: list[list[Any]], writing: Any) -> None:
+    """Send the results of compiled functions at the points, one after the other."""
+    loaded = ctypes.CDLL(str(library))
+    for k in places:
+        signal.setitimer(signal.ITIMER_VIRTUAL, SECONDS)  # the end of this process
+        function = getattr(loaded, f"m{k}_{subject.function}")
+        function.restype = ctypes.c_double if subject.returns() else ctypes.c_int
+        results: list[float] = []
+        for point in points:
+            shaped = [*zip(point, subject.parameters(), strict=True)]
+            given = [(ctypes.c_double * (len(v) + 8))(*v) if s else ctypes.c_double(v[0]) for v, (_, s, _) in shaped]
+            value = function(*given)
+            results += [value] * subject.returns()
+            for cells, (v, (_, _, is_changed)) in zip(given, shaped, strict=True):
+                results += [*cells[: len(v)]] if is_changed else []
+        writing.send(results)
 
 
 def is_same(a: list[float] | None, b: list[float] | None) -> bool | None:
     """True where both compute the same; None where one of them computes nothing to compare."""
     if a is None or b is None or not all(map(math.isfinite, [*a, *b])):
         return None
-    return all(abs(x - y) <= 1e-9 * (1 + abs(x) + abs(y)) for x, y in zip(a, b, strict=True))
+    return len(a) == len(b) and all(abs(x - y) <= 1e-9 * (1 + abs(x) + abs(y)) for x, y in zip(a, b, strict=True))
 
 
 # What the audit says
 
 
-def decide_mutant(subject: Subject, mutant: str, folder: Path, wants_mend: bool) -> tuple[str, str]:
+@dataclass(slots=True)
+class Comparison:
+    """A subject beside its mutants: the original is read once, and a pair of formulas is decided once."""
+
+    subject: Subject
+    names: Names
+    original: Source
+    decided: dict[Any, str]
+
+    def questions(self, mutant: str) -> Iterator[Question]:
+        """Whether the mutant computes the same, output by output."""
+        sources = {"mutant": read_code("mutant", mutant, self.subject, self.names), "original": self.original}
+        for output in self.subject.outputs():
+            keys = {"left": f"mutant:{output}", "right": f"original:{output}"}
+            yield Question(output, "equal", keys, "mutant", sources, self.names, Path())
+
+
+@functools.cache
+def compare(subject: Subject) -> Comparison:
+    """The subject, read."""
+    names = Names()
+    return Comparison(subject, names, read_code("original", subject.text, subject, names), {})
+
+
+def read_code(name: str, text: str, subject: Subject, names: Names) -> Source:
+    """A text as the code of a question."""
+    unit = read_unit(text.encode(), name, subject.language, None)
+    function = find_function(unit, subject.function, name)
+    source = Source(name, unit, function, names, dict(subject.shapes), frozenset(), ())
+    names.inputs |= list_inputs(source, function)
+    return source
+
+
+def decide_mutant(subject: Subject, mutant: str, wants_mend: bool = False) -> tuple[str, str]:
     """PROVED, REFUTED, OPEN or refused; and of REFUTED whether a mend was found, where one is wanted."""
-    (folder / "original.c").write_text(subject.text)
-    (folder / "mutant.c").write_text(mutant)
-    spec = "".join(
-        f'[[code]]\nname = "{n}"\nfile = "{n}.c"\nfunction = "{subject.function}"\n' for n in ("original", "mutant")
-    )
-    for name in subject.outputs():
-        spec += f'[[question]]\nname = "{name}"\nkind = "equal"\nleft = "mutant:{name}"\nright = "original:{name}"\n'
-    (folder / "spec.toml").write_text(spec)
-    statuses, mended = set(), ""
+    statuses, mended, comparison = set(), "", compare(subject)
     try:
-        _, questions = read_specification(folder / "spec.toml")
-        for question in questions:
+        for question in comparison.questions(mutant):
             for entry in list_entries(question):
                 if not (isinstance(entry.code, Scalar) and isinstance(entry.expected, Scalar)):
                     statuses.add("OPEN")
                     continue
                 scope = make_scope(question.names, entry, ())
-                status = str(decide_entry(entry.code.tree, entry.expected.tree, scope, 0.2).status)
+                key = (entry.code.tree, entry.expected.tree, entry.conditions)
+                if key not in comparison.decided:
+                    comparison.decided[key] = str(decide_entry(*key[:2], scope, 0.2).status)
+                status = comparison.decided[key]
                 statuses.add(status)
                 if status == "REFUTED" and wants_mend and not mended:
                     mended = "mended" if suggest(entry, scope, Budget()) else "not mended"
@@ -222,7 +379,7 @@ def make_batches(inputs: int, seed: int = 0) -> list[Batch]:
     """At most ``inputs`` mutants in batches of 100, none twice: a batch is a subject, a first place and a number."""
     shares = [(s.name, first, SIZE, seed) for s in list_subjects() for first in range(0, len(list_mutants(s)), SIZE)]
     chosen = random.Random(seed).sample(shares, min(len(shares), -(-inputs // SIZE)))
-    return [Batch(repr(share), share) for share in chosen]
+    return [Batch(repr(share), share) for share in sorted(chosen)]
 
 
 def judge(task: tuple[str, int, int, int]) -> Result:
@@ -232,19 +389,22 @@ def judge(task: tuple[str, int, int, int]) -> Result:
     mutants = list_mutants(subject)
     chosen = random.Random(seed).sample(mutants, len(mutants))[first : first + size]
     values = compute([subject.text, *chosen], subject, seed)
-    counts, wrong = Counter[str](), []
-    with tempfile.TemporaryDirectory() as folder:
-        for k, mutant in enumerate(chosen):
-            status, mended = decide_mutant(subject, mutant, Path(folder), k % MENDED == 0)
-            same = is_same(values[0], values[k + 1])
-            counts[status] += 1
-            if same is not None:
-                counts[f"{status} and {'the same' if same else 'another'}"] += 1
-            if mended:
-                counts[mended] += 1
-            if (status in ("PROVED", "CERTIFIED") and same is False) or (status == "REFUTED" and same is True):
-                wrong.append([name, status, mutant])
-    return result(counts, wrong)
+    assert values[0] is not None, "the original does not run"
+    counts, wrong, lacking = Counter[str](), list[Any](), list[Any]()
+    for k, mutant in enumerate(chosen):
+        is_first = not (counts["mended"] or counts["not mended"])  # a mend is sought once in a batch
+        status, mended = decide_mutant(subject, mutant, is_first)
+        same = is_same(values[0], values[k + 1])
+        counts[status] += 1
+        counts[subject.language] += 1
+        if same is not None:
+            counts[f"{status} and {'the same' if same else 'another'}"] += 1
+        if mended:
+            counts[mended] += 1
+            lacking += [[name, mended, mutant]] * (mended == "not mended")
+        if (status in ("PROVED", "CERTIFIED") and same is False) or (status == "REFUTED" and same is True):
+            wrong.append([name, status, mutant])
+    return result(counts, wrong, lacking)
 
 
 if __name__ == "__main__":
