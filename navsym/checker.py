@@ -385,6 +385,8 @@ DOMAINS: dict[str, tuple[int, int | None]] = {"log": (0, None), "asin": (-1, 1),
 
 def apply_function(name: str, x: Jet, field: Any) -> Jet:
     """A function of x by its definition, or by its value and its derivative."""
+    if name == "abs" and len(x.parts) == 1 and isinstance(x.parts[0], arb):
+        return x.compose(abs(x.parts[0]), Jet)  # a square of a ball may be below 0
     if name in DEFINITIONS:
         return evaluate(parse(DEFINITIONS[name]), {"x": x}, field)
     if name not in DERIVATIVES:

@@ -52,6 +52,30 @@ ON_AN_EDGE = (
     Bound(sp.sqrt(x - 1 - sp.Rational(1, 10**120)), ">", sp.Integer(0), {x: (1 + sp.Rational(1, 10**120), 2)}),
 )
 
+#: False so near to a zero, or so far out, that no decimal of a sample comes there.
+BEYOND_DECIMALS = (
+    Bound(sp.log(sp.Abs(a - sp.Rational(1, 2))), ">=", -(sp.Integer(10) ** 4)),
+    Bound(sp.log(sp.Abs(a - sp.sqrt(2))), ">=", -(sp.Integer(10) ** 5)),
+    Bound(sp.log(sp.log(x)), ">=", -(sp.Integer(10) ** 4), {x: (1, 2)}),
+    Bound(sp.log(sp.Abs(sp.sin(a))), ">=", -(sp.Integer(10) ** 6)),
+    Bound(sp.log(p), "<=", sp.Integer(10) ** 12),
+    Bound(sp.sqrt(p + 1) - sp.sqrt(p), ">", sp.Rational(1, 10**200)),
+)
+
+#: Nobody knows how near a float, or a number without a formula, has to come.
+BEYOND_SEARCH = (
+    Bound(sp.log(sp.Abs(a**3 + a - 1)), ">=", -(sp.Integer(10) ** 4)),
+    Bound(sp.log(sp.Abs(a - sp.Rational(1, 3))), ">=", -(sp.Integer(10) ** 6)),
+    Bound(sp.atan(sp.log(sp.Abs(a - sp.Rational(1, 3))) / 10**6), ">=", sp.Rational(-3, 2)),
+)
+
+#: A zero of an absolute value in another, and of waves beyond the first turn.
+ON_KINKS_AND_WAVES = (
+    Bound(sp.Abs(sp.Abs(2 * a - b) - TINY), ">", sp.Integer(0)),
+    Bound(sp.cos(a), "<", sp.Integer(1), exists=(1 / a,)),
+    Bound(sp.Abs(p - sp.sqrt(2)) + sp.Abs(q**2 - 2), "!=", sp.Integer(0)),
+)
+
 TOUCHING_BUT_STRICT = (
     Bound(a, "!=", b),
     Bound((p + q) / 2, ">", sp.sqrt(p * q)),
@@ -63,11 +87,17 @@ TOUCHING_BUT_STRICT = (
 )
 
 
-@pytest.mark.parametrize("statement", (*NEAR_MISSES, *FALSE_BOUNDS), ids=str)
+@pytest.mark.parametrize("statement", (*NEAR_MISSES, *FALSE_BOUNDS, *BEYOND_DECIMALS, *ON_KINKS_AND_WAVES), ids=str)
 def test_a_statement_that_is_false_by_little_or_far_away_is_refuted_at_a_point(statement):
     verdict = decide(statement)
     assert verdict.status == REFUTED
     assert verdict.difference is not None
+
+
+@pytest.mark.parametrize("statement", BEYOND_SEARCH, ids=str)
+def test_a_margin_that_falls_without_end_is_not_confirmed(statement):
+    verdict = decide(statement, seconds=0.2)
+    assert verdict.status == OPEN and "still falls" in verdict.evidence
 
 
 @pytest.mark.parametrize("statement", ON_AN_EDGE, ids=str)
