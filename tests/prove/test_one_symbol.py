@@ -47,6 +47,10 @@ def test_a_bound_that_fails_on_a_thin_interval_is_refuted_at_a_rational_point(ga
         (sp.sqrt(x) - 2 * x + x**2 / sp.sqrt(x), sp.sqrt(x) - 2 * x + x * sp.sqrt(x) - THIN),
         (sp.cosh(x) - 1, sp.cosh(x) - 1 - THIN),
         (sp.Abs(x - 1) + sp.Abs(x + 1) - 2, sp.Abs(x - 1) + sp.Abs(x + 1) - 2 - THIN),
+        (
+            3 * sp.Abs(x - sp.Rational(1, 3)) + 2 * sp.Abs(x + sp.Rational(4, 3)) - sp.Rational(10, 3),
+            3 * sp.Abs(x - sp.Rational(1, 3)) + 2 * sp.Abs(x + sp.Rational(4, 3)) - sp.Rational(10, 3) - THIN,
+        ),
         (sp.Abs(S) + sp.Abs(sp.cos(x)) - 1, sp.Abs(S) + sp.Abs(sp.cos(x)) - 1 - THIN),
     ],
     ids=str,

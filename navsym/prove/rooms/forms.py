@@ -221,7 +221,7 @@ def by_hypothesis(goal: Any, sample: list[arb]) -> Iterator[Proof]:
             c = linear.coeff(v)
             name = f"{v.name}_{k}"
             rest = linear - c * v
-            if not (c.is_Rational and c > 0 and rest != 0) or v in rest.free_symbols or name in goal.box:
+            if not (c.is_Rational and c != 0 and rest != 0) or v in rest.free_symbols or name in goal.box:
                 continue
             u = symbol(name)
             form = to_text(to_sympy(goal.term).xreplace({v: (u - rest) / c}))
