@@ -12,7 +12,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 
@@ -232,12 +232,25 @@ def look_again(
         touching = point if zero_breaks and abs(ball) < TOUCHING else touching
         positive = point if positive is None and ball > 0 else positive
         negative = point if negative is None and ball < 0 else negative
-    falling = None
+    found = look_close(difference, excludes, limits, sides, goals)
+    if found.counterexample is not None:
+        return found
+    return replace(found, positive=positive, negative=negative, touching=touching)
+
+
+def look_close(
+    difference: sp.Expr,
+    excludes: Callable[[arb], bool],
+    limits: Mapping[sp.Symbol, Range],
+    sides: Sequence[sp.Expr],
+    goals: Sequence[sp.Expr],
+) -> Look:
+    """Look beside zeros and far out: a counterexample, or a place where a goal still falls."""
+    programs, falling = [tape(part) for part in (difference, *goals, *sides)], None
     for points, bits in itertools.islice(approaches(difference, limits), MOST_APPROACHES):
         rows: list[list[arb]] = []
         for point, precision in zip(points, bits, strict=False):
-            parts = map(tape, (difference, *goals, *sides))
-            rows.append([value_at(part, point, precision) for part in parts])
+            rows.append([value_at(program, point, precision) for program in programs])
             if not all(ball.is_finite() for ball in rows[-1]):
                 break
             if excludes(rows[-1][0]):
@@ -246,7 +259,7 @@ def look_again(
                 if not any(map(is_falling, [*zip(*rows, strict=True)][1 : len(goals) + 1])):
                     break
                 falling = point
-    return Look(positive=positive, negative=negative, touching=touching, falling=falling)
+    return Look(falling=falling)
 
 
 def approaches(difference: sp.Expr, limits: Mapping[sp.Symbol, Range]) -> Iterator[tuple[list[Point], tuple[int, ...]]]:
