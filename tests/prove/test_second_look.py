@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 from flint import arb
 
-from navsym.claims import CONFIRMED, OPEN, REFUTED
+from navsym.claims import CONFIRMED, OPEN, PROVED, REFUTED
 from navsym.claims.statement import Bound, Equation
 from navsym.core.balls import ball_power, tape
 from navsym.prove.ladder import decide
@@ -130,6 +130,20 @@ def test_sides_that_touch_at_an_irrational_point_are_not_confirmed_to_be_apart(r
 def test_a_bound_that_fails_by_little_around_an_irrational_point_is_refuted():
     assert decide(Bound((x**2 - 2) ** 2, ">=", sp.Rational(1, 10**30))).status == REFUTED
     assert decide(Bound((x**3 - x - 1) ** 2 - TINY, ">", sp.Integer(0), {x: (1, 2)})).status == REFUTED
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        Bound(sp.atan((a - 10**6) ** 2), ">", -TINY),
+        Bound(1 - 1 / (1 + (a - sp.sqrt(2)) ** 2) + TINY, ">", sp.Integer(0)),
+        Bound(sp.cosh(a - sp.pi), ">=", sp.Integer(1)),
+        Bound(sp.log(1 + p) + sp.log(1 + q), ">=", sp.log(1 + p + q)),
+    ],
+    ids=str,
+)
+def test_bounds_that_are_reached_far_from_zero_are_proved(statement):
+    assert decide(statement, seconds=10.0).status == PROVED
 
 
 def test_what_is_true_but_not_proved_stays_confirmed():

@@ -287,8 +287,10 @@ def approaches(difference: sp.Expr, limits: Mapping[sp.Symbol, Range]) -> Iterat
         for place in find_lowest(hidden**2, {s: limits[s] for s in limits if s in hidden.free_symbols}):
             point = {**home, **{symbol: to_rational(value) for symbol, value in place.items()}}
             symbol = min(place, key=str)
-            if abs(value_at(tape(hidden), point)) < HIDDEN:
-                yield [{**point, symbol: point[symbol] + sp.Rational(1, 10**n)} for n in (3, 6, 12)], (BITS,) * 3
+            near = [point[symbol] + sp.Rational(1, 10**n) for n in (3, 6, 12)]
+            inside = all(limits[s].contains(v) for s, v in point.items()) and all(map(limits[symbol].contains, near))
+            if inside and abs(value_at(tape(hidden), point)) < HIDDEN:
+                yield [{**point, symbol: value} for value in near], (BITS,) * 3
 
 
 def is_falling(margins: Sequence[arb]) -> bool:
