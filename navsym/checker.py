@@ -370,8 +370,7 @@ def raise_power(x: Jet, q: fmpq, field: Any) -> Jet:
         if field in (clip, strict) and q == 0 and arb_series(x.enclose())[0].contains(0):
             raise Undefined("0**0 has no value")
         return prod([x] * int(q), start=Jet(1))
-    inside = restrict(lambda ball: ball**q, x, 0, None) if field is clip and q.q > 1 else None
-    if inside is not None:
+    if field is clip and q.q > 1 and (inside := restrict(lambda ball: ball**q, x, 0, None)) is not None:
         return inside
     base = x.parts[0]
     # flint has 0 for every power of a series without terms, also for the negative ones, which do not exist.
@@ -385,14 +384,13 @@ DOMAINS: dict[str, tuple[int, int | None]] = {"log": (0, None), "asin": (-1, 1),
 
 def apply_function(name: str, x: Jet, field: Any) -> Jet:
     """A function of x by its definition, or by its value and its derivative."""
+    if name == "abs" and len(x.parts) == 1 and isinstance(x.parts[0], arb):
+        return x.compose(abs(x.parts[0]), Jet)  # a square of a ball may be below 0
     if name in DEFINITIONS:
         return evaluate(parse(DEFINITIONS[name]), {"x": x}, field)
     if name not in DERIVATIVES:
         return apply_remainder(name, x, field)
-    inside = (
-        restrict(lambda ball: getattr(ball, name)(), x, *DOMAINS[name]) if field is clip and name in DOMAINS else None
-    )
-    if inside is not None:
+    if field is clip and name in DOMAINS and (inside := restrict(getattr(arb, name), x, *DOMAINS[name])) is not None:
         return inside
     base = x.parts[0]
     value = getattr(base, name)() if hasattr(base, name) else base.make_atom(name)

@@ -12,6 +12,7 @@ import ast
 import contextlib
 import difflib
 import functools
+import gc
 import importlib
 import os
 import sys
@@ -46,7 +47,9 @@ def main() -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(AttributeError, ValueError):
             stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    sys.exit(run(sys.argv[1:]))
+    status = run(sys.argv[1:])
+    gc.freeze()  # at the end nobody looks for cycles in all modules: a third of the time of a short command
+    sys.exit(status)
 
 
 def run(arguments: Sequence[str]) -> int:

@@ -197,7 +197,11 @@ def decide_unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sam
 
 
 def judge_look(look: Look, sample: Sample, scope: str, what: str) -> Verdict:
-    """REFUTED by the point of a second look, else what the samples say."""
+    """REFUTED by the point of a second look, OPEN where the margin falls beyond it, else what the samples say."""
+    if look.falling is not None:
+        near = {symbol.name: str(sp.N(value, 12)) for symbol, value in look.falling.items()}
+        words = f"the margin still falls near {near}, beyond all samples"
+        return Verdict(OPEN, "sampling", scope, evidence=words)
     if look.counterexample is None or look.difference is None:
         return judge_sample(sample, scope, what)
     return refute_at_point(look.counterexample, look.difference, look.exact)

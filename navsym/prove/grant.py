@@ -6,6 +6,7 @@ reads both. A certificate that it refuses leaves the verdict OPEN, whoever claim
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
 import time
@@ -30,7 +31,7 @@ from navsym.prove.search import SECONDS, find_proof, rules_of
 from navsym.prove.wording import decimal_ends
 
 UNCHECKED = "unchecked: no certificate of this statement"
-BITS = (128, 1024, 8192)
+BITS, MORE_BITS = (128, 1024, 8192), (20_000, 190_000)
 POINTS = 18
 SHARE = "share"
 #: Kinds of certificates that give a statement its verdict.
@@ -222,14 +223,21 @@ def refute_document(documents: Sequence[Document], document: Document, point: Ma
     """The certificate of a counterexample; raises Refused."""
     refusal = checker.Refused("no counterexample")
     more = answer_at_point(document, point)
-    for bits in BITS:
+    close = MORE_BITS if any("exp(-" in text for text in point.values()) else ()
+    ways = itertools.chain(((n, None) for n in BITS), find_zeros(document, point, more), ((n, None) for n in close))
+    for bits, zero in ways:
         certificate: Document = {"kind": "counterexample", "statement": document, "bits": bits, "point": dict(point)}
-        certificate |= more
+        certificate |= more | {"zero": zero}
         try:
-            grant(documents, certificate | {"zero": None})
-            return certificate | {"zero": None}
+            grant(documents, certificate)
+            return certificate
         except REFUSALS as error:
             refusal = error
+    raise refusal
+
+
+def find_zeros(document: Document, point: Mapping[str, str], more: Document) -> Iterator[tuple[int, Any]]:
+    """A proof that the term of a relation that equality breaks is 0 at a point."""
     if document["relation"] in ("<", ">", "!="):
         there = {name: player.parse(value) for name, value in point.items()}
         cases, _ = player.read_statement(document, player.Answers(more["answers"], there) if more else None)
@@ -238,15 +246,7 @@ def refute_document(documents: Sequence[Document], document: Document, point: Ma
             term = player.replace(term, ("symbol", name), value)
         zero = find_proof(player.Goal(term, "=", {}))
         if zero is not None:
-            certificate = {
-                "kind": "counterexample",
-                "statement": document,
-                "bits": BITS[0],
-                "point": dict(point),
-            } | more
-            grant(documents, certificate | {"zero": zero})
-            return certificate | {"zero": zero}
-    raise refusal
+            yield BITS[0], zero
 
 
 def answer_at_point(document: Document, point: Mapping[str, str]) -> Document:

@@ -10,14 +10,13 @@ from flint import arb
 
 from navsym.claims.statement import Bound, Box, Equation
 from navsym.claims.verdict import OPEN, REFUTED, Verdict
-from navsym.core.balls import UnsupportedError, tape
+from navsym.core.balls import UnsupportedError
 from navsym.core.errors import DomainError
 from navsym.prove.assumptions import add_sides, remaining_assumptions
 from navsym.prove.equations import decide_equation, judge_look, judge_sample, list_entries, shape_of
 from navsym.prove.identities.normal_form import OutsideLanguageError, reduce_to_zero
-from navsym.prove.identities.numbers import is_zero
 from navsym.prove.one_symbol import decide_by_roots
-from navsym.prove.sampling.points import Point, Sample, draw_points, search_counterexample, value_at
+from navsym.prove.sampling.points import Sample, search_counterexample
 from navsym.prove.sampling.second_look import Look, look_again
 from navsym.prove.wording import point_text, refute_at_point, scope_of
 
@@ -85,10 +84,6 @@ def decide_difference(
     sample = search_counterexample(difference, lambda ball: contradicts(ball, relation), box, sides=sides)
     if sample.points == 0:
         return judge_sample(sample, scope, f"printed {relation} derived")
-    if sample.counterexample is None and relation in STRICT:
-        exact = find_exact_zero(difference, box, sides)
-        if exact is not None:
-            return refute_at_point(exact, arb(0), exact=True)
     if sample.counterexample is not None:
         assert sample.difference is not None
         return refute_at_point(sample.counterexample, sample.difference)
@@ -144,18 +139,3 @@ def doubt_of(look: Look, relation: str) -> str:
 def contradicts(ball: arb, relation: str) -> bool:
     """True for a finite ball of ``printed - derived`` that excludes the relation."""
     return EXCLUDES[relation](ball)
-
-
-def find_exact_zero(difference: sp.Expr, box: Box, sides: Sequence[sp.Expr] = ()) -> Point | None:
-    """An exact point of the box at which the difference vanishes, proved by the normal form."""
-    program, others = tape(difference), [tape(side) for side in sides]
-    symbols = sorted(difference.free_symbols | set().union(*(s.free_symbols for s in sides)), key=str)
-    for point in draw_points(symbols, box, 24):
-        ball = value_at(program, point)
-        if not ball.is_finite() or not ball.contains(0):
-            continue
-        if not all(value_at(other, point).is_finite() for other in others):
-            continue
-        if is_zero(difference.subs(point)):
-            return point
-    return None

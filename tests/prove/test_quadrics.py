@@ -14,6 +14,7 @@ UNIT = ["dot(u, u) = 1", "dot(v, v) = 1"]
 C = {"rotation": "b to n"}
 BOUNDS = [
     ("dot(u, v)", "1", {"u": V, "v": V, "given": UNIT}),
+    ("dot(u, v)**2", "1", {"u": V, "v": V, "given": UNIT}),
     ("dot(p, q)", "1", {"p": {"quaternion": "unit"}, "q": {"quaternion": "unit"}}),
     ("q[1]*q[2]", "1/2", {"q": {"quaternion": "unit"}}),
     ("abs(q[2])", "1", {"q": {"quaternion": "unit"}}),

@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 from flint import arb
 
-from navsym.claims import CONFIRMED, OPEN, REFUTED
+from navsym.claims import CONFIRMED, OPEN, PROVED, REFUTED
 from navsym.claims.statement import Bound, Equation
 from navsym.core.balls import ball_power, tape
 from navsym.prove.ladder import decide
@@ -52,6 +52,30 @@ ON_AN_EDGE = (
     Bound(sp.sqrt(x - 1 - sp.Rational(1, 10**120)), ">", sp.Integer(0), {x: (1 + sp.Rational(1, 10**120), 2)}),
 )
 
+#: False so near to a zero, or so far out, that no decimal of a sample comes there.
+BEYOND_DECIMALS = (
+    Bound(sp.log(sp.Abs(a - sp.Rational(1, 2))), ">=", -(sp.Integer(10) ** 4)),
+    Bound(sp.log(sp.Abs(a - sp.sqrt(2))), ">=", -(sp.Integer(10) ** 5)),
+    Bound(sp.log(sp.log(x)), ">=", -(sp.Integer(10) ** 4), {x: (1, 2)}),
+    Bound(sp.log(sp.Abs(sp.sin(a))), ">=", -(sp.Integer(10) ** 6)),
+    Bound(sp.log(p), "<=", sp.Integer(10) ** 12),
+    Bound(sp.sqrt(p + 1) - sp.sqrt(p), ">", sp.Rational(1, 10**200)),
+)
+
+#: Nobody knows how near a float, or a number without a formula, has to come.
+BEYOND_SEARCH = (
+    Bound(sp.log(sp.Abs(a**3 + a - 1)), ">=", -(sp.Integer(10) ** 4)),
+    Bound(sp.log(sp.Abs(a - sp.Rational(1, 3))), ">=", -(sp.Integer(10) ** 6)),
+    Bound(sp.atan(sp.log(sp.Abs(a - sp.Rational(1, 3))) / 10**6), ">=", sp.Rational(-3, 2)),
+)
+
+#: A zero of an absolute value in another, and of waves beyond the first turn.
+ON_KINKS_AND_WAVES = (
+    Bound(sp.Abs(sp.Abs(2 * a - b) - TINY), ">", sp.Integer(0)),
+    Bound(sp.cos(a), "<", sp.Integer(1), exists=(1 / a,)),
+    Bound(sp.Abs(p - sp.sqrt(2)) + sp.Abs(q**2 - 2), "!=", sp.Integer(0)),
+)
+
 TOUCHING_BUT_STRICT = (
     Bound(a, "!=", b),
     Bound((p + q) / 2, ">", sp.sqrt(p * q)),
@@ -63,11 +87,17 @@ TOUCHING_BUT_STRICT = (
 )
 
 
-@pytest.mark.parametrize("statement", (*NEAR_MISSES, *FALSE_BOUNDS), ids=str)
+@pytest.mark.parametrize("statement", (*NEAR_MISSES, *FALSE_BOUNDS, *BEYOND_DECIMALS, *ON_KINKS_AND_WAVES), ids=str)
 def test_a_statement_that_is_false_by_little_or_far_away_is_refuted_at_a_point(statement):
     verdict = decide(statement)
     assert verdict.status == REFUTED
     assert verdict.difference is not None
+
+
+@pytest.mark.parametrize("statement", BEYOND_SEARCH, ids=str)
+def test_a_margin_that_falls_without_end_is_not_confirmed(statement):
+    verdict = decide(statement, seconds=0.2)
+    assert verdict.status == OPEN and "still falls" in verdict.evidence
 
 
 @pytest.mark.parametrize("statement", ON_AN_EDGE, ids=str)
@@ -100,6 +130,20 @@ def test_sides_that_touch_at_an_irrational_point_are_not_confirmed_to_be_apart(r
 def test_a_bound_that_fails_by_little_around_an_irrational_point_is_refuted():
     assert decide(Bound((x**2 - 2) ** 2, ">=", sp.Rational(1, 10**30))).status == REFUTED
     assert decide(Bound((x**3 - x - 1) ** 2 - TINY, ">", sp.Integer(0), {x: (1, 2)})).status == REFUTED
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        Bound(sp.atan((a - 10**6) ** 2), ">", -TINY),
+        Bound(1 - 1 / (1 + (a - sp.sqrt(2)) ** 2) + TINY, ">", sp.Integer(0)),
+        Bound(sp.cosh(a - sp.pi), ">=", sp.Integer(1)),
+        Bound(sp.log(1 + p) + sp.log(1 + q), ">=", sp.log(1 + p + q)),
+    ],
+    ids=str,
+)
+def test_bounds_that_are_reached_far_from_zero_are_proved(statement):
+    assert decide(statement, seconds=10.0).status == PROVED
 
 
 def test_what_is_true_but_not_proved_stays_confirmed():

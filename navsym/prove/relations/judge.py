@@ -204,7 +204,8 @@ def refute_at_points(claim: TextClaim, document: Document) -> Verdict | None:
     """REFUTED where the questions of a statement have answers at a point, if not at all of them."""
     box = {name: player.read_range(limits) for name, limits in document["symbols"].items()}
     kinds = {name: kind for name, kind in claim.kinds.items() if {e for row in kind[1] for e in row} <= set(box)}
-    for point in islice(draw_special_points(box, (), kinds, MOST_POINTS) if box else iter([{}]), MOST_POINTS):
+    points = draw_special_points(box, (), kinds, MOST_POINTS)
+    for point in chain(islice(draw_corner_points(box, kinds), 1), points) if box else [{}]:
         place = {name: player.number(value) for name, value in point.items()}
         try:
             cases, _, _ = read_with_answers(document, SECONDS / 2, place)

@@ -92,14 +92,14 @@ def by_one_angle(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def by_substitution(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """One number u in the place of an exponential, a root, or the tangent of a half angle."""
+    """One number u in the place of an exponential, a root, a tangent of a half angle, or what alone has its symbols."""
     expression = to_sympy(goal.term)
     u = sp.Symbol("u_", real=True)
     name = "u"
     while name in goal.box:
         name += "u"
     new = symbol(name)
-    for make in (by_exponentials, by_root, by_tangent):
+    for make in (by_exponentials, by_root, by_tangent, by_lonely_parts):
         for term, form, low, dense in make(expression, u):
             body: Proof = {"rule": "abstract", "terms": {name: to_text(term)}, "ranges": {name: [low, None, []]}}
             body |= {"to": to_text(factor(form.xreplace({u: new}))), "inside": Holes(), "defined": Holes()}
@@ -129,6 +129,16 @@ def by_exponentials(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
     form = hyper.xreplace(powers)
     if not form.has(x):
         yield sp.exp(x * sp.Rational(step, d)), form, "0", None
+
+
+def by_lonely_parts(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
+    """u = a square or an absolute value, or the sum of which a function is, whose symbols stand nowhere else."""
+    squares = [p for p in expression.atoms(sp.Pow, sp.Abs) if p.func is sp.Abs or p.exp == 2]
+    sums = [f.args[0] for f in expression.atoms(sp.Function) if f.args[0].is_Add and f.func is not sp.Abs]
+    for part in sorted(squares + sums, key=str):
+        form = expression.xreplace({part: u})
+        if part.free_symbols and not part.args[0].is_Symbol and not form.free_symbols & part.free_symbols:
+            yield part, form, "0" if part in squares else None, None
 
 
 def by_root(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
@@ -221,7 +231,7 @@ def by_hypothesis(goal: Any, sample: list[arb]) -> Iterator[Proof]:
             c = linear.coeff(v)
             name = f"{v.name}_{k}"
             rest = linear - c * v
-            if not (c.is_Rational and c > 0 and rest != 0) or v in rest.free_symbols or name in goal.box:
+            if not (c.is_Rational and c != 0 and rest != 0) or v in rest.free_symbols or name in goal.box:
                 continue
             u = symbol(name)
             form = to_text(to_sympy(goal.term).xreplace({v: (u - rest) / c}))

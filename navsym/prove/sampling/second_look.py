@@ -12,7 +12,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 
@@ -39,10 +39,11 @@ MOST_FACTORS = 8
 MOST_MEETINGS = 24
 INVERSES = {
     sp.exp: sp.log, sp.log: sp.exp, sp.sin: sp.asin, sp.cos: sp.acos, sp.tan: sp.atan, sp.asin: sp.sin, sp.acos: sp.cos,
-    sp.atan: sp.tan, sp.sinh: sp.asinh, sp.tanh: sp.atanh,
+    sp.atan: sp.tan, sp.sinh: sp.asinh, sp.tanh: sp.atanh, sp.cosh: sp.acosh, sp.Abs: sp.Abs,
 }  # fmt: skip
+SYMMETRIC = (sp.Abs, sp.cos, sp.cosh)
+WAVES = (sp.sin, sp.cos, sp.tan)
 MOST_EDGES = 8
-CLOSE = sp.Rational(1, 10**1000)  # to a pole of a logarithm
 
 #: Functions that are zero where their argument is.
 VANISHING = (sp.Abs, sp.sin, sp.tan, sp.atan, sp.asin, sp.sinh, sp.tanh)
@@ -65,19 +66,26 @@ def unwrap_factor(factor: sp.Expr) -> sp.Expr:
 
 
 def zeros_in(base: sp.Expr, symbol: sp.Symbol, limits: Mapping[sp.Symbol, Range]) -> Iterator[Point]:
-    """The roots of ``c + b symbol + a symbol**2`` at ordinary points of the other symbols."""
-    slope = sp.diff(base, symbol)
-    curve = sp.expand(sp.diff(slope, symbol) / 2)
-    if symbol in curve.free_symbols:
-        return
+    """Points where a part vanishes, by one symbol, at ordinary points of the others."""
     others = [other for other in limits if other is not symbol]
     for point in draw_points(others, box_of_ranges(limits), PLACES):
-        numbers = [part.subs({**point, symbol: 0}) for part in (curve, slope, base)]
-        try:
-            found = [value for value in roots_of(*numbers) if limits[symbol].contains(value)]
-        except UnsupportedError:
-            continue
-        yield from ({**point, symbol: value} for value in found)
+        for value in zeros_of(base, symbol, point):
+            if limits[symbol].contains(value):
+                yield {**point, symbol: value}
+
+
+def zeros_of(part: sp.Expr, symbol: sp.Symbol, point: Point) -> list[sp.Expr]:
+    """Real values of a symbol at which a part vanishes: of degree one or two in it, or with the symbol only once."""
+    slope = sp.diff(part, symbol)
+    curve = sp.expand(sp.diff(slope, symbol) / 2)
+    try:
+        if symbol in curve.free_symbols:
+            found = invert(part.subs(point), symbol)
+        else:
+            found = roots_of(*(p.subs({**point, symbol: 0}) for p in (curve, slope, part)))
+        return [value for value in found if value.is_real and exact_ball(value).is_finite()]
+    except UnsupportedError:
+        return []
 
 
 def meeting_points(difference: sp.Expr, limits: Mapping[sp.Symbol, Range]) -> Iterator[Point]:
@@ -103,41 +111,36 @@ def values_beside(parts: Sequence[sp.Expr], symbol: sp.Symbol, limit: Range, poi
     known, values = {symbol, *point}, dict[sp.Expr, None]()
     for part in parts:
         if symbol in part.free_symbols <= known:
-            slope = sp.diff(part, symbol)
-            curve = sp.expand(sp.diff(slope, symbol) / 2)
-            try:
-                numbers = [p.subs({**point, symbol: 0}) for p in (curve, slope, part)]
-                found = roots_of(*numbers) if symbol not in curve.free_symbols else invert(part.subs(point), symbol)
-                values |= dict.fromkeys(v for v in found if v.is_real and limit.contains(v))
-            except UnsupportedError:
-                continue
+            values |= dict.fromkeys(v for v in zeros_of(part, symbol, point) if limit.contains(v))
     zeros = sorted(values, key=lambda v: exact_ball(v).mid())
     between = ((low + high) / 2 for low, high in itertools.pairwise(zeros))
     steps = (v + step for v in zeros for step in (1, -1))  # (x - 1000)**2 ((x - 1000)**2 - 2) is lowest a unit away
     values |= dict.fromkeys(v for v in (*between, *steps) if limit.contains(v))
     if point and zeros:
         return [*values]
-    close = [v + CLOSE for v in zeros if limit.contains(v + CLOSE)]
-    return [*values, *values_at_edges(limit)[:MOST_EDGES], *close]
+    return [*values, *values_at_edges(limit)[:MOST_EDGES]]
 
 
 def invert(part: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
-    """The root of ``c + a f(u)`` with an inverse of f, and so on inwards, where the symbol stands once."""
-    value: sp.Expr = sp.Integer(0)
+    """Roots of ``c + a f(u)`` with inverses of f, and so on inwards, where the symbol stands once."""
+    values: list[sp.Expr] = [sp.Integer(0)]
     while part != symbol:
         rest, own = part.as_independent(symbol, as_Add=part.is_Add)
         if part.is_Add or part.is_Mul:
-            value = value - rest if part.is_Add else value / rest
+            values = [value - rest if part.is_Add else value / rest for value in values]
         elif part.is_Pow and not part.exp.free_symbols:
-            own, value = part.base, value ** (1 / part.exp)
+            own, values = part.base, [value ** (1 / part.exp) for value in values]
         elif part.func in INVERSES:
-            own, value = part.args[0], INVERSES[part.func](value)
+            own, values = part.args[0], [INVERSES[part.func](value) for value in values]
+            values += [-value for value in values if part.func in SYMMETRIC and value != 0]
+            turn = 2 * sp.pi if part.func in WAVES else 0
+            values += [value + sign * turn for value in values for sign in (1, -1) if turn]
         else:
             return []
         if own == part or own.count(symbol) != 1:
             return []
         part = own
-    return [value]
+    return values
 
 
 def box_of_ranges(limits: Mapping[sp.Symbol, Range]) -> dict[sp.Symbol, tuple[sp.Expr | None, sp.Expr | None]]:
@@ -159,6 +162,11 @@ def roots_of(a: sp.Expr, b: sp.Expr, c: sp.Expr) -> list[sp.Expr]:
 
 
 BITS = 2048
+#: Points are exp(-n) away from a zero, with so many bits; the last n only where the margin falls.
+CLOSE, CLOSE_BITS = (130, 1_300, 13_000, 130_000), (20_000, 190_000)
+FAR_AWAY = (130, 1_300, 13_000, 10**15)
+HIDDEN = 1e-20
+MOST_APPROACHES = 24
 ORDINARY = 24
 SHARP = 1e-100
 FAR = tuple(sp.Integer(10) ** k for k in (3, 12, 31))
@@ -185,6 +193,7 @@ class Look:
     positive: Point | None = None
     negative: Point | None = None
     touching: Point | None = None  # the difference is almost zero there, and equality would break the relation
+    falling: Point | None = None  # the margin still falls there, as log(x) does for x to 0: nobody knows how far
 
 
 def look_again(
@@ -223,7 +232,71 @@ def look_again(
         touching = point if zero_breaks and abs(ball) < TOUCHING else touching
         positive = point if positive is None and ball > 0 else positive
         negative = point if negative is None and ball < 0 else negative
-    return Look(positive=positive, negative=negative, touching=touching)
+    found = look_close(difference, excludes, limits, sides, goals)
+    if found.counterexample is not None:
+        return found
+    return replace(found, positive=positive, negative=negative, touching=touching)
+
+
+def look_close(
+    difference: sp.Expr,
+    excludes: Callable[[arb], bool],
+    limits: Mapping[sp.Symbol, Range],
+    sides: Sequence[sp.Expr],
+    goals: Sequence[sp.Expr],
+) -> Look:
+    """Look beside zeros and far out: a counterexample, or a place where a goal still falls."""
+    programs, falling = [tape(part) for part in (difference, *goals, *sides)], None
+    for points, bits in itertools.islice(approaches(difference, limits), MOST_APPROACHES):
+        rows: list[list[arb]] = []
+        for point, precision in zip(points, bits, strict=False):
+            rows.append([value_at(program, point, precision) for program in programs])
+            if not all(ball.is_finite() for ball in rows[-1]):
+                break
+            if excludes(rows[-1][0]):
+                return Look(point, rows[-1][0])
+            if len(rows) == 3:
+                if not any(map(is_falling, [*zip(*rows, strict=True)][1 : len(goals) + 1])):
+                    break
+                falling = point
+    return Look(falling=falling)
+
+
+def approaches(difference: sp.Expr, limits: Mapping[sp.Symbol, Range]) -> Iterator[tuple[list[Point], tuple[int, ...]]]:
+    """Points that near a zero of what a logarithm or a division is of, an end of a range, or infinity, with their bits.
+
+    Where no formula gives the zero of a logarithm, a descent finds it, and points stay further off.
+    """
+    logs = [node.args[0] for node in difference.atoms(sp.log) if node.free_symbols]
+    poles = [node.base for node in difference.atoms(sp.Pow) if node.exp.is_negative or not node.exp.is_number]
+    home = {symbol: home_value(limit) for symbol, limit in limits.items()}
+    for symbol, limit in limits.items():
+        rest = {other: value for other, value in home.items() if other is not symbol}
+        centres = [end for end in (limit.lower, limit.upper) if end is not None]
+        for pole in sorted((*logs, *poles), key=str):
+            centres += zeros_of(pole, symbol, rest) if symbol in pole.free_symbols else []
+        ways = [([sign * sp.exp(n) for n in FAR_AWAY], (BITS,) * 4) for sign in (1, -1)]
+        for centre, sign in itertools.product(dict.fromkeys(centres), (1, -1)):
+            near = [centre + sign * sp.exp(-n) for n in (CLOSE if centre else FAR_AWAY)]
+            ways.append((near, (CLOSE_BITS[0],) * 3 + CLOSE_BITS[1:] if centre else (BITS,) * 4))
+        for values, bits in ways:
+            if all(limit.contains(value) for value in values):
+                yield [{**rest, symbol: value} for value in values], bits
+    for pole in sorted(set(logs), key=str):
+        hidden = unwrap_factor(pole)
+        for place in find_lowest(hidden**2, {s: limits[s] for s in limits if s in hidden.free_symbols}):
+            point = {**home, **{symbol: to_rational(value) for symbol, value in place.items()}}
+            symbol = min(place, key=str)
+            near = [point[symbol] + sp.Rational(1, 10**n) for n in (3, 6, 12)]
+            inside = all(limits[s].contains(v) for s, v in point.items()) and all(map(limits[symbol].contains, near))
+            if inside and abs(value_at(tape(hidden), point)) < HIDDEN:
+                yield [{**point, symbol: value} for value in near], (BITS,) * 3
+
+
+def is_falling(margins: Sequence[arb]) -> bool:
+    """Whether positive margins fall and do not converge: the last step is more than half of the one before."""
+    first, middle, last = margins[:3]
+    return bool(last > 0 and first - middle > 0 and 2 * (middle - last) > first - middle)
 
 
 def sharp_value(difference: sp.Expr, point: Point, sides: Sequence[sp.Expr]) -> arb | None:

@@ -13,12 +13,13 @@ import sympy as sp
 
 from navsym import checker
 from navsym.claims.statement import Box
-from navsym.core.balls import UnsupportedError, precision
+from navsym.core.balls import UnsupportedError, precision, tape
 from navsym.core.errors import NavsymError
 from navsym.language.expression import to_text
 from navsym.prove.identities.ingredients import OutsideLanguageError
 from navsym.prove.rooms.goals import player
-from navsym.prove.sampling.points import Range, ranges_of, write_range
+from navsym.prove.sampling.points import Range, ranges_of, value_at, write_range
+from navsym.prove.sampling.second_look import zeros_of
 from navsym.prove.search import find_proof, rules_of
 from navsym.prove.signs.exact import UNKNOWN, Sign, SignProof, constant_sign
 from navsym.prove.signs.one_variable import survey_signs
@@ -42,9 +43,9 @@ def prove_sign(expression: sp.Expr, box: Box, wanted: Sign = Sign.NONNEGATIVE, s
     if not expression.free_symbols:
         proof = constant_sign(expression)
         return proof if proof.at_least(wanted) else UNKNOWN
-    if is_known_to_fail(expression, limits, wanted):
-        return UNKNOWN
     try:
+        if is_known_to_fail(expression, limits, wanted):
+            return UNKNOWN
         forms = dict.fromkeys(form for form in (expression, as_product(expression)) if form is not None)
         exact = prove_conditions(expression, limits, seconds)
         for form in forms if exact is not None else ():
@@ -57,10 +58,15 @@ def prove_sign(expression: sp.Expr, box: Box, wanted: Sign = Sign.NONNEGATIVE, s
 
 
 def is_known_to_fail(expression: sp.Expr, limits: Mapping[sp.Symbol, Range], wanted: Sign) -> bool:
-    """Whether exact real roots show that an expression in one symbol has another sign somewhere."""
+    """Whether real roots, or a zero that is met, show that an expression in one symbol has another sign somewhere."""
     if len(limits) != 1:
         return False
-    (limit,) = limits.values()
+    ((symbol, limit),) = limits.items()
+    places = [limit.lower, limit.upper, *zeros_of(expression, symbol, {})] if wanted == Sign.POSITIVE else []
+    known = [place for place in places if place is not None and limit.contains(place)]
+    values = [value_at(tape(expression), {symbol: place}) for place in known]
+    if any(value.is_finite() and value.contains(0) for value in values):
+        return True
     found = survey_signs(expression, limit)
     if found is None or wanted == Sign.NONNEGATIVE:
         return found is not None and bool(found.below)

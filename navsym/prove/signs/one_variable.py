@@ -1,4 +1,4 @@
-"""Signs of expressions in one symbol, exactly: by the real roots of a rational function of one number u.
+"""Signs of rational functions of one symbol, and of absolute values of such, exactly: by their real roots.
 
 Between two neighbouring roots of numerator and denominator a rational function keeps its sign, so that its exact
 value at one rational number between them decides; at a root of the numerator it is zero. What is decided is
@@ -7,26 +7,34 @@ complete: where no sign is proved, there is a place at which it is another one.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cmp_to_key, lru_cache
 from itertools import pairwise
+from typing import TypeAlias
 
 import sympy as sp
-from flint import fmpq
+from flint import fmpq, fmpq_mpoly, fmpq_poly
 
 from navsym.core.balls import UnsupportedError
+from navsym.core.errors import NavsymError
 from navsym.core.exact import to_rational
+from navsym.prove.identities.converter import Converter
+from navsym.prove.identities.transcendental import largest_exponent
 from navsym.prove.sampling.points import Range
 from navsym.prove.signs.real_roots import (
+    MOST_DEGREE,
     RealNumber,
     UndecidedError,
     compare_numbers,
+    enclose_number,
     find_real_roots,
     is_root,
     number_between,
 )
-from navsym.prove.signs.substitutions import Fraction, Interval, substitute_one_number
+
+#: Numerator and denominator.
+Fraction: TypeAlias = tuple[fmpq_poly, fmpq_poly]
 
 #: Absolute values in one expression; each doubles the cases.
 MOST_VALUES = 4
@@ -34,7 +42,7 @@ MOST_VALUES = 4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Zero:
-    """A zero: a root of the numerator, None where u is infinite; ``at`` is the symbol there, if that has a formula."""
+    """A zero: a root of the numerator, None within a stretch of zeros; ``at`` is its formula, if it has one."""
 
     root: RealNumber | None
     at: sp.Expr | None
@@ -47,7 +55,7 @@ class Survey:
     above, below : formulas of the symbol at which it is positive and negative, one for every interval between roots
     zeros        : where it is zero; of an interval on which it vanishes one place
     roots        : how many real roots of numerators and denominators were met
-    others       : the other expressions as fractions of the same u
+    others       : the other expressions as fractions
     """
 
     above: tuple[sp.Expr, ...] = ()
@@ -55,6 +63,15 @@ class Survey:
     zeros: tuple[Zero, ...] = ()
     roots: int = 0
     others: tuple[Fraction, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Interval:
+    """A range by its ends, None at infinity, and whether they belong to it."""
+
+    lower: RealNumber | None
+    upper: RealNumber | None
+    closed: tuple[bool, bool]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,19 +110,44 @@ def remember_survey(expression: sp.Expr, limit: Range, others: tuple[sp.Expr, ..
         return None
     cases = list(split_branches(expression, MOST_VALUES))
     parts = [part for case, tests in cases for part in (case, *(test for _, test in tests))]
-    found = substitute_one_number([*parts, *others], symbol, limit)
+    found = read_fractions([*parts, *others], symbol)
     if found is None:
         return None
-    fractions = iter(found.fractions)
+    fractions = iter(found)
     branches = [Branch(next(fractions), tuple((sign, next(fractions)) for sign, _ in tests)) for _, tests in cases]
-    pieces = [survey_piece(branches, piece) for piece in found.pieces]
-    return Survey(
-        tuple(value for part in pieces for value in part.above),
-        tuple(value for part in pieces for value in part.below),
-        tuple(zero for part in pieces for zero in part.zeros),
-        sum(part.roots for part in pieces),
-        tuple(fractions),
-    )
+    return survey_range(branches, tuple(fractions), read_interval(limit))
+
+
+def read_fractions(expressions: Sequence[sp.Expr], symbol: sp.Symbol) -> list[Fraction] | None:
+    """Rational functions over Q of a symbol, in lowest terms; None where one is none."""
+    plain = all(part.free_symbols <= {symbol} and part.is_rational_function(symbol) for part in expressions)
+    if not plain or largest_exponent(sp.Tuple(*expressions)) > MOST_DEGREE:
+        return None
+    try:
+        converter = Converter(list(expressions))
+        quotients = [converter.convert(part) for part in expressions]
+    except (NavsymError, OverflowError, ZeroDivisionError):
+        return None
+    pairs = [(read_polynomial(q.numerator), read_polynomial(q.denominator)) for q in quotients]
+    known = [(top, bottom) for top, bottom in pairs if top is not None and bottom]
+    if len(known) < len(pairs) or converter.found.symbols.get(symbol) != 1:
+        return None
+    return [(top / top.gcd(bottom), bottom / top.gcd(bottom)) for top, bottom in known]
+
+
+def read_polynomial(polynomial: fmpq_mpoly) -> fmpq_poly | None:
+    """The same in the first generator alone; None where there are others."""
+    if any(polynomial.degrees()[1:]):
+        return None
+    rows = {int(powers[0]): c for powers, c in polynomial.to_dict().items()}
+    return fmpq_poly([rows.get(k, fmpq(0)) for k in range(max(rows, default=0) + 1)])
+
+
+def read_interval(limit: Range) -> Interval:
+    """A range by its ends as real numbers."""
+    lower, upper = (None if end is None else enclose_number(end) for end in (limit.lower, limit.upper))
+    low = lower is not None and not limit.open_lower and not (limit.nonzero and limit.lower == 0)
+    return Interval(lower, upper, (low, upper is not None and not (limit.nonzero and limit.upper == 0)))
 
 
 def split_branches(expression: sp.Expr, left: int) -> Iterator[tuple[sp.Expr, tuple[tuple[int, sp.Expr], ...]]]:
@@ -122,7 +164,7 @@ def split_branches(expression: sp.Expr, left: int) -> Iterator[tuple[sp.Expr, tu
             yield case, ((sign, inside), *tests)
 
 
-def survey_piece(branches: list[Branch], piece: Interval) -> Survey:
+def survey_range(branches: list[Branch], others: tuple[Fraction, ...], piece: Interval) -> Survey:
     """Signs between the roots, and the zeros."""
     fractions = [f for branch in branches for f in (branch.value, *(test for _, test in branch.tests))]
     places = [root for root in find_real_roots([part for f in fractions for part in f]) if is_root_inside(root, piece)]
@@ -131,25 +173,14 @@ def survey_piece(branches: list[Branch], piece: Interval) -> Survey:
     known = [branch_at(branches, u) for u in cells]
     signs: dict[int, list[sp.Expr]] = {1: [], 0: [], -1: []}
     for u, branch in zip(cells, known, strict=True):
-        signs[sign_at_number(branch.value, u)].append(piece.back(to_rational(u)))
+        signs[sign_at_number(branch.value, u)].append(to_rational(u))
     # |f| is continuous: at a root the branch of the interval before it has the value, at the lower end that after it.
     before = {id(root): known[k] for k, root in enumerate(inside)}
     low = [root for root in places if id(root) not in before and is_at_end(root, piece.lower)]
     before |= {id(root): known[0] if root in low else known[-1] for root in places if id(root) not in before}
-    zeros = [Zero(root, symbol_at_root(root, piece)) for root in places if is_root(before[id(root)].value[0], root)]
-    infinite = zip(piece.ends, (piece.lower, piece.upper), piece.closed, (known[0], known[-1]), strict=True)
-    far = [
-        end
-        for end, place, closed, branch in infinite
-        if place is None and closed and vanishes_at_infinity(branch.value)
-    ]
-    zeros += [Zero(None, value) for value in (*far, *signs[0])]
-    return Survey(tuple(signs[1]), tuple(signs[-1]), tuple(zeros), len(places))
-
-
-def vanishes_at_infinity(fraction: Fraction) -> bool:
-    """True for a function that is zero at infinity."""
-    return bool(fraction[0].degree() < fraction[1].degree())
+    zeros = [Zero(root, formula_of(root, piece)) for root in places if is_root(before[id(root)].value[0], root)]
+    zeros += [Zero(None, value) for value in signs[0]]
+    return Survey(tuple(signs[1]), tuple(signs[-1]), tuple(zeros), len(places), others)
 
 
 def branch_at(branches: list[Branch], u: fmpq) -> Branch:
@@ -177,9 +208,6 @@ def is_at_end(root: RealNumber, end: RealNumber | None) -> bool:
     return end is not None and compare_numbers(root, end) == 0
 
 
-def symbol_at_root(root: RealNumber, piece: Interval) -> sp.Expr | None:
-    """The symbol at a root; the end itself where it lies there."""
-    for end, place in zip(piece.ends, (piece.lower, piece.upper), strict=True):
-        if is_at_end(root, place):
-            return end
-    return None if root.value is None else piece.back(root.value)
+def formula_of(root: RealNumber, piece: Interval) -> sp.Expr | None:
+    """The root as a formula: its own, or that of the end where it lies."""
+    return next((end.value for end in (piece.lower, piece.upper) if end and is_at_end(root, end)), root.value)

@@ -44,6 +44,12 @@ def test_a_refuted_order_names_the_derivative_that_differs_and_no_difference_of_
     assert (proved.status, proved.scope) == (PROVED, "numbers, up to O(a**3) for a to 0")
 
 
+def test_a_limit_that_depends_on_the_sign_of_a_parameter_is_refuted_where_that_is_zero():
+    verdict = nav.prove("limit(exp(-R*x), x, oo) = 0", R="real")
+    assert (verdict.status, verdict.counterexample) == (REFUTED, {"R": "0"})
+    assert nav.prove("limit(exp(-R*x), x, oo) = 0", R="positive").status == PROVED
+
+
 @pytest.mark.parametrize(("kind", "text", "more"), [(k, *row) for k, rows in TRAPS.items() for row in rows])
 @pytest.mark.slow
 def test_a_trap_is_never_proved(kind, text, more):
