@@ -476,7 +476,7 @@ HOSTILE = [
     ("squares", state("-2", ">=", "1"), {}, squares("-2", "1", 1, B, B), "not shown"),
     ("squares", state("-2", ">=", "-1"), {}, squares("-2", "-1", -1, B, B), "a wrong sign"),
     ("squares", state("-2", ">", "-1"), {}, squares("-2", "-1", -1, B, B), "a wrong sign"),
-    ("squares", state("-1", "=", "1"), {}, squares("-1", "1", 0, I, I, I), "a wrong sign"),
+    ("squares", state("-1", "=", "1"), {}, squares("-1", "1", 0, I, I, I), "expected a sign"),
     ("squares", state("1", "!=", "1"), {}, squares("1", "1", 1, B, B), "a wrong sign"),
     ("squares", state("2", ">=", "3"), {}, squares("2", "3", 1, B, B), "not shown"),
     ("squares", state("2", ">", "2"), {}, squares("2", "2", 1, I, B), "the sides differ"),

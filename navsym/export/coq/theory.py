@@ -16,6 +16,7 @@ from typing import Any
 from navsym import checker
 from navsym.checker import Case, Range, Term
 from navsym.core.errors import DomainError
+from navsym.export.coq.condition import write_condition
 from navsym.export.coq.scripts import prove_bound, prove_equality, refute
 from navsym.export.coq.terms import RELATIONS, Unwritten, defined, ranges, rename, subterms, write_term
 
@@ -40,24 +41,27 @@ def write_theory(certificate: Mapping[str, Any]) -> str:
     parts = certificate.get("of", []) if certificate.get("kind") == "all" else [certificate]
     theorems = []
     for place, part in enumerate(parts, start=1):
-        if part.get("kind") not in ("proof", "counterexample"):
+        if part.get("kind") not in ("proof", "counterexample", "condition"):
             message = (
                 f"expected a certificate of a statement; got one of kind {part.get('kind')}; check it without kernel"
             )
             raise DomainError(message)
         try:
-            theorems.append(write_theorem(f"statement_{place}", part))
+            write = write_condition if part["kind"] == "condition" else write_theorem
+            theorems.append(write(f"statement_{place}", part))
         except (Unwritten, checker.Refused) as reason:
             raise DomainError(f"expected what Coq has words for; got {reason}; rest on the checker") from None
     names = ", ".join(re.findall(r"^Theorem (\w+)", "\n".join(theorems), re.M))
-    balls = any(needs_balls(part) for part in parts)
+    kinds = {part["kind"] == "condition" for part in parts}
+    balls = any(part["kind"] != "condition" and needs_balls(part) for part in parts)
+    lemmas = [*["tactics.v"] * (False in kinds), *["condition.v"] * (True in kinds)]
     return "\n".join(
         [
             "Require Import Reals Lra.",
             *(["From Interval Require Import Tactic."] if balls else []),
             "Open Scope R_scope.\n",
             BALLS if balls else PLAIN,
-            files("navsym.export.coq").joinpath("tactics.v").read_text("utf-8"),
+            *(files("navsym.export.coq").joinpath(name).read_text("utf-8") for name in lemmas),
             *theorems,
             f"Definition all := ({names}).\nPrint Assumptions all.\n",
         ]
