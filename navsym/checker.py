@@ -94,8 +94,9 @@ def read_integer(item: Any, low: int, high: int) -> int:
 
 
 def read_sign(item: Any) -> int:
-    require(type(item) is int and abs(item) == 1, "expected a sign, 1 or -1")
-    return int(item)
+    s = read_integer(item, -1, 1)
+    require(s != 0, "expected a sign")
+    return s
 
 
 def read_flag(item: Any) -> bool:
@@ -745,7 +746,7 @@ def follow_motion(point: dict[str, Any], rates: dict[str, Any], order: int) -> d
     """The symbols along the motion from a point, as series of the time, by Picard's iteration."""
     start = {x: arb_series([*evaluate(parse(text), {}, arb).parts]) for x, text in point.items()}
     series = {x: Jet(value) for x, value in start.items()}
-    for _ in range(order if rates else 0):
+    for _ in range(order):
         values = {x: arb_series(evaluate(parse(rate), series, arb).parts[0]) for x, rate in rates.items()}
         series |= {x: Jet(start[x] + value.integral()) for x, value in values.items()}
     return series
@@ -1522,7 +1523,6 @@ class Reader:
 
         A goal that holds for all such f holds for the fraction of x. Equal numbers have one fraction.
         """
-        self.need(x)
         terms = self.list_parts(x)
         whole = [t for t in terms if is_integral(t, self.box, self.floors)]
         rest = [t for t in terms if t not in whole]
@@ -1617,11 +1617,11 @@ class Reader:
         return self.expect(("*", to_number(u), to_number(v)))
 
     def differentiate(self, x: Value, name: str) -> Value:
-        """The derivative by a symbol, where there is one; by time t it is that of all that has a rate."""
+        """The derivative by a symbol, where there is one; by time, t or no name, it is that of all that has a rate."""
         for entry in list_entries(x):
             self.require_plain(entry, "a derivative")
         self.need(*(t for entry in list_entries(x) for t in (entry, *smoothness(entry))))
-        if name == "t" and "t" in self.rates:
+        if not name or (name == "t" and "t" in self.rates):
             return change_entries(self.differentiate_by_time, x)
         self.require_real(name)
         return change_entries(lambda term: differentiate(term, name), x)
@@ -1880,7 +1880,6 @@ class Formula(Parser):
     def ask_exponential(self, rows: list[list[Term]]) -> Value:
         """expm(A): symbols in the place of its entries."""
         reader, entries, n = self.reader, [entry for row in rows for entry in row], len(rows)
-        reader.need(*entries)
         for entry in entries:
             reader.require_plain(entry, "an exponential")
         if reader.dead:
@@ -1916,8 +1915,7 @@ class Formula(Parser):
         """diff(x, symbol, times), or dot_(x) by time."""
         if name == "dot_":
             require(by is None, "expected dot_ of 1 argument")
-            self.reader.need(*(t for entry in list_entries(x) for t in (entry, *smoothness(entry))))
-            return change_entries(self.reader.differentiate_by_time, x)
+            return self.reader.differentiate(x, "")
         is_symbol = by is not None and not isinstance(by, Matrix) and by[0] == "symbol" and not is_asked(by)
         require(is_symbol, "expected a symbol behind diff")
         require(read_size(times) <= 8, "a derivative of a high order")
@@ -2083,7 +2081,7 @@ def conditions(term: Term, level: int = DEFINED) -> dict[tuple[str, Term], None]
 def holds(relation: str, value: Any) -> bool:
     """Whether all numbers of a ball, or a rational number, are in this relation to 0."""
     if relation == "!=":
-        return bool(value != 0) and not (isinstance(value, arb) and not (value > 0 or value < 0))
+        return bool(value > 0 or value < 0)
     return bool(value > 0 if relation == ">" else value >= 0)
 
 
@@ -2689,12 +2687,8 @@ def prove_slope(proof: Any, goal: Goal) -> None:
     own_end = {"open_high" if upper else "open_low": False}
     whole = change_range(goal, name, nonzero=False, integer=False, **own_end)
     whole = whole._replace(term=ZERO, exists=(), given=(), zeros=())
-    prove_defined(continuous, whole, goal.term, level=CONTINUOUS)
-    inside = change_range(whole, name, open_low=True, open_high=True)
     change = differentiate(goal.term, name)
-    known = with_weaker(conditions(goal.term, CONTINUOUS))
-    rest = [p for p in set_union([conditions(goal.term, DIFFERENTIABLE), conditions(change)]) if p not in known]
-    prove_all(smooth, [inside._replace(term=t, relation=relation) for relation, t in rest])
+    inside = go_inside(whole, name, goal.term, continuous, smooth, conditions(change))
     if by_slope and point is not None:
         require(
             symbols_of(goal.term) == {name} and is_inside(point, inside.box[name]), "expected a point of one symbol"
@@ -2705,6 +2699,16 @@ def prove_slope(proof: Any, goal: Goal) -> None:
     prove(slope, rise._replace(exists=(goal.term,)))
     start = fix_symbol(whole._replace(term=goal.term), name, end)  # type: ignore[arg-type]
     prove(floor, start._replace(relation=">" if goal.relation == ">" and not by_slope else ">="))
+
+
+def go_inside(whole: Goal, name: str, term: Term, continuous: Any, smooth: Any, *needed: Any) -> Goal:
+    """The inside of a range, where a term that is continuous on the whole is differentiable, and more as needed."""
+    prove_defined(continuous, whole, term, level=CONTINUOUS)
+    inside = change_range(whole, name, open_low=True, open_high=True)
+    known = with_weaker(conditions(term, CONTINUOUS))
+    rest = [pair for pair in set_union([conditions(term, DIFFERENTIABLE), *needed]) if pair not in known]
+    prove_all(smooth, [inside._replace(term=t, relation=relation) for relation, t in rest])
+    return inside
 
 
 def prove_concave(proof: Any, goal: Goal) -> None:
@@ -2718,13 +2722,10 @@ def prove_concave(proof: Any, goal: Goal) -> None:
     require(limit.low is not None and limit.high is not None, "a range without an end")
     flags = {"open_low": False, "open_high": False, "nonzero": False, "integer": False}
     whole = change_range(goal, name, **flags)._replace(term=ZERO, exists=(), given=(), zeros=())
-    prove_defined(continuous, whole, goal.term, level=CONTINUOUS)
-    inside = change_range(whole, name, open_low=True, open_high=True)
     slope = differentiate(goal.term, name)
     second = differentiate(slope, name)
-    known = with_weaker(conditions(goal.term, CONTINUOUS))
-    needed = set_union([conditions(goal.term, DIFFERENTIABLE), conditions(slope, DIFFERENTIABLE), conditions(second)])
-    prove_all(smooth, [inside._replace(term=t, relation=r) for r, t in needed if (r, t) not in known])
+    needed = (conditions(slope, DIFFERENTIABLE), conditions(second))
+    inside = go_inside(whole, name, goal.term, continuous, smooth, *needed)
     prove(curve, inside._replace(term=negate(second), relation=">=", exists=(goal.term,)))
     ends = [fix_symbol(whole._replace(term=goal.term), name, end) for end in (limit.low, limit.high)]  # type: ignore
     prove_all(floors, ends)
@@ -3956,8 +3957,6 @@ class Sized(Algebra):
         """Whether the statement holds at the point."""
         relation, x = self.state()
         require(set(self.matrices) == set(self.statement[4]), "the point gives every matrix")
-        for term in self.terms:
-            self.value_of(term)
         if isinstance(x, Typed):
             return bool((x.body == 0 * x.body) == (relation == "="))
         sign, own = SIGNS[relation]

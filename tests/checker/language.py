@@ -22,6 +22,7 @@ def some(point, *names):
     return {key: value for key, value in point.items() if key[0] in names}
 
 
+ABOVE_0, BELOW_1 = (by("range", symbol="fraction__1", end=end, share="1") for end in (0, 1))
 #: True statements of the whole language, and false ones that differ in a sign, an index, an order or a transposition.
 #: The same proofs are offered for both.
 LANGUAGE = [
@@ -122,6 +123,22 @@ LANGUAGE = [
     (("floor(5/2) + floor(-5/2) + floor(pi)", "=", "2"), ("3", "1"), "", {}, [I], {}),
     (("floor(log(exp(2))) + floor(-log(exp(3)))", "=", "-1"), ("0", "-2"), "", {}, [I], {}),
     (("floor(floor(x) + 1/2)", "=", "floor(x)"), ("floor(x) + 1",), "", {"x": "1/3"}, [I], {"x": LINE}),
+    (
+        ("floor(x)", ">", "x - 1"),
+        ("x",),
+        "",
+        {"x": "1/3"},
+        [by("equal", BELOW_1, to="1 - fraction__1", defined=[])],
+        {"x": LINE},
+    ),
+    (
+        ("floor(x)", "<=", "x"),
+        ("x - 1", "x - 1/2"),
+        "",
+        {"x": "1/3"},
+        [by("equal", ABOVE_0, to="fraction__1", defined=[])],
+        {"x": LINE},
+    ),
     (("floor(pi*x)", "=", "floor(x*pi)"), ("floor(x)",), "", {"x": "1/3"}, [I], {"x": LINE}),
     (("diff([x**2, x*y], x)", "=", "[2*x, y]"), ("[2*x, x]",), "", XY, [I] * 2, {"x": LINE, "y": LINE}),
 ]
@@ -212,6 +229,20 @@ MEANINGLESS = [
     (stated("E(x, x)", "=", "0", x=LINE), "malformed"),
     (stated("diff(x**2, limit(y, y, x))", "=", "0", x=LINE), "expected a symbol behind diff"),
     (stated("x", "=", "x", given=["x"], x=LINE), "expected a relation"),
+    (stated("x", "=", "x", rates=["x"], x=LINE), "expected rates by name"),
+    (
+        stated("dot_(u)", "=", "u", "u", rates={"u": "u", "v": "2*u"}) | {"shapes": {n: [["u_0_0"]] for n in "uv"}},
+        "two rates of one symbol",
+    ),
+    (stated("cross(u, u, u)", "=", "u", "u"), "malformed"),
+    (stated("skew(u, u)", "=", "skew(u)", "u"), "malformed"),
+    (stated("floor(x, x)", "=", "x", x=LINE), "malformed"),
+    (stated("sign(x, x)", "=", "1", x=LINE), "malformed"),
+    (
+        stated("E(p[1])", "=", "2", a=LINE, b=LINE) | PAIR | {"random": PAIR["random"] | {"p0": NORMAL["w"]}},
+        "a name given twice",
+    ),
+    (stated("E(w)", "=", "0") | {"random": {"w": NORMAL["w"] | {"normal": 1}}}, "a name given twice"),
     (stated("x", "=", "x", given=["x = 1 = 1"], x=LINE), "more than one"),
     (stated("x", "=", "x", "u", given=["u > u"], x=LINE), "no order"),
 ]
@@ -236,6 +267,9 @@ NOWHERE_DEFINED = [
     (stated("where(x = 0, [1/x, 2][2], 2)", "=", "2", x=LINE), X0, [I, I], "no value at the witness"),
     (stated("sum([1/k, 2][2], k, 0, 1)", "=", "4"), {}, [I], "no value at the witness"),
     (stated("diff(asin(x), x)*0", "=", "0", x=LINE), X1, [I], "no value at the witness"),
+    (stated("dot_(abs(x))*0", "=", "0", rates={"x": "1"}, x=LINE), X0, [I], "no value at the witness"),
+    (stated("expm([[0*log(x)]])", "=", "[[1]]", x=LINE), {"x": "-1"}, [I], "no value at the witness|without an answer"),
+    (stated("floor(0*log(x))*0", "=", "0", x=LINE), {"x": "-1"}, [I], "a number that may not exist"),
     (stated("diff(acos(x), x)*0", "=", "0", x=LINE), {"x": "-1"}, [I], "no value at the witness"),
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, [I], "expected 2 entries"),
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, [I, I], "the sides differ"),

@@ -235,10 +235,11 @@ def noticed(source: str, place: int, number: int) -> bool:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
         node, tree = nodes[place], nodes[0]
         checker.changed = lines_of(tree, node)
-        own = next(s for s, _ in codes if s.lineno <= node.lineno <= s.end_lineno)
+        own = next(k for k, (s, _) in enumerate(codes) if s.lineno <= node.lineno <= s.end_lineno)
         apply(tree, node, number)
-        ast.fix_missing_locations(own)
-        os._exit(judged(checker, [compile(ast.Module([s], []), "mutant", "exec") if s is own else c for s, c in codes]))
+        statement = ast.fix_missing_locations(tree.body[own])  # what is dropped may be the whole statement
+        changed = compile(ast.Module([statement], []), "mutant", "exec")
+        os._exit(judged(checker, [changed if k == own else code for k, (_, code) in enumerate(codes)]))
     return os.waitpid(child, 0)[1] != 0
 
 

@@ -293,6 +293,12 @@ TRUE = [
     ("cones", state("x**2 + 1", ">", x=TWO), X1, cones(None)),
     ("cones", state("x**2 - x*y + y**2", ">=", x=LINE, y=LINE), XY, cones(HALVES, None, None, HALVES)),
     ("cones", state("x*(1 - x)", ">=", x=UNIT), X0, cones(None)),
+    ("cones", state("x**2 - x + 1", ">=", x=UP), X0, cones([0, 2, None, None])),
+    ("cones", state("x**2 - x + 1", ">=", x=UP), X0, cones([2, 0, None, None])),
+    ("cones", state("x + 2*y - 3", ">=", x=["1", "3", []], y=["1", "2", []]), XY, cones(None)),
+    ("cones", state("13 - 3*x - 2*y", ">=", x=["1", "3", []], y=["1", "2", []]), XY, cones(None)),
+    ("cones", state("x*y + x - y + 1", ">", x=["2", "3", []], y=["-1", "5", []]), {"x": "2", "y": "0"}, cones(None)),
+    ("balls", state("asin(x) + acos(x) + 1", ">", x=["-2", "2", []]), X0, B),
     ("cones", state("x - 1", ">", x=["1", None, ["open-low"]]), {"x": "2"}, cones(None)),
     ("cones", state("x - 1", ">=", x=["1", None, []]), {"x": "2"}, cones(None)),
     ("cones", state("-x", ">", x=[None, "0", ["open-high"]]), XB, cones(None)),
@@ -631,6 +637,26 @@ HOSTILE = [
     ("sum", state("abs(x) + x**2", "!=", x=BOTH), X1, add(factors(None), factors(None), I), "expected >= or >"),
     ("sum", state("x + x**2", ">=", x=BOTH), X1, add(factors(None), I), "expected 3 entries"),
     ("slope", state("x", ">", x=UNIT), X1, slope(0, B, I, strict=1), "the end belongs"),
+    ("slope", state("exp(x) - 1", ">", x=OPEN), X1, slope(0, factors(None), I, strict="2"), "a point of one symbol"),
+    ("slope", state("exp(x) - 1 + 0*y", ">", x=OPEN, y=UNIT), XY, slope(0, B, I, strict="1/2"), "of one symbol"),
+    ("slope", state("x**(1/2)", ">=", x=UNIT), X1, slope(0, factors(None, [1, B], None), B, continuous=[span(0)]),
+     "expected 1 entries"),
+    ("concave", state("1 - x**(-1/2)", ">=", x=OPEN), X1, concave(I, I, I, continuous=[span(0)]),
+     "the end belongs"),
+    ("derivative", state("sqrt(x)", "=", "sqrt(x) + 0*x", x=UNIT), X1, derivative(X1, I, [I], span(0)),
+     "the end belongs|entries"),
+    ("sum", state("x + x**2", ">", x=UNIT), X1, add(span(0), factors(None), I, strict=3), "integer from"),
+    ("identity", state("x", "=", "x", x=UNIT), X1, I | {"note": "1"}, "exactly the keys"),
+    # Sturm's chain of these needs more than three remainders.
+    ("roots", state("3*x**4 - x**3 + 6*x**2 - 5*x + 1", ">", x=UNIT), X0, roots("0", "1"), "a zero|change of sign"),
+    ("roots", state("3*x**4 - x**3 + 6*x**2 - 5*x + 1", ">=", x=UNIT), X0, roots("0", "1"), "a change of sign"),
+    ("roots", state("2*x**5 - 2*x**4 + 5*x**3 - 5*x + 2", "!=", x=UNIT), X0, roots("0", "1"), "a zero inside"),
+    ("range", state("x", ">=", x=UNIT), X1, span(2), "integer from"),
+    # Where a root or an arc is defined at one point of a cell only, it has a value there.
+    ("balls", state("sqrt(x)", ">=", "1", x=["0", "0", []]), X0, B, "not shown"),
+    ("balls", state("asin(x)", ">=", "2", x=["1", "1", []]), X1, B, "not shown"),
+    ("balls", state("asin(-x)", ">=", "0", x=["1", "1", []]), X1, B, "not shown"),
+    ("balls", state("1/x", ">", x=BELOW), XB, B, "not shown"),
     ("slope", state("1 - x", ">", x=UNIT), X0, slope(1, B, I, strict=1), "the end belongs"),
     ("slope", state("x", ">", x=UNIT), X1, slope(0, B, I), "the sides differ"),
     ("slope", state("0*x", ">", x=OPEN), X1, slope(0, I, I, strict=1), "the sides differ"),
@@ -889,6 +915,27 @@ STANDS = [
 # fmt: on
 
 
+ZEROED, FALSE = state("x - x", "=", x=LINE), state("x", "=", "1", x=LINE)
+SHOWN, DENIED, SQUARED = prove(ZEROED, X0, I), refute(FALSE, X0), prove(SQUARE, X0, by("zero", I))
+#: What several certificates say of several statements: each is proved, in their order; or one of them fails.
+GRANTS = [
+    (ZEROED, SHOWN, "HOLDS"),
+    ([ZEROED, ZEROED], {"kind": "all", "of": [SHOWN, SHOWN]}, "HOLDS"),
+    ([ZEROED, FALSE], DENIED, "FAILS"),
+    ([FALSE, ZEROED], {"kind": "all", "of": [DENIED]}, "FAILS"),
+    ([ZEROED, FALSE], SHOWN, "another statement"),
+    ([ZEROED], {"kind": "all", "of": [SHOWN, SHOWN]}, "another statement"),
+    ([ZEROED], DENIED, "another statement"),
+    ([FALSE, FALSE], {"kind": "all", "of": [DENIED, DENIED]}, "another statement"),
+    ([FALSE, ZEROED], {"kind": "all", "of": [SHOWN, DENIED]}, "another statement"),
+    ([ZEROED, FALSE], {"kind": "all", "of": [SHOWN, DENIED]}, "another statement"),
+    ([None], {"kind": "identity", "left": "x", "right": "x", "symbols": ["x"]}, "another statement"),
+    ([ZEROED], {"kind": "all", "of": {"0": SHOWN}}, "expected certificates"),
+    ([ZEROED], {"kind": "all", "of": [[SHOWN]]}, "expected certificates"),
+    ([ZEROED], SHOWN | {"proofs": []}, "expected 1 entries"),
+]
+
+
 def answer(module: Any, statement: Any, item: Any) -> str:
     """The verdict, or the reason of a refusal."""
     try:
@@ -912,6 +959,10 @@ def discrepancies(module: Any, reasons: bool = True, first: str = "") -> Iterato
     hostile = [(s, prove(s, at, proof), why) for _, s, at, proof, why in rows]
     hostile += [(s, prove(s, at, proof), why) for s, at, proof, why in WITNESSES]
     hostile += [(s, refute(s, at, zero), why) for s, at, zero, why in STANDS]
+    for statements, item, expected in GRANTS:
+        found = answer(module, statements, item)
+        if not re.search(expected, found):
+            yield f"{found}, not {expected}: {statements}"
     from tests.checker import language  # its rows are made of these
 
     for statement, at, proofs, is_true in language.list_language():

@@ -163,7 +163,10 @@ def write_angles(parts: list[Term], script: Script) -> None:
                 script.now[name, argument] = new
     for k in sorted(used):
         if keys[k][1] and bases[keys[k]] in OF_PI:
-            script.lines += [f"try rewrite {rule} in *." for rule in OF_PI[bases[keys[k]]]]
+            script.lines += [f"try rewrite {rule} in *." for rule in (*OF_PI[bases[keys[k]]], "half_root")]
+            square = {3: 3, 4: 2, 6: 3}.get(bases[keys[k]])
+            if square:
+                script.know(f"sqrt {square} ^ 2 = {square}", "square_of_root")
         elif keys[k][1]:
             raise Unwritten("a fraction of pi without a rule")
         else:
