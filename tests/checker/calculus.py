@@ -295,6 +295,24 @@ EXPONENTIALS = [
     exponential("expm([[1]])", "[[2*exp(1)]]", change(ONE_BY, rows=[["2*exp(s__1)"]], start=[I]), "the sides differ"),
     exponential("expm([[1]])", "[[exp(1)]]", change(ONE_BY, rows=[["exp(abs(s__1))"]]), "expected 1 entries"),
     exponential("expm([[1]])", "[[exp(1)]]", change(ONE_BY, rows=[["exp(s__1)"], ["1"]]), "expected 1 entries"),
+    # A slope that is 0 at both ends only, and one that has no value at the end.
+    exponential(
+        "expm([[0]])",
+        "[[2]]",
+        {
+            "rows": [["1 + 3*s__1**2 - 2*s__1**3"]],
+            "smooth": [],
+            "equal": [by("integers", symbol="s__1", **{"from": 0}, proofs=[I, I])],
+            "start": [None],
+        },
+        "expected an integer",
+    ),
+    exponential(
+        "expm([[1]])",
+        "[[exp(1)]]",
+        change(ONE_BY, rows=[["exp(s__1) + 0*log(1 - s__1)"]], smooth=[by("range", symbol="s__1", end=1, share="1")]),
+        "the end belongs",
+    ),
     exponential("expm([[0, a], [-a, 0]])", "[[cos(a), sin(a)], [-sin(a), cos(a)]]", TURN_BY, a=LINE),
     exponential(
         "expm([[0, a], [-a, 0]])", "[[cos(a), -sin(a)], [sin(a), cos(a)]]", TURN_BY, "the sides differ", a=LINE

@@ -142,6 +142,8 @@ LANGUAGE = [
     (("floor(pi*x)", "=", "floor(x*pi)"), ("floor(x)",), "", {"x": "1/3"}, [I], {"x": LINE}),
     (("diff([x**2, x*y], x)", "=", "[2*x, y]"), ("[2*x, x]",), "", XY, [I] * 2, {"x": LINE, "y": LINE}),
 ]
+SEVEN = [f"y{k}" for k in range(7)]
+CASES = " + ".join(f"where({y} > 0, 0, 0)" for y in SEVEN)
 #: The same with what is random, with rates, whole numbers and cases: statement, its right side, a wrong one.
 NULL = f"[{', '.join('0' * 64)}]"
 A1, RATES = {"a": "1"}, {"x": "v", "t": "1"}
@@ -165,6 +167,7 @@ READ = [
     (stated(f"trace(eye(64)) + {NULL}[64] + [{NULL}][1,64]", "=", ""), "64", "0", {}, [I]),
     (stated("det(eye(5)) + trace(inv(eye(4)))", "=", ""), "5", "0", {}, [I]),
     (stated("asin(x) + acos(x)", "=", "", x=LINE), "acos(x) + asin(x)", "0", X1, [I]),
+    (stated(CASES, "=", "", **dict.fromkeys(SEVEN, LINE)), "0", "1", dict.fromkeys(SEVEN, "1"), [I] * 128),
 ]  # fmt: skip
 #: What the language does not mean, with the reason of its refusal.
 MEANINGLESS = [
@@ -229,6 +232,10 @@ MEANINGLESS = [
     (stated("E(x, x)", "=", "0", x=LINE), "malformed"),
     (stated("diff(x**2, limit(y, y, x))", "=", "0", x=LINE), "expected a symbol behind diff"),
     (stated("x", "=", "x", given=["x"], x=LINE), "expected a relation"),
+    (stated("1", "=", "1") | {"symbols": []}, "expected ranges by symbol"),
+    (stated(f"where(x > 0, {CASES}, 0)", "=", "0", **dict.fromkeys(("x", *SEVEN), LINE)), "too many cases"),
+    (stated("E(exp(w))", "=", "1") | {"random": NORMAL}, "a symbol without a range"),
+    (stated("E(w**2/exp(w))", "=", "1") | {"random": NORMAL}, "below a line or in a function"),
     (stated("x", "=", "x", rates=["x"], x=LINE), "expected rates by name"),
     (
         stated("dot_(u)", "=", "u", "u", rates={"u": "u", "v": "2*u"}) | {"shapes": {n: [["u_0_0"]] for n in "uv"}},

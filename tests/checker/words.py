@@ -51,6 +51,12 @@ TRACE = words(state("trace(A @ inv(A))", "n", A=(SQUARE, "invertible")), at(A=A)
 TRACED = words(
     state("trace(A @ inv(A))*B", "n*B", A=(SQUARE, "invertible"), B=TALL), at(A=A, B="1; 2"), share("1", "", 0, "", "B")
 )
+# A product that is said to be another matrix is no inverse, though it is one at the witness.
+UNSAID = words(
+    state("B @ A", "eye(n)", given=["A @ B = C"], A=SQUARE, B=SQUARE, C=SQUARE),
+    at(A=UNIT, B=UNIT, C=UNIT),
+    share("1", "", 2, ""),
+)
 LINE = words(
     state("u @ u.T @ u @ u.T", "u @ u.T", given=["dot(u, u) = 1"], u=["n", 1]),
     at(u="1; 0"),
@@ -290,6 +296,8 @@ FORGERIES: list[tuple[Any, list[Any], Any, str]] = [
     (PUSHED, ["shares", 1, "left"], "inv__arg__1.T", "a letter"),
     (ONE_SIDED, ["statement", "given"], [], "integer from"),
     (ONE_SIDED, MATRICES, {"A": {"size": TALL, "is": []}, "B": {"size": FLAT, "is": []}}, "different shapes|entries"),
+    (UNSAID, ["shares", 0, "relation"], 2, "integer from"),
+    (UNSAID, ["statement", "given"], ["A @ B = 2*eye(n)/2 + C - C"], "integer from|another sum"),
     (RANK_ONE, RIGHT, "dot(u, u)*(u @ v.T)/(v.T @ u + 1)", "no value at the witness"),
     (COMMUTING, ["point", "matrices", "B"], [["1", "0"], ["0", "1"]], "holds there"),
     (COMMUTING, ["point", "sizes", "n"], 1, "1 entries"),
