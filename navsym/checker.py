@@ -1860,8 +1860,6 @@ class Formula(Parser):
         reader.need(*(t for t in needs if name not in symbols_of(t)))
         needs = [t for t in needs if name in symbols_of(t)]
         own = f"{name}__{len(reader.questions) + 1}"
-        seen = set().union(*map(symbols_of, (term, *ends, *needs)))
-        require(own not in seen, "a name that is in use")
         if kind in ("sum", "product") and all(constant_of(end) is not None for end in ends):
             require(len(reader.questions) == first, f"{kind} of an open question")
             return self.write_out(kind, name, term, needs, ends)
@@ -1883,7 +1881,6 @@ class Formula(Parser):
         if reader.dead:
             return Matrix(rows)
         own = f"s__{len(reader.questions) + 1}"
-        require(own not in set(reader.box).union(*map(symbols_of, entries)), "a name that is in use")
         value = f"value {len(reader.questions) + 1}"
         reader.questions.append(Question("expm", value, own, ("matrix", *entries), ZERO, ONE, (), ()))
         return Matrix([("symbol", f"{value} {i} {j}") for j in range(n)] for i in range(n))

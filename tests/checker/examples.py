@@ -375,6 +375,11 @@ TENFOLD = CONDITION | {
     "statement": CONDITION["statement"] | {"matrix": [["10", "0"], ["0", "30"], ["0", "40"]]},
     "brackets": ["2490", "2510", "99.9", "100.1"],
 }
+# Singular values whose squares are 45 and 5: near them a pivot may have either sign.
+LEANING = CONDITION | {
+    "statement": {"matrix": [["3", "0"], ["4", "5"]], "unit": 0, "lower": "2.9", "upper": "3.1"},
+    "brackets": ["44.9", "45.1", "4.9", "5.1"],
+}
 BELOW_TEN = TENFOLD | {"outside": 1, "statement": TENFOLD["statement"] | {"lower": "10", "upper": "12"}}
 # A velocity with tilt and bias under a force f that grows at the rate r: where r = 0 stays, (0, 1, -f) is not seen.
 STILL = {
@@ -456,6 +461,7 @@ GOOD = [
     SCALED,
     TENFOLD,
     BELOW_TEN,
+    LEANING,
     DRIVEN,
     STILL,
     GROWING,

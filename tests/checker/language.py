@@ -123,6 +123,19 @@ LANGUAGE = [
     (("floor(5/2) + floor(-5/2) + floor(pi)", "=", "2"), ("3", "1"), "", {}, [I], {}),
     (("floor(log(exp(2))) + floor(-log(exp(3)))", "=", "-1"), ("0", "-2"), "", {}, [I], {}),
     (("floor(floor(x) + 1/2)", "=", "floor(x)"), ("floor(x) + 1",), "", {"x": "1/3"}, [I], {"x": LINE}),
+    (("diag(x)[1,1]", "=", "x"), ("2",), "", {"x": "1"}, [I], {"x": LINE}),
+    *(
+        ((f"where({one}, 1, 2)", "=", f"where({same}, {values})"), ("1", "2"), "", {"x": "1"}, [I] * 2, {"x": LINE})
+        for one, same, values in (
+            ("x > 0", "2*x - x > 0", "1, 2"),
+            ("x >= 0", "2*x - x >= 0", "1, 2"),
+            ("x < 0", "2*x - x < 0", "1, 2"),
+            ("x = 0", "2*x - x = 0", "1, 2"),
+            ("x > 0", "-x >= 0", "2, 1"),
+            ("x >= 0", "-x > 0", "2, 1"),
+            ("x = 0", "-x != 0", "2, 1"),
+        )
+    ),
     (
         ("floor(x)", ">", "x - 1"),
         ("x",),
@@ -232,6 +245,9 @@ MEANINGLESS = [
     (stated("E(x, x)", "=", "0", x=LINE), "malformed"),
     (stated("diff(x**2, limit(y, y, x))", "=", "0", x=LINE), "expected a symbol behind diff"),
     (stated("x", "=", "x", given=["x"], x=LINE), "expected a relation"),
+    (stated("]x)", "=", "x", x=LINE), "not an expression"),
+    (stated("x x", "=", "x", x=LINE), "more than one"),
+    (stated("diag(u, u)", "=", "x", "u", x=LINE), "expected a number"),
     (stated("1", "=", "1") | {"symbols": []}, "expected ranges by symbol"),
     (stated(f"where(x > 0, {CASES}, 0)", "=", "0", **dict.fromkeys(("x", *SEVEN), LINE)), "too many cases"),
     (stated("E(exp(w))", "=", "1") | {"random": NORMAL}, "a symbol without a range"),
@@ -276,6 +292,15 @@ NOWHERE_DEFINED = [
     (stated("diff(asin(x), x)*0", "=", "0", x=LINE), X1, [I], "no value at the witness"),
     (stated("dot_(abs(x))*0", "=", "0", rates={"x": "1"}, x=LINE), X0, [I], "no value at the witness"),
     (stated("expm([[0*log(x)]])", "=", "[[1]]", x=LINE), {"x": "-1"}, [I], "no value at the witness|without an answer"),
+    (stated("diff(asin(x), y)", "=", "0", x=LINE, y=LINE), {"x": "1", "y": "0"}, [I], "no value at the witness"),
+    (stated("diff(acos(x), y)", "=", "0", x=LINE, y=LINE), {"x": "-1", "y": "0"}, [I], "no value at the witness"),
+    (stated("x", ">", "0", given=["x >= 0"], x=LINE), X1, [by("range", symbol="x", end=0, share="1")], "end belongs"),
+    (
+        stated("-x", ">", "0", given=["x <= 0"], x=LINE),
+        {"x": "-1"},
+        [by("range", symbol="x", end=1, share="1")],
+        "end belongs",
+    ),
     (stated("floor(0*log(x))*0", "=", "0", x=LINE), {"x": "-1"}, [I], "a number that may not exist"),
     (stated("diff(acos(x), x)*0", "=", "0", x=LINE), {"x": "-1"}, [I], "no value at the witness"),
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, [I], "expected 2 entries"),
