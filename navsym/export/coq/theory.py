@@ -9,7 +9,7 @@ checker's parser. The script does not follow the certificate's proof: identities
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from importlib.resources import files
 from typing import Any
 
@@ -17,7 +17,7 @@ from navsym import checker
 from navsym.checker import Case, Range, Term
 from navsym.core.errors import DomainError
 from navsym.export.coq.condition import write_condition
-from navsym.export.coq.scripts import prove_bound, prove_equality, refute
+from navsym.export.coq.scripts import prove_bound, prove_equality, prove_modulo, refute
 from navsym.export.coq.terms import RELATIONS, Unwritten, defined, ranges, rename, subterms, write_term
 
 #: How numbers are compared: by polynomials alone, or by balls of few digits, then of many.
@@ -92,8 +92,9 @@ def write_theorem(name: str, part: Mapping[str, Any]) -> str:
         says = [relations(statement, [checker.parse(statement[side]) for side in ("left", "right")])]
     if part["kind"] != "proof" and len(says) > 1:
         raise Unwritten("a case that fails")
+    proofs = iter(part.get("proofs", ()))
     theorems = [
-        f"Theorem {name}{f'_{k}' if len(cases) > 1 else ''} : {write_case(part, case, wanted, box, names)}"
+        f"Theorem {name}{f'_{k}' if len(cases) > 1 else ''} : {write_case(part, case, wanted, box, names, proofs)}"
         for k, (case, wanted) in enumerate(zip(cases, says, strict=True), start=1)
     ]
     return "\n".join([f"(* {printed} *)", *theorems])
@@ -107,8 +108,10 @@ def require_words(statement: Mapping[str, Any], cases: list[Case]) -> None:
         raise Unwritten("a derivative, moment, whole part or order, which the checker reads")
 
 
-def write_case(part: Mapping[str, Any], case: Case, wanted: Said, box: Mapping[str, Range], names: Names) -> str:
-    """What a theorem says of one case, and its script."""
+def write_case(
+    part: Mapping[str, Any], case: Case, wanted: Said, box: Mapping[str, Range], names: Names, proofs: Iterator[Any]
+) -> str:
+    """What a theorem says of one case, and its script, which takes the cofactors of hypotheses from the proofs."""
     needs = [*ranges(box, names), *defined(case.terms, names)]
     needs += [f"{write_term(t, names)} >= 0" for t in case.given] + [f"{write_term(t, names)} = 0" for t in case.zeros]
     says = [(write_term(x, names), RELATIONS[relation], write_term(y, names)) for x, relation, y in wanted]
@@ -121,7 +124,10 @@ def write_case(part: Mapping[str, Any], case: Case, wanted: Said, box: Mapping[s
     for k, (x, relation, y) in enumerate(wanted if part["kind"] == "proof" else ()):
         lines += ["split."] * (k + 1 < len(wanted))
         script = prove_bound(names)
-        if relation == "=":
+        proof = next(proofs, {})
+        if relation == "=" and proof.get("rule") == "modulo":
+            script = prove_modulo(proof, case.zeros, x, names)
+        elif relation == "=":
             script = ["reflexivity."] if x == y else prove_equality(parts_of(part, case, x, y), names)
         lines += ["{", *script, "}"] if len(wanted) > 1 else script
     return "\n".join([f"{whole}.", "Proof.", *lines, "Qed.", ""])
