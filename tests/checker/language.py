@@ -136,6 +136,29 @@ LANGUAGE = [
             ("x = 0", "-x != 0", "2, 1"),
         )
     ),
+    *(
+        ((f"diff({f}, x)", "=", slope), (f"-({slope})", f), "", {"x": "1/2", "y": "1"}, [I], {"x": LINE, "y": LINE})
+        for f, slope in (
+            ("tan(x)", "1 + tan(x)**2"),
+            ("cot(x)", "-1 - cot(x)**2"),
+            ("sec(x)", "sec(x)*tan(x)"),
+            ("csc(x)", "-csc(x)*cot(x)"),
+            ("sinh(x) + 1", "cosh(x)"),
+            ("cosh(x) + 1", "sinh(x)"),
+            ("tanh(x)", "1 - tanh(x)**2"),
+            ("sqrt(x)", "1/(2*sqrt(x))"),
+            ("abs(x)", "x/abs(x)"),
+            ("exp(2*x)", "2*exp(2*x)"),
+            ("log(x)", "1/x"),
+            ("atan(x)", "1/(1 + x**2)"),
+            ("asin(x)", "1/sqrt(1 - x**2)"),
+            ("acos(x)", "-1/sqrt(1 - x**2)"),
+            ("erf(x)", "2*exp(-x**2)/sqrt(pi)"),
+            ("atan2(y, x)", "-y/(x**2 + y**2)"),
+            ("atan2(x, y)", "y/(x**2 + y**2)"),
+            ("x**y", "y*x**(y - 1)"),
+        )
+    ),
     (
         ("floor(x)", ">", "x - 1"),
         ("x",),
@@ -247,6 +270,10 @@ MEANINGLESS = [
     (stated("x", "=", "x", given=["x"], x=LINE), "expected a relation"),
     (stated("]x)", "=", "x", x=LINE), "not an expression"),
     (stated("x x", "=", "x", x=LINE), "more than one"),
+    (stated("x", "=", "x;", x=LINE), "unexpected characters"),
+    (stated("x", "=", "x", given=["x = 1\n"], x=LINE), "unexpected characters"),
+    (stated("x", "=", "x", x=LINE) | {"right": 5}, "expected a text"),
+    (stated("x", "=", f"x{' ' * 400000}", x=LINE), "expected a text"),
     (stated("diag(u, u)", "=", "x", "u", x=LINE), "expected a number"),
     (stated("1", "=", "1") | {"symbols": []}, "expected ranges by symbol"),
     (stated(f"where(x > 0, {CASES}, 0)", "=", "0", **dict.fromkeys(("x", *SEVEN), LINE)), "too many cases"),

@@ -664,6 +664,12 @@ HOSTILE = [
     ("concave", state("1/(1 - 2*x)", ">=", x=UNIT), X0, concave(I, B, B, continuous=[integers(0, B, B)]),
      "expected an integer"),
     ("identity", SQUARE, X0, by("unheard-of"), "a known rule"),
+    ("identity", state("(a + b + c + d + 1)**20*(a - b + c - d + 1)**20", "=", **dict.fromkeys("abcd", LINE)),
+     {"a": "1", "b": "1", "c": "1", "d": "1"}, I, "too many terms"),
+    ("identity", state("(a + b + c + d + 1)**900", "=", **dict.fromkeys("abcd", LINE)),
+     {"a": "1", "b": "1", "c": "1", "d": "1"}, I, "too many terms"),
+    ("cones", state("a + b + c + d + e + f + g + h + x", ">=", **dict.fromkeys("abcdefghx", UP)),
+     dict.fromkeys("abcdefghx", "1"), cones(None), "too many symbols"),
     ("identity", SQUARE, X0, ["identity"], "a known rule"),
     # Sturm's chain of these needs more than three remainders.
     ("roots", state("3*x**4 - x**3 + 6*x**2 - 5*x + 1", ">", x=UNIT), X0, roots("0", "1"), "a zero|change of sign"),

@@ -243,7 +243,7 @@ FORGERIES: list[tuple[Any, list[Any], Any, str]] = [
     (DIFFERENCE, RIGHT, "A B", "more than one"),
     (DIFFERENCE, RIGHT, "A; B", "unexpected characters"),
     (DIFFERENCE, RIGHT, "C", "unknown name"),
-    (DIFFERENCE, RIGHT, "A[1,2]", "unexpected characters"),
+    (DIFFERENCE, RIGHT, "A[1,2]", "more than one"),
     (DIFFERENCE, RIGHT, "A*B", "written with @"),
     (DIFFERENCE, RIGHT, "A/B", "division by a matrix"),
     (DIFFERENCE, RIGHT, "A**2", "power of a matrix"),
