@@ -138,7 +138,7 @@ class Watched:
 
     def __init__(self, module: ModuleType):
         self.module, self.answers = module, dict[str, tuple[str, tuple[Any, ...], Any, str | None, frozenset[int]]]()
-        self.changed: frozenset[int] | None = None
+        self.changed: frozenset[int] | None = frozenset()  # lines that a mutant has otherwise; None for any
         self.check, self.grant = (partial(self.ask, name) for name in ("check", "grant"))
 
     def __getattr__(self, name: str) -> Any:
@@ -147,10 +147,10 @@ class Watched:
     def ask(self, name: str, *items: Any) -> Any:
         """What the module says, or said before the change."""
         key = f"{name}{items!r}"
-        if key not in self.answers and self.changed is None:
+        if key not in self.answers and self.changed == frozenset():
             self.answers[key] = (name, items, *self.watch(name, items))
         _, _, value, why, lines = self.answers.get(key, (name, items, None, None, frozenset()))
-        if self.changed is not None and (key not in self.answers or self.changed & lines):
+        if self.changed is None or key not in self.answers or self.changed & lines:
             return getattr(self.module, name)(*items)
         if why is not None:
             raise self.module.Refused(why)

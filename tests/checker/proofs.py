@@ -302,6 +302,9 @@ TRUE = [
     ("bounded", state("1 + erf(x)", ">", x=LINE), X0, bounded(I)),
     ("bounded", state("1 - tanh(x)", ">", x=LINE), X0, bounded(I)),
     ("bounded", state("pi/2 + atan(x)", ">", x=LINE), X0, bounded(I)),
+    # Beyond the ends of asin, acos, log and roots there is nothing to show.
+    ("balls", state("x + 3/2 + 0*asin(x)", ">", x=["-3", "1", []]), X0, B),
+    ("balls", state("3/2 - x + 0*acos(x)", ">", x=["-1", "3", []]), X0, B),
     ("range", state("x", ">", x=["0", "3", ["open-low", "open-high", "nonzero", "integer"]]), X1, span(0)),
     ("balls", state("asin(x) + acos(x) + 1", ">", x=["-2", "2", []]), X0, B),
     ("cones", state("x - 1", ">", x=["1", None, ["open-low"]]), {"x": "2"}, cones(None)),
@@ -663,14 +666,12 @@ HOSTILE = [
      continuous=[integers(0, B, B)]), "expected an integer"),
     ("concave", state("1/(1 - 2*x)", ">=", x=UNIT), X0, concave(I, B, B, continuous=[integers(0, B, B)]),
      "expected an integer"),
-    ("identity", SQUARE, X0, by("unheard-of"), "a known rule"),
     ("identity", state("(a + b + c + d + 1)**20*(a - b + c - d + 1)**20", "=", **dict.fromkeys("abcd", LINE)),
      {"a": "1", "b": "1", "c": "1", "d": "1"}, I, "too many terms"),
     ("identity", state("(a + b + c + d + 1)**900", "=", **dict.fromkeys("abcd", LINE)),
      {"a": "1", "b": "1", "c": "1", "d": "1"}, I, "too many terms"),
     ("cones", state("a + b + c + d + e + f + g + h + x", ">=", **dict.fromkeys("abcdefghx", UP)),
      dict.fromkeys("abcdefghx", "1"), cones(None), "too many symbols"),
-    ("identity", SQUARE, X0, ["identity"], "a known rule"),
     # Sturm's chain of these needs more than three remainders.
     ("roots", state("3*x**4 - x**3 + 6*x**2 - 5*x + 1", ">", x=UNIT), X0, roots("0", "1"), "a zero|change of sign"),
     ("roots", state("3*x**4 - x**3 + 6*x**2 - 5*x + 1", ">=", x=UNIT), X0, roots("0", "1"), "a change of sign"),
@@ -875,6 +876,8 @@ HOSTILE += [
 # What is no statement or no witness, and points that refute or do not
 # fmt: off
 WITNESSES = [
+    (SQUARE, X0, by("unheard-of"), "a known rule"),
+    (SQUARE, X0, ["identity"], "a known rule"),
     (state("x", "=", "x", x=["0", "log(-1)", []]), X0, I, "may not exist"),
     (state("x", "=", "x", x=["0", "sqrt(-1)*0", []]), X0, I, "may not exist"),
     (state("x", "=", "x", x=["0", "x", []]), X0, I, "a symbol in the end"),
