@@ -1164,7 +1164,7 @@ def find_whole(u: Term) -> Term:
 
 
 SIGNS = {"=": (1, "="), "!=": (1, "!="), ">": (1, ">"), ">=": (1, ">="), "<": (-1, ">"), "<=": (-1, ">=")}
-MOST_CASES = 128
+MOST_CASES, FAR = 128, 10**9  # cases of a statement, and the largest whole number that a rule is given
 
 
 def read_statement(item: Any, answers: Answers | None = None) -> tuple[list[Case], dict[str, Range]]:
@@ -2260,7 +2260,7 @@ def prove_integers(proof: Any, goal: Goal) -> None:
     """A symbol that is an integer between two numbers is one of finitely many."""
     _, name, first, proofs = read_fields(proof, "rule symbol from proofs")
     require(name in goal.box and goal.box[name].integer, "expected an integer")
-    limit, start = goal.box[name], read_integer(first, -(10**9), 10**9)
+    limit, start = goal.box[name], read_integer(first, -FAR, FAR)
     values = read_list(proofs, lambda entry: entry)
     ends = [(limit.low, start - 1, 1), (limit.high, start + len(values), -1)]
     require(all(end is not None and (value_of(end, {}) - k) * sign > 0 for end, k, sign in ends), "more integers")
@@ -2529,7 +2529,7 @@ def prove_range(proof: Any, goal: Goal) -> None:
 def prove_angle(proof: Any, goal: Goal) -> None:
     """(-1)**k sin u >= 0, or > 0, for u between k pi and (k + 1) pi; cos u = sin(u + pi/2); times a number c > 0."""
     _, turn, share, proofs = read_fields(proof, "rule turn share proofs")
-    k, c = read_integer(turn, -(10**6), 10**6), read_number(share)
+    k, c = read_integer(turn, -FAR, FAR), read_number(share)
     require(goal.relation in (">=", ">") and c > 0, "expected >= or >")
     waves = [f for f in list_factors(goal.term) if f[0] in ("sin", "cos")]
     require(len(waves) == 1, "expected one sine or cosine")
