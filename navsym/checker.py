@@ -1811,7 +1811,7 @@ class Formula(Parser):
             reader = self.reader
             return change_entries(reader.expect, *arguments) if name == "E" else reader.find_covariance(*arguments)
         if name == "expm":
-            return self.ask_exponential(to_square(*arguments, most=16))
+            return self.ask_exponential(*arguments)
         if name in CALLS:
             if name == "trace":
                 self.reader.need(*list_entries(arguments[0]))
@@ -1872,9 +1872,9 @@ class Formula(Parser):
         reader.questions.append(question)
         return ("symbol", question.value)
 
-    def ask_exponential(self, rows: list[list[Term]]) -> Value:
+    def ask_exponential(self, x: Value) -> Value:
         """expm(A): symbols in the place of its entries."""
-        reader, entries, n = self.reader, [entry for row in rows for entry in row], len(rows)
+        reader, rows, entries = self.reader, to_square(x, 16), list_entries(x)
         for entry in entries:
             reader.require_plain(entry, "an exponential")
         if reader.dead:
@@ -1882,7 +1882,7 @@ class Formula(Parser):
         own = f"s__{len(reader.questions) + 1}"
         value = f"value {len(reader.questions) + 1}"
         reader.questions.append(Question("expm", value, own, ("matrix", *entries), ZERO, ONE, (), ()))
-        return Matrix([("symbol", f"{value} {i} {j}") for j in range(n)] for i in range(n))
+        return Matrix([("symbol", f"{value} {i} {j}") for j in range(len(rows))] for i in range(len(rows)))
 
     def write_out(self, kind: str, name: str, term: Term, needs: list[Term], ends: list[Term]) -> Term:
         """A sum or product with numbers as ends; one of no terms is 0 or 1."""

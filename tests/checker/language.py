@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.checker.proofs import LINE, X0, X1, XY, I, by, modulo, stated
+from tests.checker.proofs import LINE, SQUARE, X0, X1, XY, I, by, modulo, prove, refute, state, stated
 
 ONES = {f"{n}_{i}_0": str(i + k) for k, n in enumerate("uvw") for i in range(3)}
 TWOS = {f"{n}_{i}_{j}": str(2 * i + 3 * j + k) for k, n in enumerate("AB") for i in range(2) for j in range(2)}
@@ -350,6 +350,26 @@ LANGUAGE_STANDS = [
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, None, "not seen to fail"),
     (stated("where(x > 0, x, 1/x)", "=", "x", x=LINE), X0, None, "no value at the point"),
     (stated("norm(u)", "=", "1", "u", given=["dot(u, u) = 1"]), some(ONES, "u"), None, "no value at the point"),
+]
+
+ZEROED, FALSE = state("x - x", "=", x=LINE), state("x", "=", "1", x=LINE)
+SHOWN, DENIED, SQUARED = prove(ZEROED, X0, I), refute(FALSE, X0), prove(SQUARE, X0, by("zero", I))
+#: What several certificates say of several statements: each is proved, in their order; or one of them fails.
+GRANTS = [
+    (ZEROED, SHOWN, "HOLDS"),
+    ([ZEROED, ZEROED], {"kind": "all", "of": [SHOWN, SHOWN]}, "HOLDS"),
+    ([ZEROED, FALSE], DENIED, "FAILS"),
+    ([FALSE, ZEROED], {"kind": "all", "of": [DENIED]}, "FAILS"),
+    ([ZEROED, FALSE], SHOWN, "another statement"),
+    ([ZEROED], {"kind": "all", "of": [SHOWN, SHOWN]}, "another statement"),
+    ([ZEROED], DENIED, "another statement"),
+    ([FALSE, FALSE], {"kind": "all", "of": [DENIED, DENIED]}, "another statement"),
+    ([FALSE, ZEROED], {"kind": "all", "of": [SHOWN, DENIED]}, "another statement"),
+    ([ZEROED, FALSE], {"kind": "all", "of": [SHOWN, DENIED]}, "another statement"),
+    ([None], {"kind": "identity", "left": "x", "right": "x", "symbols": ["x"]}, "another statement"),
+    ([ZEROED], {"kind": "all", "of": {"0": SHOWN}}, "expected certificates"),
+    ([ZEROED], {"kind": "all", "of": [[SHOWN]]}, "expected certificates"),
+    ([ZEROED], SHOWN | {"proofs": []}, "expected 1 entries"),
 ]
 
 

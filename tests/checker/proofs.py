@@ -942,27 +942,6 @@ STANDS = [
 # fmt: on
 
 
-ZEROED, FALSE = state("x - x", "=", x=LINE), state("x", "=", "1", x=LINE)
-SHOWN, DENIED, SQUARED = prove(ZEROED, X0, I), refute(FALSE, X0), prove(SQUARE, X0, by("zero", I))
-#: What several certificates say of several statements: each is proved, in their order; or one of them fails.
-GRANTS = [
-    (ZEROED, SHOWN, "HOLDS"),
-    ([ZEROED, ZEROED], {"kind": "all", "of": [SHOWN, SHOWN]}, "HOLDS"),
-    ([ZEROED, FALSE], DENIED, "FAILS"),
-    ([FALSE, ZEROED], {"kind": "all", "of": [DENIED]}, "FAILS"),
-    ([ZEROED, FALSE], SHOWN, "another statement"),
-    ([ZEROED], {"kind": "all", "of": [SHOWN, SHOWN]}, "another statement"),
-    ([ZEROED], DENIED, "another statement"),
-    ([FALSE, FALSE], {"kind": "all", "of": [DENIED, DENIED]}, "another statement"),
-    ([FALSE, ZEROED], {"kind": "all", "of": [SHOWN, DENIED]}, "another statement"),
-    ([ZEROED, FALSE], {"kind": "all", "of": [SHOWN, DENIED]}, "another statement"),
-    ([None], {"kind": "identity", "left": "x", "right": "x", "symbols": ["x"]}, "another statement"),
-    ([ZEROED], {"kind": "all", "of": {"0": SHOWN}}, "expected certificates"),
-    ([ZEROED], {"kind": "all", "of": [[SHOWN]]}, "expected certificates"),
-    ([ZEROED], SHOWN | {"proofs": []}, "expected 1 entries"),
-]
-
-
 def answer(module: Any, statement: Any, item: Any) -> str:
     """The verdict, or the reason of a refusal."""
     try:
@@ -986,11 +965,12 @@ def discrepancies(module: Any, reasons: bool = True, first: str = "") -> Iterato
     hostile = [(s, prove(s, at, proof), why) for _, s, at, proof, why in rows]
     hostile += [(s, prove(s, at, proof), why) for s, at, proof, why in WITNESSES]
     hostile += [(s, refute(s, at, zero), why) for s, at, zero, why in STANDS]
-    for statements, item, expected in GRANTS:
+    from tests.checker import language  # its rows are made of these
+
+    for statements, item, expected in language.GRANTS:
         found = answer(module, statements, item)
         if not re.search(expected, found):
             yield f"{found}, not {expected}: {statements}"
-    from tests.checker import language  # its rows are made of these
 
     for statement, at, proofs, is_true in language.list_language():
         found = answer(module, statement, prove(statement, at, *proofs))

@@ -96,7 +96,8 @@ def find_squares(form: fmpq_mat, spare: fmpq_mat) -> tuple[int, list[list[int]]]
     for bits in BITS if squares else ():
         with ctx.workprec(4000):
             rows = [
-                [int((arb(d * 4**bits).sqrt() * x).mid().floor().unique_fmpz()) for x in r] for d, r in squares or ()
+                [int((arb(d * 4**bits).sqrt() * x).mid().floor().unique_fmpz() or 0) for x in r]
+                for d, r in squares or ()
             ]
         rest = form * 4**bits - fmpq_mat(fmpz_mat(rows).transpose() * fmpz_mat(rows))
         if all(2 * rest[i, i] >= sum(abs(rest[i, j]) for j in range(n)) for i in range(n)):

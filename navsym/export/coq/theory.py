@@ -124,7 +124,7 @@ def write_case(
     for k, (x, relation, y) in enumerate(wanted if part["kind"] == "proof" else ()):
         lines += ["split."] * (k + 1 < len(wanted))
         script = prove_bound(names)
-        proof = next(proofs, {})
+        proof: Mapping[str, Any] = next(proofs, {})
         if relation == "=" and proof.get("rule") == "modulo":
             script = prove_modulo(proof, case.zeros, x, names)
         elif relation == "=":
