@@ -298,7 +298,6 @@ FORGERIES: list[tuple[Any, list[Any], Any, str]] = [
     (ONE_SIDED, ["statement", "given"], [], "integer from"),
     (ONE_SIDED, MATRICES, {"A": {"size": TALL, "is": []}, "B": {"size": FLAT, "is": []}}, "different shapes|entries"),
     (UNSAID, ["shares", 0, "relation"], 2, "integer from"),
-    (UNSAID, ["statement", "given"], ["A @ B = 2*eye(n)/2 + C - C"], "integer from|another sum"),
     (RANK_ONE, RIGHT, "dot(u, u)*(u @ v.T)/(v.T @ u + 1)", "no value at the witness"),
     (COMMUTING, ["point", "matrices", "B"], [["1", "0"], ["0", "1"]], "holds there"),
     (COMMUTING, ["point", "sizes", "n"], 1, "1 entries"),
