@@ -339,6 +339,7 @@ NOWHERE_DEFINED = [
 #: Points where a statement of the whole language fails, and where it does not although its other case would.
 LANGUAGE_FAILS = [
     (stated("x", "=", "2", given=["x**2 = 4"], x=LINE), {"x": "-2"}, None),
+    (stated("sign(x)", "=", "-1", x=LINE), X1, None),
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X0, None),
     (stated("cross(u, v)", "=", "cross(v, u)", "u", "v"), some(ONES, "u", "v"), None),
     (stated("A", "!=", "A.T", "A"), {f"A_{i}_{j}": "1" for i in range(2) for j in range(2)}, None),
@@ -348,6 +349,7 @@ LANGUAGE_STANDS = [
     (stated("x", "=", "2", given=["x**2 = 4"], x=LINE), {"x": "1"}, None, "no value at the point"),
     (stated("x", "=", "2", given=["x >= 2"], x=LINE), {"x": "1"}, None, "no value at the point"),
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, None, "not seen to fail"),
+    (stated("sign(x)", "=", "1", x=LINE), X1, None, "not seen to fail"),
     (stated("where(x > 0, x, 1/x)", "=", "x", x=LINE), X0, None, "no value at the point"),
     (stated("norm(u)", "=", "1", "u", given=["dot(u, u) = 1"]), some(ONES, "u"), None, "no value at the point"),
 ]

@@ -159,15 +159,14 @@ class Watched:
     def compare(self) -> str:
         """Whether the module says ``otherwise`` than before, or the same for another ``reason``, or nothing new."""
         found = ""
-        for name, items, _, why, lines in self.answers.values():
+        for name, items, value, why, lines in self.answers.values():
             if self.changed is not None and not self.changed & lines:
                 continue
             try:
-                getattr(self.module, name)(*items)
-                new = None
+                said, new = getattr(self.module, name)(*items), None
             except self.module.Refused as refusal:
-                new = str(refusal)
-            if (new is None) != (why is None):
+                said, new = None, str(refusal)
+            if said != value:
                 return "otherwise"
             found = found or "reason" * (new != why)
         return found
