@@ -790,85 +790,39 @@ HOSTILE = [
 
 
 # The rules of hypotheses
+# fmt: off
 TRUE += [
     ("modulo", stated("x**2", "=", "4", given=["x = 2"], x=LINE), {"x": "2"}, modulo("0", I, "x + 2")),
     ("modulo", stated("x**2", ">", "3", given=["x = 2"], x=LINE), {"x": "2"}, modulo("1", B, "x + 2")),
-    (
-        "modulo",
-        stated("x", "=", "y", given=["x*y = 1", "y**2 = 1"], x=LINE, y=LINE),
-        XY,
-        modulo("0", I, "y", "-x", defined=()),
-    ),
+    ("modulo", stated("x", "=", "y", given=["x*y = 1", "y**2 = 1"], x=LINE, y=LINE), XY, modulo("0", I, "y", "-x",
+     defined=())),
     ("modulo", stated("1/x", "=", "y", given=["x*y = 1"], x=LINE, y=LINE), XY, modulo("0", I, "-1/x")),
-    (
-        "between",
-        stated("x", "=", "0", given=["x >= 0", "-x >= 0"], x=LINE),
-        X0,
-        between(given("1", "0"), given("0", "1")),
-    ),
+    ("between", stated("x", "=", "0", given=["x >= 0", "-x >= 0"], x=LINE), X0, between(given("1", "0"), given("0",
+     "1"))),
 ]
 HOSTILE += [
-    ("modulo", stated("x**2", "=", "4", given=["x = 2"], x=LINE), {"x": "2"}, modulo("0", I, "x - 2"), "terms differ"),
+    ("modulo", stated("x**2", "=", "4", given=["x = 2"], x=LINE), {"x": "2"}, modulo("0", I, "x - 2"),
+     "terms differ"),
     ("modulo", stated("x**2", "=", "4", given=["x = 2"], x=LINE), {"x": "2"}, modulo("0", I), "expected 1 entries"),
-    (
-        "modulo",
-        stated("x", "=", "4", given=["x**2 = 16"], x=LINE),
-        {"x": "4"},
-        modulo("0", I, "1/(x + 4)"),
-        "expected 1 entries",
-    ),
+    ("modulo", stated("x", "=", "4", given=["x**2 = 16"], x=LINE), {"x": "4"}, modulo("0", I, "1/(x + 4)"),
+     "expected 1 entries"),
     ("modulo", state("x", "=", "4", x=LINE), {"x": "4"}, modulo("0", I), "the terms differ"),
-    (
-        "modulo",
-        stated("x", "=", "4", given=["x >= 4"], x=LINE),
-        {"x": "4"},
-        modulo("0", I, "1"),
-        "expected a list of entries",
-    ),
-    (
-        "modulo",
-        stated("x", "=", "3", given=["x - x = 1"], x=LINE),
-        {"x": "3"},
-        modulo("0", I, "-(x - 3)"),
-        "no value at the witness",
-    ),
-    (
-        "modulo",
-        stated("x", "=", "y", given=["x = 2"], x=LINE, y=LINE),
-        {"x": "2", "y": "2"},
-        modulo("0", I, "1 - z"),
-        "the terms differ",
-    ),
+    ("modulo", stated("x", "=", "4", given=["x >= 4"], x=LINE), {"x": "4"}, modulo("0", I, "1"),
+     "expected a list of entries"),
+    ("modulo", stated("x", "=", "3", given=["x - x = 1"], x=LINE), {"x": "3"}, modulo("0", I, "-(x - 3)"),
+     "no value at the witness"),
+    ("modulo", stated("x", "=", "y", given=["x = 2"], x=LINE, y=LINE), {"x": "2", "y": "2"}, modulo("0", I, "1 - z"),
+     "the terms differ"),
     ("between", state("x", "=", x=UNIT), X0, between(span(0), span(1)), "the term is another one"),
     ("between", state("x", ">=", x=UNIT), X0, between(span(0), span(0)), "expected an equation"),
-    (
-        "slope",
-        stated("x", ">=", "1", given=["x = 1"], x=["0", "2", []]),
-        X1,
-        slope(0, B, modulo("0", I, "1")),
-        "expected a list of entries",
-    ),
-    (
-        "dense",
-        stated("(x - 1)**2", ">=", "0", given=["x = 1"], x=LINE),
-        X1,
-        dense("x", {"x": "1"}, modulo("0", I, "x - 1")),
-        "expected a list of entries",
-    ),
-    (
-        "derivative",
-        stated("x", "=", "1", given=["x = 1"], x=LINE),
-        X1,
-        derivative({"x": "1"}, I, [modulo("0", I, "1")]),
-        "expected a list of entries",
-    ),
-    (
-        "corners",
-        stated("x - 1", ">=", "0", given=["x = 1"], x=["0", "2", []]),
-        X1,
-        corners(["x"], modulo("0", I, "1"), B),
-        "expected a list of entries",
-    ),
+    ("slope", stated("x", ">=", "1", given=["x = 1"], x=["0", "2", []]), X1, slope(0, B, modulo("0", I, "1")),
+     "expected a list of entries"),
+    ("dense", stated("(x - 1)**2", ">=", "0", given=["x = 1"], x=LINE), X1, dense("x", {"x": "1"}, modulo("0", I,
+     "x - 1")), "expected a list of entries"),
+    ("derivative", stated("x", "=", "1", given=["x = 1"], x=LINE), X1, derivative({"x": "1"}, I, [modulo("0", I,
+     "1")]), "expected a list of entries"),
+    ("corners", stated("x - 1", ">=", "0", given=["x = 1"], x=["0", "2", []]), X1, corners(["x"], modulo("0", I, "1"),
+     B), "expected a list of entries"),
 ]
 # fmt: on
 
