@@ -154,6 +154,9 @@ LIMITS = [
     row("limit(log(x), x, 2)", "log(2)", [taylor("log(x__1)", "1", pole=[B, B], around=[0])]),
 ]
 NATURAL = by("product", factors=[None])
+AT_0 = [by("range", symbol="x__1", end=0, share="1")]
+ABOVE = by("sum", proofs=[B, by("range", symbol="x__1", end=0, share="1")], strict=0)
+APART = by("product", factors=[[1, by("side", ABOVE, sign=1)], [1, by("side", by("bounded", B), sign=1)]])
 INTEGRALS = [
     row("integral(x**2, x, 0, 1)", "1/3", [integral(piece("x__1**3/3"))]),
     row("integral(x**2, x, 1, 0)", "-1/3", [integral(piece("x__1**3/3"))]),
@@ -167,6 +170,16 @@ INTEGRALS = [
         "integral(x*exp(-x**2), x, -oo, oo)",
         "0",
         [integral(piece("-exp(-x__1**2)/2", (1, 0)), piece("-exp(-x__1**2)/2", (0, 1)), cuts=["0"])],
+    ),
+    # Roots at an end, where the integrand has no value.
+    row("integral(x**(-1/2), x, 0, 1)", "2", [integral(piece("2*x__1**(1/2)", (1, 0), AT_0, AT_0))]),
+    row("integral(x**(-1/2), x, 0, 1)", "2", [integral(piece("2*x__1**(1/2)", (1, 0), AT_0))], "expected 1 entries"),
+    # F = 1/(x (2 + sin x)) has the limit 0, and 1/(x (sin x + 1 + exp(-x))) none: of 2 + sin x no limit is known.
+    row(
+        "integral(-(2 + sin(x) + x*cos(x))*(x*(2 + sin(x)))**(-2), x, 1, oo)",
+        "-1/(2 + sin(1))",
+        [integral(piece("(x__1*(2 + sin(x__1)))**(-1)", (0, 1), [APART], [APART]))],
+        "a power that may have no value",
     ),
     # Poles: -1/x and log(x**2)/2 are no antiderivatives over 0, and 1/x**2 has no integral from 0.
     row("integral(1/x**2, x, -1, 1)", "-2", [integral(piece("-1/x__1"))], "expected 1 entries"),
@@ -282,6 +295,24 @@ EXPONENTIALS = [
     exponential("expm([[1]])", "[[2*exp(1)]]", change(ONE_BY, rows=[["2*exp(s__1)"]], start=[I]), "the sides differ"),
     exponential("expm([[1]])", "[[exp(1)]]", change(ONE_BY, rows=[["exp(abs(s__1))"]]), "expected 1 entries"),
     exponential("expm([[1]])", "[[exp(1)]]", change(ONE_BY, rows=[["exp(s__1)"], ["1"]]), "expected 1 entries"),
+    # A slope that is 0 at both ends only, and one that has no value at the end.
+    exponential(
+        "expm([[0]])",
+        "[[2]]",
+        {
+            "rows": [["1 + 3*s__1**2 - 2*s__1**3"]],
+            "smooth": [],
+            "equal": [by("integers", symbol="s__1", **{"from": 0}, proofs=[I, I])],
+            "start": [None],
+        },
+        "expected an integer",
+    ),
+    exponential(
+        "expm([[1]])",
+        "[[exp(1)]]",
+        change(ONE_BY, rows=[["exp(s__1) + 0*log(1 - s__1)"]], smooth=[by("range", symbol="s__1", end=1, share="1")]),
+        "the end belongs",
+    ),
     exponential("expm([[0, a], [-a, 0]])", "[[cos(a), sin(a)], [-sin(a), cos(a)]]", TURN_BY, a=LINE),
     exponential(
         "expm([[0, a], [-a, 0]])", "[[cos(a), -sin(a)], [sin(a), cos(a)]]", TURN_BY, "the sides differ", a=LINE

@@ -424,6 +424,17 @@ SCALED = CONDITION | {
     "outside": 1,
     "brackets": ["0.99", "1.01", "0.999", "1.001"],
 }
+# Ten times as long: singular values 10 and 50, whose quotient is below ten.
+TENFOLD = CONDITION | {
+    "statement": CONDITION["statement"] | {"matrix": [["10", "0"], ["0", "30"], ["0", "40"]]},
+    "brackets": ["2490", "2510", "99.9", "100.1"],
+}
+# Singular values whose squares are 45 and 5: near them a pivot may have either sign.
+LEANING = CONDITION | {
+    "statement": {"matrix": [["3", "0"], ["4", "5"]], "unit": 0, "lower": "2.9", "upper": "3.1"},
+    "brackets": ["44.9", "45.1", "4.9", "5.1"],
+}
+BELOW_TEN = TENFOLD | {"outside": 1, "statement": TENFOLD["statement"] | {"lower": "10", "upper": "12"}}
 # A velocity with tilt and bias under a force f that grows at the rate r: where r = 0 stays, (0, 1, -f) is not seen.
 STILL = {
     "kind": "observability",
@@ -478,6 +489,8 @@ PIVOT = PLAIN | {
     "free": [1],
     "null": [["0", "a"]],
 }
+# A direction whose length grows: M is the rate of its logarithm.
+DRIVEN = PIVOT | {"statement": PIVOT["statement"] | {"rates": {"a": "2*a"}}, "point": {"a": "3"}}
 # Two columns that almost point in one direction: the small singular value comes from an elimination.
 ALIKE = {
     "kind": "condition",
@@ -500,6 +513,10 @@ GOOD = [
     ALIKE,
     CONDITION,
     SCALED,
+    TENFOLD,
+    BELOW_TEN,
+    LEANING,
+    DRIVEN,
     STILL,
     GROWING,
     CIRCLE,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.checker.proofs import LINE, X0, X1, XY, I, by, modulo, stated
+from tests.checker.proofs import LINE, SQUARE, X0, X1, XY, I, by, modulo, prove, refute, state, stated
 
 ONES = {f"{n}_{i}_0": str(i + k) for k, n in enumerate("uvw") for i in range(3)}
 TWOS = {f"{n}_{i}_{j}": str(2 * i + 3 * j + k) for k, n in enumerate("AB") for i in range(2) for j in range(2)}
@@ -22,6 +22,7 @@ def some(point, *names):
     return {key: value for key, value in point.items() if key[0] in names}
 
 
+ABOVE_0, BELOW_1 = (by("range", symbol="fraction__1", end=end, share="1") for end in (0, 1))
 #: True statements of the whole language, and false ones that differ in a sign, an index, an order or a transposition.
 #: The same proofs are offered for both.
 LANGUAGE = [
@@ -122,9 +123,63 @@ LANGUAGE = [
     (("floor(5/2) + floor(-5/2) + floor(pi)", "=", "2"), ("3", "1"), "", {}, [I], {}),
     (("floor(log(exp(2))) + floor(-log(exp(3)))", "=", "-1"), ("0", "-2"), "", {}, [I], {}),
     (("floor(floor(x) + 1/2)", "=", "floor(x)"), ("floor(x) + 1",), "", {"x": "1/3"}, [I], {"x": LINE}),
+    (("diag(x)[1,1]", "=", "x"), ("2",), "", {"x": "1"}, [I], {"x": LINE}),
+    *(
+        ((f"where({one}, 1, 2)", "=", f"where({same}, {values})"), ("1", "2"), "", {"x": "1"}, [I] * 2, {"x": LINE})
+        for one, same, values in (
+            ("x > 0", "2*x - x > 0", "1, 2"),
+            ("x >= 0", "2*x - x >= 0", "1, 2"),
+            ("x < 0", "2*x - x < 0", "1, 2"),
+            ("x = 0", "2*x - x = 0", "1, 2"),
+            ("x > 0", "-x >= 0", "2, 1"),
+            ("x >= 0", "-x > 0", "2, 1"),
+            ("x = 0", "-x != 0", "2, 1"),
+        )
+    ),
+    *(
+        ((f"diff({f}, x)", "=", slope), (f"-({slope})", f), "", {"x": "1/2", "y": "1"}, [I], {"x": LINE, "y": LINE})
+        for f, slope in (
+            ("tan(x)", "1 + tan(x)**2"),
+            ("cot(x)", "-1 - cot(x)**2"),
+            ("sec(x)", "sec(x)*tan(x)"),
+            ("csc(x)", "-csc(x)*cot(x)"),
+            ("sinh(x) + 1", "cosh(x)"),
+            ("cosh(x) + 1", "sinh(x)"),
+            ("tanh(x)", "1 - tanh(x)**2"),
+            ("sqrt(x)", "1/(2*sqrt(x))"),
+            ("abs(x)", "x/abs(x)"),
+            ("exp(2*x)", "2*exp(2*x)"),
+            ("log(x)", "1/x"),
+            ("atan(x)", "1/(1 + x**2)"),
+            ("asin(x)", "1/sqrt(1 - x**2)"),
+            ("acos(x)", "-1/sqrt(1 - x**2)"),
+            ("erf(x)", "2*exp(-x**2)/sqrt(pi)"),
+            ("atan2(y, x)", "-y/(x**2 + y**2)"),
+            ("atan2(x, y)", "y/(x**2 + y**2)"),
+            ("x**y", "y*x**(y - 1)"),
+        )
+    ),
+    (
+        ("floor(x)", ">", "x - 1"),
+        ("x",),
+        "",
+        {"x": "1/3"},
+        [by("equal", BELOW_1, to="1 - fraction__1", defined=[])],
+        {"x": LINE},
+    ),
+    (
+        ("floor(x)", "<=", "x"),
+        ("x - 1", "x - 1/2"),
+        "",
+        {"x": "1/3"},
+        [by("equal", ABOVE_0, to="fraction__1", defined=[])],
+        {"x": LINE},
+    ),
     (("floor(pi*x)", "=", "floor(x*pi)"), ("floor(x)",), "", {"x": "1/3"}, [I], {"x": LINE}),
     (("diff([x**2, x*y], x)", "=", "[2*x, y]"), ("[2*x, x]",), "", XY, [I] * 2, {"x": LINE, "y": LINE}),
 ]
+SEVEN = [f"y{k}" for k in range(7)]
+CASES = " + ".join(f"where({y} > 0, 0, 0)" for y in SEVEN)
 #: The same with what is random, with rates, whole numbers and cases: statement, its right side, a wrong one.
 NULL = f"[{', '.join('0' * 64)}]"
 A1, RATES = {"a": "1"}, {"x": "v", "t": "1"}
@@ -148,6 +203,7 @@ READ = [
     (stated(f"trace(eye(64)) + {NULL}[64] + [{NULL}][1,64]", "=", ""), "64", "0", {}, [I]),
     (stated("det(eye(5)) + trace(inv(eye(4)))", "=", ""), "5", "0", {}, [I]),
     (stated("asin(x) + acos(x)", "=", "", x=LINE), "acos(x) + asin(x)", "0", X1, [I]),
+    (stated(CASES, "=", "", **dict.fromkeys(SEVEN, LINE)), "0", "1", dict.fromkeys(SEVEN, "1"), [I] * 128),
 ]  # fmt: skip
 #: What the language does not mean, with the reason of its refusal.
 MEANINGLESS = [
@@ -188,7 +244,7 @@ MEANINGLESS = [
     (stated("dot_(floor(n))", "=", "1", rates={"n": "1"}, n=WHOLE), "a whole number that varies"),
     (stated("integral(E(w), w, 0, 1)", "=", "0") | {"random": NORMAL}, "the name of a number"),
     (stated("expm([[1, 2]])", "=", "0"), "expected n by n"),
-    (stated("transpose(x)", "=", "x", x=LINE), "expected a matrix"),
+    (stated("transpose(x)", "=", "x", x=LINE), "malformed"),
     (stated("diff(integral(y, y, 0, x), x)", "=", "0", x=LINE), "a derivative of an integral"),
     (stated("sum(integral(k*x, x, 0, 1), k, 1, 2)", "=", "3/2"), "sum of an open question"),
     (stated("cov(A, B)", "=", "0", "A", "B"), "expected a vector"),
@@ -201,7 +257,7 @@ MEANINGLESS = [
     (stated("floor(log(0))", "=", "0"), "a number that may not exist"),
     (stated("x", "=", "x", x=LINE) | {"shapes": {"2x": [["x"]]}}, "expected names"),
     (stated("x + ]", "=", "x", x=LINE), "not an expression"),
-    (stated("expm([[1]], [[1]])", "=", "[[1]]"), "expected expm of 1 argument"),
+    (stated("expm([[1]], [[1]])", "=", "[[1]]"), "malformed"),
     (stated("expm([[s__1]])", "=", "[[1]]", s__1=LINE), "a name that is in use"),
     (stated("where(x > 0, 1, [1, 2])", "=", "1", x=LINE), "branches of different shapes"),
     (stated("dot_(x, x)", "=", "1", rates={"x": "1"}, x=LINE), "expected dot_ of 1 argument"),
@@ -209,9 +265,34 @@ MEANINGLESS = [
     (stated("E(w**3)", "=", "0") | {"random": {"w": NORMAL["w"] | {"normal": False}}}, "a moment that is not declared"),
     (stated("E(w**9)", "=", "0") | {"random": NORMAL}, "a moment that is not declared"),
     (stated("E(p[1])", "=", "0") | FIVE, "up to 4 numbers"),
-    (stated("E(x, x)", "=", "0", x=LINE), "a wrong number of arguments"),
+    (stated("E(x, x)", "=", "0", x=LINE), "malformed"),
     (stated("diff(x**2, limit(y, y, x))", "=", "0", x=LINE), "expected a symbol behind diff"),
     (stated("x", "=", "x", given=["x"], x=LINE), "expected a relation"),
+    (stated("]x)", "=", "x", x=LINE), "not an expression"),
+    (stated("x x", "=", "x", x=LINE), "more than one"),
+    (stated("x", "=", "x;", x=LINE), "unexpected characters"),
+    (stated("x", "=", "x", given=["x = 1\n"], x=LINE), "unexpected characters"),
+    (stated("x", "=", "x", x=LINE) | {"right": 5}, "expected a text"),
+    (stated("x", "=", f"x{' ' * 400000}", x=LINE), "expected a text"),
+    (stated("diag(u, u)", "=", "x", "u", x=LINE), "expected a number"),
+    (stated("1", "=", "1") | {"symbols": []}, "expected ranges by symbol"),
+    (stated(f"where(x > 0, {CASES}, 0)", "=", "0", **dict.fromkeys(("x", *SEVEN), LINE)), "too many cases"),
+    (stated("E(exp(w))", "=", "1") | {"random": NORMAL}, "a symbol without a range"),
+    (stated("E(w**2/exp(w))", "=", "1") | {"random": NORMAL}, "below a line or in a function"),
+    (stated("x", "=", "x", rates=["x"], x=LINE), "expected rates by name"),
+    (
+        stated("dot_(u)", "=", "u", "u", rates={"u": "u", "v": "2*u"}) | {"shapes": {n: [["u_0_0"]] for n in "uv"}},
+        "two rates of one symbol",
+    ),
+    (stated("cross(u, u, u)", "=", "u", "u"), "malformed"),
+    (stated("skew(u, u)", "=", "skew(u)", "u"), "malformed"),
+    (stated("floor(x, x)", "=", "x", x=LINE), "malformed"),
+    (stated("sign(x, x)", "=", "1", x=LINE), "malformed"),
+    (
+        stated("E(p[1])", "=", "2", a=LINE, b=LINE) | PAIR | {"random": PAIR["random"] | {"p0": NORMAL["w"]}},
+        "a name given twice",
+    ),
+    (stated("E(w)", "=", "0") | {"random": {"w": NORMAL["w"] | {"normal": 1}}}, "a name given twice"),
     (stated("x", "=", "x", given=["x = 1 = 1"], x=LINE), "more than one"),
     (stated("x", "=", "x", "u", given=["u > u"], x=LINE), "no order"),
 ]
@@ -236,6 +317,18 @@ NOWHERE_DEFINED = [
     (stated("where(x = 0, [1/x, 2][2], 2)", "=", "2", x=LINE), X0, [I, I], "no value at the witness"),
     (stated("sum([1/k, 2][2], k, 0, 1)", "=", "4"), {}, [I], "no value at the witness"),
     (stated("diff(asin(x), x)*0", "=", "0", x=LINE), X1, [I], "no value at the witness"),
+    (stated("dot_(abs(x))*0", "=", "0", rates={"x": "1"}, x=LINE), X0, [I], "no value at the witness"),
+    (stated("expm([[0*log(x)]])", "=", "[[1]]", x=LINE), {"x": "-1"}, [I], "no value at the witness|without an answer"),
+    (stated("diff(asin(x), y)", "=", "0", x=LINE, y=LINE), {"x": "1", "y": "0"}, [I], "no value at the witness"),
+    (stated("diff(acos(x), y)", "=", "0", x=LINE, y=LINE), {"x": "-1", "y": "0"}, [I], "no value at the witness"),
+    (stated("x", ">", "0", given=["x >= 0"], x=LINE), X1, [by("range", symbol="x", end=0, share="1")], "end belongs"),
+    (
+        stated("-x", ">", "0", given=["x <= 0"], x=LINE),
+        {"x": "-1"},
+        [by("range", symbol="x", end=1, share="1")],
+        "end belongs",
+    ),
+    (stated("floor(0*log(x))*0", "=", "0", x=LINE), {"x": "-1"}, [I], "a number that may not exist"),
     (stated("diff(acos(x), x)*0", "=", "0", x=LINE), {"x": "-1"}, [I], "no value at the witness"),
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, [I], "expected 2 entries"),
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, [I, I], "the sides differ"),
@@ -246,6 +339,7 @@ NOWHERE_DEFINED = [
 #: Points where a statement of the whole language fails, and where it does not although its other case would.
 LANGUAGE_FAILS = [
     (stated("x", "=", "2", given=["x**2 = 4"], x=LINE), {"x": "-2"}, None),
+    (stated("sign(x)", "=", "-1", x=LINE), X1, None),
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X0, None),
     (stated("cross(u, v)", "=", "cross(v, u)", "u", "v"), some(ONES, "u", "v"), None),
     (stated("A", "!=", "A.T", "A"), {f"A_{i}_{j}": "1" for i in range(2) for j in range(2)}, None),
@@ -255,8 +349,29 @@ LANGUAGE_STANDS = [
     (stated("x", "=", "2", given=["x**2 = 4"], x=LINE), {"x": "1"}, None, "no value at the point"),
     (stated("x", "=", "2", given=["x >= 2"], x=LINE), {"x": "1"}, None, "no value at the point"),
     (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, None, "not seen to fail"),
+    (stated("sign(x)", "=", "1", x=LINE), X1, None, "not seen to fail"),
     (stated("where(x > 0, x, 1/x)", "=", "x", x=LINE), X0, None, "no value at the point"),
     (stated("norm(u)", "=", "1", "u", given=["dot(u, u) = 1"]), some(ONES, "u"), None, "no value at the point"),
+]
+
+ZEROED, FALSE = state("x - x", "=", x=LINE), state("x", "=", "1", x=LINE)
+SHOWN, DENIED, SQUARED = prove(ZEROED, X0, I), refute(FALSE, X0), prove(SQUARE, X0, by("zero", I))
+#: What several certificates say of several statements: each is proved, in their order; or one of them fails.
+GRANTS = [
+    (ZEROED, SHOWN, "HOLDS"),
+    ([ZEROED, ZEROED], {"kind": "all", "of": [SHOWN, SHOWN]}, "HOLDS"),
+    ([ZEROED, FALSE], DENIED, "FAILS"),
+    ([FALSE, ZEROED], {"kind": "all", "of": [DENIED]}, "FAILS"),
+    ([ZEROED, FALSE], SHOWN, "another statement"),
+    ([ZEROED], {"kind": "all", "of": [SHOWN, SHOWN]}, "another statement"),
+    ([ZEROED], DENIED, "another statement"),
+    ([FALSE, FALSE], {"kind": "all", "of": [DENIED, DENIED]}, "another statement"),
+    ([FALSE, ZEROED], {"kind": "all", "of": [SHOWN, DENIED]}, "another statement"),
+    ([ZEROED, FALSE], {"kind": "all", "of": [SHOWN, DENIED]}, "another statement"),
+    ([None], {"kind": "identity", "left": "x", "right": "x", "symbols": ["x"]}, "another statement"),
+    ([ZEROED], {"kind": "all", "of": {"0": SHOWN}}, "expected certificates"),
+    ([ZEROED], {"kind": "all", "of": [[SHOWN]]}, "expected certificates"),
+    ([ZEROED], SHOWN | {"proofs": []}, "expected 1 entries"),
 ]
 
 

@@ -138,7 +138,7 @@ class Watched:
 
     def __init__(self, module: ModuleType):
         self.module, self.answers = module, dict[str, tuple[str, tuple[Any, ...], Any, str | None, frozenset[int]]]()
-        self.changed: frozenset[int] | None = None
+        self.changed: frozenset[int] | None = frozenset()  # lines that a mutant has otherwise; None for any
         self.check, self.grant = (partial(self.ask, name) for name in ("check", "grant"))
 
     def __getattr__(self, name: str) -> Any:
@@ -147,10 +147,10 @@ class Watched:
     def ask(self, name: str, *items: Any) -> Any:
         """What the module says, or said before the change."""
         key = f"{name}{items!r}"
-        if key not in self.answers and self.changed is None:
+        if key not in self.answers and self.changed == frozenset():
             self.answers[key] = (name, items, *self.watch(name, items))
         _, _, value, why, lines = self.answers.get(key, (name, items, None, None, frozenset()))
-        if self.changed is not None and (key not in self.answers or self.changed & lines):
+        if self.changed is None or key not in self.answers or self.changed & lines:
             return getattr(self.module, name)(*items)
         if why is not None:
             raise self.module.Refused(why)
@@ -159,15 +159,14 @@ class Watched:
     def compare(self) -> str:
         """Whether the module says ``otherwise`` than before, or the same for another ``reason``, or nothing new."""
         found = ""
-        for name, items, _, why, lines in self.answers.values():
+        for name, items, value, why, lines in self.answers.values():
             if self.changed is not None and not self.changed & lines:
                 continue
             try:
-                getattr(self.module, name)(*items)
-                new = None
+                said, new = getattr(self.module, name)(*items), None
             except self.module.Refused as refusal:
-                new = str(refusal)
-            if (new is None) != (why is None):
+                said, new = None, str(refusal)
+            if said != value:
                 return "otherwise"
             found = found or "reason" * (new != why)
         return found
@@ -235,10 +234,11 @@ def noticed(source: str, place: int, number: int) -> bool:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
         node, tree = nodes[place], nodes[0]
         checker.changed = lines_of(tree, node)
-        own = next(s for s, _ in codes if s.lineno <= node.lineno <= s.end_lineno)
+        own = next(k for k, (s, _) in enumerate(codes) if s.lineno <= node.lineno <= s.end_lineno)
         apply(tree, node, number)
-        ast.fix_missing_locations(own)
-        os._exit(judged(checker, [compile(ast.Module([s], []), "mutant", "exec") if s is own else c for s, c in codes]))
+        statement = ast.fix_missing_locations(tree.body[own])  # what is dropped may be the whole statement
+        changed = compile(ast.Module([statement], []), "mutant", "exec")
+        os._exit(judged(checker, [changed if k == own else code for k, (_, code) in enumerate(codes)]))
     return os.waitpid(child, 0)[1] != 0
 
 

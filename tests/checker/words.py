@@ -51,6 +51,13 @@ TRACE = words(state("trace(A @ inv(A))", "n", A=(SQUARE, "invertible")), at(A=A)
 TRACED = words(
     state("trace(A @ inv(A))*B", "n*B", A=(SQUARE, "invertible"), B=TALL), at(A=A, B="1; 2"), share("1", "", 0, "", "B")
 )
+OUTER = words(state("trace(u @ v.T)", "dot(v, u)", u=["n", 1], v=["n", 1]), at(u="1; 2", v="3; 1"))
+# A product that is said to be another matrix is no inverse, though it is one at the witness.
+UNSAID = words(
+    state("B @ A", "eye(n)", given=["A @ B = C"], A=SQUARE, B=SQUARE, C=SQUARE),
+    at(A=UNIT, B=UNIT, C=UNIT),
+    share("1", "", 2, ""),
+)
 LINE = words(
     state("u @ u.T @ u @ u.T", "u @ u.T", given=["dot(u, u) = 1"], u=["n", 1]),
     at(u="1; 0"),
@@ -156,7 +163,7 @@ MINORS = [
                  "1 1 0; 1 1 0; 0 0 1", "0 0 0; 0 0 0; 0 0 0", "1 0 0; 0 1 0; 1 0 1")
 ]  # fmt: skip
 TRUE = [
-    TRACE_OF, TWICE, BOTH_SIDES, QUOTIENT, OF_NUMBERS, NEGATIVE, POWER, SINGULAR, NOT_NEGATIVE, DEFINITE_3,
+    OUTER, TRACE_OF, TWICE, BOTH_SIDES, QUOTIENT, OF_NUMBERS, NEGATIVE, POWER, SINGULAR, NOT_NEGATIVE, DEFINITE_3,
     POWERS, DIFFERENCE, TRACE, TRACED, LINE, SCALED, DIVIDED, ORTHOGONAL, PUSHED, ONE_SIDED, NUMBER, UNITS, RANK_ONE,
     DEFINITE,
     COMMUTING, APART_AT_ALL, *SIGNS, *PROPERTIES,
@@ -236,7 +243,7 @@ FORGERIES: list[tuple[Any, list[Any], Any, str]] = [
     (DIFFERENCE, RIGHT, "A B", "more than one"),
     (DIFFERENCE, RIGHT, "A; B", "unexpected characters"),
     (DIFFERENCE, RIGHT, "C", "unknown name"),
-    (DIFFERENCE, RIGHT, "A[1,2]", "unexpected characters"),
+    (DIFFERENCE, RIGHT, "A[1,2]", "more than one"),
     (DIFFERENCE, RIGHT, "A*B", "written with @"),
     (DIFFERENCE, RIGHT, "A/B", "division by a matrix"),
     (DIFFERENCE, RIGHT, "A**2", "power of a matrix"),
@@ -290,6 +297,7 @@ FORGERIES: list[tuple[Any, list[Any], Any, str]] = [
     (PUSHED, ["shares", 1, "left"], "inv__arg__1.T", "a letter"),
     (ONE_SIDED, ["statement", "given"], [], "integer from"),
     (ONE_SIDED, MATRICES, {"A": {"size": TALL, "is": []}, "B": {"size": FLAT, "is": []}}, "different shapes|entries"),
+    (UNSAID, ["shares", 0, "relation"], 2, "integer from"),
     (RANK_ONE, RIGHT, "dot(u, u)*(u @ v.T)/(v.T @ u + 1)", "no value at the witness"),
     (COMMUTING, ["point", "matrices", "B"], [["1", "0"], ["0", "1"]], "holds there"),
     (COMMUTING, ["point", "sizes", "n"], 1, "1 entries"),
@@ -324,7 +332,7 @@ def judge(item: Any, module: Any) -> str:
 DECLARED = {
     **dict.fromkeys("AB", SQUARE), **dict.fromkeys("VW", (SQUARE, "invertible")), "U": (SQUARE, "orthogonal"),
     **dict.fromkeys("PQ", (SQUARE, "positive")), "N": (SQUARE, "nonnegative"), "H": FLAT, "K": TALL,
-    "R": (["m", "m"], "positive"), "S": ["m", "m"], "u": ["n", 1], "v": ["n", 1],
+    "E": (SQUARE, "symmetric"), "R": (["m", "m"], "positive"), "S": ["m", "m"], "u": ["n", 1], "v": ["n", 1],
 }  # fmt: skip
 NUMBERS = {"a": APART, "b": REAL, "c": ABOVE, "d": ["1", None, []], "e": ["0", None, []], "f": ["0", None, [*APART[2]]]}
 #: Inverses and quotients that exist, by what is declared: positive sums, M N M', products of regular factors.
@@ -336,7 +344,8 @@ inv(A @ V @ P @ V.T @ A.T + P); inv(U); inv(V.T); inv(H.T @ H + eye(n)); inv(H @
 A/(1 + dot(u, N @ u)); A/(c + dot(u, u) + dot(v, v)); A/b; zeros(n, m) @ R; inv(eye(n)); 2*inv(P)
 S = H @ P @ H.T + R: inv(S); S = inv(R): inv(S)"""
 #: The same where it has to be assumed.
-TAKEN = """inv(A @ A.T); inv(A @ A.T + N); inv(H @ A @ H.T + R); inv(H @ P @ H.T); inv(P - Q); inv(V + P); inv(N + N)
+TAKEN = """inv(H @ E @ H.T + R); inv(A @ E @ A.T + P); inv(V @ E @ V.T)
+inv(A @ A.T); inv(A @ A.T + N); inv(H @ A @ H.T + R); inv(H @ P @ H.T); inv(P - Q); inv(V + P); inv(N + N)
 inv(- P + N); inv(b*P); inv(a*P + Q); inv(0*P); inv(2*N); inv(a*N); inv(e*P + Q); inv(b*c*P); inv((c + b)*P + Q)
 inv((c - 2)*P); inv(inv(V) + Q); inv(V @ B); inv(V @ P @ V + Q); inv(V @ W @ V.T + P); inv(V @ W @ P @ V.T + P)
 inv(U + P); inv(A.T); inv(H @ K); inv(zeros(n, n)); A/trace(B); A/dot(u, u); A/(1 + dot(u, v)); A/(1 + dot(u, A @ u))

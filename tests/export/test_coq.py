@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 import navsym as nav
+from navsym import checker
 from navsym.core.errors import DomainError, MissingEngineError
+from navsym.export import processes
 from navsym.export.coq import replay
 from navsym.export.coq.theory import write_theory
 
@@ -88,6 +90,32 @@ def test_vectors_cases_and_hypotheses_are_theorems_of_their_entries():
     assert names == ["statement_1_1", "statement_1_2", "statement_1_3"]
 
 
+def condition(lower, upper, outside=0, **changes):
+    """The condition number of [[3, 0], [4, 5]]/10, which is 3; with columns of unit length it is 3, too."""
+    rows = [["3/10", "0"], ["2/5", "1/2"]]
+    statement = {"matrix": rows, "unit": 0, "lower": lower, "upper": upper} | changes
+    brackets = ["4499/10000", "4501/10000", "499/10000", "501/10000"]
+    if statement["unit"]:
+        brackets = ["1799/1000", "1801/1000", "199/1000", "201/1000"]
+    item = {"kind": "condition", "statement": statement, "outside": outside, "brackets": brackets, "bits": 64}
+    assert checker.check(item) == "condition"
+    return item
+
+
+def test_a_condition_number_is_stated_for_whole_numbers():
+    text = write_theory(condition("2.9", "3.1", unit=1))
+    assert "Definition matrix_statement_1 : list (list Z) := [[3; 0]; [4; 5]]%Z." in text
+    says = "within matrix_statement_1 (column_squares matrix_statement_1) (29 / 10) (31 / 10)."
+    assert f"Theorem statement_1 : {says}" in text and "the matrix times 10 follows" in text
+    assert "beyond matrix_statement_1 (ones matrix_statement_1)" in write_theory(condition("4", "5", 1))
+
+
+def test_equations_that_are_given_come_with_the_cofactors_of_the_certificate():
+    answer = nav.prove("(x + y)**2 = 2*x*y + 1", given=["x**2 + y**2 = 1"])
+    text = write_theory(answer.certificate)
+    assert "rewrite ?Z; clear Z end." in text and "transitivity (" in text
+
+
 @pytest.mark.parametrize(
     ("left", "why"),
     [("diff(x**2, x)", "a derivative"), ("floor(x)", "whole part"), ("integral(y, y, 0, x)", "without an answer")],
@@ -110,12 +138,29 @@ def test_coq_proves_what_the_checker_accepts(tmp_path):
         nav.prove("sin(x) = x*cos(x)"),
         nav.prove("cross(u, v) = -cross(v, u)", u={"vector": 3}, v={"vector": 3}),
         nav.prove("x*y >= 0", given=["x >= 0", "y >= 0"]),
+        nav.prove("(x + y)**2 = 2*x*y + 1", given=["x**2 + y**2 = 1"]),
+        nav.prove("2*cos(s/2 + pi/4)**2 = 1 - sin(s)"),
     ]
     for place, answer in enumerate(answers):
         (row,) = nav.check(answer, kernel="coq", out=tmp_path / str(place))
         assert row.kernel is not None and row.kernel.status == "PROVED", (answer, row)
         assert any("sig_forall_dec" in axiom for axiom in row.kernel.axioms)
         assert "Theorem statement_1" in (tmp_path / str(place) / "certificate-1.v").read_text()
+
+
+@needs_coq
+@pytest.mark.long
+def test_coq_proves_condition_numbers_and_no_other_ones(tmp_path):
+    """Each of the four statements, and no wrong end in its place: the script fits, the numbers do not."""
+    true = [condition("2.9", "3.1"), condition("2.9", "3.1", unit=1), condition("4", "5", 1), condition("1", "2", 1)]
+    for place, item in enumerate(true):
+        assert replay.replay(item, tmp_path / f"{place}.v").status == "PROVED", item
+    text = write_theory(true[0])
+    for old, new in (("31 / 10", "29 / 10"), ("29 / 10", "31 / 10"), ("[4; 5]]", "[4; 6]]")):
+        forged = text.replace(old, new).replace(f"({old.split(' ')[0]}) (10)", f"({new.split(' ')[0]}) (10)")
+        assert forged != text
+        (tmp_path / "forged.v").write_text(forged)
+        assert processes.run(["coqc", "-q", "forged.v"], tmp_path)[0] != 0, old
 
 
 @needs_coq

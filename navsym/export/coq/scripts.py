@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from math import isqrt, lcm
+from typing import Any
 
 from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
@@ -74,6 +75,16 @@ def prove_equality(terms: Iterable[Term], names: Mapping[str, str]) -> list[str]
         else "first [ solve [ring] | field; nonzero ]."
     )
     return [*script.lines, last]
+
+
+def prove_modulo(proof: Mapping[str, Any], zeros: Iterable[Term], term: Term, names: Mapping[str, str]) -> list[str]:
+    """f = g + sum c_k h_k with the cofactors of a certificate, where hypotheses say h_k = 0; then g = 0."""
+    rest, shares = checker.parse(proof["to"]), map(checker.parse, proof["cofactors"])
+    products = [("*", c, h) for c, h in zip(shares, zeros, strict=True) if c != checker.ZERO]
+    total = checker.make_sum(rest, *products)
+    lines = [f"transitivity ({write_term(total, names)}).", "{", *prove_equality((term, total), names), "}"]
+    lines += ["repeat match goal with Z : ?h = 0 |- _ => rewrite ?Z; clear Z end."]
+    return lines + prove_equality((rest,), names)
 
 
 def is_square_root(part: Term) -> bool:
@@ -163,7 +174,10 @@ def write_angles(parts: list[Term], script: Script) -> None:
                 script.now[name, argument] = new
     for k in sorted(used):
         if keys[k][1] and bases[keys[k]] in OF_PI:
-            script.lines += [f"try rewrite {rule} in *." for rule in OF_PI[bases[keys[k]]]]
+            script.lines += [f"try rewrite {rule} in *." for rule in (*OF_PI[bases[keys[k]]], "half_root")]
+            square = {3: 3, 4: 2, 6: 3}.get(bases[keys[k]])
+            if square:
+                script.know(f"sqrt {square} ^ 2 = {square}", "square_of_root")
         elif keys[k][1]:
             raise Unwritten("a fraction of pi without a rule")
         else:

@@ -32,6 +32,12 @@ Ltac root_of r :=
   | let S := fresh in assert (S := sqrt_sqrt r ltac:(lra)); first [ field [S] | nra ] ].
 Ltac square_of_root := apply pow2_sqrt; first [ assumption | lra | timeout 10 nra | many_digits ].
 
+Lemma half_root : 1 / sqrt 2 = sqrt 2 / 2.
+Proof.
+  assert (S := sqrt_sqrt 2 ltac:(lra)). assert (P := sqrt_lt_R0 2 ltac:(lra)).
+  apply Rmult_eq_reg_r with (sqrt 2); [| lra]. replace (1 / sqrt 2 * sqrt 2) with 1 by (field; lra). lra.
+Qed.
+
 (* An inequality by that of the difference with 0. *)
 Ltac by_difference prove :=
   match goal with
@@ -56,6 +62,7 @@ Ltac discharge H :=
   end.
 Ltac contradict H :=
   match type of H with
+  | _ /\ _ => let K := fresh in destruct H as [K H]; first [ contradict K | contradict H ]
   | ?x = ?y => let D := fresh in assert (D : x <> y) by (clear H; numbers); exact (D H)
   | ?x <> ?y => apply H; field
   | ?x <= ?y => let D := fresh in assert (D : y < x) by (clear H; numbers); exact (Rlt_not_le _ _ D H)

@@ -9,14 +9,15 @@ checker's parser. The script does not follow the certificate's proof: identities
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from importlib.resources import files
 from typing import Any
 
 from navsym import checker
 from navsym.checker import Case, Range, Term
 from navsym.core.errors import DomainError
-from navsym.export.coq.scripts import prove_bound, prove_equality, refute
+from navsym.export.coq.condition import write_condition
+from navsym.export.coq.scripts import prove_bound, prove_equality, prove_modulo, refute
 from navsym.export.coq.terms import RELATIONS, Unwritten, defined, ranges, rename, subterms, write_term
 
 #: How numbers are compared: by polynomials alone, or by balls of few digits, then of many.
@@ -40,24 +41,27 @@ def write_theory(certificate: Mapping[str, Any]) -> str:
     parts = certificate.get("of", []) if certificate.get("kind") == "all" else [certificate]
     theorems = []
     for place, part in enumerate(parts, start=1):
-        if part.get("kind") not in ("proof", "counterexample"):
+        if part.get("kind") not in ("proof", "counterexample", "condition"):
             message = (
                 f"expected a certificate of a statement; got one of kind {part.get('kind')}; check it without kernel"
             )
             raise DomainError(message)
         try:
-            theorems.append(write_theorem(f"statement_{place}", part))
+            write = write_condition if part["kind"] == "condition" else write_theorem
+            theorems.append(write(f"statement_{place}", part))
         except (Unwritten, checker.Refused) as reason:
             raise DomainError(f"expected what Coq has words for; got {reason}; rest on the checker") from None
     names = ", ".join(re.findall(r"^Theorem (\w+)", "\n".join(theorems), re.M))
-    balls = any(needs_balls(part) for part in parts)
+    kinds = {part["kind"] == "condition" for part in parts}
+    balls = any(part["kind"] != "condition" and needs_balls(part) for part in parts)
+    lemmas = [*["tactics.v"] * (False in kinds), *["condition.v"] * (True in kinds)]
     return "\n".join(
         [
             "Require Import Reals Lra.",
             *(["From Interval Require Import Tactic."] if balls else []),
             "Open Scope R_scope.\n",
             BALLS if balls else PLAIN,
-            files("navsym.export.coq").joinpath("tactics.v").read_text("utf-8"),
+            *(files("navsym.export.coq").joinpath(name).read_text("utf-8") for name in lemmas),
             *theorems,
             f"Definition all := ({names}).\nPrint Assumptions all.\n",
         ]
@@ -86,10 +90,11 @@ def write_theorem(name: str, part: Mapping[str, Any]) -> str:
     says = [[(goal.term, goal.relation, checker.ZERO) for goal in case.goals] for case in cases]
     if is_plain(statement):
         says = [relations(statement, [checker.parse(statement[side]) for side in ("left", "right")])]
-    if part["kind"] != "proof" and max(len(says), *map(len, says)) > 1:
-        raise Unwritten("a tolerance, vector or case that fails")
+    if part["kind"] != "proof" and len(says) > 1:
+        raise Unwritten("a case that fails")
+    proofs = iter(part.get("proofs", ()))
     theorems = [
-        f"Theorem {name}{f'_{k}' if len(cases) > 1 else ''} : {write_case(part, case, wanted, box, names)}"
+        f"Theorem {name}{f'_{k}' if len(cases) > 1 else ''} : {write_case(part, case, wanted, box, names, proofs)}"
         for k, (case, wanted) in enumerate(zip(cases, says, strict=True), start=1)
     ]
     return "\n".join([f"(* {printed} *)", *theorems])
@@ -103,8 +108,10 @@ def require_words(statement: Mapping[str, Any], cases: list[Case]) -> None:
         raise Unwritten("a derivative, moment, whole part or order, which the checker reads")
 
 
-def write_case(part: Mapping[str, Any], case: Case, wanted: Said, box: Mapping[str, Range], names: Names) -> str:
-    """What a theorem says of one case, and its script."""
+def write_case(
+    part: Mapping[str, Any], case: Case, wanted: Said, box: Mapping[str, Range], names: Names, proofs: Iterator[Any]
+) -> str:
+    """What a theorem says of one case, and its script, which takes the cofactors of hypotheses from the proofs."""
     needs = [*ranges(box, names), *defined(case.terms, names)]
     needs += [f"{write_term(t, names)} >= 0" for t in case.given] + [f"{write_term(t, names)} = 0" for t in case.zeros]
     says = [(write_term(x, names), RELATIONS[relation], write_term(y, names)) for x, relation, y in wanted]
@@ -116,7 +123,12 @@ def write_case(part: Mapping[str, Any], case: Case, wanted: Said, box: Mapping[s
         whole = f"~ ({whole})"
     for k, (x, relation, y) in enumerate(wanted if part["kind"] == "proof" else ()):
         lines += ["split."] * (k + 1 < len(wanted))
-        script = prove_equality(parts_of(part, case, x, y), names) if relation == "=" else prove_bound(names)
+        script = prove_bound(names)
+        proof: Mapping[str, Any] = next(proofs, {})
+        if relation == "=" and proof.get("rule") == "modulo":
+            script = prove_modulo(proof, case.zeros, x, names)
+        elif relation == "=":
+            script = ["reflexivity."] if x == y else prove_equality(parts_of(part, case, x, y), names)
         lines += ["{", *script, "}"] if len(wanted) > 1 else script
     return "\n".join([f"{whole}.", "Proof.", *lines, "Qed.", ""])
 

@@ -330,7 +330,7 @@ and prove_angle goal value =
   match rule_keys value [ "turn"; "share"; "proofs" ] with
   | [ turn; share; proofs ] ->
       require goal [ AtLeast; Above ];
-      let k = get_integer "turn" (-1_000_000) 1_000_000 turn and c = get_number "share" share in
+      let k = get_integer "turn" (-1_000_000_000) 1_000_000_000 turn and c = get_number "share" share in
       if Q.sign c <= 0 then refuse "angle: expected a share > 0";
       let is_wave = function Fun (("sin" | "cos"), _) -> true | _ -> false in
       let wave = match List.filter is_wave (factors goal.tree) with [ g ] -> g | _ -> refuse "angle: expected one sin or cos" in
