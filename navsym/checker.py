@@ -1197,7 +1197,7 @@ def find_whole(u: Term) -> Term:
     """The whole n with n <= u < n + 1, for a term without symbols."""
     near = value_of(u, {})
     require(near.is_finite(), "a number that may not exist")
-    for n in (int(near.mid().floor().unique_fmpz() or 0) + k for k in (0, 1)):
+    for n in (int(near.mid().floor().unique_fmpz() or 0) + k for k in (0, 1, -1)):
         rest = subtract(u, number(n))
         value = value_of(rest, {})
         if value < 1 and (value >= 0 or is_identity(rest)):
@@ -1563,6 +1563,7 @@ class Reader:
 
         A goal that holds for all such f holds for the fraction of x. Equal numbers have one fraction.
         """
+        self.need(x)
         terms = self.list_parts(x)
         whole = [t for t in terms if is_integral(t, self.box, self.floors)]
         rest = [t for t in terms if t not in whole]
@@ -1616,6 +1617,8 @@ class Reader:
             self.need(EXISTING[relation](t))
         parts = [*dict.fromkeys(list_generators(term))]
         fixed = [part[0] != "symbol" or part[1] not in chances for part in parts]
+        own = [part for part, known in zip(parts, fixed, strict=True) if known]
+        require(not any(symbols_of(part) & chances for part in own), "a random number in a function")  # E(E(w sin w))
         ring = fmpq_mpoly_ctx.get([f"x{k}" for k in range(len(parts))], Ordering.degrevlex)
         top, bottom = to_quotient(term, dict(zip(parts, ring.gens(), strict=True)), ring)
 
@@ -1917,6 +1920,7 @@ class Formula(Parser):
     def ask_exponential(self, x: Value) -> Value:
         """expm(A): symbols in the place of its entries."""
         reader, rows, entries = self.reader, to_square(x, 16), list_entries(x)
+        reader.need(*entries)
         for entry in entries:
             reader.require_plain(entry, "an exponential")
         if reader.dead:
@@ -3991,6 +3995,8 @@ class Sized(Algebra):
         """Whether the statement holds at the point."""
         relation, x = self.state()
         require(set(self.matrices) == set(self.statement[4]), "the point gives every matrix")
+        for term in self.terms:
+            self.value_of(term)
         if isinstance(x, Typed):
             return bool((x.body == 0 * x.body) == (relation == "="))
         sign, own = SIGNS[relation]

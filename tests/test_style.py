@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 LONGEST_FILE, LONGEST_FUNCTION = 700, 60
 #: The checker is one file on purpose: it can be taken away, read and run alone. Tables of proofs are long.
-LONGER_FILES = {"navsym/checker.py": 4100, "tests/checker/proofs.py": 950}
+LONGER_FILES = {"navsym/checker.py": 4110, "tests/checker/proofs.py": 950}
 
 #: Share of the names of top-level functions that may stand in two files or more.
 AMBIGUOUS = 0.10

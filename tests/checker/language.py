@@ -277,7 +277,9 @@ MEANINGLESS = [
     (stated("diag(u, u)", "=", "x", "u", x=LINE), "expected a number"),
     (stated("1", "=", "1") | {"symbols": []}, "expected ranges by symbol"),
     (stated(f"where(x > 0, {CASES}, 0)", "=", "0", **dict.fromkeys(("x", *SEVEN), LINE)), "too many cases"),
-    (stated("E(exp(w))", "=", "1") | {"random": NORMAL}, "a symbol without a range"),
+    (stated("E(exp(w))", "=", "1") | {"random": NORMAL}, "a random number in a function"),
+    (stated("E(E(w*sin(w)))", "=", "0") | {"random": NORMAL}, "a random number in a function"),  # it is exp(-1/2)
+    (stated("cov(E(exp(w)))", "=", "0") | {"random": NORMAL}, "a random number in a function"),
     (stated("E(w**2/exp(w))", "=", "1") | {"random": NORMAL}, "below a line or in a function"),
     (stated("x", "=", "x", rates=["x"], x=LINE), "expected rates by name"),
     (
