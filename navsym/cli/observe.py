@@ -171,14 +171,18 @@ def accuracy_text(data: Mapping[str, Any]) -> str:
     """Deviations of the targets, when demands are met, and the weakest direction."""
     rows = []
     for found in data["targets"]:
-        met = "" if "demand" not in found else f"{found['demand']} from t = {found['reached'] or 'later'}"
+        met = (
+            ""
+            if "demand" not in found
+            else f"{found['demand']} {'from t = ' + found['reached'] if found['reached'] else 'not by then'}"
+        )
         known = found["status"] == "certified"
         rows.append((found["target"], f"{float(found['lower']):.9g}" if known else found["status"], met))
     weakest = data["weakest"]
     parts = ", ".join(f"{value:.4g} {state}" for state, value in weakest["direction"].items())
     size = "" if weakest["deviation"] is None else f", deviation {float(weakest['deviation']['lower']):.9g}"
     lines = [table([f"at t = {data['at']}", "least standard deviation", "demand"], rows)]
-    return "".join([*lines, f"weakest direction: {parts}{size}\n" if parts else ""])
+    return "\n".join([*lines, f"weakest direction: {parts}{size}"] if parts else lines) + "\n"
 
 
 def null_space_text(directions: Sequence[Mapping[str, Any]]) -> str:

@@ -285,7 +285,7 @@ def ask_accuracy(
     wanted = read_values(demands, targets, f"{where}: demands")
     for name, value in {"T": end, "every": step or end, **units, **wanted}.items():
         if not (value.is_Rational and value > 0):
-            message = f"expected a positive fraction; got {quote(str(value))}; round it"
+            message = f"expected a positive fraction; got {quote(str(value))}; give one"
             raise DomainError(message, where=f"{where}: {name}")
     first = {moving[name]: value for name, value in read_values(start, moving, f"{where}: start").items()}
     flight = flight_of(contents, first, to_fmpq(end), None if step is None else to_fmpq(step), where)

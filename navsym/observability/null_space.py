@@ -18,7 +18,8 @@ from navsym.claims.verdict import OPEN, PROVED, REFUTED, Status, Verdict
 from navsym.core.answers import Answer
 from navsym.core.errors import ShapeError, UnknownSymbolError, UnobservableError
 from navsym.language.expression import parse, symbol, to_text
-from navsym.language.names import quote, suggest_nearest
+from navsym.language.files import name_file
+from navsym.language.names import join_place, quote, suggest_nearest
 from navsym.language.schema import as_list, as_table, expect_keys, require_key
 from navsym.language.tomlfile import read_toml
 from navsym.language.values import write_entries, write_value
@@ -136,15 +137,17 @@ def write_matrix(rows: Sequence[Sequence[str]]) -> str:
 
 def read_jacobians(path: str | PathLike[str]) -> dict[str, Any]:
     """The arguments of ``Observability.null_space`` in a TOML file: [symbols], [first], and [[step]] with H and Phi."""
-    document = read_toml(path)
-    expect_keys(document, ("symbols", "first", "step"), "")
-    steps = [as_table(step, f"step[{k}]") for k, step in enumerate(as_list(require_key(document, "step", ""), "step"))]
+    document, where = read_toml(path), name_file(path)
+    expect_keys(document, ("symbols", "first", "step"), where)
+    blocks = as_list(require_key(document, "step", where), join_place(where, "step"))
+    steps = [as_table(step, join_place(where, f"step[{k}]")) for k, step in enumerate(blocks)]
     for k, step in enumerate(steps):
-        expect_keys(step, ("H", "Phi"), f"step[{k}]")
-        require_key(step, "H", f"step[{k}]")
+        place = join_place(where, f"step[{k}]")
+        expect_keys(step, ("H", "Phi"), place)
+        for key in ("H", "Phi")[: 2 if k + 1 < len(steps) else 1]:  # nothing follows the last step
+            require_key(step, key, place)
     return {
         "H": [step["H"] for step in steps],
         "Phi": [step["Phi"] for step in steps if "Phi" in step],
-        "first": dict(as_table(document.get("first", {}), "first")),
-        "symbols": dict(as_table(document.get("symbols", {}), "symbols")),
+        **{key: dict(as_table(document.get(key, {}), join_place(where, key))) for key in ("first", "symbols")},
     }

@@ -9,6 +9,7 @@ import sympy as sp
 
 import navsym as nav
 from navsym.cli.main import run
+from navsym.observability.null_space import read_jacobians
 
 STATES = "x y p a b"
 DYNAMICS = ["v*cos(p)", "v*sin(p)", "w", "0", "0"]
@@ -117,3 +118,17 @@ def test_the_command_says_it_and_its_status_does(tmp_path, capsys):
     write(USUAL)
     assert run(["observe", str(model), "--jacobians", str(spec)]) == 1
     assert "REFUTED" in capsys.readouterr().out
+
+
+def test_a_step_without_its_transition_is_refused_where_it_stands(tmp_path):
+    """Else the next step's matrix would move up into its place."""
+    file = tmp_path / "filter.toml"
+    rows = [
+        'H = [["1", "0"]]\nPhi = [["1", "1"], ["0", "1"]]',
+        'H = [["1", "0"]]',
+        'H = [["1", "0"]]\nPhi = [["1", "0"], ["0", "1"]]',
+    ]
+    file.write_text("".join(f"[[step]]\n{row}\n" for row in rows))
+    with pytest.raises(nav.NavsymError) as refused:
+        read_jacobians(file)
+    assert refused.value.where.endswith("step[1].Phi")
