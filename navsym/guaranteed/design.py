@@ -373,7 +373,7 @@ class Market:
         done = self.search()
         pairs = self.weigh(self.best) if self.best else None
         if self.best is None or pairs is None:
-            got = f"none below {middle(self.least):.3g}" if done else "none in so many steps"
+            got = f"none with an error below {middle(self.least):.3g}" if done else "none in so many steps"
             message = f"expected a selection within the budget that shows {quote(self.flow.target)}; got {got}"
             raise NotEstimableError(f"{message}; raise the budget or add instants", where="design")
         cost, found = self.least, self.best
