@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import sympy as sp
 
 import navsym as nav
 from navsym.cli.main import run
@@ -312,34 +311,3 @@ def test_blocks_in_latex_are_the_blocks_of_the_model_again():
 def test_a_card_in_latex_is_its_definition_of_errors(changes, lines):
     text = replace(LEVEL, **changes)._repr_latex_()
     assert all(line in text for line in lines)
-
-
-#: A level frame at rest on a sphere that does not turn; positions in metres.
-LEVEL_WORDS = (
-    "frame=local-level axes=ENU attitude_error=frame rotation_sign=+ vector_error=difference earth=sphere angle=phi "
-    "earth_rate=dropped transport_rate=kept gravity_gradient=none height_variation=dropped position_error=metres"
-)
-
-
-def test_both_horizontal_channels_of_a_card_at_rest_are_the_schuler_channel_of_the_examples():
-    """y1 = velocity/(R w), y2 = tilt, y3 = tilt rate/w in the time w t with w**2 = g/R, up to the sense of the tilt."""
-    signs = dict.fromkeys(("error", "bias_sign"), "estimate - truth")
-    roles = {"position": "r", "velocity": "v", "attitude": "a", "gyro_bias": "e"}
-    rest = {"velocity": ["0"] * 3, "latitude": "0", "specific_force": ["0", "0", "w**2*R"], "radii": ["R"]}
-    derived = nav.conventions(
-        {
-            "card": dict(word.split("=") for word in LEVEL_WORDS.split()) | signs,
-            "parameters": {"w": "positive", "R": "positive"},
-            "roles": {role: [f"{letter}{k}" for k in (1, 2, 3)] for role, letter in roles.items()},
-            "quantities": rest | {"rotation": [[str(int(i == j)) for j in range(3)] for i in range(3)]},
-        }
-    ).model()
-    F = sp.Matrix(derived["F"])
-    R, w = (next(s for s in F.free_symbols | {sp.Symbol("w")} if s.name == name) for name in ("R", "w"))
-    schuler = sp.Matrix(read_toml(EXAMPLES / "schuler-velocity.toml")["model"]["F"])
-    v, a = derived["states"].index("v1"), derived["states"].index("a1")
-    for velocity, tilt, sign in ((v, a + 1, -1), (v + 1, a, 1)):
-        T = sp.zeros(3, F.shape[0])
-        T[0, velocity], T[1, tilt], T[2, :] = sign / (R * w), 1, F[tilt, :] / w
-        assert (T * F - w * schuler * T).applyfunc(sp.cancel) == sp.zeros(*T.shape)
-        assert (T * F + w * schuler * T).applyfunc(sp.cancel) != sp.zeros(*T.shape)
