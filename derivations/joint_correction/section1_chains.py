@@ -159,19 +159,14 @@ def initial_estimate():
 def steady_kalman_gain():
     """m = 1: with process noise the steady Riccati equation has one nonnegative solution.
 
-    2 a P + Q - P^2/R = 0 has real roots with the product -Q R < 0. (For Q = 0 and a > 0 both
-    roots 0 and 2 a R are nonnegative: the gain is then unique only with an initial covariance.)
+    2 a P + Q - P^2/R = -(P - P_1)(P - P_2)/R with real roots P_1, P_2, and P_1 P_2 = -Q R < 0. (For Q = 0 and a > 0
+    both roots 0 and 2 a R are nonnegative: the gain is then unique only with an initial covariance.)
     """
-    a = sp.Symbol("a", real=True)
+    a, P = sp.symbols("a P", real=True)
     Q, R = sp.symbols("Q R", positive=True)
     root = sp.sqrt(a**2 * R**2 + Q * R)
-    return Equation(
-        [-Q * R, sp.Integer(0), sp.Integer(0)],
-        [
-            sp.expand((a * R + root) * (a * R - root)),
-            *(sp.expand(2 * a * P + Q - P**2 / R) for P in (a * R + root, a * R - root)),
-        ],
-    )
+    first, second = a * R + root, a * R - root
+    return Equation([-Q * R, 2 * a * P + Q - P**2 / R], [first * second, -(P - first) * (P - second) / R])
 
 
 @claim("1.6.kalman_unique.stabilising")

@@ -21,6 +21,10 @@ SAME: dict[tuple[str, str], str] = {
         "guaranteed_velocity:1.3.spectrum",
         "lam * sp.eye(3) - sp.Matrix(CHANNEL.F) -> lam * sp.eye(3) + sp.Matrix(CHANNEL.F)",
     ): "lambda^3 + lambda is odd: F and -F have the same spectrum",
+    (
+        "guaranteed_velocity:range.y2.end.contacts",
+        "(3 * T + s) / 2 - 2 * sp.pi -> (3 * T + s) / 2 + 2 * sp.pi",
+    ): "a sine two whole turns further on is the same",
     ("guaranteed_velocity:3.3.min", "h1 + names[2] * h2 -> h1 - names[2] * h2"): "it asks which names occur",
     (
         "multistructure:2.growth.every",
@@ -30,6 +34,7 @@ SAME: dict[tuple[str, str], str] = {
     ("joint_correction:3.3.y1", "x[1]: 1 -> 0"): "none of the four rows holds y_4, for which x_2 stands",
     ("multistructure:17.memory", "made.means[0]: 0 -> 1"): "all modes start alike, and numbers are counted",
     ("multistructure:near.cumulant", "-mean -> mean"): "only its second and fourth powers enter",
+    ("terrain_search:sequential.below", "e - i -> e + i"): "the grid of the position is symmetric",
     ("terrain_search:sequential.below", "-1 -> 1"): "the best hypotheses lie at 0 and 1",
     (
         "terrain_search:roots.both",
