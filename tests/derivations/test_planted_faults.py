@@ -71,7 +71,7 @@ def outcomes(paper: str, count: int) -> list[Outcome]:
 def require_noticed(found: list[Outcome]) -> None:
     silent = [one for one in found if not one.moved and not one.fell]
     assert not [one for one in silent if (f"{one.place[0].split('.')[1]}:{one.silent[0]}", one.line) not in SAME]
-    assert sum(bool(one.fell) for one in found) >= 0.6 * len(found), [one for one in found if not one.fell]
+    assert sum(bool(one.fell) for one in found) >= 0.5 * len(found), [one for one in found if not one.fell]
 
 
 def test_a_fault_in_a_model_does_not_stay_silent():
