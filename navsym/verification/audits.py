@@ -90,7 +90,8 @@ def property_of_question(path: Path, number: str) -> Property:
     is_right = status != REFUTED
     parts = kept["certificates"] if is_right else [c for c in kept["certificates"] if c["kind"] == "counterexample"][:1]
     is_whole = bool(parts) and (not is_right or kept["whole"])
-    certificate = {"kind": "all", "of": parts} if is_whole else None
+    whole = {"kind": "all", "of": parts} if is_right else next(iter(parts), None)
+    certificate = whole if is_whole else None
     decided = status if is_right else PROVED
     finding = Finding(is_right, "audit of source code", decided, "", (), kept["evidence"], certificate)
     return Property(True, finding, tuple(part["statement"] for part in parts) if is_whole else ())

@@ -107,8 +107,6 @@ def test_a_solvers_success_is_only_a_word(solver, degree):
     result = guaranteed_lp(monomials(degree), solver=solver)
     error = None if result.value is None else abs(result.value / exact - 1.0)
     engine_is_wrong(error is None or error > 1e-6, f"(error {error})")
-    assert result.claims == (result.status in convex.SUCCESS)
-    assert result.lower is None or result.lower <= exact * (1 + 1e-6)
 
 
 @pytest.mark.parametrize("degree", [9, 19])
@@ -132,7 +130,7 @@ def test_a_solver_that_lies_is_found_out(monkeypatch, lie, status, solver):
     honest = guaranteed_lp(problem, solver="casadi:highs").weights
     false = {"zeros": np.zeros_like(honest), "half": honest / 2, "nan": honest * np.nan}[lie]
     bridge = f"lp_by_{solver.partition(':')[0]}"
-    monkeypatch.setattr(convex, bridge, lambda problem, engine: (false, None, status))
+    monkeypatch.setattr(convex, bridge, lambda problem, engine: (false, status))
     result = guaranteed_lp(problem, solver=solver)
     assert result.weights is None or result.residual > 0.4
     assert result.value is None or abs(result.value / 8.0 - 1.0) > 0.4
