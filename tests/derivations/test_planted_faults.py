@@ -1,6 +1,6 @@
 """Signs flipped and indices shifted in the sources of papers: no claim that names the changed quantity stays silent.
 
-Ten places of the shortest paper by default, 40 of the five papers in a long run, 200 in a slow one.
+Ten places of the shortest paper by default, 60 of the five papers in a long run, 200 in a slow one.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def outcomes(paper: str, count: int) -> list[Outcome]:
 def require_noticed(found: list[Outcome]) -> None:
     silent = [one for one in found if not one.moved and not one.fell]
     assert not [one for one in silent if (f"{one.place[0].split('.')[1]}:{one.silent[0]}", one.line) not in SAME]
-    assert sum(bool(one.fell) for one in found) >= 0.5 * len(found), [one for one in found if not one.fell]
+    assert sum(bool(one.fell) for one in found) >= 0.6 * len(found), [one for one in found if not one.fell]
 
 
 def test_a_fault_in_a_model_does_not_stay_silent():
@@ -80,8 +80,8 @@ def test_a_fault_in_a_model_does_not_stay_silent():
 
 @pytest.mark.long
 @pytest.mark.parametrize("paper", FIVE)
-def test_eight_faults_in_a_paper_do_not_stay_silent(paper):
-    require_noticed(outcomes(paper, 8))
+def test_twelve_faults_in_a_paper_do_not_stay_silent(paper):
+    require_noticed(outcomes(paper, 12))
 
 
 @pytest.mark.slow
