@@ -6,11 +6,21 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from navsym.cli._settings import values_of
+from navsym.cli.derive import aligned
 from navsym.cli.output import emit, table
 from navsym.conventions.card import HEADINGS, attitude_formula
 
 
-def command(file: Path, *, card: Path | None = None, html: Path | None = None, json_: bool = False) -> int:
+def command(
+    file: Path,
+    *,
+    card: Path | None = None,
+    convert: list[str] | None = None,
+    latex: bool = False,
+    html: Path | None = None,
+    json_: bool = False,
+) -> int:
     """Find all conventions under which an error model is right. Status 1 when there are none.
 
     Example: navsym conventions examples/conventions.toml
@@ -18,12 +28,20 @@ def command(file: Path, *, card: Path | None = None, html: Path | None = None, j
     import navsym as nav
 
     answer = nav.conventions(file, card=card)
+    changes = {} if convert is None else values_of(convert, "--convert", "FIELD=WORD", "--convert attitude_error=body")
+    shown: Any = answer.convert(**changes) if changes else answer
     if html is not None:
         from navsym.language.files import write_text
         from navsym.report.conventions_page import conventions_page
 
         write_text(html, conventions_page(answer))
-    emit(answer.document(), as_json=json_, text=lambda: as_text(answer.document()))
+    document = {**answer.document(), **({"conversion": shown.document()} if changes else {})}
+    words = conversion_text if changes else as_text
+    emit(
+        document | ({"latex": shown.latex()} if latex else {}),
+        as_json=json_,
+        text=lambda: shown.latex() + "\n" if latex else words(document),
+    )
     return 0 if answer.cards else 1
 
 
@@ -43,6 +61,7 @@ def as_text(data: Mapping[str, Any]) -> str:
             )
             for item in data["excluded"]
         ]
+        rows = [*dict.fromkeys(rows)]  # neighbours of several cards may differ alike
         blocks.append(table(["neighbour with another", "namely", "is excluded", "at"], rows))
     others = f"{data['examined']} cards examined"
     proved = "each card is proved, each other one excluded at a point" if data["complete"] else "not all is proved"
@@ -77,6 +96,19 @@ def conflicts_text(data: Mapping[str, Any]) -> str:
         sets = ("; ".join(" by ".join(block) for block in blocks) for blocks in data["alternatives"])
         lines.append("or as few others: " + " | ".join(sets))
     return "\n".join([*lines, "", "then one card is", cards_text([data["nearest"]])])
+
+
+def conversion_text(data: Mapping[str, Any]) -> str:
+    """The model in other errors: its matrices, and what is proved."""
+    found = data["conversion"]
+    matrices = {"T: x_to = T x": "T", "F of the new errors": "F", "neglected": "neglected", "H": "H", "G": "G"}
+    blocks = [
+        "\n".join([heading, *aligned(found[name])])
+        for heading, name in matrices.items()
+        if found[name] and any(x != "0" for row in found[name] for x in row)
+    ]
+    proved = "proved: F_to T = T (F + neglected) + T'" if found["proved"] else "not all is proved"
+    return "\n\n".join([*blocks, proved]) + "\n"
 
 
 def conflict_row(conflict: Mapping[str, Any]) -> list[str]:

@@ -10,6 +10,7 @@ from typing import Any
 ESTIMATE, TRUTH = "estimate - truth", "truth - estimate"
 KEPT, DROPPED = "kept", "dropped"
 NORTH, WANDER = "north", "wander"
+HAMILTON, FORWARD, BACKWARD = "Hamilton", "body to frame", "frame to body"
 MEASURED_LESS, PREDICTED_LESS = "measurement - prediction", "prediction - measurement"
 
 #: Words that the fields of a card may have; None where a field says nothing.
@@ -33,6 +34,9 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "position_error": ("metres", "geodetic"),
     "vector_error": ("difference", "rotated", "body"),
     "innovation": (MEASURED_LESS, PREDICTED_LESS),
+    "quaternion_algebra": (HAMILTON, "JPL"),
+    "quaternion_direction": (FORWARD, BACKWARD),
+    "quaternion_order": ("scalar first", "scalar last"),
 }
 
 
@@ -58,6 +62,8 @@ class Card:
     vector_error     : ``difference``; ``rotated``: the truth is turned by the attitude error first (right invariant);
                        ``body``: the difference is resolved in the body (left invariant)
     innovation       : what H multiplies the error to; None without H
+    quaternion_algebra, quaternion_direction, quaternion_order : i j = k (Hamilton) or i j = -k (JPL), what the
+                       quaternion turns vectors to, and where its scalar stands; None without a quaternion
     dropped          : blocks of zeros where the full equations have small terms
     """
 
@@ -80,6 +86,9 @@ class Card:
     position_error: str | None = None
     vector_error: str = "difference"
     innovation: str | None = None
+    quaternion_algebra: str | None = None
+    quaternion_direction: str | None = None
+    quaternion_order: str | None = None
     dropped: tuple[tuple[str, str], ...] = ()
 
     def document(self) -> dict[str, Any]:
@@ -94,6 +103,17 @@ class Card:
         from navsym.conventions.typeset import card_latex
 
         return rf"$\displaystyle {card_latex(self)}$"
+
+    def quaternion(self) -> dict[str, str | None]:
+        """What is said of the quaternion; of two readings that are one rotation the one in Hamilton's algebra.
+
+        A quaternion of one algebra is the conjugate of that of the other, so it turns vectors the other way.
+        """
+        if self.quaternion_order is None:
+            return {}
+        same = (self.quaternion_algebra == HAMILTON) == (self.quaternion_direction == FORWARD)
+        order = {"quaternion_order": self.quaternion_order}
+        return {"quaternion_algebra": HAMILTON, "quaternion_direction": FORWARD if same else BACKWARD, **order}
 
     def signs(self) -> dict[str, int]:
         """Role -> +1 where the state is estimate minus truth (for an attitude: the sign of its rotation), else -1."""
@@ -116,6 +136,7 @@ def list_structures(
     height: bool = True,
     placed: bool = False,
     azimuth: str = NORTH,
+    quaternion: bool = False,
 ) -> Iterator[Card]:
     """Every card without its signs, for a model of these roles.
 
@@ -124,7 +145,10 @@ def list_structures(
     height : False where radii contain the height
     placed : True where latitude and longitude are given, so that gravity may follow the normal
     azimuth : of local levels
+    quaternion : True where the attitude is given by one
     """
+    names = [name for name in CHOICES if name.startswith("quaternion")] if quaternion else []
+    readings = [dict(zip(names, words, strict=True)) for words in product(*(CHOICES[name] for name in names))]
     vectors = CHOICES["vector_error"] if {"attitude", "velocity"} <= roles else ("difference",)
     sides = CHOICES["attitude_error"] if "attitude" in roles else ("frame",)
     for frame in frames:
@@ -134,9 +158,8 @@ def list_structures(
             if level
             else list_cartesian(frame, roles, radii * placed, height)
         )
-        for side, vector in product(sides, vectors):
-            for card in cards:
-                yield replace(card, attitude_error=side, vector_error=vector)
+        for side, vector, card, words in product(sides, vectors, cards, readings):
+            yield replace(card, attitude_error=side, vector_error=vector, **words)
 
 
 def list_cartesian(frame: str, roles: frozenset[str], radii: int = 0, height: bool = True) -> Iterator[Card]:
@@ -219,6 +242,9 @@ HEADINGS: Mapping[str, str] = {
     "vector_error": "vector errors",
     "position_error": "position error",
     "innovation": "innovation",
+    "quaternion_algebra": "algebra of the quaternion",
+    "quaternion_direction": "which turns vectors from",
+    "quaternion_order": "its order",
     "earth": "Earth",
     "earth_rate": "Earth rate",
     "transport_rate": "transport rate",

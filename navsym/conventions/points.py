@@ -78,16 +78,27 @@ class Sampler:
     """One random point; the quantities are settled one after the other, each bound to those before it."""
 
     def __init__(self, problem: Problem, card: Card, seed: int, free: bool = False):
-        self.problem, self.card = problem, card
+        self.problem, self.card = problem.under(card), card
         self.random = random.Random(seed)
         self.rows: list[list[Any]] = []
         self.values: dict[str, Any] = {}
-        bound = [tree for trees in problem.quantities.values() for tree in trees if tree.head != SYMBOL]
+        if not free:
+            self.draw_quaternion()
+        bound = [tree for trees in self.problem.quantities.values() for tree in trees if tree.head != SYMBOL]
         for name in list_names(*bound):
-            self.values[name] = self.pick(problem.parameters[name])
+            self.values.setdefault(name, self.pick(problem.parameters[name]))
         if free:
             for name, parameter in problem.parameters.items():
                 self.values.setdefault(name, self.pick(parameter))
+
+    def draw_quaternion(self) -> None:
+        """A unit quaternion with rational components, where they are names."""
+        trees = self.problem.quantities.get("quaternion", ())
+        if all(tree.head == SYMBOL for tree in trees):
+            x, y, z = (fmpq(self.random.randint(1, 9) * self.random.choice((-1, 1)), 7) for _ in range(3))
+            n = 1 + x * x + y * y + z * z
+            for tree, part in zip(trees, (1 - 2 / n, 2 * x / n, 2 * y / n, 2 * z / n), strict=False):
+                self.values[tree.args[0]] = arb(part)
 
     def pick(self, parameter: Parameter | None, low: float = -2.0, high: float = 2.0) -> Any:
         """A random rational in the declared range."""

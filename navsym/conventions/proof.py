@@ -41,6 +41,12 @@ def euler_texts() -> list[str]:
     ]  # fmt: skip
 
 
+def quaternion_texts() -> list[str]:
+    """The components of a unit quaternion by three angles; every one is one of these."""
+    (s1, c1), (s2, c2), (s3, c3) = ((f"sin({a})", f"cos({a})") for a in ANGLES)
+    return [f"{c1}*{c2}", f"{c1}*{s2}", f"{s1}*{c3}", f"{s1}*{s3}"]
+
+
 class Prover:
     """Statements about the blocks of one problem, each decided once."""
 
@@ -60,6 +66,7 @@ class Prover:
                 attitude_error=card.attitude_error,
                 vector_error=card.vector_error,
                 position_error=card.position_error,
+                **card.quaternion(),
             )
         return self.formulas(narrow_card(card, block[1])).block(*block, sign)
 
@@ -84,15 +91,15 @@ class Prover:
         names = {*self.problem.parameters}
         trees = [read_tree(text, None) for text in (left, right)]
         bound = self.relations(card)
-        if set(bound) & set(list_names(*trees)) and not self.is_free_identity(trees, names):
+        if set(bound) & set(list_names(*trees)) and not self.is_free_identity(card, trees, names):
             trees = [substitute(tree, bound) for tree in trees]
         return self.decide(*map(print_tree, trees))
 
-    def is_free_identity(self, trees: Sequence[Tree], names: set[str]) -> bool:
+    def is_free_identity(self, card: Card, trees: Sequence[Tree], names: set[str]) -> bool:
         """True where the texts agree even at a point that satisfies no relation."""
         with precision(BITS):
-            values = dict(Sampler(self.problem, Card("inertial"), 99, free=True).values)
-            source = Sampler(self.problem, Card("inertial"), 98)
+            values = dict(Sampler(self.problem, card, 99, free=True).values)
+            source = Sampler(self.problem, card, 98)
             for name in list_names(*trees):
                 if name not in names:
                     values[name] = source.pick(None)
@@ -111,7 +118,7 @@ class Prover:
 
     def relations(self, card: Card) -> dict[str, str]:
         """Bound name -> text of free ones; later ones may contain earlier ones no more."""
-        given = self.problem.quantities
+        given = self.problem.under(card).quantities
         result: dict[str, str] = {}
         texts = {name: [print_tree(tree) for tree in trees] for name, trees in given.items()}
 
@@ -120,10 +127,12 @@ class Prover:
                 if tree.head == SYMBOL:
                     result.setdefault(tree.args[0], value)
 
+        if all(tree.head == SYMBOL for tree in given.get("quaternion", ())):
+            bind("quaternion", quaternion_texts())
         if all(tree.head == SYMBOL for tree in given.get("rotation", ())):
             bind("rotation", euler_texts())
         rotation = [
-            result.get(text, text)
+            print_tree(substitute(read_tree(text, None), result))
             for text in texts.get("rotation", [f"{HIDDEN}c{i}{j}" for i in range(3) for j in range(3)])
         ]
         if "rotation" not in given:

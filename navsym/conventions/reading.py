@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from navsym.conventions.card import CHOICES
+from navsym.conventions.card import BACKWARD, CHOICES, Card
 from navsym.conventions.measuring import MEASURED, MEASURED_MARK, NOISE_MARK, NOISES, RESET_MARK
 from navsym.conventions.mechanisation import ROLES
 from navsym.core.errors import (
@@ -30,7 +30,8 @@ from navsym.language.schema import (
     require_distinct,
     require_key,
 )
-from navsym.language.tree import MINUS_ONE, ONE, ZERO, Tree, build_sum
+from navsym.language.tree import MINUS_ONE, ONE, ZERO, Tree, build_sum, build_symbol
+from navsym.language.tree import replace as replace_parts
 from navsym.models.modelfile import BESIDE, STEP, TABLES, read_ranges
 
 #: Quantities -> the numbers of components that they may have.
@@ -39,6 +40,7 @@ QUANTITIES: Mapping[str, tuple[int, ...]] = {
     "specific_force_body": (3,),
     "angular_rate": (3,),
     "rotation": (9,),
+    "quaternion": (4,),
     "velocity": (3,),
     "position": (3,),
     "latitude": (1,),
@@ -63,6 +65,13 @@ QUANTITIES: Mapping[str, tuple[int, ...]] = {
 UNUSED = tuple(name for name in TABLES if name not in ("model", "parameters"))
 
 Grid = tuple[tuple[Tree, ...], ...]
+
+#: Rotation from the body by a unit quaternion w + x i + y j + z k of Hamilton's algebra that leads from there.
+BY_QUATERNION = (
+    ("w**2 + x**2 - y**2 - z**2", "2*(x*y - w*z)", "2*(x*z + w*y)"),
+    ("2*(x*y + w*z)", "w**2 - x**2 + y**2 - z**2", "2*(y*z - w*x)"),
+    ("2*(x*z - w*y)", "2*(y*z + w*x)", "w**2 - x**2 - y**2 + z**2"),
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,6 +101,17 @@ class Problem:
     measured: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     noises: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     ranges: Mapping[str, tuple[Any, Any]] = field(default_factory=dict)
+
+    def under(self, card: Card) -> Problem:
+        """The problem with the rotation that the card makes of a quaternion."""
+        if "quaternion" not in self.quantities:
+            return self
+        words = card.quaternion()
+        names = "xyzw" if words.get("quaternion_order") == "scalar last" else "wxyz"
+        parts = {build_symbol(name): tree for name, tree in zip(names, self.quantities["quaternion"], strict=True)}
+        rows = zip(*BY_QUATERNION, strict=True) if words.get("quaternion_direction") == BACKWARD else BY_QUATERNION
+        C = tuple(replace_parts(read_tree(text, None), parts) for row in rows for text in row)
+        return replace(self, quantities={**self.quantities, "rotation": C})
 
     def places(self, side: str) -> tuple[int, ...]:
         """The rows or columns of a side of a block."""
@@ -262,6 +282,8 @@ def read_quantities(value: Any, names: Mapping[str, Any], where: str) -> dict[st
             )
             raise ShapeError(f"expected {wanted}; got {len(cells)} entries; correct {name}", where=place)
         quantities[name] = tuple(read_cell(cell, names, spot) for cell, spot in cells)
+    if {"rotation", "quaternion"} <= set(quantities):
+        raise DuplicateError("expected rotation or quaternion; got both; remove one of them", where=where)
     return quantities
 
 

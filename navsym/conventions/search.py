@@ -63,7 +63,7 @@ def key_of_points(card: Card) -> Card:
     """The card without what has no influence on the points."""
     shape = card.earth if card.frame == "local-level" else "none"
     field = card.gravity_gradient if card.gravity_gradient in ("central", "normal") else "none"
-    return Card(card.frame, card.axes, card.azimuth, earth=shape, gravity_gradient=field)
+    return Card(card.frame, card.axes, card.azimuth, earth=shape, gravity_gradient=field, **card.quaternion())
 
 
 def plain_card(card: Card) -> Card:
@@ -74,7 +74,7 @@ def plain_card(card: Card) -> Card:
 @cache
 def narrow_card(card: Card, role: str) -> Card:
     """The card without the fields that have no influence on the columns of a role (a test compares them)."""
-    plain = replace(plain_card(card), innovation=None)
+    plain = replace(plain_card(card), innovation=None, **card.quaternion())
     if role == "position":
         return plain
     level = card.frame == "local-level"
@@ -244,7 +244,7 @@ def list_problem_structures(problem: Problem, frames: tuple[str, ...] = CHOICES[
     given = problem.quantities
     placed = {"latitude", "longitude"} <= set(given)
     azimuth = WANDER if "wander_angle" in given else NORTH
-    sizes = len(given.get("radii", ())), frames, "height" in given, placed, azimuth
+    sizes = len(given.get("radii", ())), frames, "height" in given, placed, azimuth, "quaternion" in given
     return list_structures(frozenset(problem.roles), *sizes)
 
 

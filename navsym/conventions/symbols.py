@@ -44,7 +44,7 @@ class Formulas:
     """The world of a problem in symbols, with a text for each of them."""
 
     def __init__(self, problem: Problem, card: Card):
-        self.problem, self.card = problem, card
+        self.problem, self.card = problem.under(card), card
         self.context = fmpq_mpoly_ctx.get(GENERATORS, "lex")
         self.texts: dict[str, str] = {}
         self.derived: dict[str, Ratio] = {}

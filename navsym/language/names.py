@@ -102,7 +102,7 @@ def suggest_nearest(name: str, known: Iterable[str]) -> str:
     choices = sorted(known)
     if not choices:
         return "nothing is declared here"
-    close = difflib.get_close_matches(name[:NAME_LENGTH], choices[:1000], n=1, cutoff=0.6)
+    close = difflib.get_close_matches(name[:NAME_LENGTH], choices[:5000], n=1, cutoff=0.6)
     if close:
         return f"did you mean {close[0]!r}?"
     rest = "" if len(choices) <= 8 else f" and {len(choices) - 8} more"

@@ -8,14 +8,34 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from math import prod
 from typing import Any
 
 from navsym.core.errors import DomainError, DuplicateError, ShapeError
+from navsym.language.expression import read_tree
 from navsym.language.names import join_place, quote
+from navsym.language.printer import print_tree
 from navsym.language.schema import SIDE, Table, as_list, as_table, as_text
 from navsym.language.shapes import Shape, name_entries, read_shape
+from navsym.language.tree import (
+    NUMBER,
+    PRODUCT,
+    SUM,
+    SYMBOL,
+    ZERO,
+    Tree,
+    build,
+    build_number,
+    build_product,
+    build_sum,
+    fold_tree,
+    list_parts,
+)
 from navsym.language.vectors import describe_size, is_wide, read_value
 
+#: Parts that have a value wherever their own parts have one.
+PLAIN = {NUMBER, SYMBOL, SUM, PRODUCT}
 STATE = re.compile(r"([A-Za-z]\w*)\[(\d{1,3})\]", re.ASCII)
 SCALARS = ("positive", "nonnegative", "nonzero", "real")
 Rows = list[list[str]]
@@ -23,10 +43,17 @@ Rows = list[list[str]]
 
 def write_out(document: Table, where: str) -> Table:
     """The document without vectors and matrices; the same where it has none."""
-    model = document.get("model")
+    model = document.get("model", {} if "card" in document else None)
     if not isinstance(model, Mapping) or not has_arrays(document):
         return document
     return Writer(document, where).write(document, model)
+
+
+def list_roles(document: Table) -> Iterator[Any]:
+    """The states that the roles of a card name, in their order."""
+    roles = document.get("roles") if "card" in document else None
+    for names in roles.values() if isinstance(roles, Mapping) else ():
+        yield from names if isinstance(names, list) else [names]
 
 
 def has_arrays(value: Any) -> bool:
@@ -42,18 +69,39 @@ def has_table(parameters: Any) -> bool:
     return isinstance(parameters, Mapping) and any(isinstance(value, Mapping) for value in parameters.values())
 
 
+def tidy(text: str) -> str:
+    """An entry of a product of matrices without its zeros, its ones and nested signs."""
+
+    def step(part: Tree, inner: list[Tree]) -> Tree:
+        if part.head == PRODUCT:
+            factors = [x for factor in inner for x in (factor.args if factor.head == PRODUCT else (factor,))]
+            if ZERO in factors and all({x.head for x in list_parts(y)} <= PLAIN for y in factors):
+                return ZERO
+            number = prod((x.args[0] for x in factors if x.head == NUMBER), start=Fraction(1))
+            others = [x for x in factors if x.head != NUMBER]
+            return build_product(*([build_number(number)] if number != 1 or not others else []), *others)
+        if part.head == SUM:
+            return build_sum(*(x for term in inner for x in (term.args if term.head == SUM else (term,)) if x != ZERO))
+        return build(part.head, tuple(inner)) if inner else part
+
+    return print_tree(fold_tree(read_tree(text, None), step))
+
+
 class Writer:
     """Writes the tables of a model out; ``arrays`` are the declared vectors and matrices by name."""
 
     def __init__(self, document: Table, where: str) -> None:
         self.where = where
+        self.measured_names: dict[Any, list[str]] = {}
+        quantities = document.get("quantities")
+        self.bound = [*quantities.values()] if isinstance(quantities, Mapping) else []
         self.arrays: dict[str, tuple[tuple[str, ...], ...]] = {}
         self.scalars: set[str] = {"t"}
         place = join_place(where, "parameters")
         declared = as_table(document.get("parameters", {}), place)
         self.parameters = dict(self.declare(declared, place))
-        place = join_place(join_place(where, "model"), "states")
-        states = as_list(document["model"].get("states", []), place, "a list of names")
+        place, model = join_place(join_place(where, "model"), "states"), document.get("model", {})
+        states = as_list(model.get("states", [*list_roles(document)]), place, "a list of names")
         self.sizes = [*self.list_states(states, place)]
 
     def declare(self, declared: Table, place: str) -> Iterator[tuple[str, Any]]:
@@ -75,7 +123,8 @@ class Writer:
     def read_shape(self, name: str, value: Mapping[str, Any], declared: Table, here: str) -> list[Shape]:
         """What a table declares; a model has no relations between parameters, and no functions of its own."""
         found = read_shape(name, value, declared, here)
-        if found[0].relations or len(found) > 1 or "integer" in value:
+        related = found[0].relations and name not in self.bound  # a quantity brings the relations itself
+        if related or len(found) > 1 or "integer" in value:
             message = (
                 f"expected a number, a vector or a matrix; got {quote(dict(value))}; give its entries as parameters"
             )
@@ -127,7 +176,7 @@ class Writer:
             raise DomainError(f"expected no cases; got {quote(text)}; a model is one formula", where=here)
         if not isinstance(value, player.Matrix):
             return str(write_term(value))
-        return [[write_term(entry) for entry in row] for row in value.rows]
+        return [[tidy(write_term(entry)) for entry in row] for row in value.rows]
 
     def names_array(self, text: str) -> bool:
         return not self.arrays.keys().isdisjoint(re.findall(r"[A-Za-z]\w*", text))
@@ -161,9 +210,11 @@ class Writer:
         names = [entry for _, entries in self.sizes for entry in entries]
         done["parameters"] = self.parameters
         done["model"] = own = dict(model) | {"states": names}
-        for key in ("F", "Phi"):
+        for key in ("F", "Phi", "reset"):
             if key in model:
                 own[key] = self.square(model[key], join_place(where, key))
+        if isinstance(model.get("G"), list):
+            own["G"] = self.noises(model["G"], join_place(where, "G"))
         if "dynamics" in model:
             own["dynamics"] = self.column(model["dynamics"], join_place(where, "dynamics"))
         if "relations" in model:
@@ -209,6 +260,50 @@ class Writer:
         ]
         return [[entry for block in blocks for entry in block[i]] for i in range(height)]
 
+    def noises(self, rows: Sequence[Any], here: str) -> Any:
+        """G: blocks with the heights of the states; a column of blocks is as wide as its widest."""
+        if len(rows) != len(self.sizes):
+            return rows
+        lines = [as_list(row, join_place(here, i), "a list of expressions") for i, row in enumerate(rows)]
+        cells = [[self.evaluate(x, join_place(here, i)) for x in line] for i, line in enumerate(lines)]
+        if len({*map(len, cells)}) > 1:
+            raise ShapeError("expected rows of one length; got several; correct the matrix", where=here)
+        widths = [max(len(x[0]) if isinstance(x, list) else 1 for x in column) for column in zip(*cells, strict=True)]
+        done = []
+        for i, (line, (_, entries)) in enumerate(zip(lines, self.sizes, strict=True)):
+            place, height = join_place(here, i), len(entries)
+            blocks = [
+                self.block(x, height, w, join_place(place, j))
+                for j, (x, w) in enumerate(zip(line, widths, strict=True))
+            ]
+            done += [[entry for block in blocks for entry in block[k]] for k in range(height)]
+        return done
+
+    def list_names(self, value: Any, here: str) -> Any:
+        """States of roles, or measurements, by the names of their vectors."""
+        table = as_table(value, here)
+        return {
+            name: [x for item in (v if isinstance(v, list) else [v]) for x in self.spread(item)]
+            for name, v in table.items()
+        }
+
+    def spread(self, item: Any) -> list[Any]:
+        """The entries of a name that is a vector's, which may have its size beside it."""
+        if isinstance(item, str) and item in self.measured_names:
+            return list[Any](self.measured_names[item])
+        found = STATE.fullmatch(item) if isinstance(item, str) else None
+        rows = self.arrays.get(found[1] if found else item, ()) if isinstance(item, str) else ()
+        return [x for row in rows for x in row] or [item]
+
+    def list_quantities(self, value: Any, here: str) -> Any:
+        """Quantities with an entry for each number; a matrix row by row."""
+        done = {}
+        for name, item in as_table(value, here).items():
+            rows = self.evaluate(item, join_place(here, name)) if isinstance(item, str) else item
+            narrow = isinstance(item, str) and isinstance(rows, list) and len(rows[0]) == 1
+            done[name] = [row[0] for row in rows] if narrow else rows
+        return done
+
     def column(self, value: Any, here: str) -> Any:
         """One entry for each state of the list, each a vector of its size."""
         items = as_list(value, here, "a list of expressions")
@@ -238,8 +333,9 @@ class Writer:
             there = join_place(place, key)
             rows = self.measured(table[key], key, there)
             name, sigma = table.get("name", f"z{i + 1}"), self.scalar(table.get("sigma", 1), join_place(place, "sigma"))
-            for k, row in enumerate(rows, 1):
-                found.append(table | {key: row, "sigma": sigma, "name": name if len(rows) == 1 else f"{name}_{k}"})
+            names = [name] if len(rows) == 1 else [f"{name}_{k}" for k in range(1, len(rows) + 1)]
+            self.measured_names[name] = names
+            found += [table | {key: row, "sigma": sigma, "name": own} for row, own in zip(rows, names, strict=True)]
         return found
 
     def measured(self, value: Any, key: str, here: str) -> list[Any]:
@@ -321,4 +417,7 @@ TABLES: dict[str, Callable[[Writer, Any, str], Any]] = {
     "piece": Writer.list_pieces,
     "interval": Writer.list_numbers,
     "ranges": Writer.list_ranges,
+    "roles": Writer.list_names,
+    "measured": Writer.list_names,
+    "quantities": Writer.list_quantities,
 }

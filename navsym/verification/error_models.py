@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
@@ -15,19 +16,22 @@ from navsym.audit.questions import Question, list_askings
 from navsym.audit.values import Array, Unread, Value, multiply, raise_to, total
 from navsym.conventions.answer import Conflict, Conventions, find_conventions
 from navsym.conventions.generating import fill_model
-from navsym.conventions.reading import read_problem
-from navsym.core.errors import DomainError, DuplicateError
+from navsym.conventions.reading import read_cell, read_problem
+from navsym.core.errors import DomainError, DuplicateError, UnknownSymbolError
 from navsym.language.files import name_file
-from navsym.language.names import join_place, quote
+from navsym.language.names import join_place, quote, suggest_nearest
 from navsym.language.printer import print_tree
-from navsym.language.schema import as_table, require_key
+from navsym.language.schema import as_list, as_table, require_key
 from navsym.language.tomlfile import read_toml
-from navsym.language.tree import NUMBER, ONE, POWER, PRODUCT, SUM, SYMBOL, ZERO, Tree, build, fold_tree
+from navsym.language.tree import NUMBER, ONE, POWER, PRODUCT, SUM, SYMBOL, ZERO, Tree, build, build_symbol, fold_tree
+from navsym.models.blocks import write_out
 
 if TYPE_CHECKING:
     from navsym.audit.names import Names
     from navsym.conventions.card import Card
 
+BOOK = "book:"
+WORD = re.compile(r"[A-Za-z]\w*")
 MATRICES = ("F", "G", "H", "reset", "Phi")
 
 
@@ -81,7 +85,7 @@ def conventions(
         raise DomainError(message, where="conventions: model")
     document = {**model, **given}
     code = read_code(document, folder, where) if "code" in document else None
-    document = code.document if code else document
+    document = code.document if code else linearise(write_out(read_entries(document, where), where), where)
     problem = read_problem(fill_model(document, where) if "card" in document else document, where)
     answer = find_conventions(problem)
     return answer if code is None else code.point_out(answer)
@@ -99,6 +103,57 @@ def plain_lists(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {key: plain_lists(item) for key, item in value.items()}
     return [plain_lists(item) for item in value] if isinstance(value, tuple | list) else value
+
+
+# Equations of the errors, which entries of the book may say
+
+
+def read_entries(document: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """The document with the right sides of entries of the book, and their symbols, in place of ``book:ID``."""
+    model, place = document.get("model"), join_place(join_place(where, "model"), "dynamics")
+    items = model.get("dynamics") if isinstance(model, Mapping) else None
+    if not isinstance(model, Mapping) or not isinstance(items, list):
+        return dict(document)
+    rows, symbols = [*items], dict[str, Any]()
+    for k, item in enumerate(items):
+        if isinstance(item, str) and item.startswith(BOOK):
+            from navsym.book.entries import book
+
+            name = item.removeprefix(BOOK)
+            if name not in book:
+                known = suggest_nearest(name, [*book])
+                message = f"expected an entry of the book; got {quote(name)}; correct it: {known}"
+                raise UnknownSymbolError(message, where=join_place(place, k))
+            entry = book[name].document
+            rows[k] = entry["claim"][0]["right"]
+            named = {*WORD.findall(rows[k])}
+            symbols |= {symbol: value for symbol, value in entry["symbols"].items() if symbol in named}
+    states = {*WORD.findall(" ".join(map(str, model.get("states", ()))))}
+    declared = as_table(document.get("parameters", {}), join_place(where, "parameters"))
+    symbols = {name: value for name, value in symbols.items() if name not in states}
+    return {**document, "model": {**model, "dynamics": rows}, "parameters": {**symbols, **declared}}
+
+
+def linearise(document: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """F of a model that has equations of its errors: their derivatives where the errors are zero."""
+    model, place = document.get("model"), join_place(join_place(where, "model"), "dynamics")
+    if not isinstance(model, Mapping) or "dynamics" not in model:
+        return dict(document)
+    if "F" in model:
+        raise DuplicateError("expected F or dynamics; got both; remove one of them", where=place)
+    names = as_list(model.get("states", []), join_place(join_place(where, "model"), "states"), "a list of names")
+    states = [build_symbol(name) for name in names]
+    known = {*names, *as_table(document.get("parameters", {}), join_place(where, "parameters"))}
+    F = []
+    for k, item in enumerate(as_list(model["dynamics"], place, "a list of expressions")):
+        tree = read_cell(item, dict.fromkeys(known), join_place(place, k))
+        if reduce(put_zero, states, tree) is not ZERO:
+            message = (
+                f"expected no rate where the errors are zero; got {print_tree(tree)}; write equations of the errors"
+            )
+            raise DomainError(message, where=join_place(place, k))
+        F.append([print_tree(reduce(put_zero, states, differentiate(tree, state))) for state in states])
+    return {**document, "model": {key: value for key, value in model.items() if key != "dynamics"} | {"F": F}}
 
 
 # Matrices of source code
