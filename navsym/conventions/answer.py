@@ -80,6 +80,7 @@ class Conventions(Answer):
     excluded     : the neighbours of the cards, with what excludes them; ``examined`` counts all cards
     unused       : tables of the file that say nothing about the error dynamics
     problem      : the model and what was said about it
+    certificates : of the entries that agree with a card or differ from it; ``navsym check`` replays them
 
     >>> import navsym as nav
     >>> found = nav.conventions("examples/conventions.toml")
@@ -97,6 +98,7 @@ class Conventions(Answer):
     examined: int
     unused: tuple[str, ...]
     problem: Problem
+    certificates: tuple[Mapping[str, Any], ...] = ()
 
     def convert(self, card: Card | None = None, **changes: str) -> Conversion:
         """The model in the errors of another card: T, F, H and G, proved on the text of the model.
@@ -189,9 +191,8 @@ def find_conventions(problem: Problem) -> Conventions:
             alternatives = tuple(sets)[1:]
     examined = len(cards) + sum(outcome.count for outcome in findings.excluded)
     excluded = tuple(find_neighbours(cards, findings.excluded, comparison))
-    return Conventions(
-        problem.name, cards, complete, conflicts, nearest, alternatives, excluded, examined, problem.unused, problem
-    )
+    found = problem.name, cards, complete, conflicts, nearest, alternatives, excluded, examined, problem.unused, problem
+    return Conventions(*found, tuple(prover.certificates))
 
 
 def is_card_proved(card: Card, comparison: Comparison, prover: Prover) -> bool:

@@ -14,6 +14,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import jinja2
@@ -152,6 +153,7 @@ def pages(
     words: Mapping[str, Words] | None = None,
     *,
     book: bool = False,
+    models: Mapping[str, Any] = MappingProxyType({}),
     progress: Callable[[str], None] = lambda claim: None,
 ) -> Iterator[tuple[str, str]]:
     """The files of the report, name and text, as they are made; the index comes last.
@@ -159,10 +161,11 @@ def pages(
     ledger   : the verdicts; a paper whose card is not in it is shown without its matrix of equations
     words    : wording of erratum sheets by module
     book     : whether the pages of the book come too, ``book.html`` and one for each chapter, and ``atlas.html``
+    models   : file of an error model -> its conventions; each has a page
     progress : called with the id of each claim that is set in type
 
     Files: ``certificates/*.json``, ``verdicts.json``, ``MODULE.html``, ``MODULE.erratum.html`` and
-    ``.tex``, ``trust.html``, ``index.html``.
+    ``.tex``, ``MODEL.conventions.html``, ``trust.html``, ``index.html``.
     """
     words, env, papers = words or {}, environment(), []
     shared = {"marks": MARKS, "meanings": WORDS["meaning"], "copy_mark": COPY_MARK}
@@ -187,8 +190,16 @@ def pages(
 
         yield from book_pages(env.get_template, shared)
         yield from atlas_pages(env.get_template, shared)
+    found = [(f"{slug(name.removesuffix('.toml'))}.conventions.html", name, answer) for name, answer in models.items()]
+    for file, _, answer in found:
+        from navsym.report.conventions_page import conventions_page
+
+        yield file, conventions_page(answer)
     papers.sort(key=lambda paper: not paper.erratum.entries)  # those with something to correct come first
-    yield "index.html", env.get_template("index.html").render(shared, papers=papers, total=total(papers), book=book)
+    yield (
+        "index.html",
+        env.get_template("index.html").render(shared, papers=papers, total=total(papers), book=book, models=found),
+    )
 
 
 def environment() -> jinja2.Environment:

@@ -14,6 +14,7 @@ from navsym.claims.workspace import find_workspace
 from navsym.core.answers import Answer
 from navsym.core.errors import OutputError
 from navsym.language.files import read_text, write_text
+from navsym.language.tomlfile import read_toml
 from navsym.report.page import pages
 from navsym.report.wording import read_wording
 from navsym.verification.decide import SECONDS, verify
@@ -93,6 +94,16 @@ def report(
     return write_pages(folder, Ledger(ledger.claims, ledger.papers, ledger.unsaved, cards), progress, book=whole)
 
 
+def read_models() -> dict[str, Any]:
+    """The error models of the workspace, by their files, with their conventions."""
+    from navsym.verification.error_models import conventions
+
+    workspace = find_workspace()
+    names = [] if workspace is None else workspace.list_files("models")
+    files = {name: workspace.root / name for name in names} if workspace else {}
+    return {name: conventions(path) for name, path in files.items() if "roles" in read_toml(path)}
+
+
 def report_folder() -> Path:
     """The folder ``report``, of the workspace where there is one."""
     workspace = find_workspace()
@@ -122,7 +133,7 @@ def write_pages(out: Path, ledger: Ledger, progress: Callable[[int, int, str], N
     home = papers_folder() if workspace is None else workspace.root
     files = sorted((home / "errata").glob("*.toml"))  # wording of the erratum sheets, by module
     wordings = {path.stem: read_wording(read_text(path, LARGEST), path.name) for path in files}
-    for name, text in pages(ledger, wordings, book=book, progress=step):
+    for name, text in pages(ledger, wordings, book=book, models=read_models(), progress=step):
         write_text(out / name, text, durable=False)
         names.append(name)
     return Site(out, tuple(names), ledger)

@@ -12,7 +12,8 @@ from importlib.abc import SourceLoader
 from pathlib import Path
 from types import ModuleType
 
-from navsym.claims import CERTIFIED, PROVED, Claim, Finding, Paper, Property, Statement, Status, Verdict
+from navsym.claims import CERTIFIED, OPEN, PROVED, Claim, Finding, Paper, Property, Statement, Status, Verdict
+from navsym.conventions.card import HEADINGS
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, NotEstimableError
 from navsym.language.declarations import Parameter
 from navsym.language.files import read_bytes, read_text
@@ -37,15 +38,18 @@ def claims_of_file(name: str, path: Path) -> tuple[Claim, ...]:
     document = read_toml(path)
     if "claim" in document:
         return tuple(claim_of_block(name, path, claim) for claim in read_claims(path).claims)
+    whose = (claim_of_conventions(name, path),) if "roles" in document else ()
+    if whose and "targets" not in document:
+        return whose
     if "model" in document or "basis" in document:
         targets = contents_of(path, None, {}, "verify").targets
-        return tuple(claim_of_target(name, path, target) for target in targets)
+        return (*whose, *(claim_of_target(name, path, target) for target in targets))
     if "question" in document:
         from navsym.verification.audits import claims_of_audit
 
         return claims_of_audit(name, path)
     got = ", ".join(document) or "nothing"
-    expected = "[[claim]] blocks, [[question]] blocks, or a [model] or [basis] with targets"
+    expected = "[[claim]] blocks, [[question]] blocks, or a [model] or [basis] with targets or [roles]"
     message = f"expected {expected}; got {got[:80]}; correct the file"
     raise ExpressionSyntaxError(message, where=str(path))
 
@@ -105,6 +109,30 @@ def property_of_target(path: Path, target: str) -> Property:
     evidence = f"guaranteed standard deviation {found.value} for measurements within their sigma"
     method = "exact primal-dual certificate"
     return Property(True, Finding(True, method, found.status, scope, (), evidence, found.certificate))
+
+
+def claim_of_conventions(name: str, path: Path) -> Claim:
+    """The claim that an error model is right under some card of conventions."""
+    title = "The error model is right under a card of conventions."
+    place = place_of_line(name, path, r"\s*\[roles\]")
+    return Claim(name, "conventions", title, partial(property_of_conventions, path), PROVED, place=place, either=True)
+
+
+def property_of_conventions(path: Path) -> Property:
+    """Whether a card is proved, or all are excluded at exact points; the certificates are those of single entries."""
+    from navsym.verification.error_models import conventions
+
+    found = conventions(path)
+    first = found.cards[0] if found.cards else found.nearest
+    words = "; ".join(f"{HEADINGS[key]}: {word}" for key, word in first.words().items()) if first else "none is near"
+    blocks = "; ".join(" by ".join(conflict.block) for conflict in found.conflicts)
+    evidence = f"{len(found.cards)} cards of {found.examined}; {words}" if found.cards else f"change {blocks}; {words}"
+    right = bool(found.cards)
+    parts = [part for part in found.certificates if right != (part["kind"] == "counterexample")]
+    certificate = {"kind": "all", "of": parts} if parts and right else next(iter(parts), None)
+    decided = PROVED if found.complete else OPEN
+    finding = Finding(right, "error dynamics of every card", decided, "", (), evidence, certificate)
+    return Property(True, finding, tuple(part["statement"] for part in parts[: None if right else 1]))
 
 
 def middle_values(parameters: Mapping[str, Parameter]) -> dict[str, str]:

@@ -140,6 +140,25 @@ def test_the_audit_of_a_new_workspace_has_a_certificate_and_a_fault_in_its_code_
     assert "unchecked" not in record.evidence
 
 
+def test_an_error_model_is_a_claim_and_has_a_page_and_a_fault_in_it_is_found(tmp_path, monkeypatch):
+    root = nav.init(tmp_path / "work").root
+    text = (Path(__file__).parents[2] / "examples" / "conventions.toml").read_text(encoding="utf-8")
+    (root / "models" / "strapdown.toml").write_text(text, encoding="utf-8")
+    (root / "models" / "wrong.toml").write_text(text.replace('"f3"', '"-f3"', 1), encoding="utf-8")
+    monkeypatch.chdir(root)
+    ledger = nav.verify()
+    found = {claim.id: (str(claim.status), claim.certificate) for claim in ledger.claims if "conventions" in claim.id}
+    assert {name: status for name, (status, _) in found.items()} == {
+        "models/strapdown.toml:conventions": "PROVED",
+        "models/wrong.toml:conventions": "REFUTED",
+    }
+    assert all(certificate for _, certificate in found.values())
+    site = nav.report(source=ledger)
+    pages = [site.out / name for name in site.files if name.endswith(".conventions.html")]
+    index = (site.out / "index.html").read_text(encoding="utf-8")
+    assert len(pages) == 2 and all(page.name in index for page in pages)
+
+
 def test_nothing_is_written_to_a_home_that_is_read_only(inside, monkeypatch, tmp_path, capsys):
     home = tmp_path / "home"
     home.mkdir()
