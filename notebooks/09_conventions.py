@@ -72,3 +72,24 @@ derived = nav.conventions("examples/card.toml")
 print(len(derived.cards), "cards:", sorted({(card.frame, card.axes or "any axes") for card in derived.cards}))
 print(derived.model()["F"][0])
 assert derived.complete
+
+# %% [markdown]
+# **Hamilton or JPL?** A filter as it is printed, in vectors, with a quaternion whose convention nobody wrote down. Two
+# conventions are left, and they are the same rotation: the conjugate belongs to the other algebra.
+
+# %%
+ROTATION = "(eye(3) - 2*q[4]*skew([q[1], q[2], q[3]]) + 2*skew([q[1], q[2], q[3]]) @ skew([q[1], q[2], q[3]])).T"
+PRINTED = {
+    "model": {
+        "states": ["dv[3]", "p[3]", "bg[3]", "ba[3]"],
+        "dynamics": [f"-{ROTATION} @ (cross(f, p) + ba)", "-cross(w, p) - bg", "0", "0"],
+    },
+    "parameters": {"q": {"quaternion": "unit"}, "f": {"vector": 3}, "w": {"vector": 3}},
+    "roles": {"velocity": "dv", "attitude": "p", "gyro_bias": "bg", "accelerometer_bias": "ba"},
+    "quantities": {"quaternion": "q", "specific_force_body": "f", "angular_rate": "w"},
+    "known": {"frame": "inertial", "error": "estimate - truth"},
+}
+found = nav.conventions(PRINTED)
+for card in found.cards:
+    print(card.quaternion_algebra, "|", card.quaternion_direction, "|", card.quaternion_order)
+assert found.complete and {card.quaternion_algebra for card in found.cards} == {"Hamilton", "JPL"}
