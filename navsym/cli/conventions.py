@@ -29,7 +29,7 @@ def command(
 
     answer = nav.conventions(file, card=card)
     changes = {} if convert is None else values_of(convert, "--convert", "FIELD=WORD", "--convert attitude_error=body")
-    shown: Any = answer.convert(**changes) if changes else answer
+    shown: Any = answer.convert(None, **changes) if changes else answer
     if html is not None:
         from navsym.language.files import write_text
         from navsym.report.conventions_page import conventions_page

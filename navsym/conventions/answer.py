@@ -80,7 +80,7 @@ class Conventions(Answer):
     excluded     : the neighbours of the cards, with what excludes them; ``examined`` counts all cards
     unused       : tables of the file that say nothing about the error dynamics
     problem      : the model and what was said about it
-    certificates : of the entries that agree with a card or differ from it; ``navsym check`` replays them
+    proofs       : certificates of the entries that agree with a card or differ from it; ``navsym check`` replays them
 
     >>> import navsym as nav
     >>> found = nav.conventions("examples/conventions.toml")
@@ -98,7 +98,7 @@ class Conventions(Answer):
     examined: int
     unused: tuple[str, ...]
     problem: Problem
-    certificates: tuple[Mapping[str, Any], ...] = ()
+    proofs: tuple[Mapping[str, Any], ...] = ()
 
     def convert(self, card: Card | None = None, **changes: str) -> Conversion:
         """The model in the errors of another card: T, F, H and G, proved on the text of the model.
@@ -129,6 +129,10 @@ class Conventions(Answer):
         names = [name for name in ("F", "H", "G", "reset") if getattr(self.problem, name)]
         matrices = {name: print_matrix(getattr(self.problem, name)) for name in names}
         return {"name": self.name, "states": list(self.problem.states), **matrices}
+
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """The certificates of single entries; that a card has these entries is derived, not certified."""
+        return [*self.proofs]
 
     def latex(self) -> str:
         r"""The first card, or the nearest one, and F in LaTeX, block by block.

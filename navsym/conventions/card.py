@@ -104,7 +104,7 @@ class Card:
 
         return rf"$\displaystyle {card_latex(self)}$"
 
-    def quaternion(self) -> dict[str, str | None]:
+    def quaternion(self) -> dict[str, Any]:
         """What is said of the quaternion; of two readings that are one rotation the one in Hamilton's algebra.
 
         A quaternion of one algebra is the conjugate of that of the other, so it turns vectors the other way.
@@ -148,7 +148,9 @@ def list_structures(
     quaternion : True where the attitude is given by one
     """
     names = [name for name in CHOICES if name.startswith("quaternion")] if quaternion else []
-    readings = [dict(zip(names, words, strict=True)) for words in product(*(CHOICES[name] for name in names))]
+    readings: list[dict[str, Any]] = [
+        dict(zip(names, words, strict=True)) for words in product(*(CHOICES[name] for name in names))
+    ]
     vectors = CHOICES["vector_error"] if {"attitude", "velocity"} <= roles else ("difference",)
     sides = CHOICES["attitude_error"] if "attitude" in roles else ("frame",)
     for frame in frames:

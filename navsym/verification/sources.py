@@ -128,7 +128,7 @@ def property_of_conventions(path: Path) -> Property:
     blocks = "; ".join(" by ".join(conflict.block) for conflict in found.conflicts)
     evidence = f"{len(found.cards)} cards of {found.examined}; {words}" if found.cards else f"change {blocks}; {words}"
     right = bool(found.cards)
-    parts = [part for part in found.certificates if right != (part["kind"] == "counterexample")]
+    parts = [part for part in found.proofs if right != (part["kind"] == "counterexample")]
     certificate = {"kind": "all", "of": parts} if parts and right else next(iter(parts), None)
     decided = PROVED if found.complete else OPEN
     finding = Finding(right, "error dynamics of every card", decided, "", (), evidence, certificate)
