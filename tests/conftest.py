@@ -26,6 +26,10 @@ APART = re.compile(
     r"tests/(?:derivations/test_(?:papers|power|mutants)|fidelity/test_(?:statements|units)|test_notebooks)\.py"
     r"::\w+\[(\d*[a-z_]+)(?:-|\])"
 )
+#: Files of the export whose sample functions and programs are decided once for all of them.
+EXPORT = re.compile(
+    r"tests/export/test_(?:batch|golden|helpers|hostile|languages|octave|overflow|reading|refusal|rounding|steps|sweep|tools)\.py"
+)
 
 os.environ["NO_COLOR"] = "1"
 os.environ["MPLBACKEND"] = "Agg"
@@ -36,12 +40,12 @@ class Groups(LoadScopeScheduling):
     """One worker runs a whole file, so that what a file prepares is prepared once.
 
     Papers and notebooks are groups of their own: the statements of a paper are derived once for the tests of several
-    files, and no worker waits for all notebooks.
+    files, and no worker waits for all notebooks. What many files of the export share is one group, too.
     """
 
     def _split_scope(self, nodeid: str) -> str:
         found = APART.match(nodeid)
-        return found[1] if found else nodeid.split("::")[0]
+        return found[1] if found else "export" if EXPORT.match(nodeid) else nodeid.split("::")[0]
 
 
 @pytest.hookimpl(optionalhook=True)
