@@ -10,7 +10,6 @@ from navsym.claims import Claim, Equation, Statement
 from navsym.export.functions import ExportedFunction, Material, function_of, material
 from navsym.prove.ladder import decide
 from navsym_papers.guaranteed_velocity import beyond, weights
-from tests.export import programs
 
 w = sp.Symbol("w", real=True)
 lam = sp.Symbol("lambda", real=True)
@@ -18,7 +17,8 @@ beta = sp.Symbol("beta", positive=True)
 
 
 def of_claim(claim: Claim) -> Material:
-    return programs.decided(claim.id)
+    statement = claim.derive()
+    return material(claim.id, statement, decide(statement), title=claim.title)
 
 
 def of_statement(name: str, statement: Statement) -> Material:
