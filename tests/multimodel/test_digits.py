@@ -10,11 +10,11 @@ from numpy.testing import assert_allclose
 from navsym.core.errors import DomainError, ShapeError
 from navsym.multimodel import doubt
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.batch import run_batch
 from navsym.multimodel.digits import run_in_digits
 from navsym.multimodel.filters import run_filter
 from navsym.multimodel.kalman import FORMS
 from navsym.multimodel.schemes import SCHEMES, scheme
+from navsym_papers.multistructure.experiment.batch import run_batch
 from tests.multimodel import test_filters, test_rational
 
 I2 = np.eye(2)
