@@ -10,6 +10,8 @@ from hypothesis import settings
 from hypothesis.internal.conjecture import providers
 from xdist.scheduler import LoadScopeScheduling
 
+from navsym.core import loops
+
 # Examples are the same on every machine and every run; a shared machine may be slow, so no deadline. They would differ
 # with the modules that happen to be loaded, whose constants hypothesis also tries, hence with the worker that runs a
 # test: so none of these are taken. NAVSYM_EXAMPLES=random looks for new ones, constants of the modules included.
@@ -52,6 +54,12 @@ class Groups(LoadScopeScheduling):
 def pytest_xdist_make_scheduler(config, log):
     """Stand in for xdist's own ``loadgroup``, which needs an attribute that pytest no longer has."""
     return Groups(config, log) if config.getvalue("dist") == "loadgroup" else None
+
+
+def pytest_configure(config):
+    """Interpret the exchange in short runs: both forms give the same bits, and to compile it takes longer than that."""
+    if "not long" in config.getoption("markexpr"):
+        loops.TO_COMPILE = 1e9
 
 
 def pytest_collection_modifyitems(items):

@@ -17,7 +17,6 @@ from navsym.language.shapes import Shape, name_entries, read_shape
 from navsym.language.vectors import describe_size, is_wide, read_value
 
 STATE = re.compile(r"([A-Za-z]\w*)\[(\d{1,3})\]", re.ASCII)
-SCALARS = ("positive", "nonnegative", "nonzero", "real")
 Rows = list[list[str]]
 
 
