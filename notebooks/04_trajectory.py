@@ -24,8 +24,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import navsym as nav
-from navsym.trajectory.conditioning import best_scaling
 from navsym_papers.trajectory import table, window
+from navsym_papers.trajectory.experiment.columns import best_scaling
 from navsym_papers.trajectory.experiment.courses import ORDER, TAU, course, measured, with_printed_gain
 from navsym_papers.trajectory.experiment.courses import experiment as rerun
 from navsym_papers.trajectory.experiment.inversion import (

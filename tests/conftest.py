@@ -10,6 +10,8 @@ from hypothesis import settings
 from hypothesis.internal.conjecture import providers
 from xdist.scheduler import LoadScopeScheduling
 
+from navsym.core import loops
+
 # Examples are the same on every machine and every run; a shared machine may be slow, so no deadline. They would differ
 # with the modules that happen to be loaded, whose constants hypothesis also tries, hence with the worker that runs a
 # test: so none of these are taken. NAVSYM_EXAMPLES=random looks for new ones, constants of the modules included.
@@ -26,6 +28,10 @@ APART = re.compile(
     r"tests/(?:derivations/test_(?:papers|power|mutants)|fidelity/test_(?:statements|units)|test_notebooks)\.py"
     r"::\w+\[(\d*[a-z_]+)(?:-|\])"
 )
+#: Files of the export whose sample functions and programs are decided once for all of them.
+EXPORT = re.compile(
+    r"tests/export/test_(?:batch|golden|helpers|hostile|languages|octave|overflow|reading|refusal|rounding|steps|sweep|tools)\.py"
+)
 
 os.environ["NO_COLOR"] = "1"
 os.environ["MPLBACKEND"] = "Agg"
@@ -36,18 +42,24 @@ class Groups(LoadScopeScheduling):
     """One worker runs a whole file, so that what a file prepares is prepared once.
 
     Papers and notebooks are groups of their own: the statements of a paper are derived once for the tests of several
-    files, and no worker waits for all notebooks.
+    files, and no worker waits for all notebooks. What many files of the export share is one group, too.
     """
 
     def _split_scope(self, nodeid: str) -> str:
         found = APART.match(nodeid)
-        return found[1] if found else nodeid.split("::")[0]
+        return found[1] if found else "export" if EXPORT.match(nodeid) else nodeid.split("::")[0]
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
     """Stand in for xdist's own ``loadgroup``, which needs an attribute that pytest no longer has."""
     return Groups(config, log) if config.getvalue("dist") == "loadgroup" else None
+
+
+def pytest_configure(config):
+    """Interpret the exchange in short runs: both forms give the same bits, and to compile it takes longer than that."""
+    if "not long" in config.getoption("markexpr"):
+        loops.TO_COMPILE = 1e9
 
 
 def pytest_collection_modifyitems(items):

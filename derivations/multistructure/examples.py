@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from decimal import Context, Decimal
 from fractions import Fraction
 
 import sympy as sp
 from flint import arb, ctx, fmpq
 
-from navsym.multimodel.exact import ExactStep, Kit, Leaf, Model, fractions_kit, run_exactly
+from navsym.multimodel.exact import ExactStep, Kit, Leaf, Model, run_exactly
 from navsym.multimodel.schemes import scheme
 
 HALF = sp.Rational(1, 2)
@@ -24,6 +25,29 @@ BALLS = Kit(
     density=lambda distance, determinant, p: (-distance / 2).exp() / determinant.sqrt(), tidy=lambda value: value
 )
 BITS = 400
+#: Digits that :func:`fractions_kit` keeps of exponentials, roots and merged moments.
+DIGITS = 60
+
+
+def fractions_kit() -> Kit:
+    """Fractions; densities and merged moments rounded to sixty digits."""
+    context = Context(prec=DIGITS, Emin=-(10**9), Emax=10**9)
+    two_pi = Decimal("6.283185307179586476925286766559005768394338798750211641949889184615632812572")
+
+    def density(distance: Fraction, determinant: Fraction, p: int) -> Fraction:
+        exponent = context.exp(as_decimal(-distance / 2, context))
+        root = context.sqrt(context.multiply(as_decimal(determinant, context), context.power(two_pi, p)))
+        return Fraction(context.divide(exponent, root))
+
+    def tidy(value: Fraction) -> Fraction:
+        return Fraction(as_decimal(value, context))
+
+    return Kit(density, tidy)
+
+
+def as_decimal(value: Fraction, context: Context) -> Decimal:
+    """A fraction to the digits of the context."""
+    return context.divide(Decimal(value.numerator), Decimal(value.denominator))
 
 
 def ball(value) -> arb:

@@ -7,9 +7,10 @@ from fractions import Fraction
 import sympy as sp
 
 from navsym.claims import PROVED, Equation, claim, fact
-from navsym.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
+from navsym.multimodel.exact import Leaf, Model, run_exactly
 from navsym.multimodel.schemes import scheme
 from navsym_papers.multistructure import finite
+from navsym_papers.multistructure.examples import fractions_kit
 from navsym_papers.multistructure.finite import Step, step
 from navsym_papers.multistructure.recursion import UNIT
 

@@ -317,17 +317,3 @@ def hull(lower: Any, upper: Any, bits: int = DEFAULT_BITS) -> arb:
         if lower is None or upper is None:
             return arb(0, "inf")  # a half line has no tighter ball than the whole line
         return exact_ball(lower, bits).union(exact_ball(upper, bits))
-
-
-def derivatives(
-    program: Tape, values: Mapping[sp.Symbol, arb], symbol: sp.Symbol, order: int, bits: int = DEFAULT_BITS
-) -> list[arb]:
-    """Enclosures of f, f', f''/2!, … up to ``order`` in one symbol, over the given balls."""
-    with precision(bits):
-        with series_terms(order + 1):
-            result = program.run({**values, symbol: arb_series([values[symbol], arb(1)])})
-        if isinstance(result, arb):
-            return [result] + [arb(0)] * order
-        if result.prec <= order:  # truncated earlier than asked: the missing coefficients are unknown
-            return [arb("nan")] * (order + 1)
-        return [result[k] for k in range(order + 1)]

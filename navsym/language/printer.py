@@ -70,16 +70,6 @@ def print_tree(tree: Tree) -> str:
     return Writer().whole(tree)
 
 
-def print_latex(tree: Tree) -> str:
-    r"""The tree in LaTeX, as it was written.
-
-    >>> from navsym.language.expression import read_tree
-    >>> print(print_latex(read_tree("sqrt(x_1)/2 - (x_1 + 1)**(-omega)", {"x_1", "omega"})))
-    \frac{\sqrt{x_{1}}}{2} - \left(x_{1} + 1\right)^{-\omega}
-    """
-    return LatexWriter().whole(tree)
-
-
 def is_whole(tree: Tree, low: int = 0) -> bool:
     """True for an integer that its digits alone write."""
     return tree.head == NUMBER and tree.args[0] >= low and tree.args[0].denominator == 1

@@ -37,7 +37,6 @@ from navsym.language.vectors import describe_size, is_wide, read_value
 #: Parts that have a value wherever their own parts have one.
 PLAIN = {NUMBER, SYMBOL, SUM, PRODUCT}
 STATE = re.compile(r"([A-Za-z]\w*)\[(\d{1,3})\]", re.ASCII)
-SCALARS = ("positive", "nonnegative", "nonzero", "real")
 Rows = list[list[str]]
 
 

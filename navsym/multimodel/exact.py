@@ -1,7 +1,7 @@
 """The hypothesis tree in exact numbers: the reference by which every other engine is judged.
 
 Plain Python, one entry at a time, over any kind of number: ``Fraction`` with the exponentials of (18) to
-sixty digits (:func:`fractions_kit`), or exact expressions, for claims about single examples. It shares no
+sixty digits, or exact expressions, for claims about single examples. It shares no
 line with the floating-point engines, not even the algebra: covariances are corrected by ``P - K S K^T``,
 which is right when nothing is rounded.
 
@@ -15,8 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from decimal import Context, Decimal
-from fractions import Fraction
 from typing import Any
 
 from navsym.multimodel.schemes import Scheme
@@ -24,8 +22,6 @@ from navsym.multimodel.schemes import Scheme
 Matrix = list[list[Any]]
 Vector = list[Any]
 
-#: Digits that :func:`fractions_kit` keeps of exponentials, roots and merged moments.
-DIGITS = 60
 NEGLIGIBLE = 2.0**-200
 #: Numbers of a file are doubles, often rounded from decimals: sums of them agree to some last places.
 AGREEMENT = 2.0**-46
@@ -46,27 +42,6 @@ class Kit:
     tidy: Callable[[Any], Any]
     rounded: bool = False
     weight: Any = 1
-
-
-def fractions_kit() -> Kit:
-    """Fractions; densities and merged moments rounded to sixty digits."""
-    context = Context(prec=DIGITS, Emin=-(10**9), Emax=10**9)
-    two_pi = Decimal("6.283185307179586476925286766559005768394338798750211641949889184615632812572")
-
-    def density(distance: Fraction, determinant: Fraction, p: int) -> Fraction:
-        exponent = context.exp(as_decimal(-distance / 2, context))
-        root = context.sqrt(context.multiply(as_decimal(determinant, context), context.power(two_pi, p)))
-        return Fraction(context.divide(exponent, root))
-
-    def tidy(value: Fraction) -> Fraction:
-        return Fraction(as_decimal(value, context))
-
-    return Kit(density, tidy)
-
-
-def as_decimal(value: Fraction, context: Context) -> Decimal:
-    """A fraction to the digits of the context."""
-    return context.divide(Decimal(value.numerator), Decimal(value.denominator))
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from navsym.core import arrays
 from navsym.core.errors import DomainError, NavsymError, NotFiniteError, ShapeError
@@ -26,7 +25,6 @@ from navsym.multimodel.engine import MOST_SENTENCES, Estimates, run_in_numpy
 from navsym.multimodel.kalman import FORMS, form_of
 from navsym.multimodel.schemes import require_room, scheme
 
-Array = NDArray[np.floating[Any]]
 Engine = Literal["auto", "numpy", "compiled"]
 
 KEYS = ("models", "mode_transition", "initial", "measurements", "memoryless", "missing", "times", "step")

@@ -7,19 +7,11 @@ from math import comb, prod
 from typing import Any
 
 import sympy as sp
-from flint import fmpq
 
 from navsym.core.errors import NavsymError
 from navsym.language.expression import to_text
 
-BITS = 96
-MOST_CELLS = 1000
 MOST_TERMS = 10_000
-
-#: What the checker knows at exact numbers only.
-BENT = (sp.Abs, sp.asin, sp.acos, sp.atan2)
-
-Cell = dict[sp.Symbol, tuple[fmpq, fmpq]]
 
 
 def identity_certificate(left: sp.Expr, right: sp.Expr) -> Mapping[str, Any] | None:

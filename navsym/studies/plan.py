@@ -15,7 +15,6 @@ A study over two parameters has ``columns`` values of the second one for each va
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
@@ -107,7 +106,8 @@ def run_job(sweep: Sweep, index: int) -> dict[str, Any]:
     """
     try:
         with np.errstate(all="ignore"):  # what overflows is seen in the row
-            row = JOBS[sweep.kind](sweep, index)
+            job = JOBS.get(sweep.kind) or import_paper(PAPERS[sweep.kind]).sweep_job
+            row = job(sweep, index)
     except NavsymError as error:
         raise error.at(f"job {index}") from None
     for name, value in row.items():
@@ -115,22 +115,6 @@ def run_job(sweep: Sweep, index: int) -> dict[str, Any]:
             message = f"expected a finite {name}; got {value}; take another range of parameters"
             raise NotFiniteError(message, where=f"job {index}")
     return row
-
-
-def filter_job(sweep: Sweep, index: int) -> dict[str, Any]:
-    """Mean squared error of each state, ``mse0`` and on, over all runs and steps of the Schuler bank under one filter.
-
-    The signals are drawn with a seed of their own, from the sweep's seed and the index.
-    """
-    from navsym.multimodel.batch import run_batch
-
-    study = import_paper("multistructure.experiment.study")
-    state = np.random.SeedSequence(sweep.seed, spawn_key=(index,)).generate_state(1, np.uint64)[0]
-    bank = study.schuler_bank()
-    signals = study.simulate(bank, sweep.runs, sweep.steps, int(state))
-    errors = run_batch(bank, signals.measurements, sweep.method)[0] - signals.states
-    squares = [float(value) for value in (errors**2).mean(axis=(0, 1))]
-    return {"index": index, "runs": sweep.runs, **{f"mse{k}": value for k, value in enumerate(squares)}}
 
 
 def guaranteed_job(sweep: Sweep, index: int) -> dict[str, Any]:
@@ -167,42 +151,12 @@ def phases_job(sweep: Sweep, index: int) -> dict[str, Any]:
     return {"index": index, "T": str(T), "w": str(w), **bounds}
 
 
-def terrain_job(sweep: Sweep, index: int) -> dict[str, Any]:
-    """Errors of position and velocity of every search algorithm on one simulated flight over the sample terrain."""
-    study, terrain = import_paper("terrain_search.experiment.study"), matching_map()
-    flown = study.one_flight(terrain, terrain, study.Setting(), (sweep.kind, index, 0), sweep.seed)
-    errors = {f"{name} of {record.algorithm}": getattr(record, name) for record in flown for name in ERRORS}
-    return {"index": index, **errors}
-
-
-ERRORS = ("position", "velocity")
-
-
-@functools.cache
-def matching_map() -> Any:
-    """The sample terrain, read once in a process; raises MissingEngineError without matplotlib."""
-    return import_paper("terrain_search.experiment.flights").sample_terrain()
-
-
-def two_stage_job(sweep: Sweep, index: int) -> dict[str, Any]:
-    """Standard deviations of position in metres, 30 minutes after position is first measured, of every estimator.
-
-    The parameters are lambda_c and lambda_h, the flight a great circle of two hours.
-    """
-    ins, flights = (import_paper(f"joint_correction.experiment.{part}") for part in ("ins", "flight"))
-    first, second = sweep.parameters(index)
-    flight = flights.great_circle(duration=7200.0, step=20.0)
-    found = ins.compare(flight, ins.Errors(), lambda_c=float(first), lambda_h=float(second))
-    last = {name: float(errors[-1]) for name, errors in found.rows.items()}
-    return {"index": index, "lambda_c": str(first), "lambda_h": str(second), **last}
-
-
-JOBS: dict[str, Callable[[Sweep, int], dict[str, Any]]] = {
-    "filter": filter_job,
-    "terrain": terrain_job,
-    "guaranteed": guaranteed_job,
-    "phases": phases_job,
-    "two-stage": two_stage_job,
+JOBS: dict[str, Callable[[Sweep, int], dict[str, Any]]] = {"guaranteed": guaranteed_job, "phases": phases_job}
+#: Kinds that repeat the experiment of a paper: the module whose ``sweep_job`` computes a row.
+PAPERS = {
+    "filter": "multistructure.experiment.study",
+    "terrain": "terrain_search.experiment.study",
+    "two-stage": "joint_correction.experiment.study",
 }
 
 

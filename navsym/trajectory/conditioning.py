@@ -1,12 +1,11 @@
 """Condition numbers known with certainty, and what double precision makes of them.
 
-Two independent routes give the same enclosure: the exact characteristic polynomial with proved extreme
-roots (any rational matrix) and Perron bounds for chessboard signs (the matrices of this paper; faster).
+Two independent routes give the same enclosure: eigenvalues in balls (any rational matrix) and Perron bounds for
+chessboard signs (the matrices of this paper; faster).
 """
 
 from __future__ import annotations
 
-import itertools
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -19,7 +18,6 @@ import numpy as np
 
 from navsym.claims.display import shorten_digits, write_table
 from navsym.core.answers import Answer
-from navsym.core.arrays import Array
 from navsym.core.errors import (
     DomainError,
     ExpressionSyntaxError,
@@ -28,33 +26,20 @@ from navsym.core.errors import (
     ShapeError,
     TooLargeError,
 )
-from navsym.core.exact import to_fmpq, to_fraction
+from navsym.core.exact import to_fraction
 from navsym.core.numbers import Number
 from navsym.language.names import quote
 from navsym.models.earth import observability_rows, power_rows
 from navsym.trajectory.enclosure import Enclosure, exponent_of, square_root
 
-# Singular values as roots of an exact polynomial: works for every matrix of rational entries.
+# Singular values as eigenvalues: works for every matrix of rational entries.
 #
-# For a matrix N with rational entries the squared singular values are the roots of the characteristic
-# polynomial of N^T N, which has rational coefficients and only real roots. Columns scaled to unit length
-# keep that: with D = diag(column norms) the matrix D^-1 N^T N D^-1 is similar to N^T N D^-2, which is
-# rational again, although D is not.
-#
-# A floating Newton iteration proposes a bracket for each extreme root; the proof is Descartes' rule of signs,
-# which counts *exactly* for a polynomial with real roots only: the coefficients of p(x + a) change sign
-# as often as p has roots above a. Two shifts per root decide the bracket in exact arithmetic.
+# The squared singular values of N are the eigenvalues of N^T N. Columns scaled to unit length keep that: with
+# D = diag(column norms) the matrix D^-1 N^T N D^-1 is similar to N^T N D^-2, which is rational, although D is not.
+# flint encloses all eigenvalues of a matrix of balls; they are real, so the ends of their real parts are bounds.
 
 
 Rows = Sequence[Sequence[Fraction]]
-
-
-def squared_singular_polynomial(rows: Rows, *, equilibrate: bool = False) -> flint.fmpq_poly:
-    """Characteristic polynomial of N^T N, or of N^T N D^-2 when the columns are scaled to unit length.
-
-    Its roots are the squared singular values of N, or of N D^-1.
-    """
-    return squared_matrix(rows, equilibrate).charpoly()
 
 
 def squared_matrix(rows: Rows, equilibrate: bool) -> flint.fmpq_mat:
@@ -81,65 +66,27 @@ def inverse_diagonal(gram: flint.fmpq_mat) -> flint.fmpq_mat:
     return flint.fmpq_mat(n, n, [1 / gram[i, i] if i == j else 0 for i in range(n) for j in range(n)])
 
 
-def roots_above(polynomial: flint.fmpq_poly, point: flint.fmpq) -> int:
-    """Number of roots above a point, for a polynomial all of whose roots are real.
-
-    Sign changes among the coefficients of p(x + point); Descartes' bound is attained when every root is real.
-    """
-    shifted = polynomial(flint.fmpq_poly([point, 1])).numer().coeffs()
-    signs = [c > 0 for c in shifted if c != 0]
-    return sum(a != b for a, b in itertools.pairwise(signs))
-
-
-def largest_root(polynomial: flint.fmpq_poly, digits: int) -> Enclosure:
-    """Bracket of relative width 10^-digits around the largest root, proved; all roots real, positive."""
-    for guard in (32, 96, 320, 1600):
-        bits = math.ceil(digits * 3.3220) + 4
-        middle = newton_from_above(polynomial, bits + guard)
-        if middle is None:
-            continue
-        low = middle * flint.fmpq(2**bits - 1, 2**bits)
-        high = middle * flint.fmpq(2**bits + 1, 2**bits)
-        if roots_above(polynomial, high) == 0 and roots_above(polynomial, low) >= 1:
-            return Enclosure(to_fraction(low), to_fraction(high))
-    raise TooLargeError(f"expected {digits} digits of a root; got fewer within the limits; ask for fewer")
-
-
-def newton_from_above(polynomial: flint.fmpq_poly, bits: int) -> flint.fmpq | None:
-    """A dyadic number near the largest root; only a proposal, the caller proves it.
-
-    Above its largest root a polynomial with real roots is convex, so Newton's iteration from the
-    sum of the (positive) roots descends to the largest one.
-    """
-    with flint.ctx.workprec(bits):
-        ball = flint.arb_poly(polynomial)
-        slope = ball.derivative()
-        degree = polynomial.degree()
-        x = flint.arb(-polynomial[degree - 1] / polynomial[degree])
-        for _ in range(40 * degree + 200):
-            step = (ball(x) / slope(x)).mid()
-            if not step.is_finite():
-                return None
-            x = (x - step).mid()
-            if abs(step) <= abs(x) * flint.arb(2) ** (20 - bits):
-                return to_fmpq(x)
-    return None
-
-
-def condition_by_polynomial(rows: Rows, *, digits: int, equilibrate: bool = False) -> Enclosure:
+def condition_by_eigenvalues(rows: Rows, *, digits: int, equilibrate: bool = False) -> Enclosure:
     """Certified 2-norm condition number, (m, n) exact numbers with m >= n.
 
     Raises NotEstimableError when the columns are dependent: the condition number is infinite.
     """
-    polynomial = squared_singular_polynomial(rows, equilibrate=equilibrate)
-    if polynomial[0] == 0:
+    matrix = squared_matrix(rows, equilibrate)
+    if matrix.rank() < matrix.nrows():
         raise NotEstimableError(
             "expected independent columns; got a singular matrix, whose condition number is infinite; "
             "leave out dependent columns"
         )
-    largest = largest_root(polynomial, digits + 3)
-    reciprocal = largest_root(flint.fmpq_poly(polynomial.coeffs()[::-1]), digits + 3)
-    return square_root(largest.lower * reciprocal.lower, largest.upper * reciprocal.upper, digits + 3)
+    for bits in (128 << k for k in range(9)):
+        with flint.ctx.workprec(bits):
+            values = [x.real for x in flint.acb_mat(matrix).eig(multiple=True, nonstop=True)]
+            ends = [(to_fraction(x.lower()), to_fraction(x.upper())) for x in values if x.is_finite()]
+        if len(ends) == len(values) and min(ends)[0] > 0:
+            lows, highs = zip(*ends, strict=True)
+            least, most = max(lows) / min(highs), max(highs) / min(lows)
+            if most - least <= least / 10 ** (digits + 2):
+                return square_root(least, most, digits + 3)
+    raise TooLargeError(f"expected {digits} digits of two eigenvalues; got fewer within the limits; ask for fewer")
 
 
 def state_condition(rows: Rows, lower: Fraction, upper: Fraction, *, equilibrate: bool = False) -> dict[str, Any]:
@@ -203,7 +150,7 @@ def round_to(x: Fraction, digits: int) -> Fraction:
 #
 # Sums of positive balls lose nothing, so a few dozen matrix-vector products give any number of digits. The
 # signs are checked on the exact inverse each time, nothing is taken on trust; a matrix of other signs gets
-# None and goes to the exact polynomial.
+# None and goes to the eigenvalues.
 
 
 ITERATIONS = 600
@@ -351,7 +298,7 @@ def condition_number(rows: Rows, *, digits: int = 30, equilibrate: bool = False)
     if digits > LARGEST_DIGITS:
         raise TooLargeError(f"expected 1 to {LARGEST_DIGITS}; got {digits}; ask for fewer", where="digits")
     found = condition_by_signs(rows, digits=digits, equilibrate=equilibrate)
-    return found or condition_by_polynomial(rows, digits=digits, equilibrate=equilibrate)
+    return found or condition_by_eigenvalues(rows, digits=digits, equilibrate=equilibrate)
 
 
 def condition_numbers(
@@ -401,66 +348,6 @@ def check_request(n: int, rho: Fraction, tau: Fraction) -> None:
     if rho == 0 or tau == 0:
         name = "rho" if rho == 0 else "tau"
         raise DomainError("expected a nonzero number; got 0; the columns of N_p would vanish", where=name)
-
-
-# The best diagonal scaling of an observability matrix, to compare unit columns with.
-#
-# For a matrix whose entries are positive and whose inverse has chessboard signs, the logarithm of the condition
-# number of N diag(exp(x)) is a convex function of x: each extreme singular value is the Perron root of a positive
-# matrix with entries exp(linear in x), and such a root is log-convex (Kingman 1961). Its gradient is
-# v_j^2 - w_j^2, with v and w the right singular vectors of the largest and the smallest singular value, so that
-# the optimum is where both have entries of equal size. One optimum, found by any descent; the value that is
-# reported is certified for the scaling rounded to exact numbers.
-
-#: Beyond this order the smallest singular vector drowns in rounding.
-LARGEST_SCALED = 12
-PLACES = 10**9
-
-
-@dataclass(frozen=True, slots=True)
-class BestScaling:
-    """Factors of the columns of N_s (unit columns of N_f) and what they reach.
-
-    factors     : (n,) exact, the first one is 1
-    enclosure   : certified condition number of the scaled matrix
-    unit        : certified condition number with unit columns
-    stationarity: largest |v_j^2 - w_j^2| at the factors; zero at the optimum
-    """
-
-    factors: tuple[Fraction, ...]
-    enclosure: Enclosure
-    unit: Enclosure
-    stationarity: float
-
-
-def best_scaling(n: int, *, digits: int = 20) -> BestScaling:
-    """Best scaling of the columns of N_f: least 2-norm condition number over diagonal D of N_f D (trajectory:table).
-
-    n : order of the motion, 2 to 12; digits : of the enclosures. Raises TooLargeError for another order.
-    """
-    if not 2 <= n <= LARGEST_SCALED:
-        raise TooLargeError(f"n: expected 2 to {LARGEST_SCALED}; got {n}; the search works in double precision")
-    rows = power_rows(n)
-    N_f = np.array(rows, dtype=float)
-    lengths = np.linalg.norm(N_f, axis=0)
-    x, stationarity = descend(N_f / lengths)
-    factors = tuple(Fraction(round(float(f) * PLACES), PLACES) for f in np.exp(x - x[0]))
-    scale = [f / Fraction(float(length)) for f, length in zip(factors, lengths, strict=True)]
-    scaled = [[entry * s for entry, s in zip(row, scale, strict=True)] for row in rows]
-    unit = condition_number(rows, digits=digits, equilibrate=True)
-    return BestScaling(factors, condition_number(scaled, digits=digits), unit, stationarity)
-
-
-def descend(matrix: Array) -> tuple[Array, float]:
-    """Minimise log cond(matrix diag(exp(x))) by BFGS; x and the largest entry of the gradient there."""
-    from scipy.optimize import minimize
-
-    def value(x: Array) -> tuple[float, Array]:
-        _, s, right = np.linalg.svd(matrix * np.exp(x))
-        return float(np.log(s[0] / s[-1])), right[0] ** 2 - right[-1] ** 2
-
-    found = minimize(value, np.zeros(matrix.shape[1]), jac=True, method="BFGS", options={"gtol": 1e-10})
-    return found.x, float(np.abs(value(found.x)[1]).max())
 
 
 # -- double precision beside it --------------------------------------------------------------------
@@ -562,8 +449,8 @@ def condition(
     digits   : significant digits of the enclosures, 1 to 2000
     progress : called with the name of each matrix that is done
 
-    The condition number is the largest over the smallest singular value. Both are roots of the characteristic
-    polynomial of ``N^T N``, enclosed in exact arithmetic; beside it stands what double precision makes of it.
+    The condition number is the largest over the smallest singular value. Their squares are eigenvalues of ``N^T N``,
+    enclosed with certainty; beside it stands what double precision makes of it.
 
     Returns :class:`Conditions`. Raises NavsymError of the kinds ``domain`` (a float, a value out of range),
     ``syntax`` (text that is no number) and ``too-large``. Source: trajectory:table.

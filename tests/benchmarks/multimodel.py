@@ -109,7 +109,7 @@ def single_runs(sizes: tuple[tuple[int, int], ...], steps: int, peer_steps: int,
 
 def batches(sizes: tuple[tuple[int, int], ...], runs: int, steps: int, rounds: int) -> None:
     """Ratios of a batch of runs against numpy's stacked products."""
-    from navsym.multimodel.batch import run_batch
+    from navsym_papers.multistructure.experiment.batch import run_batch
     from tests.twins.mixture import imm_in_numpy
 
     print(f"batch of {runs} runs, {steps} steps    ours (s)   numpy (s)   ratio   largest difference")

@@ -909,23 +909,27 @@ def discrepancies(module: Any, reasons: bool = True, first: str = "") -> Iterato
 
     The rows of the first rule come before the others.
     """
+    from tests.checker import language  # its rows are made of these
+
+    hostile = [(s, prove(s, at, proof), why) for _, s, at, proof, why in sorted(HOSTILE, key=lambda r: r[0] != first)]
+    of_the_rule = sum(row[0] == first for row in HOSTILE)
+    yield from granted(module, hostile[:of_the_rule], reasons)
     for rule, statement, witness, proof in sorted(TRUE, key=lambda row: row[0] != first):
         if answer(module, statement, prove(statement, witness, proof)) != "HOLDS":
             yield f"refused by {rule}: {statement}"
     for statement, point, zero in FAILS:
         if answer(module, statement, refute(statement, point, zero)) != "FAILS":
             yield f"not refuted: {statement}"
-    rows = sorted(HOSTILE, key=lambda row: row[0] != first)
-    hostile = [(s, prove(s, at, proof), why) for _, s, at, proof, why in rows]
     hostile += [(s, prove(s, at, proof), why) for s, at, proof, why in WITNESSES]
     hostile += [(s, refute(s, at, zero), why) for s, at, zero, why in STANDS]
-    from tests.checker import language  # its rows are made of these
-
+    hostile += [(s, prove(s, {}, I), why) for s, why in language.MEANINGLESS]
+    hostile += [(s, prove(s, at, *proofs), why) for s, at, proofs, why in language.NOWHERE_DEFINED]
+    hostile += [(s, refute(s, at, zero), why) for s, at, zero, why in language.LANGUAGE_STANDS]
+    yield from granted(module, hostile[of_the_rule:], reasons)
     for statements, item, expected in language.GRANTS:
         found = answer(module, statements, item)
         if not re.search(expected, found):
             yield f"{found}, not {expected}: {statements}"
-
     for statement, at, proofs, is_true in language.list_language():
         found = answer(module, statement, prove(statement, at, *proofs))
         if (found == "HOLDS") != is_true:
@@ -933,9 +937,10 @@ def discrepancies(module: Any, reasons: bool = True, first: str = "") -> Iterato
     for statement, point, zero in language.LANGUAGE_FAILS:
         if answer(module, statement, refute(statement, point, zero)) != "FAILS":
             yield f"not refuted: {statement}"
-    hostile += [(s, prove(s, {}, I), why) for s, why in language.MEANINGLESS]
-    hostile += [(s, prove(s, at, *proofs), why) for s, at, proofs, why in language.NOWHERE_DEFINED]
-    hostile += [(s, refute(s, at, zero), why) for s, at, zero, why in language.LANGUAGE_STANDS]
+
+
+def granted(module: Any, hostile: list[Any], reasons: bool) -> Iterator[str]:
+    """Rows that the module grants, or refuses for another reason."""
     for statement, item, why in hostile:
         given_answer = answer(module, statement, item)
         if given_answer in ("HOLDS", "FAILS") or (reasons and not re.search(why, given_answer)):

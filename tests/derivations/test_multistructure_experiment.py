@@ -6,11 +6,11 @@ from numpy.testing import assert_allclose
 
 from navsym.core.errors import DomainError, NoDataError, NotFiniteError, ShapeError, TooLargeError
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.batch import run_batch
 from navsym.multimodel.filters import run_filter
 from navsym_papers.multistructure.experiment import memory as multimodel_memory
 from navsym_papers.multistructure.experiment import road as multimodel_road
 from navsym_papers.multistructure.experiment import study as multimodel_study
+from navsym_papers.multistructure.experiment.batch import run_batch
 from tests.benchmarks import multimodel as benchmark
 from tests.twins.mixture import imm_in_numpy
 

@@ -54,19 +54,26 @@ def rotation() -> Equation:
     return Equation(printed, other, {lam: (-3, 3), beta: (sp.Rational(1, 10), 2)})
 
 
+REGIMES = (beyond.drift_holds_to_two_thirds_of_pi, beyond.drift_with_two_instants, beyond.drift_with_half_a_period)
+#: Name -> what is decided, once for both types of numbers.
+MAKERS = {
+    "Phi33": lambda: [of_claim(weights.WEIGHTS[8])],
+    "tilt": lambda: [of_claim(weights.tilt_estimate_corrected)],
+    "velocity_correction_y3": lambda: [of_claim(claim) for claim in REGIMES],
+    **{f.__name__: lambda f=f: [of_statement(f.__name__, f())] for f in (versine, lag, rotation, holes)},
+}
+
+
 @cache
-def functions(real: str = "double") -> tuple[ExportedFunction, ...]:
-    regimes = (beyond.drift_holds_to_two_thirds_of_pi, beyond.drift_with_two_instants, beyond.drift_with_half_a_period)
-    return (
-        function_of([of_claim(weights.WEIGHTS[8])], real=real),
-        function_of([of_claim(weights.tilt_estimate_corrected)], real=real),
-        function_of([of_claim(claim) for claim in regimes], real=real, name="velocity_correction_y3"),
-        function_of([of_statement("versine", versine())], real=real),
-        function_of([of_statement("lag", lag())], real=real),
-        function_of([of_statement("rotation", rotation())], real=real),
-        function_of([of_statement("holes", holes())], real=real),
-    )
+def materials(name: str) -> list[Material]:
+    return MAKERS[name]()
 
 
+@cache
 def by_name(name: str, real: str = "double") -> ExportedFunction:
-    return next(f for f in functions(real) if f.name.endswith(name))
+    own = {"name": name} if name.startswith("velocity") else {}
+    return function_of(materials(name), real=real, **own)
+
+
+def functions(real: str = "double") -> tuple[ExportedFunction, ...]:
+    return tuple(by_name(name, real) for name in MAKERS)

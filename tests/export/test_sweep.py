@@ -144,7 +144,7 @@ def test_the_twin_is_the_ball_analysis_on_every_ready_made_function(name: str) -
 
 
 @COMPILER
-@pytest.mark.parametrize("real", ["double", "float"])
+@pytest.mark.parametrize("real", ["double", pytest.param("float", marks=pytest.mark.long)])
 def test_the_c_of_every_sample_holds_at_many_points(real: str) -> None:
     for name, found in sweep.sweep_c(samples.functions(real), 3000).items():
         assert found.wrong == 0, (name, found)

@@ -44,7 +44,7 @@ def truth_of(rng, plain, noise=1.0):
     return at, value
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", [*range(4), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(4, 12))])
 def test_the_radius_is_the_optimum_of_an_independent_linear_programme(seed):
     rng = np.random.default_rng(seed)
     n, p, memory = int(rng.integers(1, 5)), int(rng.integers(1, 4)), [None, 6, 15][seed % 3]
@@ -114,7 +114,7 @@ def test_the_worst_case_replayed_makes_an_error_of_the_radius():
     assert abs(replayed.value) == pytest.approx(float(last.radius.upper), rel=1e-14)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", [*range(2), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(2, 6))])
 def test_bounded_noise_is_always_contained(seed):
     rng = np.random.default_rng(100 + seed)
     model, plain, sigma = random_model(rng, 3, 2)
@@ -418,7 +418,7 @@ def test_variance_bounds_are_never_contradicted():
     assert [guard.step(z, t=k).value for k, z in enumerate([0, 100])] == [0.0, 0.0]
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.long) for seed in (2, 3, 4))])
 @pytest.mark.parametrize("most", [1, 2])
 def test_gross_errors_are_bounded_as_by_trying_all_sets(seed, most):
     rng = np.random.default_rng(500 + seed)

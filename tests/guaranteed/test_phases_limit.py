@@ -107,7 +107,14 @@ def test_a_root_that_is_imaginary_on_the_whole_range_is_named_as_it_stands_in_th
         solved(basis(["1", "u"], ["0", "1"], ["0", "1"], sigma=["sqrt(p-2)"]), -1, 1)
 
 
-@pytest.mark.parametrize("H", [["1", "sinh(u)", "cosh(u)"], ["1", "u", "1/(1+u)"], ["1", "u", "exp(u)/(2+u)"]])
+@pytest.mark.parametrize(
+    "H",
+    [
+        ["1", "u", "1/(1+u)"],
+        pytest.param(["1", "sinh(u)", "cosh(u)"], marks=pytest.mark.long),
+        pytest.param(["1", "u", "exp(u)/(2+u)"], marks=pytest.mark.long),
+    ],
+)
 def test_hyperbolic_functions_and_quotients_have_a_scaled_form_from_length_zero_on(H):
     target = ["0", "1"] + ["0"] * (len(H) - 2)
     answer = solved(basis(H, ["0", "T"], target, "T"), 0, sp.Rational(1, 8), "T")

@@ -72,17 +72,23 @@ def test_a_switch_inside_the_interval_splits_the_range_and_each_part_has_its_own
     assert answer.uncovered == ()
 
 
-def test_a_regime_in_pieces_agrees_with_single_values():
-    family = family_of(model_from(STOPPED), "v", "T")
-    (regime,) = find_phases(family, sp.Rational(9, 8), sp.Rational(3, 2)).regimes
+@pytest.fixture(scope="module")
+def stopped():
+    """All regimes of the velocity of a body that stops."""
+    return find_phases(family_of(model_from(STOPPED), "v", "T"), sp.Integer(0), sp.Integer(3))
+
+
+def test_a_regime_in_pieces_agrees_with_single_values(stopped):
+    family, regime = stopped.family, stopped.regimes[1]
     assert regime.status.holds and regime.closed is not None
     for T in (sp.Rational(5, 4), sp.Rational(11, 8)):
+        assert regime.lower < T < regime.upper
         found, value = solve(family.problem(T), digits=12), regime.closed.value.subs(family.parameter, T).evalf(30)
         assert sp.Rational(found.lower) <= sp.Rational(str(value)) <= sp.Rational(found.upper)
 
 
-def test_a_contact_at_the_switch_stands_in_one_stretch_and_every_regime_has_its_closed_form():
-    answer = find_phases(family_of(model_from(STOPPED), "v", "T"), sp.Integer(0), sp.Integer(3))
+def test_a_contact_at_the_switch_stands_in_one_stretch_and_every_regime_has_its_closed_form(stopped):
+    answer = stopped
     assert answer.uncovered == () and all(regime.status.holds for regime in answer.regimes)
     assert [b.at for b in answer.boundaries] == [1, 1 + sp.pi / 4, 1 + sp.pi / 2]
     T = answer.family.parameter

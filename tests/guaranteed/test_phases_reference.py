@@ -87,7 +87,11 @@ CASES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("case", CASES)
+#: The first takes three times as long as all the others together.
+IN_EVERY_RUN = [pytest.param(case, marks=[pytest.mark.long] if "driven" in case else []) for case in CASES]
+
+
+@pytest.mark.parametrize("case", IN_EVERY_RUN)
 def test_where_many_estimators_are_optimal_boundaries_are_those_of_the_value_and_no_others(case):
     document, rows, sigma, target, ends, boundaries = CASES[case]
     answer = find_phases(family_of(model_from(document), "c", "T"), *map(sp.sympify, ends))

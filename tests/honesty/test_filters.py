@@ -6,6 +6,8 @@ The normalised squared errors of the estimate (NEES) and of the innovation (NIS)
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -15,6 +17,7 @@ from navsym.multimodel import kalman
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.filters import run_filter
 from tests.honesty.linear_cases import CASES, STEPS, batch_least_squares, simulate
+from tests.sampling import thinned
 
 RUNS = 10_000
 METHODS = ("exact", "pulsating", "k-pulsating", "gpb2", "imm", "polygaussian")
@@ -79,9 +82,7 @@ def test_every_form_agrees_with_least_squares_over_the_whole_series(name, form):
     agree(case, measured[:, 0], estimate)
 
 
-@pytest.mark.parametrize("name", CASES)
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("engine", ["numpy", "compiled"])
+@pytest.mark.parametrize(("name", "method", "engine"), thinned(product(CASES, METHODS, ("numpy", "compiled")), 5))
 def test_every_method_with_one_mode_agrees_with_least_squares(name, method, engine):
     case = CASES[name]
     _, measured = simulate(case, 1, seed=5)

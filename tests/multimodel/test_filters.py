@@ -10,9 +10,10 @@ from navsym.core.errors import DomainError, EmptyError, NavsymError, NotFiniteEr
 from navsym.multimodel import engine as engine_module
 from navsym.multimodel import kalman
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
+from navsym.multimodel.exact import Leaf, Model, run_exactly
 from navsym.multimodel.filters import read_bank, run_filter
 from navsym.multimodel.schemes import SCHEMES, filters_at, scheme
+from navsym_papers.multistructure.examples import fractions_kit
 
 METHODS = tuple(SCHEMES)
 FIELDS = ("probabilities", "mean", "covariance", "log_likelihood")

@@ -11,11 +11,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.batch import run_batch
-from navsym.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
+from navsym.multimodel.exact import Leaf, Model, run_exactly
 from navsym.multimodel.filters import run_filter
 from navsym.multimodel.kalman import FORMS
 from navsym.multimodel.schemes import SCHEMES, scheme
+from navsym_papers.multistructure.examples import fractions_kit
+from navsym_papers.multistructure.experiment.batch import run_batch
 
 STEPS = 3
 

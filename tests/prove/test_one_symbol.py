@@ -13,6 +13,7 @@ from navsym.prove.ladder import decide
 from navsym.prove.signs.bounds import Sign, prove_sign
 from navsym.prove.signs.real_roots import compare_numbers, enclose_number, find_real_roots, number_between
 from tests.prove.one_symbol import random_case, verdict_against
+from tests.sampling import thinned
 
 x = sp.Symbol("x", real=True)
 THIN = sp.Rational(1, 10**30)
@@ -23,7 +24,7 @@ def status(expression, relation, lower=None, upper=None):
     return decide(Bound(sp.sympify(expression), relation, sp.Integer(0), {x: (lower, upper)})).status
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", thinned([(seed,) for seed in range(10)]))
 def test_random_relations_have_the_truth_that_another_program_finds(seed):
     generator = random.Random(1000 + seed)
     cases = [random_case(generator) for _ in range(12)]

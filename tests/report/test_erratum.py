@@ -256,7 +256,10 @@ needs_latex = pytest.mark.skipif(bool(LACKING), reason=LACKING)
 
 
 @needs_latex
-@pytest.mark.parametrize("module", MODULES)
+@pytest.mark.parametrize(
+    "module",
+    [pytest.param(m, marks=[] if m in ("trajectory", "joint_correction") else pytest.mark.long) for m in MODULES],
+)
 def test_the_sheet_of_every_paper_compiles_and_no_line_is_too_wide(module, tmp_path):
     files = site(LEDGER.restrict([module]), {module: words_of(module)})
     assert 2 <= compiled(files[f"{module}.erratum.tex"], tmp_path) <= 12

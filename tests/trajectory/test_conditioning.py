@@ -15,17 +15,15 @@ from navsym.core.errors import DomainError, NotEstimableError, ShapeError, TooLa
 from navsym.models.earth import observability_rows, power_rows
 from navsym.trajectory.conditioning import (
     Enclosure,
-    best_scaling,
     certify_condition,
     condition,
-    condition_by_polynomial,
+    condition_by_eigenvalues,
     condition_by_signs,
     condition_number,
     condition_numbers,
-    roots_above,
-    squared_singular_polynomial,
 )
 from navsym.trajectory.enclosure import scientific
+from navsym_papers.trajectory.experiment.columns import best_scaling
 
 fractions = st.fractions(min_value=-5, max_value=5, max_denominator=9)
 
@@ -46,7 +44,7 @@ def test_the_golden_ratio_conditions_the_first_motion():
 @pytest.mark.parametrize("equilibrate", [False, True])
 def test_both_routes_enclose_the_same_number(n, equilibrate):
     for rows in (power_rows(n), observability_rows(n, Fraction(1, 6371000), Fraction(1, 5))):
-        one = condition_by_polynomial(rows, digits=30, equilibrate=equilibrate)
+        one = condition_by_eigenvalues(rows, digits=30, equilibrate=equilibrate)
         two = condition_by_signs(rows, digits=30, equilibrate=equilibrate)
         assert two is not None
         assert max(one.lower, two.lower) <= min(one.upper, two.upper)
@@ -81,11 +79,6 @@ def test_mpmath_lies_in_the_enclosure(n):
 def test_enclosures_are_as_narrow_as_asked(digits):
     found = condition_number(power_rows(6), digits=digits)
     assert 0 < found.upper - found.lower < found.lower * Fraction(1, 10**digits)
-
-
-def test_descartes_counts_the_roots_above_a_point_exactly():
-    polynomial = squared_singular_polynomial([[Fraction(1), 0, 0], [0, Fraction(2), 0], [0, 0, Fraction(3)]])
-    assert [roots_above(polynomial, x) for x in (0, 1, 3, 4, 8, 9)] == [3, 2, 2, 1, 1, 0]
 
 
 def test_double_precision_is_doubted_when_it_is_wrong():

@@ -162,7 +162,7 @@ def test_a_parabola_is_differentiated_exactly(method):
 
 
 @pytest.mark.parametrize("method", ["filter", "smoother"])
-@pytest.mark.parametrize("order", [2, 3])
+@pytest.mark.parametrize("order", [pytest.param(2, marks=pytest.mark.long), 3])
 def test_standard_deviations_are_consistent_with_the_errors(method, order):
     """Normalised squared errors of independent stretches lie in the 95 % range of their mean."""
     total, count = 0.0, 0
@@ -177,7 +177,7 @@ def test_standard_deviations_are_consistent_with_the_errors(method, order):
     assert low < total / count < high
 
 
-@pytest.mark.parametrize("order", [2, 3])
+@pytest.mark.parametrize("order", [2, pytest.param(3, marks=pytest.mark.long)])
 def test_estimated_noise_costs_no_more_consistency_than_known_noise(order):
     """On the same tracks the squared errors over their variances agree within five per cent with the known case."""
     means = {"known": [], "estimated": []}

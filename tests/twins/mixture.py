@@ -8,8 +8,8 @@ from navsym.core.errors import DomainError
 from navsym.multimodel import kalman
 from navsym.multimodel import kalman as mixture
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.batch import Batch, empty
 from navsym.multimodel.kalman import Array, logs, symmetrise
+from navsym_papers.multistructure.experiment.batch import Batch, empty
 from navsym_papers.multistructure.experiment.memory import accumulate, nothing
 
 

@@ -91,3 +91,15 @@ def as_table(document: dict[str, Any]) -> tuple[list[str], list[list[str]]]:
         for row in document["rows"]
     ]
     return heads, rows
+
+
+def sweep_job(sweep: Any, index: int) -> dict[str, Any]:
+    """Standard deviations of position in metres, 30 minutes after position is first measured, of every estimator.
+
+    The parameters are lambda_c and lambda_h, the flight a great circle of two hours.
+    """
+    first, second = sweep.parameters(index)
+    flight = great_circle(duration=7200.0, step=20.0)
+    found = compare(flight, Errors(), lambda_c=float(first), lambda_h=float(second))
+    last = {name: float(errors[-1]) for name, errors in found.rows.items()}
+    return {"index": index, "lambda_c": str(first), "lambda_h": str(second), **last}

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from navsym.core.errors import DomainError
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.batch import run_batch
 from navsym.multimodel.compiled import run_compiled
 from navsym.multimodel.filters import run_filter
 from navsym.multimodel.schemes import require_room, scheme
+from navsym_papers.multistructure.experiment.batch import run_batch
 from navsym_papers.multistructure.experiment.modes import MODES, SchulerChannel
 
 Array = NDArray[np.floating[Any]]
@@ -325,3 +325,16 @@ def as_table(document: dict[str, Any]) -> tuple[list[str], list[list[str]]]:
             ]
         )
     return heads, rows
+
+
+def sweep_job(sweep: Any, index: int) -> dict[str, Any]:
+    """Mean squared error of each state, ``mse0`` and on, over all runs and steps of the Schuler bank under one filter.
+
+    The signals are drawn with a seed of their own, from the sweep's seed and the index.
+    """
+    state = np.random.SeedSequence(sweep.seed, spawn_key=(index,)).generate_state(1, np.uint64)[0]
+    bank = schuler_bank()
+    signals = simulate(bank, sweep.runs, sweep.steps, int(state))
+    errors = run_batch(bank, signals.measurements, sweep.method)[0] - signals.states
+    squares = [float(value) for value in (errors**2).mean(axis=(0, 1))]
+    return {"index": index, "runs": sweep.runs, **{f"mse{k}": value for k, value in enumerate(squares)}}

@@ -9,6 +9,7 @@ same one). Speed, ranges of the errors and length of the track are not in the pa
 
 from __future__ import annotations
 
+import functools
 import json
 import time
 from collections.abc import Callable, Iterable
@@ -231,3 +232,17 @@ def growth(
     settings = [Setting(measurements=n, drift=v) for n in measurements for v in drifts]
     rows: list[dict[str, Any]] = experiment(terrain, settings=settings, tracks=tracks, runs=runs, seed=seed)["rows"]
     return rows
+
+
+def sweep_job(sweep: Any, index: int) -> dict[str, Any]:
+    """Errors of position and velocity of every search algorithm on one simulated flight over the sample terrain."""
+    terrain = matching_map()
+    flown = one_flight(terrain, terrain, Setting(), (sweep.kind, index, 0), sweep.seed)
+    names = ("position", "velocity")
+    return {"index": index, **{f"{name} of {r.algorithm}": getattr(r, name) for r in flown for name in names}}
+
+
+@functools.cache
+def matching_map() -> TerrainMap:
+    """The sample terrain, read once in a process; raises MissingEngineError without matplotlib."""
+    return sample_terrain()

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from flint import arb, arb_mat, arb_poly, arb_series, ctx, fmpq, fmpz
+from flint import arb, arb_mat, arb_poly, arb_series, ctx, fmpq
 from numpy.typing import NDArray
 
 from navsym.core.balls import OPERATIONS, Instruction, multiply_all, read_instruction, series_terms
@@ -133,7 +133,6 @@ FLOATS: dict[str, Any] = {
 
 
 ORDER = 10
-ONE = fmpz(1)
 
 
 @dataclass(frozen=True)

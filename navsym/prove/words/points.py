@@ -17,7 +17,6 @@ from navsym.prove.relations.points import draw_number
 from navsym.prove.rooms.goals import player, write_term
 
 Document = dict[str, Any]
-Matrices = dict[str, fmpq_mat]
 TRIES = 40
 #: Dimensions of the first, second and third name, and so on.
 SIZES = ((2, 3), (3, 2), (2, 2), (2, 1), (1, 2), (3, 3), (1, 1))
