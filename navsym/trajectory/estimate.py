@@ -246,18 +246,23 @@ def estimate(track: Positions, settings: Settings) -> tuple[TrackEstimate, Noise
     if use.sum() < settings.order + 1:
         message = f"track: expected at least {settings.order + 1} rows that agree; got {use.sum()} of {len(use)}"
         raise ShapeError(f"{message}; lower the order, or set the gate to 0")
-    noise = shaped(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
+    noises = shaped(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
     if settings.method in ("filter", "smoother"):
-        return marginal(track, noise, settings, use), noise
-    return by_method(track, noise, settings, use), noise
+        return marginal(track, noises, settings, use), noises[0][1]
+    return by_method(track, noises[0][1], settings, use), noises[0][1]
 
 
-def marginal(track: Positions, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
-    """Filter or smoother, averaged over what the noise may be; gains and flags are those of the likeliest."""
-    points = noise_points(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
-    factors = local_scales(track, noise, settings, use)
-    found = [by_method(track, point.noise, settings, use, factors) for point in points]
-    weights = np.array([point.weight for point in points])
+def marginal(track: Positions, noises: list[tuple[float, Noise]], settings: Settings, use: Rows) -> TrackEstimate:
+    """Filter or smoother, averaged over what the noise may be; gains and flags are those of the likeliest.
+
+    noises : with weights that sum to one, the likeliest first; each stands for all about it
+    """
+    found, weights = [], np.empty(0)
+    for weight, noise in noises:
+        points = noise_points(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
+        factors = local_scales(track, noise, settings, use)
+        found += [by_method(track, point.noise, settings, use, factors) for point in points]
+        weights = np.append(weights, [weight * point.weight for point in points])
     parts = [
         mixture(weights, [values for values, _ in derivative], [spread for _, spread in derivative])
         for derivative in zip(*(f.derivatives for f in found), strict=True)
@@ -415,8 +420,8 @@ def filtered(track: Positions, noise: Noise, settings: Settings, use: Rows) -> F
         jumps=np.empty((3, N)),
         flags=np.empty((N, 3), dtype=np.int64),
     )
-    spread = first_spread(track, n)
     for c in range(3):
+        spread = first_spread(track, n, float(noise.density[c]), float(noise.rate[c]))
         z, r, b = track.position[:, c].copy(), noise.white(track, c), noise.coloured(track, c)
         out = (run.states[c], run.roots[c], run.gains[c], run.innovations[c], run.variances[c], run.jumps[c])
         flags = np.empty(N, dtype=np.int64)
