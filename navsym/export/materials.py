@@ -10,6 +10,7 @@ from typing import Any
 
 import sympy as sp
 
+from navsym.book.entries import Entry, book
 from navsym.claims import CERTIFIED, PROVED, Claim, Equation, Record, Verdict, Verdicts, equation_of
 from navsym.conventions.converting import Conversion
 from navsym.core.errors import DomainError, NavsymError
@@ -36,7 +37,7 @@ from navsym.verification.papers import file_of_source, is_model, load_papers, sp
 SECONDS = 90.0
 MEGABYTES = 4096
 LARGEST_DENOMINATOR = 10**9  # of an exact end; beyond it an end is the middle of an enclosure
-EXPORTABLE = "a claim id, a verdict, an Estimator, Phases, a Derivation, a Conversion or a Model"
+EXPORTABLE = "a claim id, a verdict, an entry of the book, an Estimator, Phases, a Derivation, a Conversion or a Model"
 
 
 def functions_from(
@@ -44,13 +45,15 @@ def functions_from(
 ) -> list[ExportedFunction]:
     """The functions of whatever can be exported; raises RefusedError for what does not hold, DomainError for the rest.
 
-    item : claim id ``MODULE:NUMBER`` or ``FILE.toml:ID``, regimes ``A+B+C``, ``NAME=A``, a ready-made name; a record or
-           claim; a verdict with its formula; an estimator, phases, derivation or model; the path of a model file
+    item : claim id ``MODULE:NUMBER``, ``FILE.toml:ID`` or ``book:ID``, regimes ``A+B+C``, ``NAME=A``; a ready-made
+           name, record, claim or entry; a verdict with its formula; estimator, phases, derivation, model or model file
     """
     units = units or {}
     if isinstance(item, (list, tuple, Verdicts)):
         parts = [functions_from(i, real=real, allow_confirmed=allow_confirmed, units=units) for i in item]
         return [function for part in parts for function in part]
+    if isinstance(item, Entry):
+        item = f"book:{item.id}"
     if isinstance(item, str):
         return functions_of_words(item, real, allow_confirmed, units)
     claim = getattr(item, "claim", item)
@@ -116,6 +119,8 @@ def material_of_claim(text: str, allow_confirmed: bool) -> Material:
         raise DomainError(message, where="claim")
     if module.endswith(".toml"):
         return material_from_file(module, number, allow_confirmed)
+    if module == "book":
+        return material_of_verdict(book[number].prove(), allow_confirmed)
     return material_from_paper(module, number, allow_confirmed)
 
 
