@@ -134,18 +134,12 @@ STEP, WIDEST = 0.15, 0.3
 REACH = 3.0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class NoisePoint:
-    """Noise parameters with a weight; the weights of all points sum to one."""
-
-    weight: float
-    noise: Noise
-
-
 def noise_points(
     track: Positions, order: int, use: Rows, noise: Noise, *, gate: float = 0.0, fixed_scale: bool = False
-) -> list[NoisePoint]:
-    """Points around the most likely noise with the covariance of its estimate; the first is the noise itself.
+) -> list[tuple[float, Noise]]:
+    """Points around the most likely noise with the covariance of its estimate, and weights that sum to one.
+
+    The first is the noise itself.
 
     East and North share one pair of parameters, Up has its own; point k moves both.
     """
@@ -156,13 +150,13 @@ def noise_points(
         for channels in ((0, 1), (2,))
     ]
     axes = 1 if fixed_scale else 2
-    points = [NoisePoint(1.0 - axes / REACH, noise)]
+    points = [(1.0 - axes / REACH, noise)]
     for axis in range(axes):
         for sign in (-1.0, 1.0):
             moves = [10.0 ** (sign * np.sqrt(REACH) * root[:, axis]) for root in roots]
             factors = np.array([moves[0], moves[0], moves[1]]).T
             moved = replace(noise, scale=freeze(noise.scale * factors[0]), density=freeze(noise.density * factors[1]))
-            points.append(NoisePoint(1.0 / (2.0 * REACH), moved))
+            points.append((1.0 / (2.0 * REACH), moved))
     return points
 
 
@@ -261,8 +255,8 @@ def marginal(track: Positions, noises: list[tuple[float, Noise]], settings: Sett
     for weight, noise in noises:
         points = noise_points(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
         factors = local_scales(track, noise, settings, use)
-        found += [by_method(track, point.noise, settings, use, factors) for point in points]
-        weights = np.append(weights, [weight * point.weight for point in points])
+        found += [by_method(track, moved, settings, use, factors) for _, moved in points]
+        weights = np.append(weights, [weight * share for share, _ in points])
     parts = [
         mixture(weights, [values for values, _ in derivative], [spread for _, spread in derivative])
         for derivative in zip(*(f.derivatives for f in found), strict=True)

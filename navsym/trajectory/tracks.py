@@ -551,20 +551,8 @@ def region_of(fit: Fit, x: float, y: float, fading: float | None = None) -> Regi
     varied = not (fit.track.variance == fit.track.variance[:1]).all()
     # With two states the last one is the speed, which no body forgets.
     free = np.array([found, True, found, found, fit.order > 2, found and varied, drift, drift, False])
-    low = np.array(
-        [
-            np.log10(SMALLEST_SCALE),
-            y - 6,
-            COLOURS[0],
-            np.log10(step),
-            RATES[0],
-            EXPONENTS[0],
-            DRIFTS[0],
-            np.log10(step),
-            0.0,
-        ]
-    )
-    longest = max(LONGEST_TAU, np.log10(3 * step))
+    least, short, longest = np.log10(SMALLEST_SCALE), np.log10(step), max(LONGEST_TAU, np.log10(3 * step))
+    low = np.array([least, y - 6, COLOURS[0], short, RATES[0], EXPONENTS[0], DRIFTS[0], short, 0.0])
     high = np.array([max(x + 2, 4.0), y + 6, COLOURS[1], longest, RATES[1], EXPONENTS[1], DRIFTS[1], longest, 1.0])
     simplices = []
     for lift, tau, rate in GUESSES:

@@ -195,10 +195,9 @@ def test_points_of_the_noise_have_the_covariance_of_its_estimate():
     track, use = flat_track(t, measured), np.ones(400, np.int64)
     noise = noise_of(track, 3, use, gate=5.0)
     points = noise_points(track, 3, use, noise, gate=5.0)
-    weights = np.array([p.weight for p in points])
-    logs = np.log10([[p.noise.scale[0], p.noise.density[0]] for p in points]) - np.log10(
-        [noise.scale[0], noise.density[0]]
-    )
+    weights = np.array([weight for weight, _ in points])
+    logs = np.log10([[moved.scale[0], moved.density[0]] for _, moved in points])
+    logs -= np.log10([noise.scale[0], noise.density[0]])
     assert_allclose(weights.sum(), 1.0)
     assert_allclose(weights @ logs, 0.0, atol=1e-12)
     root = covariance_root(Fit(track, 3, use, (0, 1), 5.0, False), noise, 0)
