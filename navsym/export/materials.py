@@ -27,6 +27,7 @@ from navsym.language.algebra import to_sympy
 from navsym.language.declarations import box_of, symbols_of
 from navsym.language.expression import read_tree
 from navsym.language.names import quote
+from navsym.language.tomlfile import read_toml
 from navsym.models.derivation import Derivation
 from navsym.models.model import Model, contents_of
 from navsym.models.modelfile import BasisFile
@@ -149,6 +150,9 @@ def material_from_paper(module: str, number: str, allow_confirmed: bool) -> Mate
 def material_from_file(name: str, wanted: str, allow_confirmed: bool) -> Material:
     """A claim of a claim file, decided now."""
     path = file_of_source(name)
+    if "code" in read_toml(path):
+        message = "expected claims; got questions about code; write the mended formula as a claim of its own"
+        raise DomainError(message, where=path.name)
     claims = {claim.id: claim for claim in read_claims(path).claims}
     if wanted not in claims:
         raise unknown_claim(wanted, list(claims), path.name)

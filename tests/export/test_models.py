@@ -116,6 +116,11 @@ def test_an_entry_of_the_book_with_vectors_is_refused_and_says_what_to_write():
         nav.export("book:skew-is-cross")
 
 
+def test_the_questions_of_an_audit_are_no_claims_and_the_refusal_says_what_to_write():
+    with pytest.raises(nav.NavsymError, match="got questions about code; write the mended formula as a claim"):
+        nav.export(f"{EXAMPLES / 'audit' / 'yaw_jacobian.toml'}:transition")
+
+
 @pytest.mark.long
 def test_a_model_runs_in_every_language_that_is_here(tmp_path):
     made = nav.export(EXAMPLES / "schuler-velocity.toml", to=[*TARGETS], out=tmp_path, vectors=4)
