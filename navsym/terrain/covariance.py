@@ -91,22 +91,23 @@ def trust_of(
 
 def height_spread(J: Array, residual: Array) -> tuple[Array, float]:
     """s^2 J^T K J (p, p), averaged over the correlation of neighbouring residuals (n,), and its mean."""
-    from scipy.signal import lfilter
-
     (n, p), hat = J.shape, np.linalg.pinv(J.T @ J)
+    rhos = CORRELATIONS if n - p >= ENOUGH_TO_SPARE else np.zeros(1)
+    past, half = np.zeros((len(rhos), p)), np.zeros((len(rhos), p, p))
+    for row in J:
+        past = rhos[:, None] * past + row
+        half += row[:, None] * past[:, None, :]
     logs, products = [], []
-    for rho in CORRELATIONS if n - p >= ENOUGH_TO_SPARE else (0.0,):
+    for rho, product in zip(rhos.tolist(), half + half.transpose(0, 2, 1) - J.T @ J, strict=True):
         white = np.column_stack([J, residual])
         white[1:] = (white[1:] - rho * white[:-1]) / math.sqrt(1.0 - rho**2)
         R = np.abs(np.diag(np.linalg.qr(white, mode="r")))
         lost = (n - 1) * math.log(1.0 - rho**2) + 2.0 * np.log(R[:p]).sum() + 2.0 * (n - p) * math.log(R[p] + 1e-300)
-        both = [lfilter([1.0], [1.0, -rho], rows, axis=0) for rows in (J, J[::-1])]
-        product = J.T @ (both[0] + both[1][::-1] - J)
         logs.append(-0.5 * lost)
         products.append(product * float(residual @ residual) / (n - float(np.trace(product @ hat))))
     weights = np.exp(np.array(logs) - max(logs))
     weights /= weights.sum()
-    return np.tensordot(weights, products, axes=1), float(weights @ CORRELATIONS[: len(weights)])
+    return np.tensordot(weights, products, axes=1), float(weights @ rhos)
 
 
 def jacobian(terrain: TerrainMap, track: Profile, at: tuple[Array, Array], *, velocity: bool, offset: bool) -> Array:
