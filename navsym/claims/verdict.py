@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
-from navsym.claims.display import mark_verdict, write_card, write_table
+from navsym.claims.display import count_in_words, mark_verdict, write_card, write_table
 from navsym.claims.formula import Formula
 from navsym.core.answers import Answer, Answers, named
 from navsym.core.errors import NavsymError
@@ -167,7 +167,8 @@ class Verdicts(Answers[Verdict]):
 
     def __repr__(self) -> str:
         counts = {status: sum(verdict.status == status for verdict in self.verdicts) for status in Status}
-        return f"<{len(self)} verdicts: {', '.join(f'{n} {status}' for status, n in counts.items() if n)}>"
+        told = ", ".join(f"{n} {status}" for status, n in counts.items() if n)
+        return f"<{count_in_words(len(self), 'verdict')}: {told}>"
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """The certificates of all verdicts that have one."""
@@ -181,6 +182,6 @@ class Verdicts(Answers[Verdict]):
 
     def _repr_html_(self) -> str:
         rows = [
-            (v.formula.id if v.formula else "", v.formula or "", v.status, v.method, v.scope) for v in self.verdicts
+            (v.formula.id if v.formula else "", v.formula or "", v.status, v.method, v.reason) for v in self.verdicts
         ]
-        return write_table(("claim", "formula", "verdict", "method", "scope"), rows)
+        return write_table(("claim", "formula", "verdict", "method", "ground"), rows)

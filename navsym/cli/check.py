@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +12,9 @@ from navsym.cli.output import emit, table
 
 if TYPE_CHECKING:
     from navsym.export.acceptance import Checks
+
+#: More accepted certificates of one folder than this stand on one line.
+MANY = 12
 
 
 def command(paths: list[Path], *, kernel: str | None = None, out: Path | None = None, json_: bool = False) -> int:
@@ -32,5 +37,10 @@ def command(paths: list[Path], *, kernel: str | None = None, out: Path | None = 
 
 
 def as_text(checks: Checks) -> str:
-    """A table, one line for each certificate."""
-    return table(("path", "kind", "status", "why"), [c.words() for c in checks])
+    """A line for each part; many accepted certificates of one folder share a line."""
+    rows: list[tuple[str, ...]] = []
+    for (folder, plain), group in groupby(checks, lambda c: (os.path.dirname(c.path), c.holds and not c.why)):
+        words = [part.words() for part in group]
+        share = plain and len(words) > MANY
+        rows += [(folder, f"{len(words)} certificates", words[0][2], words[0][3])] if share else words
+    return table(("path", "kind", "status", "why"), rows)

@@ -76,7 +76,7 @@ def as_text(data: Mapping[str, Any]) -> str:
         (s["i"], s["j"], s["det_L"], "least max(i, j)" if [s["i"], s["j"]] == data["best_split"] else "")
         for s in data["splits"]
     ]
-    splits = table(["i", "j", "det L", ""], rows) if rows else ""
+    splits = "\n" + table(["split i", "j", "det L", "remark"], rows) if rows else ""
     gains = [f"{name} = ({', '.join(row)})\n" for name, row in data["gains"].items() if name != "stable" and row]
     gains += [f"stage of {s['measurement']}: K = ({', '.join(s['K'])})\n" for s in data.get("stages", [])]
     reached = accuracy_text(data["accuracy"]) if "accuracy" in data else ""

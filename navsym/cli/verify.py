@@ -80,6 +80,7 @@ def as_text(ledger: Ledger, seconds: float) -> str:
 
 def compare_line(ledger: Ledger) -> str:
     """How the ledger as it was last written compares with these verdicts."""
+    from navsym.claims.display import count_in_words as counted
     from navsym.core.errors import NavsymError
     from navsym.verification.ledger import ledger_file
 
@@ -90,7 +91,7 @@ def compare_line(ledger: Ledger) -> str:
     except NavsymError as error:
         return f"the ledger cannot be compared: {error}"
     if changed:
-        return f"the ledger differs in {len(changed)} claims, {changed[0]} first; --write updates it"
+        return f"the ledger differs in {counted(len(changed), 'claim')}, {changed[0]} first; --write updates it"
     return f"the ledger {ledger_file().name} agrees"
 
 
@@ -115,8 +116,8 @@ def unexpected_lines(wrong: Sequence[Record]) -> list[str]:
 def remark_of(record: Record) -> str:
     """What is wrong, what is corrected, or for what it holds."""
     if record.status == "REFUTED":
-        where = f" (at {record.point_text})" if record.point_text else ""
-        return f"{record.slip}: {record.reason}{where}" if record.slip else f"{record.reason}{where}"
+        where = f"(at {record.point_text})" if record.point_text else ""
+        return f"{f'{record.slip}: ' if record.slip else ''}{record.reason} {where}".strip()
     if record.corrects:
         return f"corrects {record.corrects.partition(':')[2]}"
     text = "; ".join(record.assumptions) or record.scope

@@ -10,6 +10,7 @@ from typing import Any
 
 import sympy as sp
 
+from navsym.book.entries import Entry, book
 from navsym.claims import CERTIFIED, PROVED, Claim, Equation, Record, Verdict, Verdicts, equation_of
 from navsym.conventions.converting import Conversion
 from navsym.core.errors import DomainError, NavsymError
@@ -26,6 +27,7 @@ from navsym.language.algebra import to_sympy
 from navsym.language.declarations import box_of, symbols_of
 from navsym.language.expression import read_tree
 from navsym.language.names import quote
+from navsym.language.tomlfile import read_toml
 from navsym.models.derivation import Derivation
 from navsym.models.model import Model, contents_of
 from navsym.models.modelfile import BasisFile
@@ -36,7 +38,7 @@ from navsym.verification.papers import file_of_source, is_model, load_papers, sp
 SECONDS = 90.0
 MEGABYTES = 4096
 LARGEST_DENOMINATOR = 10**9  # of an exact end; beyond it an end is the middle of an enclosure
-EXPORTABLE = "a claim id, a verdict, an Estimator, Phases, a Derivation, a Conversion or a Model"
+EXPORTABLE = "a claim id, a verdict, an entry of the book, an Estimator, Phases, a Derivation, a Conversion or a Model"
 
 
 def functions_from(
@@ -44,13 +46,15 @@ def functions_from(
 ) -> list[ExportedFunction]:
     """The functions of whatever can be exported; raises RefusedError for what does not hold, DomainError for the rest.
 
-    item : claim id ``MODULE:NUMBER`` or ``FILE.toml:ID``, regimes ``A+B+C``, ``NAME=A``, a ready-made name; a record or
-           claim; a verdict with its formula; an estimator, phases, derivation or model; the path of a model file
+    item : claim id ``MODULE:NUMBER``, ``FILE.toml:ID`` or ``book:ID``, regimes ``A+B+C``, ``NAME=A``; a ready-made
+           name, record, claim or entry; a verdict with its formula; estimator, phases, derivation, model or model file
     """
     units = units or {}
     if isinstance(item, (list, tuple, Verdicts)):
         parts = [functions_from(i, real=real, allow_confirmed=allow_confirmed, units=units) for i in item]
         return [function for part in parts for function in part]
+    if isinstance(item, Entry):
+        item = f"book:{item.id}"
     if isinstance(item, str):
         return functions_of_words(item, real, allow_confirmed, units)
     claim = getattr(item, "claim", item)
@@ -116,6 +120,8 @@ def material_of_claim(text: str, allow_confirmed: bool) -> Material:
         raise DomainError(message, where="claim")
     if module.endswith(".toml"):
         return material_from_file(module, number, allow_confirmed)
+    if module == "book":
+        return material_of_verdict(book[number].prove(), allow_confirmed)
     return material_from_paper(module, number, allow_confirmed)
 
 
@@ -144,6 +150,9 @@ def material_from_paper(module: str, number: str, allow_confirmed: bool) -> Mate
 def material_from_file(name: str, wanted: str, allow_confirmed: bool) -> Material:
     """A claim of a claim file, decided now."""
     path = file_of_source(name)
+    if "code" in read_toml(path):
+        message = "expected claims; got questions about code; write the mended formula as a claim of its own"
+        raise DomainError(message, where=path.name)
     claims = {claim.id: claim for claim in read_claims(path).claims}
     if wanted not in claims:
         raise unknown_claim(wanted, list(claims), path.name)

@@ -120,9 +120,9 @@ def need_numbers(problem: GuaranteedProblem) -> None:
     parts += [e for s in problem.stretches for e in (s.start, s.end)]
     free = sorted({x.name for part in parts for x in part.free_symbols - {problem.variable, *problem.unknown}})
     if free:
-        name = free[0]
+        keywords, options = ", ".join(f'{name}="…"' for name in free), " ".join(f"--set {name}=…" for name in free)
         raise DomainError(
-            f'expected a value for every parameter; got none for {", ".join(free)}; give {name}="1" (--set {name}=1)'
+            f"expected a value for every parameter; got none for {', '.join(free)}; give {keywords} ({options})"
         )
     for what, values in (("functional", problem.functional), ("sigma", problem.sigma)):
         if any(not enclose(v).is_finite() for v in values):

@@ -76,6 +76,8 @@ def describe_reserved(name: str) -> str:
 
 def quote(value: object, limit: int = 40) -> str:
     """Foreign text as it may stand in a message: quoted, escaped, ASCII only, and cut."""
+    if isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e15:
+        return repr(value)
     text = value if isinstance(value, str) else f"{type(value).__name__} {shorten_repr(value, limit)}"
     cut = text[:limit]
     return ascii(cut) + (f" ... ({len(text)} characters)" if len(text) > limit else "")

@@ -90,7 +90,7 @@ def check_module_name(name: str) -> str:
     if isinstance(name, str) and NAME.fullmatch(name) and not keyword.iskeyword(name):
         return name
     raise ExpressionSyntaxError(
-        f"expected a module name of small letters, digits and underscores; got {quote(name)}; rename it"
+        f"expected a module name of a-z, 0-9 and _ that is no word of Python; got {quote(name)}; rename it"
     )
 
 

@@ -207,7 +207,7 @@ def read_bank(document: Mapping[str, Any], z: Any = None) -> BankFile:
     if not isinstance(document, Mapping):
         raise ShapeError(
             "expected an object with models, mode_transition, initial and measurements; got "
-            f"{type(document).__name__}; see the interfaces"
+            f"{type(document).__name__}; correct the file"
         )
     only_keys(document, KEYS)
     needed = KEYS[:4] if z is None else KEYS[:3]

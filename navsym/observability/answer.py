@@ -260,8 +260,9 @@ class Observability(Answer):
         heads = ("measurement", "observes", "taken", "companion coefficients")
         lines = [f"<b>{word}</b>: {self.rank} of {n} dimensions", write_table(heads, rows)]
         lines += [f"unobservable: {escape('; '.join(self.unobservable))}"] if self.unobservable else []
-        zeros = (" and ".join(rf"{latex_of(zero)} = 0" for zero in drop.zeros) for drop in self.rank_drops)
-        lines += [escape(f"the rank drops where {display_latex(zero)}") for zero in zeros]
+        for drop in self.rank_drops:
+            zeros = " and ".join(rf"{latex_of(zero)} = 0" for zero in drop.zeros)
+            lines.append(escape(f"the rank of {drop.subspace} drops where {display_latex(zeros)}"))
         return write_card(lines)
 
     def _repr_latex_(self) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import io
+import os
 import time
 from collections.abc import Callable
 from contextlib import nullcontext, redirect_stdout
@@ -20,10 +21,10 @@ BETWEEN_UPDATES = 0.2  # seconds
 STOPS = 60  # steps of a slider of exact numbers
 
 
-def explore(what: Model | Callable[..., Any], target: str | None = None, **ranges: Any) -> Any:
+def explore(what: Model | str | os.PathLike[str] | Callable[..., Any], target: str | None = None, **ranges: Any) -> Any:
     """A drawing with sliders: the guaranteed estimator of a model by its parameters, or whatever a function draws.
 
-    what   : a model, or a function of the named quantities that returns what is shown
+    what   : a model or its file, or a function of the named quantities that returns what is shown
     target : of a model; its first one when none is given
     ranges : name -> (lowest, highest), exact, for parameters of a model, by default as it declares them; or
              name -> (lowest, highest, start), floats, for a function
@@ -38,6 +39,8 @@ def explore(what: Model | Callable[..., Any], target: str | None = None, **range
     >>> nav.explore(model).children[0].value
     'pi'
     """
+    if isinstance(what, str | os.PathLike):
+        what = Model.load(what)
     if isinstance(what, Model):
         return explore_model(what, target or next(iter(what.targets)), ranges)
     start = {name: middle for name, (_, _, middle) in ranges.items()}

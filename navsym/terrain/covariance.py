@@ -3,16 +3,17 @@
 With the slopes g_k of the bilinear map under the corrected track and the times s_k = t_k - t_n before the last one,
 a row of the Jacobian of the heights is (g_k, s_k g_k[, 1]) on position, velocity and height error at the last time, and
 
-    covariance = Q / (n - p) (J^T J)^-1 + step^2 / 12 on each axis of the grid,
+    covariance = s^2 (J^T J)^-1 J^T K J (J^T J)^-1 + step^2 / 12 on each axis of the grid,
 
-Q being the criterion and p the number of unknowns. A hypothesis of a grid is off by an error spread evenly over its
-step; the minimum between the grid points is not.
+K being the correlations of the height differences, rho^|i-j|, and s^2 their variance, from their sum of squares, the
+criterion. What rho is, their restricted likelihood says (Patterson, Thompson 1971), over which the product is averaged.
+A hypothesis of a grid is off by an error spread evenly over its step; the minimum between the grid points is not.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,6 +23,10 @@ from navsym.terrain.track import Hypotheses, Profile
 
 #: Condition of the normalised Jacobian beyond which the geometry is nearly singular, and beyond which nothing is said.
 NEARLY, SINGULAR = 1e3, 1e7
+#: Correlations of neighbouring height differences that are weighed, and the one from which on a remark is due.
+CORRELATIONS, CORRELATED = np.linspace(0.0, 0.98, 50), 0.5
+#: With fewer heights to spare nothing is known of their correlation.
+ENOUGH_TO_SPARE = 8
 #: The weakest deviation beyond so many strongest ones is worth a remark.
 LOPSIDED = 30.0
 
@@ -47,7 +52,6 @@ def trust_of(
     terrain: TerrainMap,
     track: Profile,
     at: tuple[Array, Array],
-    criterion: float,
     *,
     velocity: bool,
     offset: bool,
@@ -56,7 +60,7 @@ def trust_of(
 ) -> Trust:
     """Covariance of a fix and what is weak in it.
 
-    at       : x, y (n,) of the corrected track ; criterion : sum of squared height differences there
+    at       : x, y (n,) of the corrected track
     velocity : whether velocities were sought; offset: whether the height error was estimated, too
     grid     : the grid that the fix is a point of, None for a minimum between its points
     metres   : metres of a unit of the map along x and y, for the direction
@@ -71,12 +75,39 @@ def trust_of(
     _, values, rotation = np.linalg.svd(J / lengths, full_matrices=False)
     if values[-1] * SINGULAR <= values[0]:
         return Trust(None, remarks=(f"no covariance: the geometry is singular {along(rotation[-1] / lengths)}",))
-    half = rotation.T / values / lengths[:, None]
+    solved = rotation.T / values**2 @ rotation / lengths[:, None]
     count = 4 if velocity else 2
-    covariance = (half @ half.T * criterion / spare)[:count, :count]
+    residual = track.h - terrain.height(*at)
+    product, rho = height_spread(J / lengths, residual - residual.mean() if offset else residual)
+    covariance = (solved @ product @ solved.T)[:count, :count]
     if grid is not None:
         covariance = covariance + rounding(grid, float(track.elapsed[-1]) if velocity else 0.0, count)
-    return described(covariance, values[0] / values[-1], rotation[-1] / lengths, metres)
+    found = described(covariance, values[0] / values[-1], rotation[-1] / lengths, metres)
+    if rho < CORRELATED:
+        return found
+    told = f"the height differences are correlated, {rho:.2f} from row to row, which the deviations count"
+    return replace(found, remarks=(*found.remarks, told))
+
+
+def height_spread(J: Array, residual: Array) -> tuple[Array, float]:
+    """s^2 J^T K J (p, p), averaged over the correlation of neighbouring residuals (n,), and its mean."""
+    (n, p), hat = J.shape, np.linalg.pinv(J.T @ J)
+    rhos = CORRELATIONS if n - p >= ENOUGH_TO_SPARE else np.zeros(1)
+    past, half = np.zeros((len(rhos), p)), np.zeros((len(rhos), p, p))
+    for row in J:
+        past = rhos[:, None] * past + row
+        half += row[:, None] * past[:, None, :]
+    logs, products = [], []
+    for rho, product in zip(rhos.tolist(), half + half.transpose(0, 2, 1) - J.T @ J, strict=True):
+        white = np.column_stack([J, residual])
+        white[1:] = (white[1:] - rho * white[:-1]) / math.sqrt(1.0 - rho**2)
+        R = np.abs(np.diag(np.linalg.qr(white, mode="r")))
+        lost = (n - 1) * math.log(1.0 - rho**2) + 2.0 * np.log(R[:p]).sum() + 2.0 * (n - p) * math.log(R[p] + 1e-300)
+        logs.append(-0.5 * lost)
+        products.append(product * float(residual @ residual) / (n - float(np.trace(product @ hat))))
+    weights = np.exp(np.array(logs) - max(logs))
+    weights /= weights.sum()
+    return np.tensordot(weights, products, axes=1), float(weights @ rhos)
 
 
 def jacobian(terrain: TerrainMap, track: Profile, at: tuple[Array, Array], *, velocity: bool, offset: bool) -> Array:

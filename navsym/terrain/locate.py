@@ -194,7 +194,6 @@ def fix_of(
         terrain,
         track,
         corrected(track, found),
-        found.criterion,
         velocity=method != "position",
         offset=offset_free,
         grid=None if method == "refined" else grid,

@@ -131,7 +131,8 @@ def compare(t: Array, velocity: Array, deviation: Array, reference: str | os.Pat
         raise NotFiniteError("expected finite numbers at increasing times; got others; mend the reference", where=place)
     found = consistency_of(normalised_at(0.0, t, velocity, deviation, table))
     if found is None:
-        message = f"expected times from {t[0]:g} to {t[-1]:g}; got {table[0, 0]:g} to {table[-1, 0]:g}; use one clock"
+        wanted, got = (f"{ends[0]:.10g} to {ends[-1]:.10g}" for ends in (t, table[:, 0]))
+        message = f"expected times from {wanted}; got {got}; use one clock"
         raise EmptyError(message, where=place)
     shifted = [normalised_at(float(lag), t, velocity, deviation, table) for lag in LAGS]
     means = [float((errors**2).mean()) if len(errors) else math.inf for errors in shifted]

@@ -134,18 +134,12 @@ STEP, WIDEST = 0.15, 0.3
 REACH = 3.0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class NoisePoint:
-    """Noise parameters with a weight; the weights of all points sum to one."""
-
-    weight: float
-    noise: Noise
-
-
 def noise_points(
     track: Positions, order: int, use: Rows, noise: Noise, *, gate: float = 0.0, fixed_scale: bool = False
-) -> list[NoisePoint]:
-    """Points around the most likely noise with the covariance of its estimate; the first is the noise itself.
+) -> list[tuple[float, Noise]]:
+    """Points around the most likely noise with the covariance of its estimate, and weights that sum to one.
+
+    The first is the noise itself.
 
     East and North share one pair of parameters, Up has its own; point k moves both.
     """
@@ -156,13 +150,13 @@ def noise_points(
         for channels in ((0, 1), (2,))
     ]
     axes = 1 if fixed_scale else 2
-    points = [NoisePoint(1.0 - axes / REACH, noise)]
+    points = [(1.0 - axes / REACH, noise)]
     for axis in range(axes):
         for sign in (-1.0, 1.0):
             moves = [10.0 ** (sign * np.sqrt(REACH) * root[:, axis]) for root in roots]
             factors = np.array([moves[0], moves[0], moves[1]]).T
             moved = replace(noise, scale=freeze(noise.scale * factors[0]), density=freeze(noise.density * factors[1]))
-            points.append(NoisePoint(1.0 / (2.0 * REACH), moved))
+            points.append((1.0 / (2.0 * REACH), moved))
     return points
 
 
@@ -246,18 +240,23 @@ def estimate(track: Positions, settings: Settings) -> tuple[TrackEstimate, Noise
     if use.sum() < settings.order + 1:
         message = f"track: expected at least {settings.order + 1} rows that agree; got {use.sum()} of {len(use)}"
         raise ShapeError(f"{message}; lower the order, or set the gate to 0")
-    noise = shaped(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
+    noises = shaped(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
     if settings.method in ("filter", "smoother"):
-        return marginal(track, noise, settings, use), noise
-    return by_method(track, noise, settings, use), noise
+        return marginal(track, noises, settings, use), noises[0][1]
+    return by_method(track, noises[0][1], settings, use), noises[0][1]
 
 
-def marginal(track: Positions, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
-    """Filter or smoother, averaged over what the noise may be; gains and flags are those of the likeliest."""
-    points = noise_points(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
-    factors = local_scales(track, noise, settings, use)
-    found = [by_method(track, point.noise, settings, use, factors) for point in points]
-    weights = np.array([point.weight for point in points])
+def marginal(track: Positions, noises: list[tuple[float, Noise]], settings: Settings, use: Rows) -> TrackEstimate:
+    """Filter or smoother, averaged over what the noise may be; gains and flags are those of the likeliest.
+
+    noises : with weights that sum to one, the likeliest first; each stands for all about it
+    """
+    found, weights = [], np.empty(0)
+    for weight, noise in noises:
+        points = noise_points(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
+        factors = local_scales(track, noise, settings, use)
+        found += [by_method(track, moved, settings, use, factors) for _, moved in points]
+        weights = np.append(weights, [weight * share for share, _ in points])
     parts = [
         mixture(weights, [values for values, _ in derivative], [spread for _, spread in derivative])
         for derivative in zip(*(f.derivatives for f in found), strict=True)
@@ -415,8 +414,8 @@ def filtered(track: Positions, noise: Noise, settings: Settings, use: Rows) -> F
         jumps=np.empty((3, N)),
         flags=np.empty((N, 3), dtype=np.int64),
     )
-    spread = first_spread(track, n)
     for c in range(3):
+        spread = first_spread(track, n, float(noise.density[c]), float(noise.rate[c]))
         z, r, b = track.position[:, c].copy(), noise.white(track, c), noise.coloured(track, c)
         out = (run.states[c], run.roots[c], run.gains[c], run.innovations[c], run.variances[c], run.jumps[c])
         flags = np.empty(N, dtype=np.int64)

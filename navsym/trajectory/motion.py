@@ -114,9 +114,15 @@ class Track(Answer):
         rows = []
         for k in range(0, len(self.t), max(1, len(self.t) // SHOWN)):
             pairs = [pair for values, spreads in parts for pair in zip(values[k], spreads[k], strict=True)]
-            numbers = (f"{value:.3f} ± {spread:.3f}" for value, spread in pairs)
+            numbers = (write_uncertain(value, spread) for value, spread in pairs)
             rows.append((f"{self.t[k]:.3f}", *numbers, self.flags[k]))
         return (*heads, "row"), rows
+
+
+def write_uncertain(value: float, spread: float) -> str:
+    """``7.1688 ± 0.0065``: two digits of the deviation, and the value to the same place."""
+    places = min(max(1 - math.floor(math.log10(spread)), 0), 12) if spread > 0.0 else 3
+    return f"{round(value, places) + 0.0:.{places}f} ± {spread:.{places}f}"
 
 
 def track(

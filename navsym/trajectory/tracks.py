@@ -264,11 +264,17 @@ def running_median(values: Array, width: int) -> Array:
 # -- noise by maximum likelihood -------------------------------------------------------------------------
 
 
-def first_spread(track: Positions, order: int) -> Array:
-    """Standard deviations of the state before the first measurement: wide, in the scale of the track."""
+def first_spread(track: Positions, order: int, density: float = 0.0, rate: float = 0.0) -> Array:
+    """Standard deviations of the state before the first measurement: wide, in the scale of the track.
+
+    density, rate : of the motion; one that forgets begins as it goes on, with the variance density / (2 rate)
+    """
     steps = np.maximum(np.diff(track.t), usual_step(track.t))
     speed = np.abs(np.diff(track.position, axis=0) / steps[:, None]).max()
-    return np.array([np.sqrt(track.variance.max()) * 10 + 1.0, 10 * speed + 1.0, *([50.0] * (order - 2))])
+    spread = np.array([np.sqrt(track.variance.max()) * 10 + 1.0, 10 * speed + 1.0, *([50.0] * (order - 2))])
+    if rate > 0.0:
+        spread[-1] = min(spread[-1], np.sqrt(density / (2.0 * rate)))
+    return spread
 
 
 def noise_of(track: Positions, order: int, use: Rows, *, gate: float = 0.0, fixed_scale: bool = False) -> Noise:
@@ -313,8 +319,8 @@ class Fit:
 
         scale : factor of the given variances ; density : of the process noise ; gate : as in :func:`noise_of`
         """
-        spread = first_spread(self.track, self.order)
         shape = self.shape
+        spread = first_spread(self.track, self.order, density, shape.rate)
         model = np.array([density, shape.rate, shape.tau, shape.lasting, shape.fading])
         total = np.zeros(3)
         for channel in self.channels:
@@ -382,23 +388,57 @@ GUESSES = ((0.0, 10.0, 1e-3), (3.0, 30.0, 1.0))
 FIRST_STEPS = (0.7, 0.7, 0.7, 0.5, 0.8, 0.5, 0.7, 0.5, 0.0)
 
 
-def shaped(track: Positions, order: int, use: Rows, noise: Noise, *, gate: float, fixed_scale: bool) -> Noise:
-    """The noise with coloured errors, a motion that forgets and stretched variances, where the track asks for them.
+def shaped(
+    track: Positions, order: int, use: Rows, noise: Noise, *, gate: float, fixed_scale: bool
+) -> list[tuple[float, Noise]]:
+    """Noises with weights: coloured errors, a motion that forgets, stretched variances, where the track asks for them.
 
-    A shape is taken when minus twice the log-likelihood falls by more than the logarithm of the number of innovations
-    for each of its parameters (Schwarz 1978), for East and North together and for Up alone.
+    The first is the likeliest: a shape is taken when minus twice the log-likelihood falls by more than the logarithm of
+    the number of innovations for each of its parameters (Schwarz 1978). The others are :func:`explanations`. East and
+    North have one shape, Up its own.
     """
     if not SHORTEST_FIT <= usual_step(track.t) <= LONGEST_STEP or len(track.t) < 10 * order:
-        return noise
+        return [(1.0, noise)]
     here = middle_rows(track, use)
-    found = {name: np.array(getattr(noise, name)) for name in ("scale", "density", *SHAPE)}
-    for channels in ((0, 1), (2,)):
-        fit = Fit(here[0], order, here[1], channels, gate, fixed_scale)
-        best = search_shape(fit, float(noise.scale[channels[0]]), float(noise.density[channels[0]]))
-        if best is not None:
-            for name, value in best.items():
-                found[name][list(channels)] = value
-    return Noise(**{name: freeze(value) for name, value in found.items()})
+    level, up = (
+        explanations(fit, search_shape(fit, float(noise.scale[fit.channels[0]]), float(noise.density[fit.channels[0]])))
+        for fit in (Fit(here[0], order, here[1], channels, gate, fixed_scale) for channels in ((0, 1), (2,)))
+    )
+    return [(w * v, noise_at((at, at, over))) for w, at in level for v, over in up]
+
+
+def noise_at(points: Sequence[Array]) -> Noise:
+    """The noise at points (9,) of the region, East, North, Up."""
+    columns = [{"scale": 10.0 ** at[0], "density": 10.0 ** at[1], **asdict(shape_at(at))} for at in points]
+    return Noise(**{name: freeze(np.array([column[name] for column in columns])) for name in columns[0]})
+
+
+#: Correlation times of coloured errors that are tried, s; the part of its range in which a parameter of a shape fits;
+#: the least weight that counts.
+SLOW, FITTING, SMALLEST_WEIGHT = (3.0, 10.0, 30.0, 100.0), 0.2, 0.03
+
+
+def explanations(fit: Fit, own: Array) -> list[tuple[float, Array]]:
+    """The likeliest point (9,) of the region and others, with weights: slow errors and slow motion look alike.
+
+    The others have no coloured error, or one of a given correlation time. Each weighs as its likelihood does, times
+    ``FITTING`` for each parameter (Hoeting, Madigan, Raftery, Volinsky 1999). Errors that drift have no others.
+    """
+    if fit.fixed_scale or np.isfinite(own[6]):
+        return [(1.0, own)]
+    region, found = region_of(fit, own[0], own[1]), [(cost_of_shape(fit, own), own)]
+    for tau in (0.0, *(tau for tau in SLOW if tau > 2 * usual_step(fit.track.t))):
+        still, start = own.copy(), own.copy()
+        still[2], still[3], still[4] = -np.inf, np.log10(tau or 1.0), -np.inf
+        start[2], start[4] = max(own[0], own[2]), max(own[4], -1.5)
+        free = np.array([True, True, tau > 0.0, False, fit.order > 2, *[False] * 4])
+        simplex = np.vstack([start[free], start[free] + np.diag(np.array(FIRST_STEPS)[free])])
+        cost, simplex = (part := replace(region, free=free, still=still)).descend(fit, simplex, ROUNDS[0])
+        found.append((cost, part.whole(simplex[0])))
+    costs = np.array([cost - 2.0 * np.isfinite(at[[2, 4]]).sum() * np.log(FITTING) for cost, at in found])
+    weights = np.exp((costs.min() - costs) / 2.0)
+    weights[1:][weights[1:] < SMALLEST_WEIGHT * weights.sum()] = 0.0
+    return [(w / weights.sum(), at) for w, (_, at) in zip(weights, found, strict=True) if w > 0.0 or at is own]
 
 
 #: Usual steps, s, for which the bounds of a shape make sense.
@@ -412,8 +452,8 @@ def middle_rows(track: Positions, use: Rows) -> tuple[Positions, Rows]:
     return Positions(track.t[part], track.position[part], track.variance[part], track.turn[part]), use[part]
 
 
-def search_shape(fit: Fit, scale: float, density: float) -> dict[str, float] | None:
-    """The likeliest noise with a shape, or None where the plain one does."""
+def search_shape(fit: Fit, scale: float, density: float) -> Array:
+    """The point (9,) of the likeliest noise with a shape, or of the plain one where that does."""
     x, y = np.log10(scale), np.log10(density)
     plain, count = fit.cost(x, y), max(fit.sums(scale, density, fit.gate)[2], 2)
     region = region_of(fit, x, y)
@@ -427,9 +467,7 @@ def search_shape(fit: Fit, scale: float, density: float) -> dict[str, float] | N
             if drifting is not None:
                 found, cost, needed = drifting, cost_of_shape(fit, drifting), 0.0
         found = loosest(fit, found) if found is not None and needed == 0.0 else found
-    if found is None:
-        return None
-    return {"scale": 10.0 ** found[0], "density": 10.0 ** found[1]} | asdict(shape_at(found))
+    return region.still if found is None else found
 
 
 #: Twice the logarithm of a Bayes factor that is very strong evidence (Kass and Raftery 1995).
@@ -513,20 +551,8 @@ def region_of(fit: Fit, x: float, y: float, fading: float | None = None) -> Regi
     varied = not (fit.track.variance == fit.track.variance[:1]).all()
     # With two states the last one is the speed, which no body forgets.
     free = np.array([found, True, found, found, fit.order > 2, found and varied, drift, drift, False])
-    low = np.array(
-        [
-            np.log10(SMALLEST_SCALE),
-            y - 6,
-            COLOURS[0],
-            np.log10(step),
-            RATES[0],
-            EXPONENTS[0],
-            DRIFTS[0],
-            np.log10(step),
-            0.0,
-        ]
-    )
-    longest = max(LONGEST_TAU, np.log10(3 * step))
+    least, short, longest = np.log10(SMALLEST_SCALE), np.log10(step), max(LONGEST_TAU, np.log10(3 * step))
+    low = np.array([least, y - 6, COLOURS[0], short, RATES[0], EXPONENTS[0], DRIFTS[0], short, 0.0])
     high = np.array([max(x + 2, 4.0), y + 6, COLOURS[1], longest, RATES[1], EXPONENTS[1], DRIFTS[1], longest, 1.0])
     simplices = []
     for lift, tau, rate in GUESSES:

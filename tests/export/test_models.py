@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import re
 import shutil
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ import sympy as sp
 import navsym as nav
 from navsym.claims import PROVED, REFUTED, Equation
 from navsym.export.algorithms import models
+from navsym.export.languages.targets import TARGETS, WARNINGS
 from navsym.language.expression import parse
 from navsym.prove.ladder import decide
 
@@ -63,13 +65,67 @@ def oscillator(tmp_path_factory):
 # -- the whole loop ---------------------------------------
 
 
+MODELS = [
+    path
+    for folder in (EXAMPLES, Path(nav.__file__).parent / "claims" / "example" / "models")
+    for path in sorted(folder.glob("*.toml"))
+    if {"model", "measurement"} <= tomllib.loads(path.read_text(encoding="utf-8")).keys()
+]
+SLOW_MODELS = ("conventions",)
+
+
 @needs_compilers
-@pytest.mark.parametrize("name", ["schuler-velocity", "guard", pytest.param("conventions", marks=pytest.mark.slow)])
-def test_an_example_model_is_compiled_and_replayed(name, tmp_path):
-    made = nav.export(str(EXAMPLES / f"{name}.toml"), to=["c", "cpp"], out=tmp_path, vectors=8)
+@pytest.mark.parametrize(
+    "path", [pytest.param(p, id=p.stem, marks=[pytest.mark.slow] * (p.stem in SLOW_MODELS)) for p in MODELS]
+)
+def test_an_example_model_is_compiled_and_replayed(path, tmp_path):
+    """Every model with measurements in the examples and in a new workspace, without a warning of the compilers."""
+    made = nav.export(str(path), to=["c", "cpp"], out=tmp_path, vectors=8)
     assert {outcome.status for outcome in made.outcomes} == {"verified"}
     certificates = sorted((made.out / "certificates").iterdir())
     assert all(nav.check(path).accepted for path in certificates[:: len(certificates) // 8])
+
+
+def test_the_compilers_are_asked_for_every_warning_and_none_is_let_pass():
+    assert all("{strict}" in TARGETS[name].steps[0] for name in ("c", "cpp"))
+    assert {"-Wall", "-Wextra", "-Werror", "-pedantic"} <= set(WARNINGS)
+
+
+@needs_compilers
+@pytest.mark.parametrize(
+    "answer",
+    [
+        lambda: nav.solve(EXAMPLES / "schuler-velocity.toml", "drift", T="pi/2"),
+        lambda: nav.phases(EXAMPLES / "schuler-velocity.toml", "drift", T=("2", "4")),
+        lambda: nav.derive(EXAMPLES / "schuler-velocity.toml"),
+        lambda: nav.book["third-flattening"],
+        lambda: nav.prove("sin(2*a) = 2*sin(a)*cos(a)", a=("-1", "1")),
+    ],
+    ids=["solve", "phases", "derive", "book", "prove"],
+)
+def test_every_kind_of_answer_is_compiled_and_replayed(answer, tmp_path):
+    """C and its Python twin run inside their enclosures; check grants all parts, the deviations from MISRA too."""
+    made = nav.export(answer(), to=["c", "python"], out=tmp_path, vectors=8)
+    assert {outcome.status for outcome in made.outcomes} == {"verified"}
+    found = nav.check(made.out)
+    assert found.accepted and {"manifest", "code:c", "code:python"} <= {part.kind for part in found}
+
+
+def test_an_entry_of_the_book_with_vectors_is_refused_and_says_what_to_write():
+    with pytest.raises(nav.NavsymError, match=r"expected a claim between numbers.*write its entries out"):
+        nav.export("book:skew-is-cross")
+
+
+def test_the_questions_of_an_audit_are_no_claims_and_the_refusal_says_what_to_write():
+    with pytest.raises(nav.NavsymError, match="got questions about code; write the mended formula as a claim"):
+        nav.export(f"{EXAMPLES / 'audit' / 'yaw_jacobian.toml'}:transition")
+
+
+@pytest.mark.long
+def test_a_model_runs_in_every_language_that_is_here(tmp_path):
+    made = nav.export(EXAMPLES / "schuler-velocity.toml", to=[*TARGETS], out=tmp_path, vectors=4)
+    assert {outcome.status for outcome in made.outcomes} <= {"verified", "not executed"}
+    assert sum(outcome.status == "verified" for outcome in made.outcomes) >= 3
 
 
 # -- read back ---------------------------------------

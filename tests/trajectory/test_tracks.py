@@ -31,7 +31,7 @@ from navsym.trajectory.estimate import (
 from navsym.trajectory.kernels.tracks import ROWS, noise_root, transition
 from navsym.trajectory.motion import describe_motion
 from navsym.trajectory.reader import TrackFile
-from navsym.trajectory.tracks import Fit, Noise, Positions, isolated_outliers, noise_of, project_positions
+from navsym.trajectory.tracks import Fit, Noise, Positions, isolated_outliers, noise_of, project_positions, shaped
 
 
 def document(t, positions, settings, lines=None):
@@ -195,10 +195,9 @@ def test_points_of_the_noise_have_the_covariance_of_its_estimate():
     track, use = flat_track(t, measured), np.ones(400, np.int64)
     noise = noise_of(track, 3, use, gate=5.0)
     points = noise_points(track, 3, use, noise, gate=5.0)
-    weights = np.array([p.weight for p in points])
-    logs = np.log10([[p.noise.scale[0], p.noise.density[0]] for p in points]) - np.log10(
-        [noise.scale[0], noise.density[0]]
-    )
+    weights = np.array([weight for weight, _ in points])
+    logs = np.log10([[moved.scale[0], moved.density[0]] for _, moved in points])
+    logs -= np.log10([noise.scale[0], noise.density[0]])
     assert_allclose(weights.sum(), 1.0)
     assert_allclose(weights @ logs, 0.0, atol=1e-12)
     root = covariance_root(Fit(track, 3, use, (0, 1), 5.0, False), noise, 0)
@@ -231,9 +230,39 @@ def test_errors_that_drift_where_deviations_are_large_are_no_motion():
     deviation = noise.drifting(track, 0)[bad][0]
     assert 0.35 < deviation < 0.75 and 1.5 < noise.lasting[0] < 6.0
     plain = noise_of(track, 3, np.ones(600, dtype=np.int64), gate=5.0)
-    without = marginal(track, plain, Settings(), np.ones(600, dtype=np.int64))
+    without = marginal(track, [(1.0, plain)], Settings(), np.ones(600, dtype=np.int64))
     assert (((without.velocity - speed) / without.velocity_sd) ** 2).mean() > 3
     assert (estimate(drifting(0, 0.0)[2], Settings())[1].drift == 0).all()
+
+
+def test_slow_errors_that_look_like_motion_are_counted():
+    """Errors of 2 m that last 10 s: the likeliest noise alone takes some for motion; its deviations are too small."""
+    means = {"all": [], "likeliest": []}
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        t, slow, kept = np.arange(300.0), rng.normal(size=(300, 3)), np.exp(-0.1)
+        for k in range(1, 300):
+            slow[k] = kept * slow[k - 1] + np.sqrt(1 - kept**2) * slow[k]
+        waves, phases = 2 * np.pi / rng.uniform(25, 150, (4, 3)), rng.uniform(0, 2 * np.pi, (4, 3))
+        angle = waves * t[:, None, None] + phases
+        speed = (0.4 / waves * np.sin(angle)).sum(axis=1)
+        place = -(0.4 / waves**2 * np.cos(angle)).sum(axis=1)
+        track, use = flat_track(t, place + 2 * slow + rng.normal(size=(300, 3))), np.ones(300, np.int64)
+        noises = shaped(track, 3, use, noise_of(track, 3, use, gate=5.0), gate=5.0, fixed_scale=False)
+        assert abs(sum(weight for weight, _ in noises) - 1) < 1e-9
+        for name, taken in (("all", noises), ("likeliest", [(1.0, noises[0][1])])):
+            found = marginal(track, taken, Settings(), use)
+            means[name].append((((found.velocity - speed) / found.velocity_sd)[5:-5] ** 2).mean())
+    assert 0.7 < np.mean(means["all"]) < 1.5 < np.mean(means["likeliest"])
+
+
+def test_the_first_row_of_a_straight_track_is_as_good_as_the_last():
+    """A motion that forgets begins as it goes on: with a wide first acceleration the first speed was off by 5 m/s."""
+    t, rng = np.arange(60.0), np.random.default_rng(3)
+    place = np.outer(t, [7.0, 11.0, 0.0]) + rng.normal(size=(60, 3)) * [0.0, 1.0, 1.0]
+    found, _ = estimate(flat_track(t, place), Settings())
+    assert (found.velocity_sd[0] < 2 * found.velocity_sd[-1]).all()
+    assert (np.abs(found.velocity[0] - [7.0, 11.0, 0.0]) < 4 * found.velocity_sd[0]).all()
 
 
 def test_the_noise_of_a_track_is_found():

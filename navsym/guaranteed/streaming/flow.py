@@ -112,9 +112,8 @@ class Flow:
         free = {x.name for e in entries for x in sp.sympify(e, strict=True).free_symbols - {self.time}}
         free |= {x.name for e in self.sigmas for x in sp.sympify(e, strict=True).free_symbols - {self.time}}
         if free:
-            name = min(free)
-            got = f"none for {', '.join(sorted(free))}"
-            message = f'expected a value for every parameter; got {got}; give values={{"{name}": "1"}} (--set {name}=1)'
+            got, given = f"none for {', '.join(sorted(free))}", " ".join(f"--set {name}=…" for name in sorted(free))
+            message = f"expected a value for every parameter; got {got}; give them as values (Python) or {given}"
             raise DomainError(message, where=f"{where}: values")
         if all(p == 0 for p in self.functional):
             message = "expected a target that is not zero; got zeros; every estimator of it is free"

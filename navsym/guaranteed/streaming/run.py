@@ -39,7 +39,8 @@ class Stream:
             "variance": "standard deviations of at most sigma, any correlation",
             "outliers": "errors of at most sigma, but for a few gross ones",
         }
-        return f"{self.target}: {len(self.rows)} epochs, {count} with an estimate; {words[self.radius_kind]}"
+        told = f"{self.target}: {len(self.rows)} epochs, {count} with an estimate; {words[self.radius_kind]}"
+        return told if count else f"{told}\nthese measurements never determine it: navsym observe names what is free"
 
 
 def run_stream(

@@ -62,7 +62,7 @@ class TransitionMatrix:
     assumptions : relations that the formula takes to hold: divisors that are not zero, and
                   radicands that are positive when the form is to be read over the reals
     system      : A
-    factors     : (factor of the characteristic polynomial in lambda, multiplicity, kind of form)
+    factors     : (factor of the characteristic polynomial in ``eigenvalue``, multiplicity, kind of form)
     """
 
     matrix: sp.ImmutableMatrix

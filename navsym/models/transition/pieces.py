@@ -21,7 +21,8 @@ from navsym.models.transition.rings import (
     write_quotient,
 )
 
-LAMBDA = sp.Symbol("lambda")
+#: The variable of characteristic polynomials; a name that no parameter has.
+LAMBDA = sp.Symbol("eigenvalue")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
