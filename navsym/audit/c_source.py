@@ -325,7 +325,8 @@ class Reader(SourceReader):
                     return self.refuse(node, "a member of an expression")
                 name = re.sub(r"\s", "", text_of(node))
                 member = name.removeprefix("this->")
-                if member != name and re.match(r"\w+", member)[0] in self.locals:  # type: ignore[index]
+                is_alone = self.shift < 0  # of a mend nobody knows what is local
+                if member != name and (is_alone or re.match(r"\w+", member)[0] in self.locals):  # type: ignore[index]
                     return self.refuse(node, f"{name} beside a local name that is written alike")
                 return self.part("name", node, member)
             case "conditional_expression":

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.decide import Scope, decide_entry, draw_points
-from navsym.audit.evaluate import spell_entry
+from navsym.audit.evaluate import called_in, spell_entry
 from navsym.audit.form import Function, Part, Unit, names_in, walk
 from navsym.audit.names import squeeze
 from navsym.audit.questions import Entry, NotThereError
@@ -26,6 +26,7 @@ PER_ENTRY = 4000  # changes that are tried, of a short function
 PER_QUESTION = 6000
 SHORT = 40  # statements of one
 MOST_NAMES = 24
+BESIDE = 12  # places of which all changes are tried first
 TOLERANCE = 1e-9
 FAMILIES = (("sin", "cos", "tan", "sqrt"), ("asin", "acos", "atan"), ("exp", "log"))
 SWAPS = {
@@ -40,6 +41,7 @@ TRANSPOSED = {"rust": ".transpose()", "cpp": ".transpose()", "python": ".T", "ma
 
 #: First byte, byte behind the last, and the text in between.
 Edit = tuple[int, int, str]
+Kind = Callable[["Place", list[Part]], Iterator[Edit]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +77,7 @@ class Budget:
 def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     """The smallest change of one statement with which the entry is proved; None where none is found.
 
-    First the statement that assigns the entry is edited, then the others, also in functions that it calls.
+    First the statement that assigns the entry is edited, then those that it depends on, then the others.
     """
     source = entry.source
     if source is None or entry.again is None or not isinstance(entry.expected, Scalar):
@@ -83,19 +85,22 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     assert isinstance(entry.code, Scalar)
     budget.start_entry()
     own = entry.code.origin
-    places = list_places(source)
+    places = list_places(source, own, entry.expected.tree)
     value = None if own is None else right_side(own, entry.place)
     near = [place for place in places if place.statement is own]
     near = [place for place in near if place.part is value] or near
-    places = near + [place for place in places if place not in near]
+    rest = [place for place in places if place not in near]
     price, tried = 1 + len(source.read().met) // SHORT, set[tuple[Any, ...]]()
     probes = list_probes(scope)
     for mend in itertools.chain(
         budget.known,
-        (mend for place in places for mend in place.change(SMALL_EDITS)),
+        change_all(near, [*SMALL_EDITS, edit_names]),
+        change_all(rest[:BESIDE], [*SMALL_EDITS, edit_names]),
+        change_all(rest[BESIDE:], SMALL_EDITS),
         (mend for place in places if place.statement.kind == "declare" for mend in place.change_target()),
-        (mend for place in places for mend in place.change([edit_names])),
-        (mend for place in near for mend in place.change([add_names, wrap])),
+        change_all(rest[BESIDE:], [edit_names]),
+        change_all(near + rest[:BESIDE], [add_names]),
+        change_all(near, [wrap]),
         (mend for place in near or places for mend in place.change_target()),
         (mend for place in near for text in rewrite(source, entry.expected.tree) for mend in place.put(text)),
         (mend for place in places for mend in place.change_target()),
@@ -112,6 +117,50 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     return None
 
 
+def change_all(places: Sequence[Place], kinds: Sequence[Kind]) -> Iterator[Mend]:
+    """The mends of places by edits of some kinds, kind by kind."""
+    return (mend for kind in kinds for place in places for mend in place.change([kind]))
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """The names that a mend may use, those of what is expected first.
+
+    arrays  : names that have entries
+    numbers : names without, and entries of inputs
+    """
+
+    arrays: tuple[str, ...]
+    numbers: tuple[str, ...]
+    others: tuple[str, ...]
+
+    def like(self, name: str) -> Iterator[str]:
+        """Other names, first those that have entries as this one has, or have none."""
+        is_array = name in self.arrays
+        for known in (self.arrays, self.others) if is_array else (self.others, self.arrays):
+            yield from (other for other in known if other != name)
+
+
+def list_words(source: Source, expected: Tree) -> Words:
+    """The names of a function, of its mapping, and of what is expected of it."""
+    spelled = [source.names.spellings.get(name, name) for name in list_names(expected)]
+    first = list(dict.fromkeys(re.split(r"[\[(]", spelling)[0] for spelling in spelled))
+    variables, body = source.read().cases[0].variables, source.function.body
+    parts = [*walk(*body)]
+    arrays = {name for p in parts if p.kind == "index" for name in names_in(p.parts[0])} | {*source.shapes}
+    arrays |= {p.parts[0] for p in parts if p.kind == "declare" and p.parts[2]}
+    arrays |= {name for name, variable in variables.items() if variable.shape}
+    arrays |= {re.split(r"[\[(]", spelling)[0] for spelling in spelled if spelling[-1] in ")]"}
+    known = dict.fromkeys([*first, *sorted(arrays | names_in(*body) | {a.name for a in source.function.arguments})])
+    scalars = [name for name, variable in variables.items() if variable.shape == () and not {*"(@"} & {*name}]
+    entries = [s for s in source.names.spellings.values() if s[-1] in ")]"]
+    return Words(
+        tuple(name for name in known if name in arrays),
+        tuple(dict.fromkeys([*spelled, *scalars, *entries]))[:MOST_NAMES],
+        tuple(name for name in known if name not in arrays),
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class Place:
     """An expression on the right of a statement, which may be wrong, in its function."""
@@ -120,8 +169,9 @@ class Place:
     function: Function
     statement: Part
     part: Part
+    words: Words
 
-    def change(self, kinds: Sequence[Callable[[Place, list[Part]], Iterator[Edit]]]) -> Iterator[Mend]:
+    def change(self, kinds: Sequence[Kind]) -> Iterator[Mend]:
         """The mends by edits of some kinds."""
         (low, high), text = self.part.span, self.source.unit.source
         parts = [inner for inner in walk(self.part) if low <= inner.span[0] < inner.span[1] <= high]
@@ -183,8 +233,8 @@ def read_mend(text: str, unit: Unit) -> Part | None:
     return None if any(inner.kind == "refused" for inner in walk(part)) else part
 
 
-def list_places(source: Source) -> list[Place]:
-    """The right sides of a function, of its last statement first, and those of the functions that it calls."""
+def list_places(source: Source, own: Part | None, expected: Tree) -> list[Place]:
+    """The right sides of a function and of those that it calls: of a statement, of those it depends on, of the others."""
     functions, at = [source.function], 0
     while at < len(functions):
         called = [p.parts[0] for p in walk(*functions[at].body) if p.kind == "call"]
@@ -192,27 +242,32 @@ def list_places(source: Source) -> list[Place]:
         functions += [f for f in dict.fromkeys(fresh) if f not in functions]
         at += 1
     kinds = ("assign", "declare", "return", "do", "for")
-    return [
-        Place(source, function, statement, part)
+    statements = [
+        (function, statement)
         for function in functions
         for statement in sorted((p for p in walk(*function.body) if p.kind in kinds), key=lambda p: -p.line)
-        for part in right_sides(statement)
     ]
+    distances, used, at = {id(own): 0}, names_in(own) | called_in(own) if own is not None else set[str](), 1
+    while fresh := [s for f, s in statements if id(s) not in distances and used & {*written_in(s), f.name}]:
+        distances |= {id(statement): at for statement in fresh}
+        used, at = names_in(*fresh).union(*map(called_in, fresh)), at + 1
+    statements.sort(key=lambda pair: distances.get(id(pair[1]), at))
+    words = list_words(source, expected)
+    return [Place(source, f, s, part, words) for f, s in statements for part in right_sides(s)]
+
+
+def written_in(statement: Part) -> set[str]:
+    """The names that a statement writes."""
+    if statement.kind in ("declare", "for"):
+        return {statement.parts[0]}
+    target = statement.parts[0] if statement.kind == "assign" else None
+    return set() if target is None else names_in(target) | called_in(target)
 
 
 def list_orphans(function: Function) -> set[str]:
     """The names that a function reads, and that nobody has declared."""
     declared = {p.parts[0] for p in walk(*function.body) if p.kind in ("declare", "for")}
     return names_in(*function.body) - declared - {argument.name for argument in function.arguments}
-
-
-def list_arrays(function: Function) -> set[str]:
-    """The names of a function that have entries."""
-    parts = [*walk(*function.body)]
-    bases = {name for p in parts if p.kind == "index" for name in names_in(p.parts[0])}
-    bases |= {p.parts[0] for p in parts if p.kind == "call" and p.parts[0] in function.outputs}
-    declared = {p.parts[0] for p in parts if p.kind == "declare" and p.parts[2]}
-    return bases | declared | {argument.name for argument in function.arguments if argument.shape}
 
 
 def whole_side(statement: Part) -> Any:
@@ -388,9 +443,12 @@ def edit_factors(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """A factor or term less, a square in the place of a factor, and the other way round."""
     for part in parts:
         if part.kind == "op":
-            _, a, b = part.parts
+            sign, a, b = part.parts
             yield a.span[1], b.span[1], ""
             yield a.span[0], b.span[0], ""
+            if sign == "*":
+                text = place.source.unit.text(b)
+                yield a.span[1], b.span[1], f"/({text}*{text})"
     for part in parts:
         if part.kind in ("name", "index", "call"):
             text = place.source.unit.text(part)
@@ -399,43 +457,59 @@ def edit_factors(place: Place, parts: list[Part]) -> Iterator[Edit]:
                 yield *part.span, f"{factor}*{text}"
 
 
+def edit_groups(place: Place, parts: list[Part]) -> Iterator[Edit]:
+    """Parentheses less, or around other operands."""
+    text = place.source.unit.text
+    for part in parts:
+        if part.kind != "op":
+            continue
+        sign, a, b = part.parts
+        for inner, other in ((a, b), (b, a)):
+            if inner.kind != "op" or (sign in "+-") == (inner.parts[0] in "+-"):
+                continue
+            if sign not in "+-":  # (x + y)*z
+                low, high = find_parentheses(place.source.unit.source, inner)
+                if low < inner.span[0]:
+                    yield low, high, text(inner)
+                continue
+            side = inner.parts[2] if inner is a else inner.parts[1]
+            low, high = sorted((side.span, other.span))[0][0], max(side.span[1], other.span[1])
+            yield low, high, f"({cut(place.source.unit.source, low, high)})"
+
+
+def find_parentheses(source: bytes, part: Part) -> tuple[int, int]:
+    """The bytes of a part with the parentheses around it."""
+    before, behind = source[: part.span[0]].rstrip(), source[part.span[1] :]
+    if not before.endswith(b"(") or not behind.lstrip().startswith(b")"):
+        return part.span
+    return len(before) - 1, part.span[1] + len(behind) - len(behind.lstrip()) + 1
+
+
 def edit_names(place: Place, parts: list[Part]) -> Iterator[Edit]:
-    """Another name of the function in the place of one, first arrays for arrays; another entry or number for one."""
-    arrays = list_arrays(place.function)
-    known = sorted(arrays | names_in(*place.function.body) | {a.name for a in place.function.arguments})
-    for is_like in (True, False):
-        for part in parts:
-            for name in known if part.kind == "name" else ():
-                if ((name in arrays) == (part.parts[0] in arrays)) is is_like and name != part.parts[0]:
-                    yield *part.span, name
-        for part in parts:
-            if part.kind == "call" and (part.parts[0] in arrays) is is_like:
-                for name in sorted(arrays - {part.parts[0]}):
-                    yield part.span[0], part.span[0] + len(part.parts[0]), name
+    """Another name in the place of one, or of one before parentheses; another entry or number for one."""
+    for part in parts:
+        if part.kind == "name" or (part.kind == "call" and part.parts[0] in place.words.arrays):
+            for name in place.words.like(part.parts[0]) if part.kind == "name" else place.words.arrays:
+                yield part.span[0], part.span[0] + len(part.parts[0]), name
     for part in parts:
         if part.kind in ("name", "index", "number"):
-            for name in nearby_names(place.source):
+            for name in place.words.numbers:
                 yield *part.span, name
 
 
 def add_names(place: Place, parts: list[Part]) -> Iterator[Edit]:
-    """One more name of the function, as a factor or a term."""
-    names = nearby_names(place.source)
+    """One more name, as a factor, a divisor or a term; arrays are terms of arrays."""
     for part in parts:
         if part.kind in ("name", "index", "call"):
-            text = place.source.unit.text(part)
-            for name in names:
-                yield *part.span, f"{text}*{name}"
+            text, is_array = place.source.unit.text(part), part.parts[0] in place.words.arrays
+            for name in place.words.arrays if is_array else ():
                 yield *part.span, f"({text} + {name})"
                 yield *part.span, f"({text} - {name})"
-
-
-def nearby_names(source: Source) -> list[str]:
-    """Numbers that a right side could use: locals and parameters first, then entries of inputs."""
-    case = source.read().cases[0]
-    scalars = [name for name, variable in case.variables.items() if variable.shape == () and not {*"(@"} & {*name}]
-    entries = [s for s in source.names.spellings.values() if "[" in s or "(" in s]
-    return list(dict.fromkeys([*scalars, *entries]))[:MOST_NAMES]
+            for name in place.words.numbers:
+                yield *part.span, f"{text}*{name}"
+                yield *part.span, f"{text}/{name}"
+                yield *part.span, f"({text} + {name})"
+                yield *part.span, f"({text} - {name})"
 
 
 def edit_shapes(place: Place, parts: list[Part]) -> Iterator[Edit]:
@@ -453,7 +527,7 @@ def edit_shapes(place: Place, parts: list[Part]) -> Iterator[Edit]:
             yield a.span[0], b.span[1], f"{place.source.unit.text(b)}{middle}{place.source.unit.text(a)}"
 
 
-SMALL_EDITS = (edit_signs, edit_indices, edit_calls, edit_numbers, edit_factors, edit_shapes)
+SMALL_EDITS = (edit_signs, edit_indices, edit_calls, edit_numbers, edit_factors, edit_groups, edit_shapes)
 
 
 def wrap(place: Place, parts: list[Part]) -> Iterator[Edit]:
@@ -461,7 +535,7 @@ def wrap(place: Place, parts: list[Part]) -> Iterator[Edit]:
     source, (low, high) = place.source, place.part.span
     text = source.unit.text(place.part)
     inside = f"({text})" if place.part.kind == "op" and place.part.parts[0] in "+-" else text
-    names = nearby_names(source)
+    names = place.words.numbers
     for factor in ("2", "0.5", *names):
         yield low, high, f"{factor}*{inside}"
     for name in names:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, names_in
@@ -15,12 +15,10 @@ MODULES = {"numpy": "np.", "math": "math.", "numpy.linalg": "np.linalg."}
 
 @dataclass(slots=True, eq=False)
 class Reader(SourceReader):
-    """Walks the syntax tree of Python; ``imported`` says what names of numpy and math are called here."""
+    """Walks the syntax tree of Python."""
 
     HEAD, TAIL = "(", ")"
     OPERATORS = OPERATORS | {sign: ("op", sign) for sign in ("//", "@", "**")}
-
-    imported: dict[str, str] = field(default_factory=dict)
 
     @staticmethod
     def find_value(node: Any) -> Any:
@@ -38,10 +36,10 @@ class Reader(SourceReader):
             if module in MODULES:
                 for child in node.children_by_field_name("name"):
                     own = field_of(child, "alias") or child
-                    self.imported[text_of(own)] = MODULES[module] + text_of(field_of(child, "name") or child)
+                    self.unit.imported[text_of(own)] = MODULES[module] + text_of(field_of(child, "name") or child)
         for node in nodes:
             if node.type in ("function_definition", "class_definition"):
-                self.imported.pop(text_of(field_of(node, "name")), None)
+                self.unit.imported.pop(text_of(field_of(node, "name")), None)
 
     def read_body(self, nodes: list[Any]) -> None:
         """Functions and methods, and names of the module that are assigned once, to numbers."""
@@ -235,5 +233,5 @@ class Reader(SourceReader):
             method = text_of(field_of(function, "attribute"))
             return self.part("method", node, self.expression(field_of(function, "object")), method, tuple(arguments))
         if function.type == "identifier":
-            return self.part("call", node, self.imported.get(name, name), tuple(arguments))
+            return self.part("call", node, self.unit.imported.get(name, name), tuple(arguments))
         return self.refuse(node, "a call of an expression")
