@@ -21,6 +21,11 @@ VECTOR = re.compile(r"(?:\w+::)*(?:(?:Sparse)?Vector([2-9]|[1-5]\d)[fd]?(?:<[\w,
 MATRIX = re.compile(
     r"(?:\w+::)*(?:(?:Square)?Matrix([2-9]|[1-5]\d)[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
 )
+NAMED = ("preproc_def", "enumerator")
+DECLARING = (
+    "init_declarator declaration parameter_declaration array_declarator pointer_declarator reference_declarator "
+    "field_declaration"
+).split()
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
 
 
@@ -40,12 +45,28 @@ def shape_of_type(text: str) -> tuple[int, ...] | None:
 
 @dataclass(slots=True, eq=False)
 class Reader(SourceReader):
-    """Walks the syntax tree of C and C++; ``locals`` are the names that the function being read declares."""
+    """Walks the syntax tree of C and C++.
+
+    locals : the names that the function being read declares
+    hidden : first byte of a name that stands in the tree as a number, since the grammar would take it for a type
+    """
 
     HEAD = "int a_ = "
     OPEN = ("if_statement", "for_statement", "compound_statement")
 
     locals: set[str] = field(default_factory=set)
+    hidden: dict[int, str] = field(default_factory=dict)
+
+    def parse(self, source: bytes) -> Any:
+        """The tree of a source in which no variable is taken for a type, as ``b`` is in ``a*(b) - c``."""
+        root = SourceReader.parse(self, source)
+        self.unit.variables |= list_variables(root)
+        while found := [n for n in map(find_type, descend(root)) if text_of(n) in self.unit.variables]:
+            for node in found:
+                self.hidden[node.start_byte] = text_of(node)
+                source = source[: node.start_byte] + b"1" * len(node.text) + source[node.end_byte :]
+            root = SourceReader.parse(self, source)
+        return root
 
     @staticmethod
     def find_value(node: Any) -> Any:
@@ -299,6 +320,8 @@ class Reader(SourceReader):
 
     def read_expression(self, node: Any) -> Part | None:
         match node.type:
+            case "number_literal" if node.start_byte in self.hidden:
+                return self.part("name", node, self.hidden[node.start_byte])
             case "number_literal":
                 return self.number(node)
             case "true" | "false":
@@ -333,9 +356,10 @@ class Reader(SourceReader):
                 fields = (field_of(node, name) for name in ("condition", "consequence", "alternative"))
                 return self.part("choose", node, *map(self.expression, fields))
             case "cast_expression":
-                return self.part(
-                    "cast", node, number_of(text_of(field_of(node, "type"))), self.expression(field_of(node, "value"))
-                )
+                number = number_of(text_of(field_of(node, "type")))
+                if number not in ("int", "real"):
+                    return self.refuse(node, "a cast to a type that is not known, or a name alone in parentheses")
+                return self.part("cast", node, number, self.expression(field_of(node, "value")))
             case "initializer_list":
                 return self.part("list", node, tuple(map(self.expression, named(node))))
             case "pointer_expression":
@@ -414,6 +438,24 @@ class Reader(SourceReader):
         ends = [self.part("op", node, "+", a, n) for a, n in zip(starts, sizes, strict=True)]
         slices = tuple(self.part("slice", node, a, b) for a, b in zip(starts, ends, strict=True))
         return self.part("index", node, base, slices)
+
+
+def find_type(node: Any) -> Any:
+    """The name of the type in a cast; None where there is none."""
+    kind = field_of(field_of(node, "type"), "type") if node.type == "cast_expression" else None
+    return kind if kind is not None and kind.type == "type_identifier" else None
+
+
+def list_variables(root: Any) -> set[str]:
+    """The names of a source that are declared or defined as values, and never as types."""
+    values, types = set[str](), set[str]()
+    for node in descend(root):
+        name = node if node.type == "identifier" else field_of(node, "name") if node.type in NAMED else None
+        if name is not None and node.parent is not None and (node.type in NAMED or node.parent.type in DECLARING):
+            values.add(text_of(name))
+        elif node.type.endswith(("_specifier", "type_definition", "alias_declaration")):
+            types |= {text_of(child) for child in node.children if child.type == "type_identifier"}
+    return values - types
 
 
 def list_commas(node: Any) -> list[Any]:

@@ -29,8 +29,9 @@ from navsym.audit.values import (
     places_of,
     quaternion_product,
     raise_to,
+    total,
 )
-from navsym.language.tree import Tree, build_number
+from navsym.language.tree import Tree, build_call, build_number
 
 CASES = 32
 INLINED = 12
@@ -74,6 +75,7 @@ class Reading:
     refused   : line -> reason
     met       : the statements that were met, by their spans
     valueless : assignments that are read and depend on what is not, with its reason
+    ways      : whether conditions that are not read, and maxima, have two ways
     """
 
     unit: Unit
@@ -83,6 +85,7 @@ class Reading:
     met: set[tuple[int, int]] = field(default_factory=set)
     refused_spans: set[tuple[int, int]] = field(default_factory=set)
     valueless: dict[tuple[int, int], str] = field(default_factory=dict)
+    ways: tuple[bool, bool] = (True, True)
 
 
 class Returning(Exception):
@@ -103,7 +106,7 @@ class Evaluator:
 
     choices : the ways taken at undecided conditions; None leaves unread what depends on one
     is_bold : True where a condition that is not read has two ways as well
-    is_split : True where a minimum or maximum has two ways; else it is not read
+    is_split : True where a minimum or maximum has two ways; else it is a formula
     frame   : the names of the running function
     shadows : what a block's own names have hidden, one table for each block
     outputs : what the last function of MATLAB that was read returned
@@ -483,8 +486,10 @@ class Evaluator:
         if x is not None and y is not None:
             is_first = x >= y
         else:  # one condition for both, so that the larger and the smaller of the same two are told apart together
-            if not self.is_split:
-                raise Unreadable(part.line, f"a minimum or maximum beside more than {CASES} cases")
+            if not self.is_split:  # (a + b + |a - b|)/2 is the larger one
+                apart = build_call("abs", add(a.tree, minus(b.tree)))
+                whole = total([a.tree, b.tree, apart if sign == ">=" else minus(apart)])
+                return Scalar(divide(whole, build_number(2)))
             is_first = self.choose(Condition(text, part.line, True, ">=", a.tree, b.tree))
         return a if is_first == (sign == ">=") else b
 

@@ -43,6 +43,8 @@ from navsym.core.errors import TooLargeError
 from navsym.language.tree import NUMBER, build_number
 
 STEPS = 250_000
+#: First two ways for all that is undecided.
+WAYS = ((True, True), (False, True), (False, False))
 
 
 def read_function(
@@ -51,17 +53,19 @@ def read_function(
     inputs: Inputs,
     shapes: Mapping[str, Index] | None = None,
     edits: Mapping[int, Part] | None = None,
+    known: Reading | None = None,
 ) -> Reading:
     """All cases of a function; more than 32 leave unread what its branches write.
 
     inputs : source spelling of an input -> its symbol
     shapes : sizes of inputs that the source does not say
     edits  : expressions and statements in the place of others, by ``id``
+    known  : the reading without edits
     """
     reading = Reading(unit, function)
     start = functools.partial(Machine, reading, inputs, shapes or {}, edits or {})
-    for ways in ((True, True), (False, True), (False, False)):  # first two ways for all that is undecided
-        reading.cases = list_cases(start, reading, function, *ways)
+    for reading.ways in WAYS[WAYS.index(known.ways) if known is not None else 0 :]:
+        reading.cases = list_cases(start, reading, function, *reading.ways)
         if reading.cases:
             break
     else:

@@ -84,6 +84,7 @@ class Unit:
     pieces    : first byte, lines before it and file of every further file that was read behind this one
     defined   : names that the preprocessor knows, as a mapping declares; None where it does not say
     members   : member of a structure -> what it holds and its sizes, where the file says so
+    variables : names of C that are values, and no types
     imported  : what names of numpy and math are called in Python
     """
 
@@ -98,6 +99,7 @@ class Unit:
     pieces: tuple[tuple[int, int, str], ...] = ()
     defined: frozenset[str] | None = None
     members: dict[str, tuple[str, tuple[int, ...] | None]] = field(default_factory=dict)
+    variables: set[str] = field(default_factory=set)
     imported: dict[str, str] = field(default_factory=dict)
 
     def locate(self, line: int) -> tuple[str, int]:

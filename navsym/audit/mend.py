@@ -26,7 +26,7 @@ PER_ENTRY = 4000  # changes that are tried, of a short function
 PER_QUESTION = 6000
 SHORT = 40  # statements of one
 MOST_NAMES = 24
-BESIDE = 12  # places of which all changes are tried first
+BESIDE = 12  # places that an entry depends on directly, of which all changes are tried first
 TOLERANCE = 1e-9
 FAMILIES = (("sin", "cos", "tan", "sqrt"), ("asin", "acos", "atan"), ("exp", "log"))
 SWAPS = {
@@ -90,16 +90,19 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     near = [place for place in places if place.statement is own]
     near = [place for place in near if place.part is value] or near
     rest = [place for place in places if place not in near]
-    price, tried = 1 + len(source.read().met) // SHORT, set[tuple[Any, ...]]()
+    beside = [place for place in rest if place.distance < 2][:BESIDE]
+    rest = [place for place in rest if place not in beside]
+    reading, tried = source.read(), set[tuple[Any, ...]]()
+    price = 1 + len(reading.cases) * len(reading.met) // SHORT
     probes = list_probes(scope)
     for mend in itertools.chain(
         budget.known,
         change_all(near, [*SMALL_EDITS, edit_names]),
-        change_all(rest[:BESIDE], [*SMALL_EDITS, edit_names]),
-        change_all(rest[BESIDE:], SMALL_EDITS),
+        change_all(beside, [*SMALL_EDITS, edit_names]),
+        change_all(rest, SMALL_EDITS),
         (mend for place in places if place.statement.kind == "declare" for mend in place.change_target()),
-        change_all(rest[BESIDE:], [edit_names]),
-        change_all(near + rest[:BESIDE], [add_names]),
+        change_all(rest, [edit_names]),
+        change_all(near + beside, [add_names]),
         change_all(near, [wrap]),
         (mend for place in near or places for mend in place.change_target()),
         (mend for place in near for text in rewrite(source, entry.expected.tree) for mend in place.put(text)),
@@ -163,13 +166,17 @@ def list_words(source: Source, expected: Tree) -> Words:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """An expression on the right of a statement, which may be wrong, in its function."""
+    """An expression on the right of a statement, which may be wrong, in its function.
+
+    distance : how many statements lie between it and the entry, 0 for the one that assigns it
+    """
 
     source: Source
     function: Function
     statement: Part
     part: Part
     words: Words
+    distance: int
 
     def change(self, kinds: Sequence[Kind]) -> Iterator[Mend]:
         """The mends by edits of some kinds."""
@@ -234,7 +241,7 @@ def read_mend(text: str, unit: Unit) -> Part | None:
 
 
 def list_places(source: Source, own: Part | None, expected: Tree) -> list[Place]:
-    """The right sides of a function and of those that it calls: of a statement, of those it depends on, of the others."""
+    """The right sides of a function and of those that it calls, those on which a statement depends first."""
     functions, at = [source.function], 0
     while at < len(functions):
         called = [p.parts[0] for p in walk(*functions[at].body) if p.kind == "call"]
@@ -247,13 +254,24 @@ def list_places(source: Source, own: Part | None, expected: Tree) -> list[Place]
         for function in functions
         for statement in sorted((p for p in walk(*function.body) if p.kind in kinds), key=lambda p: -p.line)
     ]
-    distances, used, at = {id(own): 0}, names_in(own) | called_in(own) if own is not None else set[str](), 1
-    while fresh := [s for f, s in statements if id(s) not in distances and used & {*written_in(s), f.name}]:
+    distances, fresh, at = {id(own): 0}, [own] if own is not None else [], 1
+    while fresh:
+        used = set[str]().union(*map(read_in, fresh))
+        fresh = [s for f, s in statements if id(s) not in distances and used & {*written_in(s), f.name}]
         distances |= {id(statement): at for statement in fresh}
-        used, at = names_in(*fresh).union(*map(called_in, fresh)), at + 1
-    statements.sort(key=lambda pair: distances.get(id(pair[1]), at))
+        at += 1
     words = list_words(source, expected)
-    return [Place(source, f, s, part, words) for f, s in statements for part in right_sides(s)]
+    places = [
+        Place(source, f, s, part, words, distances.get(id(s), at)) for f, s in statements for part in right_sides(s)
+    ]
+    return sorted(places, key=lambda place: place.distance)
+
+
+def read_in(statement: Part) -> set[str]:
+    """The names that a statement reads; ``+=`` reads what it writes."""
+    is_new = statement.kind in ("assign", "declare") and not (statement.kind == "assign" and statement.parts[1])
+    read = whole_side(statement) if is_new else statement
+    return set() if read is None else names_in(read) | called_in(read)
 
 
 def written_in(statement: Part) -> set[str]:
@@ -441,20 +459,20 @@ def edit_numbers(place: Place, parts: list[Part]) -> Iterator[Edit]:
 
 def edit_factors(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """A factor or term less, a square in the place of a factor, and the other way round."""
+    text, source = place.source.unit.text, place.source.unit.source
     for part in parts:
         if part.kind == "op":
             sign, a, b = part.parts
-            yield a.span[1], b.span[1], ""
-            yield a.span[0], b.span[0], ""
+            (low, middle), (start, high) = find_parentheses(source, a), find_parentheses(source, b)
+            yield middle, high, ""
+            yield low, start, ""
             if sign == "*":
-                text = place.source.unit.text(b)
-                yield a.span[1], b.span[1], f"/({text}*{text})"
+                yield middle, high, f"/({text(b)}*{text(b)})"
     for part in parts:
         if part.kind in ("name", "index", "call"):
-            text = place.source.unit.text(part)
-            yield *part.span, f"({text}*{text})"
+            yield *part.span, f"({text(part)}*{text(part)})"
             for factor in ("2", "0.5"):
-                yield *part.span, f"{factor}*{text}"
+                yield *part.span, f"{factor}*{text(part)}"
 
 
 def edit_groups(place: Place, parts: list[Part]) -> Iterator[Edit]:
@@ -522,9 +540,9 @@ def edit_shapes(place: Place, parts: list[Part]) -> Iterator[Edit]:
             yield part.parts[0].span[1], part.span[1], ""
         pair = part.parts[1:] if part.kind == "op" else part.parts[1][:2] if part.kind == "call" else ()
         if len(pair) == 2:
-            a, b = pair
-            middle = place.source.unit.source[a.span[1] : b.span[0]].decode("utf-8", "replace")
-            yield a.span[0], b.span[1], f"{place.source.unit.text(b)}{middle}{place.source.unit.text(a)}"
+            source = place.source.unit.source
+            (low, middle), (start, high) = (find_parentheses(source, side) for side in pair)
+            yield low, high, f"{cut(source, start, high)}{cut(source, middle, start)}{cut(source, low, middle)}"
 
 
 SMALL_EDITS = (edit_signs, edit_indices, edit_calls, edit_numbers, edit_factors, edit_groups, edit_shapes)

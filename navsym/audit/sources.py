@@ -14,7 +14,7 @@ from navsym.audit.execute import read_function
 from navsym.audit.form import Argument, Function, Part, Unit, names_in
 from navsym.audit.fragment import take_lines
 from navsym.audit.names import Names
-from navsym.audit.syntax import SIZE, parse_source, read_decimal
+from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import (
     Array,
     Index,
@@ -89,7 +89,7 @@ class Source:
     def read(self, edits: Mapping[int, Part] | None = None) -> Reading:
         """The function, read once; with edits it is read again."""
         if edits:
-            return read_function(self.unit, self.function, self.symbol, self.shapes, edits)
+            return read_function(self.unit, self.function, self.symbol, self.shapes, edits, self.reading)
         if self.reading is None:
             self.reading = read_function(self.unit, self.function, self.symbol, self.shapes)
         return self.reading
@@ -147,7 +147,8 @@ def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | 
     module = load_reader(language)
     rules = module.RULES_OF_CPP if language == "cpp" else module.RULES
     unit = Unit(where, language, rules, data, defined=defined)
-    module.Reader(unit).read_file(parse_source(data, language, where))
+    reader = module.Reader(unit)
+    reader.read_file(reader.parse(data))
     return unit
 
 

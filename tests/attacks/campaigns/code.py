@@ -1,7 +1,8 @@
 """One-token mutants of readable code: one that is proved equal to its original must compute the same when it is run.
 
 The functions are those of the gallery, our own in the styles of flown filters, and what navsym exports, in C, C++ with
-Eigen, Python, MATLAB and Rust. The judges are three compilers, numpy and Octave. ``python -m tests.attacks.campaigns.code NUMBER SEED`` prints the counts.
+Eigen, Python, MATLAB and Rust. The judges are three compilers, numpy and Octave.
+``python -m tests.attacks.campaigns.code NUMBER SEED`` prints the counts.
 """
 
 from __future__ import annotations
@@ -131,7 +132,9 @@ def list_subjects() -> list[Subject]:
         blocks = tomllib.loads(path.with_suffix(".toml").read_text())["code"]
         for side in SIDES:
             language, text = LANGUAGES[path.suffix], leave_out(path, next(s for s in SIDES if s != side))
-            text = text if language != "cpp" else re.sub(r"(Vector\d|Matrix\d)f", r"\1d", text).replace("float", "double")
+            text = (
+                text if language != "cpp" else re.sub(r"(Vector\d|Matrix\d)f", r"\1d", text).replace("float", "double")
+            )
             symbols = next(b for b in blocks if b["function"] == side).get("symbols", {})
             sizes = {n: d.get("vector", d.get("matrix")) for n, d in symbols.items() if isinstance(d, dict)}
             shapes = tuple((n, (s,) if isinstance(s, int) else tuple(s)) for n, s in sizes.items() if s)
