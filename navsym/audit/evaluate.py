@@ -9,9 +9,11 @@ from fractions import Fraction
 from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
 from navsym.audit.functions import CONSTANTS, METHODS, call_known, extreme_of, is_known, is_method
 from navsym.audit.values import (
+    LARGEST,
     Array,
     Cell,
     Index,
+    List,
     Quaternion,
     Scalar,
     Unread,
@@ -34,6 +36,7 @@ from navsym.audit.values import (
 from navsym.language.tree import Tree, build_call, build_number
 
 CASES = 32
+KINDS: dict[str, type[Array]] = {"quaternion": Quaternion, "list": List}
 INLINED = 12
 
 #: Source spelling of an input -> its symbol.
@@ -308,7 +311,8 @@ class Evaluator:
             if kind == "list":
                 if self.unit.language == "matlab":
                     return self.rows(part)
-                return self.stack([self.value(item) for item in part.parts[0]], part.line)
+                whole = self.stack([self.value(item) for item in part.parts[0]], part.line)
+                return List(whole.shape, whole.cells) if self.unit.language == "python" else whole
             if kind == "compare" or (kind in ("both", "either", "not") and self.unit.rules.integer):
                 return Scalar(build_number(int(self.decide_known(part))), "int")
             if kind == "choose":
@@ -337,7 +341,7 @@ class Evaluator:
             if variable.shape is None and variable.cells and () not in variable.cells:
                 raise Unreadable(part.line, f"{name} as a whole, of unknown size")
             return self.read(variable, (), part.line)
-        kind = Quaternion if variable.number == "quaternion" else Array
+        kind = KINDS.get(variable.number, Array)
         return kind(variable.shape, tuple(self.read(variable, p, part.line) for p in places_of(variable.shape)))
 
     def macro(self, name: str, line: int) -> Value:
@@ -357,6 +361,10 @@ class Evaluator:
         """The arithmetic of the language."""
         if isinstance(a, Unread) or isinstance(b, Unread):
             return a if isinstance(a, Unread) else b
+        if isinstance(a, List) or isinstance(b, List):
+            joined = self.join_lists(sign, a, b)
+            if joined is not None:
+                return joined
         if sign in ("*", "@"):
             both = isinstance(a, Array) and isinstance(b, Array)
             if isinstance(a, Quaternion) and isinstance(b, Quaternion):
@@ -383,6 +391,18 @@ class Evaluator:
                 raise Unreadable(line, "the power of a matrix")
             return map_cells(raise_to, a, b)
         raise Unreadable(line, f"the operator {sign}")
+
+    def join_lists(self, sign: str, a: Value, b: Value) -> Value | None:
+        """``[x, y] + [z]`` and ``[x]*3``; None where one side is an array of numpy."""
+        pair = [value for value in (a, b) if isinstance(value, List)]
+        if len(pair) == 2 and sign == "+" and pair[0].shape[1:] == pair[1].shape[1:]:
+            return List((pair[0].shape[0] + pair[1].shape[0], *pair[0].shape[1:]), pair[0].cells + pair[1].cells)
+        times = constant_of(b if isinstance(a, List) else a)
+        if len(pair) == 1 and sign == "*" and times is not None and times.denominator == 1 and 0 < times <= LARGEST:
+            return List((pair[0].shape[0] * int(times), *pair[0].shape[1:]), pair[0].cells * int(times))
+        if isinstance(a, Array) and isinstance(b, Array) and len(pair) == 1:
+            return None
+        raise Unreadable(0, "arithmetic of a list, which is no array")
 
     def quotient(self, sign: str, a: Value, b: Value, line: int) -> Value:
         """A quotient; of integers it is cut in C, which is read for constants only."""
@@ -414,11 +434,13 @@ class Evaluator:
             base = self.value(part.parts[0]) if part.parts[0].kind in ("call", "method", "op", "index") else None
             if not isinstance(base, Array):
                 raise
-            variable = Variable("", shape=base.shape, cells=dict(zip(places_of(base.shape), base.cells, strict=True)))
+            number = "list" if isinstance(base, List) else "real"
+            variable = Variable("", number, base.shape, cells=dict(zip(places_of(base.shape), base.cells, strict=True)))
             places, shape = self.resolve(variable, [*part.parts[1]], part.line)
         if not shape:
             return self.read(variable, places[0], part.line)
-        return Array(shape, tuple(self.read(variable, place, part.line) for place in places))
+        kind = List if variable.number == "list" else Array
+        return kind(shape, tuple(self.read(variable, place, part.line) for place in places))
 
     def rows(self, part: Part) -> Value:
         """The brackets of MATLAB: rows of numbers, or of blocks, in which a vector is a column."""
@@ -427,7 +449,7 @@ class Evaluator:
             return join(*(join(*row, across=True) for row in rows), across=False)
         return self.stack([self.stack(row, part.line) for row in rows], part.line)
 
-    def stack(self, values: list[Value], line: int) -> Value:
+    def stack(self, values: list[Value], line: int) -> Array:
         """Numbers as a vector, vectors as the rows of a matrix."""
         shapes = {value.shape if isinstance(value, Array) else () for value in values}
         if len(shapes) != 1 or not values:
@@ -563,7 +585,7 @@ class Evaluator:
             return self.linked(given, given)
         value = self.value(given)
         shape = value.shape if isinstance(value, Array) else ()
-        variable = Variable(argument.name, argument.number, shape)
+        variable = Variable(argument.name, "list" if isinstance(value, List) else argument.number, shape)
         if isinstance(value, Unread):
             variable.all_unread = value
             return variable

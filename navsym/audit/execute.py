@@ -26,6 +26,7 @@ from navsym.audit.values import (
     Array,
     Cell,
     Index,
+    List,
     Quaternion,
     Scalar,
     Unread,
@@ -335,7 +336,10 @@ class Machine(Evaluator):
         """An assignment, also of a whole array, a row or a block."""
         result = self.value(value)
         if sign:
-            result = self.combine(sign, self.value(target), result, statement.line)
+            before = self.value(target)
+            if isinstance(before, List):
+                raise Unreadable(statement.line, f"{sign}= of a list, which is no array")
+            result = self.combine(sign, before, result, statement.line)
         self.note_unread(result, statement)
         if target.kind == "name" and self.member_of_array(target) is not None:
             raise Unreadable(statement.line, "a member of an array as a target")
@@ -366,7 +370,8 @@ class Machine(Evaluator):
         if is_python and value.kind == "name" and isinstance(result, Array):
             self.frame[name] = self.variable(value.parts[0])
             return
-        variable = Variable(name, shape=result.shape if isinstance(result, Array) else ())
+        number = "list" if isinstance(result, List) else "real"
+        variable = Variable(name, number, result.shape if isinstance(result, Array) else ())
         cells = result.cells if isinstance(result, Array) else ()
         if is_python and value.kind == "call" and cells and all(is_integer(cell) for cell in cells):
             variable.number = "int"  # an array of integers cuts what is assigned to its entries

@@ -9,6 +9,7 @@ from fractions import Fraction
 from navsym.audit.form import Unit
 from navsym.audit.values import (
     Array,
+    List,
     Quaternion,
     Scalar,
     Unread,
@@ -105,6 +106,7 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
     unread = next((value for value in values if isinstance(value, Unread)), None)
     if unread is not None:
         return unread
+    values = [Array(value.shape, value.cells) if isinstance(value, List) else value for value in values]
     bare = bare_name(name)
     if bare in PLAIN and len(values) == 1:
         if bare == "abs" and unit.language in ("c",):

@@ -80,6 +80,10 @@ class Quaternion(Array):
     """The cells of a quaternion of nalgebra: i, j, k and w, in this order."""
 
 
+class List(Array):
+    """A list or tuple of Python, which ``+`` joins and ``*`` repeats."""
+
+
 Value = Scalar | Array | Unread
 
 
