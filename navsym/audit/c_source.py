@@ -226,6 +226,8 @@ class Reader(SourceReader):
         value = first[0].parts[3] if first[0].kind == "declare" else first[0].parts[2]
         sign, left = text_of(field_of(test, "operator")), text_of(field_of(test, "left"))
         counter = update[0].parts[0]
+        if sign == "!=" and self.unit.text(update[0].parts[2]) in ("1", text_of(step)):  # i != n; i++
+            sign = "<" if update[0].parts[1] == "+" else ">"
         if left != name or counter.kind != "name" or counter.parts[0] != name or sign not in ("<", "<=", ">", ">="):
             return unread
         stop = self.expression(field_of(test, "right"))
@@ -405,7 +407,8 @@ class Reader(SourceReader):
         if name in ("static_cast<float>", "static_cast<double>") and arguments:
             return self.part("cast", node, "real", arguments[0])
         if shape_of_type(name) is not None:
-            return self.part("list", node, arguments)
+            is_copy = len(arguments) == 1  # of a matrix
+            return self.part("method", node, *arguments, "eval", ()) if is_copy else self.part("list", node, arguments)
         if found := re.fullmatch(r"\(\*(\w+)\)", name):  # (*M)(i, j)
             name = found[1]
         if (
@@ -422,22 +425,37 @@ class Reader(SourceReader):
         return self.refuse(node, "a call of an expression")
 
     def block_of(self, node: Any, base: Part, method: str, arguments: tuple[Part, ...]) -> Part | None:
-        """``M.block<p, q>(i, j)``, ``M.block(i, j, p, q)`` and the like of vectors as slices; None for others."""
-        bare = method.replace(" ", "").replace("template", "")
-        found = re.fullmatch(r"(block|segment|head|tail)(?:<([\d,]+)>)?", bare)
-        if found is None or found[1] == "tail":
+        """``M.block<p, q>(i, j)``, ``M.block(i, j, p, q)``, ``M.row(i)`` and the like as slices; None for others."""
+        bare = re.sub(r"\s|template", "", method)
+        if bare in ("row", "col") and len(arguments) == 1:
+            one = self.part("number", node, 1, "int")
+            row = self.part("slice", node, arguments[0], self.part("op", node, "+", arguments[0], one))
+            whole = self.part("slice", node, None, None)
+            return self.part("index", node, base, (row, whole) if bare == "row" else (whole, arguments[0]))
+        found = re.fullmatch(r"(block|segment|head|tail|(top|bottom)(Left|Right)Corner)(?:<([\d,]+)>)?", bare)
+        if found is None:
             return None
-        sizes = [self.part("number", node, int(n), "int") for n in (found[2] or "").split(",") if n]
+        sizes = [self.part("number", node, int(n), "int") for n in (found[4] or "").split(",") if n]
         starts = [*arguments]
         if not sizes:
-            starts, sizes = starts[: len(starts) // 2], starts[len(starts) // 2 :]
-        if found[1] == "head":
-            starts, sizes = [self.part("number", node, 0, "int")], sizes
-        if not starts or len(starts) != len(sizes):
-            return None
-        ends = [self.part("op", node, "+", a, n) for a, n in zip(starts, sizes, strict=True)]
-        slices = tuple(self.part("slice", node, a, b) for a, b in zip(starts, ends, strict=True))
-        return self.part("index", node, base, slices)
+            at = len(starts) // 2 if found[1] in ("block", "segment") else 0
+            starts, sizes = starts[:at], starts[at:]
+        if found[1] in ("block", "segment"):
+            ends = [self.part("op", node, "+", a, n) for a, n in zip(starts, sizes, strict=False)]
+            slices = [self.part("slice", node, a, b) for a, b in zip(starts, ends, strict=False)]
+        else:
+            sides = [found[1] == "tail"] if found[2] is None else [found[2] == "bottom", found[3] == "Right"]
+            slices = [self.end_of(node, n, is_last) for n, is_last in zip(sizes, sides, strict=False)]
+            starts = sides  # type: ignore[assignment]
+        is_known = starts and len(starts) == len(sizes) and all(part.kind == "slice" for part in slices)
+        return self.part("index", node, base, tuple(slices)) if is_known else None
+
+    def end_of(self, node: Any, size: Part, is_last: bool) -> Part:
+        """The first or the last cells of a side; how many must be a number."""
+        if size.kind != "number" or size.parts[0] < 1:
+            return self.refuse(node, "a number of cells that is no number")
+        low = self.part("minus", node, size) if is_last else None
+        return self.part("slice", node, low, None if is_last else size)
 
 
 def find_type(node: Any) -> Any:

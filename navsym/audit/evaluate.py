@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import itertools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -23,6 +25,7 @@ from navsym.audit.values import (
     add,
     constant_of,
     divide,
+    invert,
     join,
     map_cells,
     matrix_product,
@@ -36,6 +39,7 @@ from navsym.audit.values import (
 from navsym.language.tree import Tree, build_call, build_number
 
 CASES = 32
+JOINS = {f"{module}.{name}": name for module in ("np", "numpy") for name in "hstack vstack concatenate block".split()}
 KINDS: dict[str, type[Array]] = {"quaternion": Quaternion, "list": List}
 INLINED = 12
 
@@ -244,30 +248,38 @@ class Evaluator:
     def resolve(self, variable: Variable, indices: list[Part], line: int) -> tuple[list[Index], Index]:
         """The places that indices and slices mean, and their shape."""
         sizes = variable.shape
-        if sizes and len(sizes) == 2 and 1 in sizes and len(indices) == 1 and self.unit.language == "matlab":
+        if sizes and len(sizes) == 2 and 1 in sizes and len(indices) == 1 and self.unit.language in ("matlab", "cpp"):
             spot = self.index_range(indices[0], max(sizes), line)
-            return [(0, k) if sizes[0] == 1 else (k, 0) for k in spot[0]], spot[1]
+            shape = (1, *spot[1]) if sizes[0] == 1 and spot[1] else spot[1]
+            return [(0, k) if sizes[0] == 1 else (k, 0) for k in spot[0]], shape
         if sizes and len(indices) < len(sizes) and self.unit.language != "matlab":
             indices = [*indices, *(Part("slice", line, (None, None)) for _ in range(len(sizes) - len(indices)))]
         is_column = sizes is not None and len(indices) == 2 and len(sizes) == 1 and self.unit.rules.matrix
         if is_column and self.whole(indices[1]) == self.unit.rules.first:  # v(i, 0)
             indices = indices[:1]
+        if sizes == () and self.unit.language == "matlab" and all(self.whole(index) == 1 for index in indices):
+            return [()], ()  # of a number
         if sizes is not None and len(indices) != len(sizes):
             raise Unreadable(line, f"{len(indices)} indices of an array of {len(sizes)}")
-        rows: list[list[int]] = []
-        shape: list[int] = []
-        for k, index in enumerate(indices):
-            spot = self.index_range(index, sizes[k] if sizes else None, line)
-            rows.append(spot[0])
-            shape += spot[1]
-        places: list[Index] = [()]
-        for row in rows:
-            places = [(*place, i) for place in places for i in row]
-        return places, tuple(shape)
+        spots = [self.index_range(index, sizes[k] if sizes else None, line) for k, index in enumerate(indices)]
+        shape = tuple(size for _, sides in spots for size in sides)
+        if self.unit.language == "matlab" and len(spots) == 2 and shape and not spots[0][1]:
+            shape = (1, *shape)  # a row stays one
+        return [*itertools.product(*(row for row, _ in spots))], shape
 
     def index_range(self, index: Part, size: int | None, line: int) -> tuple[list[int], Index]:
         """The whole numbers that one index means, from 0, and its part of the shape."""
-        first = self.unit.rules.first
+        first, outer = self.unit.rules.first, self.frame.pop("end", None)
+        if self.unit.language == "matlab" and size is not None:
+            self.frame["end"] = Variable("end", "int", (), {(): Scalar(build_number(size), "int")})
+        try:
+            return self.index_inside(index, size, first, line)
+        finally:
+            self.frame.pop("end", None)
+            self.frame |= {} if outer is None else {"end": outer}
+
+    def index_inside(self, index: Part, size: int | None, first: int, line: int) -> tuple[list[int], Index]:
+        """The same, where ``end`` is the size."""
         if index.kind == "slice":
             if size is None:
                 raise Unreadable(line, "a slice of an array without a known size")
@@ -387,9 +399,12 @@ class Evaluator:
         if sign in ("/", "%", "//"):
             return self.quotient(sign, a, b, line)
         if sign == "**":
-            if isinstance(a, Array) and self.unit.rules.matrix:
+            if not isinstance(a, Array) or not self.unit.rules.matrix:
+                return map_cells(raise_to, a, b)
+            times = constant_of(b)
+            if times is None or times.denominator != 1 or not 0 < times < 9 or len({*a.shape}) != 1:
                 raise Unreadable(line, "the power of a matrix")
-            return map_cells(raise_to, a, b)
+            return functools.reduce(matrix_product, [a] * int(times))
         raise Unreadable(line, f"the operator {sign}")
 
     def join_lists(self, sign: str, a: Value, b: Value) -> Value | None:
@@ -407,7 +422,9 @@ class Evaluator:
     def quotient(self, sign: str, a: Value, b: Value, line: int) -> Value:
         """A quotient; of integers it is cut in C, which is read for constants only."""
         if isinstance(b, Array) and self.unit.rules.matrix:
-            raise Unreadable(line, "division by a matrix")
+            if self.unit.language != "matlab" or len(b.shape) != 2:
+                raise Unreadable(line, "division by a matrix")
+            return matrix_product(a, invert(b))
         whole = [isinstance(v, Scalar) and v.number == "int" for v in (a, b)]
         if sign == "/" and not (self.unit.rules.integer and all(whole)):
             result = map_cells(divide, a, b)
@@ -486,6 +503,8 @@ class Evaluator:
             return self.inline(part, wants_value)
         if name not in self.frame and (sign := extreme_of(name, self.unit.language)) and len(arguments) == 2:
             return self.extreme(part, sign)
+        if name in JOINS and self.unit.language == "python" and len(arguments) == 1 and arguments[0].kind == "list":
+            return self.join_arrays(JOINS[name], arguments[0])
         if name not in self.frame and is_known(name, self.unit.language):
             return call_known(name, [self.value(a) for a in arguments], self.unit, part.line)
         may_be_entry = name in self.frame or name in self.globals or self.unit.language in ("cpp", "matlab")
@@ -495,6 +514,22 @@ class Evaluator:
         if not arguments and wants_value and self.unit.language in ("c", "cpp"):
             return self.read(self.variable(f"{name}()"), (), part.line)
         raise Unreadable(part.line, f"the function {name}, which this file does not define")
+
+    def join_arrays(self, name: str, part: Part) -> Value:
+        """``np.hstack([a, b])`` and its like; a vector is a row of a matrix, and is joined with vectors to one."""
+        items = part.parts[0]
+        if name == "block" and items and all(item.kind == "list" for item in items):
+            return join(*(self.join_arrays("row", item) for item in items), across=False)
+        values = [self.value(item) for item in items]
+        sizes = {len(value.shape) if isinstance(value, Array) else 0 for value in values}
+        if sizes == {1} and name in ("hstack", "concatenate"):
+            cells = tuple(c for value in values for c in value.cells)  # type: ignore[union-attr]
+            return Array((len(cells),), cells)
+        known = {"row": {0, 1, 2}, "vstack": {1, 2}, "hstack": {2}, "concatenate": {2}}.get(name, set())
+        if not sizes <= known:
+            raise Unreadable(part.line, f"{name} of arrays of different shapes")
+        rows = [Array((1, *v.shape), v.cells) if isinstance(v, Array) and len(v.shape) == 1 else v for v in values]
+        return join(*rows, across=name in ("hstack", "row"))
 
     def extreme(self, part: Part, sign: str) -> Value:
         """The larger or the smaller of two numbers, as cases."""

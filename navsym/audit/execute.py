@@ -469,6 +469,14 @@ class Machine(Evaluator):
                 return
         elif call.kind == "call" and (call.parts[0] in HARMLESS or call.parts[0] in self.unit.ignored):
             return
+        elif call.kind == "call" and call.parts[0] == "memcpy" and len(call.parts[1]) == 3:
+            target, source, size = call.parts[1]
+            names = [self.unit.text(part) for part in (target, source)]
+            local = [name for name in names if any(name in table for table in self.shadows)]
+            if not any(self.unit.text(size).replace(" ", "") == f"sizeof({name})" for name in local):
+                raise Unreadable(statement.line, "memcpy of other than sizeof an array that is declared here")
+            self.run_assign(target, "", source, statement)
+            return
         elif call.kind == "call" and call.parts[0] == "memset":
             self.reset(call.parts[1][0], "memset", call.parts[1][1:2], statement)
             return

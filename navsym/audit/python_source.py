@@ -120,16 +120,18 @@ class Reader(SourceReader):
         left, right = field_of(node, "left"), field_of(node, "right")
         if right is None:
             return ()
-        if right.type == "assignment":
-            return (self.unread(node, "an assignment of an assignment"),)
-        targets = named(left) if left.type in ("pattern_list", "tuple_pattern") else [left]
+        targets, chain = named(left) if left.type in ("pattern_list", "tuple_pattern") else [left], [left]
+        while right.type == "assignment":  # a = b = x
+            chain, right = [*chain, field_of(right, "left")], field_of(right, "right")
+        if len(targets) > 1 and len(chain) > 1:
+            return (self.unread(node, "several names assigned twice at once"),)
         value = self.expression(right)
-        if len(targets) == 1:
-            return (self.part("assign", node, self.expression(targets[0]), "", value),)
         first: tuple[Part, ...] = ()
-        if value.kind == "call":  # a, b = f(x): the call is made once, under a name that no source can have
-            once = self.part("name", right, f"several@{node.start_byte}")
+        if value.kind != "name" and (len(chain) > 1 or (len(targets) > 1 and value.kind == "call")):
+            once = self.part("name", right, f"several@{node.start_byte}")  # made once; no source can have this name
             first, value = (self.part("assign", node, once, "", value),), once
+        if len(targets) == 1:
+            return (*first, *(self.part("assign", node, self.expression(target), "", value) for target in chain))
         is_computed = value.kind in ("op", "method", "minus")
         if is_computed and {text_of(target) for target in targets} & names_in(value):
             return (self.unread(node, "names assigned from each other at once"),)

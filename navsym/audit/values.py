@@ -25,6 +25,7 @@ from navsym.language.tree import (
 Index = tuple[int, ...]
 LARGEST = 4096  # cells of one array
 TERMS = 2000  # of one sum
+LARGEST_INVERSE = 4
 
 
 class Unreadable(Exception):
@@ -237,6 +238,8 @@ def transpose(value: Value, column: bool) -> Value:
     if len(value.shape) == 1:
         return Array((1, *value.shape), value.cells) if column else value
     m, n = value.shape
+    if m == 1 and column:
+        return Array((n,), value.cells)
     return make_array((n, m), lambda i, j: value.at(j, i))
 
 
@@ -280,6 +283,33 @@ def matrix_product(a: Value, b: Value) -> Value:
     if len(b.shape) == 1:
         return Array((left[0],), whole.cells)
     return Array((right[1],), whole.cells) if len(a.shape) == 1 and left[0] == 1 else whole
+
+
+def determinant(rows: list[list[Tree]]) -> Tree:
+    """By the first row."""
+    if not rows:
+        return ONE
+    minors = [determinant([[*row[:j], *row[j + 1 :]] for row in rows[1:]]) for j in range(len(rows))]
+    return total([multiply(x if j % 2 == 0 else minus(x), minors[j]) for j, x in enumerate(rows[0]) if x is not ZERO])
+
+
+def invert(value: Value) -> Value:
+    """The inverse of a small matrix, minors over the determinant; of a number its inverse."""
+    if not isinstance(value, Array):
+        return map_cells(lambda x: divide(ONE, x), value)
+    n = value.shape[0]
+    if value.shape != (n, n) or n > LARGEST_INVERSE:
+        raise Unreadable(0, f"the inverse of what is no square matrix of at most {LARGEST_INVERSE} rows")
+
+    def cell(i: int, j: int) -> Cell:
+        def step(*trees: Tree) -> Tree:
+            rows = [list(trees[k * n : k * n + n]) for k in range(n)]
+            minor = determinant([[*row[:i], *row[i + 1 :]] for k, row in enumerate(rows) if k != j])
+            return divide(minor if (i + j) % 2 == 0 else minus(minor), determinant(rows))
+
+        return map_cell(step, *value.cells)
+
+    return make_array((n, n), cell)
 
 
 def cross_product(a: Value, b: Value) -> Value:

@@ -55,7 +55,11 @@ def test_random_spellings_are_read_as_they_run(language, seed):
     texts = [write_expression(chosen, language, 4) for _ in range(NUMBER)]
     line = LINES.get(language, "    y[{k}] = {text};")
     body = "\n".join(line.format(k=k, one=k + 1, text=text) for k, text in enumerate(texts))
-    head = {"python": "import numpy as np\n\n\n", "c": "#include <math.h>\n", "cpp": "#include <cmath>\nusing std::cos;\n"}
+    head = {
+        "python": "import numpy as np\n\n\n",
+        "c": "#include <math.h>\n",
+        "cpp": "#include <cmath>\nusing std::cos;\n",
+    }
     text = head.get(language, "") + FORMS[language].format(n=NUMBER, body=body)
     subject, names = Subject("", text, "f", language), Names()
     (case,) = read_code("code", text, subject, names).read().cases
