@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import itertools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -11,7 +10,6 @@ from fractions import Fraction
 from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
 from navsym.audit.functions import CONSTANTS, METHODS, call_known, extreme_of, is_known, is_method
 from navsym.audit.values import (
-    LARGEST,
     Array,
     Cell,
     Index,
@@ -23,17 +21,13 @@ from navsym.audit.values import (
     Value,
     Variable,
     add,
+    combine,
     constant_of,
     divide,
-    invert,
     join,
     map_cells,
-    matrix_product,
     minus,
-    multiply,
     places_of,
-    quaternion_product,
-    raise_to,
     total,
 )
 from navsym.language.tree import Tree, build_call, build_number
@@ -311,7 +305,7 @@ class Evaluator:
                 return self.named_value(part)
             if kind == "op":
                 sign, a, b = part.parts
-                return self.combine(sign, self.value(a), self.value(b), part.line)
+                return combine(self.unit, sign, self.value(a), self.value(b), part.line)
             if kind == "minus":
                 return map_cells(minus, self.value(part.parts[0]))
             if kind in ("index", "first"):
@@ -345,16 +339,9 @@ class Evaluator:
         if name not in self.frame and name not in self.file_names and name in CONSTANTS:
             return Scalar(CONSTANTS[name])
         variable = self.variable(name)
-        if variable.all_unread is not None:
-            return variable.all_unread
-        if variable.number == "other" and not variable.shape:
+        if variable.number == "other" and not variable.shape and variable.all_unread is None:
             raise Unreadable(part.line, f"{name} as a whole, of a type that is no number")
-        if not variable.shape:
-            if variable.shape is None and variable.cells and () not in variable.cells:
-                raise Unreadable(part.line, f"{name} as a whole, of unknown size")
-            return self.read(variable, (), part.line)
-        kind = KINDS.get(variable.number, Array)
-        return kind(variable.shape, tuple(self.read(variable, p, part.line) for p in places_of(variable.shape)))
+        return self.whole_value(variable, part.line)
 
     def macro(self, name: str, line: int) -> Value:
         """An object-like macro in its place."""
@@ -368,71 +355,6 @@ class Evaluator:
             raise Unreadable(line, f"{name}: {refusal.why}") from None
         finally:
             self.expanding.pop()
-
-    def combine(self, sign: str, a: Value, b: Value, line: int) -> Value:
-        """The arithmetic of the language."""
-        if isinstance(a, Unread) or isinstance(b, Unread):
-            return a if isinstance(a, Unread) else b
-        if isinstance(a, List) or isinstance(b, List):
-            joined = self.join_lists(sign, a, b)
-            if joined is not None:
-                return joined
-        if sign in ("*", "@"):
-            both = isinstance(a, Array) and isinstance(b, Array)
-            if isinstance(a, Quaternion) and isinstance(b, Quaternion):
-                return quaternion_product(a, b)
-            if both and (isinstance(a, Quaternion) or isinstance(b, Quaternion)):
-                raise Unreadable(line, "the product of a quaternion and a vector")
-            if both and self.unit.language == "rust" and len(a.shape) == len(b.shape) == 1:  # type: ignore[union-attr]
-                raise Unreadable(line, "the product of two columns")
-            if sign == "@" and not both:
-                raise Unreadable(line, "a product of matrices of unknown size; declare them under [code.symbols]")
-            return (
-                matrix_product(a, b) if both and (sign == "@" or self.unit.rules.matrix) else map_cells(multiply, a, b)
-            )
-        if sign in ("+", "-"):
-            if self.unit.rules.matrix and self.unit.language == "cpp" and isinstance(a, Array) != isinstance(b, Array):
-                raise Unreadable(line, "the sum of a number and a matrix")
-            return map_cells(add if sign == "+" else lambda x, y: add(x, minus(y)), a, b)
-        if sign in (".*", "./", ".^"):
-            return map_cells({".*": multiply, "./": divide, ".^": raise_to}[sign], a, b)
-        if sign in ("/", "%", "//"):
-            return self.quotient(sign, a, b, line)
-        if sign == "**":
-            if not isinstance(a, Array) or not self.unit.rules.matrix:
-                return map_cells(raise_to, a, b)
-            times = constant_of(b)
-            if times is None or times.denominator != 1 or not 0 < times < 9 or len({*a.shape}) != 1:
-                raise Unreadable(line, "the power of a matrix")
-            return functools.reduce(matrix_product, [a] * int(times))
-        raise Unreadable(line, f"the operator {sign}")
-
-    def join_lists(self, sign: str, a: Value, b: Value) -> Value | None:
-        """``[x, y] + [z]`` and ``[x]*3``; None where one side is an array of numpy."""
-        pair = [value for value in (a, b) if isinstance(value, List)]
-        if len(pair) == 2 and sign == "+" and pair[0].shape[1:] == pair[1].shape[1:]:
-            return List((pair[0].shape[0] + pair[1].shape[0], *pair[0].shape[1:]), pair[0].cells + pair[1].cells)
-        times = constant_of(b if isinstance(a, List) else a)
-        if len(pair) == 1 and sign == "*" and times is not None and times.denominator == 1 and 0 < times <= LARGEST:
-            return List((pair[0].shape[0] * int(times), *pair[0].shape[1:]), pair[0].cells * int(times))
-        if isinstance(a, Array) and isinstance(b, Array) and len(pair) == 1:
-            return None
-        raise Unreadable(0, "arithmetic of a list, which is no array")
-
-    def quotient(self, sign: str, a: Value, b: Value, line: int) -> Value:
-        """A quotient; of integers it is cut in C, which is read for constants only."""
-        if isinstance(b, Array) and self.unit.rules.matrix:
-            if self.unit.language != "matlab" or len(b.shape) != 2:
-                raise Unreadable(line, "division by a matrix")
-            return matrix_product(a, invert(b))
-        whole = [isinstance(v, Scalar) and v.number == "int" for v in (a, b)]
-        if sign == "/" and not (self.unit.rules.integer and all(whole)):
-            result = map_cells(divide, a, b)
-            return Scalar(result.tree) if isinstance(result, Scalar) else result
-        x, y = constant_of(a), constant_of(b)
-        if x is None or y is None or y == 0 or not all(whole) or x < 0 or y < 0:
-            raise Unreadable(line, "a quotient or remainder of integers that are no constants")
-        return Scalar(build_number(x // y if sign != "%" else x % y), "int")
 
     def cast(self, part: Part) -> Value:
         value = self.value(part.parts[1])
@@ -581,7 +503,7 @@ class Evaluator:
             self.frame, self.shadows = outer, shadows
             self.calls.pop()
         if function.outputs and returned is None:
-            self.outputs = [self.whole_value(frame[output]) for output in function.outputs]
+            self.outputs = [self.whole_value(frame[output], part.line) for output in function.outputs]
             returned = self.outputs[0]
         if returned is None and wants_value:
             raise Unreadable(part.line, f"{name} returns no value")
@@ -596,13 +518,16 @@ class Evaluator:
             if argument.name in heads and not is_same:
                 raise Unreadable(line, f"a structure that {function.name} knows by another name")
 
-    def whole_value(self, variable: Variable) -> Value:
+    def whole_value(self, variable: Variable, line: int) -> Value:
         """A variable as a value."""
         if variable.all_unread is not None:
             return variable.all_unread
-        if not variable.shape:
-            return self.read(variable, (), 0)
-        return Array(variable.shape, tuple(self.read(variable, place, 0) for place in places_of(variable.shape)))
+        if variable.shape:
+            kind = KINDS.get(variable.number, Array)
+            return kind(variable.shape, tuple(self.read(variable, place, line) for place in places_of(variable.shape)))
+        if variable.shape is None and variable.cells and () not in variable.cells:
+            raise Unreadable(line, f"{variable.name} as a whole, of unknown size")
+        return self.read(variable, (), line)
 
     def bind(self, argument: Argument, given: Part, function: Function) -> Variable:
         """A parameter of an inlined function: the caller's own variable, or a copy of a value."""
@@ -642,8 +567,7 @@ class Evaluator:
         if base.kind == "name" and self.unit.language in ("c", "cpp"):
             accessor = f"{base.parts[0]}.{name}"
             if not arguments:
-                variable = self.variable(f"{accessor}()")
-                return self.whole_value(variable) if variable.shape else self.read(variable, (), part.line)
+                return self.whole_value(self.variable(f"{accessor}()"), part.line)
             if all(self.is_constant(a) for a in arguments):
                 index = Part("index", part.line, (Part("name", part.line, (accessor,)), arguments))
                 return self.entries(index)
@@ -660,11 +584,10 @@ class Evaluator:
         """``v.x()`` of a vector of two or three, and ``M(i, j)`` in the long spellings."""
         base, name, arguments = part.parts
         shape = self.variable_shape(base.parts[0]) or ()
-        if name in ("i", "j", "k", "w") and not arguments and self.variable(base.parts[0]).number == "quaternion":
-            place = Part("number", part.line, ("ijkw".index(name), "int"))
-            return self.entries(Part("index", part.line, (base, (place,)), part.span))
-        if name in ("x", "y", "z") and not arguments and shape in ((2,), (3,)) and "xyz".index(name) < shape[0]:
-            place = Part("number", part.line, ("xyz".index(name), "int"))
+        is_short = shape in ((2,), (3,))
+        letters = "ijkw" if self.variable(base.parts[0]).number == "quaternion" else "xyz"[: shape[0] * is_short]
+        if not arguments and len(name) == 1 and name in letters:
+            place = Part("number", part.line, (letters.index(name), "int"))
             return self.entries(Part("index", part.line, (base, (place,)), part.span))
         raise Unreadable(part.line, f"the method {name}")
 

@@ -33,6 +33,7 @@ from navsym.audit.values import (
     Unreadable,
     Value,
     Variable,
+    combine,
     constant_of,
     count_cells,
     lose,
@@ -339,7 +340,7 @@ class Machine(Evaluator):
             before = self.value(target)
             if isinstance(before, List):
                 raise Unreadable(statement.line, f"{sign}= of a list, which is no array")
-            result = self.combine(sign, before, result, statement.line)
+            result = combine(self.unit, sign, before, result, statement.line)
         self.note_unread(result, statement)
         if target.kind == "name" and self.member_of_array(target) is not None:
             raise Unreadable(statement.line, "a member of an array as a target")

@@ -42,7 +42,13 @@ from tests.attacks.campaigns.batches import Batch, Result, result
 SIZE = 100
 #: Functions of our own, with the sizes of what comes in where the language does not say them.
 OWN = Path(__file__).resolve().parents[1] / "code"
-SIZES = {"earth_place": {"x": (3,)}, "joseph_step": {"P": (2, 2)}, "pendulum_step": {"x": (2,)}}
+SIZES: dict[str, dict[str, tuple[int, ...]]] = {
+    "earth_place": {"x": (3,)}, "joseph_step": {"P": (2, 2)}, "pendulum_step": {"x": (2,)},
+    "kf": {"x": (2, 1), "P": (2, 2)}, "strap": {"v": (3, 1), "w": (3, 1), "C": (3, 3)},
+    "triad": dict.fromkeys("amgh", (3, 1)), "shapes": {"M": (3, 3), "v": (3, 1)}, "mag": {"q": (4,), "m": (3,)},
+    "cv": {"x": (4,), "P": (4, 4), "z": (2,)}, "ctrv": {"x": (4,), "u": (2,)},
+    "imu": {"R": (3, 3), "v": (3,), "w": (3,), "a": (3,)},
+}  # fmt: skip
 GALLERY = Path(__file__).resolve().parents[3] / "examples" / "audit" / "gallery"
 #: Claims whose code is short enough to be read by eye.
 CLAIMS = ("alpha_beta_filter:5", "alpha_beta_filter:4")
