@@ -9,7 +9,7 @@ from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules
 from navsym.audit.functions import METHODS
-from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, read_decimal, text_of
+from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, text_of
 
 RULES = Rules(integer=True)
 RULES_OF_CPP = Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))
@@ -306,13 +306,7 @@ class Reader(SourceReader):
 
     def comma_list(self, node: Any) -> Part | None:
         """``M << a, b, c`` of Eigen as an assignment of all cells; None for others."""
-        items: list[Any] = []
-        first = node
-        while first.type == "comma_expression":
-            items.insert(0, field_of(first, "right"))
-            first = field_of(first, "left")
-            if items[0].type == "comma_expression":  # the grammar groups from the right
-                items[:1] = list_commas(items[0])
+        first, *items = list_commas(node)
         if first.type != "binary_expression" or text_of(field_of(first, "operator")) != "<<":
             return None
         cells = tuple(map(self.expression, (field_of(first, "right"), *items)))
@@ -376,17 +370,19 @@ class Reader(SourceReader):
         return None
 
     def number(self, node: Any) -> Part:
+        """A number without its suffix; the grammar takes the sign of some numbers for a part of them."""
         text = text_of(node)
-        if text.startswith("-"):  # the grammar takes the sign of some numbers for a part of them
-            value = read_decimal(text[1:].rstrip("fFlL"))
-            kind = "real" if "." in text or "e" in text.lower() else "int"
-            known = None if value is None else self.part("number", node, -value, kind)
-            return known or self.refuse(node, f"the number {text[:20]}")
-        if re.fullmatch(r"0\d+", text):
+        bare = text.removeprefix("-")
+        if re.fullmatch(r"0\d+", bare):
             return self.refuse(node, "an octal number")
-        suffix = "" if text.lower().startswith("0x") else text.lstrip("0123456789.eE+-")
+        suffix = "" if bare.lower().startswith("0x") else bare.lstrip("0123456789.eE+-")
         is_known = suffix.lower() in ("", "f", "l", "u", "ul")
-        return self.literal(node, text.removesuffix(suffix) if is_known else "", any(c in text.lower() for c in ".ef"))
+        number = self.literal(
+            node, bare.removesuffix(suffix) if is_known else "", any(c in bare.lower() for c in ".ef")
+        )
+        if number.kind != "number" or bare == text:
+            return number
+        return self.part("number", node, -number.parts[0], number.parts[1])
 
     def call(self, node: Any) -> Part:
         """A function, a method, an entry ``M(i, j)``, or an accessor without arguments, which is a name."""

@@ -58,20 +58,10 @@ class Mend:
 
 @dataclass(slots=True)
 class Budget:
-    """How many changes may be tried: of one entry, and of a question; ``known`` ones mended other entries."""
+    """How many changes may be tried for a question; ``known`` ones mended other entries."""
 
-    entry: int = PER_ENTRY
     question: int = PER_QUESTION
     known: list[Mend] = field(default_factory=list)
-
-    def start_entry(self) -> None:
-        """A new entry may try its share."""
-        self.entry = min(PER_ENTRY, self.question)
-
-    def spend(self, price: int) -> bool:
-        """True when one more change may be tried."""
-        self.entry, self.question = self.entry - price, self.question - price
-        return self.entry >= 0
 
 
 def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
@@ -83,7 +73,7 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     if source is None or entry.again is None or not isinstance(entry.expected, Scalar):
         return None
     assert isinstance(entry.code, Scalar)
-    budget.start_entry()
+    least = budget.question - PER_ENTRY
     own = entry.code.origin
     places = list_places(source, own, entry.expected.tree)
     value = None if own is None else right_side(own, entry.place)
@@ -103,7 +93,7 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
         (mend for place in places if place.statement.kind == "declare" for mend in place.change_target()),
         change_all(rest, [edit_names]),
         change_all(near + beside, [add_names]),
-        change_all(near, [wrap]),
+        change_all(near, [add_products]),
         (mend for place in near or places for mend in place.change_target()),
         (mend for place in near for text in rewrite(source, entry.expected.tree) for mend in place.put(text)),
         (mend for place in places for mend in place.change_target()),
@@ -112,7 +102,8 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
         if key in tried:
             continue
         tried.add(key)
-        if not budget.spend(price):
+        budget.question -= price
+        if budget.question < max(least, 0):
             return None
         if is_right(mend, entry, source, scope, probes):
             budget.known.append(mend)
@@ -516,18 +507,26 @@ def edit_names(place: Place, parts: list[Part]) -> Iterator[Edit]:
 
 
 def add_names(place: Place, parts: list[Part]) -> Iterator[Edit]:
-    """One more name, as a factor, a divisor or a term; arrays are terms of arrays."""
-    for part in parts:
-        if part.kind in ("name", "index", "call"):
-            text, is_array = place.source.unit.text(part), part.parts[0] in place.words.arrays
-            for name in place.words.arrays if is_array else ():
-                yield *part.span, f"({text} + {name})"
-                yield *part.span, f"({text} - {name})"
-            for name in place.words.numbers:
-                yield *part.span, f"{text}*{name}"
-                yield *part.span, f"{text}/{name}"
-                yield *part.span, f"({text} + {name})"
-                yield *part.span, f"({text} - {name})"
+    """One more name, as a factor, a divisor or a term, of a part or of the whole; arrays are terms of arrays."""
+    for part in (*(p for p in parts if p.kind in ("name", "index", "call")), place.part):
+        text, is_array = place.source.unit.text(part), part.parts[0] in place.words.arrays
+        inside = f"({text})" if part.kind == "op" else text
+        for name in (*(place.words.arrays if is_array else ()), *place.words.numbers):
+            for sign in "+-":
+                yield *part.span, f"{text} {sign} {name}" if part is place.part else f"({text} {sign} {name})"
+        for name in ("2", "0.5", *place.words.numbers):
+            yield *part.span, f"{inside}*{name}"
+            yield *part.span, f"{inside}/{name}"
+
+
+def add_products(place: Place, _: list[Part]) -> Iterator[Edit]:
+    """A matrix, or its transpose, before the whole right side."""
+    language, text = place.source.unit.language, place.source.unit.text(place.part)
+    mark, product = TRANSPOSED.get(language), "@" if language == "python" else "*"
+    shapes = {name: variable.shape for name, variable in place.source.read().cases[0].variables.items()}
+    for name in [name for name, shape in shapes.items() if mark and shape and len(shape) == 2]:
+        yield *place.part.span, f"{name} {product} ({text})"
+        yield *place.part.span, f"{name}{mark} {product} ({text})"
 
 
 def edit_shapes(place: Place, parts: list[Part]) -> Iterator[Edit]:
@@ -546,25 +545,6 @@ def edit_shapes(place: Place, parts: list[Part]) -> Iterator[Edit]:
 
 
 SMALL_EDITS = (edit_signs, edit_indices, edit_calls, edit_numbers, edit_factors, edit_groups, edit_shapes)
-
-
-def wrap(place: Place, parts: list[Part]) -> Iterator[Edit]:
-    """The whole right side with a factor or a term."""
-    source, (low, high) = place.source, place.part.span
-    text = source.unit.text(place.part)
-    inside = f"({text})" if place.part.kind == "op" and place.part.parts[0] in "+-" else text
-    names = place.words.numbers
-    for factor in ("2", "0.5", *names):
-        yield low, high, f"{factor}*{inside}"
-    for name in names:
-        for new in (f"{inside}/{name}", f"{text} + {name}", f"{text} - {name}"):
-            yield low, high, new
-    product = "@" if source.unit.language == "python" else "*"
-    mark = TRANSPOSED.get(source.unit.language)
-    shapes = {name: variable.shape for name, variable in source.read().cases[0].variables.items()}
-    for name in [name for name, shape in shapes.items() if mark and shape and len(shape) == 2]:
-        yield low, high, f"{name} {product} ({text})"
-        yield low, high, f"{name}{mark} {product} ({text})"
 
 
 def rewrite(source: Source, expected: Tree) -> Iterator[str]:

@@ -7,6 +7,7 @@ Eigen, Python, MATLAB and Rust. The judges are three compilers, numpy and Octave
 
 from __future__ import annotations
 
+import atexit
 import ctypes
 import functools
 import importlib.util
@@ -14,6 +15,7 @@ import math
 import multiprocessing
 import random
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -73,6 +75,7 @@ WORDS = {
 #: Types of Eigen with their sizes.
 MATRIX = re.compile(r"\b(?:Vector(\d)d|Matrix(\d)d|Matrix<double, (\d+), (\d+)>)")
 SIDES = ("before", "after")
+CPP = ("-O0", "-w", "-fPIC", "-fmax-errors=0")
 POINTS = 4
 #: Processor time that a compiled function may take; a mutant may loop for ever.
 SECONDS = 0.5
@@ -289,7 +292,7 @@ def compile_all(sources: list[str], subject: Subject, folder: Path) -> tuple[Pat
             flags += ["-Werror=implicit-function-declaration"]
             command = ["gcc", *flags, path, "-o", library, "-lm"]
             if subject.language == "cpp":
-                command = ["g++", "-O0", "-w", "-shared", "-fPIC", "-fmax-errors=0", *eigen(), path, "-o", library]
+                command = ["g++", *CPP, *eigen(), "-shared", path, "-o", library]
         said = subprocess.run(command, capture_output=True, check=False, text=True)
         if said.returncode == 0:
             return library, alive
@@ -304,9 +307,14 @@ def compile_all(sources: list[str], subject: Subject, folder: Path) -> tuple[Pat
 
 @functools.cache
 def eigen() -> list[str]:
-    """How the compiler finds Eigen: among the headers that come with casadi."""
-    package = importlib.util.find_spec("casadi")
-    return [] if package is None or package.origin is None else ["-I", f"{Path(package.origin).parent}/include/eigen3"]
+    """How the compiler finds Eigen, read once for all: among the headers that come with casadi."""
+    package, folder = importlib.util.find_spec("casadi"), Path(tempfile.mkdtemp(prefix="navsym-eigen-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    assert package is not None and package.origin is not None
+    where = ["-I", f"{Path(package.origin).parent}/include/eigen3"]
+    (folder / "eigen.hpp").write_text("#include <Eigen/Dense>\n")
+    subprocess.run(["g++", *CPP, *where, "-x", "c++-header", folder / "eigen.hpp"], check=True)
+    return [*where, "-include", f"{folder}/eigen.hpp"]
 
 
 def wrap_eigen(subject: Subject, name: str) -> str:

@@ -1,3 +1,5 @@
+"""A step of constant turn and speed, with its Jacobian."""
+
 import math
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""A Kalman filter of constant velocity."""
+
 import numpy as np
 
 

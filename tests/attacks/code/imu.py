@@ -1,3 +1,5 @@
+"""A part of a transition matrix of inertial navigation."""
+
 import numpy as np
 
 

@@ -1,3 +1,5 @@
+"""The residual of a magnetometer."""
+
 import numpy as np
 
 
@@ -14,5 +16,5 @@ def mag(q, m):
     e = [0.0]*3
     for i in range(3):
         e[i] = h[i] - b[i]
-    e = [0.5*e[0]] + e[1:]
+    e = [0.5*e[0]] + e[1:]  # noqa: RUF005
     return np.array(e)
