@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules
+from navsym.audit.form import Argument, Function, Part, Rules, names_in
 from navsym.audit.functions import METHODS
 from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, text_of
 
@@ -288,8 +288,11 @@ class Reader(SourceReader):
                     inner = self.effect(right)
                     value = self.expression(field_of(right, "left"))
                     return (*inner, self.part("assign", node, self.expression(field_of(node, "left")), sign, value))
-                left = self.expression(field_of(node, "left"))
-                return (self.part("assign", node, left, sign, self.expression(right)),)
+                left, value = self.expression(field_of(node, "left")), self.expression(right)
+                if "noalias()" in text_of(field_of(node, "left")) and value.kind == "op":
+                    if names_in(left) & names_in(*(side for side in value.parts[1:] if side.kind != "op")):
+                        return (self.unread(node, "noalias() of a product with the target in it"),)
+                return (self.part("assign", node, left, sign, value),)
             case "update_expression":
                 one = self.part("number", node, 1, "int")
                 target = self.expression(field_of(node, "argument"))
@@ -390,7 +393,7 @@ class Reader(SourceReader):
         arguments = tuple(map(self.expression, named(field_of(node, "arguments"))))
         if function.type == "field_expression":
             base, method = self.expression(field_of(function, "argument")), text_of(field_of(function, "field"))
-            if method in ("noalias", "eval") and not arguments:  # say how Eigen computes, not what
+            if method == "noalias" and not arguments:  # says how Eigen computes, not what
                 return base
             if (found := re.fullmatch(r"(?:template)?at<(\d+)>", re.sub(r"\s", "", method))) and not arguments:
                 return self.part("index", node, base, (self.part("number", node, int(found[1]), "int"),))

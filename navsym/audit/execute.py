@@ -336,6 +336,8 @@ class Machine(Evaluator):
     def run_assign(self, target: Part, sign: str, value: Part, statement: Part) -> None:
         """An assignment, also of a whole array, a row or a block."""
         result = self.value(value)
+        if self.unit.language == "cpp" and b"Eigen" in self.unit.source and self.overlaps(value, names_in(target)):
+            raise Unreadable(statement.line, "a matrix that Eigen changes while its transpose is read; write .eval()")
         if sign:
             before = self.value(target)
             if isinstance(before, List):
@@ -361,6 +363,17 @@ class Machine(Evaluator):
         cells = result.cells if isinstance(result, Array) else (result,) * len(places)
         for place, cell in zip(places, cells, strict=True):
             self.write_cell(variable, place, cell, statement)
+
+    def overlaps(self, value: Part, names: set[str]) -> bool:
+        """True for a transpose of the target that is read cell by cell; a product of matrices is made before."""
+        if value.kind == "method" and value.parts[1] == "transpose":
+            return bool(names_in(value.parts[0]) & names)
+        if value.kind not in ("op", "minus"):
+            return False
+        sides = [part for part in value.parts if isinstance(part, Part)]
+        if value.parts[0] == "*" and all(isinstance(self.value(side), Array) for side in sides):
+            return False
+        return any(self.overlaps(side, names) for side in sides)
 
     def rename(self, name: str, value: Part, result: Value, statement: Part) -> None:
         """An assignment of Python or MATLAB: the name stands for another value from now on.

@@ -270,7 +270,7 @@ def rows_of(sizes: tuple[int, ...] | None) -> str:
 
 def compile_all(sources: list[str], subject: Subject, folder: Path) -> tuple[Path, list[int]]:
     """One library with a function ``m<k>_...`` for each source, and the places of those that the compiler takes."""
-    names = sorted({*re.findall(r"^[\w:<>, ]* (\w+)\(", subject.text, re.MULTILINE)})
+    names = sorted({*re.findall(r"^[A-Za-z][\w:<>, ]* (\w+)\(", subject.text, re.MULTILINE)})
     library, alive = folder / "all.so", [*range(len(sources))]
     for _ in range(ROUNDS):
         lines = list[str]()

@@ -8,6 +8,6 @@ void euler(const double q[4], double R[3][3], double rpy[3])
     double sp = -R[2][0];
     if (sp > 1.0) sp = 1.0; else if (sp < -1.0) sp = -1.0;
     rpy[0] = atan2(R[2][1], R[2][2]);
-    rpy[1] = fabs(sp) >= 1 ? copysign(M_PI/2, sp) : asin(sp);
+    rpy[1] = fabs(sp) < 1 ? asin(sp) : (sp > 0) ? M_PI/2 : -M_PI/2;
     rpy[2] = atan2(R[1][0], R[0][0]);
 }
