@@ -289,9 +289,9 @@ class Reader(SourceReader):
                     value = self.expression(field_of(right, "left"))
                     return (*inner, self.part("assign", node, self.expression(field_of(node, "left")), sign, value))
                 left, value = self.expression(field_of(node, "left")), self.expression(right)
-                if "noalias()" in text_of(field_of(node, "left")) and value.kind == "op":
-                    if names_in(left) & names_in(*(side for side in value.parts[1:] if side.kind != "op")):
-                        return (self.unread(node, "noalias() of a product with the target in it"),)
+                sides = names_in(*(side for side in value.parts[1:] if value.kind == "op" and side.kind != "op"))
+                if "noalias()" in text_of(field_of(node, "left")) and names_in(left) & sides:
+                    return (self.unread(node, "noalias() of a product with the target in it"),)
                 return (self.part("assign", node, left, sign, value),)
             case "update_expression":
                 one = self.part("number", node, 1, "int")

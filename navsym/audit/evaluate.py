@@ -299,6 +299,8 @@ class Evaluator:
         self.steps += 1
         kind = part.kind
         try:
+            if kind == "number" and part.parts[0] in self.unit.decimals:
+                return Scalar(self.unit.decimals[part.parts[0]])
             if kind == "number":
                 return Scalar(build_number(Fraction(part.parts[0])), part.parts[1])
             if kind == "name":
