@@ -61,7 +61,8 @@ class Reader(SourceReader):
         """The tree of a source in which no variable is taken for a type, as ``b`` is in ``a*(b) - c``."""
         root = SourceReader.parse(self, source)
         self.unit.variables |= list_variables(root)
-        while found := [n for n in map(find_type, descend(root)) if text_of(n) in self.unit.variables]:
+        known = self.unit.variables
+        while found := [n for n in map(find_type, descend(root)) if n is not None and text_of(n) in known]:
             for node in found:
                 self.hidden[node.start_byte] = text_of(node)
                 source = source[: node.start_byte] + b"1" * len(node.text) + source[node.end_byte :]

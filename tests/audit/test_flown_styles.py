@@ -107,6 +107,12 @@ def test_a_matrix_of_eigen_that_is_written_while_it_is_read_is_refused(line, is_
     assert bool(reading.refused) is not is_read
 
 
+def test_a_declaration_without_a_name_is_none():
+    text = "double f(double a, double)\n{\n    double = a;\n    return 2*(a) - a;\n}\n"
+    reading = read_code("code", text, Subject("", text, "f"), Names()).read()
+    assert 3 in reading.refused
+
+
 def test_a_cast_to_an_unknown_type_is_refused_and_a_variable_in_parentheses_is_none():
     text = "double f(double a, double b)\n{\n    double x = 2.0*(a) - b;\n    return x + (other_t)a;\n}\n"
     (case,) = read_code("code", text, Subject("", text, "f"), Names()).read().cases
