@@ -26,6 +26,7 @@ DECLARING = (
     "init_declarator declaration parameter_declaration array_declarator pointer_declarator reference_declarator "
     "field_declaration"
 ).split()
+ROUNDS = 6  # in which names are told from types; a cast that is left is refused
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
 
 
@@ -59,14 +60,17 @@ class Reader(SourceReader):
 
     def parse(self, source: bytes) -> Any:
         """The tree of a source in which no variable is taken for a type, as ``b`` is in ``a*(b) - c``."""
-        root = SourceReader.parse(self, source)
-        self.unit.variables |= list_variables(root)
+        root, text = SourceReader.parse(self, source), bytearray(source)
         known = self.unit.variables
-        while found := [n for n in map(find_type, descend(root)) if n is not None and text_of(n) in known]:
+        known |= list_variables(root)
+        for _ in range(ROUNDS):
+            found = [n for n in map(find_type, descend(root)) if n is not None and text_of(n) in known]
+            if not found:
+                break
             for node in found:
                 self.hidden[node.start_byte] = text_of(node)
-                source = source[: node.start_byte] + b"1" * len(node.text) + source[node.end_byte :]
-            root = SourceReader.parse(self, source)
+                text[node.start_byte : node.end_byte] = b"1" * len(node.text)
+            root = SourceReader.parse(self, bytes(text))
         return root
 
     @staticmethod
