@@ -245,11 +245,11 @@ def list_places(source: Source, own: Part | None, expected: Tree) -> list[Place]
         for function in functions
         for statement in sorted((p for p in walk(*function.body) if p.kind in kinds), key=lambda p: -p.line)
     ]
-    distances, fresh, at = {id(own): 0}, [own] if own is not None else [], 1
-    while fresh:
-        used = set[str]().union(*map(read_in, fresh))
-        fresh = [s for f, s in statements if id(s) not in distances and used & {*written_in(s), f.name}]
-        distances |= {id(statement): at for statement in fresh}
+    distances, near, at = {id(own): 0}, [own] if own is not None else [], 1
+    while near:
+        used = set[str]().union(*map(read_in, near))
+        near = [s for f, s in statements if id(s) not in distances and used & {*written_in(s), f.name}]
+        distances |= {id(statement): at for statement in near}
         at += 1
     words = list_words(source, expected)
     places = [

@@ -394,9 +394,10 @@ def combine(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
     if not isinstance(a, Array) or not rules.matrix:
         return map_cells(raise_to, a, b)
     times = constant_of(b)
-    if times is None or times.denominator != 1 or not 0 < times < 9 or len({*a.shape}) != 1:
+    if times is None or times.denominator != 1 or not 0 < times < 9 or a.shape != a.shape[:1] * 2:
         raise Unreadable(line, "the power of a matrix")
-    return functools.reduce(matrix_product, [a] * int(times))
+    factors: list[Value] = [a] * int(times)
+    return functools.reduce(matrix_product, factors)
 
 
 def join_lists(sign: str, a: Value, b: Value) -> Value | None:
