@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules
+from navsym.audit.form import Argument, Function, Part, Rules, names_in
 from navsym.audit.functions import METHODS
-from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, read_decimal, text_of
+from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, text_of
 
 RULES = Rules(integer=True)
 RULES_OF_CPP = Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))
@@ -21,6 +21,12 @@ VECTOR = re.compile(r"(?:\w+::)*(?:(?:Sparse)?Vector([2-9]|[1-5]\d)[fd]?(?:<[\w,
 MATRIX = re.compile(
     r"(?:\w+::)*(?:(?:Square)?Matrix([2-9]|[1-5]\d)[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
 )
+NAMED = ("preproc_def", "enumerator")
+DECLARING = (
+    "init_declarator declaration parameter_declaration array_declarator pointer_declarator reference_declarator "
+    "field_declaration"
+).split()
+ROUNDS = 6  # in which names are told from types; a cast that is left is refused
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
 
 
@@ -40,12 +46,32 @@ def shape_of_type(text: str) -> tuple[int, ...] | None:
 
 @dataclass(slots=True, eq=False)
 class Reader(SourceReader):
-    """Walks the syntax tree of C and C++; ``locals`` are the names that the function being read declares."""
+    """Walks the syntax tree of C and C++.
+
+    locals : the names that the function being read declares
+    hidden : first byte of a name that stands in the tree as a number, since the grammar would take it for a type
+    """
 
     HEAD = "int a_ = "
     OPEN = ("if_statement", "for_statement", "compound_statement")
 
     locals: set[str] = field(default_factory=set)
+    hidden: dict[int, str] = field(default_factory=dict)
+
+    def parse(self, source: bytes) -> Any:
+        """The tree of a source in which no variable is taken for a type, as ``b`` is in ``a*(b) - c``."""
+        root, text = SourceReader.parse(self, source), bytearray(source)
+        known = self.unit.variables
+        known |= list_variables(root)
+        for _ in range(ROUNDS):
+            found = [n for n in map(find_type, descend(root)) if n is not None and text_of(n) in known]
+            if not found:
+                break
+            for node in found:
+                self.hidden[node.start_byte] = text_of(node)
+                text[node.start_byte : node.end_byte] = b"1" * len(node.text)
+            root = SourceReader.parse(self, bytes(text))
+        return root
 
     @staticmethod
     def find_value(node: Any) -> Any:
@@ -205,6 +231,8 @@ class Reader(SourceReader):
         value = first[0].parts[3] if first[0].kind == "declare" else first[0].parts[2]
         sign, left = text_of(field_of(test, "operator")), text_of(field_of(test, "left"))
         counter = update[0].parts[0]
+        if sign == "!=" and self.unit.text(update[0].parts[2]) in ("1", text_of(step)):  # i != n; i++
+            sign = "<" if update[0].parts[1] == "+" else ">"
         if left != name or counter.kind != "name" or counter.parts[0] != name or sign not in ("<", "<=", ">", ">="):
             return unread
         stop = self.expression(field_of(test, "right"))
@@ -265,8 +293,11 @@ class Reader(SourceReader):
                     inner = self.effect(right)
                     value = self.expression(field_of(right, "left"))
                     return (*inner, self.part("assign", node, self.expression(field_of(node, "left")), sign, value))
-                left = self.expression(field_of(node, "left"))
-                return (self.part("assign", node, left, sign, self.expression(right)),)
+                left, value = self.expression(field_of(node, "left")), self.expression(right)
+                sides = names_in(*(side for side in value.parts[1:] if value.kind == "op" and side.kind != "op"))
+                if "noalias()" in text_of(field_of(node, "left")) and names_in(left) & sides:
+                    return (self.unread(node, "noalias() of a product with the target in it"),)
+                return (self.part("assign", node, left, sign, value),)
             case "update_expression":
                 one = self.part("number", node, 1, "int")
                 target = self.expression(field_of(node, "argument"))
@@ -283,13 +314,7 @@ class Reader(SourceReader):
 
     def comma_list(self, node: Any) -> Part | None:
         """``M << a, b, c`` of Eigen as an assignment of all cells; None for others."""
-        items: list[Any] = []
-        first = node
-        while first.type == "comma_expression":
-            items.insert(0, field_of(first, "right"))
-            first = field_of(first, "left")
-            if items[0].type == "comma_expression":  # the grammar groups from the right
-                items[:1] = list_commas(items[0])
+        first, *items = list_commas(node)
         if first.type != "binary_expression" or text_of(field_of(first, "operator")) != "<<":
             return None
         cells = tuple(map(self.expression, (field_of(first, "right"), *items)))
@@ -299,6 +324,8 @@ class Reader(SourceReader):
 
     def read_expression(self, node: Any) -> Part | None:
         match node.type:
+            case "number_literal" if node.start_byte in self.hidden:
+                return self.part("name", node, self.hidden[node.start_byte])
             case "number_literal":
                 return self.number(node)
             case "true" | "false":
@@ -325,16 +352,18 @@ class Reader(SourceReader):
                     return self.refuse(node, "a member of an expression")
                 name = re.sub(r"\s", "", text_of(node))
                 member = name.removeprefix("this->")
-                if member != name and re.match(r"\w+", member)[0] in self.locals:  # type: ignore[index]
+                is_alone = self.shift < 0  # of a mend nobody knows what is local
+                if member != name and (is_alone or re.match(r"\w+", member)[0] in self.locals):  # type: ignore[index]
                     return self.refuse(node, f"{name} beside a local name that is written alike")
                 return self.part("name", node, member)
             case "conditional_expression":
                 fields = (field_of(node, name) for name in ("condition", "consequence", "alternative"))
                 return self.part("choose", node, *map(self.expression, fields))
             case "cast_expression":
-                return self.part(
-                    "cast", node, number_of(text_of(field_of(node, "type"))), self.expression(field_of(node, "value"))
-                )
+                number = number_of(text_of(field_of(node, "type")))
+                if number not in ("int", "real"):
+                    return self.refuse(node, "a cast to a type that is not known, or a name alone in parentheses")
+                return self.part("cast", node, number, self.expression(field_of(node, "value")))
             case "initializer_list":
                 return self.part("list", node, tuple(map(self.expression, named(node))))
             case "pointer_expression":
@@ -349,17 +378,19 @@ class Reader(SourceReader):
         return None
 
     def number(self, node: Any) -> Part:
+        """A number without its suffix; the grammar takes the sign of some numbers for a part of them."""
         text = text_of(node)
-        if text.startswith("-"):  # the grammar takes the sign of some numbers for a part of them
-            value = read_decimal(text[1:].rstrip("fFlL"))
-            kind = "real" if "." in text or "e" in text.lower() else "int"
-            known = None if value is None else self.part("number", node, -value, kind)
-            return known or self.refuse(node, f"the number {text[:20]}")
-        if re.fullmatch(r"0\d+", text):
+        bare = text.removeprefix("-")
+        if re.fullmatch(r"0\d+", bare):
             return self.refuse(node, "an octal number")
-        suffix = "" if text.lower().startswith("0x") else text.lstrip("0123456789.eE+-")
+        suffix = "" if bare.lower().startswith("0x") else bare.lstrip("0123456789.eE+-")
         is_known = suffix.lower() in ("", "f", "l", "u", "ul")
-        return self.literal(node, text.removesuffix(suffix) if is_known else "", any(c in text.lower() for c in ".ef"))
+        number = self.literal(
+            node, bare.removesuffix(suffix) if is_known else "", any(c in bare.lower() for c in ".ef")
+        )
+        if number.kind != "number" or bare == text:
+            return number
+        return self.part("number", node, -number.parts[0], number.parts[1])
 
     def call(self, node: Any) -> Part:
         """A function, a method, an entry ``M(i, j)``, or an accessor without arguments, which is a name."""
@@ -367,7 +398,7 @@ class Reader(SourceReader):
         arguments = tuple(map(self.expression, named(field_of(node, "arguments"))))
         if function.type == "field_expression":
             base, method = self.expression(field_of(function, "argument")), text_of(field_of(function, "field"))
-            if method in ("noalias", "eval") and not arguments:  # say how Eigen computes, not what
+            if method == "noalias" and not arguments:  # says how Eigen computes, not what
                 return base
             if (found := re.fullmatch(r"(?:template)?at<(\d+)>", re.sub(r"\s", "", method))) and not arguments:
                 return self.part("index", node, base, (self.part("number", node, int(found[1]), "int"),))
@@ -380,7 +411,8 @@ class Reader(SourceReader):
         if name in ("static_cast<float>", "static_cast<double>") and arguments:
             return self.part("cast", node, "real", arguments[0])
         if shape_of_type(name) is not None:
-            return self.part("list", node, arguments)
+            is_copy = len(arguments) == 1  # of a matrix
+            return self.part("method", node, *arguments, "eval", ()) if is_copy else self.part("list", node, arguments)
         if found := re.fullmatch(r"\(\*(\w+)\)", name):  # (*M)(i, j)
             name = found[1]
         if (
@@ -397,22 +429,55 @@ class Reader(SourceReader):
         return self.refuse(node, "a call of an expression")
 
     def block_of(self, node: Any, base: Part, method: str, arguments: tuple[Part, ...]) -> Part | None:
-        """``M.block<p, q>(i, j)``, ``M.block(i, j, p, q)`` and the like of vectors as slices; None for others."""
-        bare = method.replace(" ", "").replace("template", "")
-        found = re.fullmatch(r"(block|segment|head|tail)(?:<([\d,]+)>)?", bare)
-        if found is None or found[1] == "tail":
+        """``M.block<p, q>(i, j)``, ``M.block(i, j, p, q)``, ``M.row(i)`` and the like as slices; None for others."""
+        bare = re.sub(r"\s|template", "", method)
+        if bare in ("row", "col") and len(arguments) == 1:
+            one = self.part("number", node, 1, "int")
+            row = self.part("slice", node, arguments[0], self.part("op", node, "+", arguments[0], one))
+            whole = self.part("slice", node, None, None)
+            return self.part("index", node, base, (row, whole) if bare == "row" else (whole, arguments[0]))
+        found = re.fullmatch(r"(block|segment|head|tail|(top|bottom)(Left|Right)Corner)(?:<([\d,]+)>)?", bare)
+        if found is None:
             return None
-        sizes = [self.part("number", node, int(n), "int") for n in (found[2] or "").split(",") if n]
+        sizes = [self.part("number", node, int(n), "int") for n in (found[4] or "").split(",") if n]
         starts = [*arguments]
         if not sizes:
-            starts, sizes = starts[: len(starts) // 2], starts[len(starts) // 2 :]
-        if found[1] == "head":
-            starts, sizes = [self.part("number", node, 0, "int")], sizes
-        if not starts or len(starts) != len(sizes):
-            return None
-        ends = [self.part("op", node, "+", a, n) for a, n in zip(starts, sizes, strict=True)]
-        slices = tuple(self.part("slice", node, a, b) for a, b in zip(starts, ends, strict=True))
-        return self.part("index", node, base, slices)
+            at = len(starts) // 2 if found[1] in ("block", "segment") else 0
+            starts, sizes = starts[:at], starts[at:]
+        if found[1] in ("block", "segment"):
+            ends = [self.part("op", node, "+", a, n) for a, n in zip(starts, sizes, strict=False)]
+            slices = [self.part("slice", node, a, b) for a, b in zip(starts, ends, strict=False)]
+        else:
+            sides = [found[1] == "tail"] if found[2] is None else [found[2] == "bottom", found[3] == "Right"]
+            slices = [self.end_of(node, n, is_last) for n, is_last in zip(sizes, sides, strict=False)]
+            starts = sides  # type: ignore[assignment]
+        is_known = starts and len(starts) == len(sizes) and all(part.kind == "slice" for part in slices)
+        return self.part("index", node, base, tuple(slices)) if is_known else None
+
+    def end_of(self, node: Any, size: Part, is_last: bool) -> Part:
+        """The first or the last cells of a side; how many must be a number."""
+        if size.kind != "number" or size.parts[0] < 1:
+            return self.refuse(node, "a number of cells that is no number")
+        low = self.part("minus", node, size) if is_last else None
+        return self.part("slice", node, low, None if is_last else size)
+
+
+def find_type(node: Any) -> Any:
+    """The name of the type in a cast; None where there is none."""
+    kind = field_of(field_of(node, "type"), "type") if node.type == "cast_expression" else None
+    return kind if kind is not None and kind.type == "type_identifier" else None
+
+
+def list_variables(root: Any) -> set[str]:
+    """The names of a source that are declared or defined as values, and never as types."""
+    values, types = set[str](), set[str]()
+    for node in descend(root):
+        name = node if node.type == "identifier" else field_of(node, "name") if node.type in NAMED else None
+        if name is not None and node.parent is not None and (node.type in NAMED or node.parent.type in DECLARING):
+            values.add(text_of(name))
+        elif node.type.endswith(("_specifier", "type_definition", "alias_declaration")):
+            types |= {text_of(child) for child in node.children if child.type == "type_identifier"}
+    return values - types
 
 
 def list_commas(node: Any) -> list[Any]:

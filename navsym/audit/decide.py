@@ -171,12 +171,12 @@ def prove_shared(pairs: Sequence[tuple[Tree, Tree]], scope: Scope) -> dict[tuple
             "given": [f"{name} = {print_tree(tree)}" for name, tree in short.meanings.items()],
             "rates": {},
         }
-        witness = {name: str(value) for name, value in short.complete(point).items()}
-        certificate = write_proof(document, witness, [IDENTITY for _ in equal])
         try:
+            witness = {name: str(value) for name, value in short.complete(point).items()}
+            certificate = write_proof(document, witness, [IDENTITY for _ in equal])
             if grant([document], certificate) == "HOLDS":
                 done |= dict.fromkeys(equal, certificate)
-        except REFUSALS:
+        except (*REFUSALS, TooLargeError):
             continue
     return done
 
@@ -200,7 +200,7 @@ def find_related(terms: Sequence[Any], box: Mapping[str, Any], scope: Scope) -> 
     for point in draw_points(box, scope):
         place = {name: player.Jet(player.arb(value)) for name, value in point.items()}
         if all(player.value_of(term, place).is_finite() for term in terms):
-            return {name: write_fraction(value) for name, value in point.items()}
+            return {name: str(value) for name, value in point.items()}
     return None
 
 
@@ -221,7 +221,7 @@ def refute(document: Document, code: Tree, expected: Tree, scope: Scope) -> Deci
             v > 0 or v < 0 for v in values
         ):
             continue
-        texts = {name: write_fraction(value) for name, value in point.items()}
+        texts = {name: str(value) for name, value in point.items()}
         try:
             certificate = refute_document([document], document, {n: texts[n] for n in document["symbols"]})
         except REFUSALS:
@@ -309,11 +309,6 @@ def holds_at(condition: Condition, place: Mapping[str, Any]) -> bool:
         ">=": (ball >= 0, ball < 0), "==": (exact_zero, ball != 0), "!=": (ball != 0, exact_zero),
     }  # fmt: skip
     return bool(truths[condition.sign][0 if condition.holds else 1])
-
-
-def write_fraction(value: fmpq) -> str:
-    """A fraction as text."""
-    return str(Fraction(int(value.p), int(value.q)))
 
 
 def value_text(tree: Tree, point: Point) -> str:

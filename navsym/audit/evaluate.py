@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -12,6 +13,7 @@ from navsym.audit.values import (
     Array,
     Cell,
     Index,
+    List,
     Quaternion,
     Scalar,
     Unread,
@@ -19,20 +21,20 @@ from navsym.audit.values import (
     Value,
     Variable,
     add,
+    combine,
     constant_of,
     divide,
     join,
     map_cells,
-    matrix_product,
     minus,
-    multiply,
     places_of,
-    quaternion_product,
-    raise_to,
+    total,
 )
-from navsym.language.tree import Tree, build_number
+from navsym.language.tree import Tree, build_call, build_number
 
 CASES = 32
+JOINS = {f"{module}.{name}": name for module in ("np", "numpy") for name in "hstack vstack concatenate block".split()}
+KINDS: dict[str, type[Array]] = {"quaternion": Quaternion, "list": List}
 INLINED = 12
 
 #: Source spelling of an input -> its symbol.
@@ -74,6 +76,7 @@ class Reading:
     refused   : line -> reason
     met       : the statements that were met, by their spans
     valueless : assignments that are read and depend on what is not, with its reason
+    ways      : whether conditions that are not read, and maxima, have two ways
     """
 
     unit: Unit
@@ -83,6 +86,7 @@ class Reading:
     met: set[tuple[int, int]] = field(default_factory=set)
     refused_spans: set[tuple[int, int]] = field(default_factory=set)
     valueless: dict[tuple[int, int], str] = field(default_factory=dict)
+    ways: tuple[bool, bool] = (True, True)
 
 
 class Returning(Exception):
@@ -103,7 +107,7 @@ class Evaluator:
 
     choices : the ways taken at undecided conditions; None leaves unread what depends on one
     is_bold : True where a condition that is not read has two ways as well
-    is_split : True where a minimum or maximum has two ways; else it is not read
+    is_split : True where a minimum or maximum has two ways; else it is a formula
     frame   : the names of the running function
     shadows : what a block's own names have hidden, one table for each block
     outputs : what the last function of MATLAB that was read returned
@@ -238,30 +242,38 @@ class Evaluator:
     def resolve(self, variable: Variable, indices: list[Part], line: int) -> tuple[list[Index], Index]:
         """The places that indices and slices mean, and their shape."""
         sizes = variable.shape
-        if sizes and len(sizes) == 2 and 1 in sizes and len(indices) == 1 and self.unit.language == "matlab":
+        if sizes and len(sizes) == 2 and 1 in sizes and len(indices) == 1 and self.unit.language in ("matlab", "cpp"):
             spot = self.index_range(indices[0], max(sizes), line)
-            return [(0, k) if sizes[0] == 1 else (k, 0) for k in spot[0]], spot[1]
+            shape = (1, *spot[1]) if sizes[0] == 1 and spot[1] else spot[1]
+            return [(0, k) if sizes[0] == 1 else (k, 0) for k in spot[0]], shape
         if sizes and len(indices) < len(sizes) and self.unit.language != "matlab":
             indices = [*indices, *(Part("slice", line, (None, None)) for _ in range(len(sizes) - len(indices)))]
         is_column = sizes is not None and len(indices) == 2 and len(sizes) == 1 and self.unit.rules.matrix
         if is_column and self.whole(indices[1]) == self.unit.rules.first:  # v(i, 0)
             indices = indices[:1]
+        if sizes == () and self.unit.language == "matlab" and all(self.whole(index) == 1 for index in indices):
+            return [()], ()  # of a number
         if sizes is not None and len(indices) != len(sizes):
             raise Unreadable(line, f"{len(indices)} indices of an array of {len(sizes)}")
-        rows: list[list[int]] = []
-        shape: list[int] = []
-        for k, index in enumerate(indices):
-            spot = self.index_range(index, sizes[k] if sizes else None, line)
-            rows.append(spot[0])
-            shape += spot[1]
-        places: list[Index] = [()]
-        for row in rows:
-            places = [(*place, i) for place in places for i in row]
-        return places, tuple(shape)
+        spots = [self.index_range(index, sizes[k] if sizes else None, line) for k, index in enumerate(indices)]
+        shape = tuple(size for _, sides in spots for size in sides)
+        if self.unit.language == "matlab" and len(spots) == 2 and shape and not spots[0][1]:
+            shape = (1, *shape)  # a row stays one
+        return [*itertools.product(*(row for row, _ in spots))], shape
 
     def index_range(self, index: Part, size: int | None, line: int) -> tuple[list[int], Index]:
         """The whole numbers that one index means, from 0, and its part of the shape."""
-        first = self.unit.rules.first
+        first, outer = self.unit.rules.first, self.frame.pop("end", None)
+        if self.unit.language == "matlab" and size is not None:
+            self.frame["end"] = Variable("end", "int", (), {(): Scalar(build_number(size), "int")})
+        try:
+            return self.index_inside(index, size, first, line)
+        finally:
+            self.frame.pop("end", None)
+            self.frame |= {} if outer is None else {"end": outer}
+
+    def index_inside(self, index: Part, size: int | None, first: int, line: int) -> tuple[list[int], Index]:
+        """The same, where ``end`` is the size."""
         if index.kind == "slice":
             if size is None:
                 raise Unreadable(line, "a slice of an array without a known size")
@@ -287,13 +299,15 @@ class Evaluator:
         self.steps += 1
         kind = part.kind
         try:
+            if kind == "number" and part.parts[0] in self.unit.decimals:
+                return Scalar(self.unit.decimals[part.parts[0]])
             if kind == "number":
                 return Scalar(build_number(Fraction(part.parts[0])), part.parts[1])
             if kind == "name":
                 return self.named_value(part)
             if kind == "op":
                 sign, a, b = part.parts
-                return self.combine(sign, self.value(a), self.value(b), part.line)
+                return combine(self.unit, sign, self.value(a), self.value(b), part.line)
             if kind == "minus":
                 return map_cells(minus, self.value(part.parts[0]))
             if kind in ("index", "first"):
@@ -305,7 +319,8 @@ class Evaluator:
             if kind == "list":
                 if self.unit.language == "matlab":
                     return self.rows(part)
-                return self.stack([self.value(item) for item in part.parts[0]], part.line)
+                whole = self.stack([self.value(item) for item in part.parts[0]], part.line)
+                return List(whole.shape, whole.cells) if self.unit.language == "python" else whole
             if kind == "compare" or (kind in ("both", "either", "not") and self.unit.rules.integer):
                 return Scalar(build_number(int(self.decide_known(part))), "int")
             if kind == "choose":
@@ -326,16 +341,9 @@ class Evaluator:
         if name not in self.frame and name not in self.file_names and name in CONSTANTS:
             return Scalar(CONSTANTS[name])
         variable = self.variable(name)
-        if variable.all_unread is not None:
-            return variable.all_unread
-        if variable.number == "other" and not variable.shape:
+        if variable.number == "other" and not variable.shape and variable.all_unread is None:
             raise Unreadable(part.line, f"{name} as a whole, of a type that is no number")
-        if not variable.shape:
-            if variable.shape is None and variable.cells and () not in variable.cells:
-                raise Unreadable(part.line, f"{name} as a whole, of unknown size")
-            return self.read(variable, (), part.line)
-        kind = Quaternion if variable.number == "quaternion" else Array
-        return kind(variable.shape, tuple(self.read(variable, p, part.line) for p in places_of(variable.shape)))
+        return self.whole_value(variable, part.line)
 
     def macro(self, name: str, line: int) -> Value:
         """An object-like macro in its place."""
@@ -349,50 +357,6 @@ class Evaluator:
             raise Unreadable(line, f"{name}: {refusal.why}") from None
         finally:
             self.expanding.pop()
-
-    def combine(self, sign: str, a: Value, b: Value, line: int) -> Value:
-        """The arithmetic of the language."""
-        if isinstance(a, Unread) or isinstance(b, Unread):
-            return a if isinstance(a, Unread) else b
-        if sign in ("*", "@"):
-            both = isinstance(a, Array) and isinstance(b, Array)
-            if isinstance(a, Quaternion) and isinstance(b, Quaternion):
-                return quaternion_product(a, b)
-            if both and (isinstance(a, Quaternion) or isinstance(b, Quaternion)):
-                raise Unreadable(line, "the product of a quaternion and a vector")
-            if both and self.unit.language == "rust" and len(a.shape) == len(b.shape) == 1:  # type: ignore[union-attr]
-                raise Unreadable(line, "the product of two columns")
-            if sign == "@" and not both:
-                raise Unreadable(line, "a product of matrices of unknown size; declare them under [code.symbols]")
-            return (
-                matrix_product(a, b) if both and (sign == "@" or self.unit.rules.matrix) else map_cells(multiply, a, b)
-            )
-        if sign in ("+", "-"):
-            if self.unit.rules.matrix and self.unit.language == "cpp" and isinstance(a, Array) != isinstance(b, Array):
-                raise Unreadable(line, "the sum of a number and a matrix")
-            return map_cells(add if sign == "+" else lambda x, y: add(x, minus(y)), a, b)
-        if sign in (".*", "./", ".^"):
-            return map_cells({".*": multiply, "./": divide, ".^": raise_to}[sign], a, b)
-        if sign in ("/", "%", "//"):
-            return self.quotient(sign, a, b, line)
-        if sign == "**":
-            if isinstance(a, Array) and self.unit.rules.matrix:
-                raise Unreadable(line, "the power of a matrix")
-            return map_cells(raise_to, a, b)
-        raise Unreadable(line, f"the operator {sign}")
-
-    def quotient(self, sign: str, a: Value, b: Value, line: int) -> Value:
-        """A quotient; of integers it is cut in C, which is read for constants only."""
-        if isinstance(b, Array) and self.unit.rules.matrix:
-            raise Unreadable(line, "division by a matrix")
-        whole = [isinstance(v, Scalar) and v.number == "int" for v in (a, b)]
-        if sign == "/" and not (self.unit.rules.integer and all(whole)):
-            result = map_cells(divide, a, b)
-            return Scalar(result.tree) if isinstance(result, Scalar) else result
-        x, y = constant_of(a), constant_of(b)
-        if x is None or y is None or y == 0 or not all(whole) or x < 0 or y < 0:
-            raise Unreadable(line, "a quotient or remainder of integers that are no constants")
-        return Scalar(build_number(x // y if sign != "%" else x % y), "int")
 
     def cast(self, part: Part) -> Value:
         value = self.value(part.parts[1])
@@ -411,11 +375,13 @@ class Evaluator:
             base = self.value(part.parts[0]) if part.parts[0].kind in ("call", "method", "op", "index") else None
             if not isinstance(base, Array):
                 raise
-            variable = Variable("", shape=base.shape, cells=dict(zip(places_of(base.shape), base.cells, strict=True)))
+            number = "list" if isinstance(base, List) else "real"
+            variable = Variable("", number, base.shape, cells=dict(zip(places_of(base.shape), base.cells, strict=True)))
             places, shape = self.resolve(variable, [*part.parts[1]], part.line)
         if not shape:
             return self.read(variable, places[0], part.line)
-        return Array(shape, tuple(self.read(variable, place, part.line) for place in places))
+        kind = List if variable.number == "list" else Array
+        return kind(shape, tuple(self.read(variable, place, part.line) for place in places))
 
     def rows(self, part: Part) -> Value:
         """The brackets of MATLAB: rows of numbers, or of blocks, in which a vector is a column."""
@@ -424,7 +390,7 @@ class Evaluator:
             return join(*(join(*row, across=True) for row in rows), across=False)
         return self.stack([self.stack(row, part.line) for row in rows], part.line)
 
-    def stack(self, values: list[Value], line: int) -> Value:
+    def stack(self, values: list[Value], line: int) -> Array:
         """Numbers as a vector, vectors as the rows of a matrix."""
         shapes = {value.shape if isinstance(value, Array) else () for value in values}
         if len(shapes) != 1 or not values:
@@ -461,6 +427,8 @@ class Evaluator:
             return self.inline(part, wants_value)
         if name not in self.frame and (sign := extreme_of(name, self.unit.language)) and len(arguments) == 2:
             return self.extreme(part, sign)
+        if name in JOINS and self.unit.language == "python" and len(arguments) == 1 and arguments[0].kind == "list":
+            return self.join_arrays(JOINS[name], arguments[0])
         if name not in self.frame and is_known(name, self.unit.language):
             return call_known(name, [self.value(a) for a in arguments], self.unit, part.line)
         may_be_entry = name in self.frame or name in self.globals or self.unit.language in ("cpp", "matlab")
@@ -470,6 +438,22 @@ class Evaluator:
         if not arguments and wants_value and self.unit.language in ("c", "cpp"):
             return self.read(self.variable(f"{name}()"), (), part.line)
         raise Unreadable(part.line, f"the function {name}, which this file does not define")
+
+    def join_arrays(self, name: str, part: Part) -> Value:
+        """``np.hstack([a, b])`` and its like; a vector is a row of a matrix, and is joined with vectors to one."""
+        items = part.parts[0]
+        if name == "block" and items and all(item.kind == "list" for item in items):
+            return join(*(self.join_arrays("row", item) for item in items), across=False)
+        values = [self.value(item) for item in items]
+        sizes = {len(value.shape) if isinstance(value, Array) else 0 for value in values}
+        if sizes == {1} and name in ("hstack", "concatenate"):
+            cells = tuple(c for value in values for c in value.cells)  # type: ignore[union-attr]
+            return Array((len(cells),), cells)
+        known = {"row": {0, 1, 2}, "vstack": {1, 2}, "hstack": {2}, "concatenate": {2}}.get(name, set())
+        if not sizes <= known:
+            raise Unreadable(part.line, f"{name} of arrays of different shapes")
+        rows = [Array((1, *v.shape), v.cells) if isinstance(v, Array) and len(v.shape) == 1 else v for v in values]
+        return join(*rows, across=name in ("hstack", "row"))
 
     def extreme(self, part: Part, sign: str) -> Value:
         """The larger or the smaller of two numbers, as cases."""
@@ -483,8 +467,10 @@ class Evaluator:
         if x is not None and y is not None:
             is_first = x >= y
         else:  # one condition for both, so that the larger and the smaller of the same two are told apart together
-            if not self.is_split:
-                raise Unreadable(part.line, f"a minimum or maximum beside more than {CASES} cases")
+            if not self.is_split:  # (a + b + |a - b|)/2 is the larger one
+                apart = build_call("abs", add(a.tree, minus(b.tree)))
+                whole = total([a.tree, b.tree, apart if sign == ">=" else minus(apart)])
+                return Scalar(divide(whole, build_number(2)))
             is_first = self.choose(Condition(text, part.line, True, ">=", a.tree, b.tree))
         return a if is_first == (sign == ">=") else b
 
@@ -519,7 +505,7 @@ class Evaluator:
             self.frame, self.shadows = outer, shadows
             self.calls.pop()
         if function.outputs and returned is None:
-            self.outputs = [self.whole_value(frame[output]) for output in function.outputs]
+            self.outputs = [self.whole_value(frame[output], part.line) for output in function.outputs]
             returned = self.outputs[0]
         if returned is None and wants_value:
             raise Unreadable(part.line, f"{name} returns no value")
@@ -534,13 +520,16 @@ class Evaluator:
             if argument.name in heads and not is_same:
                 raise Unreadable(line, f"a structure that {function.name} knows by another name")
 
-    def whole_value(self, variable: Variable) -> Value:
+    def whole_value(self, variable: Variable, line: int) -> Value:
         """A variable as a value."""
         if variable.all_unread is not None:
             return variable.all_unread
-        if not variable.shape:
-            return self.read(variable, (), 0)
-        return Array(variable.shape, tuple(self.read(variable, place, 0) for place in places_of(variable.shape)))
+        if variable.shape:
+            kind = KINDS.get(variable.number, Array)
+            return kind(variable.shape, tuple(self.read(variable, place, line) for place in places_of(variable.shape)))
+        if variable.shape is None and variable.cells and () not in variable.cells:
+            raise Unreadable(line, f"{variable.name} as a whole, of unknown size")
+        return self.read(variable, (), line)
 
     def bind(self, argument: Argument, given: Part, function: Function) -> Variable:
         """A parameter of an inlined function: the caller's own variable, or a copy of a value."""
@@ -558,7 +547,7 @@ class Evaluator:
             return self.linked(given, given)
         value = self.value(given)
         shape = value.shape if isinstance(value, Array) else ()
-        variable = Variable(argument.name, argument.number, shape)
+        variable = Variable(argument.name, "list" if isinstance(value, List) else argument.number, shape)
         if isinstance(value, Unread):
             variable.all_unread = value
             return variable
@@ -580,8 +569,7 @@ class Evaluator:
         if base.kind == "name" and self.unit.language in ("c", "cpp"):
             accessor = f"{base.parts[0]}.{name}"
             if not arguments:
-                variable = self.variable(f"{accessor}()")
-                return self.whole_value(variable) if variable.shape else self.read(variable, (), part.line)
+                return self.whole_value(self.variable(f"{accessor}()"), part.line)
             if all(self.is_constant(a) for a in arguments):
                 index = Part("index", part.line, (Part("name", part.line, (accessor,)), arguments))
                 return self.entries(index)
@@ -598,11 +586,10 @@ class Evaluator:
         """``v.x()`` of a vector of two or three, and ``M(i, j)`` in the long spellings."""
         base, name, arguments = part.parts
         shape = self.variable_shape(base.parts[0]) or ()
-        if name in ("i", "j", "k", "w") and not arguments and self.variable(base.parts[0]).number == "quaternion":
-            place = Part("number", part.line, ("ijkw".index(name), "int"))
-            return self.entries(Part("index", part.line, (base, (place,)), part.span))
-        if name in ("x", "y", "z") and not arguments and shape in ((2,), (3,)) and "xyz".index(name) < shape[0]:
-            place = Part("number", part.line, ("xyz".index(name), "int"))
+        is_short = shape in ((2,), (3,))
+        letters = "ijkw" if self.variable(base.parts[0]).number == "quaternion" else "xyz"[: shape[0] * is_short]
+        if not arguments and len(name) == 1 and name in letters:
+            place = Part("number", part.line, (letters.index(name), "int"))
             return self.entries(Part("index", part.line, (base, (place,)), part.span))
         raise Unreadable(part.line, f"the method {name}")
 

@@ -26,12 +26,14 @@ from navsym.audit.values import (
     Array,
     Cell,
     Index,
+    List,
     Quaternion,
     Scalar,
     Unread,
     Unreadable,
     Value,
     Variable,
+    combine,
     constant_of,
     count_cells,
     lose,
@@ -43,6 +45,8 @@ from navsym.core.errors import TooLargeError
 from navsym.language.tree import NUMBER, build_number
 
 STEPS = 250_000
+#: First two ways for all that is undecided.
+WAYS = ((True, True), (False, True), (False, False))
 
 
 def read_function(
@@ -51,17 +55,19 @@ def read_function(
     inputs: Inputs,
     shapes: Mapping[str, Index] | None = None,
     edits: Mapping[int, Part] | None = None,
+    known: Reading | None = None,
 ) -> Reading:
     """All cases of a function; more than 32 leave unread what its branches write.
 
     inputs : source spelling of an input -> its symbol
     shapes : sizes of inputs that the source does not say
     edits  : expressions and statements in the place of others, by ``id``
+    known  : the reading without edits
     """
     reading = Reading(unit, function)
     start = functools.partial(Machine, reading, inputs, shapes or {}, edits or {})
-    for ways in ((True, True), (False, True), (False, False)):  # first two ways for all that is undecided
-        reading.cases = list_cases(start, reading, function, *ways)
+    for reading.ways in WAYS[WAYS.index(known.ways) if known is not None else 0 :]:
+        reading.cases = list_cases(start, reading, function, *reading.ways)
         if reading.cases:
             break
     else:
@@ -330,8 +336,13 @@ class Machine(Evaluator):
     def run_assign(self, target: Part, sign: str, value: Part, statement: Part) -> None:
         """An assignment, also of a whole array, a row or a block."""
         result = self.value(value)
+        if self.unit.language == "cpp" and b"Eigen" in self.unit.source and self.overlaps(value, names_in(target)):
+            raise Unreadable(statement.line, "a matrix that Eigen changes while its transpose is read; write .eval()")
         if sign:
-            result = self.combine(sign, self.value(target), result, statement.line)
+            before = self.value(target)
+            if isinstance(before, List):
+                raise Unreadable(statement.line, f"{sign}= of a list, which is no array")
+            result = combine(self.unit, sign, before, result, statement.line)
         self.note_unread(result, statement)
         if target.kind == "name" and self.member_of_array(target) is not None:
             raise Unreadable(statement.line, "a member of an array as a target")
@@ -353,6 +364,17 @@ class Machine(Evaluator):
         for place, cell in zip(places, cells, strict=True):
             self.write_cell(variable, place, cell, statement)
 
+    def overlaps(self, value: Part, names: set[str]) -> bool:
+        """True for a transpose of the target that is read cell by cell; a product of matrices is made before."""
+        if value.kind == "method" and value.parts[1] == "transpose":
+            return bool(names_in(value.parts[0]) & names)
+        if value.kind not in ("op", "minus"):
+            return False
+        sides = [part for part in value.parts if isinstance(part, Part)]
+        if value.parts[0] == "*" and all(isinstance(self.value(side), Array) for side in sides):
+            return False
+        return any(self.overlaps(side, names) for side in sides)
+
     def rename(self, name: str, value: Part, result: Value, statement: Part) -> None:
         """An assignment of Python or MATLAB: the name stands for another value from now on.
 
@@ -362,7 +384,8 @@ class Machine(Evaluator):
         if is_python and value.kind == "name" and isinstance(result, Array):
             self.frame[name] = self.variable(value.parts[0])
             return
-        variable = Variable(name, shape=result.shape if isinstance(result, Array) else ())
+        number = "list" if isinstance(result, List) else "real"
+        variable = Variable(name, number, result.shape if isinstance(result, Array) else ())
         cells = result.cells if isinstance(result, Array) else ()
         if is_python and value.kind == "call" and cells and all(is_integer(cell) for cell in cells):
             variable.number = "int"  # an array of integers cuts what is assigned to its entries
@@ -459,6 +482,14 @@ class Machine(Evaluator):
                 self.run_assign(base, "", Part("method", call.line, (base, IN_PLACE[name], ()), call.span), statement)
                 return
         elif call.kind == "call" and (call.parts[0] in HARMLESS or call.parts[0] in self.unit.ignored):
+            return
+        elif call.kind == "call" and call.parts[0] == "memcpy" and len(call.parts[1]) == 3:
+            target, source, size = call.parts[1]
+            names = [self.unit.text(part) for part in (target, source)]
+            local = [name for name in names if any(name in table for table in self.shadows)]
+            if not any(self.unit.text(size).replace(" ", "") == f"sizeof({name})" for name in local):
+                raise Unreadable(statement.line, "memcpy of other than sizeof an array that is declared here")
+            self.run_assign(target, "", source, statement)
             return
         elif call.kind == "call" and call.parts[0] == "memset":
             self.reset(call.parts[1][0], "memset", call.parts[1][1:2], statement)

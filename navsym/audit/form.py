@@ -7,7 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Any
+
+from navsym.language.tree import Tree
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,6 +87,9 @@ class Unit:
     pieces    : first byte, lines before it and file of every further file that was read behind this one
     defined   : names that the preprocessor knows, as a mapping declares; None where it does not say
     members   : member of a structure -> what it holds and its sizes, where the file says so
+    decimals  : decimal of the source -> the number for which it stands, as a mapping declares
+    variables : names of C that are values, and no types
+    imported  : what names of numpy and math are called in Python
     """
 
     file: str
@@ -97,6 +103,9 @@ class Unit:
     pieces: tuple[tuple[int, int, str], ...] = ()
     defined: frozenset[str] | None = None
     members: dict[str, tuple[str, tuple[int, ...] | None]] = field(default_factory=dict)
+    decimals: dict[Fraction, Tree] = field(default_factory=dict)
+    variables: set[str] = field(default_factory=set)
+    imported: dict[str, str] = field(default_factory=dict)
 
     def locate(self, line: int) -> tuple[str, int]:
         """The file of a line, and its number there."""

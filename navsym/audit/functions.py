@@ -8,7 +8,9 @@ from fractions import Fraction
 
 from navsym.audit.form import Unit
 from navsym.audit.values import (
+    LARGEST_INVERSE,
     Array,
+    List,
     Quaternion,
     Scalar,
     Unread,
@@ -18,8 +20,10 @@ from navsym.audit.values import (
     constant_of,
     count_cells,
     cross_product,
+    determinant,
     divide,
     identity_array,
+    invert,
     make_array,
     map_cell,
     map_cells,
@@ -29,6 +33,7 @@ from navsym.audit.values import (
     raise_to,
     root,
     square_sum,
+    total,
     transpose,
 )
 from navsym.language.tree import ONE, PI, ZERO, Tree, build_call, build_inverse, build_number
@@ -105,6 +110,7 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
     unread = next((value for value in values if isinstance(value, Unread)), None)
     if unread is not None:
         return unread
+    values = [Array(value.shape, value.cells) if isinstance(value, List) else value for value in values]
     bare = bare_name(name)
     if bare in PLAIN and len(values) == 1:
         if bare == "abs" and unit.language in ("c",):
@@ -207,6 +213,11 @@ ARRAYS: dict[tuple[str, int], Known] = {
     **dict.fromkeys((("array", 1), ("asarray", 1), ("copy", 1)), lambda values, unit: values[0]),
     **dict.fromkeys((("norm", 1), ("linalg.norm", 1)), norm_of), ("diag", 1): make_diagonal, ("outer", 2): make_outer,
     ("cross", 2): lambda values, unit: cross_product(values[0], values[1]), ("dot", 2): dot_of,
+    **dict.fromkeys((("inv", 1), ("linalg.inv", 1)), lambda values, unit: invert(values[0])),
+    ("linalg.solve", 2): lambda values, unit: matrix_product(invert(values[0]), values[1]),
+    **dict.fromkeys((("det", 1), ("linalg.det", 1)), lambda values, unit: determine(values[0], (), unit)),
+    ("trace", 1): lambda values, unit: trace_of(values[0], (), unit),
+    ("sum", 1): lambda values, unit: sum_of(values[0], (), unit),
     ("matmul", 2): multiply_arrays,
     ("transpose", 1): lambda values, unit: transpose(values[0], unit.rules.matrix),
 }  # fmt: skip
@@ -263,6 +274,33 @@ def normalize(value: Value, _: Sequence[Value], unit: Unit) -> Value:
     return map_cells(divide, value, length)
 
 
+def diagonal_of(value: Value, _: Sequence[Value], unit: Unit) -> Array:
+    """The diagonal of a matrix."""
+    if not isinstance(value, Array) or len(value.shape) != 2:
+        raise Unreadable(0, "the diagonal of what is no matrix")
+    return Array((min(value.shape),), tuple(value.at(i, i) for i in range(min(value.shape))))
+
+
+def trace_of(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+    """The sum of the diagonal."""
+    return map_cell(lambda *trees: total(list(trees)), *diagonal_of(value, (), unit).cells)
+
+
+def determine(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+    """The determinant."""
+    n = value.shape[0] if isinstance(value, Array) else 0
+    if not isinstance(value, Array) or value.shape != (n, n) or n > LARGEST_INVERSE:
+        raise Unreadable(0, "the determinant of what is no small square matrix")
+    return map_cell(lambda *trees: determinant([list(trees[k * n : k * n + n]) for k in range(n)]), *value.cells)
+
+
+def sum_of(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+    """The sum of all entries; of a matrix MATLAB sums the columns."""
+    if not isinstance(value, Array) or (unit.language == "matlab" and len(value.shape) == 2 and 1 not in value.shape):
+        raise Unreadable(0, "the sum of what is no vector")
+    return map_cell(lambda *trees: total(list(trees)), *value.cells)
+
+
 def conjugate(value: Value, _: Sequence[Value], unit: Unit) -> Value:
     """A quaternion with its vector turned round."""
     if not isinstance(value, Quaternion):
@@ -283,8 +321,11 @@ METHODS: dict[tuple[str, int], Method] = {
     ("dot", 1): lambda value, others, unit: dot_of([value, *others], unit),
     ("cross", 1): lambda value, others, unit: cross_product(value, others[0]),
     ("norm", 0): lambda value, _, unit: norm_of([value], unit),
-    ("conjugate", 0): conjugate,
-}
+    ("conjugate", 0): conjugate, ("inverse", 0): lambda value, _, unit: invert(value),
+    ("trace", 0): trace_of, ("sum", 0): sum_of, ("diagonal", 0): diagonal_of,
+    ("determinant", 0): determine, ("asDiagonal", 0): lambda value, _, unit: make_diagonal([value], unit),
+    ("cwiseProduct", 1): lambda value, others, unit: map_cells(multiply, value, others[0]),
+}  # fmt: skip
 #: What changes its own vector or matrix in C++, and what gives the changed one.
 IN_PLACE = {"normalize": "normalized", "transposeInPlace": "transpose"}
 
@@ -292,6 +333,8 @@ IN_PLACE = {"normalize": "normalized", "transposeInPlace": "transpose"}
 def is_method(name: str, count: int, language: str) -> bool:
     """True for a method that gives a value and writes nothing."""
     is_there = (
-        name in ("T", "transpose", "copy", "dot") if language == "python" else language != "cpp" or name not in IN_PLACE
+        name in ("T", "transpose", "copy", "dot", "sum", "trace", "diagonal")
+        if language == "python"
+        else language != "cpp" or name not in IN_PLACE
     )
     return (name, count) in METHODS and is_there

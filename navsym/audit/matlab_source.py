@@ -87,10 +87,11 @@ class Reader(SourceReader):
             return self.unread(node, "a loop over something else than a range")
         ends = [self.expression(child) for child in named(parts[1])]
         one = self.part("number", node, 1, "int")
-        if len(ends) == 3:
-            return self.unread(node, "a loop with a step")
-        stop = self.part("op", node, "+", ends[1], one)
-        return self.part("for", node, text_of(parts[0]), ends[0], stop, one, self.block(find_block(node)))
+        step = ends[1] if len(ends) == 3 else one
+        if step.kind not in ("number", "minus"):
+            return self.unread(node, "a loop with a step that is no number")
+        stop = self.part("op", node, "+" if step.kind == "number" else "-", ends[-1], one)
+        return self.part("for", node, text_of(parts[0]), ends[0], stop, step, self.block(find_block(node)))
 
     # -- expressions --
 
@@ -101,7 +102,7 @@ class Reader(SourceReader):
                 return self.literal(node, text_of(node), value is not None and value.denominator != 1)
             case "boolean":
                 return self.part("number", node, int(text_of(node) == "true"), "int")
-            case "identifier":
+            case "identifier" | "end_keyword":
                 return self.part("name", node, text_of(node))
             case "parenthesis":
                 return self.inside(node)

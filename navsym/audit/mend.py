@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.decide import Scope, decide_entry, draw_points
-from navsym.audit.evaluate import spell_entry
+from navsym.audit.evaluate import called_in, spell_entry
 from navsym.audit.form import Function, Part, Unit, names_in, walk
 from navsym.audit.names import squeeze
 from navsym.audit.questions import Entry, NotThereError
@@ -26,6 +26,7 @@ PER_ENTRY = 4000  # changes that are tried, of a short function
 PER_QUESTION = 6000
 SHORT = 40  # statements of one
 MOST_NAMES = 24
+BESIDE = 12  # places that an entry depends on directly, of which all changes are tried first
 TOLERANCE = 1e-9
 FAMILIES = (("sin", "cos", "tan", "sqrt"), ("asin", "acos", "atan"), ("exp", "log"))
 SWAPS = {
@@ -40,6 +41,7 @@ TRANSPOSED = {"rust": ".transpose()", "cpp": ".transpose()", "python": ".T", "ma
 
 #: First byte, byte behind the last, and the text in between.
 Edit = tuple[int, int, str]
+Kind = Callable[["Place", list[Part]], Iterator[Edit]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,46 +58,42 @@ class Mend:
 
 @dataclass(slots=True)
 class Budget:
-    """How many changes may be tried: of one entry, and of a question; ``known`` ones mended other entries."""
+    """How many changes may be tried for a question; ``known`` ones mended other entries."""
 
-    entry: int = PER_ENTRY
     question: int = PER_QUESTION
     known: list[Mend] = field(default_factory=list)
-
-    def start_entry(self) -> None:
-        """A new entry may try its share."""
-        self.entry = min(PER_ENTRY, self.question)
-
-    def spend(self, price: int) -> bool:
-        """True when one more change may be tried."""
-        self.entry, self.question = self.entry - price, self.question - price
-        return self.entry >= 0
 
 
 def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     """The smallest change of one statement with which the entry is proved; None where none is found.
 
-    First the statement that assigns the entry is edited, then the others, also in functions that it calls.
+    First the statement that assigns the entry is edited, then those that it depends on, then the others.
     """
     source = entry.source
     if source is None or entry.again is None or not isinstance(entry.expected, Scalar):
         return None
     assert isinstance(entry.code, Scalar)
-    budget.start_entry()
+    least = budget.question - PER_ENTRY
     own = entry.code.origin
-    places = list_places(source)
+    places = list_places(source, own, entry.expected.tree)
     value = None if own is None else right_side(own, entry.place)
     near = [place for place in places if place.statement is own]
     near = [place for place in near if place.part is value] or near
-    places = near + [place for place in places if place not in near]
-    price, tried = 1 + len(source.read().met) // SHORT, set[tuple[Any, ...]]()
+    rest = [place for place in places if place not in near]
+    beside = [place for place in rest if place.distance < 2][:BESIDE]
+    rest = [place for place in rest if place not in beside]
+    reading, tried = source.read(), set[tuple[Any, ...]]()
+    price = 1 + len(reading.cases) * len(reading.met) // SHORT
     probes = list_probes(scope)
     for mend in itertools.chain(
         budget.known,
-        (mend for place in places for mend in place.change(SMALL_EDITS)),
+        change_all(near, [*SMALL_EDITS, edit_names]),
+        change_all(beside, [*SMALL_EDITS, edit_names]),
+        change_all(rest, SMALL_EDITS),
         (mend for place in places if place.statement.kind == "declare" for mend in place.change_target()),
-        (mend for place in places for mend in place.change([edit_names])),
-        (mend for place in near for mend in place.change([add_names, wrap])),
+        change_all(rest, [edit_names]),
+        change_all(near + beside, [add_names]),
+        change_all(near, [add_products]),
         (mend for place in near or places for mend in place.change_target()),
         (mend for place in near for text in rewrite(source, entry.expected.tree) for mend in place.put(text)),
         (mend for place in places for mend in place.change_target()),
@@ -104,7 +102,8 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
         if key in tried:
             continue
         tried.add(key)
-        if not budget.spend(price):
+        budget.question -= price
+        if budget.question < max(least, 0):
             return None
         if is_right(mend, entry, source, scope, probes):
             budget.known.append(mend)
@@ -112,16 +111,65 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     return None
 
 
+def change_all(places: Sequence[Place], kinds: Sequence[Kind]) -> Iterator[Mend]:
+    """The mends of places by edits of some kinds, kind by kind."""
+    return (mend for kind in kinds for place in places for mend in place.change([kind]))
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """The names that a mend may use, those of what is expected first.
+
+    arrays  : names that have entries
+    numbers : names without, and entries of inputs
+    """
+
+    arrays: tuple[str, ...]
+    numbers: tuple[str, ...]
+    others: tuple[str, ...]
+
+    def like(self, name: str) -> Iterator[str]:
+        """Other names, first those that have entries as this one has, or have none."""
+        is_array = name in self.arrays
+        for known in (self.arrays, self.others) if is_array else (self.others, self.arrays):
+            yield from (other for other in known if other != name)
+
+
+def list_words(source: Source, expected: Tree) -> Words:
+    """The names of a function, of its mapping, and of what is expected of it."""
+    spelled = [source.names.spellings.get(name, name) for name in list_names(expected)]
+    first = list(dict.fromkeys(re.split(r"[\[(]", spelling)[0] for spelling in spelled))
+    variables, body = source.read().cases[0].variables, source.function.body
+    parts = [*walk(*body)]
+    arrays = {name for p in parts if p.kind == "index" for name in names_in(p.parts[0])} | {*source.shapes}
+    arrays |= {p.parts[0] for p in parts if p.kind == "declare" and p.parts[2]}
+    arrays |= {name for name, variable in variables.items() if variable.shape}
+    arrays |= {re.split(r"[\[(]", spelling)[0] for spelling in spelled if spelling[-1] in ")]"}
+    known = dict.fromkeys([*first, *sorted(arrays | names_in(*body) | {a.name for a in source.function.arguments})])
+    scalars = [name for name, variable in variables.items() if variable.shape == () and not {*"(@"} & {*name}]
+    entries = [s for s in source.names.spellings.values() if s[-1] in ")]"]
+    return Words(
+        tuple(name for name in known if name in arrays),
+        tuple(dict.fromkeys([*spelled, *scalars, *entries]))[:MOST_NAMES],
+        tuple(name for name in known if name not in arrays),
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class Place:
-    """An expression on the right of a statement, which may be wrong, in its function."""
+    """An expression on the right of a statement, which may be wrong, in its function.
+
+    distance : how many statements lie between it and the entry, 0 for the one that assigns it
+    """
 
     source: Source
     function: Function
     statement: Part
     part: Part
+    words: Words
+    distance: int
 
-    def change(self, kinds: Sequence[Callable[[Place, list[Part]], Iterator[Edit]]]) -> Iterator[Mend]:
+    def change(self, kinds: Sequence[Kind]) -> Iterator[Mend]:
         """The mends by edits of some kinds."""
         (low, high), text = self.part.span, self.source.unit.source
         parts = [inner for inner in walk(self.part) if low <= inner.span[0] < inner.span[1] <= high]
@@ -183,8 +231,8 @@ def read_mend(text: str, unit: Unit) -> Part | None:
     return None if any(inner.kind == "refused" for inner in walk(part)) else part
 
 
-def list_places(source: Source) -> list[Place]:
-    """The right sides of a function, of its last statement first, and those of the functions that it calls."""
+def list_places(source: Source, own: Part | None, expected: Tree) -> list[Place]:
+    """The right sides of a function and of those that it calls, those on which a statement depends first."""
     functions, at = [source.function], 0
     while at < len(functions):
         called = [p.parts[0] for p in walk(*functions[at].body) if p.kind == "call"]
@@ -192,27 +240,43 @@ def list_places(source: Source) -> list[Place]:
         functions += [f for f in dict.fromkeys(fresh) if f not in functions]
         at += 1
     kinds = ("assign", "declare", "return", "do", "for")
-    return [
-        Place(source, function, statement, part)
+    statements = [
+        (function, statement)
         for function in functions
         for statement in sorted((p for p in walk(*function.body) if p.kind in kinds), key=lambda p: -p.line)
-        for part in right_sides(statement)
     ]
+    distances, near, at = {id(own): 0}, [own] if own is not None else [], 1
+    while near:
+        used = set[str]().union(*map(read_in, near))
+        near = [s for f, s in statements if id(s) not in distances and used & {*written_in(s), f.name}]
+        distances |= {id(statement): at for statement in near}
+        at += 1
+    words = list_words(source, expected)
+    places = [
+        Place(source, f, s, part, words, distances.get(id(s), at)) for f, s in statements for part in right_sides(s)
+    ]
+    return sorted(places, key=lambda place: place.distance)
+
+
+def read_in(statement: Part) -> set[str]:
+    """The names that a statement reads; ``+=`` reads what it writes."""
+    is_new = statement.kind in ("assign", "declare") and not (statement.kind == "assign" and statement.parts[1])
+    read = whole_side(statement) if is_new else statement
+    return set() if read is None else names_in(read) | called_in(read)
+
+
+def written_in(statement: Part) -> set[str]:
+    """The names that a statement writes."""
+    if statement.kind in ("declare", "for"):
+        return {statement.parts[0]}
+    target = statement.parts[0] if statement.kind == "assign" else None
+    return set() if target is None else names_in(target) | called_in(target)
 
 
 def list_orphans(function: Function) -> set[str]:
     """The names that a function reads, and that nobody has declared."""
     declared = {p.parts[0] for p in walk(*function.body) if p.kind in ("declare", "for")}
     return names_in(*function.body) - declared - {argument.name for argument in function.arguments}
-
-
-def list_arrays(function: Function) -> set[str]:
-    """The names of a function that have entries."""
-    parts = [*walk(*function.body)]
-    bases = {name for p in parts if p.kind == "index" for name in names_in(p.parts[0])}
-    bases |= {p.parts[0] for p in parts if p.kind == "call" and p.parts[0] in function.outputs}
-    declared = {p.parts[0] for p in parts if p.kind == "declare" and p.parts[2]}
-    return bases | declared | {argument.name for argument in function.arguments if argument.shape}
 
 
 def whole_side(statement: Part) -> Any:
@@ -386,56 +450,83 @@ def edit_numbers(place: Place, parts: list[Part]) -> Iterator[Edit]:
 
 def edit_factors(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """A factor or term less, a square in the place of a factor, and the other way round."""
+    text, source = place.source.unit.text, place.source.unit.source
     for part in parts:
         if part.kind == "op":
-            _, a, b = part.parts
-            yield a.span[1], b.span[1], ""
-            yield a.span[0], b.span[0], ""
+            sign, a, b = part.parts
+            (low, middle), (start, high) = find_parentheses(source, a), find_parentheses(source, b)
+            yield middle, high, ""
+            yield low, start, ""
+            if sign == "*":
+                yield middle, high, f"/({text(b)}*{text(b)})"
     for part in parts:
         if part.kind in ("name", "index", "call"):
-            text = place.source.unit.text(part)
-            yield *part.span, f"({text}*{text})"
+            yield *part.span, f"({text(part)}*{text(part)})"
             for factor in ("2", "0.5"):
-                yield *part.span, f"{factor}*{text}"
+                yield *part.span, f"{factor}*{text(part)}"
+
+
+def edit_groups(place: Place, parts: list[Part]) -> Iterator[Edit]:
+    """Parentheses less, or around other operands."""
+    text = place.source.unit.text
+    for part in parts:
+        if part.kind != "op":
+            continue
+        sign, a, b = part.parts
+        for inner, other in ((a, b), (b, a)):
+            if inner.kind != "op" or (sign in "+-") == (inner.parts[0] in "+-"):
+                continue
+            if sign not in "+-":  # (x + y)*z
+                low, high = find_parentheses(place.source.unit.source, inner)
+                if low < inner.span[0]:
+                    yield low, high, text(inner)
+                continue
+            side = inner.parts[2] if inner is a else inner.parts[1]
+            low, high = sorted((side.span, other.span))[0][0], max(side.span[1], other.span[1])
+            yield low, high, f"({cut(place.source.unit.source, low, high)})"
+
+
+def find_parentheses(source: bytes, part: Part) -> tuple[int, int]:
+    """The bytes of a part with the parentheses around it."""
+    before, behind = source[: part.span[0]].rstrip(), source[part.span[1] :]
+    if not before.endswith(b"(") or not behind.lstrip().startswith(b")"):
+        return part.span
+    return len(before) - 1, part.span[1] + len(behind) - len(behind.lstrip()) + 1
 
 
 def edit_names(place: Place, parts: list[Part]) -> Iterator[Edit]:
-    """Another name of the function in the place of one, first arrays for arrays; another entry or number for one."""
-    arrays = list_arrays(place.function)
-    known = sorted(arrays | names_in(*place.function.body) | {a.name for a in place.function.arguments})
-    for is_like in (True, False):
-        for part in parts:
-            for name in known if part.kind == "name" else ():
-                if ((name in arrays) == (part.parts[0] in arrays)) is is_like and name != part.parts[0]:
-                    yield *part.span, name
-        for part in parts:
-            if part.kind == "call" and (part.parts[0] in arrays) is is_like:
-                for name in sorted(arrays - {part.parts[0]}):
-                    yield part.span[0], part.span[0] + len(part.parts[0]), name
+    """Another name in the place of one, or of one before parentheses; another entry or number for one."""
+    for part in parts:
+        if part.kind == "name" or (part.kind == "call" and part.parts[0] in place.words.arrays):
+            for name in place.words.like(part.parts[0]) if part.kind == "name" else place.words.arrays:
+                yield part.span[0], part.span[0] + len(part.parts[0]), name
     for part in parts:
         if part.kind in ("name", "index", "number"):
-            for name in nearby_names(place.source):
+            for name in place.words.numbers:
                 yield *part.span, name
 
 
 def add_names(place: Place, parts: list[Part]) -> Iterator[Edit]:
-    """One more name of the function, as a factor or a term."""
-    names = nearby_names(place.source)
-    for part in parts:
-        if part.kind in ("name", "index", "call"):
-            text = place.source.unit.text(part)
-            for name in names:
-                yield *part.span, f"{text}*{name}"
-                yield *part.span, f"({text} + {name})"
-                yield *part.span, f"({text} - {name})"
+    """One more name, as a factor, a divisor or a term, of a part or of the whole; arrays are terms of arrays."""
+    for part in (*(p for p in parts if p.kind in ("name", "index", "call")), place.part):
+        text, is_array = place.source.unit.text(part), part.parts[0] in place.words.arrays
+        inside = f"({text})" if part.kind == "op" else text
+        for name in (*(place.words.arrays if is_array else ()), *place.words.numbers):
+            for sign in "+-":
+                yield *part.span, f"{text} {sign} {name}" if part is place.part else f"({text} {sign} {name})"
+        for name in ("2", "0.5", *place.words.numbers):
+            yield *part.span, f"{inside}*{name}"
+            yield *part.span, f"{inside}/{name}"
 
 
-def nearby_names(source: Source) -> list[str]:
-    """Numbers that a right side could use: locals and parameters first, then entries of inputs."""
-    case = source.read().cases[0]
-    scalars = [name for name, variable in case.variables.items() if variable.shape == () and not {*"(@"} & {*name}]
-    entries = [s for s in source.names.spellings.values() if "[" in s or "(" in s]
-    return list(dict.fromkeys([*scalars, *entries]))[:MOST_NAMES]
+def add_products(place: Place, _: list[Part]) -> Iterator[Edit]:
+    """A matrix, or its transpose, before the whole right side."""
+    language, text = place.source.unit.language, place.source.unit.text(place.part)
+    mark, product = TRANSPOSED.get(language), "@" if language == "python" else "*"
+    shapes = {name: variable.shape for name, variable in place.source.read().cases[0].variables.items()}
+    for name in [name for name, shape in shapes.items() if mark and shape and len(shape) == 2]:
+        yield *place.part.span, f"{name} {product} ({text})"
+        yield *place.part.span, f"{name}{mark} {product} ({text})"
 
 
 def edit_shapes(place: Place, parts: list[Part]) -> Iterator[Edit]:
@@ -448,31 +539,12 @@ def edit_shapes(place: Place, parts: list[Part]) -> Iterator[Edit]:
             yield part.parts[0].span[1], part.span[1], ""
         pair = part.parts[1:] if part.kind == "op" else part.parts[1][:2] if part.kind == "call" else ()
         if len(pair) == 2:
-            a, b = pair
-            middle = place.source.unit.source[a.span[1] : b.span[0]].decode("utf-8", "replace")
-            yield a.span[0], b.span[1], f"{place.source.unit.text(b)}{middle}{place.source.unit.text(a)}"
+            source = place.source.unit.source
+            (low, middle), (start, high) = (find_parentheses(source, side) for side in pair)
+            yield low, high, f"{cut(source, start, high)}{cut(source, middle, start)}{cut(source, low, middle)}"
 
 
-SMALL_EDITS = (edit_signs, edit_indices, edit_calls, edit_numbers, edit_factors, edit_shapes)
-
-
-def wrap(place: Place, parts: list[Part]) -> Iterator[Edit]:
-    """The whole right side with a factor or a term."""
-    source, (low, high) = place.source, place.part.span
-    text = source.unit.text(place.part)
-    inside = f"({text})" if place.part.kind == "op" and place.part.parts[0] in "+-" else text
-    names = nearby_names(source)
-    for factor in ("2", "0.5", *names):
-        yield low, high, f"{factor}*{inside}"
-    for name in names:
-        for new in (f"{inside}/{name}", f"{text} + {name}", f"{text} - {name}"):
-            yield low, high, new
-    product = "@" if source.unit.language == "python" else "*"
-    mark = TRANSPOSED.get(source.unit.language)
-    shapes = {name: variable.shape for name, variable in source.read().cases[0].variables.items()}
-    for name in [name for name, shape in shapes.items() if mark and shape and len(shape) == 2]:
-        yield low, high, f"{name} {product} ({text})"
-        yield low, high, f"{name}{mark} {product} ({text})"
+SMALL_EDITS = (edit_signs, edit_indices, edit_calls, edit_numbers, edit_factors, edit_groups, edit_shapes)
 
 
 def rewrite(source: Source, expected: Tree) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, names_in
@@ -15,12 +15,10 @@ MODULES = {"numpy": "np.", "math": "math.", "numpy.linalg": "np.linalg."}
 
 @dataclass(slots=True, eq=False)
 class Reader(SourceReader):
-    """Walks the syntax tree of Python; ``imported`` says what names of numpy and math are called here."""
+    """Walks the syntax tree of Python."""
 
     HEAD, TAIL = "(", ")"
     OPERATORS = OPERATORS | {sign: ("op", sign) for sign in ("//", "@", "**")}
-
-    imported: dict[str, str] = field(default_factory=dict)
 
     @staticmethod
     def find_value(node: Any) -> Any:
@@ -38,10 +36,10 @@ class Reader(SourceReader):
             if module in MODULES:
                 for child in node.children_by_field_name("name"):
                     own = field_of(child, "alias") or child
-                    self.imported[text_of(own)] = MODULES[module] + text_of(field_of(child, "name") or child)
+                    self.unit.imported[text_of(own)] = MODULES[module] + text_of(field_of(child, "name") or child)
         for node in nodes:
             if node.type in ("function_definition", "class_definition"):
-                self.imported.pop(text_of(field_of(node, "name")), None)
+                self.unit.imported.pop(text_of(field_of(node, "name")), None)
 
     def read_body(self, nodes: list[Any]) -> None:
         """Functions and methods, and names of the module that are assigned once, to numbers."""
@@ -122,16 +120,18 @@ class Reader(SourceReader):
         left, right = field_of(node, "left"), field_of(node, "right")
         if right is None:
             return ()
-        if right.type == "assignment":
-            return (self.unread(node, "an assignment of an assignment"),)
-        targets = named(left) if left.type in ("pattern_list", "tuple_pattern") else [left]
+        targets, chain = named(left) if left.type in ("pattern_list", "tuple_pattern") else [left], [left]
+        while right.type == "assignment":  # a = b = x
+            chain, right = [*chain, field_of(right, "left")], field_of(right, "right")
+        if len(targets) > 1 and len(chain) > 1:
+            return (self.unread(node, "several names assigned twice at once"),)
         value = self.expression(right)
-        if len(targets) == 1:
-            return (self.part("assign", node, self.expression(targets[0]), "", value),)
         first: tuple[Part, ...] = ()
-        if value.kind == "call":  # a, b = f(x): the call is made once, under a name that no source can have
-            once = self.part("name", right, f"several@{node.start_byte}")
+        if value.kind != "name" and (len(chain) > 1 or (len(targets) > 1 and value.kind == "call")):
+            once = self.part("name", right, f"several@{node.start_byte}")  # made once; no source can have this name
             first, value = (self.part("assign", node, once, "", value),), once
+        if len(targets) == 1:
+            return (*first, *(self.part("assign", node, self.expression(target), "", value) for target in chain))
         is_computed = value.kind in ("op", "method", "minus")
         if is_computed and {text_of(target) for target in targets} & names_in(value):
             return (self.unread(node, "names assigned from each other at once"),)
@@ -235,5 +235,5 @@ class Reader(SourceReader):
             method = text_of(field_of(function, "attribute"))
             return self.part("method", node, self.expression(field_of(function, "object")), method, tuple(arguments))
         if function.type == "identifier":
-            return self.part("call", node, self.imported.get(name, name), tuple(arguments))
+            return self.part("call", node, self.unit.imported.get(name, name), tuple(arguments))
         return self.refuse(node, "a call of an expression")

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules
+from navsym.audit.form import Argument, Function, Part, Rules, names_in
 from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, text_of
 
 RULES = Rules(integer=True, matrix=True, entry=("{}[{}]", "{}[{}][{}]"))
@@ -158,6 +158,11 @@ class Reader(SourceReader):
         if (other := field_of(node, "alternative")) is not None:
             return self.normalized_or_left(node, text_of(pattern), value, other)
         number, shape = type_of(text_of(given)) if given is not None else ("auto", None)
+        if pattern.type == "tuple_pattern" and value is not None and value.type == "tuple_expression":
+            pairs = [*zip(map(text_of, named(pattern)), map(self.expression, named(value)), strict=False)]
+            is_apart = len({n for n, _ in pairs} & names_in(*(v for _, v in pairs))) == 0
+            if len(pairs) == len(named(pattern)) == len(named(value)) and is_apart:
+                return tuple(self.part("declare", node, n, "auto", None, v, False) for n, v in pairs)
         if pattern.type != "identifier":
             return (self.unread(node, "a pattern"),)
         is_link = value is not None and any(child.type == "mutable_specifier" for child in value.children)  # &mut x
@@ -237,8 +242,11 @@ class Reader(SourceReader):
             case "field_expression":
                 if re.fullmatch(r"[A-Za-z_][\w.]*", text_of(node)):
                     return self.part("name", node, text_of(node))
-            case "array_expression" if not any(text_of(child) == ";" for child in node.children):
-                return self.part("list", node, tuple(map(self.expression, named(node))))
+            case "array_expression":
+                size = field_of(node, "length")
+                times = 1 if size is None else int(text_of(size)) if text_of(size).isdigit() else 0
+                items = tuple(self.expression(child) for child in named(node) if size is None or child.id != size.id)
+                return self.part("list", node, items * times) if 0 < times <= 64 else None
             case "type_cast_expression":
                 number, _ = type_of(text_of(field_of(node, "type")))
                 return self.part("cast", node, number, self.expression(field_of(node, "value")))

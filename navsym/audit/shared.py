@@ -8,12 +8,12 @@ one: each symbol stands for a polynomial, which has one value at every point. Th
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from navsym.core.errors import DomainError, TooLargeError
+from navsym.language.domains import rational_value
 from navsym.language.polynomials import to_polynomial
 from navsym.language.tree import (
     NUMBER,
@@ -23,10 +23,12 @@ from navsym.language.tree import (
     SYMBOL,
     Tree,
     build,
+    build_number,
     build_symbol,
     list_names,
     list_parts,
     parts_of,
+    replace,
 )
 
 Pair = tuple[Tree, Tree]
@@ -49,10 +51,13 @@ class Shortened:
 
     def complete(self, point: Mapping[str, Fraction]) -> dict[str, Fraction]:
         """The point with the exact values of the shared parts."""
-        known = dict(point)
+        known = {build_symbol(name): build_number(value) for name, value in point.items()}
         for name, tree in self.meanings.items():  # each behind those in it
-            known[name] = evaluate_polynomial(tree, known)
-        return known
+            value = rational_value(replace(tree, known))
+            if value is None:
+                raise TooLargeError("expected numbers of bounded size; got larger ones; ask for fewer entries")
+            known[build_symbol(name)] = build_number(value)
+        return {symbol.args[0]: number.args[0] for symbol, number in known.items()}
 
 
 def shorten_pairs(pairs: Sequence[Pair]) -> Iterator[tuple[list[Pair], Shortened]]:
@@ -118,19 +123,3 @@ def name_parts(pairs: Sequence[Pair], parts: list[Tree], shared: set[Tree]) -> S
             name = f"{letter}{len(meanings) + 1}"
             meanings[name], renamed[part] = renamed[part], build_symbol(name)
     return Shortened(tuple((renamed[code], renamed[expected]) for code, expected in pairs), meanings)
-
-
-def evaluate_polynomial(tree: Tree, point: Mapping[str, Fraction]) -> Fraction:
-    """The exact value of a polynomial."""
-    values: dict[Tree, Fraction] = {}
-    for part in list_parts(tree):
-        inner = [values[arg] for arg in parts_of(part)]
-        if part.head == SUM:
-            values[part] = sum(inner, Fraction(0))
-        elif part.head == PRODUCT:
-            values[part] = math.prod(inner, start=Fraction(1))
-        elif part.head == POWER:
-            values[part] = inner[0] ** int(inner[1])
-        else:
-            values[part] = point[part.args[0]] if part.head == SYMBOL else part.args[0]
-    return values[tree]

@@ -6,15 +6,19 @@ import importlib
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
+
+from flint import ctx, fmpq
 
 from navsym.audit.evaluate import Reading, spell_entry
 from navsym.audit.execute import read_function
 from navsym.audit.form import Argument, Function, Part, Unit, names_in
 from navsym.audit.fragment import take_lines
 from navsym.audit.names import Names
-from navsym.audit.syntax import SIZE, parse_source, read_decimal
+from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import (
     Array,
     Index,
@@ -34,8 +38,10 @@ from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxErro
 from navsym.language.expression import read_tree
 from navsym.language.files import decode, name_file, read_bytes
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
+from navsym.language.printer import print_tree
 from navsym.language.schema import Table, as_list, as_table, as_text, require_key
-from navsym.language.tree import NUMBER, ONE, POWER, PRODUCT, SUM, ZERO, Tree, build_sum, negate
+from navsym.language.tree import NUMBER, ONE, POWER, PRODUCT, SUM, ZERO, Tree, build_number, build_sum, negate
+from navsym.prove.rooms.goals import player
 
 LANGUAGES = {
     **dict.fromkeys((".c", ".h"), "c"),
@@ -45,6 +51,7 @@ LANGUAGES = {
     ".rs": "rust",
 }
 LARGEST_SIDE = 64
+BITS = 256  # at which a decimal is compared with what it stands for
 #: The keys of a block ``[[code]]``.
 KEYS = (
     "name", "file", "function", "lines", "also", "defined", "relations", "approximations", "symbols", "constants",
@@ -89,7 +96,7 @@ class Source:
     def read(self, edits: Mapping[int, Part] | None = None) -> Reading:
         """The function, read once; with edits it is read again."""
         if edits:
-            return read_function(self.unit, self.function, self.symbol, self.shapes, edits)
+            return read_function(self.unit, self.function, self.symbol, self.shapes, edits, self.reading)
         if self.reading is None:
             self.reading = read_function(self.unit, self.function, self.symbol, self.shapes)
         return self.reading
@@ -147,7 +154,8 @@ def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | 
     module = load_reader(language)
     rules = module.RULES_OF_CPP if language == "cpp" else module.RULES
     unit = Unit(where, language, rules, data, defined=defined)
-    module.Reader(unit).read_file(parse_source(data, language, where))
+    reader = module.Reader(unit)
+    reader.read_file(reader.parse(data))
     return unit
 
 
@@ -274,15 +282,30 @@ def read_lines(value: Any, where: str) -> tuple[int, int]:
 
 
 def declare_constants(unit: Unit, table: Table, where: str) -> None:
-    """Names whose values stand in files that are not read, such as headers."""
+    """Names whose values stand in files that are not read, such as headers; and decimals that stand for others."""
     for name, value in table.items():
         place = join_place(join_place(where, "constants"), name)
+        if (decimal := read_decimal(name)) is not None:
+            unit.decimals[decimal] = read_meaning(name, decimal, value, place)
+            continue
         exact = read_decimal(str(value).removeprefix("-")) if not isinstance(value, bool) else None
         if exact is None:
             raise ExpressionSyntaxError(f"expected a number; got {quote(value)}; correct it", where=place)
         kind = "int" if isinstance(value, int) else "real"
         number = Part("number", 0, (-exact if str(value).startswith("-") else exact, kind))
         unit.constants.append(Part("declare", 0, (name, kind, (), number, False)))
+
+
+def read_meaning(text: str, decimal: Fraction, value: Any, where: str) -> Tree:
+    """The number for which a decimal of the source stands, ``pi/180``; it must be the same but for its last digit."""
+    tree = read_tree(as_text(value, where, "an expression of numbers"), {}, where=where)
+    apart = build_sum(tree, negate(build_number(decimal)))
+    with ctx.workprec(BITS):
+        ball, last = player.value_of(player.parse(print_tree(apart)), {}), Decimal(text).as_tuple().exponent
+    if not abs(ball) <= 2 * fmpq(10) ** int(last):  # a double has no digit more
+        message = f"expected an expression that is {text} to its last digit; got {quote(value)}; correct it"
+        raise DomainError(message, where=where)
+    return tree
 
 
 def declare_functions(unit: Unit, table: Table, where: str) -> None:

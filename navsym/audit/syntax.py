@@ -175,10 +175,15 @@ class SourceReader:
     @classmethod
     def read_text(cls, text: str, unit: Unit) -> Part:
         """One expression; its spans count from its own beginning."""
-        root = parse_source(f"{cls.HEAD}{text}{cls.TAIL}".encode(), unit.language, unit.file)
+        reader = cls(unit, -len(cls.HEAD))
+        root = reader.parse(f"{cls.HEAD}{text}{cls.TAIL}".encode())
         nodes = named(root)
         value = cls.find_value(nodes[0]) if len(nodes) == 1 and not root.has_error else None
-        return Part("refused", 1, ("no expression",)) if value is None else cls(unit, -len(cls.HEAD)).expression(value)
+        return Part("refused", 1, ("no expression",)) if value is None else reader.expression(value)
+
+    def parse(self, source: bytes) -> Any:
+        """The root of the syntax tree of a source."""
+        return parse_source(source, self.unit.language, self.unit.file)
 
     def statement(self, node: Any) -> tuple[Part, ...]:
         """A statement; a wrong one is not read, and neither is one outside the language of audit."""

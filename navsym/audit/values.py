@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import product
 
-from navsym.audit.form import Part
+from navsym.audit.form import Part, Unit
 from navsym.language.tree import (
     NUMBER,
     ONE,
@@ -25,6 +26,7 @@ from navsym.language.tree import (
 Index = tuple[int, ...]
 LARGEST = 4096  # cells of one array
 TERMS = 2000  # of one sum
+LARGEST_INVERSE = 4
 
 
 class Unreadable(Exception):
@@ -78,6 +80,10 @@ class Array:
 
 class Quaternion(Array):
     """The cells of a quaternion of nalgebra: i, j, k and w, in this order."""
+
+
+class List(Array):
+    """A list or tuple of Python, which ``+`` joins and ``*`` repeats."""
 
 
 Value = Scalar | Array | Unread
@@ -233,6 +239,8 @@ def transpose(value: Value, column: bool) -> Value:
     if len(value.shape) == 1:
         return Array((1, *value.shape), value.cells) if column else value
     m, n = value.shape
+    if m == 1 and column:
+        return Array((n,), value.cells)
     return make_array((n, m), lambda i, j: value.at(j, i))
 
 
@@ -276,6 +284,33 @@ def matrix_product(a: Value, b: Value) -> Value:
     if len(b.shape) == 1:
         return Array((left[0],), whole.cells)
     return Array((right[1],), whole.cells) if len(a.shape) == 1 and left[0] == 1 else whole
+
+
+def determinant(rows: list[list[Tree]]) -> Tree:
+    """By the first row."""
+    if not rows:
+        return ONE
+    minors = [determinant([[*row[:j], *row[j + 1 :]] for row in rows[1:]]) for j in range(len(rows))]
+    return total([multiply(x if j % 2 == 0 else minus(x), minors[j]) for j, x in enumerate(rows[0]) if x is not ZERO])
+
+
+def invert(value: Value) -> Value:
+    """The inverse of a small matrix, minors over the determinant; of a number its inverse."""
+    if not isinstance(value, Array):
+        return map_cells(lambda x: divide(ONE, x), value)
+    n = value.shape[0]
+    if value.shape != (n, n) or n > LARGEST_INVERSE:
+        raise Unreadable(0, f"the inverse of what is no square matrix of at most {LARGEST_INVERSE} rows")
+
+    def cell(i: int, j: int) -> Cell:
+        def step(*trees: Tree) -> Tree:
+            rows = [list(trees[k * n : k * n + n]) for k in range(n)]
+            minor = determinant([[*row[:i], *row[i + 1 :]] for k, row in enumerate(rows) if k != j])
+            return divide(minor if (i + j) % 2 == 0 else minus(minor), determinant(rows))
+
+        return map_cell(step, *value.cells)
+
+    return make_array((n, n), cell)
 
 
 def cross_product(a: Value, b: Value) -> Value:
@@ -325,3 +360,71 @@ def constant_of(value: Value) -> Fraction | None:
     if isinstance(value, Scalar) and value.tree.head == NUMBER:
         return Fraction(value.tree.args[0])
     return None
+
+
+# The operators of the languages
+
+
+def combine(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
+    """The arithmetic of a language."""
+    if isinstance(a, Unread) or isinstance(b, Unread):
+        return a if isinstance(a, Unread) else b
+    both, rules = isinstance(a, Array) and isinstance(b, Array), unit.rules
+    if (isinstance(a, List) or isinstance(b, List)) and (joined := join_lists(sign, a, b)) is not None:
+        return joined
+    if sign in ("*", "@"):
+        kinds = [isinstance(value, Quaternion) for value in (a, b)]
+        if isinstance(a, Quaternion) and isinstance(b, Quaternion):
+            return quaternion_product(a, b)
+        if both and any(kinds):
+            raise Unreadable(line, "the product of a quaternion and a vector")
+        if both and unit.language == "rust" and len(a.shape) == len(b.shape) == 1:  # type: ignore[union-attr]
+            raise Unreadable(line, "the product of two columns")
+        if sign == "@" and not both:
+            raise Unreadable(line, "a product of matrices of unknown size; declare them under [code.symbols]")
+        return matrix_product(a, b) if both and (sign == "@" or rules.matrix) else map_cells(multiply, a, b)
+    if sign in ("+", "-"):
+        if unit.language == "cpp" and isinstance(a, Array) != isinstance(b, Array):
+            raise Unreadable(line, "the sum of a number and a matrix")
+        return map_cells(add if sign == "+" else lambda x, y: add(x, minus(y)), a, b)
+    if sign in (".*", "./", ".^"):
+        return map_cells({".*": multiply, "./": divide, ".^": raise_to}[sign], a, b)
+    if sign != "**":
+        return quotient(unit, sign, a, b, line)
+    if not isinstance(a, Array) or not rules.matrix:
+        return map_cells(raise_to, a, b)
+    times = constant_of(b)
+    if times is None or times.denominator != 1 or not 0 < times < 9 or a.shape != a.shape[:1] * 2:
+        raise Unreadable(line, "the power of a matrix")
+    factors: list[Value] = [a] * int(times)
+    return functools.reduce(matrix_product, factors)
+
+
+def join_lists(sign: str, a: Value, b: Value) -> Value | None:
+    """``[x, y] + [z]`` and ``[x]*3``; None where one side is an array of numpy."""
+    pair = [value for value in (a, b) if isinstance(value, List)]
+    times = constant_of(b if isinstance(a, List) else a)
+    (size, *rest), cells = pair[0].shape, pair[0].cells
+    if len(pair) == 2 and sign == "+" and [*pair[1].shape[1:]] == rest:
+        return List((size + pair[1].shape[0], *rest), cells + pair[1].cells)
+    if len(pair) == 1 and sign == "*" and times is not None and times.denominator == 1 and 0 < times <= LARGEST:
+        return List((size * int(times), *rest), cells * int(times))
+    if len(pair) == 2 or not (isinstance(a, Array) and isinstance(b, Array)):
+        raise Unreadable(0, "arithmetic of a list, which is no array")
+    return None
+
+
+def quotient(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
+    """A quotient; of integers it is cut in C, which is read for constants only."""
+    if isinstance(b, Array) and unit.rules.matrix:
+        if unit.language != "matlab" or len(b.shape) != 2:
+            raise Unreadable(line, "division by a matrix")
+        return matrix_product(a, invert(b))
+    whole = [isinstance(v, Scalar) and v.number == "int" for v in (a, b)]
+    if sign == "/" and not (unit.rules.integer and all(whole)):
+        result = map_cells(divide, a, b)
+        return Scalar(result.tree) if isinstance(result, Scalar) else result
+    x, y = constant_of(a), constant_of(b)
+    if x is None or y is None or y == 0 or not all(whole) or x < 0 or y < 0:
+        raise Unreadable(line, "a quotient or remainder of integers that are no constants")
+    return Scalar(build_number(x // y if sign != "%" else x % y), "int")

@@ -6,6 +6,7 @@ What ``navsym export`` writes in a language that audit reads is read there and c
 from __future__ import annotations
 
 import json
+import math
 import re
 import resource
 import sys
@@ -24,8 +25,8 @@ FILES = {
     "c": ("c/{}.c", r"    \{ /\* ", r"    \}", "r{}"),
     "cpp": ("cpp/navsym_functions.hpp", r"    \{  // ", r"    \}", None),
     "rust": ("rust/navsym_functions.rs", r"    \{ // ", r"    \}", "nv_r[{}]"),
-    "python": ("python/navsym_functions.py", r"    shape = np.broadcast_shapes", r"    return", "r{}"),
-    "octave": ("octave/{}.m", r"^  end", r"  if ~all\(isfinite", "r{}"),
+    "python": ("python/navsym_functions.py", r"    shape = ", r"    return", "r{}"),
+    "octave": ("octave/{}.m", r"^  end or   value = NaN", r"  if ~all\(isfinite", "r{}"),
 }
 #: What stands in a file of its own.
 HELPERS = {"octave": "[code.functions]\nnavsym_sqrt = { of = ['x'], is = 'sqrt(x)' }\n"}
@@ -42,9 +43,13 @@ def find_lines(text: str, name: str, first: str, last: str) -> tuple[int, int] |
     head = re.search(rf"(?:^|[ >]){re.escape(name)}\s?\(", text, re.MULTILINE)
     assert head is not None
     before, lines = text[: head.start()].count("\n"), text[head.start() :].split("\n")
-    start = next((i for i, line in enumerate(lines) if re.match(first, line)), len(lines))
-    end = next((i for i, line in enumerate(lines) if i > start and re.match(last, line)), None)
-    return None if end is None else (before + start + 2, before + end)
+    size = next((i for i, line in enumerate(lines) if i and re.match(r"end|function ", line)), len(lines))
+    marks = [[i for i, line in enumerate(lines[:size]) if re.match(mark, line)] for mark in first.split(" or ")]
+    for start in (found[0] for found in marks if found):
+        end = next((i for i, line in enumerate(lines[:size]) if i > start and re.match(last, line)), None)
+        if end is not None:
+            return before + start + 2, before + end
+    return None
 
 
 def read_back(claim: str, folder: Path) -> dict[str, str]:
@@ -73,6 +78,11 @@ def compare(function: dict[str, Any], language: str, folder: Path) -> str:
     names = [result.format(k) for k in range(len(formulas))] if result else written
     spelled = spell_inputs(function, language)
     spec = f'[[code]]\nname = "c"\nfile = "{path}"\nfunction = "{function["name"]}"\nlines = {[*lines]}\n'
+    spec += "[code.constants]\n" + "".join(
+        f'"{digits}" = "{meaning}"\n'
+        for digits in sorted({*re.findall(r"\d+\.\d{9,}", inside)})
+        if (meaning := find_meaning(digits, " ".join(formulas)))
+    )
     spec += HELPERS.get(language, "") + "[code.symbols]\n"
     spec += "".join(f'"{spelled[i["symbol"]]}" = {range_of(i)}\n' for i in function["inputs"] if i["symbol"] in spelled)
     asked = [*zip(names, names, formulas, strict=True), ("wrong", names[0], f"{formulas[0]} + 1")]
@@ -87,6 +97,25 @@ def compare(function: dict[str, Any], language: str, folder: Path) -> str:
     assert verdicts.pop("wrong").status != nav.PROVED
     bad = next((q for q in verdicts.values() if not q.status.holds), None)
     return "PROVED" if bad is None else f"{bad.status} ({bad.entries[0].why[:50]})"
+
+
+def find_meaning(digits: str, formulas: str) -> str | None:
+    """The constant of the formulas for which a decimal stands, as a rational multiple of pi or a root."""
+    atoms = {
+        "pi": math.pi,
+        "pi**2": math.pi**2,
+        "1/pi": 1 / math.pi,
+        "pi**3": math.pi**3,
+        "1/pi**2": math.pi**-2,
+        "1": 1,
+    }
+    atoms |= {text: math.sqrt(int(text[5:-1])) for text in re.findall(r"sqrt\(\d+\)", formulas)}
+    atoms |= {f"{a}*{b}": atoms[a] * atoms[b] for a in [*atoms] for b in [*atoms] if a < b and "pi" in a + b}
+    for atom, value in atoms.items():
+        factor = Fraction(float(digits) / value).limit_denominator(20_000)
+        if factor and abs(float(factor) * value - float(digits)) <= 4e-16 * float(digits):
+            return f"{factor}*{atom}"
+    return None
 
 
 def spell_inputs(function: dict[str, Any], language: str) -> dict[str, str]:

@@ -136,3 +136,18 @@ def test_a_row_of_a_block_is_no_column(tmp_path):
     code = "\n    ".join(["import numpy as np\n\ndef step(a, b):", *lines, ""])
     assert ask(tmp_path, "return[0]", "b", code=code, end="py")[0] == "PROVED"
     assert ask(tmp_path, "return[0]", "a", code=code, end="py")[0] == "REFUTED"
+
+
+def test_a_decimal_stands_for_a_number_that_is_the_same_to_its_last_digits(tmp_path):
+    """Without the mapping the question is not proved; a number that is another one is refused."""
+    (tmp_path / "a.c").write_text("double f(double x)\n{\n    return x*0.017453292519943295;\n}\n")
+    question = '[[question]]\nkind = "equal"\nleft = "a:return"\nright = "x*pi/180"\n'
+    answers = []
+    for constants in ("", '[code.constants]\n"0.017453292519943295" = "pi/180"\n'):
+        code = f'[[code]]\nname = "a"\nfile = "a.c"\nfunction = "f"\n{constants}'
+        (tmp_path / "spec.toml").write_text(code + question)
+        answers.append(nav.audit(tmp_path / "spec.toml").questions[0].status)
+    assert answers[0] != nav.PROVED and answers[1] == nav.PROVED
+    (tmp_path / "spec.toml").write_text((code + question).replace('"pi/180"', '"pi/181"'))
+    with pytest.raises(nav.NavsymError, match="to its last digit"):
+        nav.audit(tmp_path / "spec.toml")

@@ -88,3 +88,35 @@ def test_random_faults_of_one_token_are_mended_nearly_always():
             [mended] if (mended := decide_mutant(subject, chosen.choice(list_mutants(subject)), True)[1]) else []
         )
     assert counts["mended"] >= 11
+
+
+#: Body of a function in Python: what is wrong in it, and the mend, with a name of what is expected or another group.
+BODIES = {
+    "group": ("(a - b)*s + k", "a - b*s + k"),
+    "divisor": ("k*(a - b)", "k/s*(a - b)"),
+    "name of what is expected": ("k*a - u", "k*a - b"),
+    "square of a divisor": ("(a + k)*s", "(a + k)/(s*s)"),
+}
+
+
+@pytest.mark.parametrize("kind", BODIES)
+def test_a_mend_uses_what_is_expected(kind, tmp_path):
+    wrong, right = BODIES[kind]
+    (tmp_path / "f.py").write_text(f"def f(a, s, k, u):\n    return {wrong}\n")
+    (tmp_path / "g.py").write_text(f"def g(a, b, s, k):\n    return {right}\n")
+    spec = "".join(f'[[code]]\nname = "{n}"\nfile = "{n}.py"\nfunction = "{n}"\n' for n in "fg")
+    (tmp_path / "s.toml").write_text(f'{spec}[[question]]\nkind = "equal"\nleft = "f:return"\nright = "g:return"\n')
+    wanted, (entry,) = right.replace(" ", ""), nav.audit(tmp_path / "s.toml").questions[0].entries
+    assert entry.status == nav.REFUTED and entry.suggestion.replace(" ", "") == wanted
+
+
+def test_a_mend_in_python_knows_what_is_imported(tmp_path):
+    text = "from numpy import dot\n\n\ndef f(A):\n    return dot(A.T, A)\n\n\ndef g(A):\n    return dot(A, A.T)\n"
+    (tmp_path / "f.py").write_text(text)
+    spec = "".join(
+        f'[[code]]\nname = "{n}"\nfile = "f.py"\nfunction = "{n}"\n[code.symbols]\nA = {{ matrix = [2, 2] }}\n'
+        for n in "fg"
+    )
+    (tmp_path / "s.toml").write_text(f'{spec}[[question]]\nkind = "equal"\nleft = "f:return"\nright = "g:return"\n')
+    entries = nav.audit(tmp_path / "s.toml").questions[0].entries
+    assert {entry.suggestion for entry in entries} == {"dot(A, A.T)"}

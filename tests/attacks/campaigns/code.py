@@ -1,17 +1,21 @@
 """One-token mutants of readable code: one that is proved equal to its original must compute the same when it is run.
 
-The functions are those of the gallery and what navsym exports, in C, Python, MATLAB and Rust. The judges are two
-compilers, numpy and Octave. ``python -m tests.attacks.campaigns.code NUMBER SEED`` prints the counts.
+The functions are those of the gallery, our own in the styles of flown filters, and what navsym exports, in C, C++ with
+Eigen, Python, MATLAB and Rust. The judges are three compilers, numpy and Octave.
+``python -m tests.attacks.campaigns.code NUMBER SEED`` prints the counts.
 """
 
 from __future__ import annotations
 
+import atexit
 import ctypes
 import functools
+import importlib.util
 import math
 import multiprocessing
 import random
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -40,15 +44,22 @@ from tests.attacks.campaigns.batches import Batch, Result, result
 SIZE = 100
 #: Functions of our own, with the sizes of what comes in where the language does not say them.
 OWN = Path(__file__).resolve().parents[1] / "code"
-SIZES = {"earth_place": {"x": (3,)}, "joseph_step": {"P": (2, 2)}, "pendulum_step": {"x": (2,)}}
+SIZES: dict[str, dict[str, tuple[int, ...]]] = {
+    "earth_place": {"x": (3,)}, "joseph_step": {"P": (2, 2)}, "pendulum_step": {"x": (2,)},
+    "kf": {"x": (2, 1), "P": (2, 2)}, "strap": {"v": (3, 1), "w": (3, 1), "C": (3, 3)},
+    "triad": dict.fromkeys("amgh", (3, 1)), "shapes": {"M": (3, 3), "v": (3, 1)}, "mag": {"q": (4,), "m": (3,)},
+    "cv": {"x": (4,), "P": (4, 4), "z": (2,)}, "ctrv": {"x": (4,), "u": (2,)},
+    "imu": {"R": (3, 3), "v": (3,), "w": (3,), "a": (3,)},
+}  # fmt: skip
 GALLERY = Path(__file__).resolve().parents[3] / "examples" / "audit" / "gallery"
 #: Claims whose code is short enough to be read by eye.
 CLAIMS = ("alpha_beta_filter:5", "alpha_beta_filter:4")
-LANGUAGES = {".c": "c", ".py": "python", ".m": "matlab", ".rs": "rust"}
+LANGUAGES = {".c": "c", ".cpp": "cpp", ".py": "python", ".m": "matlab", ".rs": "rust"}
 TOKEN = re.compile(r"[A-Za-z_]\w*|\d+\.?\d*(?:[eE][+-]?\d+)?f?|\*\*|[-+*/]=?|\S")
 #: The body of each function, behind its head.
 BODIES = {
     "c": re.compile(r"^[a-z][\w ]* \w+\([^)]*\)\s*\{(.*?)^\}", re.MULTILINE | re.DOTALL),
+    "cpp": re.compile(r"^[A-Za-z]\w* \w+\([^)]*\)\s*\{(.*?)^\}", re.MULTILINE | re.DOTALL),
     "rust": re.compile(r"^pub fn \w+\([^)]*\)[^{]*\{(.*?)^\}", re.MULTILINE | re.DOTALL),
     "matlab": re.compile(r"^function \w+ = \w+\([^)]*\)(.*?)^end", re.MULTILINE | re.DOTALL),
     "python": re.compile(r"^def \w+\([^)]*\):(.*?)(?=^def|\Z)", re.MULTILINE | re.DOTALL),
@@ -56,11 +67,15 @@ BODIES = {
 SIGNS = {sign: [*"+-*/"] for sign in "+-*/"} | {"+=": ["-="], "-=": ["+="], "**": ["*"], "@": ["*"]}
 NUMBERS = ("0.0", "1.0", "2.0", "3.0", "0.5", "0.25")
 CALLS = {"sin": "cos", "cos": "sin", "sinf": "cosf", "cosf": "sinf", "sqrt": "cos", "tan": "sin", "powi": "powf"}
+CALLS |= {"transpose": "eval", "Identity": "Zero", "Zero": "Identity", "y": "z", "x": "y"}
 WORDS = {
     *"double float int for const return if else void np array math T let mut f64 pub fn end function in range".split(),
-    *CALLS,
+    *"cross dot norm normalized squaredNorm block segment head eval Eigen std auto static inline".split(), *CALLS,
 }  # fmt: skip
+#: Types of Eigen with their sizes.
+MATRIX = re.compile(r"\b(?:Vector(\d)d|Matrix(\d)d|Matrix<double, (\d+), (\d+)>)")
 SIDES = ("before", "after")
+CPP = ("-O0", "-w", "-fPIC", "-fmax-errors=0")
 POINTS = 4
 #: Processor time that a compiled function may take; a mutant may loop for ever.
 SECONDS = 0.5
@@ -82,15 +97,21 @@ class Subject:
         head = re.search(rf"\b{self.function}\(([^)]*)\)", self.text)
         assert head is not None
         known, done = dict(self.shapes), []
-        for text in head[1].split(","):
+        for text in split_types(head[1]):
             name = re.findall(r"[a-z_]\w*", text.partition(":" if self.language == "rust" else "[")[0], re.IGNORECASE)[
                 -1
             ]
-            sizes = tuple(int(n) for n in re.findall(r"(?:\[|; )(\d+)\]", text)) or known.get(name)
+            sizes = tuple(int(n) for n in re.findall(r"(?:\[|; )(\d+)\]", text)) or sizes_of(text) or known.get(name)
             sizes = sizes or ((1,) if "*" in text else None)
-            is_changed = "&mut" in text or (self.language == "c" and "const" not in text and sizes is not None)
+            is_shared = self.language == "c" or (self.language == "cpp" and ("[" in text or "&" in text))
+            is_changed = "&mut" in text or (is_shared and "const" not in text and sizes is not None)
             done.append((name, sizes, is_changed))
         return done
+
+    def returned(self) -> tuple[int, ...] | None:
+        """The sizes of a matrix of Eigen that is returned; None for others."""
+        head = re.search(rf"^([\w:<>, ]+) {self.function}\(", self.text, re.MULTILINE)
+        return sizes_of(head[1]) if head is not None and self.language == "cpp" else None
 
     def outputs(self) -> list[str]:
         """What is compared."""
@@ -101,7 +122,15 @@ class Subject:
     def returns(self) -> bool:
         """True for a function with a value."""
         pattern = rf"(double|float)\s+{self.function}\(|{self.function}\([^)]*\) ->"
-        return self.language == "python" or re.search(pattern, self.text) is not None
+        return self.language == "python" or bool(self.returned()) or re.search(pattern, self.text) is not None
+
+
+def sizes_of(text: str) -> tuple[int, ...] | None:
+    """The sizes of a type of Eigen."""
+    found = MATRIX.search(text)
+    if found is None or not found[2]:
+        return None if found is None else (int(found[1]),) if found[1] else (int(found[3]), int(found[4]))
+    return int(found[2]), int(found[2])
 
 
 @functools.cache
@@ -112,6 +141,9 @@ def list_subjects() -> list[Subject]:
         blocks = tomllib.loads(path.with_suffix(".toml").read_text())["code"]
         for side in SIDES:
             language, text = LANGUAGES[path.suffix], leave_out(path, next(s for s in SIDES if s != side))
+            text = (
+                text if language != "cpp" else re.sub(r"(Vector\d|Matrix\d)f", r"\1d", text).replace("float", "double")
+            )
             symbols = next(b for b in blocks if b["function"] == side).get("symbols", {})
             sizes = {n: d.get("vector", d.get("matrix")) for n, d in symbols.items() if isinstance(d, dict)}
             shapes = tuple((n, (s,) if isinstance(s, int) else tuple(s)) for n, s in sizes.items() if s)
@@ -238,7 +270,7 @@ def rows_of(sizes: tuple[int, ...] | None) -> str:
 
 def compile_all(sources: list[str], subject: Subject, folder: Path) -> tuple[Path, list[int]]:
     """One library with a function ``m<k>_...`` for each source, and the places of those that the compiler takes."""
-    names = sorted({*re.findall(r"^(?:\w+ )+(\w+)\(", subject.text, re.MULTILINE)})
+    names = sorted({*re.findall(r"^[A-Za-z][\w:<>, ]* (\w+)\(", subject.text, re.MULTILINE)})
     library, alive = folder / "all.so", [*range(len(sources))]
     for _ in range(ROUNDS):
         lines = list[str]()
@@ -247,9 +279,11 @@ def compile_all(sources: list[str], subject: Subject, folder: Path) -> tuple[Pat
             text = re.sub(rf"\b({'|'.join(names)})\b", rf"m{k}_\1", sources[k])
             if subject.language == "rust":
                 text = text.replace("pub fn ", '#[no_mangle]\npub extern "C" fn ')
+            if subject.language == "cpp":
+                text += wrap_eigen(subject, f"m{k}_{subject.function}")
             starts.append(len(lines))
             lines += text.split("\n")
-        path = folder / ("all.rs" if subject.language == "rust" else "all.c")
+        path = folder / ("all." + {"rust": "rs"}.get(subject.language, subject.language))
         path.write_text("\n".join(lines))
         if subject.language == "rust":
             command = ["rustc", "--crate-type", "cdylib", "--error-format=short", "-A", "warnings", path, "-o", library]
@@ -257,15 +291,69 @@ def compile_all(sources: list[str], subject: Subject, folder: Path) -> tuple[Pat
             flags = "-O0 -shared -fPIC -Dfloat=double -Dsinf=sin -Dcosf=cos -Dsqrtf=sqrt -include math.h".split()
             flags += ["-Werror=implicit-function-declaration"]
             command = ["gcc", *flags, path, "-o", library, "-lm"]
+            if subject.language == "cpp":
+                command = ["g++", *CPP, *eigen(), "-shared", path, "-o", library]
         said = subprocess.run(command, capture_output=True, check=False, text=True)
         if said.returncode == 0:
             return library, alive
-        bad = {int(n) - 1 for n in re.findall(r"^[^\s:]*all\.\w+:(\d+):\d+: .*error", said.stderr, re.MULTILINE)}
+        mark = r".*(?:error|required from here)"  # a wrong template is found in the library, and named here
+        bad = {int(n) - 1 for n in re.findall(rf"^[^\s:]*all\.\w+:(\d+):\d+: {mark}", said.stderr, re.MULTILINE)}
         ends = [*starts[1:], len(lines)]
         alive = [k for k, a, b in zip(alive, starts, ends, strict=True) if not any(a <= n < b for n in bad)]
         if not bad:
             break
     return library, []
+
+
+@functools.cache
+def eigen() -> list[str]:
+    """How the compiler finds Eigen, read once for all: among the headers that come with casadi."""
+    package, folder = importlib.util.find_spec("casadi"), Path(tempfile.mkdtemp(prefix="navsym-eigen-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    assert package is not None and package.origin is not None
+    where = ["-I", f"{Path(package.origin).parent}/include/eigen3"]
+    (folder / "eigen.hpp").write_text("#include <Eigen/Dense>\n")
+    subprocess.run(["g++", *CPP, *where, "-x", "c++-header", folder / "eigen.hpp"], check=True)
+    return [*where, "-include", f"{folder}/eigen.hpp"]
+
+
+def wrap_eigen(subject: Subject, name: str) -> str:
+    """A function of C around one of C++: cells come in and go out row by row."""
+    heads, given, back = list[str](), list[str](), list[str]()
+    result = subject.returned()
+    head = re.search(rf"\b{subject.function}\(([^)]*)\)", subject.text)
+    assert head is not None
+    for k, ((_, sizes, is_changed), text) in enumerate(zip(subject.parameters(), split_types(head[1]), strict=True)):
+        heads.append(f"double {'*' * bool(sizes)}a{k}")
+        if sizes_of(text) is None:
+            given.append(f"a{k}")
+            continue
+        given.append(f"p{k}")
+        back.append(f"{map_cells(sizes, f'a{k}')} = p{k};" if is_changed else "")
+        heads[-1] += f"|{eigen_type(sizes)} p{k} = {map_cells(sizes, f'a{k}')};"
+    values = " ".join(h.partition("|")[2] for h in heads)
+    call, ends = f"{name}({', '.join(given)})", " ".join(back)
+    is_number = result is None and subject.returns()
+    before = f"{map_cells(result, 'out')} = " if result else "const double value = " if is_number else ""
+    head_text = ", ".join([*(h.partition("|")[0] for h in heads), *["double *out"] * bool(result)])
+    return (f'\nextern "C" double {name}_c({head_text})\n{{ {values} {before}{call}; {ends} '
+            f"return {'value' if is_number else '0.0'}; }}")  # fmt: skip
+
+
+def split_types(text: str) -> list[str]:
+    """The parameters of a head; a comma may stand between the sizes of a type."""
+    return re.split(r",(?![^<]*>)", text)
+
+
+def eigen_type(sizes: Any, order: str = "") -> str:
+    """A matrix or a column of Eigen."""
+    rows, columns = (*sizes, 1)[:2]
+    return f"Eigen::Matrix<double, {rows}, {columns}{order if columns > 1 else ''}>"
+
+
+def map_cells(sizes: Any, name: str) -> str:
+    """Cells row by row as a matrix."""
+    return f"(Eigen::Map<{eigen_type(sizes, ', Eigen::RowMajor')}>({name}))"
 
 
 def call_all(
@@ -297,14 +385,16 @@ def call_library(library: Path, places: list[int], subject: Subject, points: lis
     loaded = ctypes.CDLL(str(library))
     for k in places:
         signal.setitimer(signal.ITIMER_VIRTUAL, SECONDS)  # the end of this process
-        function = getattr(loaded, f"m{k}_{subject.function}")
+        function = getattr(loaded, f"m{k}_{subject.function}" + "_c" * (subject.language == "cpp"))
+        result = math.prod(subject.returned() or (0,))
         function.restype = ctypes.c_double if subject.returns() else ctypes.c_int
         results: list[float] = []
         for point in points:
             shaped = [*zip(point, subject.parameters(), strict=True)]
             given = [(ctypes.c_double * (len(v) + 8))(*v) if s else ctypes.c_double(v[0]) for v, (_, s, _) in shaped]
-            value = function(*given)
-            results += [value] * subject.returns()
+            out = (ctypes.c_double * result)()
+            value = function(*given, *[out] * bool(result))
+            results += [*out] if result else [value] * subject.returns()
             for cells, (v, (_, _, is_changed)) in zip(given, shaped, strict=True):
                 results += [*cells[: len(v)]] if is_changed else []
         writing.send(results)
