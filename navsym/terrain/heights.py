@@ -126,7 +126,8 @@ class TerrainMap:
     x0, y0  : coordinates of heights[0, 0]
     dx, dy  : spacing, positive, in the unit of the coordinates
     nodata  : value in ``heights`` that means "none", or None
-    highest : largest |height|
+
+    single  : the heights in single precision, for loops that prove their margin ; highest : largest |height|
 
     NaN in ``heights`` is accepted only with ``nodata=float("nan")``: otherwise it is an error.
     Raises ShapeError, NotFiniteError, EmptyError, DomainError.
@@ -138,12 +139,15 @@ class TerrainMap:
     dx: float
     dy: float
     nodata: float | None = None
+    single: NDArray[np.float32] = field(init=False, repr=False)
     highest: float = field(init=False, default=0.0)
     has_voids: bool = field(init=False, default=False)
 
     def __post_init__(self) -> None:
         heights = with_voids(self.heights, self.nodata)
         put(self, "heights", freeze(heights))
+        with np.errstate(over="ignore"):
+            put(self, "single", freeze(heights.astype(np.float32)))
         for name in ("x0", "y0"):
             put(self, name, finite(name, getattr(self, name)))
         for name in ("dx", "dy"):

@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 
 from navsym.core.errors import NotEstimableError
 from navsym.terrain.heights import TerrainMap, demand_heights
-from navsym.terrain.kernels.bounded import search_bounded
+from navsym.terrain.kernels.bounded import BoundedResult, search_bounded, search_one_velocity
 from navsym.terrain.kernels.criteria import TOGETHER, dense_masked, padded, patch_rows, profile, slab
+from navsym.terrain.kernels.lattice import fits, lattice, rounded
 from navsym.terrain.kernels.margins import DOUBLE, PLAIN, parts_about_the_mean
 from navsym.terrain.track import Hypotheses, Profile
 
@@ -38,6 +39,7 @@ class Prepared:
     """
 
     H: Array
+    single: NDArray[np.float32]
     bx: Array
     by: Array
     z: Array
@@ -53,6 +55,12 @@ class Prepared:
     def case(self) -> tuple[Array, Array, Array, Array, Array, Array]:
         """What the compiled loops take: see :mod:`navsym.terrain.kernels.criteria`."""
         return self.H, self.bx, self.by, self.z, self.wx, self.wy
+
+    @property
+    def on_lattice(self) -> bool:
+        """Whether :mod:`navsym.terrain.kernels.lattice` applies: positions only, the step is the cell."""
+        alike = self.counts[2:] == (1, 1) and self.steps == (1.0, 1.0) and self.plain
+        return alike and fits(self.H, self.bx, self.by, self.counts[:2], padded(self.counts[0]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,17 +107,7 @@ def prepare(terrain: TerrainMap, track: Profile, grid: Hypotheses, *, on_map: bo
     plain = inside and whole
     bound = max(terrain.highest, float(np.abs(track.h).max()))
     z = np.array(track.h)
-    return Prepared(terrain.heights, bx, by, z, wx, wy, steps, grid.counts, plain, bound, whole)
-
-
-def rounded(cells: Array, side: int) -> Array:
-    """Cell coordinates as multiples of the last place of the largest coordinate on the map.
-
-    That is the place to which ``(x - x0)/dx`` is rounded at the far edge anyway; with it, sums of a coordinate and
-    a whole number of cells on the map are exact, and their fractions all alike.
-    """
-    quantum = math.ldexp(1.0, math.frexp(4.0 * side)[1] - 53)
-    return np.asarray(np.rint(cells / quantum) * quantum)
+    return Prepared(terrain.heights, terrain.single, bx, by, z, wx, wy, steps, grid.counts, plain, bound, whole)
 
 
 def reach(b: Array, w: Array, s: float, M: int, Mv: int) -> tuple[float, float]:
@@ -140,7 +138,10 @@ def criteria(prepared: Prepared, *, threads: int = 1, centred: bool = False) -> 
         dense_masked(prepared.case, prepared.steps, prepared.counts, centred, out.reshape(-1))
         return out
     sums = np.zeros((Mvx, Mvy, My, padded(Mx)))
-    each_velocity(lambda Vi: one_slab(prepared, Vi, sums[Vi]), Mvx, threads)
+    if prepared.on_lattice:
+        lattice(*prepared.case[:4], (Mx, My), sums[0, 0])
+    else:
+        each_velocity(lambda Vi: one_slab(prepared, Vi, sums[Vi]), Mvx, threads)
     return sums[..., :Mx]
 
 
@@ -167,8 +168,8 @@ def search_position(
 ) -> Search:
     """The best position hypothesis, velocity errors taken as zero (terrain_search:2, terrain_search:3).
 
-    dense       : keep all criteria of an offset-free search; otherwise the same minimum, runner-up and values
-                  without them
+    dense       : keep all criteria in double precision; otherwise they may be summed in single precision, and
+                  the lowest again in double: the same minimum, runner-up and values
     offset_free : the criterion ``sum (d - mean d)^2``, free of a constant height error (terrain_search:offset)
     Raises OutsideMapError, NoDataError, NotEstimableError (fewer than two measurements, three without offset).
     """
@@ -202,11 +203,16 @@ def found_by(prepared: Prepared, dense: bool, threads: int, centred: bool) -> Se
     total = math.prod(prepared.counts)
     # Outside this range single precision could overflow or underflow; nobody measures such heights.
     usual = 1e-10 < prepared.bound < 1e15 and total > 1 and (prepared.z.size >= 4 or not centred)
+    # On the lattice all criteria in double precision take less time than some of them in single.
     positions_only = prepared.counts[2:] == (1, 1)
-    if dense or not (prepared.whole and usual) or (positions_only and not (prepared.plain and centred)):
+    if (
+        dense
+        or not (prepared.whole and usual)
+        or (positions_only and not prepared.plain)
+        or (prepared.on_lattice and not centred)
+    ):
         return lowest(prepared, criteria(prepared, threads=threads, centred=centred), centred=centred)
-    p = prepared
-    found = search_bounded(p.case, p.steps, p.counts, p.bound, centred=centred, inside=p.plain)
+    found = quickly(prepared, centred)
     if found.index < 0:
         return lowest(prepared, criteria(prepared, threads=threads, centred=centred), centred=centred)
     index, runner_up = unravel(found.index, prepared.counts), unravel(max(found.runner_up, 0), prepared.counts)
@@ -214,6 +220,14 @@ def found_by(prepared: Prepared, dense: bool, threads: int, centred: bool) -> Se
     unique = math.isinf(found.second) or is_unique(prepared, best, second, centred)
     share = found.samples / (total * prepared.z.size)
     return Search(index, found.criterion, found.second, unique, found.completed, share)
+
+
+def quickly(prepared: Prepared, centred: bool) -> BoundedResult:
+    """The exact search that suits the number of velocities."""
+    p = prepared
+    if p.counts[2:] == (1, 1) and not centred:
+        return search_one_velocity(p.single, p.case, p.steps, p.counts[:2], p.bound)
+    return search_bounded(p.case, p.steps, p.counts, p.bound, centred=centred, inside=p.plain)
 
 
 def need(track: Profile, least: int, what: str) -> None:

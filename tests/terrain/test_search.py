@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from navsym.terrain.kernels.bounded import BoundedResult, search_bounded
+from navsym.terrain.kernels.bounded import BoundedResult, search_bounded, search_one_velocity
 from navsym.terrain.kernels.criteria import TOGETHER, criterion_one, dense_masked, height_at, padded, patch_rows, slab
+from navsym.terrain.kernels.lattice import fits, lattice, rounded
 from navsym.terrain.kernels.margins import (
     CONTRASTS,
     ceiling_of,
@@ -21,7 +22,6 @@ from navsym.terrain.kernels.margins import (
     single_limit,
 )
 from navsym.terrain.kernels.stages import scores
-from navsym.terrain.search import rounded
 from tests.twins.terrain import dense_slowly
 
 
@@ -158,6 +158,45 @@ def test_contrasts_of_four_in_single_precision_stay_within_their_margin():
         for ceiling, s in zip(ceilings, single.ravel(), strict=True):
             assert s <= single_limit(ceiling, n, bound, CONTRASTS)
         assert (floor_of(single, n, bound, CONTRASTS) <= exact * (1 + 1e-12)).all()
+
+
+def test_the_search_in_single_precision_equals_the_dense_search_over_positions():
+    generator = np.random.default_rng(21)
+    for case in range(300):
+        (H, bx, by, z, wx, wy), steps, counts = random_case(generator, ties=case % 3 == 0)
+        if case % 2:
+            steps = (1.0, 1.0)
+        bound = max(np.abs(H).max(), np.abs(z).max())
+        if bound == 0.0 or counts[:2] == (1, 1):
+            continue
+        found = search_one_velocity(H.astype(np.float32), (H, bx, by, z, wx, wy), steps, counts[:2], bound)
+        still = np.zeros_like(bx)
+        values = dense((H, bx, by, z, still, still), steps, (*counts[:2], 1, 1))
+        assert (found.index, found.criterion, found.second) == two_lowest(values), case
+
+
+@pytest.mark.parametrize("n", [1, 3, 4, 5, 63, 64])
+def test_the_lattice_equals_the_plain_loop_to_the_last_bit(n):
+    generator = np.random.default_rng(n)
+    H = 300 * generator.normal(size=(61, 70))
+    counts = (int(generator.choice([7, 9, 17])), 11)
+    bx = rounded(generator.uniform(10, 50, n), 70)
+    by = rounded(generator.uniform(10, 50, n), 70)
+    z = 300 * generator.normal(size=n)
+    out, still = np.zeros((counts[1], padded(counts[0]))), np.zeros(n)
+    assert fits(H, bx, by, counts, out.shape[1])
+    lattice(H, bx, by, z, counts, out)
+    values = dense((H, bx, by, z, still, still), (1.0, 1.0), (*counts, 1, 1))
+    assert_array_equal(out[:, : counts[0]], values[0, 0])
+
+
+def test_the_lattice_is_left_where_it_would_read_past_the_map():
+    H, low, high = np.zeros((30, 30)), np.array([10.0]), np.array([26.0])
+    assert fits(H, low, low, (7, 7), 16)
+    assert not fits(H, high, low, (7, 7), 16)  # the last column is a border of its own
+    assert not fits(H, low, high, (7, 7), 16)
+    assert not fits(H, np.array([2.0]), low, (7, 7), 16)  # off the map
+    assert not fits(H, np.array([20.0]), np.array([25.0]), (7, 7), 48)  # the padding would end past the array
 
 
 def test_rounded_positions_keep_their_fraction_across_powers_of_two():

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from navsym.terrain.kernels.criteria import TOGETHER, padded, patch_rows, shift_of, slab
 from navsym.terrain.kernels.margins import (
+    BLENDED,
     CONTRASTS,
     PLAIN,
     ceiling_of,
@@ -50,6 +51,8 @@ from navsym.terrain.kernels.stages import (
 FIRST = 32
 #: Measurements added to the survivors after that; the last stage takes all that remain.
 STAGES = (32, 64)
+#: The position search first looks at one measurement of so many.
+EVERY = 8
 #: Hypotheses on which the next measurements are chosen.
 PROBES = 32
 
@@ -281,3 +284,57 @@ def search_bounded(
     samples = left.samples + left.index.size * n
     completed = min(left.index.size + left.tried, total)
     return BoundedResult(best, criterion, runner_up, second, completed, samples, tuple(survivors))
+
+
+def search_one_velocity(
+    single: NDArray[np.float32], case: Case, steps: tuple[float, float], counts: tuple[int, int], bound: float
+) -> BoundedResult:
+    """Minimum and runner-up over positions only, as exact as :func:`search_bounded`.
+
+    single : H in single precision ; counts : (Mx, My) ; wx and wy of the case are not used
+
+    Every eighth measurement is summed in single precision for all positions. When few survive, they are
+    summed on in double; when many do, as with a wrong velocity, which makes all positions fit alike, the
+    other measurements follow in single precision too. The last few are evaluated completely.
+    """
+    n, still = case[3].shape[0], np.zeros_like(case[1])
+    case, pair, all_counts = (*case[:4], still, still), np.array(steps), (*counts, 1, 1)
+    early = np.arange(n) % EVERY == 0
+    sums = np.zeros((1, 1, counts[1], padded(counts[0])), np.float32)
+    flat = add_single(single, part_of(case, early), steps, counts, sums)
+    lowest = np.sort(np.argpartition(flat, min(8, flat.size - 1))[:8]).astype(np.int64)
+    _, _, _, second = settle(case, pair, all_counts, False, lowest, np.inf)
+    ceiling, m = ceiling_of(second, n, bound) if math.isfinite(second) else math.inf, int(early.sum())
+    index = below(flat, ceiling, m, bound)
+    samples = flat.size * m + lowest.size * n
+    if index.size * EVERY < flat.size:
+        low, limit = floor_of(flat[index], m, bound, BLENDED), double_limit(ceiling, n, bound)
+        samples += add_more(part_of(case, ~early), pair, all_counts, False, index, low, limit)
+        index = index[low <= limit]
+    else:
+        flat = add_single(single, part_of(case, ~early), steps, counts, sums)
+        index, samples = below(flat, ceiling, n, bound), samples + flat.size * (n - m)
+    best, criterion, runner_up, second = settle(case, pair, all_counts, False, index, second)
+    completed = min(index.size + lowest.size, flat.size)
+    return BoundedResult(best, criterion, runner_up, second, completed, samples + index.size * n, (index.size,))
+
+
+def add_single(
+    single: NDArray[np.float32],
+    part: Case,
+    steps: tuple[float, float],
+    counts: tuple[int, int],
+    sums: NDArray[np.float32],
+) -> NDArray[np.float32]:
+    """Add the measurements of a part to sums (1, 1, My, W); returns them as a flat copy without padding."""
+    _, bx, by, z, wx, wy = part
+    rows = patch_rows(by, wy, steps[1], counts[1], 1, single.shape[0])
+    patch = np.empty((TOGETHER, rows, sums.shape[3]), np.float32)
+    slab((single, bx, by, z.astype(np.float32), wx, wy), steps, (*counts, 1), 0.0, False, patch, sums[0])
+    return sums[0, 0, :, : counts[0]].ravel()
+
+
+def below(flat: NDArray[np.float32], ceiling: float, m: int, bound: float) -> NDArray[np.int64]:
+    """Indices, ascending, of the hypotheses that the sums of m squares do not exclude."""
+    limit = single_limit(ceiling, m, bound, BLENDED) if math.isfinite(ceiling) else math.inf
+    return np.flatnonzero(~(flat > limit)).astype(np.int64)

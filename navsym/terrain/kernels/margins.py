@@ -11,6 +11,7 @@ error ``gamma = (m + 2) u / (1 - (m + 2) u)`` in any order. Hence
 
 Other sums have other parts:
 
+* first interpolation in single precision too: 10 u Hm in the place of u Hm for a and b, 40 in all; BLENDED = 48.
 * contrasts of four (``add_four_centred``): three rows of an orthonormal matrix, so the errors of four differences
   have no more weight than before, 16 u Hm sqrt(m); rounding the contrasts adds 2.9, 2.9 and 8 u Hm to each
   four, 9 u Hm in the root, that is 4.5 u Hm sqrt(m): CONTRASTS = 24.
@@ -28,8 +29,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 SINGLE, DOUBLE = 2.0**-24, 2.0**-53
-#: Error of a difference in units of u Hm: as above, and of contrasts of four.
-PLAIN, CONTRASTS = 16.0, 24.0
+#: Error of a difference in units of u Hm: as above, both interpolations single, contrasts of four.
+PLAIN, BLENDED, CONTRASTS = 16.0, 48.0, 24.0
 
 
 def parts_about_the_mean(n: int) -> float:
