@@ -107,7 +107,7 @@ def test_an_input_that_is_known_shows_more_than_an_unknown_one() -> None:
 
 @pytest.mark.parametrize("seed", range(0, 48, 3))
 def test_a_granted_rank_is_one_of_the_model_with_inputs_in_a_loop_and_of_its_jets(seed: int) -> None:
-    """Not more: the closed loop is F + G K, H + D K for one K. Not less: derivatives by the chain rule, written anew."""
+    """Not more: the closed loop is F + G K for one K. Not less: derivatives by the chain rule, written anew."""
     states, F, H, G = random_model(seed, moving=False)
     q = len(G[0])
     answer = nav.observe(nav.Model(states, F, H, inputs={f"u{k}": [row[k] for row in G] for k in range(q)}))
@@ -125,7 +125,7 @@ def test_a_granted_rank_is_one_of_the_model_with_inputs_in_a_loop_and_of_its_jet
 
 def rows_of_jets(A, B, C, count: int):
     """z = C x, z' = C A x + C B u, z'' = C A A x + C A B u + C B u', …, so many of them."""
-    O = sp.Matrix.vstack(*(C * A**k for k in range(count)))  # noqa: E741
+    O = sp.Matrix.vstack(*(C * A**k for k in range(count)))
     blocks = [[C * A ** (k - 1 - j) * B if j < k else 0 * C * B for j in range(count)] for k in range(count)]
     return O, sp.Matrix(sp.BlockMatrix(blocks).as_explicit())
 
