@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from typing import Any
 
@@ -22,13 +23,7 @@ from navsym.models.along import gradient, model_along_motion
 from navsym.models.linear import LinearModel
 from navsym.models.modelfile import ModelFile
 from navsym.observability.certificates import Certifier, diagonal_columns
-from navsym.observability.chains import (
-    JointObservability,
-    MeasurementObservability,
-    need_chains,
-    numerators,
-    observe_jointly,
-)
+from navsym.observability.chains import JointObservability, need_chains, numerators, observe_jointly
 from navsym.observability.linear import (
     Matrix,
     at_point,
@@ -39,6 +34,7 @@ from navsym.observability.linear import (
     scalar_product,
 )
 from navsym.observability.motion import Motion, motion_of
+from navsym.observability.pieces import observe_by_subsets
 from navsym.observability.ring import Poly
 
 
@@ -165,29 +161,17 @@ def observe_driven(contents: ModelFile) -> tuple[LinearModel, JointObservability
     model, G, D = driven_model(contents)
     need_chains(model)
     driven = over_one_ring(model, G, D)
-    n, ring, point = model.size, driven.motion.ring, driven.motion.points(1)[0]
-    places = range(len(driven.rows))
-    single = [shown_functionals(driven, [driven.rows[j]], point) for j in places]
-    joint = [shown_functionals(driven, driven.rows[: j + 1], point) for j in places]
-    sizes = [0, *map(len, joint)]
-    unseen = null_vectors(joint[-1], n, ring)
+    ring, point = driven.motion.ring, driven.motion.points(1)[0]
 
-    def as_matrix(rows: Matrix) -> sp.ImmutableMatrix:
-        return sp.ImmutableMatrix(len(rows), n, [ring.expression(x) for row in rows for x in row])
+    @cache
+    def unseen_by(places: tuple[int, ...]) -> sp.ImmutableMatrix:
+        rows = null_vectors(shown_functionals(driven, [driven.rows[j] for j in places], point), model.size, ring)
+        return sp.ImmutableMatrix(len(rows), model.size, [ring.expression(x) for row in rows for x in row])
 
-    return model, JointObservability(
-        states=model.states,
-        measurements=tuple(
-            MeasurementObservability(name, as_matrix(rows), (), len(rows))
-            for name, rows in zip(model.measurements, single, strict=True)
-        ),
-        staircase=tuple(after - before for before, after in pairwise(sizes)),
-        unobservable=as_matrix(unseen),
-        assumptions=(),
-        written=None,
-        observed=as_matrix(null_vectors(unseen, n, ring)),
-        proved=find_friend(driven, driven.rows, unseen, point) is not None,
-    )
+    unseen = unseen_by(tuple(range(len(driven.rows))))
+    columns = [numerators([unseen[k, :]], ring)[0][0] for k in range(unseen.rows)]
+    proved = find_friend(driven, driven.rows, columns, point) is not None
+    return model, observe_by_subsets(model.states, model.measurements, unseen_by, proved)
 
 
 # Certificates
