@@ -39,14 +39,16 @@ def terms_of(expression):
 
 
 def random_point(names, source):
-    """Small fractions, often the same and often zero."""
-    return {name: number(Fraction(source.choice((0, 0, 1, -1, 2, -3)), source.choice((1, 1, 2, 3)))) for name in names}
+    """Small fractions, often the same and often zero; the flight begins at the time zero."""
+    draw = lambda: number(Fraction(source.choice((0, 0, 1, -1, 2, -3)), source.choice((1, 1, 2, 3))))  # noqa: E731
+    return {"t": mpmath.mpf(0), **{name: draw() for name in names}}
 
 
 def point_on(zeros, names, source):
     """A point where the zeros vanish: values are drawn, and one is solved for in each equation. None where it fails."""
     for _ in range(6):
-        at, solved = {s: number(Fraction(source.randrange(-9, 10), source.randrange(1, 8))) for s in names}, set()
+        at = {s: number(Fraction(source.randrange(-9, 10), source.randrange(1, 8))) for s in names}
+        at, solved = at | {"t": mpmath.mpf(0)}, {"t"}
         for zero in zeros:
             free = [s for s in zero.free_symbols if s.name not in solved]
             easy = sorted(free, key=lambda s: (len(coefficients_in(zero, s)), source.random()))
@@ -69,7 +71,10 @@ def solve_for(zero, symbol, at, source):
         return None
     if len(coefficients) == 2:
         return symbol.name, -coefficients[1] / coefficients[0]
-    roots = mpmath.polyroots(coefficients, maxsteps=200, extraprec=200)
+    try:
+        roots = mpmath.polyroots(coefficients, maxsteps=100, extraprec=200)
+    except mpmath.libmp.NoConvergence:  # roots that are nearly the same
+        return None
     real = [root.real for root in map(mpmath.mpc, roots) if abs(root.imag) < ZERO]
     return (symbol.name, source.choice(real)) if real else None
 
