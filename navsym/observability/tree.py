@@ -38,7 +38,7 @@ MOVING_NODES = 24
 #: Points at which the sign of a condition is looked at.
 TRIALS = 200
 #: Equations added when a condition is to hold along a motion, and terms of them.
-STEPS, MOVED_TERMS = 60, 60
+STEPS, MOVED_TERMS = 12, 60
 #: Groebner bases of saturations: number of polynomials, terms, bits.
 SATURATION = (40, 150, 500)
 
@@ -229,18 +229,19 @@ class Tree:
 
 
 def list_turns(system: System, motion: Motion) -> list[System]:
-    """The points that keep a system on which one angle alone moves, with a constant rate; none where it is another one.
+    """The points that keep a system on which one angle alone moves; none for another system.
 
-    The rate vanishes, or the angle takes all values: then all coefficients of the forms in its sine and cosine vanish.
+    The rate vanishes all the time, or the angle takes infinitely many values: then all coefficients of the forms in its
+    sine and cosine vanish.
     """
     ring, moving = motion.ring, {place for place in motion.rates if any(f.degrees()[place] for f in system)}
     pair = next((pair for pair in ring.pairs() if moving and moving <= {*pair}), None)
-    if pair is None or not {*pair} <= motion.rates.keys() or motion.derivative(motion.clock) != 0:
+    if pair is None:
         return []
     rate, rest = divmod(ring.without_units(motion.rates[pair[0]]), ring.context.gen(pair[1]))
     listed = [powers_apart(f, *pair) for f in system]
     forms = all(len({sum(powers) for powers in parts}) == 1 for parts in listed)
-    if rest != 0 or not forms or any(rate.degrees()[k] for k in pair) or motion.derivative(rate) != 0:
+    if rest != 0 or not forms or any(rate.degrees()[k] for k in pair):
         return []
     return [[*system, rate], [f for parts in listed for f in parts.values()]]
 
