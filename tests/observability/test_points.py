@@ -57,7 +57,10 @@ def point_on(zeros, names, source):
                 break
             at[root[0]] = root[1]
             solved.add(root[0])
-        if all(abs(value_of(zero, at)) < ZERO for zero in zeros):
+        moderate = all(
+            abs(x) < 40 for x in at.values()
+        )  # the singular values of a flow with large numbers lie far apart
+        if moderate and all(abs(value_of(zero, at)) < ZERO for zero in zeros):
             return at
     return None
 
@@ -76,7 +79,9 @@ def solve_for(zero, symbol, at, source):
     except mpmath.libmp.NoConvergence:  # roots that are nearly the same
         return None
     real = [root.real for root in map(mpmath.mpc, roots) if abs(root.imag) < ZERO]
-    return (symbol.name, source.choice(real)) if real else None
+    slopes = [c * k for k, c in zip(range(len(coefficients) - 1, 0, -1), coefficients, strict=False)]
+    simple = [root for root in real if abs(mpmath.polyval(slopes, root)) > 1e-8]  # others have half of their digits
+    return (symbol.name, source.choice(simple)) if simple else None
 
 
 @functools.cache
