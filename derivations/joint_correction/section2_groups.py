@@ -14,7 +14,7 @@ import sympy as sp
 
 from navsym.claims import PROVED, REFUTED, Claim, Equation, Finding, Property, claim, fact
 from navsym.observability.chains import observe_jointly
-from navsym.observability.rank_drops import rank_drops
+from navsym.observability.rank_drops import find_drops
 from navsym_papers.joint_correction.inertial import (
     EARTH,
     FULL,
@@ -292,7 +292,7 @@ inhomogeneous_term = claim(
 
 def rank_and_drops(group: Group) -> tuple[int, tuple[str, ...]]:
     found = observe_jointly(group.model(("first", "second")))
-    drops = rank_drops(found)
+    drops = find_drops(found).drops
     conditions = tuple(d.condition for d in drops if d.subspace == "joint" and d.complete)
     return found.joint_dimension, conditions
 

@@ -34,7 +34,7 @@ from navsym.observability.chains import (
     prove_rank,
 )
 from navsym.observability.document import as_html, as_latex, document_of_observability
-from navsym.observability.inputs import observe_driven
+from navsym.observability.inputs import certify_inputs, observe_driven
 from navsym.observability.null_space import NullSpace, follow_directions, read_points
 from navsym.observability.pieces import observe_pieces
 from navsym.observability.rank_drops import RankDrop, find_drops
@@ -231,6 +231,9 @@ class Observability(Answer):
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """The generic rank and every rank that is left on a drop, as far as the checker grants them."""
+        if self.contents is not None and self.inputs:
+            driven = certify_inputs(self.contents, self.joint)
+            return [driven] if driven is not None else []
         if self.joint.written is None:
             return []
         certifier = Certifier.of(self.model)
@@ -337,7 +340,7 @@ def observe(
 
 
 def observe_in_parts(contents: ModelFile) -> Observability:
-    """A model with unknown inputs or in pieces: without chains, and so without drops and certificates."""
+    """A model with unknown inputs or in pieces: without chains, and so without drops."""
     pieces: tuple[Mapping[str, Any], ...] = ()
     if contents.inputs:
         model, joint = observe_driven(contents)

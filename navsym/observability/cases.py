@@ -13,8 +13,6 @@ Components get smaller from case to case, so that this ends; what ends a case ea
 
 from __future__ import annotations
 
-import itertools
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -33,9 +31,8 @@ MINORS = 3
 SOLUTION = 12
 #: Products of terms for one entry on the way; beyond that a minor is not formed, and the list not called complete.
 PRODUCTS = 60_000
-#: The same when the locus is written down as the common zeros of all maximal minors; so many of them at most,
-#: and so many terms together, since nobody reads a longer condition.
-LAST_PRODUCTS, LAST_MINORS, LAST_TERMS = 16_000_000, 8, 40_000
+#: The same for determinants of staircases, and terms of all of them: nobody reads a longer condition.
+LAST_PRODUCTS, LAST_TERMS = 16_000_000, 40_000
 
 
 @dataclass(slots=True)
@@ -57,33 +54,6 @@ def drops_by_cases(rows: Matrix, rank: int, ring: Ring) -> tuple[list[System], b
     search = Search(ring)
     visit(search, rows, rank, [])
     return search.found, search.complete
-
-
-def drops_by_all_minors(rows: Matrix, rank: int, ring: Ring) -> list[System] | None:
-    """The drop locus by its definition, or None when it is too long to write down.
-
-    The rank is smaller exactly where all maximal minors of the remainder vanish; for a square one that is its
-    determinant, factored. Dense systems end here: cases on a pivot with thousands of terms do not end.
-    """
-    reduced = take_out_regular(rows, ring)
-    wanted = rank - reduced.regular
-    if wanted <= 0 or not reduced.rows:
-        return []
-    width = len(reduced.rows[0])
-    if math.comb(len(reduced.rows), wanted) * math.comb(width, wanted) > LAST_MINORS:
-        return None
-    minors = []
-    try:
-        for chosen in itertools.combinations(reduced.rows, wanted):
-            for columns in itertools.combinations(range(width), wanted):
-                minor, full, _ = minor_on(chosen, wanted, [], columns, ring, LAST_PRODUCTS)
-                if full:
-                    minors.append(minor)
-    except TooLargeError:
-        return None
-    if sum(map(len, minors)) > LAST_TERMS:
-        return None
-    return components(minors, ring)
 
 
 def visit(search: Search, rows: Matrix, rank: int, system: System) -> None:

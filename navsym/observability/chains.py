@@ -39,7 +39,6 @@ from navsym.observability.linear import (
     scalar_product,
 )
 from navsym.observability.motion import Motion, motion_of, residue_chains
-from navsym.observability.reduction import krylov_rows
 from navsym.observability.ring import Poly, Ring
 
 # The relation that ends a chain, from the characteristic polynomial.
@@ -319,8 +318,7 @@ def generic_rank(rows: Matrix, motion: Motion) -> tuple[int, tuple[int, ...]]:
 def joint_staircase(chains: tuple[Chain, ...], motion: Motion) -> tuple[tuple[int, ...], Matrix | None]:
     """Numbers of vectors of every chain that are needed after those of the earlier chains, and what they leave.
 
-    The counts at a point are a proved lower bound of the rank; unobservable directions prove the upper one. Where
-    there are none, the points of a constant model were unlucky, and relations decide.
+    The counts at a point are a proved lower bound of the rank; unobservable directions prove the upper one.
     """
     starts = [chain.vectors[0] for chain in chains]
     tries = {point: staircase_at(starts, motion, point) for point in motion.points()}
@@ -329,10 +327,6 @@ def joint_staircase(chains: tuple[Chain, ...], motion: Motion) -> tuple[tuple[in
     if sum(counts) == n:
         return counts, []
     directions = find_unobservable(starts, motion, sum(counts), point)
-    if directions is None and all(chain.companion is not None for chain in chains):
-        counts = staircase_by_relations(chains, motion.ring, n)
-        krylov = krylov_rows([(chain.vectors[0], chain.dimension) for chain in chains], motion, sum(counts))
-        directions = null_vectors(krylov, n, motion.ring)
     return counts, directions
 
 
@@ -341,21 +335,6 @@ def staircase_at(starts: Matrix, motion: Motion, point: Sequence[int]) -> tuple[
     n = motion.size
     chosen = independent_places(residue_chains(starts, motion, point))
     return tuple(sum(1 for place in chosen if place // n == k) for k in range(len(starts)))
-
-
-def staircase_by_relations(chains: tuple[Chain, ...], ring: Ring, n: int) -> tuple[int, ...]:
-    """Twin of :func:`joint_staircase` that proves every dependence by a relation; slow."""
-    counts: list[int] = []
-    basis: Matrix = []
-    for chain in chains:
-        count = 0
-        while len(basis) + count < n and count < chain.dimension:
-            if linear_relation([*basis, *chain.vectors[:count]], chain.vectors[count], ring) is not None:
-                break
-            count += 1
-        basis = [*basis, *chain.vectors[:count]]
-        counts.append(count)
-    return tuple(counts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -382,12 +361,9 @@ def prove_rank(model: LinearModel) -> ProvedRank:
     rank, point = generic_rank(rows, motion)
     if rank == model.size:
         return ProvedRank(model.size, point, "the number of states")
-    if find_unobservable(rows, motion, rank, point) is not None:
-        count = model.size - rank
-        return ProvedRank(rank, point, f"{count} hidden directions, invariant and seen by no measurement")
-    chains = chains_of(model)
-    upper = "relations close the staircase" if chains.directions is not None else ""
-    return ProvedRank(chains.joint_dimension, point, upper)
+    found = find_unobservable(rows, motion, rank, point)
+    upper = f"{model.size - rank} hidden directions, invariant and seen by no measurement" if found is not None else ""
+    return ProvedRank(rank, point, upper)
 
 
 # The answer in sympy

@@ -32,7 +32,7 @@ def document_of_observability(answer: Observability) -> dict[str, Any]:
         "observable_functionals": list(answer.observable_functionals),
         "redundant": list(answer.redundant),
         "proved": answer.joint.proved,
-        "checked": certifier is not None and certifier.certify_rank(answer.joint) is not None,
+        "checked": bool(answer.certificates() if answer.inputs else certifier and certifier.certify_rank(answer.joint)),
         "model": answer.kind,
         "inputs": list(answer.inputs),
         "instant": instant_data(answer, certifier),

@@ -10,16 +10,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
+from typing import Any
 
 import sympy as sp
 
-from navsym.core.errors import DomainError
+from navsym.core.errors import DomainError, NavsymError
+from navsym.core.rational_functions import Quotient
 from navsym.language.expression import symbol
 from navsym.models.along import gradient, model_along_motion
 from navsym.models.linear import LinearModel
 from navsym.models.modelfile import ModelFile
-from navsym.observability.chains import JointObservability, MeasurementObservability, need_chains
+from navsym.observability.certificates import Certifier, diagonal_columns
+from navsym.observability.chains import JointObservability, need_chains, numerators, observe_jointly
 from navsym.observability.linear import (
     Matrix,
     at_point,
@@ -27,8 +31,10 @@ from navsym.observability.linear import (
     linear_relation,
     null_vectors,
     primitive_vector,
+    scalar_product,
 )
 from navsym.observability.motion import Motion, motion_of
+from navsym.observability.pieces import observe_by_subsets
 from navsym.observability.ring import Poly
 
 
@@ -63,8 +69,12 @@ def driven_model(contents: ModelFile) -> tuple[LinearModel, sp.ImmutableMatrix, 
     states = [symbol(name) for name in contents.states]
     rows = [gradient(m.z, [*states, *inputs]) for m in contents.measurements if m.z is not None]
     rates = dict(model.rates)
+    taken = [*contents.states, *contents.parameters, *contents.inputs]
     for u in inputs:
-        jets = [u, *(sp.Dummy(f"{u}_{k}", real=True) for k in range(1, model.size + 3))]
+        stem = f"{u}_"
+        while any(name.startswith(stem) for name in taken):
+            stem += "_"
+        jets = [u, *(symbol(f"{stem}{k}") for k in range(1, model.size + 3))]
         rates |= dict(pairwise(jets))
     H = sp.ImmutableMatrix([row[: len(states)] for row in rows])
     G = sp.ImmutableMatrix([[sp.diff(f, u) for u in inputs] for f in contents.dynamics])
@@ -117,25 +127,30 @@ def combinations_without_inputs(parts: Matrix, model: Driven, point: Sequence[in
     return null_vectors(chosen, len(parts), model.motion.ring)
 
 
-def is_unseen(model: Driven, rows: Matrix, columns: Matrix, point: Sequence[int]) -> bool:
-    """True when for each column N one input u has F N - N' - G u in the span of the columns and h N = d u.
+def find_friend(model: Driven, rows: Matrix, columns: Matrix, point: Sequence[int]) -> list[list[Quotient]] | None:
+    """For each column N the input u with F N - N' + G u in the span of the columns and h N + d u = 0; None without one.
 
-    Then a state that starts along the columns stays there for some input, and no measurement shows it: the rank is not
+    Then a state that starts along the columns stays there for this input, and no measurement shows it: the rank is not
     larger. All are identities of polynomials.
     """
     n, zero = model.size, model.motion.ring.constant(0)
-    width, clock = len(rows), model.motion.clock
+    width, clock, scale = len(rows), model.motion.clock, model.motion.clock * model.bottom
     spanning = [[*column, *([zero] * width)] for column in columns]
     for k in range(len(rows[0]) - n):
         entering = [clock * row[k] for row in model.columns]
-        spanning.append([*entering, *(model.bottom * clock * row[n + k] for row in rows)])
-    chosen = [spanning[k] for k in independent_places(at_point(spanning, point))]
+        spanning.append([*entering, *(scale * row[n + k] for row in rows)])
+    places = independent_places(at_point(spanning, point))
+    friend = []
     for column in columns:
         moved = [model.bottom * entry for entry in model.motion.retreat(column)]
-        seen = [model.bottom * clock * sum((a * b for a, b in zip(row[:n], column, strict=True)), zero) for row in rows]
-        if linear_relation(chosen, [*moved, *seen], model.motion.ring) is None:
-            return False
-    return True
+        seen = [scale * scalar_product(row[:n], column, zero) for row in rows]
+        shares = linear_relation([spanning[k] for k in places], [*moved, *seen], model.motion.ring)
+        if shares is None:
+            return None
+        found = {place - len(columns): Quotient(-c.top, c.bottom) for place, c in zip(places, shares, strict=True)}
+        nothing = Quotient(zero, model.motion.ring.constant(1))
+        friend.append([found.get(k, nothing) for k in range(len(rows[0]) - n)])
+    return friend
 
 
 def observe_driven(contents: ModelFile) -> tuple[LinearModel, JointObservability]:
@@ -146,26 +161,88 @@ def observe_driven(contents: ModelFile) -> tuple[LinearModel, JointObservability
     model, G, D = driven_model(contents)
     need_chains(model)
     driven = over_one_ring(model, G, D)
-    n, ring, point = model.size, driven.motion.ring, driven.motion.points(1)[0]
-    places = range(len(driven.rows))
-    single = [shown_functionals(driven, [driven.rows[j]], point) for j in places]
-    joint = [shown_functionals(driven, driven.rows[: j + 1], point) for j in places]
-    sizes = [0, *map(len, joint)]
-    unseen = null_vectors(joint[-1], n, ring)
+    ring, point = driven.motion.ring, driven.motion.points(1)[0]
 
-    def as_matrix(rows: Matrix) -> sp.ImmutableMatrix:
-        return sp.ImmutableMatrix(len(rows), n, [ring.expression(x) for row in rows for x in row])
+    @cache
+    def unseen_by(places: tuple[int, ...]) -> sp.ImmutableMatrix:
+        rows = null_vectors(shown_functionals(driven, [driven.rows[j] for j in places], point), model.size, ring)
+        return sp.ImmutableMatrix(len(rows), model.size, [ring.expression(x) for row in rows for x in row])
 
-    return model, JointObservability(
-        states=model.states,
-        measurements=tuple(
-            MeasurementObservability(name, as_matrix(rows), (), len(rows))
-            for name, rows in zip(model.measurements, single, strict=True)
-        ),
-        staircase=tuple(after - before for before, after in pairwise(sizes)),
-        unobservable=as_matrix(unseen),
-        assumptions=(),
-        written=None,
-        observed=as_matrix(null_vectors(unseen, n, ring)),
-        proved=is_unseen(driven, driven.rows, unseen, point),
+    unseen = unseen_by(tuple(range(len(driven.rows))))
+    columns = [numerators([unseen[k, :]], ring)[0][0] for k in range(unseen.rows)]
+    proved = find_friend(driven, driven.rows, columns, point) is not None
+    return model, observe_by_subsets(model.states, model.measurements, unseen_by, proved)
+
+
+# Certificates
+
+
+def certify_inputs(contents: ModelFile, joint: JointObservability) -> dict[str, Any] | None:
+    """That measurements show so many dimensions whatever the inputs are, as far as the checker grants it.
+
+    Not more: with the inputs u = K x, which hide the unobservable columns, the rank of F + G K and H + D K is this one.
+    Not less: z and its derivatives are O x + T (u, u', ...), and the combinations in which no input is left show
+    rank [O T] - rank T dimensions of x. The checker grants all three ranks.
+    """
+    try:
+        model, G, D = driven_model(contents)
+        closed = close_loop(model, G, D, joint)
+        below = certify_below(model, G, D, joint.joint_dimension)
+        found = observe_jointly(closed) if closed is not None else None
+        if closed is None or found is None or below is None or found.joint_dimension != joint.joint_dimension:
+            return None
+        above = Certifier.of(closed).certify_rank(found)
+    except NavsymError:
+        return None
+    return {"kind": "all", "of": [above, *below]} if above is not None else None
+
+
+def close_loop(model: LinearModel, G: sp.Matrix, D: sp.Matrix, joint: JointObservability) -> LinearModel | None:
+    """F + G K and H + D K with the inputs u = K x that keep the unobservable columns unseen."""
+    driven, unseen = over_one_ring(model, G, D), joint.unobservable
+    ring, n = driven.motion.ring, model.size
+    columns = [numerators([unseen[k, :]], ring)[0][0] for k in range(unseen.rows)]
+    columns, free = diagonal_columns(columns, n, ring)
+    friend = find_friend(driven, driven.rows, columns, driven.motion.points(1)[0])
+    if friend is None or len(columns) < unseen.rows:
+        return None
+    K = sp.zeros(G.cols, n)
+    for inputs, place, column in zip(friend, free, columns, strict=True):
+        K[:, place] = sp.Matrix([ring.expression(u) / ring.expression(column[place]) for u in inputs])
+    F, H = (
+        (left + right * K).applyfunc(lambda x: ring.expression(ring.quotient(x)))
+        for left, right in ((model.F, G), (model.H, D))
     )
+    H = sp.Matrix([H.row(k) for k in range(H.rows) if any(H.row(k))])
+    return LinearModel(F, None, H if H.rows else None, model.states, (), model.time, model.rates)
+
+
+def certify_below(model: LinearModel, G: sp.Matrix, D: sp.Matrix, rank: int) -> list[dict[str, Any]] | None:
+    """The ranks of [O T] and of T, with as few derivatives as show so much of the state."""
+    n, q = model.size, G.cols
+    for depth in range(n + 1):
+        F = sp.diag(model.F, sp.zeros(q * (depth + 1)))
+        F[:n, n : n + q] = G
+        F[n : n + q * depth, n + q :] = sp.eye(q * depth)
+        H = sp.Matrix.hstack(model.H, D, sp.zeros(D.rows, q * depth))
+        motion, listed = motion_of(LinearModel(F, None, H, time=model.time, rates=model.rates))
+        step = rows = [row for row, _ in listed]
+        for _ in range(depth):
+            step = [motion.advance(row) for row in step]
+            rows = [*rows, *step]
+        residues = at_point(rows, motion.points(1)[0])
+        shown = len(independent_places(residues)) - len(independent_places([row[n:] for row in residues]))
+        if shown == rank:
+            written = sp.Matrix([[motion.ring.expression(x) for x in row] for row in rows])
+            found = [certify_matrix(written), certify_matrix(written[:, n:])]
+            return [item for item in found if item is not None] if None not in found else None
+    return None
+
+
+def certify_matrix(M: sp.Matrix) -> dict[str, Any] | None:
+    """The generic rank of a matrix, as that of measurements of a state at rest."""
+    certifier = Certifier.of(LinearModel(sp.zeros(M.cols), None, M, time=sp.Dummy("still", real=True)))
+    rows, motion = certifier.rows, certifier.motion
+    chosen = independent_places(at_point(rows, motion.points(1)[0]))
+    columns = null_vectors([rows[k] for k in chosen], M.cols, motion.ring)
+    return certifier.certify(len(chosen), columns, [], range(len(rows)))

@@ -9,8 +9,9 @@ takes the exact transition matrix of a constant piece.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
 from itertools import pairwise
 from typing import Any
 
@@ -29,6 +30,7 @@ from navsym.observability.linear import (
     integer_points,
     linear_relation,
     null_vectors,
+    scalar_product,
 )
 from navsym.observability.motion import motion_of
 
@@ -65,34 +67,40 @@ def observe_pieces(contents: ModelFile) -> tuple[LinearModel, JointObservability
     complicated inner pieces that would have to carry a direction on.
     """
     models = [model_along_motion(contents, piece) for piece in contents.pieces]
+
+    @cache
+    def stages_of(places: tuple[int, ...]) -> list[Stage]:
+        return [stage_of(contents, k, measured(model, places)) for k, model in enumerate(models)]
+
     names = models[0].measurements
-    every = [stage_of(contents, k, model) for k, model in enumerate(models)]
-    single = [
-        [stage_of(contents, k, measured(model, (j,))) for k, model in enumerate(models)] for j in range(len(names))
-    ]
-    own = [unobservable_over(stages) for stages in single]
-    counts: list[int] = []
-    for j in range(1, len(names) + 1):
-        stages = (
-            every
-            if j == len(names)
-            else [stage_of(contents, k, measured(model, range(j))) for k, model in enumerate(models)]
-        )
-        counts.append(models[0].size - unobservable_over(stages).rows - sum(counts))
-    directions = unobservable_over(every)
-    joint = JointObservability(
-        states=contents.states,
+    every = stages_of(tuple(range(len(names))))
+    joint = observe_by_subsets(contents.states, names, lambda places: unobservable_over(stages_of(places)))
+    assumptions = tuple(dict.fromkeys(a for stage in every for a in stage.found.assumptions))
+    return models[0], replace(joint, assumptions=assumptions), tuple(piece_data(stage) for stage in every)
+
+
+def observe_by_subsets(
+    states: tuple[str, ...],
+    names: tuple[str, ...],
+    unseen_by: Callable[[tuple[int, ...]], sp.ImmutableMatrix],
+    proved: bool = True,
+) -> JointObservability:
+    """The answer for a model without chains, from the directions that the measurements in some places do not show."""
+    n, single = len(states), [unseen_by((j,)) for j in range(len(names))]
+    unseen = [unseen_by(tuple(range(j + 1))) for j in range(len(names))]
+    return JointObservability(
+        states,
         measurements=tuple(
-            MeasurementObservability(name, annihilator(rows, models[0].size), (), models[0].size - rows.rows)
-            for name, rows in zip(names, own, strict=True)
+            MeasurementObservability(name, annihilator(rows, n), (), n - rows.rows)
+            for name, rows in zip(names, single, strict=True)
         ),
-        staircase=tuple(counts),
-        unobservable=directions,
-        assumptions=tuple(dict.fromkeys(a for stage in every for a in stage.found.assumptions)),
+        staircase=tuple(before - after for before, after in pairwise([n, *(rows.rows for rows in unseen)])),
+        unobservable=unseen[-1],
+        assumptions=(),
         written=None,
-        observed=annihilator(directions, models[0].size),
+        observed=annihilator(unseen[-1], n),
+        proved=proved,
     )
-    return models[0], joint, tuple(piece_data(stage) for stage in every)
 
 
 def measured(model: LinearModel, places: Sequence[int]) -> LinearModel:
@@ -172,11 +180,6 @@ def polynomial_rows(*matrices: sp.MatrixBase) -> tuple[list[Matrix], Any]:
     return parts, motion
 
 
-def as_rows(rows: Matrix, n: int, motion: Any) -> sp.ImmutableMatrix:
-    """Polynomial rows as a matrix of sympy."""
-    return sp.ImmutableMatrix(len(rows), n, [motion.ring.expression(x) for row in rows for x in row])
-
-
 def independent_rows(rows: sp.ImmutableMatrix) -> list[int]:
     """Places of rows that are independent of those before."""
     if not rows.rows:
@@ -188,19 +191,7 @@ def independent_rows(rows: sp.ImmutableMatrix) -> list[int]:
 def intersection(left: sp.ImmutableMatrix, right: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     """What lies in the spans of the rows of both."""
     n = left.cols
-    if not left.rows or not right.rows:
-        return sp.ImmutableMatrix(0, n, [])
-    both = sp.ImmutableMatrix.vstack(annihilator(left, n), annihilator(right, n))
-    if not both.rows:
-        return left
-    (rows,), motion = polynomial_rows(both)
-    chosen = independent_places(at_point(rows, integer_points(motion.ring)[0]))
-    found = null_vectors([rows[k] for k in chosen], n, motion.ring) if len(chosen) < n else []
-    zero = motion.ring.constant(0)
-    for vector in found:
-        if any(sum((a * b for a, b in zip(row, vector, strict=True)), zero) != 0 for row in rows):
-            raise ArithmeticError("intersection: the point was unlucky")
-    return as_rows(found, n, motion)
+    return annihilator(sp.ImmutableMatrix.vstack(annihilator(left, n), annihilator(right, n)), n)
 
 
 def annihilator(rows: sp.ImmutableMatrix, n: int) -> sp.ImmutableMatrix:
@@ -208,7 +199,11 @@ def annihilator(rows: sp.ImmutableMatrix, n: int) -> sp.ImmutableMatrix:
     if not rows.rows:
         return sp.ImmutableMatrix.eye(n)
     (listed,), motion = polynomial_rows(rows)
-    return as_rows(null_vectors(listed, n, motion.ring), n, motion)
+    chosen = independent_places(at_point(listed, integer_points(motion.ring)[0]))
+    found = null_vectors([listed[k] for k in chosen], n, motion.ring)
+    if any(scalar_product(row, vector, motion.ring.constant(0)) != 0 for row in listed for vector in found):
+        raise ArithmeticError("annihilator: the point was unlucky")
+    return sp.ImmutableMatrix(len(found), n, [motion.ring.expression(x) for row in found for x in row])
 
 
 def is_spanned(rows: sp.ImmutableMatrix, other: sp.ImmutableMatrix) -> bool:

@@ -19,7 +19,7 @@ from flint import fmpz, fmpz_mat
 
 from navsym.claims.statement import Box
 from navsym.core.errors import TooLargeError
-from navsym.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_all_minors, drops_by_cases, minor_on
+from navsym.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_cases, minor_on
 from navsym.observability.chains import Chain, Chains, JointObservability
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
@@ -195,17 +195,6 @@ class RankDrop:
 def join_conditions(zeros: Iterable[sp.Expr]) -> str:
     """Equations as text."""
     return " and ".join(f"{zero} = 0" for zero in zeros)
-
-
-def rank_drops(found: JointObservability) -> tuple[RankDrop, ...]:
-    """Drops of every measurement's subspace and of the joint one, with completeness."""
-    return find_drops(found).drops
-
-
-def drops_and_completeness(found: JointObservability) -> tuple[tuple[RankDrop, ...], dict[str, bool]]:
-    """The drops, and for every subspace whether its list is proved complete, also when it is empty."""
-    answer = find_drops(found)
-    return answer.drops, answer.complete
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -412,7 +401,7 @@ def locus_of(chains: Chains, part: tuple[Chain, ...], rank: int) -> Locus:
         return Locus([], complete=False)
     systems, whole = written_drops(part, rank, motion)
     lasting, ended = kept_parts(systems, motion) if whole else ([], False)
-    listed = None if ended or motion.rates else written_by_values(chains, part, rank)
+    listed = None if ended or motion.rates else drops_by_staircases(chains, part, rank, determinant_by_values)
     if listed is not None:
         return Locus(irredundant(listed))
     left: list[System] = []
@@ -422,10 +411,9 @@ def locus_of(chains: Chains, part: tuple[Chain, ...], rank: int) -> Locus:
     if motion.rates:
         passing = [system for system in systems if not is_covered(system, lasting)]
         return Locus(lasting, passing, left, whole and not left)
-    for write in (written_by_minors, written_by_elimination) if left else ():
-        listed = write(chains, part, rank)
-        if listed is not None:
-            return Locus(irredundant(listed))
+    listed = drops_by_staircases(chains, part, rank, determinant_by_elimination) if left else None
+    if listed is not None:
+        return Locus(irredundant(listed))
     return Locus(irredundant([*lasting, *systems]), [], left, not left)
 
 
@@ -436,25 +424,6 @@ def written_drops(part: tuple[Chain, ...], rank: int, motion: Motion) -> tuple[l
     except TooLargeError:
         return [], False
     return drops_by_cases(rest.rows, rank - rest.regular, motion.ring)
-
-
-def written_by_values(chains: Chains, part: tuple[Chain, ...], rank: int) -> list[System] | None:
-    """By determinants of staircases from values at integer points."""
-    return drops_by_staircases(chains, part, rank, determinant_by_values)
-
-
-def written_by_minors(chains: Chains, part: tuple[Chain, ...], rank: int) -> list[System] | None:
-    """By all maximal minors of what is not regular."""
-    try:
-        rest = krylov_remainder([(chain.vectors[0], chain.dimension) for chain in part], chains.motion)
-    except TooLargeError:
-        return None
-    return drops_by_all_minors(rest.rows, rank - rest.regular, chains.ring)
-
-
-def written_by_elimination(chains: Chains, part: tuple[Chain, ...], rank: int) -> list[System] | None:
-    """By determinants of staircases from elimination."""
-    return drops_by_staircases(chains, part, rank, determinant_by_elimination)
 
 
 #: The determinant of the first vectors of some chains, so many of each; None when it is too long to form.

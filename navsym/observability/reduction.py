@@ -18,7 +18,7 @@ from flint import fmpz_mpoly_vec
 
 from navsym.core.errors import TooLargeError
 from navsym.core.rational_functions import polynomial_sum
-from navsym.observability.linear import Matrix, at_point, independent_places
+from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
 from navsym.observability.ring import Poly, Ring, gcd_all, irreducible_factors, is_divisor
 from navsym.prove.signs.bounds import Sign, prove_sign
@@ -280,16 +280,6 @@ def krylov_remainder(starts: Sequence[tuple[list[Poly], int]], motion: Motion) -
     basis, rest = krylov_basis(starts, motion)
     inner = take_out_regular(without_columns(basis, rest).rows, motion.ring)
     return Remainder(len(basis.rows) + inner.regular, inner.rows)
-
-
-def krylov_rows(starts: Sequence[tuple[list[Poly], int]], motion: Motion, rank: int) -> Matrix:
-    """``rank`` generically independent rows that span what the chains span."""
-    basis, rest = krylov_basis(starts, motion)
-    rows = [basis.reduced(row) for row in sorted(rest, key=row_weight)]
-    point = motion.points()
-    chosen = max((independent_places(at_point([*basis.rows, *rows], p)) for p in point), key=len)
-    listed = [*basis.rows, *rows]
-    return [listed[k] for k in chosen[:rank]]
 
 
 def krylov_basis(starts: Sequence[tuple[list[Poly], int]], motion: Motion) -> tuple[UnitBasis, Matrix]:

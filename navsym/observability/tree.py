@@ -24,6 +24,7 @@ from typing import Any
 from flint import Ordering, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
 from navsym.core.errors import TooLargeError
+from navsym.core.rational_functions import powers_apart
 from navsym.observability.cases import is_irreducible, solved_variable, substitute_row
 from navsym.observability.linear import Matrix, primitive_vector
 from navsym.observability.motion import Motion
@@ -216,14 +217,33 @@ class Tree:
         while systems:
             system = systems.pop()
             fresh = [f for f in map(self.motion.derivative, system) if not lies_in_ideal(f, system)]
+            parts = list_turns(system, self.motion) if fresh else []
             steps += 1
-            if fresh and (steps > STEPS or sum(map(len, fresh)) > MOVED_TERMS):
+            if fresh and (steps > STEPS or (not parts and sum(map(len, fresh)) > MOVED_TERMS)):
                 self.open.append(system)
             elif fresh:
-                systems += components([*system, *fresh], self.ring)
+                systems += [found for part in parts or [[*system, *fresh]] for found in components(part, self.ring)]
             else:
                 kept.append(system)
         return irredundant(kept)
+
+
+def list_turns(system: System, motion: Motion) -> list[System]:
+    """The points that keep a system on which one angle alone moves; none for another system.
+
+    The rate vanishes all the time, or the angle takes infinitely many values: then all coefficients of the forms in its
+    sine and cosine vanish.
+    """
+    ring, moving = motion.ring, {place for place in motion.rates if any(f.degrees()[place] for f in system)}
+    pair = next((pair for pair in ring.pairs() if moving and moving <= {*pair}), None)
+    if pair is None:
+        return []
+    rate, rest = divmod(ring.without_units(motion.rates[pair[0]]), ring.context.gen(pair[1]))
+    listed = [powers_apart(f, *pair) for f in system]
+    forms = all(len({sum(powers) for powers in parts}) == 1 for parts in listed)
+    if rest != 0 or not forms or any(rate.degrees()[k] for k in pair):
+        return []
+    return [[*system, rate], [f for parts in listed for f in parts.values()]]
 
 
 def is_covered(system: System, listed: Sequence[System]) -> bool:

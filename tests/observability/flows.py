@@ -34,8 +34,8 @@ def multiply(a, b):
 
 
 def number(value):
-    """An int or a Fraction to all digits."""
-    return mpmath.mpf(value.numerator) / value.denominator
+    """An int or a Fraction to all digits; a real as it is."""
+    return value if isinstance(value, mpmath.mpf) else mpmath.mpf(value.numerator) / value.denominator
 
 
 def constant(value):

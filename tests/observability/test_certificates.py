@@ -84,7 +84,7 @@ def test_an_attitude_on_its_manifold_is_granted():
 
 def test_what_is_too_long_stands_as_unchecked():
     from navsym.observability.certificates import Certifier
-    from tests.observability.test_motion import navigation_errors
+    from tests.benchmarks.observability import navigation_errors
 
     model = navigation_errors()
     assert Certifier.of(model).certify(12, [[Certifier.of(model).motion.clock ** 9] * 15] * 3, [], range(3)) is None

@@ -10,6 +10,7 @@ import sympy as sp
 from flint import fmpq, fmpq_mat
 
 import navsym as nav
+from navsym import checker
 from navsym.core.errors import NavsymError
 
 
@@ -70,7 +71,7 @@ def test_ranks_of_random_models_are_those_of_their_jets(seed: int) -> None:
         for row, enters in zip(F, G, strict=True)
     ]
     outputs = [" + ".join(f"({a})*{s}" for a, s in zip(row, states, strict=True)) for row in H]
-    assert answer.joint.proved
+    assert answer.joint.proved and answer.document()["checked"]
     assert answer.rank == rank_of_jets(states, sums, outputs, list(columns), seed)
 
 
@@ -92,7 +93,7 @@ NONLINEAR = [
 def test_nonlinear_models_with_unknown_inputs(states, dynamics, outputs, inputs, rank) -> None:
     model = nav.Model(states, dynamics=dynamics, H=outputs, inputs=dict.fromkeys(inputs.split(), "unknown"))
     answer = nav.observe(model)
-    assert (answer.rank, answer.joint.proved) == (rank, True)
+    assert (answer.rank, answer.joint.proved, answer.document()["checked"]) == (rank, True, True)
     assert rank == rank_of_jets(states.split(), dynamics, outputs, inputs.split(), 5)
 
 
@@ -101,7 +102,50 @@ def test_an_input_that_is_known_shows_more_than_an_unknown_one() -> None:
     known, unknown = nav.Model("x v b", F, H), nav.Model("x v b", F, H, inputs={"w": ["0", "1", "0"]})
     assert nav.observe(known).rank == 3
     answer = nav.observe(unknown)
-    assert (answer.unobservable, answer.document()["inputs"], answer.certificates()) == (("b",), ["w"], [])
+    assert (answer.unobservable, answer.document()["inputs"]) == (("b",), ["w"])
+
+
+@pytest.mark.parametrize("seed", range(0, 48, 3))
+def test_a_granted_rank_is_one_of_the_model_with_inputs_in_a_loop_and_of_its_jets(seed: int) -> None:
+    """Not more: the closed loop is F + G K for one K. Not less: derivatives by the chain rule, written anew."""
+    states, F, H, G = random_model(seed, moving=False)
+    q = len(G[0])
+    answer = nav.observe(nav.Model(states, F, H, inputs={f"u{k}": [row[k] for row in G] for k in range(q)}))
+    above, both, inputs = answer.certificates()[0]["of"]
+    numbers = lambda rows: [[int(x) for x in row] for row in rows]  # noqa: E731
+    A, B, C = map(sp.Matrix, (numbers(F), numbers(G), numbers(H)))
+    looped = sp.Matrix([[sp.Rational(x) for x in row] for row in above["statement"]["F"]])
+    assert B.row_join(looped - A).rank() == B.rank()
+    O, T = rows_of_jets(A, B, C, len(both["statement"]["H"]) // C.rows)
+    assert both["statement"]["H"] == [[str(x) for x in row] for row in O.row_join(T).tolist()]
+    assert inputs["statement"]["H"] == [[str(x) for x in row] for row in T.tolist()]
+    ranks = [part["statement"]["rank"] for part in (above, both, inputs)]
+    assert ranks[0] == ranks[1] - ranks[2] == answer.rank
+
+
+def rows_of_jets(A, B, C, count: int):
+    """z = C x, z' = C A x + C B u, z'' = C A A x + C A B u + C B u', …, so many of them."""
+    O = sp.Matrix.vstack(*(C * A**k for k in range(count)))
+    blocks = [[C * A ** (k - 1 - j) * B if j < k else 0 * C * B for j in range(count)] for k in range(count)]
+    return O, sp.Matrix(sp.BlockMatrix(blocks).as_explicit())
+
+
+def test_a_granted_rank_beside_inputs_falls_with_each_of_its_parts() -> None:
+    declared = {"dynamics": ["v", "a", "0", "0"], "inputs": {"a": "unknown"}}
+    (item,) = nav.observe(nav.Model("x v b k", H=["x", "k*a + b"], **declared)).certificates()
+    assert checker.check(item) == "all"
+    for place, part in enumerate(item["of"]):
+        for rank in {*range(6)} - {part["statement"]["rank"]}:
+            forged = {**part, "statement": {**part["statement"], "rank": rank}}
+            with pytest.raises(checker.Refused):
+                checker.check({"kind": "all", "of": [*item["of"][:place], forged, *item["of"][place + 1 :]]})
+
+
+def test_the_derivatives_of_an_input_have_names_of_their_own() -> None:
+    taken = nav.Model("p a_1 b", dynamics=["a_1", "a*p", "0"], H=["p", "a + b"], inputs={"a": "unknown"})
+    free = nav.Model("p v b", dynamics=["v", "a*p", "0"], H=["p", "a + b"], inputs={"a": "unknown"})
+    first, second = nav.observe(taken), nav.observe(free)
+    assert (first.rank, first.document()["checked"]) == (second.rank, second.document()["checked"]) == (3, True)
 
 
 def test_steps_with_an_unknown_input() -> None:

@@ -15,11 +15,11 @@ from navsym.observability.rank_drops import (
     POINTS,
     affine_steps,
     chain_determinant,
-    drops_and_completeness,
     generator_degree_bound,
     newton,
     points_needed,
 )
+from tests.observability.twins import drops_and_completeness
 
 p1, p2, p3 = sp.symbols("p1:4", real=True)
 

@@ -15,11 +15,9 @@ from navsym.observability.rank_drops import (
     compositions,
     determinant_by_elimination,
     determinant_by_values,
-    drops_and_completeness,
     drops_by_staircases,
-    rank_drops,
 )
-from tests.observability.twins import drops_by_minors, staircases
+from tests.observability.twins import drops_and_completeness, drops_by_minors, rank_drops, staircases
 
 a, b, c, w = sp.symbols("a b c w", real=True)
 

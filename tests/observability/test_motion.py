@@ -13,9 +13,9 @@ import navsym as nav
 from navsym.core.errors import DomainError, DuplicateError, UnknownSymbolError
 from navsym.core.rational_functions import factor_exactly
 from navsym.export.differences import of_model
-from navsym.models.linear import LinearModel
 from navsym.observability.certificates import is_granted
 from navsym.observability.chains import prove_rank
+from tests.benchmarks.observability import navigation_errors, satellite_and_odometer
 from tests.observability.flows import rank_in_time, rank_of_flow, rank_of_pieces, rank_of_steps
 
 TIMES = [Fraction(k, 40) for k in range(1, 13)]
@@ -307,31 +307,16 @@ def test_conditions_without_real_points_are_not_listed():
 # Speed
 
 
-def navigation_errors():
-    """Errors of position, velocity, tilt, gyroscopes and accelerometers, local level; the position is measured."""
-    L, h, R, W, *v = sp.symbols("L h R W vN vE vD", real=True)
-    f, C = sp.Matrix(sp.symbols("fN fE fD", real=True)), sp.Matrix(3, 3, sp.symbols("c1:4(1:4)", real=True))
-    v, position = sp.Matrix(v), sp.Matrix([L, sp.Symbol("longitude", real=True), h])
-    turn = sp.Matrix([W * sp.cos(L), 0, -W * sp.sin(L)])
-    carried = sp.Matrix([v[1], -v[0], -v[1] * sp.tan(L)]) / (R + h)
-    moved = sp.Matrix([v[0] / (R + h), v[1] / ((R + h) * sp.cos(L)), -v[2]])
-    pushed = f - (2 * turn + carried).cross(v)
-    F = sp.zeros(15, 15)
-    F[0:3, 0:3], F[0:3, 3:6] = moved.jacobian(position), moved.jacobian(v)
-    F[3:6, 0:3], F[3:6, 3:6] = pushed.jacobian(position), pushed.jacobian(v)
-    F[3:6, 6:9], F[3:6, 12:15] = skew(f), C
-    F[6:9, 0:3], F[6:9, 3:6] = -(turn + carried).jacobian(position), -(turn + carried).jacobian(v)
-    F[6:9, 6:9], F[6:9, 9:12] = -skew(turn + carried), -C
-    return LinearModel(F, None, sp.eye(15)[:3, :])
-
-
-def skew(a):
-    return sp.Matrix([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
-
-
 def test_fifteen_states_with_latitude_have_their_rank_in_two_seconds():
     model = navigation_errors()
     start = process_time()
     proved = prove_rank(model)
     assert (proved.rank, process_time() - start < 2) == (12, True)
     assert proved.upper.startswith("3 hidden directions")
+
+
+def test_twenty_eight_states_have_their_rank_in_a_minute():
+    model = satellite_and_odometer()
+    start = process_time()
+    proved = prove_rank(model)
+    assert proved.upper and process_time() - start < 60

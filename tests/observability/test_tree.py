@@ -132,3 +132,22 @@ def test_declared_ranges_exclude_a_condition():
     outside = nav.observe(nav.Model("p q", F=F, H=["p"], x=["1", "2"], w=["3", "4"]))
     assert [drop.excluded for drop in inside.rank_drops] == [False, False]
     assert [drop.excluded for drop in outside.rank_drops] == [True, True]
+
+
+@pytest.mark.parametrize("rates", [{"h": "w"}, {"h": "w", "w": "q"}])
+def test_a_condition_on_a_turning_angle_lasts_where_the_turn_stops_or_nothing_is_left_of_it(rates):
+    F = [["0", "a*cos(h) + b*sin(h) + c"], ["0", "0"]]
+    answer = nav.observe(nav.Model("x y", F=F, H=["x"], rates=rates, **dict.fromkeys("abchwq", "real")))
+    cosine, sine = sp.symbols("C S")
+    h = sp.Symbol("h", real=True)
+    turn = {sp.cos(h): cosine, sp.sin(h): sine}
+    listed = [drop for drop in answer.rank_drops if drop.subspace == "joint" and drop.lasting]
+    assert answer.rank_drops_complete["joint"]
+    names = [sp.Symbol(name, real=True) for name in "abcwq"]
+    for values in itertools.product((0, 3), (0, -4), (0, 5), (0, 1), (0, 2)):
+        for cosine_of, sine_of in ((sp.Rational(3, 5), sp.Rational(4, 5)), (1, 0), (0, 1)):
+            at = {**dict(zip(names, values, strict=True)), cosine: cosine_of, sine: sine_of}
+            here = any(all(zero.subs(turn).subs(at) == 0 for zero in drop.zeros) for drop in listed)
+            a, b, c, w, q = values
+            rests = w == 0 and (q == 0 or "w" not in rates) and a * cosine_of + b * sine_of + c == 0
+            assert here == (a == b == c == 0 or rests), values

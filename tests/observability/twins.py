@@ -7,7 +7,7 @@ from itertools import combinations
 
 from navsym.observability.chains import Chains
 from navsym.observability.linear import Matrix, determinant
-from navsym.observability.rank_drops import System, components, compositions
+from navsym.observability.rank_drops import System, components, compositions, find_drops
 from navsym.observability.ring import Poly, Ring
 
 
@@ -59,3 +59,14 @@ def drops_by_minors(sets: Sequence[Matrix], ring: Ring) -> list[System]:
         if any(minor.is_constant() for minor in minors):
             return []
     return components(minors, ring)
+
+
+def rank_drops(found):
+    """The drops of every subspace."""
+    return find_drops(found).drops
+
+
+def drops_and_completeness(found):
+    """The drops, and which lists are whole."""
+    answer = find_drops(found)
+    return answer.drops, answer.complete
