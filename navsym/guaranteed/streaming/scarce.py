@@ -10,7 +10,7 @@ from flint import arb_mat, fmpq
 from navsym.guaranteed.streaming.estimate import Plan
 from navsym.guaranteed.streaming.exchange import Cloud, bounds_of, exchange
 from navsym.guaranteed.streaming.flow import Flow, in_row_space, pivot_columns
-from navsym.guaranteed.streaming.memory import Row
+from navsym.guaranteed.streaming.memory import Row, list_cones
 from navsym.guaranteed.streaming.numbers import to_float
 
 #: With more rows than this, rational ranks cost more than they are worth.
@@ -52,14 +52,15 @@ def solve_reduced(
     vectors = [arb_mat([[row[k] for k in columns]]) for row in table]
     sigma = [rows[i].sigma for i in places]
     scaled = [[to_float(row[k]) / float(s.mid()) for k in columns] for row, s in zip(table, sigma, strict=True)]
-    cloud = Cloud(vectors, sigma, np.array(scaled))
+    cloud = Cloud(vectors, sigma, np.array(scaled), cones=list_cones(flow, [rows[i] for i in places]))
     start = cloud.start()
     found = start and exchange(cloud, arb_mat([[functional[k] for k in columns]]), start)
     if not found:
         return None
     lower, upper = bounds_of(cloud, found)
-    basis, whole = [places[i] for i in found.basis], len(places) == len(rows)
-    return Plan(flow, now, list(rows), columns, basis, found.signs, found.weights.entries(), lower, upper, whole)
+    weights, whole = cloud.spread(found), len(places) == len(rows)
+    basis = [places[i] for i in weights]
+    return Plan(flow, now, list(rows), columns, basis, found.signs, [*weights.values()], lower, upper, whole)
 
 
 def are_independent(flow: Flow, rows: Sequence[Row], now: fmpq) -> bool:
