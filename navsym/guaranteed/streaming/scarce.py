@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from flint import arb_mat, fmpq
 
+from navsym.guaranteed.search.exchange import independent_rows
 from navsym.guaranteed.streaming.estimate import Plan
 from navsym.guaranteed.streaming.exchange import Cloud, bounds_of, exchange
 from navsym.guaranteed.streaming.flow import Flow, in_row_space, pivot_columns
@@ -69,9 +70,5 @@ def are_independent(flow: Flow, rows: Sequence[Row], now: fmpq) -> bool:
     if k > flow.size:
         return False
     balls = [[flow.ball_row(row.j, row.t, now)[c] for c in flow.columns] for row in rows]
-    doubles = np.array([[float(e.mid()) for e in row] for row in balls])
-    chosen: list[int] = []
-    for column in np.argsort(-np.abs(doubles).max(axis=0)):
-        if np.linalg.matrix_rank(doubles[:, [*chosen, int(column)]]) > len(chosen):
-            chosen.append(int(column))
+    chosen = independent_rows(np.array([[float(e.mid()) for e in row] for row in balls]).T, k, 0.0)
     return len(chosen) == k and not arb_mat([[row[c] for c in chosen] for row in balls]).det().contains(0)
