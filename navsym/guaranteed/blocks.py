@@ -23,10 +23,11 @@ from navsym.core.balls import precision
 from navsym.core.errors import DomainError, EmptyError, NotEstimableError, ShapeError
 from navsym.core.exact import decimal, from_decimal, to_fmpq, upper_end
 from navsym.core.numbers import Number
-from navsym.guaranteed.search.cones import NORMS, Cone
+from navsym.guaranteed.search.cones import Cone
 from navsym.guaranteed.streaming.exchange import Cloud, exchange
 from navsym.guaranteed.streaming.numbers import read_exact, to_float, write_rational
 from navsym.language.names import quote
+from navsym.models.modelfile import NORMS
 
 BITS, DIGITS, PLACES = 320, 24, 60
 #: A weight below zero costs so many times what it would as a measurement, where none is allowed.

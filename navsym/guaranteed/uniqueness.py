@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -139,8 +140,8 @@ def has_interior_weights(problem: PanelProblem, places: Sequence[ContactPlace]) 
     with precision(BITS):
         solve = solve_in_balls if values is None else partial(solve_exactly, values)
         solved = solve(problem, places, order[:rank], fixed)
-    pairs = [] if solved is None else [*fixed.items(), *zip(order, solved, strict=False)]
-    return bool(pairs) and all(bool(signs[i] * w > 0) for i, w in pairs)
+    pairs: list[tuple[int, Any]] = [*fixed.items(), *zip(order, solved or (), strict=False)]
+    return solved is not None and all(bool(signs[i] * w > 0) for i, w in pairs)
 
 
 def solve_in_balls(

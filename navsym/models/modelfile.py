@@ -260,8 +260,8 @@ def read_targets(document: Table, known: Known, names: tuple[str, ...], where: s
     return targets
 
 
-TABLES = ("model", "basis", "parameters", "rates", "inputs", "measurement", "block", "piece", "interval", "targets")
-TABLES += ("ranges",)
+SYSTEM = ("model", "parameters", "rates", "inputs", "measurement", "block", "piece", "interval", "targets", "ranges")
+TABLES = (*SYSTEM, "basis")
 #: Tables of the same file that only ``conventions`` or ``design`` reads, and keys of [model].
 BESIDE = ("card", "code", "roles", "quantities", "known", "measured", "noises", "design")
 BESIDE_F = ("G", "H", "reset", "step")
@@ -330,7 +330,7 @@ FOREIGN = {
 
 def read_system(document: Table, where: str, parameters: Mapping[str, Parameter], known: Known) -> ModelFile:
     """The [model] with its measurements, interval and targets: F or pieces, steps Phi, or dynamics f(x)."""
-    expect_keys(document, (*(key for key in TABLES if key != "basis"), *BESIDE), where)
+    expect_keys(document, (*SYSTEM, *BESIDE), where)
     place = join_place(where, "model")
     model = as_table(document["model"], place)
     expect_keys(model, (*KEYS, *BESIDE_F), place)

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 from flint import arb, arb_mat
 
-NORMS = ("l2", "linf", "l1")
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cone:

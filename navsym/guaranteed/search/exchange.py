@@ -345,7 +345,7 @@ def independent_rows(rows: Array, count: int, least: float, near: float = 1.0) -
 
     least, near : rests below the first are zero, those above the second as a part of the longest about as long
     """
-    rest, chosen = np.array(rows), []
+    rest, chosen = np.array(rows), list[int]()
     while len(chosen) < count:
         sizes = np.linalg.norm(rest, axis=1)
         best = int(np.argmax(sizes >= near * sizes.max()))

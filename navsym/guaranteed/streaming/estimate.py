@@ -250,8 +250,8 @@ def write_cones(plan: Plan) -> dict[str, Any] | None:
     flow, rows, columns = plan.flow, list(plan.rows), plan.columns
     with precision(BITS):
         exact = [flow.exact_row(row.j, row.t, plan.now) for row in rows]
-    functional = [flow.exact_target(k) for k in columns]
-    if None in exact or None in functional or not all(NUMBER.fullmatch(row.text) for row in rows):
+    functional = [p for p in map(flow.exact_target, columns) if p is not None]
+    if None in exact or len(functional) < len(columns) or not all(NUMBER.fullmatch(row.text) for row in rows):
         return None
     sigma, parts = [read_exact(row.text, "sigma") for row in rows], []
     groups = group_rows(flow, rows)
