@@ -1076,10 +1076,7 @@ def check_cones(item: Any) -> None:
 
 
 def find_cost(norm: Any, size: Any, w: fmpq_mat, y: fmpq_mat) -> arb:
-    """The largest w.r of noise r, where y has to lie, too: r' size**-1 r <= 1, |r_j| <= s_j, or sum |r_j|/s_j <= 1.
-
-    Noise r_j <= 0 of any size leaves weights that are not negative: constraints on the other weights, for example.
-    """
+    """The largest w.r of noise r, where y lies: r' size**-1 r <= 1, |r_j| <= s_j, sum |r_j|/s_j <= 1, or r_j <= 0."""
     n = w.nrows()
     if norm == "nonpositive":
         require(size == [] and all(e >= 0 for e in w.entries()), "a weight below zero")
