@@ -345,14 +345,13 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
     inputs = read_inputs(document, moving, states, n, where)
     driven = moving if n else {**moving, **{name: symbol(name) for name in inputs}}
     T = read_interval(document, known, join_place(where, "interval"))
-    measurements = read_measurements(document, driven, n, where)
     return ModelFile(
         name=as_title(model.get("name", "model"), join_place(place, "name")),
         parameters=parameters,
         states=states,
         time=symbol("t"),
         pieces=read_pieces(document, model, moving, n, T, where) if kind == "F" else (),
-        measurements=measurements,
+        measurements=(measurements := read_measurements(document, driven, n, where)),
         blocks=read_blocks(document, [m.name for m in measurements], where),
         T=T,
         targets=read_targets(document, known, states, where) if kind == "F" else {},
