@@ -1076,8 +1076,12 @@ def check_cones(item: Any) -> None:
 
 
 def find_cost(norm: Any, size: Any, w: fmpq_mat, y: fmpq_mat) -> arb:
-    """The largest w.r of noise r, where y has to lie, too: r' size**-1 r <= 1, |r_j| <= s_j, or sum |r_j|/s_j <= 1."""
+    """The largest w.r of noise r, where y lies: r' size**-1 r <= 1, |r_j| <= s_j, sum |r_j|/s_j <= 1, or r_j <= 0."""
     n = w.nrows()
+    if norm == "nonpositive":
+        require(size == [] and all(e >= 0 for e in w.entries()), "a weight below zero")
+        require(all(e <= 0 for e in y.entries()), "the dual leaves the noise")
+        return arb(0)
     rows = read_list(size, lambda row: read_list(row, read_number, n if norm == "l2" else 1), n)
     if norm == "l2":
         shape = fmpq_mat(n, n, [e for row in rows for e in row])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from pathlib import Path
 from typing import Any
 
@@ -31,12 +30,12 @@ def command(
     """
     import navsym as nav
 
-    found = nav.design if design else functools.partial(nav.solve, digits=digits)
-    estimator: Any = found(file, target, values=values_of(set_))
+    found: Any = nav.design if design else nav.solve
+    estimator = found(file, target, digits=digits, values=values_of(set_))
     document = estimator.document()
     if out is not None:
         write_text(out, dumps(document["certificate"]) + "\n")
-    if compare and not design:
+    if compare:
         from navsym.guaranteed.convex import LP_SOLVERS
 
         with Progress("solvers", len(LP_SOLVERS), "without --compare the answer comes at once") as bar:
@@ -77,6 +76,7 @@ def design_text(document: dict[str, Any]) -> str:
             f"               …  {document['value']['upper']}",
             f"needs {', '.join(document['bought'])}: cost {document['cost']}",
             table(names, rows, right=names[2:]),
+            *([comparison(document["compare"])] if "compare" in document else []),
         ]
     )
 

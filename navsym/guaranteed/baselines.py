@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from navsym.claims.display import write_table
 from navsym.core.answers import Answer
-from navsym.guaranteed.convex import LP_SOLVERS, grid_problem, guaranteed_lp
+from navsym.guaranteed.convex import LP_SOLVERS, GridProblem, grid_problem, guaranteed_lp
 from navsym.guaranteed.problem import GuaranteedProblem
 
 if TYPE_CHECKING:
@@ -25,16 +25,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SampledRegressors:
-    """Regressors on Gauss-Legendre points of every panel: (m, n), lengths of time and noise bounds (n,)."""
-
-    regressors: Array
-    spacing: Array
-    bounds: Array
-
-
-def sample_regressors(problem: GuaranteedProblem, count: int = 4000) -> SampledRegressors:
+def sample_regressors(problem: GuaranteedProblem, count: int = 4000) -> GridProblem:
     """Composite Gauss points, fine enough for integrals of |Phi| to six digits."""
     nodes, weights = np.polynomial.legendre.leggauss(4)
     cells = count // 4
@@ -43,14 +34,15 @@ def sample_regressors(problem: GuaranteedProblem, count: int = 4000) -> SampledR
     panels = problem.exact().panels
     parts = [panel.numbers(v) for panel in panels]
     lengths = [float(end - start) for start, end, _ in (panel.edges() for panel in panels)]
-    return SampledRegressors(
+    return GridProblem(
         np.hstack([H for _, H, _ in parts]),
-        np.concatenate([length * share for length in lengths]),
+        np.array([float(p) for p in problem.functional]),
         np.concatenate([np.full(v.size, sigma) for _, _, sigma in parts]),
+        np.concatenate([length * share for length in lengths]),
     )
 
 
-def quadratic_estimator(samples: SampledRegressors, functional: Array, trust: Array) -> Array:
+def quadratic_estimator(samples: GridProblem, trust: Array) -> Array:
     """Weights Phi (n,) per unit of time that minimise ``integral Phi^2 / trust`` without bias.
 
     trust = 1 is least squares; trust = 1 / sigma^2 is what the Kalman filter converges to that knows
@@ -60,12 +52,12 @@ def quadratic_estimator(samples: SampledRegressors, functional: Array, trust: Ar
     H = H / scale[:, None]
     root = np.sqrt(trust * samples.spacing)
     Q, R = np.linalg.qr((H * root).T)
-    multipliers = np.linalg.solve(R.T, functional / scale)
+    multipliers = np.linalg.solve(R.T, samples.functional / scale)
     density: Array = (Q @ multipliers) * root / samples.spacing
     return density
 
 
-def guaranteed_deviation(samples: SampledRegressors, density: Array) -> float:
+def guaranteed_deviation(samples: GridProblem, density: Array) -> float:
     """``sum_j sigma_j integral |Phi_j|``: the standard deviation under the estimator's own worst correlation."""
     return float(np.sum(samples.bounds * np.abs(density) * samples.spacing))
 
@@ -139,15 +131,21 @@ def compare_estimators(
 
     Raises NotEstimableError, and DomainError for an unknown solver.
     """
-    problem, optimum = estimator.problem, float(estimator.value)
-    samples = sample_regressors(problem)
-    P = np.array([float(p) for p in problem.functional])
+    problem = estimator.problem
+    samples, grid = sample_regressors(problem), grid_problem(problem)
+    return compare_on_grid(samples, grid, float(estimator.value), solvers, progress)
+
+
+def compare_on_grid(
+    samples: GridProblem, grid: GridProblem, optimum: float, solvers: Sequence[str], progress: Callable[[str], None]
+) -> Comparison:
+    """The same where least squares and filter measure at the samples, and the solvers on a grid."""
     ones = np.ones_like(samples.bounds)
-    least = guaranteed_deviation(samples, quadratic_estimator(samples, P, ones))
-    kalman = guaranteed_deviation(samples, quadratic_estimator(samples, P, samples.bounds**-2.0))
+    least = guaranteed_deviation(samples, quadratic_estimator(samples, ones))
+    kalman = guaranteed_deviation(samples, quadratic_estimator(samples, samples.bounds**-2.0))
     answers = []
     for name in solvers:
-        result = guaranteed_lp(grid_problem(problem), solver=name)
+        result = guaranteed_lp(grid, solver=name)
         error = None if result.value is None else result.value / optimum - 1.0
         answers.append(SolverAnswer(name, result.status, result.value, error, result.residual, result.seconds))
         progress(name)

@@ -12,10 +12,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from flint import arb, fmpq, fmpq_mat
+from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from navsym.claims.display import write_card, write_table
 from navsym.core.answers import Answer
@@ -23,12 +23,15 @@ from navsym.core.balls import precision
 from navsym.core.errors import DomainError, EmptyError, NotEstimableError, ShapeError
 from navsym.core.exact import decimal, from_decimal, to_fmpq, upper_end
 from navsym.core.numbers import Number
-from navsym.guaranteed.search.cones import Cone, Proposal, propose_optima
+from navsym.guaranteed.search.cones import Cone
+from navsym.guaranteed.streaming.exchange import Cloud, exchange
 from navsym.guaranteed.streaming.numbers import read_exact, to_float, write_rational
 from navsym.language.names import quote
+from navsym.models.modelfile import NORMS
 
-NORMS = ("l2", "linf", "l1")
 BITS, DIGITS, PLACES = 320, 24, 60
+#: A weight below zero costs so many times what it would as a measurement, where none is allowed.
+FAR = 10**12
 #: The dual is drawn in by this part of itself before it is rounded, so that it stays admissible noise.
 SHRINK = 1 - fmpq(1, 10**50)
 
@@ -62,12 +65,45 @@ class Block:
         object.__setattr__(self, "bound", read_bound(self.bound, int(H.nrows()), self.norm))
 
     @property
-    def cone(self) -> Cone:
-        """The block for the search."""
-        return Cone(self.H, self.norm, self.bound)
+    def part(self) -> Part:
+        """The block as the search takes it."""
+        return Part(self.H, self.norm, self.bound)
 
     def __repr__(self) -> str:
         return f"Block({self.H.nrows()} measurements of {self.H.ncols()} unknowns, {self.norm})"
+
+
+class Part(NamedTuple):
+    """Rows H, a norm and its size, exact; the norm "nonpositive" allows weights that are not negative, for free."""
+
+    H: fmpq_mat
+    norm: str
+    size: fmpq_mat
+
+    @property
+    def cone(self) -> Cone:
+        """The allowed noise."""
+        return Cone(self.norm, arb_mat(self.size))
+
+    def reach(self) -> list[arb]:
+        """The largest that each entry of the noise can be."""
+        sizes = self.size.entries()
+        return [arb(self.size[j, j]).sqrt() if self.norm == "l2" else arb(sizes[j]) for j in range(self.H.nrows())]
+
+    def cost(self, w: Sequence[fmpq]) -> arb:
+        """The largest ``w . r`` of allowed noise. Raises NotEstimableError for weights that are not allowed."""
+        if self.norm != "nonpositive":
+            return self.cone.cost(arb_mat([[arb(e)] for e in w]))
+        if min(w) < 0:
+            message = (
+                "expected constraints that unbiased weights keep; got some for which the search finds none; loosen them"
+            )
+            raise NotEstimableError(message, where="solve_blocks: constraints")
+        return arb(0)
+
+
+Constraint = Sequence[Any]
+RELATIONS = ("=", "<=", ">=")
 
 
 def read_table(rows: Any, where: str) -> fmpq_mat:
@@ -186,7 +222,7 @@ def solve_blocks(
     blocks: Sequence[Block],
     target: Sequence[Any] | Mapping[str, Sequence[Any]],
     *,
-    constraints: Sequence[tuple[Sequence[Any], Any]] = (),
+    constraints: Sequence[Constraint] = (),
 ) -> BlockEstimator | dict[str, BlockEstimator]:
     """The linear estimate with the least guaranteed error from blocks of vector measurements.
 
@@ -195,8 +231,9 @@ def solve_blocks(
 
     blocks      : :class:`Block`, all of the same unknowns
     target      : P, one number an unknown; or a mapping of names to several, which gives an answer for each
-    constraints : pairs (c, d) of vectors c_i, block by block, and a number: ``sum c_i . w_i = d``. Zeros and the times
-                  of a drift make the estimate blind to it; ones and 0 give weights of zero mean
+    constraints : (c, "<=", d) with vectors c_i, block by block, and a number: ``sum c_i . w_i <= d``; also ">=" and
+                  "=", which (c, d) means, too. The times of a drift and 0 make the estimate blind to it; ones and 0
+                  give weights of zero mean; ``>= 0`` for one weight forbids that it is negative
 
     Unknowns that nobody asks for are nuisance parameters: their entry of P is 0. Raises NotEstimableError, ShapeError,
     EmptyError and DomainError.
@@ -212,61 +249,111 @@ def solve_blocks(
 
 
 def solve_target(
-    blocks: Sequence[Block], target: Sequence[Any], constraints: Sequence[tuple[Sequence[Any], Any]], name: str
+    blocks: Sequence[Block], target: Sequence[Any], constraints: Sequence[Constraint], name: str
 ) -> BlockEstimator:
     """The answer for one target."""
-    cones, functional = state_problem(blocks, target, constraints)
-    kept = independent_columns(cones, functional)
-    narrow = [Cone(pick_columns(cone.H, kept), cone.norm, cone.size) for cone in cones]
-    P = fmpq_mat(len(kept), 1, [functional[k, 0] for k in kept])
+    stated, functional = state_problem(blocks, target, constraints)
     with precision(BITS):
-        nothing = Proposal([fmpq(0)] * len(kept), [[fmpq(0)] * cone.rows for cone in narrow])
-        answers = [bound_optimum(narrow, P, found) for found in propose_optima(narrow, P) or [nothing]]
-        weights, dual, costs, least = min(answers, key=lambda one: float((sum(one[2], arb(0)) - one[3]).mid()))
-        total = sum(costs, arb(0))
-        whole = [fmpq(0)] * functional.nrows()
-        for k, x in zip(kept, dual, strict=True):
-            whole[k] = x
-        value = Number(decimal(least, DIGITS, -1), upper_end(total, DIGITS))
-        shares = tuple(float((c / total).mid()) for c in costs)
-    certificate = write_certificate(cones, functional, weights, whole, value)
-    noise = tuple(tuple((cone.H * fmpq_mat(len(whole), 1, whole)).entries()) for cone in cones)
-    return BlockEstimator(name, value, tuple(map(tuple, weights)), tuple(whole), noise, shares, certificate)
+        weights, dual, costs, value = find_optimum(stated, functional)
+        shares = tuple(float((c / sum(costs, arb(0))).mid()) for c in costs[: len(blocks)])
+    certificate = write_certificate(stated, functional, weights, dual, value)
+    measured = list(zip(stated, weights, strict=True))[: len(blocks)]
+    noise = tuple(tuple((block.H * fmpq_mat(len(dual), 1, dual)).entries()) for block, _ in measured)
+    return BlockEstimator(name, value, tuple(tuple(w) for _, w in measured), tuple(dual), noise, shares, certificate)
 
 
-def bound_optimum(
-    cones: Sequence[Cone], P: fmpq_mat, found: Proposal
-) -> tuple[list[list[fmpq]], list[fmpq], list[arb], fmpq]:
-    """Unbiased weights, an admissible dual, the costs of the weights block by block, and what the dual is worth."""
-    weights, dual = balance_weights(cones, P, found.weights), admissible_dual(cones, found.x)
-    costs = [cone.cost(w) for cone, w in zip(cones, weights, strict=True)]
-    return weights, dual, costs, sum((x * p for x, p in zip(dual, P.entries(), strict=True)), fmpq(0))
+def find_optimum(parts: Sequence[Part], functional: fmpq_mat) -> tuple[list[list[fmpq]], list[fmpq], list[arb], Number]:
+    """Unbiased weights, an admissible dual, the costs of the weights block by block, and the bounds that they show."""
+    kept = independent_columns(parts, functional)
+    narrow = [part._replace(H=pick_columns(part.H, kept)) for part in parts]
+    P = fmpq_mat(len(kept), 1, [functional[k, 0] for k in kept])
+    x, proposed = propose_optimum(narrow, P)
+    weights, dual = balance_weights(narrow, P, proposed), admissible_dual(narrow, x)
+    costs = [part.cost(w) for part, w in zip(narrow, weights, strict=True)]
+    worth = sum((e * p for e, p in zip(dual, P.entries(), strict=True)), fmpq(0))
+    whole = [fmpq(0)] * functional.nrows()
+    for k, e in zip(kept, dual, strict=True):
+        whole[k] = e
+    return weights, whole, costs, Number(decimal(worth, DIGITS, -1), upper_end(sum(costs, arb(0)), DIGITS))
+
+
+def certify_optimum(parts: Sequence[Part], functional: fmpq_mat) -> dict[str, Any]:
+    """The certificate of the optimum, of kind cones."""
+    with precision(BITS):
+        weights, dual, _, value = find_optimum(parts, functional)
+    return write_certificate(parts, functional, weights, dual, value)
+
+
+def propose_optimum(parts: Sequence[Part], P: fmpq_mat) -> tuple[list[fmpq], list[list[fmpq]]]:
+    """A dual and weights block by block, near the optimum; zeros where none is found, on which nothing rests."""
+    ends = [sum(part.H.nrows() for part in parts[:k]) for k in range(len(parts) + 1)]
+    spans = list(pairwise(ends))
+    rows = [arb_mat([row]) for part in parts for row in part.H.tolist()]
+    sigma = [e for part in parts for e in part.reach()]
+    scaled = np.array([[float((e / s).mid()) for e in v.entries()] for v, s in zip(rows, sigma, strict=True)])
+    cones = [
+        (p.cone, range(a, b)) for p, (a, b) in zip(parts, spans, strict=True) if p.norm in ("l1", "l2") and b > a + 1
+    ]
+    cloud = Cloud(rows, sigma, scaled, cones=cones)
+    start = cloud.start() or []
+    if parts[-1].norm == "nonpositive":  # a weight w costs sigma (|w| - w)
+        free = [part.norm == "nonpositive" for part in parts for _ in range(part.H.nrows())]
+        cloud.offset = [-s if one else arb(0) for s, one in zip(sigma, free, strict=True)]
+        cloud.shifted = -np.array(free, dtype=float)
+    found = exchange(cloud, arb_mat(P.transpose()), start)
+    if found is None or found.ray is not None:
+        return [fmpq(0)] * P.nrows(), [[fmpq(0)] * (b - a) for a, b in spans]
+    weights = cloud.spread(found)
+    flat = [to_fmpq(weights.get(k, arb(0)).mid()) for k in range(len(rows))]
+    return [to_fmpq(e.mid()) for e in found.dual.entries()], [flat[a:b] for a, b in spans]
 
 
 def state_problem(
-    blocks: Sequence[Block], target: Sequence[Any], constraints: Sequence[tuple[Sequence[Any], Any]]
-) -> tuple[list[Cone], fmpq_mat]:
-    """Regressors with a column for each constraint, and the functional. Raises ShapeError, EmptyError, DomainError."""
+    blocks: Sequence[Block], target: Sequence[Any], constraints: Sequence[Constraint]
+) -> tuple[list[Part], fmpq_mat]:
+    """Regressors with a column for each constraint, and the functional. Raises ShapeError, EmptyError, DomainError.
+
+    What an inequality leaves is a weight of its own, which must not be negative: ``sum c_i . w_i + w = d``.
+    """
     P = [read_exact(p, "solve_blocks: target") for p in as_list(target, "solve_blocks: target")]
     if not blocks or not P:
         raise EmptyError("expected blocks and a target; got none; give at least one of each", where="solve_blocks")
-    cones = [block.cone for block in blocks]
-    for cone in cones:
-        if cone.H.ncols() != len(P):
-            message = f"expected {len(P)} unknowns in each block; got {cone.H.ncols()}; complete the rows"
-            raise ShapeError(message, where="solve_blocks: blocks")
-    for c, d in constraints:
-        columns = [[read_exact(e, "constraints") for e in as_list(part, "solve_blocks: constraints")] for part in c]
-        if [len(part) for part in columns] != [cone.rows for cone in cones]:
-            message = "expected a number for each measurement of each block; got others; complete them"
-            raise ShapeError(message, where="solve_blocks: constraints")
-        cones = [
-            Cone(add_column(cone.H, part), cone.norm, cone.size) for cone, part in zip(cones, columns, strict=True)
-        ]
-        P.append(read_exact(d, "solve_blocks: constraints"))
     if not any(P):
         raise DomainError("expected a target that is not zero; got zeros; every estimate of it is free", where="target")
-    return cones, fmpq_mat(len(P), 1, P)
+    parts, left = [block.part for block in blocks], {}
+    for part in parts:
+        if part.H.ncols() != len(P):
+            message = f"expected {len(P)} unknowns in each block; got {part.H.ncols()}; complete the rows"
+            raise ShapeError(message, where="solve_blocks: blocks")
+    for constraint in constraints:
+        columns, relation, bound = read_constraint(constraint, [int(part.H.nrows()) for part in parts])
+        parts = [part._replace(H=add_column(part.H, c)) for part, c in zip(parts, columns, strict=True)]
+        if relation != "=":
+            largest = max((abs(e) for c in columns for e in c), default=fmpq(0)) or fmpq(1)
+            left[len(P)] = fmpq(1 if relation == "<=" else -1) * largest
+        P.append(bound)
+    far = FAR * max(to_fmpq(e.upper()) for part in parts for e in part.reach())
+    for k, sign in left.items():
+        row = fmpq_mat(1, len(P), [sign if j == k else fmpq(0) for j in range(len(P))])
+        parts.append(Part(row, "nonpositive", fmpq_mat(1, 1, [far])))
+    return parts, fmpq_mat(len(P), 1, P)
+
+
+def read_constraint(constraint: Any, sizes: Sequence[int]) -> tuple[list[list[fmpq]], str, fmpq]:
+    """Factors block by block, a relation and a number. Raises ShapeError and DomainError."""
+    where = "solve_blocks: constraints"
+    given = as_list(constraint, where)
+    if len(given) == 2:
+        given.insert(1, "=")
+    if len(given) != 3 or given[1] not in RELATIONS:
+        message = f'expected (factors, "<=", number), or with ">=" or "="; got {quote(constraint)}; write all three'
+        raise DomainError(message, where=where)
+    factors, relation, bound = given
+    columns = [[read_exact(e, where) for e in as_list(part, where)] for part in as_list(factors, where)]
+    if [len(part) for part in columns] != list(sizes):
+        message = "expected a number for each measurement of each block; got others; complete them"
+        raise ShapeError(message, where=where)
+    return columns, relation, read_exact(bound, where)
 
 
 def add_column(H: fmpq_mat, column: Sequence[fmpq]) -> fmpq_mat:
@@ -280,10 +367,10 @@ def pick_columns(H: fmpq_mat, columns: Sequence[int]) -> fmpq_mat:
     return fmpq_mat(H.nrows(), len(columns), [row[k] for row in H.tolist() for k in columns])
 
 
-def stack(cones: Sequence[Cone]) -> fmpq_mat:
+def stack(parts: Sequence[Part]) -> fmpq_mat:
     """All regressors, one row for each measurement."""
-    rows = [e for cone in cones for e in cone.H.entries()]
-    return fmpq_mat(sum(cone.rows for cone in cones), cones[0].H.ncols(), rows)
+    rows = [e for part in parts for e in part.H.entries()]
+    return fmpq_mat(sum(part.H.nrows() for part in parts), parts[0].H.ncols(), rows)
 
 
 def pivots_of(matrix: fmpq_mat) -> list[int]:
@@ -292,9 +379,9 @@ def pivots_of(matrix: fmpq_mat) -> list[int]:
     return [next(j for j in range(matrix.ncols()) if reduced[i, j] != 0) for i in range(rank)]
 
 
-def independent_columns(cones: Sequence[Cone], functional: fmpq_mat) -> list[int]:
+def independent_columns(parts: Sequence[Part], functional: fmpq_mat) -> list[int]:
     """Unknowns in which unbiased weights are unbiased in all. Raises NotEstimableError."""
-    H = stack(cones)
+    H = stack(parts)
     more = fmpq_mat(H.nrows() + 1, H.ncols(), [*H.entries(), *functional.entries()])
     if more.rank() > H.rank():
         raise NotEstimableError(
@@ -304,17 +391,17 @@ def independent_columns(cones: Sequence[Cone], functional: fmpq_mat) -> list[int
     return pivots_of(H)
 
 
-def balance_weights(cones: Sequence[Cone], P: fmpq_mat, proposed: Sequence[Sequence[fmpq]]) -> list[list[fmpq]]:
+def balance_weights(parts: Sequence[Part], P: fmpq_mat, proposed: Sequence[Sequence[fmpq]]) -> list[list[fmpq]]:
     """The weights, rounded and made exactly unbiased on rows that carry the largest of them."""
-    flat, rows = [decimal_of(e) for w in proposed for e in w], stack(cones).tolist()
+    flat, rows = [decimal_of(e) for w in proposed for e in w], stack(parts).tolist()
     order = sorted(range(len(flat)), key=lambda k: -abs(flat[k]))
     turned = fmpq_mat(len(order), P.nrows(), [e for k in order for e in rows[k]]).transpose()
     picked = [order[k] for k in pivots_of(turned)]
-    rest = P - stack(cones).transpose() * fmpq_mat(len(flat), 1, flat)
+    rest = P - stack(parts).transpose() * fmpq_mat(len(flat), 1, flat)
     columns = fmpq_mat(len(picked), P.nrows(), [e for k in picked for e in rows[k]]).transpose()
     for k, e in zip(picked, columns.solve(rest).entries(), strict=True):
         flat[k] += e
-    ends = [sum(cone.rows for cone in cones[:k]) for k in range(len(cones) + 1)]
+    ends = [sum(part.H.nrows() for part in parts[:k]) for k in range(len(parts) + 1)]
     return [flat[a:b] for a, b in pairwise(ends)]
 
 
@@ -323,30 +410,35 @@ def decimal_of(x: fmpq) -> fmpq:
     return from_decimal(decimal(x, PLACES))
 
 
-def admissible_dual(cones: Sequence[Cone], x: Sequence[fmpq]) -> list[fmpq]:
+def admissible_dual(parts: Sequence[Part], x: Sequence[fmpq]) -> list[fmpq]:
     """The dual scaled and rounded, so that all its measurements are admissible noise exactly."""
-    rounded = [decimal_of(e) for e in x]
+    rounded, worst = [decimal_of(e) for e in x], arb(0)
+    for part in parts:
+        if part.norm == "nonpositive":
+            k = next(k for k, e in enumerate(part.H.entries()) if e != 0)
+            rounded[k] = min(rounded[k] * part.H[0, k], fmpq(0)) / part.H[0, k]
     column = fmpq_mat(len(x), 1, rounded)
-    gauges = [(cone.gauge(column), cone.norm) for cone in cones]
-    worst = max((arb(g).sqrt() if norm == "l2" else arb(g) for g, norm in gauges), key=lambda g: float(g.mid()))
-    factor = to_fmpq((SHRINK / worst).mid()) if worst > 0 else fmpq(1)
+    for part in parts:
+        if part.norm != "nonpositive":
+            worst = worst.max(part.cone.gauge(arb_mat(part.H * column)))
+    factor = to_fmpq((SHRINK / worst).lower()) if worst > 0 else fmpq(1)
     scale = from_decimal(decimal(factor, PLACES, -1))
     return [e * scale for e in rounded]
 
 
 def write_certificate(
-    cones: Sequence[Cone], functional: fmpq_mat, weights: Sequence[Sequence[fmpq]], dual: Sequence[fmpq], value: Number
+    parts: Sequence[Part], functional: fmpq_mat, weights: Sequence[Sequence[fmpq]], dual: Sequence[fmpq], value: Number
 ) -> dict[str, Any]:
     """The certificate of kind cones."""
     text = lambda numbers: [write_rational(e) for e in numbers]  # noqa: E731
     blocks = [
         {
-            "H": [text(row) for row in cone.H.tolist()],
-            "norm": cone.norm,
-            "size": [text(row) for row in cone.size.tolist()],
+            "H": [text(row) for row in part.H.tolist()],
+            "norm": part.norm,
+            "size": [] if part.norm == "nonpositive" else [text(row) for row in part.size.tolist()],
             "weights": text(w),
         }
-        for cone, w in zip(cones, weights, strict=True)
+        for part, w in zip(parts, weights, strict=True)
     ]
     ends = {"lower": value.lower, "upper": value.upper, "bits": BITS}
     return {"kind": "cones", "blocks": blocks, "functional": text(functional.entries()), "dual": text(dual)} | ends

@@ -10,7 +10,7 @@ and Karp 2013).
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
@@ -26,8 +26,11 @@ from navsym.core.balls import precision
 from navsym.core.errors import DomainError, EmptyError, NotEstimableError, TooLargeError, UnknownSymbolError
 from navsym.core.exact import decimal, from_decimal, lower_end, upper_end
 from navsym.core.numbers import Number
+from navsym.guaranteed.baselines import LP_SOLVERS, Comparison, compare_on_grid
+from navsym.guaranteed.convex import GridProblem
 from navsym.guaranteed.streaming.exchange import Cloud, Optimum, bounds_of, exchange, rehearse, solve_basis, to_doubles
 from navsym.guaranteed.streaming.flow import BITS, Flow
+from navsym.guaranteed.streaming.guard import whole_number
 from navsym.guaranteed.streaming.memory import Row
 from navsym.guaranteed.streaming.numbers import middle, read_exact, write_rational
 from navsym.language.files import name_file
@@ -39,9 +42,7 @@ from navsym.models.model import contents_of, file_in_errors
 Needs = frozenset[str]
 
 MOST_ROWS, MOST_DUALS, MOST_CELLS = 400, 3000, 80_000
-DIGITS, PLACES = 24, 40
-#: The proved lower bound is below the value by this part of it.
-MARGIN = fmpq(1, 10**13)
+MOST_DIGITS = 40
 #: A weight beside the rows costs so many times what the dual of a basis is worth.
 FAR = 10**6
 #: Parts of the way at which a slope in time is taken, in seconds: its error is of this order.
@@ -79,6 +80,7 @@ class Design(Answer):
     points      : measurements with a weight, see :class:`DesignPoint`
     status      : CERTIFIED where the two bounds meet, else OPEN
     certificate : plain data that the independent checker replays, kind "design"
+    grid        : all measurements that are bought, in doubles
 
     >>> import navsym as nav
     >>> model = nav.Model(states="x v", F=[["0", "1"], ["0", "0"]], H=["x"], targets={"v": "v"})
@@ -94,6 +96,16 @@ class Design(Answer):
     points: tuple[DesignPoint, ...]
     status: Status
     certificate: Mapping[str, Any]
+    grid: GridProblem
+
+    def compare(
+        self, solvers: Sequence[str] = LP_SOLVERS, progress: Callable[[str], None] = lambda solver: None
+    ) -> Comparison:
+        """Least squares, the Kalman filter and general solvers on the measurements that are bought: ``--compare``.
+
+        solvers, progress : as for :meth:`Estimator.compare`
+        """
+        return compare_on_grid(self.grid, self.grid, float(self.value.upper), solvers, progress)
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym solve --design``."""
@@ -124,6 +136,7 @@ def design(
     budget: Any = None,
     instant: Any = 1,
     sensors: Mapping[str, Any] | None = None,
+    digits: int = 30,
     values: Mapping[str, Any] | None = None,
 ) -> Design:
     """The instants, sensors and noise bounds within a budget that have the least guaranteed error of a target.
@@ -137,6 +150,7 @@ def design(
     instant : what an instant costs
     sensors : measurement -> its cost, or a list of grades (noise bound, cost); those left out are not used; by default
               all, free of charge, so that the budget counts instants
+    digits  : certified digits of the value, 1 to 40
 
     Raises NotEstimableError where no selection within the budget is seen to show the target.
 
@@ -150,15 +164,16 @@ def design(
             table = as_table(read_toml(model).get("design", {}), f"{name_file(model)}: design")
             expect_keys(table, ("times", "budget", "instant", "sensors"), f"{name_file(model)}: design")
             if "times" in table and "budget" in table:
-                return design(Path(model), target, values=values, **table)
+                return design(Path(model), target, digits=digits, values=values, **table)
         if times is None or budget is None:
             message = "expected times and a budget; got none; give both, or a table [design] in the model file"
             raise EmptyError(message, where="design")
+        whole_number(digits, 1, MOST_DIGITS, "design: digits")
         with precision(BITS):
             flow = Flow(contents_of(model, values, {}, "design"), target, "design")
             rows, needs, prices = list_candidates(flow, times, instant, sensors)
             limit = read_exact(budget, "design: budget")
-            return Market(flow, rows, needs, prices, limit).answer()
+            return Market(flow, rows, needs, prices, limit, digits).answer()
 
 
 def list_candidates(
@@ -207,7 +222,11 @@ def list_candidates(
 class Market:
     """The rows on offer, and the duals collected so far; unit vectors beside the rows make every selection solvable."""
 
-    def __init__(self, flow: Flow, rows: list[Row], needs: list[Needs], prices: dict[str, fmpq], budget: fmpq):
+    def __init__(
+        self, flow: Flow, rows: list[Row], needs: list[Needs], prices: dict[str, fmpq], budget: fmpq, digits: int
+    ):
+        #: The proved lower bound is below the value by this part of it.
+        self.digits, self.margin = digits, fmpq(1, 10 ** (digits + 1))
         self.flow, self.rows, self.needs, self.prices, self.budget = flow, rows, needs, prices, budget
         self.now = rows[-1].t
         flow.choose_unknowns(frozenset(row.j for row in rows))
@@ -276,7 +295,7 @@ class Market:
     def failing(self, dual: arb_mat, value: arb) -> tuple[frozenset[int], arb_mat]:
         """The needs of rows at which the dual, scaled to the goal, exceeds the bound; and that dual, as decimals."""
         scale = self.goal / value
-        x = arb_mat([[arb(from_decimal(decimal(e * scale, PLACES)))] for e in dual.entries()])
+        x = arb_mat([[arb(from_decimal(decimal(e * scale, self.digits + 28)))] for e in dual.entries()])
         return self.refused(x), x
 
     def refused(self, x: arb_mat) -> frozenset[int]:
@@ -312,7 +331,7 @@ class Market:
     @property
     def goal(self) -> arb:
         """What no selection may be shown to fall below: a little less than the least error so far."""
-        return self.least * arb(1 - MARGIN / 2)
+        return self.least * arb(1 - self.margin / 2)
 
     def buy(self, sets: list[frozenset[int]], bought: int, nodes: Iterator[int]) -> int | None:
         """Things within the budget that meet all sets; the checker goes the same way."""
@@ -383,9 +402,14 @@ class Market:
         bought = sum(1 << k for k, name in enumerate(self.names) if any(name in self.needs[i] for i in used))
         certificate = self.write_certificate(found, duals, cost)
         value = Number(certificate["lower"], certificate["upper"])
+        rows = [i for i, n in enumerate(self.bits) if not n & ~bought]
+        lines = np.array([[middle(e) for e in self.table.tolist()[i]] for i in rows])
+        turn = np.linalg.svd(lines, full_matrices=False)[2][: np.linalg.matrix_rank(lines)]  # what these rows show
+        grid = GridProblem(turn @ lines.T, turn @ to_doubles(self.target), [middle(self.rows[i].sigma) for i in rows])
         words = tuple(name for k, name in enumerate(self.names) if bought >> k & 1)
         status = CERTIFIED if done else OPEN
-        return Design(self.flow.target, value, words, write_rational(self.price(bought)), points, status, certificate)
+        price = write_rational(self.price(bought))
+        return Design(self.flow.target, value, words, price, points, status, certificate, grid)
 
     def drop_idle(self) -> list[arb_mat]:
         """Duals without which a better selection would not be excluded."""
@@ -399,7 +423,9 @@ class Market:
     def least_dual(self) -> arb_mat:
         """The dual of all rows, which bounds every selection."""
         found = self.optimum(set(range(len(self.rows))))
-        return arb_mat([[arb(from_decimal(decimal(e * arb(1 - MARGIN), PLACES)))] for e in found.dual.entries()])
+        return arb_mat(
+            [[arb(from_decimal(decimal(e * arb(1 - self.margin), self.digits + 28)))] for e in found.dual.entries()]
+        )
 
     def list_points(self, pairs: Sequence[tuple[int, arb]], dual: arb_mat, cost: arb) -> tuple[DesignPoint, ...]:
         """The support with its sensitivities: ``dV/dsigma = |w|``, ``dV/dt = -w h'(t) . x``."""
@@ -440,9 +466,9 @@ class Market:
             "budget": write_rational(self.budget),
             "functional": [flow.functional_text(k) for k in columns],
             "support": list(found.basis),
-            "duals": [[decimal(e, PLACES) for e in x.entries()] for x in duals],
-            "lower": lower_end(worth, DIGITS),
-            "upper": upper_end(cost, DIGITS),
+            "duals": [[decimal(e, self.digits + 28) for e in x.entries()] for x in duals],
+            "lower": lower_end(worth, self.digits + 11),
+            "upper": upper_end(cost, self.digits + 11),
             "bits": BITS + 64,
             "cells": next(nodes) // 4 + 1,
         }

@@ -19,6 +19,7 @@ from navsym.core.errors import NavsymError, NotEstimableError
 from navsym.core.exact import decimal, to_fmpq, to_rational
 from navsym.guaranteed.certificate.enclosure import interval_ball, joint_tape, series_coefficients
 from navsym.guaranteed.problem import GuaranteedProblem
+from navsym.guaranteed.search.exchange import independent_rows
 from navsym.guaranteed.time_varying import rational_end
 from navsym.language.expression import to_text
 from navsym.models.modelfile import ModelFile, Piece
@@ -279,16 +280,9 @@ def rows_of_full_rank(values: np.ndarray, count: int) -> list[int] | None:
     """Rows whose first ``count`` entries are independent, the best first; None when there are not enough."""
     if not np.isfinite(values).all():
         return None
-    rest, chosen = values[:, :count] / np.maximum(np.abs(values[:, :count]).max(axis=0), 1e-300), []
-    for _ in range(count):
-        sizes = np.linalg.norm(rest, axis=1)
-        best = int(np.argmax(sizes > 0.5 * sizes.max()))  # the simplest of the good ones
-        if not sizes[best] > 1e-6:
-            return None
-        chosen.append(best)
-        unit = rest[best] / sizes[best]
-        rest = rest - np.outer(rest @ unit, unit)
-    return chosen
+    scaled = values[:, :count] / np.maximum(np.abs(values[:, :count]).max(axis=0), 1e-300)
+    chosen = independent_rows(scaled, count, 1e-6, 0.5)  # the simplest of the good ones
+    return chosen if len(chosen) == count else None
 
 
 def is_relation_proved(problem: GuaranteedProblem, k: int, relation: Relation) -> bool:

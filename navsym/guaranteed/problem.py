@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import sympy as sp
 from flint import arb
 
 from navsym.core.balls import enclose
-from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError
+from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError, TooLargeError
 from navsym.core.exact import to_fmpq
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
 from navsym.guaranteed.time_varying import (
@@ -25,10 +26,12 @@ from navsym.guaranteed.time_varying import (
 from navsym.language.names import quote
 from navsym.models.linear import LinearModel, exact_entry
 from navsym.models.model import Model, contents_of
-from navsym.models.modelfile import BasisFile, ModelFile
+from navsym.models.modelfile import BasisFile, Measurement, ModelFile
 from navsym.models.transition.exponential import regressors, transition_matrix
 
 Rows = tuple[tuple[sp.Expr, ...], ...]
+#: Measurements of a block with "l1", which becomes 2**(p - 1) single ones.
+MOST_TOGETHER = 6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -188,6 +191,7 @@ def from_contents(found: ModelFile | BasisFile, target: str | None = None, where
     if isinstance(found, BasisFile):
         stretch = RegressorPiece(*found.interval, found.H)
         return GuaranteedProblem((stretch,), functional, found.sigma, found.variable, target=name)
+    found = divide_blocks(found, where)
     if found.T is None:
         raise EmptyError("expected the length of the interval; got no [interval]; add T", where="interval.T")
     stretches, error = regressor_pieces(found)
@@ -201,6 +205,32 @@ def from_contents(found: ModelFile | BasisFile, target: str | None = None, where
         error,
         found if error else None,
     )
+
+
+def divide_blocks(found: ModelFile, where: str) -> ModelFile:
+    """The model with single measurements in place of blocks. Raises DomainError for "l2", TooLargeError for long ones.
+
+    Errors with ``sum |r_j|/sigma_j <= 1`` are those of all sums ``+-z_j/sigma_j``, each with the bound 1: weights on
+    these sums cost what the block costs, and a dual keeps the bound of the block when it keeps theirs.
+    """
+    rows = list(found.measurements)
+    for block in found.blocks:
+        if block.norm == "l2" and len(block.names) > 1:
+            message = 'expected blocks with "l1" or "linf" on an interval; got "l2"; ask Guard, or choose "l1"'
+            raise DomainError(message, where=f"{where}: model")
+        if block.norm == "l1" and len(block.names) > 1:
+            if len(block.names) > MOST_TOGETHER:
+                got = f"{len(block.names)} of them"
+                message = f"expected at most {MOST_TOGETHER} measurements in a block; got {got}; split the block"
+                raise TooLargeError(message, where=f"{where}: model")
+            members = [m for m in rows if m.name in block.names]
+            rows = [m for m in rows if m.name not in block.names]
+            for signs in product((1, -1), repeat=len(members) - 1):
+                pairs = [*zip((1, *signs), members, strict=True)]
+                h = tuple(sum(s * m.h[k] / m.sigma for s, m in pairs) for k in range(len(found.states)))
+                name = " ".join(f"{'+' if s > 0 else '-'} {m.name}/sigma" for s, m in pairs).removeprefix("+ ")
+                rows.append(Measurement(name, h, sp.S.One))
+    return replace(found, measurements=tuple(rows), blocks=())
 
 
 def regressor_pieces(found: ModelFile) -> tuple[tuple[RegressorPiece, ...], sp.Rational]:

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -22,7 +24,7 @@ from navsym.guaranteed.certificate.basis import Basis, unit_fraction
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem, Touch, prove_panel_bound
 from navsym.guaranteed.certificate.fixed import flatten_contacts
 from navsym.guaranteed.estimability import is_zero_matrix
-from navsym.guaranteed.search.exchange import Contacts, add_places, interior_dual
+from navsym.guaranteed.search.exchange import Contacts, add_places, independent_rows, interior_dual
 from navsym.prove.ladder import decide
 
 BITS = 256
@@ -47,16 +49,10 @@ def has_other_optimum(problem: PanelProblem, contacts: Contacts, dual: Sequence[
         return False
     exact = [c for c in x if c is not None]
     places = exact_places(problem, contacts, exact)
-    m = len(exact)
     if not places:
         return False
     places = [places[i] for i in largest_support(*signed_columns(problem, places))]
-    if not places:
-        return False
-    rational_values = rational_columns(problem, places)
-    if rational_values is not None:
-        return has_rational_interior(rational_values, [p.sign for p in places])
-    return len(places) > m and has_interior_weights(problem, places, m)
+    return bool(places) and has_interior_weights(problem, places)
 
 
 def recognised(x: arb) -> sp.Rational | None:
@@ -128,28 +124,53 @@ def end_label(at: fmpq) -> str:
     return "from" if at == 0 else "to" if at == 1 else "no"
 
 
-def has_interior_weights(problem: PanelProblem, places: Sequence[ContactPlace], m: int) -> bool:
-    """Weights of the right signs at all places: the last ones exact and free to move, the others from balls."""
+def has_interior_weights(problem: PanelProblem, places: Sequence[ContactPlace]) -> bool:
+    """Weights of the right signs at all places, and more places than independent regressors there.
+
+    In rational numbers where all are rational, else in balls: the last weights are exact and free to move.
+    """
+    values, signs = rational_columns(problem, places), [p.sign for p in places]
     N, P = signed_columns(problem, places)
+    rank = P.size if values is None else values[0].rank()
+    weights = most_interior_weights(N, P) if len(places) > rank else None
+    order = None if weights is None else independent_first(N, rank)
+    if weights is None or order is None:
+        return False
+    fixed = {i: signs[i] * fmpq(round(float(weights[i]) * 2**40), 2**40) for i in order[rank:]}
     with precision(BITS):
-        columns = [problem.panels[p.panel].rows(arb(p.at)) for p in places]
-        weights = most_interior_weights(N, P)
-        if weights is None:
-            return False
-        order = independent_first(N, m)
-        if order is None:
-            return False
-        fixed = [fmpq(round(float(weights[i]) * 2**40), 2**40) for i in order[m:]]
-        right = problem.target()
-        for i, w in zip(order[m:], fixed, strict=True):
-            right = [r - places[i].sign * arb(w) * h for r, h in zip(right, columns[i], strict=True)]
-        block = arb_mat([columns[i] for i in order[:m]]).transpose()
-        try:
-            solved = block.solve(arb_mat([[r] for r in right]))
-        except ZeroDivisionError:
-            return False
-        signs = [places[i].sign for i in order[:m]]
-        return all(w > 0 for w in fixed) and all(bool(s * solved[j, 0] > 0) for j, s in enumerate(signs))
+        solve = solve_in_balls if values is None else partial(solve_exactly, values)
+        solved = solve(problem, places, order[:rank], fixed)
+    pairs: list[tuple[int, Any]] = [*fixed.items(), *zip(order, solved or (), strict=False)]
+    return solved is not None and all(bool(signs[i] * w > 0) for i, w in pairs)
+
+
+def solve_in_balls(
+    problem: PanelProblem, places: Sequence[ContactPlace], first: Sequence[int], fixed: dict[int, fmpq]
+) -> list[arb] | None:
+    """The weights at the first places next to those that are fixed elsewhere."""
+    columns, right = [problem.panels[p.panel].rows(arb(p.at)) for p in places], problem.target()
+    for i, w in fixed.items():
+        right = [r - arb(w) * h for r, h in zip(right, columns[i], strict=True)]
+    try:
+        return arb_mat([columns[i] for i in first]).transpose().solve(arb_mat([[r] for r in right])).entries()
+    except ZeroDivisionError:
+        return None
+
+
+def solve_exactly(
+    values: tuple[fmpq_mat, fmpq_mat],
+    _: PanelProblem,
+    places: Sequence[ContactPlace],
+    first: Sequence[int],
+    fixed: dict[int, fmpq],
+) -> list[fmpq] | None:
+    """The same in rational numbers; None where the equations contradict each other."""
+    (N, P), rank = values, len(first)
+    right = [P[i, 0] - sum((w * N[i, j] for j, w in fixed.items()), fmpq(0)) for i in range(N.nrows())]
+    rows = [[*(N[i, j] for j in first), right[i]] for i in range(N.nrows())]
+    reduced, found = fmpq_mat(rows).rref()
+    good = found == rank and all(reduced[i, i] == 1 for i in range(rank))
+    return [reduced[i, rank] for i in range(rank)] if good else None
 
 
 def signed_columns(problem: PanelProblem, places: Sequence[ContactPlace]) -> tuple[np.ndarray, np.ndarray]:
@@ -201,31 +222,6 @@ def rational_columns(problem: PanelProblem, places: Sequence[ContactPlace]) -> t
     return fmpq_mat(len(places), m, numbers[:-m]).transpose(), fmpq_mat(m, 1, numbers[-m:])
 
 
-def has_rational_interior(values: tuple[fmpq_mat, fmpq_mat], signs: Sequence[int]) -> bool:
-    """Weights of the right signs at all places and a null vector of their columns, in rational numbers."""
-    N, P = values
-    m, n = N.nrows(), N.ncols()
-    rank = N.rank()
-    if rank >= n:
-        return False
-    dense = np.array([[signs[j] * float(N[i, j]) for j in range(n)] for i in range(m)])
-    scale = np.abs(dense).max(axis=1) + 1e-300
-    weights = most_interior_weights(dense / scale[:, None], np.array([float(P[i, 0]) for i in range(m)]) / scale)
-    order = None if weights is None else independent_first(dense, rank)
-    if weights is None or order is None:
-        return False
-    fixed = {i: signs[i] * fmpq(round(float(weights[i]) * 2**40), 2**40) for i in order[rank:]}
-    right = [P[i, 0] - sum((w * N[i, j] for j, w in fixed.items()), fmpq(0)) for i in range(m)]
-    augmented = fmpq_mat(m, rank + 1, [c for i in range(m) for c in [*(N[i, j] for j in order[:rank]), right[i]]])
-    reduced, found = augmented.rref()
-    if found != rank or any(reduced[i, i] != 1 for i in range(rank)):
-        return False
-    solved = [reduced[i, rank] for i in range(rank)]
-    return all(signs[j] * w > 0 for j, w in fixed.items()) and all(
-        signs[j] * w > 0 for j, w in zip(order[:rank], solved, strict=True)
-    )
-
-
 def most_interior_weights(N: np.ndarray, P: np.ndarray) -> np.ndarray | None:
     """Positive weights with ``N w = P`` whose smallest is as large as can be."""
     found = widest_weights(N, P, np.ones((N.shape[1], 1)), 1.0)
@@ -234,17 +230,8 @@ def most_interior_weights(N: np.ndarray, P: np.ndarray) -> np.ndarray | None:
 
 def independent_first(N: np.ndarray, m: int) -> list[int] | None:
     """Columns ordered so that the first m are independent; None when there are no m of them."""
-    chosen: list[int] = []
-    rest = N.copy()
-    for _ in range(m):
-        sizes = np.linalg.norm(rest, axis=0)
-        best = int(np.argmax(sizes))
-        if sizes[best] < 1e-8:
-            return None
-        chosen.append(best)
-        unit = rest[:, best] / sizes[best]
-        rest = rest - np.outer(unit, unit @ rest)
-    return chosen + [i for i in range(N.shape[1]) if i not in chosen]
+    chosen = independent_rows(N.T, m, 1e-8)
+    return None if len(chosen) < m else chosen + [i for i in range(N.shape[1]) if i not in chosen]
 
 
 # Whether the optimal estimator is the only one, where fewer contacts than unknowns carry it.
@@ -392,17 +379,11 @@ def exact_conditions(problem: PanelProblem, pins: Sequence[Pin]) -> list[tuple[s
 
 def decide_weights(problem: PanelProblem, places: Sequence[ContactPlace]) -> bool | None:
     """Whether weights at these places, all of the contacts of an optimal dual, are the only ones."""
-    m, values = len(problem.functional), rational_columns(problem, places)
     twins = [k for k in range(len(places)) if any(is_twin(problem, places[k], other) for other in places[:k])]
     rest = [place for k, place in enumerate(places) if k not in twins]
-    if len(rest) <= m and has_only_weights(problem, rest):
+    if len(rest) <= len(problem.functional) and has_only_weights(problem, rest):
         return not twins  # the weight of a place may be shared with its twin
-    several = (
-        has_rational_interior(values, [p.sign for p in places])
-        if values is not None
-        else len(places) > m and has_interior_weights(problem, places, m)
-    )
-    return False if several else None
+    return False if has_interior_weights(problem, places) else None
 
 
 def is_twin(problem: PanelProblem, place: ContactPlace, other: ContactPlace) -> bool:

@@ -34,7 +34,7 @@ PLACES = (
     (r"^Model: piece$", "Model: pieces"),
     (r"^--set ", "Model: values."),
     (r"^Model: interval\.T", "Model: interval"),
-    (r"^Model: piece\[", "Model: pieces["),
+    (r"^Model: (piece|block)\[", r"Model: \1s["),
 )
 
 
@@ -56,6 +56,7 @@ class Model:
     rates        : parameter -> its derivative by the time, for parameters that move; for ``observe`` only
     inputs       : unknown input -> its column of n entries, or "unknown" where dynamics name it; for ``observe`` only
     ranges       : state, parameter or ``dt`` -> two ends, what the inputs of exported code may be; for ``export`` only
+    blocks       : tables of measurements whose errors are bounded together: ``{"measurements": "z1 z2", "norm": "l2"}``
     parameters   : name -> declaration; keywords that remain mean the same
 
     Entries are text of the language of files, ints, Fractions, sympy expressions, or matrices and integer arrays
@@ -100,6 +101,7 @@ class Model:
         rates: Mapping[str, Any] | None = None,
         inputs: Mapping[str, Any] | None = None,
         ranges: Mapping[str, Any] | None = None,
+        blocks: Sequence[Mapping[str, Any]] = (),
         name: str = "model",
         parameters: Mapping[str, Any] | None = None,
         **declared: Any,
@@ -124,6 +126,7 @@ class Model:
                     document[key] = {name: write(value, f"Model: {key}.{name}") for name, value in table.items()}
             linear = names if dynamics is None else None
             document["measurement"] = measurement_blocks(H, sigma, measurements, linear, declarations)
+            document["block"] = [block_table(block, f"Model: blocks[{k}]") for k, block in enumerate(blocks)]
             if pieces is not None:
                 document["piece"] = piece_blocks(pieces)
             if interval is not None:
@@ -550,6 +553,17 @@ def piece_blocks(pieces: Any) -> list[dict[str, Any]]:
     return [piece_block(piece, f"Model: pieces[{k}]") for k, piece in enumerate(pieces)]
 
 
+def block_table(block: Any, where: str) -> dict[str, Any]:
+    """One [[block]] table: names of measurements, a norm, and perhaps a shape."""
+    if not isinstance(block, Mapping):
+        message = f'expected a table; got {quote(block)}; write {{"measurements": "z1 z2", "norm": "l2"}}'
+        raise ShapeError(message, where=where)
+    words = {key: value for key, value in block.items() if key not in ("measurements", "shape")}
+    if "measurements" in block:
+        words["measurements"] = name_list(block["measurements"], f"{where}.measurements")
+    return words | ({"shape": write_entries(block["shape"], f"{where}.shape")} if "shape" in block else {})
+
+
 def piece_block(piece: Any, where: str) -> dict[str, Any]:
     """One [[piece]] block from (from, to, F), or from a table with these keys."""
     if isinstance(piece, Mapping):
@@ -626,6 +640,11 @@ def document_of(contents: ModelFile | BasisFile) -> dict[str, Any]:
             {"from": to_text(piece.start), "to": to_text(piece.end), "F": write_entries(piece.F, "F")}
             for piece in contents.pieces
         ]
+    tables["block"] = [
+        {"measurements": list(block.names), "norm": block.norm}
+        | ({"shape": write_entries(block.shape, "shape")} if block.norm == "l2" else {})
+        for block in contents.blocks
+    ]
     tables["interval"] = {} if contents.T is None else {"T": to_text(contents.T)}
     tables["targets"] = targets
     tables["ranges"] = {name: [to_text(end) for end in ends] for name, ends in contents.ranges.items()}

@@ -60,6 +60,20 @@ class Measurement:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class NoiseBlock:
+    """Measurements of one time whose errors ``r = diag(sigma) e`` are bounded together.
+
+    names : of the measurements
+    norm  : "l2": ``e' shape^-1 e <= 1``, with ones on the diagonal of shape; "l1": ``sum |e_j| <= 1``;
+            "linf": ``|e_j| <= 1``, as without a block
+    """
+
+    names: tuple[str, ...]
+    norm: str
+    shape: Matrix
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Piece:
     """``dx/dt = F x`` from ``start`` to ``end`` (None: no end is given)."""
 
@@ -83,6 +97,7 @@ class ModelFile:
     Phi          : matrix of one step of a discrete-time model; there are no pieces then
     inputs       : unknown input -> how it enters, one entry per state; none beside dynamics, which name it
     ranges       : state, parameter or ``dt`` (the step of a filter) -> its ends, for exported code
+    blocks       : measurements whose errors are bounded together; a measurement by itself is a block of one
     """
 
     name: str
@@ -99,6 +114,7 @@ class ModelFile:
     Phi: Matrix | None = None
     inputs: Mapping[str, tuple[Expr, ...]] = field(default_factory=dict)
     ranges: Mapping[str, tuple[Expr, Expr]] = field(default_factory=dict)
+    blocks: tuple[NoiseBlock, ...] = ()
 
     def _repr_latex_(self) -> str:
         """The matrix of the system, for notebooks."""
@@ -244,11 +260,13 @@ def read_targets(document: Table, known: Known, names: tuple[str, ...], where: s
     return targets
 
 
-TABLES = ("model", "basis", "parameters", "rates", "inputs", "measurement", "piece", "interval", "targets", "ranges")
+SYSTEM = ("model", "parameters", "rates", "inputs", "measurement", "block", "piece", "interval", "targets", "ranges")
+TABLES = (*SYSTEM, "basis")
 #: Tables of the same file that only ``conventions`` or ``design`` reads, and keys of [model].
 BESIDE = ("card", "code", "roles", "quantities", "known", "measured", "noises", "design")
 BESIDE_F = ("G", "H", "reset", "step")
 KEYS = ("name", "states", "F", "Phi", "dynamics", "relations")
+NORMS = ("l2", "linf", "l1")
 #: Name of the step of a filter among the ranges.
 STEP = "dt"
 
@@ -304,15 +322,15 @@ def admitted(value: Expr, parameter: Parameter) -> bool:
 
 #: What gives the motion -> keys of [model] and tables that have no place beside it.
 FOREIGN = {
-    "Phi": (("F", "dynamics", "relations"), ("piece", "rates", "interval", "targets", "ranges")),
-    "dynamics": (("F",), ("piece", "targets")),
+    "Phi": (("F", "dynamics", "relations"), ("piece", "rates", "interval", "targets", "ranges", "block")),
+    "dynamics": (("F",), ("piece", "targets", "block")),
     "F": ((), ()),
 }
 
 
 def read_system(document: Table, where: str, parameters: Mapping[str, Parameter], known: Known) -> ModelFile:
     """The [model] with its measurements, interval and targets: F or pieces, steps Phi, or dynamics f(x)."""
-    expect_keys(document, (*(key for key in TABLES if key != "basis"), *BESIDE), where)
+    expect_keys(document, (*SYSTEM, *BESIDE), where)
     place = join_place(where, "model")
     model = as_table(document["model"], place)
     expect_keys(model, (*KEYS, *BESIDE_F), place)
@@ -333,7 +351,8 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
         states=states,
         time=symbol("t"),
         pieces=read_pieces(document, model, moving, n, T, where) if kind == "F" else (),
-        measurements=read_measurements(document, driven, n, where),
+        measurements=(measurements := read_measurements(document, driven, n, where)),
+        blocks=read_blocks(document, [m.name for m in measurements], where),
         T=T,
         targets=read_targets(document, known, states, where) if kind == "F" else {},
         rates=read_rates(document, moving, parameters, where),
@@ -503,4 +522,37 @@ def read_measurements(document: Table, moving: Known, n: int, where: str) -> tup
         require_positive(sigma, "a standard deviation", join_place(here, "sigma"))
         found.append(Measurement(name, h, sigma, z))
     require_distinct((measurement.name for measurement in found), place)
+    return tuple(found)
+
+
+def read_blocks(document: Table, names: list[str], where: str) -> tuple[NoiseBlock, ...]:
+    """The [[block]] tables: measurements of the model, each in one block at most."""
+    place, found, free = join_place(where, "block"), [], list(names)
+    blocks = as_list(document["block"], place, "[[block]] tables") if "block" in document else []
+    for i, block in enumerate(blocks):
+        here = join_place(place, i)
+        table = as_table(block, here)
+        expect_keys(table, ("measurements", "norm", "shape"), here)
+        there = join_place(here, "measurements")
+        members = as_list(require_key(table, "measurements", here), there, "a list of names")
+        for name in members:
+            if name not in free:
+                message = f"expected a measurement in one block; got {quote(name)}; name one of {', '.join(free)}"
+                raise UnknownSymbolError(message, where=there)
+            free.remove(name)
+        norm, n = table.get("norm", "l2"), len(members)
+        if norm not in NORMS or ("shape" in table and norm != "l2"):
+            got = quote(norm) + (" with a shape" if "shape" in table else "")
+            message = f'expected "l2", which may have a shape, "l1" or "linf"; got {got}; choose one'
+            raise DomainError(message, where=join_place(here, "norm"))
+        there = join_place(here, "shape")
+        rows = table.get("shape", [["1" if j == k else "0" for k in range(n)] for j in range(n)])
+        shape = read_square(rows, {}, there, n, "one per measurement of the block")
+        minors = [shape[:k, :k].det() for k in range(1, n + 1) if all(e.is_Rational for e in shape)]
+        if len(minors) < max(n, 1) or shape != shape.T or min(minors) <= 0 or any(shape[k, k] != 1 for k in range(n)):
+            message = (
+                "expected a symmetric positive definite matrix of fractions with ones on its diagonal; got another"
+            )
+            raise DomainError(f"{message}; divide it by the sigmas", where=there)
+        found.append(NoiseBlock(tuple(members), norm, shape))
     return tuple(found)

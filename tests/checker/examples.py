@@ -305,6 +305,18 @@ CONES = {
         {"H": [["1/4"], ["1/4"]], "norm": "l1", "size": [["1"], ["1"]], "weights": ["0", "0"]},
     ],
 }
+# The weight of the first at least 1/2, both together at most 1: what is left of the two is 0 and 1/4.
+LIMITED = CONES | {
+    "functional": ["1", "1/2", "1"],
+    "dual": ["1/2", "1/2", "0"],
+    "lower": "3/4",
+    "upper": "3/4",
+    "blocks": [
+        {"H": [["1", "1", "1"]], "norm": "linf", "size": [["1"]], "weights": ["1/2"]},
+        {"H": [["2", "0", "1"]], "norm": "linf", "size": [["1"]], "weights": ["1/4"]},
+        {"H": [["0", "-1", "0"], ["0", "0", "1"]], "norm": "nonpositive", "size": [], "weights": ["0", "1/4"]},
+    ],
+}
 # Two of four positions, each at the price of 1: a slope is best known from the ends.
 DESIGN = {
     "kind": "design",
@@ -536,6 +548,7 @@ GOOD = [
     SURE,
     FOUR,
     CONES,
+    LIMITED,
     DESIGN,
     LONELY,
     MANY,

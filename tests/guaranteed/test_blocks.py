@@ -12,6 +12,7 @@ import pytest
 
 import navsym as nav
 from navsym import checker
+from navsym.cli.main import run
 
 
 def random_blocks(rng, norms=("l2", "linf", "l1", "ellipsoid")):
@@ -34,8 +35,8 @@ def random_blocks(rng, norms=("l2", "linf", "l1", "ellipsoid")):
     return blocks, plain, target.tolist()
 
 
-def value_by(solver, plain, target, **options):
-    """The least guaranteed error by cvxpy."""
+def value_by(solver, plain, target, constraints=(), **options):
+    """The least guaranteed error by cvxpy; None where no weights keep the constraints."""
     import cvxpy as cp
 
     weights = [cp.Variable(H.shape[0]) for H, *_ in plain]
@@ -46,9 +47,14 @@ def value_by(solver, plain, target, **options):
         else:
             costs.append(cp.norm(cp.multiply(sizes, w), 1 if norm == "linf" else "inf"))
     balance = sum(H.T @ w for w, (H, *_) in zip(weights, plain, strict=True)) == np.array(target)
+    asked = [balance]
+    for factors, relation, bound in constraints:
+        total = sum(np.array(c) @ w for c, w in zip(factors, weights, strict=True))
+        asked.append({"<=": total <= bound, ">=": total >= bound, "=": total == bound}[relation])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # "may be inaccurate": the tolerance is beyond what the solver promises
-        return float(cp.Problem(cp.Minimize(sum(costs)), [balance]).solve(solver=solver, **options))
+        value = cp.Problem(cp.Minimize(sum(costs)), asked).solve(solver=solver, **options)
+        return float(value) if value is not None and np.isfinite(value) else None
 
 
 def value_by_casadi(plain, target):
@@ -174,6 +180,57 @@ def test_a_constraint_makes_the_weights_blind_to_a_drift():
     assert float(found.value.lower) >= float(free.value.lower) and found.check()
 
 
+def bounded_sums(rng, plain):
+    """Bounds of sums of weights, and of single weights; about half of them bind."""
+    sizes = [H.shape[0] for H, *_ in plain]
+    ones = [[1] * p for p in sizes]
+    c = float(rng.integers(0, 8)) / 4
+    asked = [(ones, "<=", c), (ones, ">=", -c)]
+    for _ in range(int(rng.integers(0, 3))):
+        k = int(rng.integers(len(sizes)))
+        one = [[int(i == k and j == 0) for j in range(p)] for i, p in enumerate(sizes)]
+        asked.append((one, str(rng.choice(["<=", ">="])), float(rng.integers(-2, 3)) / 4))
+    return asked
+
+
+def test_bounded_sums_and_weights_cost_what_a_convex_solver_finds_and_are_kept_exactly():
+    rng, solved, bind = np.random.default_rng(21), 0, 0
+    while solved < 30:
+        blocks, plain, target = random_blocks(rng)
+        asked = bounded_sums(rng, plain)
+        try:
+            free = nav.solve_blocks(blocks, target)
+        except nav.NavsymError:
+            continue
+        value = value_by("CLARABEL", plain, target, asked, **TIGHT)
+        solved += 1
+        try:
+            found = nav.solve_blocks(blocks, target, constraints=asked)
+        except nav.NavsymError as error:
+            assert error.kind == "not-estimable" and value is None
+            continue
+        assert value == pytest.approx(float(found.value.upper), rel=1e-8) and found.check()
+        assert Fraction(found.value.upper) - Fraction(found.value.lower) <= Fraction(found.value.upper) / 10**12
+        bind += float(found.value.lower) > float(free.value.upper) * (1 + 1e-9)
+        for factors, relation, bound in asked:
+            total = sum(Fraction(int(w.p), int(w.q)) * a
+                        for ws, c in zip(found.weights, factors, strict=True)
+                        for w, a in zip(ws, c, strict=True))  # fmt: skip
+            assert total <= Fraction(bound) if relation == "<=" else total >= Fraction(bound)
+    assert bind > 7
+
+
+def test_a_certificate_with_a_weight_below_zero_is_refused():
+    """Of 1 and 2 the second alone is best; at most 1/3 of both together needs the first below zero."""
+    blocks = [nav.Block([[1]], 1, "linf"), nav.Block([[2]], 1, "linf")]
+    found = nav.solve_blocks(blocks, [1], constraints=[([[1], [1]], "<=", "1/3")])
+    assert [[str(e) for e in w] for w in found.weights] == [["-1/3"], ["2/3"]] and found.value.upper.startswith("1")
+    forged = copy.deepcopy(dict(found.certificate))
+    forged["functional"][1], forged["blocks"][2]["weights"] = "1/6", ["-1/6"]
+    with pytest.raises(checker.Refused, match="below zero"):
+        checker.check(checker.load(json.dumps(forged)))
+
+
 def test_several_targets_have_an_answer_each_and_a_nuisance_parameter_may_be_unknown():
     blocks = [nav.Block([[1, 0, 1], [0, 1, 1]]), nav.Block([[1, 0, 0], [0, 1, 0]], 2)]
     found = nav.solve_blocks(blocks, {"x": [1, 0, 0], "difference": [1, -1, 0]})
@@ -206,6 +263,9 @@ def test_a_target_within_dependent_unknowns_is_estimated():
         (lambda: nav.solve_blocks([nav.Block([[1]])], [0]), "domain"),
         (lambda: nav.solve_blocks([nav.Block([[1]])], [1, 2]), "shape"),
         (lambda: nav.solve_blocks([], [1]), "empty"),
+        (lambda: nav.solve_blocks([nav.Block([[1]])], [1], constraints=[([[1]], "<", 0)]), "domain"),
+        (lambda: nav.solve_blocks([nav.Block([[1]])], [1], constraints=[[[1]]]), "domain"),
+        (lambda: nav.solve_blocks([nav.Block([[1]])], [1], constraints=[([[1]], "<=", "1/2")]), "not-estimable"),
         (lambda: nav.solve_blocks([nav.Block([[1]])], [1], constraints=[([[1, 2]], 0)]), "shape"),
     ],
 )
@@ -254,3 +314,168 @@ def test_changed_certificates_are_refused():
 @pytest.mark.slow
 def test_twenty_thousand_changed_certificates_are_refused():
     assert change_certificates(300, 100, np.random.default_rng(13)) > 20_000
+
+
+# Blocks in model files and in the stream
+
+PLANE = {
+    "states": "x y u v",
+    "F": [["0", "0", "1", "0"], ["0", "0", "0", "1"], ["0"] * 4, ["0"] * 4],
+    "H": ["x", "y", "u + v"],
+    "sigma": ["1", "2", "1/2"],
+    "targets": {"x": "x", "turn": "u - v"},
+}
+NORMS = [("l2", None), ("l2", [["1", "-1/2"], ["-1/2", "1"]]), ("l1", None), ("linf", None)]
+
+
+def plane(norm, shape=None, **more):
+    """Positions whose errors are bounded together, beside a rate by itself."""
+    block = {"measurements": "z1 z2", "norm": norm} | ({"shape": shape} if shape else {})
+    return nav.Model(**PLANE | more, blocks=[block])
+
+
+def plain_block(norm, shape, places, sigma):
+    """Sizes and shape in doubles of the members that were measured."""
+    R = np.eye(2) if shape is None else np.array([[float(Fraction(e)) for e in row] for row in shape])
+    s = np.array([sigma[j] for j in places])
+    return s, R[np.ix_(places, places)] * np.outer(s, s)
+
+
+@pytest.mark.parametrize(("norm", "shape"), NORMS)
+@pytest.mark.parametrize("F", [PLANE["F"], [["0", "0", "1", "0"], ["0", "0", "0", "1"], ["-1"] + ["0"] * 3, ["0"] * 4]])
+def test_a_guard_with_blocks_has_the_radius_of_a_convex_solver_also_where_members_are_missing(norm, shape, F):
+    from scipy.linalg import expm
+
+    rng, guard = np.random.default_rng(5), nav.Guard(plane(norm, shape, F=F), "turn", memory=6)
+    A, rows, checked = np.array(F, dtype=float), [], 0
+    h = np.array([[1.0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1]])
+    for k in range(10):
+        seen = [j for j in range(3) if rng.random() < 0.8]
+        rows = [*rows, (k / 2, seen)][-6:]
+        found = guard.step({f"z{j + 1}": 0 for j in seen}, t=f"{k}/2")
+        plain = []
+        for t, members in rows:
+            back, places = expm(A * (t - k / 2)), [j for j in members if j < 2]
+            if places:
+                plain.append((h[places] @ back, norm, *plain_block(norm, shape, places, [1.0, 2.0])))
+            if 2 in members:
+                plain.append((h[[2]] @ back, "linf", np.array([0.5]), np.eye(1)))
+        rank = np.linalg.matrix_rank(np.vstack([H for H, *_ in plain]))
+        if found.radius is None or rank < 4:
+            continue
+        checked += 1
+        assert value_by("CLARABEL", plain, [0, 0, 1, -1], **TIGHT) == pytest.approx(float(found.radius), rel=1e-8)
+        assert Fraction(found.radius.upper) - Fraction(found.radius.lower) <= Fraction(found.radius.upper) / 10**12
+        errors = {(t, name): r for t, name, r in found.worst_case()}
+        attained = sum(w * errors[t, name] for t, name, w in found.weights)
+        assert attained == pytest.approx(float(found.radius), rel=1e-12)
+        exact = PLANE["F"] == F
+        assert (found.certificate is not None) == (exact or norm == "linf") and found.certificates() == (
+            [found.certificate] if found.certificate else []
+        )
+        assert found.certificate is None or found.check()
+    assert checked >= 4
+    assert nav.Guard.load(guard.save()).step([1, 1, 1], t=6) == guard.step([1, 1, 1], t=6)
+
+
+def test_errors_inside_a_disc_never_contradict_and_the_radius_contains_them():
+    rng, guard = np.random.default_rng(6), nav.Guard(plane("l2", sigma=["1", "1", "5"]), "turn", memory=5)
+    for k in range(12):
+        angle, size = rng.uniform(0, 2 * np.pi), rng.choice([1, rng.random()]) * (1 - 1e-9)
+        z = [3 + 2 * k + size * np.cos(angle), 1 - k + size * np.sin(angle), 1]
+        found = guard.step(z, t=k)
+        if found.radius is not None:
+            assert abs(found.value - 3) <= float(found.radius.upper)
+            allowed = guard.interval()
+            assert float(allowed.lower) <= 3 <= float(allowed.upper)
+
+
+def test_errors_that_fit_a_box_and_no_disc_are_a_contradiction():
+    """A point that stands still, seen at (0, 0) and (3/2, 3/2): each coordinate alone is possible, both are not."""
+    still = {"states": "x y", "F": [["0", "0"], ["0", "0"]], "H": ["x", "y"], "targets": {"x": "x"}}
+    box = nav.Guard(nav.Model(**still), "x")
+    disc = nav.Guard(nav.Model(**still, blocks=[{"measurements": "z1 z2"}]), "x")
+    assert [guard.step([0, 0], t=0).value for guard in (box, disc)] == [0.0, 0.0]
+    box.step(["3/2", "3/2"], t=1)
+    with pytest.raises(nav.NavsymError, match="contradiction at t = 0, 1") as caught:
+        disc.step(["3/2", "3/2"], t=1)
+    assert caught.value.kind == "inconsistent"
+    assert disc.step(["1.4", "1.4"], t=1).radius.upper.startswith("1")
+
+
+def test_a_sum_of_errors_on_an_interval_is_that_of_single_measurements_and_their_sums():
+    """On [0, T] a position and a velocity with |r1|/s1 + |r2|/s2 <= 1 are a little better than each alone."""
+    line = {"states": "x v", "F": [["0", "1"], ["0", "0"]], "H": ["x", "v"], "sigma": ["1", "2"], "targets": {"v": "v"}}
+    both = [{"measurements": "z1 z2", "norm": "l1"}]
+    times = [f"{k}/8" for k in range(9)]
+    rows = [[["1", str(Fraction(t) - 1)], ["0", "1"]] for t in times]
+    for target, options in (("v", {}), ("x", {"targets": {"x": "x"}})):
+        found = nav.solve(nav.Model(**line | options, interval="1", blocks=both), target)
+        grid = nav.solve_blocks(
+            [nav.Block(H, ["1", "2"], "l1") for H in rows], [int(target == "x"), int(target == "v")]
+        )
+        alone = nav.solve(nav.Model(**line | options, interval="1"), target)
+        assert float(found.lower) <= float(grid.value.upper) * (1 + 1e-15) and found.check()
+        assert float(found.upper) == pytest.approx(float(grid.value.lower), rel=1e-9)  # the best times are on the grid
+        assert float(found.upper) <= float(alone.upper)
+        assert nav.solve(
+            nav.Model(**line | options, interval="1", blocks=[both[0] | {"norm": "linf"}]), target
+        ).value == (alone.value)
+
+
+def test_blocks_are_read_from_files_and_written_back(tmp_path, capsys):
+    path = tmp_path / "plane.toml"
+    plane("l2", NORMS[1][1]).save(path)
+    again = nav.Model.load(path)
+    assert again.document() == nav.Model.load(path).document() and again.read().blocks[0].names == ("z1", "z2")
+    data = tmp_path / "data.csv"
+    data.write_text("t,z1,z2,z3\n0,0,0,1\n1,1,,1\n2,2,0,1\n3,3,0,1\n")
+    assert run(["guard", str(path), "--data", str(data), "--target", "turn", "--json"]) == 0
+    last = json.loads(capsys.readouterr().out)["epochs"][-1]
+    assert last["certificate"]["kind"] == "cones" and {b["norm"] for b in last["certificate"]["blocks"]} == {
+        "l2",
+        "linf",
+    }
+    assert run(["solve", str(path), "--target", "turn", "--json"]) == 2
+    assert "Guard" in json.loads(capsys.readouterr().out)["error"]["message"]
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        {"measurements": "z1 z9"},
+        {"measurements": "z1 z1"},
+        {"measurements": []},
+        {"norm": "l2"},
+        {"measurements": "z1 z2", "norm": "l3"},
+        {"measurements": "z1 z2", "norm": "l1", "shape": [["1", "0"], ["0", "1"]]},
+        {"measurements": "z1 z2", "shape": [["1", "1"], ["1", "1"]]},
+        {"measurements": "z1 z2", "shape": [["2", "0"], ["0", "1"]]},
+        {"measurements": "z1 z2", "shape": [["1", "0"]]},
+        {"measurements": "z1 z2", "colour": "red"},
+        "z1 z2",
+    ],
+)
+def test_what_is_no_block_of_a_model_is_an_error_of_one_line(block):
+    with pytest.raises(nav.NavsymError) as caught:
+        nav.Model(**PLANE, blocks=[block])
+    assert "\n" not in str(caught.value) and caught.value.where.startswith("Model: blocks")
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda model: nav.Guard(model, "x", outliers=1),
+        lambda model: nav.Guard(plane("l1"), "x", "variance"),
+        lambda model: nav.design(model, "x", times=range(3), budget=3),
+        lambda model: nav.export(nav.Guard(model, "x", memory=4, step=1), to=["c"], out="nowhere"),
+        lambda model: nav.solve(nav.Model(**PLANE, interval="1", blocks=[{"measurements": "z1 z2"}]), "x"),
+        lambda model: nav.phases(
+            nav.Model(**PLANE, interval="T", T=("1", "2"), blocks=[{"measurements": "z1 z2"}]), "x"
+        ),
+    ],
+)
+def test_what_has_no_answer_with_blocks_is_refused(ask):
+    with pytest.raises(nav.NavsymError, match=r"together|l2") as caught:
+        ask(plane("l2"))
+    assert "\n" not in str(caught.value)

@@ -127,6 +127,32 @@ def test_fewer_measurements_than_unknowns_may_show_the_target_and_weights_of_zer
     assert len(found.points) == 2 and found.points[0].slope is None and found.check()
 
 
+@pytest.mark.parametrize("digits", [3, 20, 40])
+def test_the_two_bounds_agree_to_the_digits_that_are_asked_for(digits):
+    found = nav.design(nav.Model(**SCHULER), times=range(6), budget=4, sensors={"z1": 0}, digits=digits)
+    lower, upper = (Fraction(end) for end in (found.value.lower, found.value.upper))
+    assert 0 < upper - lower <= upper / 10**digits and str(found.status) == "CERTIFIED" and found.check()
+    assert Fraction(found.value.upper) - Fraction(found.value.lower) > upper / 10 ** (digits + 3)  # no more is proved
+
+
+def test_the_comparison_is_that_of_all_measurements_that_are_bought():
+    """Least squares by the pseudoinverse; no solver, and no other estimator, is better than the design."""
+    model = nav.Model(**SCHULER)
+    found = nav.design(model, times=range(7), budget=9, sensors={"z1": 1, "z2": 1})
+    beside, rows = found.compare(), []
+    for item in found.bought:
+        if item.startswith("t = "):
+            t = float(Fraction(item[4:])) - 6
+            back = [[1, -np.sin(t), np.cos(t) - 1], [0, np.cos(t), np.sin(t)], [0, -np.sin(t), np.cos(t)]]
+            rows += [(back[k], [1, 0.5][k]) for k in range(2) if f"z{k + 1}" in found.bought]
+    H, sigma = np.array([row for row, _ in rows]), np.array([bound for _, bound in rows])
+    for trust, value in ((1 + 0 * sigma, beside.least_squares), (sigma, beside.kalman_white_noise)):
+        weights = np.linalg.pinv(H / trust[:, None])[2] / trust
+        assert value == pytest.approx(np.abs(weights) @ sigma, rel=1e-9) and value > float(found.value.lower)
+    best = {answer.solver: answer.value for answer in beside.solvers}
+    assert best["casadi:highs"] == pytest.approx(float(found.value.upper), rel=1e-9) and len(best) == 5
+
+
 def test_a_budget_that_shows_nothing_is_an_error_that_says_so():
     with pytest.raises(nav.NavsymError, match="raise the budget") as caught:
         nav.design(nav.Model(**LINE), "v", times=range(4), budget=1, sensors={"z1": 0})
@@ -147,6 +173,8 @@ def test_a_budget_that_shows_nothing_is_an_error_that_says_so():
         ({"times": "0, 1"}, "domain"),
         ({"times": range(3), "sensors": ["z1"]}, "domain"),
         ({"times": range(900)}, "too-large"),
+        ({"times": range(3), "digits": 41}, "domain"),
+        ({"times": range(3), "digits": "7"}, "domain"),
     ],
 )
 def test_what_is_no_design_is_an_error_of_one_line(options, kind):
@@ -197,5 +225,9 @@ def test_thousands_of_changed_certificates_are_refused():
 
 
 def test_the_command_designs_from_the_table_of_the_file(capsys):
-    assert run(["solve", "examples/guard.toml", "--target", "range", "--design"]) == 0
-    assert "needs t = 10, fix: cost 3" in capsys.readouterr().out
+    command = ["solve", "examples/guard.toml", "--target", "range", "--design", "--digits", "12", "--compare"]
+    assert run(command) == 0
+    shown = capsys.readouterr().out
+    assert "needs t = 10, fix: cost 3" in shown and "least squares" in shown
+    assert run([*command, "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["compare"]["solvers"]) == 5

@@ -1,4 +1,4 @@
-"""The fast tests of an optimum beside their slow twins: Krawczyk by blocks, one polynomial for a panel, tapes."""
+"""The fast tests of an optimum beside their slow twins: one polynomial for a panel, tapes; and Krawczyk's test."""
 
 from __future__ import annotations
 
@@ -24,8 +24,7 @@ from navsym.guaranteed.certificate.enclosure import (
     series_terms,
     shift_polynomial,
 )
-from navsym.guaranteed.certificate.fixed import certify, optimality_system, solution_unknowns
-from navsym.guaranteed.certificate.krawczyk import alternance_image, krawczyk
+from navsym.guaranteed.certificate.fixed import certify, solution_box, solution_unknowns
 from navsym.guaranteed.certificate.polish import expand_locally, sharpen_contacts
 from navsym.guaranteed.search.exchange import find_contacts
 
@@ -50,37 +49,34 @@ def polished(case, sigma=1):
 
 
 @pytest.mark.parametrize("case", FULL)
-def test_krawczyk_by_blocks_finds_the_solution_that_the_dense_test_finds(case):
+def test_krawczyks_image_contains_the_solution_of_a_smaller_box(case):
     made, found = polished(FULL[case], R(2, 3))
     with precision(256):
         centre = [c.mid() for c in solution_unknowns(found)]
-        for radius in (arb(10) ** -30, arb(10) ** -12):
-            radii = [radius * (1 + abs(c)).mid() for c in centre]
-            box = [c + r * arb(0, 1) for c, r in zip(centre, radii, strict=True)]
-            value, jacobian = optimality_system(made, found, centre)[0], optimality_system(made, found, box)[1]
-            dense = krawczyk(centre, radii, value, jacobian)
-            quick = alternance_image(made, found, centre, radii)
-            assert (dense is None) == (quick is None)
-            if dense is not None:
-                assert all(a.overlaps(b) for a, b in zip(dense, quick, strict=True))
+        small, large = (
+            solution_box(made, found, centre, [radius * (1 + abs(c)).mid() for c in centre])
+            for radius in (arb(10) ** -40, arb(10) ** -12)
+        )
+        assert small is not None and large is not None
+        assert all(a.overlaps(b) and a.rad() <= b.rad() for a, b in zip(small, large, strict=True))
 
 
 @pytest.mark.parametrize("case", FULL)
 @pytest.mark.parametrize("k", [0, -1])
-def test_a_centre_off_the_solution_by_more_than_the_box_is_refused_by_blocks(case, k):
+def test_a_centre_off_the_solution_by_more_than_the_box_is_refused(case, k):
     made, found = polished(FULL[case])
     with precision(256):
         radii = [arb(10) ** -20 * (1 + abs(c)).mid() for c in solution_unknowns(found)]
         off = list(solution_unknowns(found))
         off[k] = (off[k] + 3 * radii[k]).mid()
-        assert alternance_image(made, found, off, radii) is None
+        assert solution_box(made, found, off, radii) is None
 
 
-def test_a_box_with_a_ball_that_is_no_number_is_refused_by_blocks():
+def test_a_box_with_a_ball_that_is_no_number_is_refused():
     made, found = polished(FULL["monomials"])
     with precision(256):
         centre = list(solution_unknowns(found))
-        assert alternance_image(made, found, [arb("nan"), *centre[1:]], [arb(10) ** -20] * len(centre)) is None
+        assert solution_box(made, found, [arb("nan"), *centre[1:]], [arb(10) ** -20] * len(centre)) is None
 
 
 @pytest.mark.parametrize("case", FULL)

@@ -65,7 +65,7 @@ def twofold_coefficients(q: arb_mat, panels: int, count: int) -> tuple[NDArray[n
     """The same as doubles and what these lack."""
     rows = q.tolist()
     with precision(NODE_BITS):
-        parts = [cosine_transform(rows[i * count : (i + 1) * count]) for i in range(panels)]
+        parts = [to_twofold(ball_cosines(count) * arb_mat(rows[i * count : (i + 1) * count])) for i in range(panels)]
     return np.stack([high for high, _ in parts]), np.stack([low for _, low in parts])
 
 
@@ -74,29 +74,14 @@ def tail_share(high: NDArray[np.float64]) -> float:
     return float(np.abs(high[:, -3:, :]).max() / np.abs(high).max())
 
 
-def cosine_transform(rows: list[list[arb]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Coefficients from an even number of values.
-
-    The even ones come from sums of values about the middle, the odd ones from differences.
-    """
-    count, half = len(rows), len(rows) // 2
-    pairs = list(zip(rows[:half], reversed(rows), strict=False))
-    even = arb_mat([[a + b for a, b in zip(*pair, strict=True)] for pair in pairs])
-    odd = arb_mat([[a - b for a, b in zip(*pair, strict=True)] for pair in pairs])
-    high, low = np.empty((2, count, len(rows[0])))
-    for k, folded in enumerate((even, odd)):
-        high[k::2], low[k::2] = to_twofold(ball_cosines(count)[k] * folded)
-    return high, low
-
-
 @lru_cache(maxsize=8)
-def ball_cosines(count: int) -> tuple[arb_mat, arb_mat]:
-    """``2/n cos(pi k (j + 1/2) / n)`` for j < n/2 with k even, the first row halved, and with k odd."""
+def ball_cosines(count: int) -> arb_mat:
+    """``2/n cos(pi k (j + 1/2) / n)``, the first row halved."""
     with precision(NODE_BITS):
         cosines = [arb.cos_pi(arb(j) / (2 * count)) * 2 / count for j in range(4 * count)]
-        rows = [[cosines[k * (2 * j + 1) % (4 * count)] for j in range(count // 2)] for k in range(count)]
+        rows = [[cosines[k * (2 * j + 1) % (4 * count)] for j in range(count)] for k in range(count)]
         rows[0] = [c / 2 for c in rows[0]]
-        return arb_mat(rows[::2]), arb_mat(rows[1::2])
+        return arb_mat(rows)
 
 
 def resolved_count(high: NDArray[np.float64], least: float = 1e-15) -> int:

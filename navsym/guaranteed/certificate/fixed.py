@@ -26,7 +26,7 @@ from navsym.guaranteed.certificate.enclosure import (
     dot_product,
     prove_panel_bound,
 )
-from navsym.guaranteed.certificate.krawczyk import alternance_image, krawczyk
+from navsym.guaranteed.certificate.krawczyk import krawczyk
 from navsym.guaranteed.certificate.polish import ContactSolution, pin_dual, sharpen_contacts
 from navsym.guaranteed.search.exchange import (
     Contacts,
@@ -76,19 +76,13 @@ def project_out(rest: np.ndarray, row: np.ndarray) -> np.ndarray:
 
 
 def balance_weights(problem: PanelProblem, support: Sequence[tuple[int, fmpq]]) -> list[arb]:
-    """Weights with ``sum w_i H(t_i) = P`` exactly, as balls."""
-    columns = [problem.panels[k].rows(arb(v)) for k, v in support]
-    N = arb_mat(columns).transpose()
-    solved = N.solve(arb_mat([[p] for p in problem.target()]))
-    return [solved[i, 0] for i in range(len(support))]
+    """Weights times their noise bounds with ``sum w H(t_i) = P`` exactly, as balls: no optimum exceeds their sum.
 
-
-def estimator_cost(problem: PanelProblem, support: Sequence[tuple[int, fmpq]], weights: Sequence[arb]) -> arb:
-    """``sum sigma |w|``, which no optimum exceeds when the weights satisfy the constraints."""
-    value = arb(0)
-    for (k, _), w in zip(support, weights, strict=True):
-        value += problem.panels[k].bound() * abs(w)
-    return value
+    The order is that of the checker, whose balls are as wide as these where sigma moves.
+    """
+    panels = [problem.panels[k] for k, _ in support]
+    columns = [[h / panel.bound() for h in panel.rows(arb(v))] for panel, (_, v) in zip(panels, support, strict=True)]
+    return arb_mat(columns).transpose().solve(arb_mat([[p] for p in problem.target()])).entries()  # type: ignore[no-any-return]
 
 
 #: Cells of one proof, where numbers have the usual bits or fewer.
@@ -237,8 +231,6 @@ def solution_box(
     problem: PanelProblem, found: ContactSolution, centre: Sequence[arb], radius: Sequence[arb]
 ) -> list[arb] | None:
     """Balls around the exact solution of the optimality system, by Krawczyk's test."""
-    if len(found.v) == len(found.dual):
-        return alternance_image(problem, found, centre, radius)
     box = [c + r * arb(0, 1) for c, r in zip(centre, radius, strict=True)]
     value, _ = optimality_system(problem, found, centre)
     _, jacobian = optimality_system(problem, found, box)
@@ -388,8 +380,8 @@ def certify_gap(
             support = complete_support(basis, contacts, at)
         else:
             support = complete_support(basis, carriers, [unit_fraction(float(u)) for u in carriers.u])
-        weights = balance_weights(problem, support)
-        upper = upper_end(estimator_cost(problem, support, weights), digits + 6)
+        costs = balance_weights(problem, support)
+        upper = upper_end(sum(map(abs, costs), arb(0)), digits + 6)
         x, cells, touches = best_dual(problem, basis, contacts, found, digits, from_decimal(upper))
         lower = lower_end(dot_product([arb(c) for c in x], problem.target()), digits + 6)
         # The checker has no touches to guide it: it halves its way towards each of them.
@@ -398,7 +390,7 @@ def certify_gap(
             "dual": [decimal(c, places + 8) for c in x],
             "support": [[k, decimal(v, places)] for k, v in support],
         }
-        rows = tuple((k, arb(v), w) for (k, v), w in zip(support, weights, strict=True))
+        rows = tuple((k, arb(v), w / problem.panels[k].bound()) for (k, v), w in zip(support, costs, strict=True))
         shown = tuple(
             row for row in rows if not bool(abs(row[2]) < arb(10) ** (-digits) * abs(arb(from_decimal(upper))))
         )

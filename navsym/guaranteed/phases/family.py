@@ -21,7 +21,14 @@ import sympy as sp
 from navsym.core.balls import enclose
 from navsym.core.errors import DomainError, EmptyError
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
-from navsym.guaranteed.problem import GuaranteedProblem, RegressorPiece, Rows, chosen_target, exact_pieces
+from navsym.guaranteed.problem import (
+    GuaranteedProblem,
+    RegressorPiece,
+    Rows,
+    chosen_target,
+    divide_blocks,
+    exact_pieces,
+)
 from navsym.guaranteed.time_varying import has_varying_system
 from navsym.models.modelfile import BasisFile, ModelFile
 
@@ -217,6 +224,7 @@ def model_family(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], s
 
     Raises EmptyError without an interval, and DomainError where F depends on the time.
     """
+    found = divide_blocks(found, "phases")
     if found.T is None:
         raise EmptyError("expected the length of the interval; got no [interval]; add T", where="interval.T")
     if has_varying_system(found):

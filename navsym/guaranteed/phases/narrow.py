@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from flint import arb, arb_mat, fmpq
+from flint import arb, fmpq
 
 from navsym.core.balls import precision
 from navsym.core.errors import NavsymError
@@ -22,6 +22,7 @@ from navsym.core.exact import decimal, from_decimal, to_fmpq, to_rational
 from navsym.guaranteed.certificate.basis import Basis, DependentError, make_basis, unit_fraction
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem, Touch, dot_product, interval_ball
 from navsym.guaranteed.certificate.fixed import (
+    balance_weights,
     certificate_header,
     complete_support,
     dual_attempts,
@@ -160,24 +161,13 @@ def cheapest_support(
     for carriers, at in zip((contacts, together), places, strict=True):
         support = complete_support(basis, carriers, at)
         try:
-            found.append((to_fmpq(support_cost(ball, support).upper()), support))
+            found.append((to_fmpq(sum(map(abs, balance_weights(ball, support)), arb(0)).upper()), support))
         except (ZeroDivisionError, ValueError):
             continue
     if not found:
         raise ValueError("no weights in balls as wide as these")
     most, support = min(found, key=lambda pair: pair[0])
     return support, most
-
-
-def support_cost(ball: PanelProblem, support: Support) -> arb:
-    """``sum |W|`` of the weights over their noise bounds, ``sum W H/sigma = P``.
-
-    The order is that of the checker, whose balls are as wide as these where sigma moves.
-    """
-    panels = [ball.panels[k] for k, _ in support]
-    columns = [[h / panel.bound() for h in panel.rows(arb(v))] for panel, (_, v) in zip(panels, support, strict=True)]
-    weights = arb_mat(columns).transpose().solve(arb_mat([[p] for p in ball.target()])).entries()
-    return sum(map(abs, weights), arb(0))
 
 
 def bounded_dual(

@@ -340,6 +340,23 @@ def drop_dependent_contacts(rows: Array, weights: Array) -> tuple[Ints, Array]:
     return kept, weights
 
 
+def independent_rows(rows: Array, count: int, least: float, near: float = 1.0) -> list[int]:
+    """Rows that are far from dependent, at most so many: each time the first whose rest is about the longest left.
+
+    least, near : rests below the first are zero, those above the second as a part of the longest about as long
+    """
+    rest, chosen = np.array(rows), list[int]()
+    while len(chosen) < count:
+        sizes = np.linalg.norm(rest, axis=1)
+        best = int(np.argmax(sizes >= near * sizes.max()))
+        if not sizes[best] > least:
+            break
+        chosen.append(best)
+        unit = rest[best] / sizes[best]
+        rest = rest - np.outer(rest @ unit, unit)
+    return chosen
+
+
 def inner_flags(C1: Array, panel: Ints, u: Array, sign: Array, x: Array) -> Ints:
     """0 for a contact on an end of its panel towards which the polynomial still grows, or is flat."""
     flags = np.ones(u.size, dtype=np.int64)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from flint import arb, arb_mat, fmpq
+from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from navsym.claims.display import write_card, write_table
 from navsym.core.answers import Answer
@@ -15,8 +15,8 @@ from navsym.core.balls import precision
 from navsym.core.exact import decimal, lower_end, to_fmpq, upper_end
 from navsym.core.numbers import Number
 from navsym.guaranteed.streaming.flow import BITS, Flow
-from navsym.guaranteed.streaming.memory import Row
-from navsym.guaranteed.streaming.numbers import middle, to_float, write_rational
+from navsym.guaranteed.streaming.memory import Row, group_rows, list_cones
+from navsym.guaranteed.streaming.numbers import NUMBER, middle, read_exact, to_float, write_rational
 from navsym.language.names import quote
 
 #: Digits of radii and duals.
@@ -51,6 +51,17 @@ class Plan:
         """Rows with a weight that is not zero, as far as balls tell."""
         pairs = [(self.rows[i], w) for i, w in zip(self.basis, self.weights, strict=True)]
         return [(row, w) for row, w in pairs if not w.contains(0)]
+
+    def noise(self) -> list[tuple[Row, arb]]:
+        """Errors that attain the radius: of the support, and of what is bounded together with it."""
+        sides = {i: self.rows[i].sigma * (1 if w > 0 else -1) for i, w in zip(self.basis, self.weights, strict=True)}
+        weights = dict(zip(self.basis, self.weights, strict=True))
+        done = {i: r for i, r in sides.items() if not weights[i].contains(0)}
+        for cone, places in list_cones(self.flow, self.rows):
+            own = arb_mat([[weights.get(i, arb(0))] for i in places])
+            if not all(e.contains(0) for e in own.entries()):
+                done |= dict(zip(places, cone.worst(own), strict=True))
+        return [(self.rows[i], r) for i, r in done.items()]
 
     def value(self) -> arb:
         """``sum w z``."""
@@ -124,7 +135,8 @@ class Estimate(Answer):
     def worst_case(self) -> list[tuple[float, str, float]]:
         """(time, measurement, error) of the noise that attains the radius; all others may be zero.
 
-        ``r_i = sigma_i sign(w_i)`` on the support, so that ``sum w_i r_i`` is the radius. Under "variance" the errors
+        ``r_i = sigma_i sign(w_i)`` on the support, so that ``sum w_i r_i`` is the radius; where errors are bounded
+        together, those of the block with the largest ``sum w_i r_i``. Under "variance" the errors
         are these numbers times one common random factor of variance 1: the worst correlation.
 
         >>> import navsym as nav
@@ -132,22 +144,26 @@ class Estimate(Answer):
         >>> guard.step(3, t=0).worst_case()
         [(0.0, 'z1', 0.5)]
         """
-        rows = self.plan.support() if self.plan else []
-        names = self.plan.flow.names if self.plan else ()
-        return [(to_float(row.t), names[row.j], middle(row.sigma) * (1.0 if w > 0 else -1.0)) for row, w in rows]
+        if self.plan is None:
+            return []
+        with precision(BITS):
+            return [(to_float(row.t), self.plan.flow.names[row.j], middle(r)) for row, r in self.plan.noise()]
 
     @cached_property
     def certificate(self) -> Mapping[str, Any] | None:
         """Plain data that the independent checker replays: kind ``gap``, one panel for each measurement in memory.
 
-        On a panel regressor and bound are constant, so that the optimum over panels is that over measurements. For
+        On a panel regressor and bound are constant, so that the optimum over panels is that over measurements. Where
+        measurements are bounded together the kind is ``cones``, and numbers that are not rational leave None. For
         "outliers" the kind is ``exclusion``: at most so many epochs with gross errors cannot explain the data without
         those excluded. None while the target is not estimable, where nothing is excluded, and where exp(F t) has no
         formula.
         """
         if self.exclusion is not None:
             return write_exclusion(self.exclusion)
-        return write_certificate(self.plan) if self.plan is not None and self.plan.whole else None
+        if self.plan is None or not self.plan.whole:
+            return None
+        return (write_cones if self.plan.flow.blocks else write_certificate)(self.plan)
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """The certificate in a list, for :func:`navsym.check`."""
@@ -225,6 +241,27 @@ def write_exclusion(why: Exclusion) -> dict[str, Any] | None:
         "bits": BITS + 64,
         "cells": min(len(why.excluded) * len(why.columns) ** why.most + 1000, 20_000),
     }
+
+
+def write_cones(plan: Plan) -> dict[str, Any] | None:
+    """The certificate of kind cones; None where a regressor, a bound or the functional is not rational."""
+    from navsym.guaranteed.blocks import Part, certify_optimum
+
+    flow, rows, columns = plan.flow, list(plan.rows), plan.columns
+    with precision(BITS):
+        exact = [flow.exact_row(row.j, row.t, plan.now) for row in rows]
+    functional = [p for p in map(flow.exact_target, columns) if p is not None]
+    if None in exact or len(functional) < len(columns) or not all(NUMBER.fullmatch(row.text) for row in rows):
+        return None
+    sigma, parts = [read_exact(row.text, "sigma") for row in rows], []
+    groups = group_rows(flow, rows)
+    alone = {i for _, places in groups for i in places}.symmetric_difference(range(len(rows)))
+    for block, places in [*groups, *((None, [i]) for i in sorted(alone))]:
+        own = [sigma[i] for i in places]
+        size = block.size([rows[i].j for i in places], own, fmpq_mat) if block else fmpq_mat([own])
+        H = fmpq_mat([[exact[i][k] for k in columns] for i in places])  # type: ignore[index]
+        parts.append(Part(H, block.norm if block else "linf", size))
+    return certify_optimum(parts, fmpq_mat([[p] for p in functional]))
 
 
 def write_certificate(plan: Plan) -> dict[str, Any] | None:

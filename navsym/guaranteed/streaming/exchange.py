@@ -5,6 +5,9 @@ Minimise ``sum_i w_i e_i + sigma_i |w_i|`` subject to ``sum_i w_i v_i = P``. Its
 a reference state, d is the distance of a consistent state from there, and no d at all shows itself as weights with
 ``sum w_i v_i = 0`` and a negative cost (Farkas). Any m independent rows are a start, because weights may have
 either sign (Dantzig; Bland 1977 for the rule against cycles).
+
+Measurements that are bounded together are infinitely many: each combination ``a . z`` with its own bound. Those that a
+dual breaks join the others until it breaks none (Kelley 1960).
 """
 
 from __future__ import annotations
@@ -17,12 +20,15 @@ from flint import arb, arb_mat
 from numpy.typing import NDArray
 
 from navsym.core.simplex import spread_rows
+from navsym.guaranteed.search.cones import Cone
 
 Array = NDArray[np.float64]
 
 #: Unit roundoff of doubles, with room for the conversions from balls.
 ROUNDING = 2.0**-50
 MOST_EXCHANGES = 400
+#: By how much of itself a bound of several measurements may be broken, and how often combinations join.
+BEYOND, MOST_CUTS = arb("1e-24"), 200
 
 
 @dataclass(slots=True)
@@ -37,6 +43,8 @@ class Cloud:
     wide    : no entry of ``scaled`` is further than this, beside its rounding, from that of the ball
     first   : the rows before are no longer in memory; ``scaled``, ``shifted`` and ``active`` begin with this one
     active  : (N,) rows that may be used, None for all
+    cones   : measurements that are bounded together, and their rows
+    atoms   : combinations of rows that the exchange has put behind the others: rows and factors
     """
 
     vectors: Sequence[arb_mat]
@@ -47,6 +55,32 @@ class Cloud:
     wide: float = 0.0
     first: int = 0
     active: NDArray[np.bool_] | None = None
+    cones: Sequence[tuple[Cone, Sequence[int]]] = ()
+    atoms: list[tuple[Sequence[int], arb_mat]] = field(default_factory=list)
+
+    def combine(self, cone: Cone, places: Sequence[int], factors: arb_mat) -> None:
+        """Put a combination of rows behind the others, with the bound that it has by its cone."""
+        a, sigma = factors.entries(), cone.cost(factors)
+        vector = sum((self.vectors[i] * f for i, f in zip(places, a, strict=True)), self.vectors[places[0]] * 0)
+        self.vectors, self.sigma = [*self.vectors, vector], [*self.sigma, sigma]
+        scaled = [e / sigma for e in vector.entries()]
+        self.scaled = np.vstack([self.scaled, [float(e.mid()) for e in scaled]])
+        self.wide = max(self.wide, *(float(e.rad()) for e in scaled))
+        if self.offset and self.shifted is not None:
+            offset = sum((self.offset[i] * f for i, f in zip(places, a, strict=True)), arb(0))
+            self.offset, self.shifted = [*self.offset, offset], np.append(self.shifted, float((offset / sigma).mid()))
+        self.atoms.append((places, factors))
+
+    def spread(self, found: Optimum) -> dict[int, arb]:
+        """Weights of rows, from those of rows and combinations in an optimum or a ray."""
+        done: dict[int, arb] = {}
+        weights = found.ray or dict(zip(found.basis, found.weights.entries(), strict=True))
+        for i, w in weights.items():
+            k = i - len(self.vectors) + len(self.atoms)
+            places, factors = self.atoms[k] if k >= 0 else ([i], arb_mat([[1]]))
+            for place, factor in zip(places, factors.entries(), strict=True):
+                done[place] = done.get(place, arb(0)) + w * factor
+        return done
 
     def start(self) -> list[int] | None:
         """m rows that are far from dependent; None where there are too few."""
@@ -106,6 +140,28 @@ class Optimum:
 
 def exchange(cloud: Cloud, target: arb_mat, basis: Sequence[int], signs: Sequence[int] = ()) -> Optimum | None:
     """The optimum from a start; None where the rows are not seen to be independent, or the limit is met."""
+    found = exchange_rows(cloud, target, basis, signs)
+    for _ in range(MOST_CUTS):
+        if found is None or found.ray is not None or not cut_cones(cloud, found):
+            break
+        found = exchange_rows(cloud, target, found.basis, found.signs)
+    return found
+
+
+def cut_cones(cloud: Cloud, found: Optimum) -> bool:
+    """Note by how much the dual breaks the bounds of several measurements; whether combinations were put in."""
+    before = len(cloud.atoms)
+    for cone, places in cloud.cones:
+        y = arb_mat([[cloud.excess(i, found.dual)] for i in places])
+        size = cone.gauge(y)
+        found.ratio = found.ratio.max(arb(size.upper())) if size.is_finite() else arb("inf")
+        if size > 1 + BEYOND:
+            cloud.combine(cone, places, cone.face(y))
+    return len(cloud.atoms) > before
+
+
+def exchange_rows(cloud: Cloud, target: arb_mat, basis: Sequence[int], signs: Sequence[int] = ()) -> Optimum | None:
+    """The optimum over single rows."""
     found = solve_basis(cloud, target, *rehearse(cloud, to_doubles(target), list(basis), list(signs)))
     if found is None:
         found = solve_basis(cloud, target, list(basis), list(signs))

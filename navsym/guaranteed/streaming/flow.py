@@ -6,7 +6,7 @@ import re
 from collections import OrderedDict
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 from flint import arb, arb_mat, fmpq, fmpq_mat
@@ -30,6 +30,23 @@ REMEMBERED = 256
 SPAN = re.compile(r"\bspan\b")
 
 
+class Together(NamedTuple):
+    """Measurements whose errors are bounded together: their places in the model, a norm and an exact shape."""
+
+    members: tuple[int, ...]
+    norm: str
+    shape: fmpq_mat
+
+    def size(self, members: Sequence[int], sigma: Sequence[Any], matrix: Any) -> Any:
+        """The size of the cone of some members: all noise that they can have beside any of the others."""
+        if self.norm != "l2":
+            return matrix([[s] for s in sigma])
+        k = [self.members.index(j) for j in members]
+        return matrix(
+            [[a * b * self.shape[i, j] for j, b in zip(k, sigma, strict=True)] for i, a in zip(k, sigma, strict=True)]
+        )
+
+
 class Flow:
     """``x(t) = Phi(t, s) x(s)`` and ``z_j(t) = h_j(t) x(t) + r_j`` of a model without free parameters.
 
@@ -37,6 +54,7 @@ class Flow:
     target   : name of the target; ``functional`` its entries, exact
     columns  : the unknowns that are kept for the measurements in memory; the others depend on them
     size     : m, their number
+    blocks   : measurements whose errors are bounded together
 
     Raises DomainError for a parameter without a value, for F(t) and for a target that is zero, EmptyError without
     measurements, and NotEstimableError for a target outside everything that the measurements can ever show.
@@ -55,6 +73,7 @@ class Flow:
             self.h = [m.h for m in contents.measurements]
             self.sigmas = tuple(m.sigma for m in contents.measurements)
             self.names = tuple(m.name for m in contents.measurements)
+        self.blocks = list_blocks(contents, self.names, where)
         self.need_values(where)
         n = len(self.functional)
         self.columns, self.size = list(range(n)), n
@@ -314,6 +333,16 @@ class Flow:
                 entry = SPAN.sub(span, b)
                 terms.append(f"({entry})" if a == "1" else f"({a})*({entry})")
         return " + ".join(terms) or "0"
+
+
+def list_blocks(contents: ModelFile | BasisFile, names: Sequence[str], where: str) -> list[Together]:
+    """Measurements of a model that are bounded together; bounds of each alone are left out. Raises DomainError."""
+    found = [b for b in getattr(contents, "blocks", ()) if b.norm != "linf" and len(b.names) > 1]
+    if found and where != "Guard":
+        message = f"expected measurements that are bounded one by one; got a [[block]] with {quote(found[0].norm)}"
+        raise DomainError(f"{message}; drop it, or ask Guard or solve", where=f"{where}: model")
+    shapes = [fmpq_mat([[to_fmpq(e) for e in row] for row in b.shape.tolist()]) for b in found]
+    return [Together(tuple(map(names.index, b.names)), b.norm, shape) for b, shape in zip(found, shapes, strict=True)]
 
 
 def put_number(text: str, name: str, value: fmpq) -> str:

@@ -99,6 +99,12 @@ class Guard:
         self.model = as_model(model, "Guard: model").with_values(**dict(values or {}))
         with precision(BITS):
             self.flow = Flow(self.model.read(), target, "Guard")
+        if self.flow.blocks and (
+            self.outliers or (bound == "variance" and any(b.norm == "l1" for b in self.flow.blocks))
+        ):
+            law = "gross errors" if self.outliers else "standard deviations"
+            message = f"expected bounded errors where some are bounded together; got {law}; drop the [[block]]"
+            raise DomainError(message, where="Guard: outliers" if self.outliers else "Guard: bound")
         self.memory = Memory(self.flow, self.length)
         # Hints for the search; nothing that is said of an epoch rests on them.
         self.basis: list[int] = []
@@ -259,6 +265,8 @@ class Guard:
         before = self.solved
         if self.length is None or before is None or self.alike <= self.length + 1 or not self.flow.is_invariant:
             return None
+        if self.flow.blocks:
+            return None
         self.basis = [i + fresh for i in self.basis]
         return self.make_plan(at, before)
 
@@ -269,6 +277,10 @@ class Guard:
             self.solved, self.basis, self.signs = None, [], []
             return None
         cloud, target = memory.cloud(), memory.target()
+        if cloud.cones:  # each epoch by itself: combinations of rows are not kept
+            self.basis, self.signs, start = [], [], cloud.start() or []
+            self.solved = exchange(cloud, target, start) if start else None
+            return None if self.solved is None else self.make_plan(at, self.solved, cloud)
         old, end = self.solved, len(memory.rows)
         kept = bool(self.basis) and min(self.basis) >= memory.first
         found = None
@@ -290,13 +302,15 @@ class Guard:
         self.basis, self.signs = (found.basis, found.signs) if found else ([], [])
         return None if found is None else self.make_plan(at, found)
 
-    def make_plan(self, at: fmpq, found: Optimum) -> Plan:
-        """The weights as the estimate keeps them."""
-        memory = self.memory
+    def make_plan(self, at: fmpq, found: Optimum, cloud: Cloud | None = None) -> Plan:
+        """The weights as the estimate keeps them; ``cloud`` is that of the exchange where it combined rows."""
+        memory, weights = self.memory, dict(zip(self.basis, found.weights.entries(), strict=False))
         window = Window(memory.rows, memory.first, len(memory.rows))
-        places = [i - memory.first for i in self.basis]
-        lower, upper = bounds_of(memory.cloud(), found)
-        return Plan(self.flow, at, window, self.flow.columns, places, self.signs, found.weights.entries(), lower, upper)
+        if cloud is not None:
+            weights = cloud.spread(found)
+        places = [i - memory.first for i in weights]
+        lower, upper = bounds_of(cloud or memory.cloud(), found)
+        return Plan(self.flow, at, window, self.flow.columns, places, self.signs, [*weights.values()], lower, upper)
 
     def solve_scarcely(self, at: fmpq) -> Plan | None:
         """The optimum where the measurements do not determine the state."""
@@ -359,20 +373,20 @@ class Guard:
     def need_consistent(self, fresh: int) -> None:
         """Raise InconsistentError where it is proved that no state keeps all bounds; look only where doubles doubt."""
         memory = self.memory
-        if self.state is not None:
+        if self.state is not None and not self.flow.blocks:
             new = slice(len(memory.rows) - fresh, len(memory.rows))
             gap = np.abs(memory.scaled[new] @ self.state - memory.shifted[new])
             if (gap <= 1.0).all():
                 return
         cloud, target = memory.cloud(data=True), memory.target()
-        ends = []
+        ends, start = [], self.basis or cloud.start() or []
         for sign in (1, -1):
-            found = exchange(cloud, target * sign, self.basis, [s * sign for s in self.signs])
+            found = exchange(cloud, target * sign, start, [s * sign for s in self.signs])
             if found is None:
                 return
             if found.ray is not None:
                 counts = memory.counts[memory.oldest :]
-                rows = [i for i, w in found.ray.items() if not w.contains(0)]
+                rows = [i for i, w in cloud.spread(found).items() if not w.contains(0)]
                 raise contradiction(memory, np.repeat(np.arange(len(counts)), counts), rows, 0)
             ends.append(np.array([middle(e) for e in found.dual.entries()]))
         self.state = (ends[0] + ends[1]) / 2.0

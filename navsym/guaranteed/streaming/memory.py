@@ -11,8 +11,9 @@ import numpy as np
 from flint import arb, arb_mat, fmpq
 
 from navsym.core.errors import TooLargeError
+from navsym.guaranteed.search.cones import Cone
 from navsym.guaranteed.streaming.exchange import Cloud
-from navsym.guaranteed.streaming.flow import Flow
+from navsym.guaranteed.streaming.flow import Flow, Together
 from navsym.guaranteed.streaming.numbers import middle, write_rational
 
 MOST_ROWS = 200_000
@@ -33,6 +34,26 @@ class Row:
     sigma: arb
     text: str
     own: fmpq | None
+
+
+def group_rows(flow: Flow, rows: Sequence[Row]) -> list[tuple[Together, list[int]]]:
+    """Rows of one time that are bounded together, by their places; rows by themselves are left out."""
+    if not flow.blocks:
+        return []
+    at: dict[tuple[int, int, int], int] = {(int(r.t.p), int(r.t.q), r.j): i for i, r in enumerate(rows)}
+    times = dict.fromkeys((p, q) for p, q, _ in at)
+    found = [(block, [at[*t, j] for j in block.members if (*t, j) in at]) for t in times for block in flow.blocks]
+    return [(block, places) for block, places in found if len(places) > 1]
+
+
+def list_cones(flow: Flow, rows: Sequence[Row], first: int = 0) -> list[tuple[Cone, list[int]]]:
+    """The same with the noise that they may have together, in balls; places begin with ``first``."""
+    found = []
+    for block, places in group_rows(flow, rows):
+        here = [rows[i] for i in places]
+        size = block.size([row.j for row in here], [row.sigma for row in here], arb_mat)
+        found.append((Cone(block.norm, size), [i + first for i in places]))
+    return found
 
 
 class Memory:
@@ -163,6 +184,7 @@ class Memory:
             self.wide,
             self.first,
             active,
+            list_cones(self.flow, self.rows[window], self.first),
         )
 
     def target(self) -> arb_mat:

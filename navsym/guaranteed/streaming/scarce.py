@@ -7,10 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from flint import arb_mat, fmpq
 
+from navsym.guaranteed.search.exchange import independent_rows
 from navsym.guaranteed.streaming.estimate import Plan
 from navsym.guaranteed.streaming.exchange import Cloud, bounds_of, exchange
 from navsym.guaranteed.streaming.flow import Flow, in_row_space, pivot_columns
-from navsym.guaranteed.streaming.memory import Row
+from navsym.guaranteed.streaming.memory import Row, list_cones
 from navsym.guaranteed.streaming.numbers import to_float
 
 #: With more rows than this, rational ranks cost more than they are worth.
@@ -52,14 +53,15 @@ def solve_reduced(
     vectors = [arb_mat([[row[k] for k in columns]]) for row in table]
     sigma = [rows[i].sigma for i in places]
     scaled = [[to_float(row[k]) / float(s.mid()) for k in columns] for row, s in zip(table, sigma, strict=True)]
-    cloud = Cloud(vectors, sigma, np.array(scaled))
+    cloud = Cloud(vectors, sigma, np.array(scaled), cones=list_cones(flow, [rows[i] for i in places]))
     start = cloud.start()
     found = start and exchange(cloud, arb_mat([[functional[k] for k in columns]]), start)
     if not found:
         return None
     lower, upper = bounds_of(cloud, found)
-    basis, whole = [places[i] for i in found.basis], len(places) == len(rows)
-    return Plan(flow, now, list(rows), columns, basis, found.signs, found.weights.entries(), lower, upper, whole)
+    weights, whole = cloud.spread(found), len(places) == len(rows)
+    basis = [places[i] for i in weights]
+    return Plan(flow, now, list(rows), columns, basis, found.signs, [*weights.values()], lower, upper, whole)
 
 
 def are_independent(flow: Flow, rows: Sequence[Row], now: fmpq) -> bool:
@@ -68,9 +70,5 @@ def are_independent(flow: Flow, rows: Sequence[Row], now: fmpq) -> bool:
     if k > flow.size:
         return False
     balls = [[flow.ball_row(row.j, row.t, now)[c] for c in flow.columns] for row in rows]
-    doubles = np.array([[float(e.mid()) for e in row] for row in balls])
-    chosen: list[int] = []
-    for column in np.argsort(-np.abs(doubles).max(axis=0)):
-        if np.linalg.matrix_rank(doubles[:, [*chosen, int(column)]]) > len(chosen):
-            chosen.append(int(column))
+    chosen = independent_rows(np.array([[float(e.mid()) for e in row] for row in balls]).T, k, 0.0)
     return len(chosen) == k and not arb_mat([[row[c] for c in chosen] for row in balls]).det().contains(0)
