@@ -120,15 +120,10 @@ def gain_is_unique():
         jacobian = sp.Matrix(values).jacobian(K)
         linear = not any(jacobian.has(symbol) for symbol in K)
         found = found and linear and rank_of(jacobian) == size
-    return fact(
-        True,
-        found,
-        "the coefficients are affine in K_x with an invertible matrix",
-        PROVED,
-        scope="m = 1, 2, 3, all theta",
-        assumptions=("det C_1 != 0",),
-        unsaid="that a map is affine and invertible is said of all its values at once",
-    )
+    method = "the coefficients are affine in K_x with an invertible matrix"
+    scope = "m = 1, 2, 3, all theta"
+    unsaid = "that a map is affine and invertible is said of all its values at once"
+    return fact(True, found, method, PROVED, scope=scope, assumptions=("det C_1 != 0",), unsaid=unsaid)
 
 
 @claim("1.6.gain_unique.determinant")

@@ -75,14 +75,9 @@ def climb_is_negligible():
     values = [climbing.rates[p] - equations().rates[p] for p in (p1, p2)]
     values += [c - e for c, e in zip(climbing.velocity, equations().velocity, strict=True)]
     orders = tuple(truncate(sp.expand(value), PHYSICAL_ORDERS, 2).kept == 0 for value in values)
-    return fact(
-        (True,) * 4,
-        orders,
-        "orders of all added terms, climb/(a omega_0) counted as mu^2",
-        PROVED,
-        scope="linear in the errors, alpha_3 up to rho/mu",
-        unsaid="orders of terms in a small parameter are compared, not values",
-    )
+    method = "orders of all added terms, climb/(a omega_0) counted as mu^2"
+    unsaid = "orders of terms in a small parameter are compared, not values"
+    return fact((True,) * 4, orders, method, PROVED, scope="linear in the errors, alpha_3 up to rho/mu", unsaid=unsaid)
 
 
 @claim("2.condition2.height")
@@ -216,14 +211,9 @@ def where_great_circles_are_not_stationary():
     """Not at every speed: westward at 419 m/s, near that of the ground below, the same condition fails."""
     point = (sp.Rational(9, 10), sp.Rational(-99, 100), sp.Rational(1, 2))
     left, right = stationarity(*point)
-    return fact(
-        False,
-        bool(left < right),
-        "exact values at one flight",
-        PROVED,
-        scope="speed 0.9 Omega R = 419 m/s, course constant -0.99",
-        unsaid="a maximum over a flight is compared, and no formula is given for it",
-    )
+    scope = "speed 0.9 Omega R = 419 m/s, course constant -0.99"
+    unsaid = "a maximum over a flight is compared, and no formula is given for it"
+    return fact(False, bool(left < right), "exact values at one flight", PROVED, scope=scope, unsaid=unsaid)
 
 
 @claim("2.assumption1.orthodrome.much", expect=CERTIFIED)

@@ -247,15 +247,10 @@ def neglected_terms():
     No lower, and nothing of higher order either.
     """
     orders = {term.order for group in (velocity(), position()) for row_ in group.dropped for term in row_}
-    return fact(
-        (2,),
-        tuple(sorted(orders)),
-        "bookkeeping of every monomial",
-        PROVED,
-        scope="alpha, pi, epsilon, nu, w of order rho; beta, gamma of order rho/mu; d omega/d tau of order mu",
-        evidence=f"{sum(len(r) for g in (velocity(), position()) for r in g.dropped)} terms, listed by the model",
-        unsaid=ORDER_ONLY,
-    )
+    method = "bookkeeping of every monomial"
+    scope = "alpha, pi, epsilon, nu, w of order rho; beta, gamma of order rho/mu; d omega/d tau of order mu"
+    evidence = f"{sum(len(r) for g in (velocity(), position()) for r in g.dropped)} terms, listed by the model"
+    return fact((2,), tuple(sorted(orders)), method, PROVED, scope=scope, evidence=evidence, unsaid=ORDER_ONLY)
 
 
 @claim("2.8.inhomogeneous")
@@ -264,14 +259,8 @@ def inhomogeneous_terms():
     forcing = [term for group in (velocity(), position()) for term in group.linear()[2]]
     orders = {lowest_order(term, ORDERS) for term in forcing if term != 0}
     found = tuple(sorted(orders)) if {truncate(term, ORDERS, 2).dropped for term in forcing} == {()} else None
-    return fact(
-        (1,),
-        found,
-        "bookkeeping of every monomial",
-        PROVED,
-        scope="orders as declared in 2.8.neglected",
-        unsaid=ORDER_ONLY,
-    )
+    method = "bookkeeping of every monomial"
+    return fact((1,), found, method, PROVED, scope="orders as declared in 2.8.neglected", unsaid=ORDER_ONLY)
 
 
 inhomogeneous_term_as_printed = claim(

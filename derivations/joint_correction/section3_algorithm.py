@@ -65,12 +65,8 @@ def functionals(meaning: tuple[sp.Expr, ...]) -> sp.Matrix:
 def remaining_variables():
     """After velocity correction four variables remain for the position information: y_1, y_2, y_5, y_6."""
     found, model = observe_jointly(joint()), joint()
-    finding = Finding(
-        (sum(found.staircase[:2]), sum(found.staircase[2:])),
-        "fraction-free staircase: velocity first, then position",
-        PROVED,
-        scope="joint model (2.8), (2.9)",
-    )
+    method, scope = "fraction-free staircase: velocity first, then position", "joint model (2.8), (2.9)"
+    finding = Finding((sum(found.staircase[:2]), sum(found.staircase[2:])), method, PROVED, scope=scope)
     first = LinearModel(model.F, None, model.H[:2, :])
     return say_ranks((6, 4), finding, [(first, 6), (model, 10)], ("4", "=", "10 - 6"))
 

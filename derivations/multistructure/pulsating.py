@@ -136,13 +136,9 @@ def differs(first, second) -> Finding:
     """Whether two numbers differ, by balls; undecided balls are an error, not an answer."""
     if first.overlaps(second):
         raise ArithmeticError("balls overlap: more bits are needed")
-    return Finding(
-        True,
-        "ball arithmetic, 400 bits",
-        status=CERTIFIED,
-        scope="one model, one series of measurements",
-        evidence=f"{first.str(12, radius=False)} against {second.str(12, radius=False)}",
-    )
+    method = "ball arithmetic, 400 bits"
+    evidence = f"{first.str(12, radius=False)} against {second.str(12, radius=False)}"
+    return Finding(True, method, status=CERTIFIED, scope="one model, one series of measurements", evidence=evidence)
 
 
 @claim("17.suboptimal", expect=CERTIFIED)
@@ -201,14 +197,12 @@ def excess_of_two():
 def near_optimal():
     """The error of the Gaussian approximation vanishes when g^i tends to one for one mode."""
     values = [excess(Fraction(1, 10**k), Fraction(10**k)) for k in range(1, 7)]
+    method = "exact excess kurtosis"
+    scope = "g = 1 - 10^-k, unit Gaussians 10^(k/2) apart, k = 1..6"
+    evidence = f"excess kurtosis grows from {float(values[0]):.3g} to {float(values[-1]):.3g}"
+    unsaid = "what a limit of an excess is, is found along a sequence"
     return fact(
-        True,
-        all(b < a for a, b in pairwise(values)),
-        "exact excess kurtosis",
-        PROVED,
-        scope="g = 1 - 10^-k, unit Gaussians 10^(k/2) apart, k = 1..6",
-        evidence=f"excess kurtosis grows from {float(values[0]):.3g} to {float(values[-1]):.3g}",
-        unsaid="what a limit of an excess is, is found along a sequence",
+        True, all(b < a for a, b in pairwise(values)), method, PROVED, scope=scope, evidence=evidence, unsaid=unsaid
     )
 
 

@@ -126,14 +126,8 @@ def sequential_search_may_fit_better():
     """Least (6) may be below least (4) on one grid: here 0 and 1/2, since (6) turns about t_G, off the grid of (4)."""
     found = least_criteria(Fraction(-1, 2), Fraction(1))
     scope = "heights h(x) = x, n = 1, steps of one, errors -1/2 of the position and 1 of the velocity"
-    return fact(
-        (Fraction(0), Fraction(1, 2)),
-        found,
-        "all hypotheses counted",
-        PROVED,
-        scope=scope,
-        unsaid="a least value over a grid is found by trying all hypotheses",
-    )
+    unsaid = "a least value over a grid is found by trying all hypotheses"
+    return fact((Fraction(0), Fraction(1, 2)), found, "all hypotheses counted", PROVED, scope=scope, unsaid=unsaid)
 
 
 @claim("sequential.shrinks")

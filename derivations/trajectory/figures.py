@@ -119,16 +119,13 @@ def straight_speed_error_is_not_noise_alone():
     steps = int((1000 - Fraction("168.8")) / TAU)
     variance, scatter = sample_scatter(steps)
     away = (ball(Fraction("0.019")) ** 2 - variance) / scatter
-    return fact(
-        False,
-        bool(abs(away) < 3),
-        "exact covariances of the error at all lags, balls",
-        CERTIFIED,
-        scope="printed gain in D_p variables, first straight course after the tuning, Gaussian noise of 1 m",
-        evidence=f"expected {float(variance.sqrt()):.4f} m/s; the printed square is "
-        f"{float(away):.2f} standard deviations off",
-        unsaid="a sum over four thousand lags is added up in balls",
+    method = "exact covariances of the error at all lags, balls"
+    scope = "printed gain in D_p variables, first straight course after the tuning, Gaussian noise of 1 m"
+    evidence = (
+        f"expected {float(variance.sqrt()):.4f} m/s; the printed square is {float(away):.2f} standard deviations off"
     )
+    unsaid = "a sum over four thousand lags is added up in balls"
+    return fact(False, bool(abs(away) < 3), method, CERTIFIED, scope=scope, evidence=evidence, unsaid=unsaid)
 
 
 @claim("experiment.sigma_v.yaw.100.full", expect=CERTIFIED)
@@ -201,15 +198,13 @@ def figures_of_a_hundred_metres_do_not_fit():
     least = least_position_error(100, "0.0905", "0.015")
     text = f"{math.floor(1000 * float(least.lower())) / 1000:.3f}"
     assert least > ball(Fraction(text)), "the rounding is not decided"
-    return fact(
-        "0.086",
-        text,
-        "mean of log |S|^2 over the unit circle, ball arithmetic",
-        CERTIFIED,
-        scope="n = 5, tau = 0.2 s, every stable gain, white noise of 1 m, steady yawing: errors of V_2 up to 0.0905 "
-        "m/s and of dV_2/dt up to 0.015 m/s^2",
-        unsaid="a bound for every gain rests on Jensen's formula and on the least value of a harmonic function",
+    method = "mean of log |S|^2 over the unit circle, ball arithmetic"
+    scope = (
+        "n = 5, tau = 0.2 s, every stable gain, white noise of 1 m, steady yawing: errors of V_2 up to 0.0905 "
+        "m/s and of dV_2/dt up to 0.015 m/s^2"
     )
+    unsaid = "a bound for every gain rests on Jensen's formula and on the least value of a harmonic function"
+    return fact("0.086", text, method, CERTIFIED, scope=scope, unsaid=unsaid)
 
 
 figures_of_one_sentence = claim(

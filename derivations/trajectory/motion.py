@@ -271,14 +271,11 @@ def improves(n: int, longer: sp.Rational, shorter: sp.Rational) -> bool:
 def smaller_steps_always_worsen():
     """A smaller step inevitably worsens the condition number (n = 20, 1 s against 0.94 s)."""
     longer, shorter = sp.Integer(1), sp.Rational("0.94")
+    method = "certified condition numbers"
+    scope = "n = 20, rho = 1/6371000, tau = 1 and 0.94"
+    evidence = f"{conditioning(20, longer).rounded(5)} at 1 s, {conditioning(20, shorter).rounded(5)} at 0.94 s"
     return fact(
-        True,
-        improves(20, longer, shorter),
-        "certified condition numbers",
-        CERTIFIED,
-        scope="n = 20, rho = 1/6371000, tau = 1 and 0.94",
-        evidence=f"{conditioning(20, longer).rounded(5)} at 1 s, {conditioning(20, shorter).rounded(5)} at 0.94 s",
-        unsaid=TWO_NUMBERS,
+        True, improves(20, longer, shorter), method, CERTIFIED, scope=scope, evidence=evidence, unsaid=TWO_NUMBERS
     )
 
 
