@@ -56,7 +56,7 @@ def rotation() -> Equation:
 
 @cache
 def functions(real: str = "double") -> tuple[ExportedFunction, ...]:
-    regimes = (beyond.drift_holds_to_two_thirds_of_pi, beyond.drift_with_two_instants, beyond.drift_with_half_a_period)
+    regimes = tuple(one for one in beyond.REGIMES if one.number in ("range.y3", "range.y3.end*", "range.y3.last"))
     return (
         function_of([of_claim(weights.WEIGHTS[8])], real=real),
         function_of([of_claim(weights.tilt_estimate_corrected)], real=real),
