@@ -8,7 +8,7 @@ from itertools import pairwise
 import flint
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, Claim, Equation, Finding, Property, claim, fact, state
+from navsym.claims import CERTIFIED, PROVED, Equation, Finding, Property, claim, fact, state
 
 RADIUS = Fraction(6371000)
 TAU = Fraction(1, 5)
@@ -116,28 +116,20 @@ position_error = claim(
 )
 
 
-def other_speed(speed: int) -> tuple[Claim, Claim]:
-    """The same pair of figures is printed for 2 and for 300 m/s: as printed, and with the radian."""
-    number = f"experiment.sigma_phi.{speed}"
-    figures = ("2.2e-8", "0.05e-8", "0.1", "0.05")
-    wrong = claim(
-        number,
-        f"|V| = {speed} m/s: 2.2e-8 degrees are 0.1 m",
-        lambda: agreement(*figures, "degree"),
-        slip="paper",
-        reason="2.2e-8 degrees are 2.4 mm; the unit is the radian",
+#: The same pair of figures is printed for 2 and for 300 m/s: as printed, and with the radian.
+OTHER_SPEEDS = tuple(
+    claim(
+        f"experiment.sigma_phi.{speed}{star}",
+        f"|V| = {speed} m/s: 2.2e-8 {unit}s are 0.1 m",
+        lambda unit=unit: agreement("2.2e-8", "0.05e-8", "0.1", "0.05", unit),
+        **more,
     )
-    right = claim(
-        f"{number}*",
-        f"|V| = {speed} m/s: 2.2e-8 radians are 0.1 m",
-        lambda: agreement(*figures, "radian"),
-        expect=CERTIFIED,
-        corrects=number,
+    for speed in (2, 300)
+    for star, unit, more in (
+        ("", "degree", {"slip": "paper", "reason": "2.2e-8 degrees are 2.4 mm; the unit is the radian"}),
+        ("*", "radian", {"expect": CERTIFIED}),
     )
-    return wrong, right
-
-
-OTHER_SPEEDS = (*other_speed(2), *other_speed(300))
+)
 
 EXPONENTS = "units are compared as exponents, and statements are about numbers"
 #: Exponents of metre and second.

@@ -244,8 +244,6 @@ measurement_through_a_step = claim(
 
 # -- smaller steps and conditioning ------------------------------------------------------------------
 
-PAPER_RHO = sp.Rational(1, 6371000)
-
 
 def conditioning(n: int, step: sp.Rational):
     """Certified enclosure of mu(N_p) at the rho of the table."""

@@ -14,17 +14,7 @@ from typing import Any
 
 from navsym.claims import CERTIFIED, claim, fact
 from navsym.trajectory.conditioning import Enclosure
-from navsym_papers.trajectory.table import (
-    COLUMNS,
-    ORDERS,
-    PRINTED,
-    STEPS,
-    UNIT_COLUMNS,
-    entry_rows,
-    say_comparison,
-    say_ends,
-    true_value,
-)
+from navsym_papers.trajectory.table import ORDERS, STEPS, UNIT_COLUMNS, entry_rows, say_comparison, say_ends, true_value
 
 LARGEST = 20
 METHOD = "certified condition numbers"
@@ -55,12 +45,6 @@ def lowered(before: Enclosure, after: Enclosure) -> bool:
     """Whether a condition number is smaller after a stage; the enclosures have to be apart."""
     assert after.upper < before.lower or before.upper < after.lower, "the enclosures overlap"
     return after.upper < before.lower
-
-
-def printed_lowered(n: int, step: str) -> bool:
-    """The same by the printed digits, first stage alone."""
-    row = PRINTED[n, step]
-    return float(row[COLUMNS.index("Nf")]) < float(row[COLUMNS.index("Np")])
 
 
 def growth(column: str) -> list[tuple[object, object]]:

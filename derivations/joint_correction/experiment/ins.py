@@ -21,7 +21,6 @@ from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, SCHUL
 from navsym_papers.joint_correction.inertial import (
     EARTH,
     FULL,
-    JOINT,
     MU,
     OMEGA,
     dimensionless,
@@ -341,8 +340,6 @@ def kalman_deviations(flight: Flight, chosen: Plan, errors: Errors) -> Array:
 
 #: How many estimators :func:`compare` compares.
 ESTIMATORS = 5
-#: Metres (or metres per second) for one unit of every variable of :data:`JOINT`.
-METRES = dict(zip(map(str, JOINT), [EARTH_RADIUS] * 10, strict=True))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
