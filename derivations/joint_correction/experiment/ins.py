@@ -17,18 +17,8 @@ import numpy as np
 import sympy as sp
 
 from navsym.core.arrays import Array, freeze
+from navsym_papers.joint_correction import inertial
 from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, SCHULER_RATE, Flight
-from navsym_papers.joint_correction.inertial import (
-    EARTH,
-    FULL,
-    MU,
-    OMEGA,
-    dimensionless,
-    full_model,
-    joint_model,
-    position_variables,
-    velocity_variables,
-)
 
 
 class Situation(StrEnum):
@@ -76,7 +66,7 @@ class Errors:
             "w_M": self.position_bias / EARTH_RADIUS,
         }
         P = np.zeros((16, 16))
-        for k, state in enumerate(FULL):
+        for k, state in enumerate(inertial.FULL):
             kind = str(state).rpartition("_")[0] if not str(state).startswith("w") else str(state)[:3]
             P[k, k] = sigma.get(kind, 0.0) ** 2
         for tilt, turn in ((0, 4), (1, 5)):
@@ -94,7 +84,7 @@ class Errors:
 
 # Matrices along the flight
 
-RATES = (*OMEGA[:2], *EARTH)
+RATES = (*inertial.OMEGA[:2], *inertial.EARTH)
 
 
 @cache
@@ -105,12 +95,14 @@ def compiled() -> tuple[object, ...]:
     """
     from navsym.core.casadi_functions import casadi_function
 
-    truth, algorithm = full_model(), joint_model()
-    equations = dimensionless()
-    x, y = velocity_variables(equations), position_variables(equations)
-    meaning = sp.Matrix([[sp.diff(m, s) for s in FULL] for m in (*x, y[0], y[1], y[4], y[5])])
+    truth, algorithm = inertial.full_model(), inertial.joint_model()
+    equations = inertial.dimensionless()
+    x, y = inertial.velocity_variables(equations), inertial.position_variables(equations)
+    meaning = sp.Matrix([[sp.diff(m, s) for s in inertial.FULL] for m in (*x, y[0], y[1], y[4], y[5])])
     matrices = {"F": truth.F, "H": truth.H, "A": algorithm.F, "C": algorithm.H, "M": meaning}
-    return tuple(casadi_function(name, [list(RATES)], sp.Matrix(value).subs(MU, 1)) for name, value in matrices.items())
+    return tuple(
+        casadi_function(name, [list(RATES)], sp.Matrix(value).subs(inertial.MU, 1)) for name, value in matrices.items()
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
