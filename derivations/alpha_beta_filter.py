@@ -9,8 +9,6 @@ S = p11 + sigma_v^2. In r = sigma_v / sqrt(S) its corner p22 gives beta = Lambda
 is left of it is a quadratic. Everything else is linear algebra in r.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, Paper, claim

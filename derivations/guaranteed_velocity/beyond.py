@@ -5,8 +5,6 @@ where a weight changes sign: y1 for every T, y2 up to 4 pi/3, y3 up to 2 pi/3. B
 bounds two instants are enough; from 3 pi/2 (y2) and pi (y3) on they are half a period apart, and the value is one.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy as sp

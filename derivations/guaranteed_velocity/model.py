@@ -1,7 +1,5 @@
 """The model on which every derived side of this paper rests: symbols, the system and H(tau)."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import Optimum

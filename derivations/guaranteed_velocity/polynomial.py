@@ -1,7 +1,5 @@
 """Section 4.1 up to (4.9): the generalised Chebyshev polynomial and its deviations."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import PROVED, Bound, Equation, Finding, Optimum, Property, claim, fact, state

@@ -1,7 +1,5 @@
 """(4.10) to (4.16): weights, guaranteed errors and estimates, in both channels."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import Bound, Equation, claim

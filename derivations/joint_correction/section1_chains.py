@@ -1,7 +1,5 @@
 """Section 1, (1.2)-(1.6): what one measurement observes, and the observer for it."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import PROVED, Bound, Equation, Finding, claim, fact

@@ -1,7 +1,5 @@
 """Section 1, (1.14): the form u, v, w for a basis with i < m, and the choice of i."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import PROVED, Equation, claim, fact

@@ -1,7 +1,5 @@
 """Section 1, (1.7)-(1.13): the two-stage split, its estimator, and the general variant."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import PROVED, Equation, Finding, claim, fact

@@ -1,7 +1,5 @@
 """Section 1, the Remark and (1.13): any rows that complete L_x, and what the weight K°_z costs."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import PROVED, Equation, claim, fact

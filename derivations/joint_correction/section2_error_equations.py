@@ -5,8 +5,6 @@ Newton's equation solved for the rates, the velocity seen in platform axes. Term
 mu^2 rho are dropped, and :func:`dropped_terms` says which.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import sympy as sp

@@ -5,8 +5,6 @@ and its constant part at mu = 0, the position information is differentiated, and
 order mu^2 rho is dropped term by term (``navsym_papers.joint_correction.inertial``).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Section 3, (3.1)-(3.3): common variables, the algorithm of joint correction, and its situations."""
 
-from __future__ import annotations
-
 from functools import cache, partial
 
 import sympy as sp

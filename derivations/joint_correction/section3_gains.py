@@ -5,8 +5,6 @@ back: kappa = mu u_3 couples the two velocity channels, c = mu^2 omega_1 omega_2
 channels.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Equations (1)-(3): what sensor errors do to a reckoned position, and which errors grow."""
 
-from __future__ import annotations
-
 import re
 
 import sympy as sp

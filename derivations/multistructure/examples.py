@@ -1,7 +1,5 @@
 """One small switching model, run exactly: scalar state, two modes, expressions in place of numbers."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import sympy as sp

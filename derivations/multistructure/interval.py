@@ -5,8 +5,6 @@ of any other is that of the optimal one plus its mean square distance from it. A
 integrals of that distance; in the model below only the first step is measured, so they run over one number.
 """
 
-from __future__ import annotations
-
 import functools
 
 import sympy as sp

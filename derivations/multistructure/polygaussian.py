@@ -1,7 +1,5 @@
 """Equations (20)-(21): modes that never switch, and the polygaussian filter."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import sympy as sp

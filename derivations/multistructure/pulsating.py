@@ -1,7 +1,5 @@
 """Equations (15)-(17) and the words about the pulsating filter."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise, product
 

@@ -1,7 +1,5 @@
 """The extremes of t_G: the two cases of the paper, the roots, the middle of the interval as a mean."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import OPEN, PROVED, UNDECIDED, Bound, Equation, Finding, Property, claim, fact, state

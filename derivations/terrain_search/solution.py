@@ -4,8 +4,6 @@ Least squares over the track: with b0 = sum g z, b1 = sum k g z the joint soluti
 G c + M1 v = b0, M1 c + M2 v = b1. The first stage finds c* = G^-1 b0, the second minimises over v alone.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import sympy as sp

@@ -4,8 +4,6 @@ Worked in the variables f of the first stage, where all matrices are integer; th
 differ by the constant positive diagonal D_s, which changes none of the statements.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Conditions of the numerical experiment, and the printed errors with their units."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 

@@ -4,8 +4,6 @@ The gains tuned for 2 and 300 m/s, the noise of the run and the interval over wh
 printed. Such a figure is decided by exhibiting an input that gives it, or it stays open.
 """
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 

@@ -1,7 +1,5 @@
 """The printed constant gain: its stability, its noise, its lag, against the printed errors."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 

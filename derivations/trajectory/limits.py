@@ -10,8 +10,6 @@ m-th derivative. Ages s = -t are counted from now. The constants are those of La
 for functions on a half line; Peano's kernel turns a rule into its remainder.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

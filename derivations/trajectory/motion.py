@@ -1,7 +1,5 @@
 """Equations 1 to 4: polynomial motion, nilpotent dynamics, transition over a step, measurement."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 

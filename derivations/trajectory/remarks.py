@@ -1,7 +1,5 @@
 """What the paper says about its table: when normalisation helps, and where rounding shows."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any

@@ -5,8 +5,6 @@ innovation and change of the criterion, so that the tuning does not see it. Off 
 in proportion to the speed, and a mean square cannot fall while the speed grows.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import sympy as sp

@@ -4,8 +4,6 @@ The paper decides "already at this stage" whether a second one is needed, and sp
 both are questions about mu(N_f) and mu(N_s) for every n, which certified condition numbers answer.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from fractions import Fraction
 from functools import cache

@@ -4,8 +4,6 @@ An entry is printed with five significant digits (or four decimals). The derived
 enclosure of the condition number, rounded in the same format; both ends of the enclosure round alike.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from fractions import Fraction
 from functools import lru_cache

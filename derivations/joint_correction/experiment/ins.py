@@ -6,8 +6,6 @@ algorithm are one linear system, so its covariance propagates exactly; Monte Car
 steps with drawn numbers. The Kalman filter of the full model is the bound that nothing beats.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum

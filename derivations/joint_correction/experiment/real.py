@@ -6,8 +6,6 @@ accelerometer errors. GPS velocity observes (v, b), GPS position completes the b
 two-stage split with m = 2, n = 3, found by the general method and not by hand.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """The experiment on joint correction as one document: position errors of five estimators after the first fix."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable
 from typing import Any

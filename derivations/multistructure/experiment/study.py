@@ -4,8 +4,6 @@ A study simulates switching signals from the bank itself, runs every method on t
 the estimates against the truth: errors with confidence intervals, never a single run.
 """
 
-from __future__ import annotations
-
 import itertools
 import time
 from collections.abc import Callable, Sequence

@@ -7,8 +7,6 @@ above ground is read from one map with an error of 1.5 per cent and compared wit
 same one). Speed, ranges of the errors and length of the track are not in the paper; they are arguments.
 """
 
-from __future__ import annotations
-
 import json
 import time
 from collections.abc import Callable, Iterable

@@ -4,8 +4,6 @@ Northern motion only, as in the paper: s(t) is the integral of |V| cos(heading),
 error uniform on [-sqrt(3), sqrt(3)] m. Lengths in metres: an angle is s over the Earth radius.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
