@@ -6,7 +6,7 @@ from navsym.claims import PROVED, Equation, Finding, claim, fact
 from navsym.models.linear import LinearModel
 from navsym.observability.splits import companion, last_row
 from navsym_papers.joint_correction.matrices import exact_inverse, unit_row
-from navsym_papers.joint_correction.section1_chains import SIZES, coefficients, rank_of
+from navsym_papers.joint_correction.section1_chains import SIZES, characteristic, coefficients, rank_of
 from navsym_papers.joint_correction.section1_systems import (
     System,
     coefficients_of_polynomial,
@@ -51,7 +51,7 @@ def chains_complete_each_other():
     identities = []
     for size in (1, 2, 3):
         M = sp.Matrix(size, size, lambda r, s, size=size: g[r * size + s])
-        theta = characteristic_of(M)
+        theta = characteristic(M)
         power = [M**j for j in range(size + 1)]
         total = sum((t * power[j] for j, t in enumerate(theta)), sp.zeros(size, size))
         identities += [sp.expand(x) == 0 for x in power[size] - total]
@@ -60,10 +60,6 @@ def chains_complete_each_other():
     scope = "n - m = 1, 2, 3 with all entries symbolic, every m"
     unsaid = "that a chain is a basis wherever a pair is observable is said of all sizes"
     return fact(True, all(identities) and all(full), method, PROVED, scope=scope, unsaid=unsaid)
-
-
-def characteristic_of(matrix: sp.Matrix) -> list[sp.Expr]:
-    return [-value for value in coefficients_of_polynomial(matrix)[1:]][::-1]
 
 
 @claim("1.8.one_to_one")

@@ -153,11 +153,7 @@ DOT = (
 
 def assignment(k: int, right: sp.Expr) -> Equation:
     """The printed left side is y_k° itself, the algorithm's is its derivative."""
-    return Equation(y[k] - right, derivative_symbol(k) - position_row(k))
-
-
-def derivative_symbol(k: int) -> sp.Symbol:
-    return sp.Symbol(f"dy{k}", real=True)
+    return Equation(y[k] - right, sp.Symbol(f"dy{k}", real=True) - position_row(k))
 
 
 RIGHT_5 = y[6] + Kh[5] * (sm2 - y[5])

@@ -15,18 +15,14 @@ scale = sp.Symbol("epsilon", real=True)
 SPHERE = {model.latitude: (sp.Rational(-3, 2), sp.Rational(3, 2)), model.height: (0, None)}
 
 
-def at_zero(matrix: sp.Matrix) -> sp.Matrix:
-    return matrix.subs(dict.fromkeys((*RECKONING.errors, *RECKONING.sensor_errors), 0))
-
-
 @claim("1.nonlinear")
 def nonlinear():
     """The errors of reckoned coordinates depend on the sensor errors in a nonlinear way."""
     point = {model.latitude: 0, model.vy: 1, model.vx: 0, model.heading: 0, model.height: 0, model.radius: 1}
-    curvature = at_zero(S.diff(model.d_heading, 2))[0].subs(point)
+    at_rest = dict.fromkeys((*RECKONING.errors, *RECKONING.sensor_errors), 0)
+    curvature = S.diff(model.d_heading, 2).subs(at_rest)[0].subs(point)
     scope, evidence = "course and log on a sphere", f"d2S/dK2 = {curvature} at the equator, heading north at unit speed"
     found = Finding(bool(curvature != 0), "second derivative at an exact point", PROVED, scope=scope, evidence=evidence)
-    at_rest = dict.fromkeys((*RECKONING.errors, *RECKONING.sensor_errors), 0)
     return Property(True, found, (changes_at(S[0], model.d_heading, 2, at_rest | point),))
 
 

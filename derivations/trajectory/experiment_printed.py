@@ -68,7 +68,7 @@ def tuning_stops_at_a_step():
 
 def agreement(angle: str, half_angle: str, length: str, half_length: str, unit: str) -> Property:
     """That two rounded figures can belong to one error."""
-    per_unit = {"degree": metres_per_degree(), "radian": metres_per_radian()}[unit]
+    per_unit = ball(RADIUS) * (flint.arb.pi() / 180 if unit == "degree" else 1)
     low, high = (str(Fraction(angle) + sign * Fraction(half_angle)) for sign in (-1, 1))
     bottom, top = (str(Fraction(length) + sign * Fraction(half_length)) for sign in (-1, 1))
     metres = f"{RADIUS}*pi/180" if unit == "degree" else str(RADIUS)
@@ -89,14 +89,6 @@ def agree(angle: str, half_angle: str, length: str, half_length: str, per_unit: 
 
 def ball(x: Fraction) -> flint.arb:
     return flint.arb(flint.fmpq(x.numerator, x.denominator))
-
-
-def metres_per_degree() -> flint.arb:
-    return ball(RADIUS) * flint.arb.pi() / 180
-
-
-def metres_per_radian() -> flint.arb:
-    return ball(RADIUS)
 
 
 position_error_printed = claim(

@@ -172,11 +172,6 @@ def elements_of_A():
 # -- equation 4 --------------------------------------------------------------------------------------
 
 
-def derived_transition(n: int) -> sp.Matrix:
-    """Matrix of x(0) -> x(tau), by integrating the polynomial motion."""
-    return sp.Matrix(moved_state(n, tau)).jacobian(STATE[:n])
-
-
 def printed_transition(n: int) -> sp.Matrix:
     def entry(i: int, j: int) -> sp.Expr:
         if j < i:
@@ -190,7 +185,7 @@ def printed_transition(n: int) -> sp.Matrix:
 transition_matrix = claim(
     "4.Phi",
     "Transition matrix over a step; n = 8, smaller orders are its leading blocks.",
-    lambda: Equation(printed_transition(ORDER), derived_transition(ORDER)),
+    lambda: Equation(printed_transition(ORDER), sp.Matrix(moved_state(ORDER, tau)).jacobian(STATE)),
 )
 transition_matrix_is_the_finite_series = claim(
     "4.Phi.series",

@@ -28,10 +28,6 @@ def printed_equal(left: tuple[str, int], right: tuple[str, int], n: int) -> bool
     return table.PRINTED[n, left[0]][left[1]] == table.PRINTED[n, right[0]][right[1]]
 
 
-def independent_orders(column: int) -> tuple[int, ...]:
-    return tuple(n for n in table.ORDERS if printed_equal(("tau0.2", column), ("tau1", column), n))
-
-
 def say_digits(n: int, left: tuple[str, int], right: tuple[str, int]) -> dict[str, Any]:
     """That two printed entries are one number for n up to 10, and two beyond."""
     one, other = (str(Fraction(table.PRINTED[n, step][column])) for step, column in (left, right))
@@ -41,8 +37,8 @@ def say_digits(n: int, left: tuple[str, int], right: tuple[str, int]) -> dict[st
 @claim("experiment.violated.independence")
 def independence_is_violated_from_19():
     """In the printed table independence of tau holds up to n = 10 and is violated for n = 19 and 20."""
-    found = tuple(independent_orders(table.COLUMNS.index(c)) for c in ("NpN", "Nf", "Ns"))
     columns = [table.COLUMNS.index(c) for c in ("NpN", "Nf", "Ns")]
+    found = tuple(tuple(n for n in table.ORDERS if printed_equal(("tau0.2", c), ("tau1", c), n)) for c in columns)
     meaning = tuple(say_digits(n, ("tau0.2", column), ("tau1", column)) for n in table.ORDERS for column in columns)
     return fact(((2, 3, 4, 5, 10),) * 3, found, "comparison of the printed digits", PROVED, meaning=meaning)
 

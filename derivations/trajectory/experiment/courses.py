@@ -191,11 +191,6 @@ def experiment(
 # -- what a change of variables does to a filter ------------------------------------------------------------
 
 
-def rounded_scale(scale: Array) -> Array:
-    """Nearest powers of two."""
-    return np.exp2(np.round(np.log2(scale)))
-
-
 def scaling_changes_rounding(n: int = ORDER, steps: int = 2000, seed: int = 1) -> bool:
     """Whether a Kalman filter computes anything else in variables scaled by powers of two.
 
@@ -205,7 +200,7 @@ def scaling_changes_rounding(n: int = ORDER, steps: int = 2000, seed: int = 1) -
     rho = 1 / RADIUS
     to_f = np.array([1.0, *(rho * TAU**j / math.factorial(j) for j in range(1, n))])
     model = inversion.scaled_model(inversion.first_stage_model(n), 1 / to_f)
-    D = rounded_scale(to_f * inversion.normalised_scale(n))
+    D = np.exp2(np.round(np.log2(to_f * inversion.normalised_scale(n))))  # nearest powers of two
     rng = np.random.default_rng(seed)
     z = 1e-5 * np.sin(np.arange(steps) / 300.0) + rng.normal(size=steps) * rho
     P, Q = np.diag(rho**2 / to_f**2), np.diag((1e-3 * rho / to_f) ** 2)
