@@ -237,8 +237,8 @@ explain("experiment.sigma_v.yaw.100")
 explain("experiment.sigma_phi.100")
 
 # %% [markdown]
-# No other gain helps. Let $S$ be the answer of the innovation to the measurement. For every stable gain $\log |S|^2$ has
-# the mean zero over the unit circle: an answer that is small at the yawing is large elsewhere, and noise of the
+# No other gain helps. Let $S$ be the answer of the innovation to the measurement. For every stable gain the mean of
+# $\log |S|^2$ over the unit circle is zero: an answer that is small at the yawing is large elsewhere, and noise of the
 # position is the price.
 
 # %%
