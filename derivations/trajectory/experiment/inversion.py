@@ -243,7 +243,6 @@ def windowed_filter(
             gain = g / S[:, None]
             ys = ahead + gain * innovation[:, None]
             Ps = predicted - gain[:, :, None] * gain[:, None, :] * S[:, None, None]
-            Ps = (Ps + Ps.transpose(0, 2, 1)) / 2
             cost = cost + np.log(S) + innovation**2 / S
             # P h/R after the correction is the gain, without an inverse.
             run.states[k], run.gains[k], run.diagonals[k], run.values[k] = ys[0], Ps[0, 0] * h / tuning.R, q, cost[0]
