@@ -12,20 +12,27 @@ elements of Q are therefore tuned by :func:`windowed_filter`, which carries ever
 import math
 from dataclasses import dataclass
 from functools import partial
-from itertools import product
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 
 from navsym.core.arrays import Array, as_array
 from navsym.core.errors import DomainError, TooLargeError
 from navsym.models.earth import need_order, power_rows
+from navsym_papers.trajectory.experiment.transforms import (
+    CORRECTED,
+    LIKELIHOOD,
+    PREDICTED,
+    run_fixed_gain,
+    tune_one_step,
+)
+from navsym_papers.trajectory.experiment.windows import tune_by_windows
 from navsym_papers.trajectory.model import pascal_rows
 
 Form = Literal["printed", "corrected"]
 Criterion = Literal["predicted", "corrected", "likelihood"]
 
-CRITERIA = get_args(Criterion)
+CRITERIA: dict[str, int] = {"predicted": PREDICTED, "corrected": CORRECTED, "likelihood": LIKELIHOOD}
 
 #: 3^9 candidates are 19683; one order more no longer fits the caches.
 LARGEST_FIELD = 9
@@ -162,52 +169,37 @@ def checked(z: Array, model: SteppedModel, start: Start) -> Array:
     return as_array("z", z, (None,), "one entry per step")
 
 
-def empty_run(N: int, n: int) -> AdaptiveRun:
-    """A run whose arrays are to be filled."""
-    return AdaptiveRun(np.empty((N, n)), np.empty((N, n)), np.empty((N, n)), np.empty(N))
-
-
-def field_around(q: Array, seen: Array, step: float) -> Array:
-    """Diagonals (3^k, n) around q: each of the k elements that are seen stays, falls or rises; the first one is q."""
-    factors = np.ones((3 ** int(seen.sum()), len(q)))
-    # The first element changes fastest.
-    factors[:, np.flatnonzero(seen)[::-1]] = list(product((1.0, 1 / step, step), repeat=int(seen.sum())))
-    return q * factors
+def empty_run(N: int, n: int) -> tuple[Array, Array, Array, Array]:
+    """Arrays for a run to fill: states, gains, diagonals (N, n), and values of the criterion (N,)."""
+    return np.empty((N, n)), np.empty((N, n)), np.empty((N, n)), np.empty(N)
 
 
 def adaptive_filter(z: Array, model: SteppedModel, start: Start, tuning: Tuning) -> AdaptiveRun:
     """Tune Q anew at every step over its 3^n neighbours by a criterion of that step.
 
-    A candidate q enters through S = h P^- h + R and K = P^- h/S with P^- = Phi P Phi^T + diag q; none needs a
-    covariance of its own. Those of an element that the measurement does not see (h_i = 0) are equal.
     z : (N,) measurements at steps 1..N.
     """
-    z, h = checked(z, model, start), model.gain_row
-    run, gain = empty_run(len(z), model.order), np.zeros(model.order)
-    y, P, q = start.estimate, start.P, start.Q
-    for k, measured in enumerate(z):
-        innovation, ahead, value = measured - model.row @ y, model.Phi @ y, (measured - model.row @ y) ** 2
-        if tuning.stop is None or k < tuning.stop:
-            predicted = model.Phi @ P @ model.Phi.T
-            field = field_around(q, h != 0, tuning.step)
-            g = predicted @ h + field * h
-            S = g @ h + tuning.R
-            J = criterion(tuning, S, g / S[:, None] * innovation, innovation, ahead - y, model.row[0])
-            best = int(np.argmin(J))
-            q, gain, value = field[best], g[best] / S[best], J[best]
-            P = predicted + np.diag(q) - np.outer(gain, gain) * S[best]
-        y = ahead + gain * innovation
-        run.states[k], run.gains[k], run.diagonals[k], run.values[k] = y, gain, q, value
-    return run
-
-
-def criterion(tuning: Tuning, S: Array, moves: Array, innovation: float, change: Array, first: float) -> Array:
-    """The criterion of each candidate; moves (C, n): corrections, change (n,): of the state by the prediction."""
-    if tuning.criterion == "likelihood":
-        return np.log(S) + innovation**2 / S
-    residual = innovation - (first * moves[:, 0] if tuning.criterion == "corrected" else 0.0 * S)
-    squares = np.column_stack([residual, (change + moves)[:, 1:3]]) ** 2
-    return squares @ np.array(tuning.weights)[: squares.shape[1]]
+    z = checked(z, model, start)
+    states, gains, diagonals, values = empty_run(len(z), model.order)
+    tune_one_step(
+        model.Phi,
+        model.gain_row,
+        model.row,
+        float(tuning.R),
+        z,
+        start.estimate.copy(),
+        start.P.copy(),
+        start.Q.copy(),
+        float(tuning.step),
+        np.array(tuning.weights, dtype=float),
+        CRITERIA[tuning.criterion],
+        len(z) if tuning.stop is None else tuning.stop,
+        states,
+        gains,
+        diagonals,
+        values,
+    )
+    return AdaptiveRun(states, gains, diagonals, values)
 
 
 def windowed_filter(
@@ -221,36 +213,35 @@ def windowed_filter(
 ) -> AdaptiveRun:
     """Tune Q by carrying all 3^n candidates through windows of steps and keeping the likeliest.
 
-    At the end of each window the likeliest candidate becomes the centre of the next field, its estimate and matrix
-    the common start. Inside a window the unchanged candidate, number 0, is reported.
     z : (N,) measurements; window : steps; bounds : range of each element of Q
     Raises DomainError and TooLargeError for windows below one step, starts of another size, and too many candidates.
     """
-    z, h = checked(z, model, start), model.gain_row[0]
+    z = checked(z, model, start)
     if window < 1:
         raise DomainError(f"window: expected at least one step; got {window}; 50 is usual")
-    if model.gain_row[1:].any() or h <= 0:
+    only_first = not model.gain_row[1:].any() and model.gain_row[0] > 0
+    if not only_first:
         raise DomainError("model: expected the corrected form; got a gain row with more than one entry; use it")
-    run, eye, Phi = empty_run(len(z), model.order), np.eye(model.order), model.Phi
-    y, P, q = start.estimate, start.P, start.Q
-    for first in range(0, len(z), window):
-        field = np.clip(field_around(q, np.ones(model.order, bool), tuning.step), *bounds)
-        ys, Ps, cost = np.tile(y, (len(field), 1)), np.tile(P, (len(field), 1, 1)), np.zeros(len(field))
-        for k, measured in enumerate(z[first : first + window], first):
-            ahead, predicted = ys @ Phi.T, Phi @ Ps @ Phi.T + eye * field[:, None, :]
-            g, innovation = predicted[:, :, 0] * h, measured - h * ahead[:, 0]
-            S = h * g[:, 0] + tuning.R
-            gain = g / S[:, None]
-            ys = ahead + gain * innovation[:, None]
-            Ps = predicted - gain[:, :, None] * gain[:, None, :] * S[:, None, None]
-            cost = cost + np.log(S) + innovation**2 / S
-            # P h/R after the correction is the gain, without an inverse.
-            run.states[k], run.gains[k], run.diagonals[k], run.values[k] = ys[0], Ps[0, 0] * h / tuning.R, q, cost[0]
-        if k + 1 == first + window:
-            best = int(np.argmin(cost))
-            y, P, q = ys[best], Ps[best], field[best]
-            run.states[k], run.gains[k], run.values[k] = y, P[0] * h / tuning.R, cost[best]
-    return run
+    states, gains, diagonals, values = empty_run(len(z), model.order)
+    low, high = (np.full(model.order, b) for b in bounds)
+    tune_by_windows(
+        model.Phi,
+        model.gain_row,
+        float(tuning.R),
+        z,
+        start.estimate.copy(),
+        start.P.copy(),
+        start.Q.copy(),
+        float(tuning.step),
+        window,
+        low,
+        high,
+        states,
+        gains,
+        diagonals,
+        values,
+    )
+    return AdaptiveRun(states, gains, diagonals, values)
 
 
 def fixed_gain_filter(z: Array, model: SteppedModel, gain: Array, estimate: Array) -> Array:
@@ -260,10 +251,9 @@ def fixed_gain_filter(z: Array, model: SteppedModel, gain: Array, estimate: Arra
     """
     z = as_array("z", z, (None,), "one entry per step")
     gain = as_array("gain", gain, (model.order,), "one entry per state")
-    y = as_array("estimate", estimate, (model.order,), "one entry per state")
     states = np.empty((len(z), model.order))
-    for k, measured in enumerate(z):
-        states[k] = y = model.Phi @ y + gain * (measured - model.row @ y)
+    start = as_array("estimate", estimate, (model.order,), "one entry per state")
+    run_fixed_gain(model.Phi, model.row, gain, z, start.copy(), states)
     return states
 
 
