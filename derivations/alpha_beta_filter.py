@@ -9,8 +9,6 @@ S = p11 + sigma_v^2. In r = sigma_v / sqrt(S) its corner p22 gives beta = Lambda
 is left of it is a quadratic. Everything else is linear algebra in r.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, Paper, claim
@@ -224,6 +222,13 @@ def other_root_is_not_stable():
     return Equation(-4 * r, 4 - 2 * first - second, RATIO)
 
 
+def discriminant_of_the_filter() -> sp.Expr:
+    """Discriminant of the characteristic polynomial at the optimal gains, in r."""
+    z = sp.Symbol("z", real=True)
+    loop = closed_loop().subs(dict(zip((alpha, beta), gains(), strict=True)), simultaneous=True)
+    return sp.Poly((z * sp.eye(2) - loop).det(), z).discriminant()
+
+
 @claim(
     "remark.critical",
     expect=REFUTED,
@@ -231,21 +236,13 @@ def other_root_is_not_stable():
 )
 def optimal_gains_are_called_critical():
     """The optimal relation (5) makes the filter critically damped: the discriminant of (12) is zero."""
-    first, second = gains()
-    z = sp.Symbol("z", real=True)
-    loop = closed_loop().subs({alpha: first, beta: second}, simultaneous=True)
-    discriminant = sp.Poly((z * sp.eye(2) - loop).det(), z).discriminant()
-    return Equation(sp.Integer(0), discriminant, RATIO)
+    return Equation(sp.Integer(0), discriminant_of_the_filter(), RATIO)
 
 
 @claim("remark.critical*")
 def discriminant_of_optimal_gains():
     """The discriminant is -(1 - r)^2 (6 r - 1 - r^2): negative, hence oscillating, for r > 3 - 2 sqrt(2)."""
-    first, second = gains()
-    z = sp.Symbol("z", real=True)
-    loop = closed_loop().subs({alpha: first, beta: second}, simultaneous=True)
-    discriminant = sp.Poly((z * sp.eye(2) - loop).det(), z).discriminant()
-    return Equation(-((1 - r) ** 2) * (6 * r - 1 - r**2), discriminant, RATIO)
+    return Equation(-((1 - r) ** 2) * (6 * r - 1 - r**2), discriminant_of_the_filter(), RATIO)
 
 
 @claim("remark.critical-relation")

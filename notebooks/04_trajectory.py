@@ -237,6 +237,14 @@ explain("experiment.sigma_v.yaw.100")
 explain("experiment.sigma_phi.100")
 
 # %% [markdown]
+# No other gain helps. Let $S$ be the answer of the innovation to the measurement. For every stable gain the mean of
+# $\log |S|^2$ over the unit circle is zero: an answer that is small at the yawing is large elsewhere, and noise of the
+# position is the price.
+
+# %%
+explain("experiment.together.100")
+
+# %% [markdown]
 # ## Three speeds, one algorithm
 # On a straight course the speed enters neither the innovations nor the criterion, and off it the error can only grow
 # with the speed: the printed errors of 2, 100 and 300 m/s were not made by one gain. And the criterion as printed

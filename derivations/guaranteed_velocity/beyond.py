@@ -5,138 +5,80 @@ where a weight changes sign: y1 for every T, y2 up to 4 pi/3, y3 up to 2 pi/3. B
 bounds two instants are enough; from 3 pi/2 (y2) and pi (y3) on they are half a period apart, and the value is one.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
+from typing import Any
 
 import sympy as sp
 
-from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, Statement, claim
+from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, claim
 from navsym.models.linear import LinearModel
 from navsym.models.transition.exponential import regressors
-from navsym_papers.guaranteed_velocity.model import INSTANTS, H, T, alternating, tau, weights
+from navsym_papers.guaranteed_velocity.model import INSTANTS, H, T, alternating, optimum, tau, weights
 
-UNITS = {"y1": (1, 0, 0), "y2": (0, 1, 0), "y3": (0, 0, 1)}
-ALTERNATING_ERROR = {"y2": 2 * sp.cot(T / 4), "y3": sp.cos(T / 2) / sp.sin(T / 4) ** 2}
-
-
-def solution(
-    state: str, dual: tuple, support: tuple, weights_: tuple, value: sp.Expr, lower: sp.Expr, upper: sp.Expr | None
-) -> Optimum:
-    return Optimum(
-        regressors=tuple(H()),
-        functional=UNITS[state],
-        variable=tau,
-        interval=(sp.Integer(0), T),
-        dual=dual,
-        support=support,
-        weights=weights_,
-        value=value,
-        box={T: (lower, upper)},
-    )
-
-
-def three_instants(state: str, upper: sp.Expr) -> Optimum:
-    place = list(UNITS).index(state)
-    return solution(
-        state, tuple(alternating()), INSTANTS, weights(place), ALTERNATING_ERROR[state], sp.Integer(0), upper
-    )
+Y1, Y2, Y3 = range(3)
+ONE, HALF = sp.Integer(1), (sp.Rational(1, 2), -sp.Rational(1, 2))
+SIN, COS = sp.sin(T), sp.cos(T)
+#: The errors of y2 and y3 on three instants.
+ALTERNATING = {Y2: 2 * sp.cot(T / 4), Y3: sp.cos(T / 2) / sp.sin(T / 4) ** 2}
+#: The duals of y2 for 4 pi/3 <= T <= 3 pi/2 and of y3 for 2 pi/3 <= T <= pi.
+DUALS = {
+    Y2: (1 - 1 / SIN**2 + COS / SIN**2, -1 / SIN, COS / SIN**2),
+    Y3: (-1 / COS - sp.tan(T) ** 2, SIN / COS**2, -1 / COS),
+}
 
 
 # -- how far the printed formulas hold ---------------------------------------
 
 
-velocity_for_every_interval = claim(
-    "range.y1",
-    "y1: the last measurement alone is optimal for every T.",
-    lambda: solution("y1", (1, 0, 0), (T,), (sp.Integer(1),), sp.Integer(1), sp.Integer(0), None),
-)
-tilt_holds_to_four_thirds_of_pi = claim(
-    "range.y2",
-    "y2: the printed weights and error 2 cot(T/4) are optimal up to T = 4 pi/3, not only to pi/2.",
-    lambda: three_instants("y2", 4 * sp.pi / 3),
-)
-drift_holds_to_two_thirds_of_pi = claim(
-    "range.y3",
-    "y3: the printed weights and error cos(T/2)/sin^2(T/4) are optimal up to T = 2 pi/3.",
-    lambda: three_instants("y3", 2 * sp.pi / 3),
-)
-tilt_does_not_hold_further = claim(
-    "range.y2.end",
-    "y2: the printed solution is optimal up to T = 3 pi/2.",
-    lambda: three_instants("y2", 3 * sp.pi / 2),
-    expect=REFUTED,
-    reason="a test of sharpness: at the end of this range a weight has the wrong sign",
-)
+def regime(number: str, title: str, lower: Any, upper: Any, state: int, *solution: Any, **more: Any) -> Claim:
+    """That a dual, its times, weights and value are optimal between two T: those of three instants if none is given."""
+
+    def derive() -> Optimum:
+        alternance = tuple(alternating()), INSTANTS, weights(state), ALTERNATING.get(state)
+        return optimum(state, *(solution or alternance), {T: (sp.sympify(lower), upper)})
+
+    return claim(number, title, derive, **more)
 
 
-def tilt_dual() -> tuple:
-    """The dual of y2 for 4 pi/3 <= T <= 3 pi/2."""
-    return (1 - 1 / sp.sin(T) ** 2 + sp.cos(T) / sp.sin(T) ** 2, -1 / sp.sin(T), sp.cos(T) / sp.sin(T) ** 2)
-
-
-@claim("range.y2.end*")
-def tilt_with_two_instants():
-    """y2, 4 pi/3 <= T <= 3 pi/2: two instants, 2(T - pi) and 0, and the error -1/sin T."""
-    sine = sp.sin(T)
-    return solution(
-        "y2",
-        tilt_dual(),
-        (2 * T - 2 * sp.pi, sp.Integer(0)),
-        (-1 / (2 * sine), 1 / (2 * sine)),
-        -1 / sine,
-        4 * sp.pi / 3,
-        3 * sp.pi / 2,
-    )
-
-
-tilt_with_two_inner_instants = claim(
-    "range.y2.last",
-    "y2, every T >= 3 pi/2: half the difference of two measurements half a period apart, error 1.",
-    lambda: solution(
-        "y2",
-        (0, 1, 0),
-        (T - sp.pi / 2, T - 3 * sp.pi / 2),
-        (sp.Rational(1, 2), -sp.Rational(1, 2)),
-        sp.Integer(1),
-        3 * sp.pi / 2,
-        None,
+SHARP = {"expect": REFUTED, "reason": "a test of sharpness: at the end of this range a weight has the wrong sign"}
+REGIMES = (
+    regime(
+        "range.y1",
+        "y1: the last measurement alone is optimal for every T.",
+        *(0, None, Y1, (1, 0, 0), (T,), (ONE,), ONE),
     ),
-)
-drift_does_not_hold_further = claim(
-    "range.y3.end",
-    "y3: the printed solution is optimal up to T = 3 pi/4.",
-    lambda: three_instants("y3", 3 * sp.pi / 4),
-    expect=REFUTED,
-    reason="a test of sharpness: at the end of this range a weight has the wrong sign",
-)
-
-
-def drift_dual() -> tuple:
-    """The dual of y3 for 2 pi/3 <= T <= pi."""
-    return (-1 / sp.cos(T) - sp.tan(T) ** 2, sp.sin(T) / sp.cos(T) ** 2, -1 / sp.cos(T))
-
-
-@claim("range.y3.end*")
-def drift_with_two_instants():
-    """y3, 2 pi/3 <= T <= pi: two instants, 2 T - pi and 0, and the error -1/cos T."""
-    cosine = sp.cos(T)
-    return solution(
-        "y3",
-        drift_dual(),
-        (2 * T - sp.pi, sp.Integer(0)),
-        (-1 / (2 * cosine), 1 / (2 * cosine)),
-        -1 / cosine,
-        2 * sp.pi / 3,
-        sp.pi,
-    )
-
-
-drift_with_half_a_period = claim(
-    "range.y3.last",
-    "y3, every T >= pi: half the difference of two measurements half a period apart, error 1.",
-    lambda: solution(
-        "y3", (1, 0, 1), (T, T - sp.pi), (sp.Rational(1, 2), -sp.Rational(1, 2)), sp.Integer(1), sp.pi, None
+    regime(
+        "range.y2",
+        "y2: the printed weights and error 2 cot(T/4) are optimal up to T = 4 pi/3, not only to pi/2.",
+        *(0, 4 * sp.pi / 3, Y2),
+    ),
+    regime(
+        "range.y3",
+        "y3: the printed weights and error cos(T/2)/sin^2(T/4) are optimal up to T = 2 pi/3.",
+        *(0, 2 * sp.pi / 3, Y3),
+    ),
+    regime("range.y2.end", "y2: the printed solution is optimal up to T = 3 pi/2.", 0, 3 * sp.pi / 2, Y2, **SHARP),
+    regime(
+        "range.y2.end*",
+        "y2, 4 pi/3 <= T <= 3 pi/2: two instants, 2(T - pi) and 0, and the error -1/sin T.",
+        *(4 * sp.pi / 3, 3 * sp.pi / 2, Y2, DUALS[Y2]),
+        *((2 * T - 2 * sp.pi, sp.Integer(0)), (-1 / (2 * SIN), 1 / (2 * SIN)), -1 / SIN),
+    ),
+    regime(
+        "range.y2.last",
+        "y2, every T >= 3 pi/2: half the difference of two measurements half a period apart, error 1.",
+        *(3 * sp.pi / 2, None, Y2, (0, 1, 0), (T - sp.pi / 2, T - 3 * sp.pi / 2), HALF, ONE),
+    ),
+    regime("range.y3.end", "y3: the printed solution is optimal up to T = 3 pi/4.", 0, 3 * sp.pi / 4, Y3, **SHARP),
+    regime(
+        "range.y3.end*",
+        "y3, 2 pi/3 <= T <= pi: two instants, 2 T - pi and 0, and the error -1/cos T.",
+        *(2 * sp.pi / 3, sp.pi, Y3, DUALS[Y3]),
+        *((2 * T - sp.pi, sp.Integer(0)), (-1 / (2 * COS), 1 / (2 * COS)), -1 / COS),
+    ),
+    regime(
+        "range.y3.last",
+        "y3, every T >= pi: half the difference of two measurements half a period apart, error 1.",
+        *(sp.pi, None, Y3, (1, 0, 1), (T, T - sp.pi), HALF, ONE),
     ),
 )
 
@@ -144,24 +86,17 @@ drift_with_half_a_period = claim(
 # -- the errors meet where the regimes meet ---------------------------------------
 
 
-def meeting(left: sp.Expr, right: sp.Expr, at: sp.Expr) -> Callable[[], Statement]:
-    def derive() -> Statement:
-        return Equation(left.subs(T, at), right.subs(T, at))
-
-    return derive
-
-
 MEETINGS: tuple[Claim, ...] = tuple(
     claim(
         f"range.{state}.meets.{place}",
         f"The errors of {state} on both sides of T = {at} agree there.",
-        meeting(left, right, at),
+        lambda left=left, right=right, at=at: Equation(left.subs(T, at), right.subs(T, at)),
     )
     for state, place, left, right, at in (
-        ("y2", "1", 2 * sp.cot(T / 4), -1 / sp.sin(T), 4 * sp.pi / 3),
-        ("y2", "2", -1 / sp.sin(T), sp.Integer(1), 3 * sp.pi / 2),
-        ("y3", "1", sp.cos(T / 2) / sp.sin(T / 4) ** 2, -1 / sp.cos(T), 2 * sp.pi / 3),
-        ("y3", "2", -1 / sp.cos(T), sp.Integer(1), sp.pi),
+        ("y2", "1", ALTERNATING[Y2], -1 / SIN, 4 * sp.pi / 3),
+        ("y2", "2", -1 / SIN, ONE, 3 * sp.pi / 2),
+        ("y3", "1", ALTERNATING[Y3], -1 / COS, 2 * sp.pi / 3),
+        ("y3", "2", -1 / COS, ONE, sp.pi),
     )
 )
 
@@ -212,10 +147,10 @@ velocity_touches_once = claim(
     "y1, every T: 1 - x.H = sin^2(s/2), s = T - tau, for the dual (1, 0, 1/2): for T < 2 pi one contact.",
     lambda: contacts((1, 0, sp.Rational(1, 2)), sp.sin(s / 2) ** 2, 1 + sp.cos(s / 2) ** 2),
 )
-other_dual_of_velocity = claim(
+other_dual_of_velocity = regime(
     "range.y1.other_dual",
     "y1, every T: the dual (1, 0, 1/2) is feasible and has the value 1.",
-    lambda: solution("y1", (1, 0, sp.Rational(1, 2)), (T,), (sp.Integer(1),), sp.Integer(1), sp.Integer(0), None),
+    *(0, None, Y1, (1, 0, sp.Rational(1, 2)), (T,), (ONE,), ONE),
 )
 
 
@@ -227,7 +162,7 @@ def tilt_touches_twice():
     """
     size = 2 / sp.sin(T) ** 2
     return contacts(
-        tilt_dual(), size * sp.sin((T + s) / 2) ** 2, size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - 2 * sp.pi)
+        DUALS[Y2], size * sp.sin((T + s) / 2) ** 2, size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - 2 * sp.pi)
     )
 
 
@@ -246,7 +181,7 @@ def drift_touches_twice():
     """
     size = 2 / sp.cos(T) ** 2
     return contacts(
-        drift_dual(), size * sp.cos((T + s) / 2) ** 2, size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - sp.pi)
+        DUALS[Y3], size * sp.cos((T + s) / 2) ** 2, size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - sp.pi)
     )
 
 
@@ -257,27 +192,17 @@ drift_touches_half_a_period_apart = claim(
 )
 
 
-def twins(state: str, dual: tuple, times: tuple, weights_: tuple, start: sp.Expr) -> Callable[[], Statement]:
-    """The optimum of a state on other times than those of its regime, for T >= start."""
-
-    def derive() -> Statement:
-        return solution(state, dual, times, weights_, sp.Integer(1), start, None)
-
-    return derive
-
-
-HALF = (sp.Rational(1, 2), -sp.Rational(1, 2))
 #: H repeats after 2 pi, so that one time of the last regime may move back by a period as soon as it lies in [0, T].
 TWINS: tuple[Claim, ...] = tuple(
-    claim(
-        f"range.{state}.twin",
-        f"{state}, T >= {start}: other times give the same error: no longer unique.",
-        twins(state, dual, times, weights_, start),
+    regime(
+        f"range.y{state + 1}.twin",
+        f"y{state + 1}, T >= {start}: other times give the same error: no longer unique.",
+        *(start, None, state, dual, times, weights_, ONE),
     )
     for state, dual, times, weights_, start in (
-        ("y1", (1, 0, 0), (T - 2 * sp.pi,), (sp.Integer(1),), 2 * sp.pi),
-        ("y2", (0, 1, 0), (T - 5 * sp.pi / 2, T - 3 * sp.pi / 2), HALF, 5 * sp.pi / 2),
-        ("y3", (1, 0, 1), (T - 2 * sp.pi, T - sp.pi), HALF, 2 * sp.pi),
+        (Y1, (1, 0, 0), (T - 2 * sp.pi,), (ONE,), 2 * sp.pi),
+        (Y2, (0, 1, 0), (T - 5 * sp.pi / 2, T - 3 * sp.pi / 2), HALF, 5 * sp.pi / 2),
+        (Y3, (1, 0, 1), (T - 2 * sp.pi, T - sp.pi), HALF, 2 * sp.pi),
     )
 )
 

@@ -1,7 +1,5 @@
 """Sections 2 and 3: linear estimators, their worst correlation, and the dual problem."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import sympy as sp

@@ -1,9 +1,8 @@
 """The model on which every derived side of this paper rests: symbols, the system and H(tau)."""
 
-from __future__ import annotations
-
 import sympy as sp
 
+from navsym.claims import Optimum
 from navsym.models.linear import LinearModel
 from navsym.models.transition.exponential import regressors
 
@@ -46,3 +45,11 @@ def alternating() -> sp.Matrix:
     """x with x.H = -1, +1, -1 at the three instants: the dual polynomial normed to one."""
     matrix = N().T
     return matrix.adjugate() * sp.Matrix([-1, 1, -1]) / matrix.det()
+
+
+def optimum(
+    state: int, dual: tuple, times: tuple, weights_: tuple, value: sp.Expr, box: dict[sp.Symbol, tuple] = STATED
+) -> Optimum:
+    """The optimum of one state (0, 1, 2) over [0, T], on some times with their weights."""
+    unit = tuple(int(i == state) for i in range(3))
+    return Optimum(tuple(H()), unit, tau, (sp.Integer(0), T), dual, times, weights_, value, box)

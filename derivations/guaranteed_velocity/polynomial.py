@@ -1,14 +1,12 @@
 """Section 4.1 up to (4.9): the generalised Chebyshev polynomial and its deviations."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import PROVED, Bound, Equation, Finding, Optimum, Property, claim, fact, state
 from navsym.language.expression import to_text
 from navsym.prove.identities.normal_form import vanishes_identically
 from navsym.prove.signs.bounds import Sign, prove_sign
-from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, tau, weights
+from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, optimum, tau, weights
 
 U2_PRINTED = sp.sin(T / 4) ** 2 / sp.cos(T / 2)
 U3_PRINTED = sp.tan(T / 2)
@@ -30,21 +28,6 @@ def polynomial(u2: sp.Expr, u3: sp.Expr) -> sp.Expr:
     """S(tau) = H3 + u2 H1 + u3 H2."""
     vector = H()
     return vector[2] + u2 * vector[0] + u3 * vector[1]
-
-
-def optimum(dual: tuple, state: int, value: sp.Expr) -> Optimum:
-    """The primal-dual statement for one state with the instants 0, T/2, T, weights by Cramer's rule."""
-    return Optimum(
-        regressors=tuple(H()),
-        functional=tuple(int(i == state) for i in range(3)),
-        variable=tau,
-        interval=(sp.Integer(0), T),
-        dual=dual,
-        support=INSTANTS,
-        weights=weights(state),
-        value=value,
-        box=STATED,
-    )
 
 
 # -- (4.1), (4.2) ---------------------------------------
@@ -120,17 +103,23 @@ def alternance_determines_the_polynomial():
     return Bound(matrix.det(), "!=", 0, STATED)
 
 
+def least_deviation(u2: sp.Expr) -> Optimum:
+    """That the polynomial with u2 and the printed u3 deviates least: its dual is optimal for y3."""
+    dual = (u2 / L1_PRINTED, U3_PRINTED / L1_PRINTED, 1 / L1_PRINTED)
+    return optimum(2, dual, INSTANTS, weights(2), 1 / L1_PRINTED)
+
+
 printed_polynomial_deviates_least = claim(
     "4.4",
     "S0 with the printed u2, u3 deviates least from zero: optimal for y3, as printed.",
-    lambda: optimum((U2_PRINTED / L1_PRINTED, U3_PRINTED / L1_PRINTED, 1 / L1_PRINTED), 2, 1 / L1_PRINTED),
+    lambda: least_deviation(U2_PRINTED),
     slip="paper",
     reason="with the printed u2 the polynomial leaves the band [-L1, L1]; the sign of u2 is the only cause",
 )
 corrected_polynomial_deviates_least = claim(
     "4.4*",
     "S0 with u2 = -sin^2(T/4)/cos(T/2), u3 = tan(T/2) deviates least from zero: optimal for y3.",
-    lambda: optimum((-U2_PRINTED / L1_PRINTED, U3_PRINTED / L1_PRINTED, 1 / L1_PRINTED), 2, 1 / L1_PRINTED),
+    lambda: least_deviation(-U2_PRINTED),
 )
 polynomial_is_a_shifted_cosine = claim(
     "4.4.closed-form",
@@ -166,7 +155,7 @@ middle_contact_is_stationary = claim(
 same_instants_for_all = claim(
     "4.6.same-instants",
     "The contacts (4.6) serve y1 as well: its dual is that of y3 with the other sign (y2 and y3: 4.13).",
-    lambda: optimum(tuple(-alternating()), 0, sp.Integer(1)),
+    lambda: optimum(0, tuple(-alternating()), INSTANTS, weights(0), sp.Integer(1)),
 )
 
 
@@ -202,17 +191,7 @@ def three_impulses_solve_the_problem():
     sine = sp.sin(T / 4) ** 2
     printed = (-1 / (4 * sine), sp.cos(T / 2) / (2 * sine), (1 - 2 * sp.cos(T / 2)) / (4 * sine))
     x = alternating()
-    return Optimum(
-        regressors=tuple(H()),
-        functional=(0, 0, 1),
-        variable=tau,
-        interval=(sp.Integer(0), T),
-        dual=tuple(x),
-        support=INSTANTS,
-        weights=printed,
-        value=x[2],
-        box=STATED,
-    )
+    return optimum(2, tuple(x), INSTANTS, printed, x[2])
 
 
 second_deviation = claim(

@@ -5,8 +5,6 @@ at the first instant, adds its share to the estimate and moves the queue. After 
 and further measurements change nothing.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any

@@ -1,7 +1,5 @@
 """Section 1: error equations of the two channels, the measurement, H(tau)."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import CERTIFIED, Bound, Equation, claim

@@ -1,11 +1,20 @@
 """(4.10) to (4.16): weights, guaranteed errors and estimates, in both channels."""
 
-from __future__ import annotations
-
 import sympy as sp
 
-from navsym.claims import Bound, Claim, Equation, Optimum, Statement, claim
-from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, N, T, alternating, sigma1, sigma2, tau, weights
+from navsym.claims import Bound, Equation, claim
+from navsym_papers.guaranteed_velocity.model import (
+    INSTANTS,
+    STATED,
+    H,
+    N,
+    T,
+    alternating,
+    optimum,
+    sigma1,
+    sigma2,
+    weights,
+)
 
 # -- (4.10), (4.11) ---------------------------------------
 
@@ -55,12 +64,15 @@ weights_by_inversion = claim(
 )
 
 
-def weight(s: int, j: int) -> Claim:
-    title = f"Weight Phi_{s + 1}{j + 1} of the estimate of y{s + 1}."
-    return claim(f"4.12.Phi{s + 1}{j + 1}", title, lambda: Equation(PRINTED_WEIGHTS[s][j], weights(s)[j], STATED))
-
-
-WEIGHTS = tuple(weight(s, j) for s in range(3) for j in range(3))
+WEIGHTS = tuple(
+    claim(
+        f"4.12.Phi{s + 1}{j + 1}",
+        f"Weight Phi_{s + 1}{j + 1} of the estimate of y{s + 1}.",
+        lambda s=s, j=j: Equation(PRINTED_WEIGHTS[s][j], weights(s)[j], STATED),
+    )
+    for s in range(3)
+    for j in range(3)
+)
 
 
 # -- (4.13), (4.15): guaranteed errors ---------------------------------------
@@ -73,18 +85,6 @@ def dual_of(state: int) -> tuple[sp.Expr, ...]:
     return (sp.Integer(1), sp.Integer(0), sp.Integer(0)) if state == 0 else tuple(alternating())
 
 
-def guaranteed_error(s: int) -> Claim:
-    """The printed error (for sigma = 1) is the optimum of (2.7), proved by weights and dual."""
-
-    def derive() -> Statement:
-        unit, ends = tuple(int(i == s) for i in range(3)), (sp.Integer(0), T)
-        return Optimum(tuple(H()), unit, tau, ends, dual_of(s), INSTANTS, weights(s), PRINTED_ERRORS[s], STATED)
-
-    return claim(
-        f"4.13.y{s + 1}", f"Guaranteed error of y{s + 1}: optimal among all linear unbiased estimates.", derive
-    )
-
-
 def errors_with_sigma(sigma: sp.Symbol) -> Equation:
     """The printed errors with their factor sigma, against the objective of (2.7): sigma times sum |Phi_j|.
 
@@ -95,7 +95,15 @@ def errors_with_sigma(sigma: sp.Symbol) -> Equation:
     return Equation([error * sigma for error in PRINTED_ERRORS], [sigma * total for total in totals], STATED)
 
 
-OPTIMAL_ERRORS = tuple(guaranteed_error(s) for s in range(3))
+#: The printed error (for sigma = 1) is the optimum of (2.7), proved by weights and dual.
+OPTIMAL_ERRORS = tuple(
+    claim(
+        f"4.13.y{s + 1}",
+        f"Guaranteed error of y{s + 1}: optimal among all linear unbiased estimates.",
+        lambda s=s: optimum(s, dual_of(s), INSTANTS, weights(s), PRINTED_ERRORS[s]),
+    )
+    for s in range(3)
+)
 lateral_errors = claim(
     "4.13.sigma",
     "d_opt of y1, y2, y3 is sigma1 times the sum of the moduli of its weights.",

@@ -7,8 +7,6 @@ kinematics of small rotations, ``section3_*`` examines the algorithm, its gains 
 measurements are enough.
 """
 
-from __future__ import annotations
-
 from navsym.claims import Paper
 
 PAPER = Paper(

@@ -8,8 +8,6 @@ and terms of order mu^2 rho are dropped, each of them on record.
 Kalenova, Morozov, Parusnikov, Shakot'ko 1979, (2.6)-(2.9).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

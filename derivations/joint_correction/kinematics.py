@@ -10,8 +10,6 @@ equation is linearised, Newton's equation is solved for the derivatives of the r
 Kalenova, Morozov, Parusnikov, Shakot'ko 1979, section 2, states the results (2.1)-(2.5).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

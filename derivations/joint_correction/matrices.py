@@ -1,7 +1,5 @@
 """Matrices of section 1: inverses of rational functions, unit rows, the shift and the corner of (1.14)."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.core.errors import DomainError

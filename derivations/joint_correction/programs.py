@@ -6,8 +6,6 @@ own error is below |A h|^5/120 times the state (h in the units of the paper's ti
 its gains are set to zero: that is the paper's own rule for its situations.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import Equation

@@ -5,8 +5,6 @@ Definition (1.2) and the coefficients theta, phi and delta say how the chains go
 ``B G = Phi_x A + Phi_z B``. Their existence is 1.4.theta, 1.8.basis, 1.10.phi and 1.14.delta.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from navsym.claims import Claim, Property, claim

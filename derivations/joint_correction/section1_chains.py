@@ -1,7 +1,5 @@
 """Section 1, (1.2)-(1.6): what one measurement observes, and the observer for it."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import PROVED, Bound, Equation, Finding, claim, fact
@@ -10,17 +8,8 @@ from navsym.observability.chains import numerators
 from navsym.observability.linear import linear_relation, pivot_rows
 from navsym.observability.ring import Ring
 from navsym.observability.splits import companion
+from navsym_papers.joint_correction import section1_systems
 from navsym_papers.joint_correction.matrices import exact_inverse, unit_row
-from navsym_papers.joint_correction.section1_systems import (
-    System,
-    coefficients_of_polynomial,
-    direct_sum,
-    free,
-    k,
-    say_ranks,
-    seen_at_once,
-    systems,
-)
 
 SIZES = "systems with (n, m) = (2, 1), (3, 2), (4, 2), (5, 3), one family of C_1 and C_2, not every size"
 
@@ -30,28 +19,30 @@ def dimensions():
     """m <= n, l <= n and m + l >= n for an observable pair."""
     found = all(
         first.dimension <= s.n and second.dimension <= s.n and first.dimension + second.dimension >= s.n
-        for s in (*systems(), direct_sum())
+        for s in (*section1_systems.systems(), section1_systems.direct_sum())
         for first, second in [s.found.measurements]
     )
     ranks, relations = [], []
-    for s in (*systems(), direct_sum()):
+    for s in (*section1_systems.systems(), section1_systems.direct_sum()):
         sizes = [part.dimension for part in s.found.measurements]
         alone = [LinearModel(s.G, None, s.model.H[number, :]) for number in (0, 1)]
         ranks += [*zip(alone, sizes, strict=True), (s.model, s.n)]
         relations += [*((str(size), "<=", str(s.n)) for size in sizes), (f"{sizes[0]} + {sizes[1]}", ">=", str(s.n))]
-    return say_ranks(True, Finding(found, "exact dimensions of the chains", PROVED, scope=SIZES), ranks, *relations)
+    return section1_systems.say_ranks(
+        True, Finding(found, "exact dimensions of the chains", PROVED, scope=SIZES), ranks, *relations
+    )
 
 
 @claim("1.3.basis")
 def chain_is_a_basis():
     """The first m vectors a_1 ... a_m are a basis of what sigma_1 observes."""
-    counts = tuple(rank_of(s.chain(1, s.m)) for s in systems())
-    longer = tuple(rank_of(s.chain(1, 2 * s.n)) for s in systems())
+    counts = tuple(rank_of(s.chain(1, s.m)) for s in section1_systems.systems())
+    longer = tuple(rank_of(s.chain(1, 2 * s.n)) for s in section1_systems.systems())
     value = counts if counts == longer else None
     finding = Finding(value, "exact ranks of m and of 2 n vectors", PROVED, scope=SIZES)
-    ranks = [(seen_at_once(s.chain(1, s.m)), s.m) for s in systems()]
-    ranks += [(LinearModel(s.G, None, s.model.H[0, :]), s.m) for s in systems()]
-    return say_ranks(tuple(s.m for s in systems()), finding, ranks)
+    ranks = [(section1_systems.seen_at_once(s.chain(1, s.m)), s.m) for s in section1_systems.systems()]
+    ranks += [(LinearModel(s.G, None, s.model.H[0, :]), s.m) for s in section1_systems.systems()]
+    return section1_systems.say_ranks(tuple(s.m for s in section1_systems.systems()), finding, ranks)
 
 
 def rank_of(rows: sp.MatrixBase) -> int:
@@ -66,26 +57,26 @@ def characteristic(matrix: sp.MatrixBase) -> list[sp.Expr]:
 
     Its characteristic polynomial is p^m - theta_m p^(m-1) - ... - theta_1.
     """
-    values = [-value for value in coefficients_of_polynomial(matrix)[1:]]
+    values = [-value for value in section1_systems.coefficients_of_polynomial(matrix)[1:]]
     return values[::-1]
 
 
 @claim("1.4.theta")
 def next_vector_depends():
     """a_{m+1} is the combination of a_1 ... a_m with the coefficients theta of Cayley and Hamilton."""
-    for s in systems():
+    for s in section1_systems.systems():
         theta = characteristic(s.block)
         yield sp.Matrix([theta]) * s.chain(1, s.m), s.chain(1, s.m + 1)[s.m, :]
 
 
-def theta_of(s: System) -> tuple[sp.Expr, ...]:
+def theta_of(s: section1_systems.System) -> tuple[sp.Expr, ...]:
     return s.found.measurements[0].companion
 
 
 @claim("1.5.Theta")
 def companion_matrix():
     """Theta has ones above the diagonal and theta_1 ... theta_m in its last row."""
-    s = systems()[3]
+    s = section1_systems.systems()[3]
     t1, t2, t3 = theta_of(s)
     A = s.chain(1, 4)
     solved = sp.Matrix([[*coefficients(A[:3, :], A[row, :])] for row in (1, 2, 3)])
@@ -105,9 +96,9 @@ def coefficients(basis: sp.MatrixBase, row: sp.MatrixBase) -> list[sp.Expr]:
 def observer(size: int) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
     """(G_x, K, g_x) of a general scalar observer of the given order in coordinates with C_1 = free."""
     theta = sp.symbols(f"theta1:{size + 1}", real=True)
-    C1 = free("x", size)
+    C1 = section1_systems.free("x", size)
     back = exact_inverse("C1", C1)
-    return C1 * companion(theta) * back, sp.Matrix(k[:size]), unit_row(size) * back
+    return C1 * companion(theta) * back, sp.Matrix(section1_systems.k[:size]), unit_row(size) * back
 
 
 @claim("1.6.gain_unique")
@@ -116,19 +107,14 @@ def gain_is_unique():
     found = True
     for size in (1, 2, 3):
         G, K, row = observer(size)
-        values = coefficients_of_polynomial(G - K * row)[1:]
+        values = section1_systems.coefficients_of_polynomial(G - K * row)[1:]
         jacobian = sp.Matrix(values).jacobian(K)
         linear = not any(jacobian.has(symbol) for symbol in K)
         found = found and linear and rank_of(jacobian) == size
-    return fact(
-        True,
-        found,
-        "the coefficients are affine in K_x with an invertible matrix",
-        PROVED,
-        scope="m = 1, 2, 3, all theta",
-        assumptions=("det C_1 != 0",),
-        unsaid="that a map is affine and invertible is said of all its values at once",
-    )
+    method = "the coefficients are affine in K_x with an invertible matrix"
+    scope = "m = 1, 2, 3, all theta"
+    unsaid = "that a map is affine and invertible is said of all its values at once"
+    return fact(True, found, method, PROVED, scope=scope, assumptions=("det C_1 != 0",), unsaid=unsaid)
 
 
 @claim("1.6.gain_unique.determinant")
@@ -137,10 +123,10 @@ def gain_determinant():
     values = []
     for size in (1, 2, 3):
         G, K, row = observer(size)
-        values_of = coefficients_of_polynomial(G - K * row)[1:]
+        values_of = section1_systems.coefficients_of_polynomial(G - K * row)[1:]
         jacobian = sp.Matrix(values_of).jacobian(K)
         values.append(sp.expand(jacobian.det(method="berkowitz")) ** 2)
-    return Equation([free("x", size).det() ** -2 for size in (1, 2, 3)], values)
+    return Equation([section1_systems.free("x", size).det() ** -2 for size in (1, 2, 3)], values)
 
 
 @claim("1.6.initial")
@@ -150,7 +136,7 @@ def initial_estimate():
     values = []
     for size in (1, 2, 3):
         _, _, row = observer(size)
-        start = free("x", size) * sp.Matrix([first, *[0] * (size - 1)])
+        start = section1_systems.free("x", size) * sp.Matrix([first, *[0] * (size - 1)])
         values.append((row * start)[0])
     return Equation(values, [first] * 3)
 

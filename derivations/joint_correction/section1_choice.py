@@ -4,8 +4,6 @@ Nothing is assumed but the coefficients of (1.4) and (1.10): in the basis a_1 ..
 matrix G^T shifts the chains, and every further b is a row of numbers in theta and phi.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import Equation, claim

@@ -4,8 +4,6 @@ The state is scrambled by an integer matrix of determinant one, so that no formu
 off the entries. Nothing here knows a printed formula.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache

@@ -1,7 +1,5 @@
 """Section 1, (1.14): the form u, v, w for a basis with i < m, and the choice of i."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import PROVED, Equation, claim, fact
@@ -164,14 +162,9 @@ def choice_of_i():
     from navsym.observability.splits import best_split
 
     best = best_split(overlapping().found)
-    return fact(
-        (2, 2),
-        (best.i, best.j),
-        "all determinants of a_1 ... a_i, b_1 ... b_j",
-        PROVED,
-        scope="n = 4, m = 3, l = 4",
-        unsaid="a least value over all bases is found by trying them",
-    )
+    method = "all determinants of a_1 ... a_i, b_1 ... b_j"
+    unsaid = "a least value over all bases is found by trying them"
+    return fact((2, 2), (best.i, best.j), method, PROVED, scope="n = 4, m = 3, l = 4", unsaid=unsaid)
 
 
 @claim("1.14.gains_unique")

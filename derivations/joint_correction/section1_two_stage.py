@@ -1,14 +1,12 @@
 """Section 1, (1.7)-(1.13): the two-stage split, its estimator, and the general variant."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import PROVED, Equation, Finding, claim, fact
 from navsym.models.linear import LinearModel
 from navsym.observability.splits import companion, last_row
 from navsym_papers.joint_correction.matrices import exact_inverse, unit_row
-from navsym_papers.joint_correction.section1_chains import SIZES, coefficients, rank_of
+from navsym_papers.joint_correction.section1_chains import SIZES, characteristic, coefficients, rank_of
 from navsym_papers.joint_correction.section1_systems import (
     System,
     coefficients_of_polynomial,
@@ -53,23 +51,15 @@ def chains_complete_each_other():
     identities = []
     for size in (1, 2, 3):
         M = sp.Matrix(size, size, lambda r, s, size=size: g[r * size + s])
-        theta = characteristic_of(M)
+        theta = characteristic(M)
         power = [M**j for j in range(size + 1)]
         total = sum((t * power[j] for j, t in enumerate(theta)), sp.zeros(size, size))
         identities += [sp.expand(x) == 0 for x in power[size] - total]
     full = tuple(rank_of(sp.Matrix.vstack(s.chain(1, s.m), s.chain(2, s.rest))) == s.n for s in systems())
-    return fact(
-        True,
-        all(identities) and all(full),
-        "Cayley-Hamilton in the quotient by the first chain",
-        PROVED,
-        scope="n - m = 1, 2, 3 with all entries symbolic, every m",
-        unsaid="that a chain is a basis wherever a pair is observable is said of all sizes",
-    )
-
-
-def characteristic_of(matrix: sp.Matrix) -> list[sp.Expr]:
-    return [-value for value in coefficients_of_polynomial(matrix)[1:]][::-1]
+    method = "Cayley-Hamilton in the quotient by the first chain"
+    scope = "n - m = 1, 2, 3 with all entries symbolic, every m"
+    unsaid = "that a chain is a basis wherever a pair is observable is said of all sizes"
+    return fact(True, all(identities) and all(full), method, PROVED, scope=scope, unsaid=unsaid)
 
 
 @claim("1.8.one_to_one")
@@ -90,14 +80,8 @@ def transformation_is_invertible():
 def output_row_of_z_printed():
     """g_z^T = (1 0 ... 0)^T C_2^-1, as printed: a column times a matrix."""
     size = 2
-    return fact(
-        True,
-        unit_row(size).T.cols == free("z", size).rows,
-        "shapes of the factors, n - m = 2",
-        PROVED,
-        scope="n - m = 2",
-        unsaid="sides of shapes that do not fit have no value",
-    )
+    method, unsaid = "shapes of the factors, n - m = 2", "sides of shapes that do not fit have no value"
+    return fact(True, unit_row(size).T.cols == free("z", size).rows, method, PROVED, scope="n - m = 2", unsaid=unsaid)
 
 
 @claim("1.10.gz*")
@@ -184,15 +168,10 @@ def second_gain_is_unique():
             K
         )
         found = found and rank_of(jacobian) == size and not any(jacobian.has(symbol) for symbol in K)
-    return fact(
-        True,
-        found,
-        "the coefficients are affine in K_z with an invertible matrix",
-        PROVED,
-        scope="n - m = 1, 2, 3, all phi",
-        assumptions=("det C_2 != 0",),
-        unsaid="that a map is affine and invertible is said of all its values at once",
-    )
+    method = "the coefficients are affine in K_z with an invertible matrix"
+    scope = "n - m = 1, 2, 3, all phi"
+    unsaid = "that a map is affine and invertible is said of all its values at once"
+    return fact(True, found, method, PROVED, scope=scope, assumptions=("det C_2 != 0",), unsaid=unsaid)
 
 
 @claim("1.11.characteristic")
@@ -214,14 +193,8 @@ def first_stage_ignores_the_second():
         rows = closed_loop(b)[:m, :]
         found = found and not rows[:, m:].free_symbols and not any(rows.has(s) for s in b["Kz"])
         found = found and all(value == 0 for value in rows[:, m:])
-    return fact(
-        True,
-        found,
-        "entries of the closed loop",
-        PROVED,
-        scope=f"(m, n - m) in {PAIRS}, all coefficients",
-        unsaid="which symbols a formula has is read off it, not its value",
-    )
+    method, unsaid = "entries of the closed loop", "which symbols a formula has is read off it, not its value"
+    return fact(True, found, method, PROVED, scope=f"(m, n - m) in {PAIRS}, all coefficients", unsaid=unsaid)
 
 
 @claim("1.two_stage.influence")

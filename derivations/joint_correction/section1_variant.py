@@ -1,7 +1,5 @@
 """Section 1, the Remark and (1.13): any rows that complete L_x, and what the weight K°_z costs."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import PROVED, Equation, claim, fact
@@ -130,11 +128,5 @@ def first_stage_of_the_variant_ignores_sigma2():
         rows = sp.Matrix.hstack(b["Gx"] - b["Kx"] * b["gx"], b["upper"][:, m:])
         found = found and not any(rows.has(symbol) for symbol in b["Kz"])
         found = found and all(sp.expand(value) == 0 for value in b["upper"][:, m:])
-    return fact(
-        True,
-        found,
-        "entries of the first rows",
-        PROVED,
-        scope=f"(m, n - m) in {PAIRS[:4]}",
-        unsaid="which symbols a formula has is read off it, not its value",
-    )
+    unsaid = "which symbols a formula has is read off it, not its value"
+    return fact(True, found, "entries of the first rows", PROVED, scope=f"(m, n - m) in {PAIRS[:4]}", unsaid=unsaid)

@@ -5,45 +5,29 @@ Newton's equation solved for the rates, the velocity seen in platform axes. Term
 mu^2 rho are dropped, and :func:`dropped_terms` says which.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import sympy as sp
 
 from navsym.claims import CERTIFIED, PROVED, Bound, Equation, claim, fact
+from navsym_papers.joint_correction import kinematics
 from navsym_papers.joint_correction.inertial import PHYSICAL_ORDERS, truncate
-from navsym_papers.joint_correction.kinematics import (
-    ALPHA,
-    BETA,
-    CLIMB,
-    DELTA_P,
-    EARTH_X,
-    EPSILON,
-    NU_X,
-    OMEGA_X,
-    OMEGA_X_RATE,
-    SCHULER,
-    W_C,
-    ErrorEquations,
-    error_equations,
-)
 
 EXPONENTS = "units are compared as exponents, and statements are about numbers"
 
-a1, a2, a3 = ALPHA
-b1, b2, b3 = BETA
-p1, p2 = DELTA_P
-v1, v2, v3 = NU_X
-e1, e2 = EPSILON
-w1, w2 = OMEGA_X[:2]
-u1, u2, u3 = EARTH_X
-w0 = SCHULER
+a1, a2, a3 = kinematics.ALPHA
+b1, b2, b3 = kinematics.BETA
+p1, p2 = kinematics.DELTA_P
+v1, v2, v3 = kinematics.NU_X
+e1, e2 = kinematics.EPSILON
+w1, w2 = kinematics.OMEGA_X[:2]
+u1, u2, u3 = kinematics.EARTH_X
+w0 = kinematics.SCHULER
 
 
 @cache
-def equations() -> ErrorEquations:
-    return error_equations()
+def equations() -> kinematics.ErrorEquations:
+    return kinematics.error_equations()
 
 
 def kept(symbol: sp.Symbol) -> sp.Expr:
@@ -71,18 +55,13 @@ dropped_terms = claim(
 @claim("2.1.climb")
 def climb_is_negligible():
     """A climb below 0.1 a max|omega| adds only terms of order mu^2 rho to (2.1) and (2.4)."""
-    climbing = error_equations(CLIMB)
+    climbing = kinematics.error_equations(kinematics.CLIMB)
     values = [climbing.rates[p] - equations().rates[p] for p in (p1, p2)]
     values += [c - e for c, e in zip(climbing.velocity, equations().velocity, strict=True)]
     orders = tuple(truncate(sp.expand(value), PHYSICAL_ORDERS, 2).kept == 0 for value in values)
-    return fact(
-        (True,) * 4,
-        orders,
-        "orders of all added terms, climb/(a omega_0) counted as mu^2",
-        PROVED,
-        scope="linear in the errors, alpha_3 up to rho/mu",
-        unsaid="orders of terms in a small parameter are compared, not values",
-    )
+    method = "orders of all added terms, climb/(a omega_0) counted as mu^2"
+    unsaid = "orders of terms in a small parameter are compared, not values"
+    return fact((True,) * 4, orders, method, PROVED, scope="linear in the errors, alpha_3 up to rho/mu", unsaid=unsaid)
 
 
 @claim("2.condition2.height")
@@ -129,15 +108,18 @@ def turn_of_the_computed_frame() -> sp.Matrix:
     from navsym_papers.joint_correction.kinematics import horizontal, rotation_rate, skew
 
     gamma = sp.Matrix(sp.symbols("gamma_1:4", real=True))
-    computed = sp.Matrix([*(DELTA_P - horizontal(skew(ALPHA) * OMEGA_X)), 0])
-    return rotation_rate(gamma, computed, OMEGA_X).subs(dict(zip(gamma, ALPHA - BETA, strict=True)))
+    computed = sp.Matrix([*(kinematics.DELTA_P - horizontal(skew(kinematics.ALPHA) * kinematics.OMEGA_X)), 0])
+    return rotation_rate(gamma, computed, kinematics.OMEGA_X).subs(
+        dict(zip(gamma, kinematics.ALPHA - kinematics.BETA, strict=True))
+    )
 
 
 velocity_information = claim(
     "2.4",
     "The velocity correction sigma_x1^c, sigma_x2^c.",
     lambda: Equation(
-        [p1 + u3 * a2 + u2 * b3 - u3 * b2 + W_C[0], p2 - u3 * a1 + u3 * b1 - u1 * b3 + W_C[1]], equations().velocity
+        [p1 + u3 * a2 + u2 * b3 - u3 * b2 + kinematics.W_C[0], p2 - u3 * a1 + u3 * b1 - u1 * b3 + kinematics.W_C[1]],
+        equations().velocity,
     ),
 )
 
@@ -152,7 +134,7 @@ SCHULER_RATE = sp.sqrt(GRAVITY / EARTH_RADIUS)  # 1/s
 
 def degree(expression: sp.Expr) -> sp.Expr:
     """Power of 1/s of an expression in rates (1/s) and their derivatives, from f(2 omega)/f(omega)."""
-    doubled = {w1: 2 * w1, w2: 2 * w2, **{rate: 4 * rate for rate in OMEGA_X_RATE[:2]}}
+    doubled = {w1: 2 * w1, w2: 2 * w2, **{rate: 4 * rate for rate in kinematics.OMEGA_X_RATE[:2]}}
     ratio = sp.cancel((expression**2).subs(doubled, simultaneous=True) / expression**2)
     return sp.Rational(int(ratio).bit_length() - 1, 2)
 
@@ -177,7 +159,7 @@ stationarity_units = claim(
     "|d/dt (omega_x1^2 + omega_x2^2)^(1/2)| < max(omega_x1^2 + omega_x2^2): both sides in 1/s^2.",
     lambda: fact(
         degree(RATE**2),
-        degree(sum(sp.diff(RATE, w) * dw for w, dw in zip((w1, w2), OMEGA_X_RATE[:2], strict=True))),
+        degree(sum(sp.diff(RATE, w) * dw for w, dw in zip((w1, w2), kinematics.OMEGA_X_RATE[:2], strict=True))),
         "powers of 1/s on the right and on the left side",
         PROVED,
         unsaid=EXPONENTS,
@@ -216,14 +198,9 @@ def where_great_circles_are_not_stationary():
     """Not at every speed: westward at 419 m/s, near that of the ground below, the same condition fails."""
     point = (sp.Rational(9, 10), sp.Rational(-99, 100), sp.Rational(1, 2))
     left, right = stationarity(*point)
-    return fact(
-        False,
-        bool(left < right),
-        "exact values at one flight",
-        PROVED,
-        scope="speed 0.9 Omega R = 419 m/s, course constant -0.99",
-        unsaid="a maximum over a flight is compared, and no formula is given for it",
-    )
+    scope = "speed 0.9 Omega R = 419 m/s, course constant -0.99"
+    unsaid = "a maximum over a flight is compared, and no formula is given for it"
+    return fact(False, bool(left < right), "exact values at one flight", PROVED, scope=scope, unsaid=unsaid)
 
 
 @claim("2.assumption1.orthodrome.much", expect=CERTIFIED)

@@ -6,8 +6,6 @@ best estimate is its inverse. What is printed here are our numbers behind the pa
 behind its advice to estimate the Schuler variables first.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import sympy as sp

@@ -5,8 +5,6 @@ back: kappa = mu u_3 couples the two velocity channels, c = mu^2 omega_1 omega_2
 channels.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 
@@ -182,18 +180,13 @@ def coupled_system_is_stable_inside():
     )
     return fact(
         (0, 0, 2, True),
-        (*counts, parts_never_vanish_together()),
+        (*counts, sp.resultant(3 * lam - lam**3, 1 - 3 * lam**2, lam) != 0),
         "no crossing of the axis, Routh's table at one point of every region",
         PROVED,
         scope="all lambda_c > 0, all real kappa",
         evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}; the parts have no common zero",
         unsaid="roots of a polynomial with free coefficients are counted by regions",
     )
-
-
-def parts_never_vanish_together() -> bool:
-    """3 lambda - lambda^3 and 1 - 3 lambda^2 have no common zero: their resultant is not zero."""
-    return sp.resultant(3 * lam - lam**3, 1 - 3 * lam**2, lam) != 0
 
 
 def poles_on_the_right(lambda_value: sp.Expr, kappa_value: sp.Expr) -> int:

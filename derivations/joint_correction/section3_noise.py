@@ -5,8 +5,6 @@ White noise of unit intensity in the measurements of one channel; the gains are 
 e' = A e - K r solves A P + P A^T + K K^T = 0, a linear system with one solution where A is stable.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import sympy as sp

@@ -1,7 +1,5 @@
 """What the paper does not ask: how few measurements are enough, and what is missing when some fail."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import cache
 from itertools import combinations

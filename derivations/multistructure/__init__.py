@@ -14,8 +14,6 @@ Slips without a claim of their own, since nothing can be computed from them: the
 for the form (11), and "the j-th step" above (12) for the k-th.
 """
 
-from __future__ import annotations
-
 from navsym.claims import Paper
 
 PAPER = Paper(

@@ -1,7 +1,5 @@
 """Conditions and words between the equations: why estimates are weighed, what is known when, which noise is meant."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import Equation, claim

@@ -1,7 +1,5 @@
 """Equations (1)-(3): what sensor errors do to a reckoned position, and which errors grow."""
 
-from __future__ import annotations
-
 import re
 
 import sympy as sp
@@ -17,23 +15,14 @@ scale = sp.Symbol("epsilon", real=True)
 SPHERE = {model.latitude: (sp.Rational(-3, 2), sp.Rational(3, 2)), model.height: (0, None)}
 
 
-def at_zero(matrix: sp.Matrix) -> sp.Matrix:
-    return matrix.subs(dict.fromkeys((*RECKONING.errors, *RECKONING.sensor_errors), 0))
-
-
 @claim("1.nonlinear")
 def nonlinear():
     """The errors of reckoned coordinates depend on the sensor errors in a nonlinear way."""
     point = {model.latitude: 0, model.vy: 1, model.vx: 0, model.heading: 0, model.height: 0, model.radius: 1}
-    curvature = at_zero(S.diff(model.d_heading, 2))[0].subs(point)
-    found = Finding(
-        bool(curvature != 0),
-        "second derivative at an exact point",
-        PROVED,
-        scope="course and log on a sphere",
-        evidence=f"d2S/dK2 = {curvature} at the equator, heading north at unit speed",
-    )
     at_rest = dict.fromkeys((*RECKONING.errors, *RECKONING.sensor_errors), 0)
+    curvature = S.diff(model.d_heading, 2).subs(at_rest)[0].subs(point)
+    scope, evidence = "course and log on a sphere", f"d2S/dK2 = {curvature} at the equator, heading north at unit speed"
+    found = Finding(bool(curvature != 0), "second derivative at an exact point", PROVED, scope=scope, evidence=evidence)
     return Property(True, found, (changes_at(S[0], model.d_heading, 2, at_rest | point),))
 
 
@@ -98,14 +87,11 @@ def unsteady():
     rational = point | {model.latitude: 1, model.heading: 1}
     meaning = tuple(changes_at(part[1, 0], model.latitude, 1, rational) for part in (S1, S2))
     slopes = [S1.diff(model.latitude)[1, 0].subs(point), S2.diff(model.latitude)[1, 0].subs(point)]
+    method = "derivative by latitude at an exact point"
+    scope = "course and log on a sphere"
+    evidence = f"dS1/dphi = {slopes[0]}, dS2/dphi = {slopes[1]} at 45 degrees, heading east"
     return fact(
-        True,
-        all(bool(slope != 0) for slope in slopes),
-        "derivative by latitude at an exact point",
-        PROVED,
-        scope="course and log on a sphere",
-        evidence=f"dS1/dphi = {slopes[0]}, dS2/dphi = {slopes[1]} at 45 degrees, heading east",
-        meaning=meaning,
+        True, all(bool(slope != 0) for slope in slopes), method, PROVED, scope=scope, evidence=evidence, meaning=meaning
     )
 
 

@@ -1,7 +1,5 @@
 """One small switching model, run exactly: scalar state, two modes, expressions in place of numbers."""
 
-from __future__ import annotations
-
 from decimal import Context, Decimal
 from fractions import Fraction
 

@@ -7,8 +7,6 @@ symbol and one outcome is enough; where a sum over outcomes enters, the last ent
 one minus the others.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import product

@@ -11,8 +11,6 @@ so that after any number of steps it is at most 2 c/(1 - kappa) in log-odds, and
 (A difference of log-odds is multiplied by the derivative somewhere between; kappa is Birkhoff's coefficient.)
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import Equation, claim

@@ -4,8 +4,6 @@ A product of Gaussian densities is decided by its exponent and its normaliser, e
 functions. Matrices are general symmetric ones of the stated sizes.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import Equation, claim

@@ -5,8 +5,6 @@ of any other is that of the optimal one plus its mean square distance from it. A
 integrals of that distance; in the model below only the first step is measured, so they run over one number.
 """
 
-from __future__ import annotations
-
 import functools
 
 import sympy as sp
@@ -46,14 +44,8 @@ def cost_of_pulsating():
     """The pulsating filter cuts the cost: I Kalman filters in every step, where the exact one needs I^k at step k."""
     cases = [(modes, k) for modes in (2, 3, 4) for k in (1, 2, 3, 4)]
     found = tuple((filters_at(scheme("pulsating"), modes, 1, k), leaves_by_tree(modes, k, 1)) for modes, k in cases)
-    return fact(
-        tuple((modes, modes**k) for modes, k in cases),
-        found,
-        "filters scheduled, sequences enumerated",
-        PROVED,
-        scope="I = 2..4, k = 1..4",
-        unsaid=RUN,
-    )
+    method, scope = "filters scheduled, sequences enumerated", "I = 2..4, k = 1..4"
+    return fact(tuple((modes, modes**k) for modes, k in cases), found, method, PROVED, scope=scope, unsaid=RUN)
 
 
 #: A state that keeps or changes its sign, measured once, at step 1, by a good or a poor sensor.
@@ -153,13 +145,9 @@ def lower(first, second) -> Finding:
     """Whether the first ball lies below the second; balls that overlap are an error, not an answer."""
     if first.overlaps(second):
         raise ArithmeticError("balls overlap: finer cells are needed")
-    return Finding(
-        bool(first < second),
-        "integrals over the measurement by Taylor's formula in balls",
-        status=CERTIFIED,
-        scope=SCOPE,
-        evidence=f"{first.str(6)} with K = 2, {second.str(6)} with K = 1",
-    )
+    method = "integrals over the measurement by Taylor's formula in balls"
+    evidence = f"{first.str(6)} with K = 2, {second.str(6)} with K = 1"
+    return Finding(bool(first < second), method, status=CERTIFIED, scope=SCOPE, evidence=evidence)
 
 
 @claim(
@@ -233,14 +221,8 @@ def exact_up_to_K():
         pulsating = examples.in_fractions("k-pulsating", MODELS, SWITCHING, series[:K], depth=K)
         exact = examples.in_fractions("exact", MODELS, SWITCHING, series[:K])
         equal = equal and pulsating == exact
-    return fact(
-        True,
-        equal,
-        "trees compared leaf by leaf in rational arithmetic",
-        PROVED,
-        scope="one model of two modes; the argument, that no fold comes before the estimate of step K, is general",
-        unsaid=RUN,
-    )
+    scope = "one model of two modes; the argument, that no fold comes before the estimate of step K, is general"
+    return fact(True, equal, "trees compared leaf by leaf in rational arithmetic", PROVED, scope=scope, unsaid=RUN)
 
 
 SAME = [examples.CALM, examples.CALM]
@@ -253,15 +235,10 @@ def lossless_fold():
     series = [[1], [0], [4], [1]]
     steps = examples.run("exact", LATE, SWITCHING, series)
     second = {(leaf.mean[0], leaf.covariance[0][0]) for leaf in steps[1].leaves}
-    return fact(
-        (4, 1),
-        (len(steps[1].leaves), len(second)),
-        "leaves of the exact tree compared as rational numbers",
-        PROVED,
-        scope="this model, every series of measurements: gains do not depend on them",
-        evidence="the four leaves of step 2 are one Gaussian, so the fold of K = 2 changes nothing",
-        unsaid=RUN,
-    )
+    method = "leaves of the exact tree compared as rational numbers"
+    scope = "this model, every series of measurements: gains do not depend on them"
+    evidence = "the four leaves of step 2 are one Gaussian, so the fold of K = 2 changes nothing"
+    return fact((4, 1), (len(steps[1].leaves), len(second)), method, PROVED, scope=scope, evidence=evidence, unsaid=RUN)
 
 
 @claim("K.longer", expect=CERTIFIED)

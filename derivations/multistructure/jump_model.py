@@ -1,7 +1,5 @@
 """Equations (4)-(6), (14), (19): the switching model, its Markov property, and two kinds of switching."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import sympy as sp

@@ -4,8 +4,6 @@ Course and log: the speed along (``vy``) and across (``vx``, to starboard) the s
 heading K and integrated into latitude and longitude on a sphere of radius R at height h.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import sympy as sp

@@ -4,8 +4,6 @@ The state is vector-valued through two of its components, xi and eta: an entry o
 two components stand for any dimension.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import Equation, claim

@@ -1,7 +1,5 @@
 """Equations (20)-(21): modes that never switch, and the polygaussian filter."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import sympy as sp
@@ -143,14 +141,8 @@ def optimal():
     for ours, theirs in zip(bank, exact, strict=True):
         living = [leaf for leaf in theirs.leaves if sum(leaf.weights) > 0]
         equal = equal and sorted(map(gaussian, ours.leaves)) == sorted(map(gaussian, living))
-    return fact(
-        True,
-        equal,
-        "Gaussians of both compared as rationals",
-        PROVED,
-        scope="one model, I = 3, three steps",
-        unsaid=RUN,
-    )
+    method = "Gaussians of both compared as rationals"
+    return fact(True, equal, method, PROVED, scope="one model, I = 3, three steps", unsaid=RUN)
 
 
 def gaussian(leaf: Leaf):

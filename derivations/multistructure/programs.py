@@ -4,8 +4,6 @@ Every step runs one Kalman filter for each mode from the common Gaussian, weighs
 measurement and the predicted probability of the mode, and folds them into one Gaussian again.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import Equation

@@ -1,7 +1,5 @@
 """Equations (15)-(17) and the words about the pulsating filter."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise, product
 
@@ -136,13 +134,9 @@ def differs(first, second) -> Finding:
     """Whether two numbers differ, by balls; undecided balls are an error, not an answer."""
     if first.overlaps(second):
         raise ArithmeticError("balls overlap: more bits are needed")
-    return Finding(
-        True,
-        "ball arithmetic, 400 bits",
-        status=CERTIFIED,
-        scope="one model, one series of measurements",
-        evidence=f"{first.str(12, radius=False)} against {second.str(12, radius=False)}",
-    )
+    method = "ball arithmetic, 400 bits"
+    evidence = f"{first.str(12, radius=False)} against {second.str(12, radius=False)}"
+    return Finding(True, method, status=CERTIFIED, scope="one model, one series of measurements", evidence=evidence)
 
 
 @claim("17.suboptimal", expect=CERTIFIED)
@@ -201,14 +195,12 @@ def excess_of_two():
 def near_optimal():
     """The error of the Gaussian approximation vanishes when g^i tends to one for one mode."""
     values = [excess(Fraction(1, 10**k), Fraction(10**k)) for k in range(1, 7)]
+    method = "exact excess kurtosis"
+    scope = "g = 1 - 10^-k, unit Gaussians 10^(k/2) apart, k = 1..6"
+    evidence = f"excess kurtosis grows from {float(values[0]):.3g} to {float(values[-1]):.3g}"
+    unsaid = "what a limit of an excess is, is found along a sequence"
     return fact(
-        True,
-        all(b < a for a, b in pairwise(values)),
-        "exact excess kurtosis",
-        PROVED,
-        scope="g = 1 - 10^-k, unit Gaussians 10^(k/2) apart, k = 1..6",
-        evidence=f"excess kurtosis grows from {float(values[0]):.3g} to {float(values[-1]):.3g}",
-        unsaid="what a limit of an excess is, is found along a sequence",
+        True, all(b < a for a, b in pairwise(values)), method, PROVED, scope=scope, evidence=evidence, unsaid=unsaid
     )
 
 
@@ -295,17 +287,16 @@ def memory(cases):
 CASES = [(modes, n) for modes in (2, 3, 8) for n in (1, 2, 6)]
 
 
+def numbers_kept(printed) -> Property:
+    """What is printed beside what is counted, case by case."""
+    method, scope = "arrays of the one-pass filter counted", "I = 2, 3, 8; n = 1, 2, 6"
+    return fact(tuple(printed(*case) for case in CASES), memory(CASES), method, PROVED, scope=scope, unsaid=RUN)
+
+
 memory_printed = claim(
     "17.memory",
     "Pulsating needs more memory than Kalman only for the I probabilities of (17).",
-    lambda: fact(
-        tuple(modes for modes, _ in CASES),
-        memory(CASES),
-        "arrays of the one-pass filter counted",
-        PROVED,
-        scope="I = 2, 3, 8; n = 1, 2, 6",
-        unsaid=RUN,
-    ),
+    lambda: numbers_kept(lambda modes, n: modes),
     slip="paper",
     reason="beside the probabilities of (17) the sums of (12) and (13) that are being built must be kept, while every "
     "model starts from the same estimate; by hand: one state and two modes need at least a mean, a variance and a sum "
@@ -314,12 +305,5 @@ memory_printed = claim(
 memory_corrected = claim(
     "17.memory*",
     "Our program keeps beyond Kalman: I probabilities, a sum of weights, two means, two covariances; I = 2, 3, 8.",
-    lambda: fact(
-        tuple(modes + 1 + 2 * (n + n * n) for modes, n in CASES),
-        memory(CASES),
-        "arrays of the one-pass filter counted",
-        PROVED,
-        scope="I = 2, 3, 8; n = 1, 2, 6",
-        unsaid=RUN,
-    ),
+    lambda: numbers_kept(lambda modes, n: modes + 1 + 2 * (n + n * n)),
 )

@@ -3,8 +3,6 @@
 Decided on finite-state analogues with (modes, states) = (2,2), (3,2), (2,3); all probabilities are free.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import Bound, Equation, claim

@@ -16,8 +16,6 @@ Slips without a claim of their own, since nothing can be computed from them: the
 (6)" and (9) "(9*)", and the index of the velocity step in (8) is illegible.
 """
 
-from __future__ import annotations
-
 from navsym.claims import Paper
 
 PAPER = Paper(

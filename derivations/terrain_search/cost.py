@@ -1,7 +1,5 @@
 """Complexity of the algorithms, and the numbers that the paper derives from it."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import CERTIFIED, Bound, Equation, claim

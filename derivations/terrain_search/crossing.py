@@ -1,7 +1,5 @@
 """One coordinate: tracks that cross the true one, equations (9) and (10)."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import Bound, Equation, claim

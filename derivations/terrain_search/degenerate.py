@@ -5,8 +5,6 @@ searches of the paper rest on the matrix J of these rows. It is singular exactly
 contour line under every measurement: over a hill of revolution, over a fan, and over every quadratic ground.
 """
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import sympy as sp

@@ -1,7 +1,5 @@
 """Two coordinates: t_G as a function of the direction, equations (11)-(13), and its extremes."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import PROVED, Equation, claim, fact, state

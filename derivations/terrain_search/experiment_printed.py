@@ -1,7 +1,5 @@
 """The experiment: noise of the altimeter, the two accuracy measures and their units, table 1."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import CERTIFIED, Bound, Equation, claim

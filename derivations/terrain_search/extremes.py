@@ -1,9 +1,5 @@
 """The extremes of t_G: the two cases of the paper, the roots, the middle of the interval as a mean."""
 
-from __future__ import annotations
-
-from fractions import Fraction
-
 import sympy as sp
 
 from navsym.claims import OPEN, PROVED, UNDECIDED, Bound, Equation, Finding, Property, claim, fact, state
@@ -71,13 +67,6 @@ def example():
     """A track with one slope along x at the start and one along y at the end."""
     points = [(1, 0), (0, 1)]
     return form_sums(moment(points, 0), moment(points, 1))
-
-
-def roots_on_the_example():
-    A2, A1, A0 = (Fraction(int(v)) for v in example())
-    if A2:
-        return ["two"] * 2
-    return [-A0 / A1] if A1 else []
 
 
 @claim("roots.both")

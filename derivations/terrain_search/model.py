@@ -1,7 +1,5 @@
 """The model: errors of the inertial system (1), slopes under the track, and the sums made of them."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 #: Track sizes for which identities with free slopes are proved; a sum over pairs needs two points only.

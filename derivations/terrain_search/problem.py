@@ -1,7 +1,5 @@
 """Statement of the problem: hypotheses, criteria (2) and (4), the bias of the position-only search."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import sympy as sp

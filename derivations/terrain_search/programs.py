@@ -1,7 +1,5 @@
 """Terrain search: the instant t_G of crossing from sums over the track, and the sequential correction."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import Equation

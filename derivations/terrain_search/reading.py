@@ -5,8 +5,6 @@ at 2 Hz are 500 s, the text has 1000 s). Its figures do not fit either length to
 searched +-5 m/s; what they do fit is found here.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import CERTIFIED, Bound, Equation, claim

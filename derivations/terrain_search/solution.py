@@ -4,8 +4,6 @@ Least squares over the track: with b0 = sum g z, b1 = sum k g z the joint soluti
 G c + M1 v = b0, M1 c + M2 v = b1. The first stage finds c* = G^-1 b0, the second minimises over v alone.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import sympy as sp
@@ -126,14 +124,8 @@ def sequential_search_may_fit_better():
     """Least (6) may be below least (4) on one grid: here 0 and 1/2, since (6) turns about t_G, off the grid of (4)."""
     found = least_criteria(Fraction(-1, 2), Fraction(1))
     scope = "heights h(x) = x, n = 1, steps of one, errors -1/2 of the position and 1 of the velocity"
-    return fact(
-        (Fraction(0), Fraction(1, 2)),
-        found,
-        "all hypotheses counted",
-        PROVED,
-        scope=scope,
-        unsaid="a least value over a grid is found by trying all hypotheses",
-    )
+    unsaid = "a least value over a grid is found by trying all hypotheses"
+    return fact((Fraction(0), Fraction(1, 2)), found, "all hypotheses counted", PROVED, scope=scope, unsaid=unsaid)
 
 
 @claim("sequential.shrinks")

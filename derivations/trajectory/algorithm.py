@@ -4,14 +4,12 @@ Worked in the variables f of the first stage, where all matrices are integer; th
 differ by the constant positive diagonal D_s, which changes none of the statements.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import product
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, claim, fact, state
+from navsym.claims import PROVED, Equation, Property, claim, fact, state
 from navsym_papers.trajectory.model import dynamics, first_state, nilpotent_exponential, pascal_rows
 
 N = 3
@@ -164,30 +162,26 @@ def say_field(count: int, n: int) -> dict:
     return state(str(count), "=", f"product(3, k, 1, {n})")
 
 
+def size_of_field(printed: int) -> Property:
+    return fact(printed, len(field(5)), "enumeration", PROVED, scope="n = 5", meaning=(say_field(printed, 5),))
+
+
 field_size_printed = claim(
     "algorithm.NQ",
     "Number of values in the field for n = 5, as printed.",
-    lambda: fact(242, len(field(5)), "enumeration", PROVED, scope="n = 5", meaning=(say_field(242, 5),)),
+    lambda: size_of_field(242),
     slip="paper",
     reason="3^5 = 243; one candidate of the field is not counted",
 )
-field_size = claim(
-    "algorithm.NQ*",
-    "Number of values in the field for n = 5.",
-    lambda: fact(243, len(field(5)), "enumeration", PROVED, scope="n = 5", meaning=(say_field(243, 5),)),
-)
-field_size_power = claim(
-    "algorithm.NQ.power",
-    "The field has 3^n candidates: each of n elements may fall, stay or rise.",
-    lambda: fact(
-        tuple(3**n for n in range(1, 8)),
-        tuple(len(field(n)) for n in range(1, 8)),
-        "enumeration",
-        PROVED,
-        scope="n = 1..7",
-        meaning=tuple(say_field(3**n, n) for n in range(1, 8)),
-    ),
-)
+field_size = claim("algorithm.NQ*", "Number of values in the field for n = 5.", lambda: size_of_field(243))
+
+
+@claim("algorithm.NQ.power")
+def field_size_power():
+    """The field has 3^n candidates: each of n elements may fall, stay or rise."""
+    powers, found = tuple(3**n for n in range(1, 8)), tuple(len(field(n)) for n in range(1, 8))
+    meaning = tuple(map(say_field, powers, range(1, 8)))
+    return fact(powers, found, "enumeration", PROVED, scope="n = 1..7", meaning=meaning)
 
 
 COUNTED = "the different values of a list are counted, and statements are about one value"
@@ -230,30 +224,22 @@ def terms(n: int, row: list[int], residual_after: bool) -> list[tuple[Fraction, 
     return values
 
 
+def counted(printed: int | tuple[int, ...], found: int | tuple[int, ...]) -> Property:
+    return fact(printed, found, "exact enumeration", PROVED, scope=FIELD_SCOPE, unsaid=COUNTED)
+
+
 field_values = claim(
     "algorithm.field",
     "For one centre and one start the 3^5 candidates give as many values of J (equal elements would merge some).",
-    lambda: fact(
-        3**5,
-        len(criteria(5, [1] * 5, residual_after=False)),
-        "exact enumeration",
-        PROVED,
-        scope=FIELD_SCOPE,
-        unsaid=COUNTED,
-    ),
+    lambda: counted(3**5, len(criteria(5, [1] * 5, residual_after=False))),
 )
+
+
 # The candidates differ in K_(k+1), and so in x*_(k+1); what was estimated before cannot show which of them fits.
 first_term_of_the_criterion = claim(
     "algorithm.J.first",
     "With x*_k, as printed, the first term of J is one number for all candidates; with x*_(k+1) it takes 216 values.",
-    lambda: fact(
-        (1, 216),
-        tuple(len({first for first, _ in terms(5, [1] * 5, after)}) for after in (False, True)),
-        "exact enumeration",
-        PROVED,
-        scope=FIELD_SCOPE,
-        unsaid=COUNTED,
-    ),
+    lambda: counted((1, 216), tuple(len({first for first, _ in terms(5, [1] * 5, after)}) for after in (False, True))),
 )
 
 

@@ -1,7 +1,5 @@
 """Basic model notions: latitudes, radius, two trihedra, rates and velocity of the moving trihedron."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.claims import Equation, claim

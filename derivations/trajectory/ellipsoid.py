@@ -5,8 +5,6 @@ position; latitudes, radii, rotations and rates are derived by differentiation a
 subject: Andreev, Theory of Inertial Navigation. Conventions: East, North, Up, right-handed.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy as sp

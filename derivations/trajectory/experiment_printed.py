@@ -1,14 +1,12 @@
 """Conditions of the numerical experiment, and the printed errors with their units."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 
 import flint
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, Claim, Equation, Finding, Property, claim, fact, state
+from navsym.claims import CERTIFIED, PROVED, Equation, Finding, Property, claim, fact, state
 
 RADIUS = Fraction(6371000)
 TAU = Fraction(1, 5)
@@ -70,7 +68,7 @@ def tuning_stops_at_a_step():
 
 def agreement(angle: str, half_angle: str, length: str, half_length: str, unit: str) -> Property:
     """That two rounded figures can belong to one error."""
-    per_unit = {"degree": metres_per_degree(), "radian": metres_per_radian()}[unit]
+    per_unit = ball(RADIUS) * (flint.arb.pi() / 180 if unit == "degree" else 1)
     low, high = (str(Fraction(angle) + sign * Fraction(half_angle)) for sign in (-1, 1))
     bottom, top = (str(Fraction(length) + sign * Fraction(half_length)) for sign in (-1, 1))
     metres = f"{RADIUS}*pi/180" if unit == "degree" else str(RADIUS)
@@ -93,14 +91,6 @@ def ball(x: Fraction) -> flint.arb:
     return flint.arb(flint.fmpq(x.numerator, x.denominator))
 
 
-def metres_per_degree() -> flint.arb:
-    return ball(RADIUS) * flint.arb.pi() / 180
-
-
-def metres_per_radian() -> flint.arb:
-    return ball(RADIUS)
-
-
 position_error_printed = claim(
     "experiment.sigma_phi.100",
     "|V| = 100 m/s: 1.2e-8 degrees are 0.06 m.",
@@ -116,28 +106,20 @@ position_error = claim(
 )
 
 
-def other_speed(speed: int) -> tuple[Claim, Claim]:
-    """The same pair of figures is printed for 2 and for 300 m/s: as printed, and with the radian."""
-    number = f"experiment.sigma_phi.{speed}"
-    figures = ("2.2e-8", "0.05e-8", "0.1", "0.05")
-    wrong = claim(
-        number,
-        f"|V| = {speed} m/s: 2.2e-8 degrees are 0.1 m",
-        lambda: agreement(*figures, "degree"),
-        slip="paper",
-        reason="2.2e-8 degrees are 2.4 mm; the unit is the radian",
+#: The same pair of figures is printed for 2 and for 300 m/s: as printed, and with the radian.
+OTHER_SPEEDS = tuple(
+    claim(
+        f"experiment.sigma_phi.{speed}{star}",
+        f"|V| = {speed} m/s: 2.2e-8 {unit}s are 0.1 m",
+        lambda unit=unit: agreement("2.2e-8", "0.05e-8", "0.1", "0.05", unit),
+        **more,
     )
-    right = claim(
-        f"{number}*",
-        f"|V| = {speed} m/s: 2.2e-8 radians are 0.1 m",
-        lambda: agreement(*figures, "radian"),
-        expect=CERTIFIED,
-        corrects=number,
+    for speed in (2, 300)
+    for star, unit, more in (
+        ("", "degree", {"slip": "paper", "reason": "2.2e-8 degrees are 2.4 mm; the unit is the radian"}),
+        ("*", "radian", {"expect": CERTIFIED}),
     )
-    return wrong, right
-
-
-OTHER_SPEEDS = (*other_speed(2), *other_speed(300))
+)
 
 EXPONENTS = "units are compared as exponents, and statements are about numbers"
 #: Exponents of metre and second.

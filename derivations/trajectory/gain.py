@@ -1,7 +1,5 @@
 """The printed constant gain: its stability, its noise, its lag, against the printed errors."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 
@@ -32,12 +30,10 @@ ROUNDING = tuple(map(Fraction, ("5e-5", "5e-6", "5e-7", "5e-9", "5e-10")))
 
 def stability(scale: list[flint.arb]) -> Finding:
     found = gain_stability(GAIN, ROUNDING, scale)
+    method = "Routh's column in balls over the rounding box of the gain"
+    scope = "n = 5, tau = 0.2 s, every gain that rounds to the printed digits"
     return Finding(
-        found.stable if found.stable is not None else UNDECIDED,
-        "Routh's column in balls over the rounding box of the gain",
-        CERTIFIED,
-        scope="n = 5, tau = 0.2 s, every gain that rounds to the printed digits",
-        evidence=found.reason,
+        found.stable if found.stable is not None else UNDECIDED, method, CERTIFIED, scope=scope, evidence=found.reason
     )
 
 
@@ -67,12 +63,8 @@ def stationary_deviation(state: int, digits: int) -> Finding:
     """Standard deviation of state 1 (m), 2 (m/s) or 3 (m/s^2) under white noise of 1 m, as text."""
     factor = Fraction(math.factorial(state - 1)) / TAU ** (state - 1)
     variance = stationary_covariance(gain_in_f())[state - 1][state - 1] * factor**2
-    return Finding(
-        root_decimal(variance, digits),
-        "exact solution of P = C P C^T + K K^T",
-        CERTIFIED,
-        scope="stationary error under white noise of 1 m, printed gain in D_p variables, straight course",
-    )
+    scope = "stationary error under white noise of 1 m, printed gain in D_p variables, straight course"
+    return Finding(root_decimal(variance, digits), "exact solution of P = C P C^T + K K^T", CERTIFIED, scope=scope)
 
 
 def say_stationary(low: str, high: str) -> tuple[dict, ...]:
@@ -97,12 +89,8 @@ def yawing_lag(state: int, digits: int) -> Finding:
     text = f"{float(size.mid()):.{digits}f}"
     half = flint.arb(10) ** (-digits) / 2
     assert abs(size - flint.arb(text)) < half, "the rounding is not decided"
-    return Finding(
-        text,
-        "response to the first harmonic, ball arithmetic",
-        CERTIFIED,
-        scope="steady yawing at 100 m/s, printed gain in D_p variables, no noise",
-    )
+    method = "response to the first harmonic, ball arithmetic"
+    return Finding(text, method, CERTIFIED, scope="steady yawing at 100 m/s, printed gain in D_p variables, no noise")
 
 
 position_noise_printed = claim(

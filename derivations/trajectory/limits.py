@@ -10,14 +10,12 @@ m-th derivative. Ages s = -t are counted from now. The constants are those of La
 for functions on a half line; Peano's kernel turns a rule into its remainder.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, Bound, Claim, Equation, claim
+from navsym.claims import CERTIFIED, Bound, Equation, claim
 
 sigma, M, T, s, u = sp.symbols("sigma M T s u", positive=True)
 y = sp.Symbol("y", real=True)
@@ -89,48 +87,32 @@ def boundary(K: sp.Expr, m: int, at: sp.Expr, values: tuple[sp.Symbol, ...]) -> 
     return -sum(sp.diff(K, s, k).subs(s, at) * values[m - 1 - k] for k in range(m))
 
 
-def remainder(question: Question) -> Claim:
+def remainder(question: Question) -> Equation:
     """Partial integration of K x^(m) over the pieces: only the derivative now and the weighted positions are left."""
-
-    def derive() -> Equation:
-        m, nodes = question.order, ages(question.order)
-        values = [sp.symbols(f"x{i}_:{m}", real=True) for i in range(len(nodes))]
-        left = sum(
-            boundary(K, m, nodes[i + 1], values[i + 1]) - boundary(K, m, nodes[i], values[i])
-            for i, (_, _, K) in enumerate(kernel(question))
-        )
-        rule = sum(w * x[0] for w, x in zip(weights(question), values, strict=True))
-        return Equation(values[0][question.derivative] - rule, left)
-
-    title = f"The rule for the {question.words} is off by the integral of K x^({question.order})."
-    return claim(f"limit.{question.name}.remainder", title, derive)
+    m, nodes = question.order, ages(question.order)
+    values = [sp.symbols(f"x{i}_:{m}", real=True) for i in range(len(nodes))]
+    left = sum(
+        boundary(K, m, nodes[i + 1], values[i + 1]) - boundary(K, m, nodes[i], values[i])
+        for i, (_, _, K) in enumerate(kernel(question))
+    )
+    rule = sum(w * x[0] for w, x in zip(weights(question), values, strict=True))
+    return Equation(values[0][question.derivative] - rule, left)
 
 
-def positive_kernel(question: Question, i: int) -> Claim:
+def positive_kernel(question: Question, i: int) -> Bound:
     """K >= 0 on piece i, written in the share of the piece."""
-
-    def derive() -> Bound:
-        start, end, K = kernel(question)[i]
-        share = sp.Symbol("share", nonnegative=True)
-        shared = sp.expand(K.subs(s, start + share * (end - start)).subs(T, 1))
-        return Bound(sp.Integer(0), "<=", shared, {share: (sp.Integer(0), sp.Integer(1))})
-
-    title = f"The kernel of the rule for the {question.words} is not negative on its piece {i + 1} (T = 1)."
-    return claim(f"limit.{question.name}.kernel.{i + 1}", title, derive)
+    start, end, K = kernel(question)[i]
+    share = sp.Symbol("share", nonnegative=True)
+    shared = sp.expand(K.subs(s, start + share * (end - start)).subs(T, 1))
+    return Bound(sp.Integer(0), "<=", shared, {share: (sp.Integer(0), sp.Integer(1))})
 
 
-def guaranteed(question: Question) -> Claim:
+def guaranteed(question: Question) -> Equation:
     """Noise sigma by the sum of absolute weights, motion M by the integral of K."""
-
-    def derive() -> Equation:
-        # Nodes are in order, so the signs alternate; the kernel is positive.
-        noise = sigma * sum((-1) ** i * w for i, w in enumerate(weights(question)))
-        motion = M * sum(sp.integrate(K, (s, a, b)) for a, b, K in kernel(question))
-        printed, derived = question.best, noise + motion
-        return Equation(printed.subs(M, bound(question.order)), derived.subs(M, bound(question.order)))
-
-    title = f"The rule guarantees the {question.words} to {sp.sstr(question.best)}."
-    return claim(f"limit.{question.name}.upper", title, derive)
+    # Nodes are in order, so the signs alternate; the kernel is positive.
+    noise = sigma * sum((-1) ** i * w for i, w in enumerate(weights(question)))
+    motion = M * sum(sp.integrate(K, (s, a, b)) for a, b, K in kernel(question))
+    return Equation(*(side.subs(M, bound(question.order)) for side in (question.best, noise + motion)))
 
 
 # -- the motion: what cannot be undercut ---------------------------------------------------------------
@@ -157,75 +139,85 @@ def older(order: int) -> sp.Expr:
     return sigma * OLDER[order]
 
 
-def joins(order: int) -> Claim:
+def joins(order: int) -> Equation:
     """Values and derivatives below the order agree where the pieces meet, for ever."""
-
-    def derive() -> Equation:
-        rate = [(2 / T) ** k for k in range(order)]
-        first = jet(chebyshev(order), s, ages(order)[-1], order)
-        second = [r * d for r, d in zip(rate, jet(older(order), u, sp.Integer(0), order), strict=True)]
-        end = jet(older(order), u, sp.Integer(1), order)
-        again = [TURNS[order] * d for d in jet(older(order), u, sp.Integer(0), order)]
-        return Equation(first + end, second + again)
-
-    title = f"The pieces of the invisible motion of order {order} meet with {order - 1} continuous derivatives."
-    return claim(f"limit.motion.{order}.joins", title, derive)
+    rate = [(2 / T) ** k for k in range(order)]
+    first = jet(chebyshev(order), s, ages(order)[-1], order)
+    second = [r * d for r, d in zip(rate, jet(older(order), u, sp.Integer(0), order), strict=True)]
+    end = jet(older(order), u, sp.Integer(1), order)
+    again = [TURNS[order] * d for d in jet(older(order), u, sp.Integer(0), order)]
+    return Equation(first + end, second + again)
 
 
-def steepness(order: int) -> Claim:
+def steepness(order: int) -> Equation:
     """The m-th derivative is at most M on every piece: M on the youngest, 0 or M on the older ones."""
-
-    def derive() -> Equation:
-        youngest = sp.diff(chebyshev(order), s, order)
-        wave = sp.diff(older(order), u, order) * (2 / T) ** order
-        printed = [(-1) ** order * bound(order), bound(order) if order == 3 else sp.Integer(0)]
-        return Equation(printed, [sp.expand(youngest), sp.expand(wave)])
-
-    title = f"The derivative of order {order} of the invisible motion has the absolute value M, or rests."
-    return claim(f"limit.motion.{order}.steep", title, derive)
+    youngest = sp.diff(chebyshev(order), s, order)
+    wave = sp.diff(older(order), u, order) * (2 / T) ** order
+    printed = [(-1) ** order * bound(order), bound(order) if order == 3 else sp.Integer(0)]
+    return Equation(printed, [sp.expand(youngest), sp.expand(wave)])
 
 
-def inside(order: int, which: str, piece: sp.Expr, variable: sp.Symbol, low: int) -> Claim:
+def inside(piece: sp.Expr, variable: sp.Symbol, low: int) -> Bound:
     """A piece stays within +-sigma: its square is at most one, in units of sigma."""
-
-    def derive() -> Bound:
-        box = {variable: (sp.Integer(low), sp.Integer(1))}
-        return Bound(sp.expand(piece**2), "<=", sp.Integer(1), box)
-
-    title = f"The {which} piece of the invisible motion of order {order} never leaves the noise."
-    return claim(f"limit.motion.{order}.{which}", title, derive)
+    return Bound(sp.expand(piece**2), "<=", sp.Integer(1), {variable: (sp.Integer(low), sp.Integer(1))})
 
 
-def attained(question: Question) -> Claim:
+def attained(question: Question) -> Equation:
     """The invisible motion and its mirror image differ by twice the bound: every algorithm errs for one of them."""
-
-    def derive() -> Equation:
-        now = sp.diff(chebyshev(question.order), s, question.derivative).subs(s, 0) * (-1) ** question.derivative
-        return Equation(question.best.subs(M, bound(question.order)), sp.expand(now))
-
-    title = f"No algorithm guarantees the {question.words} better: a motion that may be measured as rest has it."
-    return claim(f"limit.{question.name}.lower", title, derive)
+    now = sp.diff(chebyshev(question.order), s, question.derivative).subs(s, 0) * (-1) ** question.derivative
+    return Equation(question.best.subs(M, bound(question.order)), sp.expand(now))
 
 
 RULES = tuple(
-    made
-    for question in QUESTIONS
-    for made in (
-        remainder(question),
-        *(positive_kernel(question, i) for i in range(question.order - 1)),
-        guaranteed(question),
-        attained(question),
+    claim(f"limit.{q.name}.{part}", title, derive)
+    for q in QUESTIONS
+    for part, title, derive in (
+        (
+            "remainder",
+            f"The rule for the {q.words} is off by the integral of K x^({q.order}).",
+            lambda q=q: remainder(q),
+        ),
+        *(
+            (
+                f"kernel.{i + 1}",
+                f"The kernel of the rule for the {q.words} is not negative on its piece {i + 1} (T = 1).",
+                lambda q=q, i=i: positive_kernel(q, i),
+            )
+            for i in range(q.order - 1)
+        ),
+        ("upper", f"The rule guarantees the {q.words} to {sp.sstr(q.best)}.", lambda q=q: guaranteed(q)),
+        (
+            "lower",
+            f"No algorithm guarantees the {q.words} better: a motion that may be measured as rest has it.",
+            lambda q=q: attained(q),
+        ),
     )
 )
-
 MOTIONS = tuple(
-    made
-    for order in (2, 3)
-    for made in (
-        joins(order),
-        steepness(order),
-        inside(order, "youngest", sp.chebyshevt(order, y), y, -1),
-        *([inside(order, "older", OLDER[order], u, 0)] if order == 3 else []),
+    claim(f"limit.motion.{m}.{part}", title, derive)
+    for m in (2, 3)
+    for part, title, derive in (
+        (
+            "joins",
+            f"The pieces of the invisible motion of order {m} meet with {m - 1} continuous derivatives.",
+            lambda m=m: joins(m),
+        ),
+        (
+            "steep",
+            f"The derivative of order {m} of the invisible motion has the absolute value M, or rests.",
+            lambda m=m: steepness(m),
+        ),
+        *(
+            (
+                part,
+                f"The {part} piece of the invisible motion of order {m} never leaves the noise.",
+                lambda piece=piece, x=x, low=low: inside(piece, x, low),
+            )
+            for part, piece, x, low in (
+                ("youngest", sp.chebyshevt(m, y), y, -1),
+                *([("older", OLDER[m], u, 0)] if m == 3 else []),
+            )
+        ),
     )
 )
 

@@ -1,7 +1,5 @@
 """Polynomial motion of one coordinate in symbols: everything is derived from its matrix A."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Equations 1 to 4: polynomial motion, nilpotent dynamics, transition over a step, measurement."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 
@@ -174,11 +172,6 @@ def elements_of_A():
 # -- equation 4 --------------------------------------------------------------------------------------
 
 
-def derived_transition(n: int) -> sp.Matrix:
-    """Matrix of x(0) -> x(tau), by integrating the polynomial motion."""
-    return sp.Matrix(moved_state(n, tau)).jacobian(STATE[:n])
-
-
 def printed_transition(n: int) -> sp.Matrix:
     def entry(i: int, j: int) -> sp.Expr:
         if j < i:
@@ -192,7 +185,7 @@ def printed_transition(n: int) -> sp.Matrix:
 transition_matrix = claim(
     "4.Phi",
     "Transition matrix over a step; n = 8, smaller orders are its leading blocks.",
-    lambda: Equation(printed_transition(ORDER), derived_transition(ORDER)),
+    lambda: Equation(printed_transition(ORDER), sp.Matrix(moved_state(ORDER, tau)).jacobian(STATE)),
 )
 transition_matrix_is_the_finite_series = claim(
     "4.Phi.series",
@@ -244,8 +237,6 @@ measurement_through_a_step = claim(
 
 # -- smaller steps and conditioning ------------------------------------------------------------------
 
-PAPER_RHO = sp.Rational(1, 6371000)
-
 
 def conditioning(n: int, step: sp.Rational):
     """Certified enclosure of mu(N_p) at the rho of the table."""
@@ -271,14 +262,11 @@ def improves(n: int, longer: sp.Rational, shorter: sp.Rational) -> bool:
 def smaller_steps_always_worsen():
     """A smaller step inevitably worsens the condition number (n = 20, 1 s against 0.94 s)."""
     longer, shorter = sp.Integer(1), sp.Rational("0.94")
+    method = "certified condition numbers"
+    scope = "n = 20, rho = 1/6371000, tau = 1 and 0.94"
+    evidence = f"{conditioning(20, longer).rounded(5)} at 1 s, {conditioning(20, shorter).rounded(5)} at 0.94 s"
     return fact(
-        True,
-        improves(20, longer, shorter),
-        "certified condition numbers",
-        CERTIFIED,
-        scope="n = 20, rho = 1/6371000, tau = 1 and 0.94",
-        evidence=f"{conditioning(20, longer).rounded(5)} at 1 s, {conditioning(20, shorter).rounded(5)} at 0.94 s",
-        unsaid=TWO_NUMBERS,
+        True, improves(20, longer, shorter), method, CERTIFIED, scope=scope, evidence=evidence, unsaid=TWO_NUMBERS
     )
 
 

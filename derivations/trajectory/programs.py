@@ -3,8 +3,6 @@
 The conversions are geodetic to geocentric position, axes of one trihedron to the other, and rates from speeds.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from navsym.export.chain import Chain, Link, Program, kept, units_of

@@ -1,7 +1,5 @@
 """What the paper says about its table: when normalisation helps, and where rounding shows."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -11,23 +9,8 @@ import sympy as sp
 from navsym.claims import CERTIFIED, CONFIRMED, PROVED, UNDECIDED, Equation, Finding, Property, claim, fact, state
 from navsym.models.earth import observability_rows
 from navsym.trajectory.conditioning import condition_number
+from navsym_papers.trajectory import table
 from navsym_papers.trajectory.experiment.courses import scaling_changes_rounding
-from navsym_papers.trajectory.table import (
-    COLUMNS,
-    ORDERS,
-    PRINTED,
-    STEPS,
-    TWO_NUMBERS,
-    UNIT_COLUMNS,
-    Said,
-    ends_of,
-    entry_rows,
-    in_printed_format,
-    say_comparison,
-    say_ends,
-    state_condition,
-    true_value,
-)
 
 RADIUS = Fraction(6371000)
 
@@ -42,35 +25,31 @@ relative_precision = claim(
 
 def printed_equal(left: tuple[str, int], right: tuple[str, int], n: int) -> bool:
     """Whether two printed entries (step, column) of one order agree."""
-    return PRINTED[n, left[0]][left[1]] == PRINTED[n, right[0]][right[1]]
-
-
-def independent_orders(column: int) -> tuple[int, ...]:
-    return tuple(n for n in ORDERS if printed_equal(("tau0.2", column), ("tau1", column), n))
+    return table.PRINTED[n, left[0]][left[1]] == table.PRINTED[n, right[0]][right[1]]
 
 
 def say_digits(n: int, left: tuple[str, int], right: tuple[str, int]) -> dict[str, Any]:
     """That two printed entries are one number for n up to 10, and two beyond."""
-    one, other = (str(Fraction(PRINTED[n, step][column])) for step, column in (left, right))
+    one, other = (str(Fraction(table.PRINTED[n, step][column])) for step, column in (left, right))
     return state(one, "=" if n <= 10 else "!=", other)
 
 
 @claim("experiment.violated.independence")
 def independence_is_violated_from_19():
     """In the printed table independence of tau holds up to n = 10 and is violated for n = 19 and 20."""
-    found = tuple(independent_orders(COLUMNS.index(c)) for c in ("NpN", "Nf", "Ns"))
-    columns = [COLUMNS.index(c) for c in ("NpN", "Nf", "Ns")]
-    meaning = tuple(say_digits(n, ("tau0.2", column), ("tau1", column)) for n in ORDERS for column in columns)
+    columns = [table.COLUMNS.index(c) for c in ("NpN", "Nf", "Ns")]
+    found = tuple(tuple(n for n in table.ORDERS if printed_equal(("tau0.2", c), ("tau1", c), n)) for c in columns)
+    meaning = tuple(say_digits(n, ("tau0.2", column), ("tau1", column)) for n in table.ORDERS for column in columns)
     return fact(((2, 3, 4, 5, 10),) * 3, found, "comparison of the printed digits", PROVED, meaning=meaning)
 
 
 @claim("experiment.violated.equality")
 def equality_is_violated_from_19():
     """In the printed table mu(N_pN) = mu(N_s) holds up to n = 10 and is violated for n = 19 and 20."""
-    found = tuple(n for n in ORDERS if all(printed_equal((s, 1), (s, 3), n) for s in STEPS))
-    same = tuple(say_digits(n, (step, 1), (step, 3)) for n in ORDERS if n <= 10 for step in STEPS)
+    found = tuple(n for n in table.ORDERS if all(printed_equal((s, 1), (s, 3), n) for s in table.STEPS))
+    same = tuple(say_digits(n, (step, 1), (step, 3)) for n in table.ORDERS if n <= 10 for step in table.STEPS)
     # beyond one step is enough for a violation
-    meaning = (*same, *(say_digits(n, ("tau1", 1), ("tau1", 3)) for n in ORDERS if n > 10))
+    meaning = (*same, *(say_digits(n, ("tau1", 1), ("tau1", 3)) for n in table.ORDERS if n > 10))
     return fact((2, 3, 4, 5, 10), found, "comparison of the printed digits", PROVED, meaning=meaning)
 
 
@@ -79,32 +58,34 @@ def distortions_begin_after_10():
     """The printed numbers are distorted for n = 19 and n = 20 only."""
     found = tuple(
         n
-        for n in ORDERS
+        for n in table.ORDERS
         if any(
-            in_printed_format(true_value(n, step, column), printed) != printed
-            for step in STEPS
-            for column, printed in zip(COLUMNS, PRINTED[n, step], strict=True)
+            table.in_printed_format(table.true_value(n, step, column), printed) != printed
+            for step in table.STEPS
+            for column, printed in zip(table.COLUMNS, table.PRINTED[n, step], strict=True)
         )
     )
     meaning, certificate = say_distortion()
     return fact((19, 20), found, "certified condition numbers", CERTIFIED, certificate=certificate, meaning=meaning)
 
 
-def say_distortion() -> Said:
+def say_distortion() -> table.Said:
     """That every entry for n up to 10 rounds to what is printed, and N_s at 1 s for n = 19 and n = 20 does not."""
     enclosed = [
-        state_condition(entry_rows(n, step, column), *ends_of(printed), equilibrate=column in UNIT_COLUMNS)
-        for n in ORDERS
+        table.state_condition(
+            table.entry_rows(n, step, column), *table.ends_of(printed), equilibrate=column in table.UNIT_COLUMNS
+        )
+        for n in table.ORDERS
         if n <= 10
-        for step in STEPS
-        for column, printed in zip(COLUMNS, PRINTED[n, step], strict=True)
+        for step in table.STEPS
+        for column, printed in zip(table.COLUMNS, table.PRINTED[n, step], strict=True)
     ]
     relations = []
     for n in (19, 20):
-        there, lower, _ = say_ends(entry_rows(n, "tau1", "Ns"), true_value(n, "tau1", "Ns"), True)
+        there, lower, _ = table.say_ends(table.entry_rows(n, "tau1", "Ns"), table.true_value(n, "tau1", "Ns"), True)
         enclosed.append(there)
-        relations.append((lower, ">", ends_of(PRINTED[n, "tau1"][3])[1]))
-    return say_comparison(enclosed, relations)
+        relations.append((lower, ">", table.ends_of(table.PRINTED[n, "tau1"][3])[1]))
+    return table.say_comparison(enclosed, relations)
 
 
 def ratio(n: int, rho: Fraction, tau: Fraction) -> tuple[Fraction, Fraction]:
@@ -134,15 +115,17 @@ def all_gain_at_least(factor: Fraction, cases) -> Property:
     enclosed, relations = [], []
     for case in cases:
         rows = observability_rows(*case)
-        ends = [say_ends(rows, condition_number(rows, digits=15, equilibrate=unit), unit) for unit in (False, True)]
+        ends = [
+            table.say_ends(rows, condition_number(rows, digits=15, equilibrate=unit), unit) for unit in (False, True)
+        ]
         enclosed += [end[0] for end in ends]
         relations.append((ends[0][1], ">=", factor * ends[1][2]))
-    meaning, certificate = say_comparison(enclosed, relations)
+    meaning, certificate = table.say_comparison(enclosed, relations)
     return Property(True, replace(gains_at_least(factor, cases), certificate=certificate), meaning)
 
 
 LATITUDE = 1 / RADIUS
-TABLE_CASES = tuple((n, LATITUDE, tau) for n in ORDERS for tau in STEPS.values())
+TABLE_CASES = tuple((n, LATITUDE, tau) for n in table.ORDERS for tau in table.STEPS.values())
 #: The radius channel of equation 1 has rho = 1; a step of 0.65 s is below the second of the paper.
 RADIUS_CHANNEL = ((5, Fraction(1), Fraction(13, 20)),)
 
@@ -151,7 +134,7 @@ normalisation_always_improves = claim(
     "experiment.better",
     "The normalisation inevitably lowers the condition number (table and radius channel).",
     lambda: Property(
-        printed=True, derived=gains_at_least(Fraction(1), TABLE_CASES + RADIUS_CHANNEL), unsaid=TWO_NUMBERS
+        printed=True, derived=gains_at_least(Fraction(1), TABLE_CASES + RADIUS_CHANNEL), unsaid=table.TWO_NUMBERS
     ),
     slip="paper",
     reason="unit columns are not the best scaling: in the radius channel (rho = 1) with tau = 0.65 s, n = 5, the "
@@ -167,7 +150,7 @@ normalisation_improves_the_table = claim(
 normalisation_improves_much = claim(
     "experiment.much_better",
     "mu(N_pN) is much smaller (at least ten times) than mu(N_p) for every n and tau of the table.",
-    lambda: Property(printed=True, derived=gains_at_least(Fraction(10), TABLE_CASES), unsaid=TWO_NUMBERS),
+    lambda: Property(printed=True, derived=gains_at_least(Fraction(10), TABLE_CASES), unsaid=table.TWO_NUMBERS),
     slip="paper",
     reason="at tau = 1 s the gain shrinks with n: by the table's own figures it is 2.5 for n = 19 and n = 20",
 )

@@ -1,7 +1,5 @@
 """Equations 5 and 6: normalised variables in one stage and in two, and why both end at the same place."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from math import comb
 

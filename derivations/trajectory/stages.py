@@ -4,8 +4,6 @@ The paper decides "already at this stage" whether a second one is needed, and sp
 both are questions about mu(N_f) and mu(N_s) for every n, which certified condition numbers answer.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from fractions import Fraction
 from functools import cache
@@ -14,17 +12,7 @@ from typing import Any
 
 from navsym.claims import CERTIFIED, claim, fact
 from navsym.trajectory.conditioning import Enclosure
-from navsym_papers.trajectory.table import (
-    COLUMNS,
-    ORDERS,
-    PRINTED,
-    STEPS,
-    UNIT_COLUMNS,
-    entry_rows,
-    say_comparison,
-    say_ends,
-    true_value,
-)
+from navsym_papers.trajectory.table import ORDERS, STEPS, UNIT_COLUMNS, entry_rows, say_comparison, say_ends, true_value
 
 LARGEST = 20
 METHOD = "certified condition numbers"
@@ -55,12 +43,6 @@ def lowered(before: Enclosure, after: Enclosure) -> bool:
     """Whether a condition number is smaller after a stage; the enclosures have to be apart."""
     assert after.upper < before.lower or before.upper < after.lower, "the enclosures overlap"
     return after.upper < before.lower
-
-
-def printed_lowered(n: int, step: str) -> bool:
-    """The same by the printed digits, first stage alone."""
-    row = PRINTED[n, step]
-    return float(row[COLUMNS.index("Nf")]) < float(row[COLUMNS.index("Np")])
 
 
 def growth(column: str) -> list[tuple[object, object]]:

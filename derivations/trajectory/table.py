@@ -4,14 +4,12 @@ An entry is printed with five significant digits (or four decimals). The derived
 enclosure of the condition number, rounded in the same format; both ends of the enclosure round alike.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
-from navsym.claims import CERTIFIED, REFUTED, UNDECIDED, Claim, Property, fact, state
+from navsym.claims import CERTIFIED, UNDECIDED, Property, claim, fact, state
 from navsym.models.earth import observability_rows, power_rows
 from navsym.trajectory.conditioning import Enclosure, certify_condition, condition_number, state_condition
 
@@ -127,38 +125,22 @@ def entry(n: int, step: str, column: str, printed: str) -> Property:
     )
 
 
-def entry_claim(n: int, step: str, column: str, printed: str, corrects: bool, wrong: bool) -> Claim:
-    number = f"table.n{n}.{step}.{column}"
-
-    def derive() -> Property:
-        return entry(n, step, column, printed)
-
-    return Claim(
-        module="trajectory",
-        number=f"{number}*" if corrects else number,
-        title=f"Condition number of {column} for n = {n}, tau = {STEPS[step]} s"
-        + (", as it should read" if corrects else ""),
-        derive=derive,
-        expect=REFUTED if wrong else CERTIFIED,
-        corrects=number if corrects else None,
-        slip="paper" if wrong else None,
-        reason="the paper calls them distorted itself: ratio exceeds what doubles resolve, the least singular value "
-        "is noise, and entries that must be equal differ; by hand: N_f has no tau in it, yet the rows of 0.2 s and 1 s "
-        "differ"
-        if wrong
-        else "",
-    )
-
-
-ENTRIES = tuple(
-    entry_claim(n, step, column, printed, corrects=False, wrong=(n, step) in CORRECTED)
-    for (n, step), row in PRINTED.items()
-    for column, printed in zip(COLUMNS, row, strict=True)
+DISTORTED = (
+    "the paper calls them distorted itself: ratio exceeds what doubles resolve, the least singular value is noise, and "
+    "entries that must be equal differ; by hand: N_f has no tau in it, yet the rows of 0.2 s and 1 s differ"
 )
-
-CORRECTIONS = tuple(
-    entry_claim(n, step, column, printed, corrects=True, wrong=False)
-    for (n, step), row in CORRECTED.items()
+ENTRIES = tuple(
+    claim(
+        f"table.n{n}.{step}.{column}{star}",
+        f"Condition number of {column} for n = {n}, tau = {STEPS[step]} s" + (", as it should read" if star else ""),
+        lambda place=(n, step, column, printed): entry(*place),
+        expect=None if wrong else CERTIFIED,
+        slip="paper" if wrong else None,
+        reason=DISTORTED if wrong else "",
+    )
+    for star, rows in (("", PRINTED), ("*", CORRECTED))
+    for (n, step), row in rows.items()
+    for wrong in [not star and (n, step) in CORRECTED]
     for column, printed in zip(COLUMNS, row, strict=True)
 )
 

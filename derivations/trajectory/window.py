@@ -9,8 +9,6 @@ the variance
 which least squares has (Gauss and Markov). It is the sum over Legendre's polynomials of their derivatives at the end.
 """
 
-from __future__ import annotations
-
 from math import factorial
 
 import sympy as sp

@@ -27,6 +27,11 @@ SAME: dict[tuple[str, str], str] = {
     ): "a sine two whole turns further on is the same",
     ("guaranteed_velocity:3.3.min", "h1 + names[2] * h2 -> h1 - names[2] * h2"): "it asks which names occur",
     (
+        "guaranteed_velocity:3.3.min",
+        "h1 + names[2] * h2 + names[3] * h3 -> h1 + names[2] * h2 - names[3] * h3",
+    ): "it asks which names occur",
+    ("terrain_search:6.rest", "tk - tG -> tk + tG"): "without a velocity the time since the fix moves nothing",
+    (
         "multistructure:2.growth.every",
         "sp.sin(2 * sp.pi) - sp.sin(0) -> sp.sin(2 * sp.pi) + sp.sin(0)",
     ): "the sine of 0 is 0: after a whole turn the course is the same",
@@ -45,7 +50,10 @@ SAME: dict[tuple[str, str], str] = {
         "terrain_search:sequential.below",
         "e - coarse - w * (k - turn) -> e - coarse + w * (k - turn)",
     ): "the grid of the velocity is symmetric",
-    ("trajectory:table.curse.first", "a[1]: 1 -> 0"): "the ends of an enclosure rise alike; the proof compares its own",
+    **{
+        ("trajectory:table.curse.first", end): "the ends of an enclosure rise alike; the proof compares its own"
+        for end in ("a[1]: 1 -> 0", "b[0]: 0 -> 1")
+    },
     **{
         ("trajectory:algorithm.field", line): "it counts different values, and as many differ"
         for line in (

@@ -194,6 +194,45 @@ def test_the_lag_of_a_harmonic_motion_is_that_of_a_long_run():
     assert abs(float(harmonic_lag(gain, tau, period, 2).mid()) - ratio) < 1e-9
 
 
+def poles(n):
+    """Stable poles, from slow to fast, real and in pairs."""
+    found = []
+    while len(found) < n:
+        size = 1 - 10 ** rng.uniform(-2, -0.01)
+        pair = size * np.exp(1j * rng.uniform(0.01, 3.0))
+        found += [pair, pair.conjugate()] if n - len(found) > 1 and rng.random() < 0.6 else [size]
+    return found
+
+
+def test_no_stable_gain_takes_less_noise_than_the_bound_at_any_angle():
+    """The bound of experiment.together.100, against Lyapunov's equation and the answer S at random angles."""
+    tight = []
+    for _ in range(400):
+        n = int(rng.integers(1, 5))
+        chi = np.real(np.poly(poles(n)))
+        model = first_stage_model(n)
+        moments = np.array([model.row @ np.linalg.matrix_power(model.Phi - np.eye(n), k) for k in range(n)])
+        gain = np.linalg.solve(moments, np.poly1d(chi)(np.poly1d([1, 1])).coeffs[1:])
+        position = solve_discrete_lyapunov(model.Phi - np.outer(gain, model.row), np.outer(gain, gain))[0, 0]
+        angle = 10 ** rng.uniform(-2.5, 0.4)
+        zeta = np.exp(1j * angle)
+        answer = abs((zeta - 1) ** n / np.polyval(chi, zeta))
+        m = 1 + max(angle / np.pi * (2 * np.log(1 / answer) - 1), 0.0)
+        assert position > (1 - 1 / m) * (1 - 1e-9)
+        tight.append((1 - 1 / m) / position)
+    assert max(tight) > 0.3
+
+
+def test_the_rows_behind_the_bound_hold_for_a_harmonic_motion():
+    """experiment.together.rows by the steady answer of one observer, as complex numbers."""
+    gain, zeta = np.array([0.3, 0.05, 0.01, 0.002, 0.0003]), np.exp(0.05j)
+    model = first_stage_model(5)
+    y = np.linalg.solve(zeta * np.eye(5) - model.Phi + np.outer(gain, model.row), gain * zeta)
+    nu = 1 - model.row @ y / zeta
+    left = y[1] * (zeta + 1) / 2 - (zeta - 1) * (1 + y[2] / 6)
+    assert abs(left + (zeta - 1 + gain[0] - zeta * (gain[1] / 2 - gain[2] / 6)) * nu) < 1e-12
+
+
 # -- the experiment ------------------------------------------------------------------------------------
 
 

@@ -4,8 +4,6 @@ A vehicle moves at constant speed on a great circle of the rotating spherical Ea
 carries its third axis along the vertical and does not turn about it (free in azimuth).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -6,8 +6,6 @@ algorithm are one linear system, so its covariance propagates exactly; Monte Car
 steps with drawn numbers. The Kalman filter of the full model is the bound that nothing beats.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -17,19 +15,8 @@ import numpy as np
 import sympy as sp
 
 from navsym.core.arrays import Array, freeze
+from navsym_papers.joint_correction import inertial
 from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, SCHULER_RATE, Flight
-from navsym_papers.joint_correction.inertial import (
-    EARTH,
-    FULL,
-    JOINT,
-    MU,
-    OMEGA,
-    dimensionless,
-    full_model,
-    joint_model,
-    position_variables,
-    velocity_variables,
-)
 
 
 class Situation(StrEnum):
@@ -77,7 +64,7 @@ class Errors:
             "w_M": self.position_bias / EARTH_RADIUS,
         }
         P = np.zeros((16, 16))
-        for k, state in enumerate(FULL):
+        for k, state in enumerate(inertial.FULL):
             kind = str(state).rpartition("_")[0] if not str(state).startswith("w") else str(state)[:3]
             P[k, k] = sigma.get(kind, 0.0) ** 2
         for tilt, turn in ((0, 4), (1, 5)):
@@ -95,7 +82,7 @@ class Errors:
 
 # Matrices along the flight
 
-RATES = (*OMEGA[:2], *EARTH)
+RATES = (*inertial.OMEGA[:2], *inertial.EARTH)
 
 
 @cache
@@ -106,12 +93,14 @@ def compiled() -> tuple[object, ...]:
     """
     from navsym.core.casadi_functions import casadi_function
 
-    truth, algorithm = full_model(), joint_model()
-    equations = dimensionless()
-    x, y = velocity_variables(equations), position_variables(equations)
-    meaning = sp.Matrix([[sp.diff(m, s) for s in FULL] for m in (*x, y[0], y[1], y[4], y[5])])
+    truth, algorithm = inertial.full_model(), inertial.joint_model()
+    equations = inertial.dimensionless()
+    x, y = inertial.velocity_variables(equations), inertial.position_variables(equations)
+    meaning = sp.Matrix([[sp.diff(m, s) for s in inertial.FULL] for m in (*x, y[0], y[1], y[4], y[5])])
     matrices = {"F": truth.F, "H": truth.H, "A": algorithm.F, "C": algorithm.H, "M": meaning}
-    return tuple(casadi_function(name, [list(RATES)], sp.Matrix(value).subs(MU, 1)) for name, value in matrices.items())
+    return tuple(
+        casadi_function(name, [list(RATES)], sp.Matrix(value).subs(inertial.MU, 1)) for name, value in matrices.items()
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -341,8 +330,6 @@ def kalman_deviations(flight: Flight, chosen: Plan, errors: Errors) -> Array:
 
 #: How many estimators :func:`compare` compares.
 ESTIMATORS = 5
-#: Metres (or metres per second) for one unit of every variable of :data:`JOINT`.
-METRES = dict(zip(map(str, JOINT), [EARTH_RADIUS] * 10, strict=True))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

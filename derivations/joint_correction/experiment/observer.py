@@ -7,8 +7,6 @@ and xi° = L^-1 (x°, z°) (joint_correction:1.12). The observer is linear, so t
 it is a matrix product.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -6,8 +6,6 @@ accelerometer errors. GPS velocity observes (v, b), GPS position completes the b
 two-stage split with m = 2, n = 3, found by the general method and not by hand.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -21,7 +19,7 @@ from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
 from navsym.observability.splits import choose_split
 from navsym.observability.two_stage import POLE, gains_by_poles
-from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, GRAVITY
+from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS
 from navsym_papers.joint_correction.experiment.observer import (
     TwoStageObserver,
     hold_measurements,
@@ -198,7 +196,3 @@ def outage_errors(aided: Aided, estimates: tuple[Array, Array], horizon: int, st
         predicted = [e[k] @ np.array([1.0, step, step**2 / 2]) for e in estimates]
         found.append(np.hypot(*(aided.position[k + horizon] - predicted)))
     return np.array(found)
-
-
-#: Gravity is not needed by the horizontal channels; the recorded az contains it.
-STANDARD_GRAVITY = GRAVITY

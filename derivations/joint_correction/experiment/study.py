@@ -1,36 +1,24 @@
 """The experiment on joint correction as one document: position errors of five estimators after the first fix."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from navsym_papers.joint_correction.experiment import ins
 from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, SCHULER_RATE, Flight, great_circle
-from navsym_papers.joint_correction.experiment.ins import (
-    ESTIMATORS,
-    Errors,
-    Situation,
-    compare,
-    kalman_deviations,
-    plan,
-    position_error,
-    standard_deviations,
-    steps_of,
-)
 
 #: Decay rates (lambda_c, lambda_h) of the two stages, in Schuler units.
 DECAYS = ((2.0, 3.0), (2.0, 5.0))
 
 #: What the last paragraph of the paper lists, one after the other: situation and minutes.
 SITUATIONS = (
-    (Situation.VELOCITY, 40.0),
-    (Situation.BOTH, 20.0),
-    (Situation.VELOCITY, 15.0),
-    (Situation.NEITHER, 10.0),
-    (Situation.POSITION, 25.0),
+    (ins.Situation.VELOCITY, 40.0),
+    (ins.Situation.BOTH, 20.0),
+    (ins.Situation.VELOCITY, 15.0),
+    (ins.Situation.NEITHER, 10.0),
+    (ins.Situation.POSITION, 25.0),
 )
 
 
@@ -41,14 +29,14 @@ def study(seed: int = 1, *, progress: Callable[[int, int], None] = lambda done, 
     progress : called with (finished, all) covariance runs, the two over the situations included
     """
     flight = great_circle(duration=7200.0, step=10.0)
-    done, of = itertools.count(1), len(DECAYS) * ESTIMATORS + 2
+    done, of = itertools.count(1), len(DECAYS) * ins.ESTIMATORS + 2
 
     def step() -> None:
         progress(next(done), of)
 
     rows = []
     for lambda_c, lambda_h in DECAYS:
-        found = compare(flight, Errors(), lambda_c=lambda_c, lambda_h=lambda_h, step=step)
+        found = ins.compare(flight, ins.Errors(), lambda_c=lambda_c, lambda_h=lambda_h, step=step)
         for name, errors in found.rows.items():
             rows.append({"lambda_c": lambda_c, "lambda_h": lambda_h, "estimator": name, "position_m": list(errors)})
     return {
@@ -63,10 +51,10 @@ def study(seed: int = 1, *, progress: Callable[[int, int], None] = lambda done, 
 def situations(flight: Flight, step: Callable[[], None] = lambda: None) -> list[dict[str, Any]]:
     """Errors at the end of every situation: algorithm and Kalman filter of the full model, exact covariances."""
     seconds = float(flight.tau[1] - flight.tau[0]) / SCHULER_RATE
-    chosen = plan(SITUATIONS, seconds, *DECAYS[0])
-    curves = {"two stages": standard_deviations(steps_of(flight, chosen, Errors()), Errors())}
+    chosen = ins.plan(SITUATIONS, seconds, *DECAYS[0])
+    curves = {"two stages": ins.standard_deviations(ins.steps_of(flight, chosen, ins.Errors()), ins.Errors())}
     step()
-    curves["Kalman filter, full model"] = kalman_deviations(flight, chosen, Errors())
+    curves["Kalman filter, full model"] = ins.kalman_deviations(flight, chosen, ins.Errors())
     step()
     ends = np.cumsum([round(minutes * 60.0 / seconds) for _, minutes in SITUATIONS])
     speed = EARTH_RADIUS * SCHULER_RATE
@@ -75,7 +63,7 @@ def situations(flight: Flight, step: Callable[[], None] = lambda: None) -> list[
             "situation": str(situation),
             "minutes": minutes,
             "estimator": name,
-            "position_m": float(position_error(curve)[end]),
+            "position_m": float(ins.position_error(curve)[end]),
             "velocity_error_mps": float(np.hypot(curve[end, 1], curve[end, 4]) * speed),
         }
         for (situation, minutes), end in zip(SITUATIONS, ends, strict=True)

@@ -4,8 +4,6 @@ The paper promises that partial estimates go through one rebuilt Kalman filter i
 is that step, with every array that outlives a line taken from a :class:`Workspace` that counts them.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

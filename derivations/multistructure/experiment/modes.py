@@ -5,8 +5,6 @@ A horizontal channel of an inertial system: velocity error v, tilt phi, gyro dri
 of the multi-structure paper with three modes for (4) and (6). Everything is in SI units and radians.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -5,8 +5,6 @@ positions minus that drift, seen with the noise of one of three modes. The recei
 filter and serves to judge it. Data: see the list of real data sets, Nagoya run (MIT, (c) 2023 Taro Suzuki).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

@@ -4,8 +4,6 @@ A study simulates switching signals from the bank itself, runs every method on t
 the estimates against the truth: errors with confidence intervals, never a single run.
 """
 
-from __future__ import annotations
-
 import itertools
 import time
 from collections.abc import Callable, Sequence
@@ -235,12 +233,8 @@ def switching_study(stays: Sequence[float], runs: int, steps: int, seed: int = 1
     for stay in stays:
         switch = np.full((3, 3), (1.0 - stay) / 2.0)
         np.fill_diagonal(switch, stay)
-        base = schuler_bank()
-        models = Bank(
-            SchulerChannel().models(),
-            switch,
-            {"mean": base.means[0], "covariance": base.covariances[0], "probabilities": np.full(3, 1.0 / 3.0)},
-        )
+        channel = SchulerChannel()
+        models = Bank(channel.models(), switch, channel.start() | {"probabilities": np.full(3, 1.0 / 3.0)})
         out[stay] = compare(models, METHODS[:-1], runs, steps, seed, exact=False)
     return out
 
@@ -248,12 +242,7 @@ def switching_study(stays: Sequence[float], runs: int, steps: int, seed: int = 1
 def schuler_bank(channel: SchulerChannel | None = None) -> Bank:
     """The Schuler channel with its three modes as a bank."""
     channel = channel or SchulerChannel()
-    start = channel.start()
-    return Bank(
-        channel.models(),
-        channel.mode_transition(),
-        {"mean": start["mean"], "covariance": start["covariance"], "probabilities": start["probabilities"]},
-    )
+    return Bank(channel.models(), channel.mode_transition(), channel.start())
 
 
 def study(

@@ -8,8 +8,6 @@ hypothesis c beats the truth with probability Phi(-D/(2 sigma)), and the sum ove
 neighbourhood of the truth bounds the probability of a false fix (union bound).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

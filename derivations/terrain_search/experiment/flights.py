@@ -4,8 +4,6 @@
 another map, or the same one.
 """
 
-from __future__ import annotations
-
 import importlib.util
 import math
 from dataclasses import dataclass

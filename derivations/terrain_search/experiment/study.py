@@ -7,13 +7,12 @@ above ground is read from one map with an error of 1.5 per cent and compared wit
 same one). Speed, ranges of the errors and length of the track are not in the paper; they are arguments.
 """
 
-from __future__ import annotations
-
 import functools
 import json
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any
 from zlib import crc32
@@ -58,15 +57,9 @@ def by_full(terrain: TerrainMap, track: Profile) -> Correction:
     return 50.0 * np.array([i, j]) + velocity * track.elapsed[-1], velocity
 
 
-def by_sequence(terrain: TerrainMap, track: Profile) -> Correction:
-    """The sequential search of the paper."""
-    found = search_sequential(terrain, track, GRID)
-    return found.shift, found.velocity
-
-
-def by_centre(terrain: TerrainMap, track: Profile) -> Correction:
-    """The sequential search about the matrix centre."""
-    found = search_sequential(terrain, track, GRID, improved=True)
+def by_sequence(terrain: TerrainMap, track: Profile, *, improved: bool = False) -> Correction:
+    """The sequential search of the paper, or about the matrix centre."""
+    found = search_sequential(terrain, track, GRID, improved=improved)
     return found.shift, found.velocity
 
 
@@ -81,7 +74,7 @@ ALGORITHMS: dict[str, Callable[[TerrainMap, Profile], Correction]] = {
     "position": by_position,
     "full": by_full,
     "sequential": by_sequence,
-    "sequential about C": by_centre,
+    "sequential about C": partial(by_sequence, improved=True),
     "full, refined": by_refinement,
 }
 
@@ -195,7 +188,11 @@ def study(
     rows: list[dict[str, Any]] = []
     each = len(settings) * 5 * runs
     for number, (name, terrain, ground) in enumerate(places):
-        told = None if progress is None else shifted(progress, number * each, len(places) * each)
+        told = (
+            None
+            if progress is None
+            else lambda done, _, before=number * each: progress(before + done, len(places) * each)
+        )
         rows += experiment(
             terrain, ground, name=name, settings=settings, runs=runs, seed=seed, journal=journal, progress=told
         )["rows"]
@@ -212,11 +209,6 @@ def grounds() -> list[tuple[str, TerrainMap, TerrainMap]]:
     if flown is not None and matched is not None:
         places.append(("N44W072, NASADEM flown, SRTM matched", terrain_from(matched), terrain_from(flown)))
     return places
-
-
-def shifted(progress: Callable[[int, int], None], before: int, total: int) -> Callable[[int, int], None]:
-    """Progress of one part of several."""
-    return lambda finished, _: progress(before + finished, total)
 
 
 def growth(

@@ -4,8 +4,6 @@ Flights over one track see the same ground, so they are no independent sample; t
 the mean over tracks, by Student's distribution: wide with five tracks, and honest.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import asdict, dataclass

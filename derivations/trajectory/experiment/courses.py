@@ -4,8 +4,6 @@ Northern motion only, as in the paper: s(t) is the integral of |V| cos(heading),
 error uniform on [-sqrt(3), sqrt(3)] m. Lengths in metres: an angle is s over the Earth radius.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,19 +14,7 @@ from numpy.typing import NDArray
 
 from navsym.core.arrays import Array
 from navsym.core.errors import DomainError
-from navsym_papers.trajectory.experiment.inversion import (
-    Start,
-    SteppedModel,
-    Tuning,
-    adaptive_filter,
-    first_stage_model,
-    fixed_gain_filter,
-    metric_scale,
-    normalised_scale,
-    scaled_model,
-    steady_gain,
-    windowed_filter,
-)
+from navsym_papers.trajectory.experiment import inversion
 
 Heading = Literal["printed", "consistent"]
 HEADINGS: tuple[Heading, ...] = ("printed", "consistent")
@@ -101,15 +87,15 @@ def measured(truth: Course, seed: int) -> Array:
     return truth.position[1:] + noise
 
 
-def metric_model(form: Literal["printed", "corrected"] = "corrected") -> SteppedModel:
+def metric_model(form: Literal["printed", "corrected"] = "corrected") -> inversion.SteppedModel:
     """The motion in metres, m/s, m/s^2, ... (variables D_p x times the Earth radius)."""
-    return scaled_model(first_stage_model(ORDER, form), metric_scale(ORDER, TAU))
+    return inversion.scaled_model(inversion.first_stage_model(ORDER, form), inversion.metric_scale(ORDER, TAU))
 
 
 def with_printed_gain(truth: Course, z: Array) -> Array:
     """States (N, 3) in metric units with the printed constant gain, from the true state at zero."""
     start = np.array([truth.position[0], truth.speed[0], truth.acceleration[0], 0.0, 0.0])
-    return fixed_gain_filter(z, metric_model(), np.array(PRINTED_GAIN), start)[:, :3]
+    return inversion.fixed_gain_filter(z, metric_model(), np.array(PRINTED_GAIN), start)[:, :3]
 
 
 def with_adaptive_filter(truth: Course, z: Array, form: Literal["printed", "corrected"]) -> Array:
@@ -118,22 +104,22 @@ def with_adaptive_filter(truth: Course, z: Array, form: Literal["printed", "corr
     The paper gives neither the first Q and P nor the step of the field; here 1e-12 and 1 in normalised
     variables and 2. The corrected form keeps the likeliest candidate of windows of 40 steps.
     """
-    scale = normalised_scale(ORDER)
-    model = scaled_model(first_stage_model(ORDER, form), scale)
+    scale = inversion.normalised_scale(ORDER)
+    model = inversion.scaled_model(inversion.first_stage_model(ORDER, form), scale)
     first = np.array([truth.position[0], truth.speed[0] * TAU, 0.0, 0.0, 0.0]) * scale
-    start = Start(first, np.eye(ORDER), np.full(ORDER, 1e-12))
+    start = inversion.Start(first, np.eye(ORDER), np.full(ORDER, 1e-12))
     stop = round(TUNED / TAU)
     if form == "printed":
-        tuning = Tuning(1.0, criterion="predicted", weights=(1.0, TAU, TAU**2), stop=stop)
-        states = adaptive_filter(z, model, start, tuning).states
+        tuning = inversion.Tuning(1.0, criterion="predicted", weights=(1.0, TAU, TAU**2), stop=stop)
+        states = inversion.adaptive_filter(z, model, start, tuning).states
     else:
-        tuned = windowed_filter(z[:stop], model, start, Tuning(1.0), window=40)
-        gain = steady_gain(model, 1.0, np.maximum(tuned.diagonals[-1], 1e-30))[0]
-        rest = fixed_gain_filter(z[stop:], model, gain, tuned.states[-1])
+        tuned = inversion.windowed_filter(z[:stop], model, start, inversion.Tuning(1.0), window=40)
+        gain = inversion.steady_gain(model, 1.0, np.maximum(tuned.diagonals[-1], 1e-30))[0]
+        rest = inversion.fixed_gain_filter(z[stop:], model, gain, tuned.states[-1])
         states = np.vstack([tuned.states, rest])
     # A run that diverges overflows; that is its result.
     with np.errstate(over="ignore", invalid="ignore"):
-        return (states / scale * metric_scale(ORDER, TAU))[:, :3]
+        return (states / scale * inversion.metric_scale(ORDER, TAU))[:, :3]
 
 
 def figures(truth: Course, states: Array) -> dict[str, float]:
@@ -205,11 +191,6 @@ def experiment(
 # -- what a change of variables does to a filter ------------------------------------------------------------
 
 
-def rounded_scale(scale: Array) -> Array:
-    """Nearest powers of two."""
-    return np.exp2(np.round(np.log2(scale)))
-
-
 def scaling_changes_rounding(n: int = ORDER, steps: int = 2000, seed: int = 1) -> bool:
     """Whether a Kalman filter computes anything else in variables scaled by powers of two.
 
@@ -218,17 +199,17 @@ def scaling_changes_rounding(n: int = ORDER, steps: int = 2000, seed: int = 1) -
     """
     rho = 1 / RADIUS
     to_f = np.array([1.0, *(rho * TAU**j / math.factorial(j) for j in range(1, n))])
-    model = scaled_model(first_stage_model(n), 1 / to_f)
-    D = rounded_scale(to_f * normalised_scale(n))
+    model = inversion.scaled_model(inversion.first_stage_model(n), 1 / to_f)
+    D = np.exp2(np.round(np.log2(to_f * inversion.normalised_scale(n))))  # nearest powers of two
     rng = np.random.default_rng(seed)
     z = 1e-5 * np.sin(np.arange(steps) / 300.0) + rng.normal(size=steps) * rho
     P, Q = np.diag(rho**2 / to_f**2), np.diag((1e-3 * rho / to_f) ** 2)
     plain = kalman_estimates(z, model, P, Q, rho**2)
-    scaled = kalman_estimates(z, scaled_model(model, D), P * D[:, None] * D, Q * D[:, None] * D, rho**2)
+    scaled = kalman_estimates(z, inversion.scaled_model(model, D), P * D[:, None] * D, Q * D[:, None] * D, rho**2)
     return not np.array_equal(plain * D, scaled)
 
 
-def kalman_estimates(z: Array, model: SteppedModel, P: Array, Q: Array, R: float) -> Array:
+def kalman_estimates(z: Array, model: inversion.SteppedModel, P: Array, Q: Array, R: float) -> Array:
     """Estimates (N, n) of the textbook filter; sums in a fixed order, so that scaling is the only difference."""
     y, out = np.zeros(model.order), []
     Phi, h = model.Phi, model.gain_row[0]

@@ -9,8 +9,6 @@ In the corrected form a criterion of one step sees only q_1: K = (g + q_1 e_1) /
 elements of Q are therefore tuned by :func:`windowed_filter`, which carries every candidate through a window.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import partial

@@ -6,8 +6,6 @@ roots of det(z E - Phi + k h) lie inside the unit circle is decided for a whole 
 z = (1 + w) / (1 - w) turns the circle into the imaginary axis, and Routh's column is computed in balls.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The experiment of the GLONASS paper as one document: printed figures beside obtained ones."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

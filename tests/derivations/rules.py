@@ -1,0 +1,119 @@
+"""Rules of judging a paper: each takes a paper with its claims and verdicts, and lists what breaks it.
+
+They hold for the papers here (``test_rules``) and are broken one by one by a small paper (``test_sixth_paper``).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import get_args
+
+from navsym.claims import CONFIRMED, OPEN, REFUTED, Claim, Paper, compare_equations
+from navsym.claims.claim import Slip
+from navsym.claims.record import Record
+from navsym.prove.grant import UNCHECKED
+
+#: Words of a title that say more than one example: their quantifier has to stand in the scope, or a range in the title.
+QUANTIFIERS = re.compile(r"\b(every|always|in general|whatever|on average|inevitably|any|never)\b", re.IGNORECASE)
+RANGE = re.compile(r"[\[(][^\])]*\d[^\])]*[\])]|n = \d|\d (to|and|or) \d")
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """A paper with its claims and their verdicts."""
+
+    paper: Paper
+    claims: tuple[Claim, ...]
+    records: tuple[Record, ...]
+
+
+def verdicts_other_than_declared(judged: Judged) -> list[str]:
+    """Also an undecided finding that is called PROVED, and a run that is called a refutation."""
+    return [r.id for r in judged.records if r.status != r.expect]
+
+
+def quantifiers_without_a_scope(judged: Judged) -> list[str]:
+    held = [r for r in judged.records if r.status.holds and QUANTIFIERS.search(r.title)]
+    return [
+        r.id for r in held if not (r.scope.startswith("all ") or re.search(r"\d", r.scope) or RANGE.search(r.title))
+    ]
+
+
+def slips_in_what_is_not_printed(judged: Judged) -> list[str]:
+    return [c.id for c in judged.claims if c.slip and judged.paper.kind_of(c.number) not in ("printed", "beside")]
+
+
+def unknown_attributions(judged: Judged) -> list[str]:
+    """A printed formula that is refuted is a slip of the paper, of its copy, or nobody can tell which."""
+    refuted = [c for c in judged.claims if c.expect == REFUTED and judged.paper.kind_of(c.number) == "printed"]
+    return [c.id for c in judged.claims if c.slip not in (None, *get_args(Slip))] + [
+        c.id for c in refuted if not c.slip
+    ]
+
+
+def names_of_no_claim(judged: Judged) -> list[str]:
+    """Entries of the card that name nothing."""
+    paper, numbers = judged.paper, [claim.number.rstrip("*") for claim in judged.claims]
+    named = [*f"{paper.beside} {paper.remarks} {paper.beyond}".split(), *paper.causes, *paper.scopes]
+    return [one for one in named if not any(fnmatchcase(number, one) for number in numbers)]
+
+
+def causes_that_are_no_slips(judged: Judged) -> list[str]:
+    """A cause is a slip that is counted itself; what repeats it is one as well."""
+    slips = {claim.number for claim in judged.claims if claim.slip and claim.expect == REFUTED}
+    causes = judged.paper.causes
+    return [*(set(causes) - slips), *(set(causes.values()) - (slips - set(causes)))]
+
+
+def left_out_without_a_reason(judged: Judged) -> list[str]:
+    return [words for words, why in judged.paper.left_out.items() if not (words.strip() and why.strip())]
+
+
+def corrections_without_a_star(judged: Judged) -> list[str]:
+    """The number without a star states the print, and its correction says something else."""
+    known = {r.id: r for r in judged.records}
+    wrong = [(r, known.get(r.corrects)) for r in judged.records if r.corrects]
+    return [
+        r.id
+        for r, w in wrong
+        if w is None or r.id != f"{w.id}*" or w.status != REFUTED or (r.printed, r.derived) == (w.printed, w.derived)
+    ] + [r.id for r in judged.records if r.number.endswith("*") and not r.corrects]
+
+
+def refutations_without_a_correction(judged: Judged) -> list[str]:
+    corrected = {r.corrects for r in judged.records if r.status.holds}
+    return [r.id for r in judged.records if r.status == REFUTED and (r.id not in corrected or not r.reason)]
+
+
+def equations_without_a_claim(judged: Judged) -> list[str]:
+    return [*compare_equations(judged.paper, judged.claims).missing]
+
+
+def runs_and_open_questions_without_evidence(judged: Judged) -> list[str]:
+    """What is sampled counts its points or trials; what is open says what was tried."""
+    bare = [r for r in judged.records if r.status == CONFIRMED and not re.search(r"\d", r.evidence + r.scope)]
+    return [r.id for r in (*bare, *(r for r in judged.records if r.status == OPEN and not r.evidence))]
+
+
+def certificates_that_lack_without_a_reason(judged: Judged) -> list[str]:
+    bare = [r for r in judged.records if UNCHECKED in r.evidence]
+    return [r.id for r in bare if r.certificate or not re.search(re.escape(UNCHECKED) + r" \(\w.{10,}\)", r.evidence)]
+
+
+RULES: tuple[Callable[[Judged], list[str]], ...] = (
+    verdicts_other_than_declared,
+    quantifiers_without_a_scope,
+    slips_in_what_is_not_printed,
+    unknown_attributions,
+    names_of_no_claim,
+    causes_that_are_no_slips,
+    left_out_without_a_reason,
+    corrections_without_a_star,
+    refutations_without_a_correction,
+    equations_without_a_claim,
+    runs_and_open_questions_without_evidence,
+    certificates_that_lack_without_a_reason,
+)
