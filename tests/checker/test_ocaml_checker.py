@@ -25,8 +25,8 @@ ROOT = Path(__file__).resolve().parents[2]
 SOURCES = Path(__file__).parent / "ocaml"
 #: In the order in which they need each other.
 MODULES = tuple(
-    "text tree ball value algebra calculus goal cones rules language statement condition observability gap sized words "
-    "checker".split()
+    "text tree ball value algebra calculus goal cones rules language statement condition observability gap bounds "
+    "sized words checker".split()
 )
 
 
