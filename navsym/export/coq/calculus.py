@@ -13,7 +13,7 @@ from typing import Any
 from navsym import checker
 from navsym.checker import Question, Term, Value
 from navsym.export.coq.scripts import prove_equality
-from navsym.export.coq.terms import RELATIONS, Unwritten, write_term
+from navsym.export.coq.terms import RELATIONS, RESERVED, Unwritten, write_term
 
 Names = Mapping[str, str]
 ENDS = {checker.INFINITY: "Rbar_locally p_infty", checker.negate(checker.INFINITY): "Rbar_locally m_infty"}
@@ -37,7 +37,7 @@ class Slope(tuple[Any, ...]):
             word += "_"
         if self.by:
             return {**names, self.by: word}, word, place if place.isidentifier() else f"({place})"
-        moved = {s: f"({names[s]} + {word} * ({write_term(rate, names)}))" for s, rate in self.rates.items()}
+        moved = {s: f"{names[s]} + {word} * ({write_term(rate, names)})" for s, rate in self.rates.items()}
         return {**names, **moved}, word, place
 
     def write(self, names: Names) -> str:
@@ -77,12 +77,16 @@ class Writer(checker.Reader):
         """The derivative by a symbol or by time, entry by entry."""
         slopes = super().differentiate(x, name)
         by = "" if name == "t" and "t" in self.rates else name
+        if by and by not in self.box:
+            raise Unwritten("a derivative by what is no symbol of the statement")
 
         def mark(f: Term, slope: Term) -> Term:
             found = Slope(slope)
             rates = {} if by else self.slopes
             found.of, found.by = f, by
-            found.rates = {s: rate for s, rate in rates.items() if rate and s in checker.symbols_of(f)}
+            found.rates = {s: rate for s, rate in rates.items() if rate and s in symbols_typed(f)}
+            if not by and any(rates.get(s, checker.ZERO) is None for s in symbols_typed(f)):
+                raise Unwritten("a derivative of what has no rate")
             self.marked += [found] * (not self.dead)
             return found
 
@@ -108,6 +112,12 @@ def list_all(*terms: Term) -> Iterator[Slope]:
         yield from (slope, *list_all(slope.of))
 
 
+def symbols_typed(term: Term) -> set[str]:
+    """The symbols that a term is written with: also those that the derivative as the checker has it is without."""
+    inside = (t for slope in list_slopes(term) for t in (slope.of, *slope.rates.values()))
+    return set(checker.symbols_of(term)).union(*map(symbols_typed, inside))
+
+
 def strip(term: Term) -> Term:
     """A term as the checker has it."""
     return tuple(strip(part) if isinstance(part, tuple) else part for part in term)
@@ -126,6 +136,8 @@ def name_questions(questions: Iterable[Question], names: dict[str, str]) -> dict
         if q.kind != "integral" or q.within or any(map(checker.is_asked, q.list_terms())):
             raise Unwritten(f"{q.kind} of this kind")
         own = q.variable.rpartition("__")[0]
+        while own in RESERVED or own in names.values():
+            own += "_"
         ends = [ENDS.get(end) or write_term(end, names) for end in (q.low, q.high)]
         open_ended = {q.low, q.high} & set(ENDS)
         ends = [
