@@ -122,6 +122,14 @@ Ltac falls := match goal with |- is_lim (fun x => exp (@?g x)) _ _ =>
     apply (limit_linear g (g 0 - g 1)); [ side | intro; field; nonzero ] end.
 Ltac limit :=
   first
-    [ apply is_lim_const | falls | apply limit_atan_p | apply limit_atan_m
-    | eapply is_lim_plus'; limit | eapply limit_product; limit ].
+    [ apply is_lim_const | falls
+    | match goal with |- is_lim (fun x => ?c * x * exp (@?g x)) _ _ =>
+        apply (is_lim_ext (fun x => c * (x * exp (g x)))); [ intro; ring |];
+        eapply limit_product; [ apply is_lim_const | falls ]
+      end
+    | apply limit_atan_p | apply limit_atan_m
+    | eapply is_lim_plus'; limit | eapply limit_product; limit
+    | match goal with |- is_lim (fun x => (@?a x + @?b x) * @?e x) _ _ =>
+        apply (is_lim_ext (fun x => a x * e x + b x * e x)); [ intro; ring | eapply is_lim_plus'; limit ]
+      end ].
 Ltac to_limit := match goal with |- filterlim ?F (Rbar_locally ?i) (locally ?l) => change (is_lim F i l); unfold Rdiv; limit end.
