@@ -79,11 +79,12 @@ def list_rules(value: Any) -> Iterator[str]:
 
 
 def backing_words(record: Record) -> str:
-    """What stands behind a verdict, in words: the size of its certificate and who accepted it, or that it has none."""
+    """What stands behind a verdict, in words: kind and size of its certificate, who accepted it; or none."""
     if record.certificate:
         size = sum(len(json.dumps(part, ensure_ascii=False).encode()) for part in list_parts(record.certificate))
+        kinds = " and ".join(sorted({part["kind"] for part in list_parts(record.certificate)}))
         judge = "not looked at by the checker" if UNCHECKED in record.evidence else "accepted by the checker"
-        return f"{size:,} bytes, {judge}"
+        return f"{kinds}, {size:,} bytes, {judge}; second checker and kernel not asked"
     if record.status in ("CONFIRMED", "OPEN"):
         return "none: nothing is proved"
     return "none: unchecked, the verdict rests on the code that computes it"

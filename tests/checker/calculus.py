@@ -359,6 +359,8 @@ REFUTED = [
     (state("integral(x**2, x, 0, a)", "=", "a**3/3", a=LINE), {"a": "1"}, [integral(piece("x__1**3/3"))], "not seen"),
     (state("integral((x - 1)**k, x, 0, 1)", "=", "0", k=LINE), {"k": "2"}, [integral(piece("(x__1 - 1)**3/3"))],
      "another exponent"),
+    (stated("integral([x, log(y)][1], x, 0, 1)", "=", "1", y=LINE), {"y": "-1"}, [integral(piece("x__1**2/2"))],
+     "no value at the point"),
     (state("x", "=", "1", x=LINE), ["x"], None, "expected numbers by symbol"),
 ]  # fmt: skip
 #: Proofs by the other rules, each with a premise that is false, or a place that matters.
@@ -395,6 +397,17 @@ RULES = [
     (state("x**200 + 1", ">", x=LINE), X1, None, [roots(None, None)], ""),
     (state("(x - 3)**(-2)", ">", x=TWO), X1, None, [roots("1", "2")], ""),
     (state("(1/(x - 3))**(-2)", ">", x=TWO), X1, None, [roots("1", "2")], ""),
+    (state("x**(1/2)", "!=", x=UNIT), X1, None, [equal("x**(1/2)", by("product", factors=[[1, span(0)]]))], "expected"),
+    (state("sin(x/sqrt(2))", "=", "sin(x*sqrt(2)/2)", x=LINE), X1, None, [I], ""),
+    (state("sqrt(cos(pi/7) - cos(2*pi/7) + cos(3*pi/7))", "=", "sqrt(1/2)"), {}, None, [I], ""),
+    (state("(x + y + z + 1)**6", "=", "((x + y + z + 1)**3)**2", x=LINE, y=LINE, z=LINE), XYZ, None, [I], ""),
+    (
+        state("v + w + x + y + z + 1", ">", **dict.fromkeys("vwxyz", UNIT)),
+        XYZ | {"v": "1", "w": "1"},
+        None,
+        [by("cones", splits=[None])],
+        "",
+    ),
     (state("(x - 3)**(-3)", "<", x=TWO), X1, None, [equal("-(x - 3)**(-3)", roots("1", "2"))], ""),
 ]
 ROWS = [*LIMITS, *INTEGRALS, *SUMS, *EXPONENTIALS, *ORDERS, *RULES]

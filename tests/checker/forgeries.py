@@ -237,6 +237,8 @@ FORGERIES = [
     (TWO, ["null", 1], ["0", "1", "1"], "not diagonal"),
     (TWO, ["free"], [1, 1], "division by zero"),
     (PIVOT, ["point", "a"], "0", "pivot that may be zero"),
+    (PIVOT, ["statement", "H", 0, 0], "atan2(a, 1)", "atan2 in a series"),
+    (PIVOT, ["statement", "H", 0, 0], "atan2(1, a)", "atan2 in a series"),
     (CONDITION, ["brackets", 0], "25.05", "largest"),
     (CONDITION, ["brackets", 1], "24.95", "largest"),
     (CONDITION, ["brackets", 2], "1.0005", "smallest"),

@@ -295,6 +295,9 @@ MEANINGLESS = [
         "a name given twice",
     ),
     (stated("E(w)", "=", "0") | {"random": {"w": NORMAL["w"] | {"normal": 1}}}, "a name given twice"),
+    (stated("x", "=", "x", x=LINE) | {"random": []}, "expected random names"),
+    (stated("cov(p, p[1])", "=", "0", a=LINE, b=LINE) | PAIR, "expected a number"),
+    (stated("cov(p[1], p)", "=", "0", a=LINE, b=LINE) | PAIR, "expected a number"),
     (stated("x", "=", "x", given=["x = 1 = 1"], x=LINE), "more than one"),
     (stated("x", "=", "x", "u", given=["u > u"], x=LINE), "no order"),
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import json
 import random
@@ -84,10 +85,49 @@ def test_vectors_cases_and_hypotheses_are_theorems_of_their_entries():
     item = certificate("u*x", "=", "x*u", {name: REAL for name in ("u1", "u2", "x")})
     item["statement"] |= language
     text = write_theory(item)
-    assert "(x u1, x u2" not in text and "x >= 0 -> u1 * x + (- 1) * (x * u1) = 0 /\\ " in text
+    assert "(x u1, x u2" not in text and "x >= 0 -> u1 * x = x * u1 /\\ " in text
     item["statement"] |= {"left": "max(x, 1)", "right": "max(1, x)"}
     names = [line.split()[1] for line in write_theory(item).splitlines() if line.startswith("Theorem")]
     assert names == ["statement_1_1", "statement_1_2", "statement_1_3"]
+
+
+def language(**more):
+    """What the second reader of the checker has beside a plain statement."""
+    return {"shapes": {}, "given": [], "rates": {}, **more}
+
+
+def test_derivatives_and_integrals_stand_in_the_theorem_as_they_are_printed():
+    item = certificate("diff(log(x)*y, x, 2)", "=", "-y/x**2", {"x": REAL, "y": REAL})
+    item["statement"] |= language()
+    text = write_theory(item)
+    assert "Derive (fun x : R => Derive (fun x : R => ln (x) * y) x) x = ((- 1) * y) / (x ^ 2)." in text
+    assert "x > 0 -> " in text
+    text = write_theory(nav.prove("integral(exp(-b*x)*y, x, 0, oo) = y/b", b="positive").certificate)
+    answer = nav.prove("integral(R*R_, R_, 0, 1) = R/2")
+    assert "RInt (fun R__ : R => R_ * R__) (0) (1) = R_ / 2." in write_theory(answer.certificate)
+    assert "RInt_gen (fun x : R => exp (((- 1) * b) * x) * y) (at_point (0)) (Rbar_locally p_infty) = y / b." in text
+
+
+@pytest.mark.parametrize(
+    ("left", "says"),
+    [
+        ("dot_(x*y)", "Derive (fun time : R => (x + time * (v)) * (y + time * (x))) 0 = v."),
+        (
+            "dot_(diff(x*y, x))",
+            "Derive (fun time : R => Derive (fun x_ : R => x_ * (y + time * (x))) (x + time * (v))) 0 = v.",
+        ),
+        (
+            "dot_(dot_(y))",
+            "Derive (fun time : R => Derive (fun time_ : R => y + time * (x) + time_ * (x + time * (v))) 0) 0 = v.",
+        ),
+        ("diff(x*y, x)*time", "(Derive (fun x : R => x * y) x) * time = v."),
+    ],
+)
+def test_a_derivative_by_time_moves_all_symbols_that_are_typed(left, says):
+    """Also a symbol that the derivative inside is without; no variable has the name of a symbol that stands there."""
+    item = certificate(left, "=", "v", {name: REAL for name in ("x", "y", "v", "time")[: 4 if "time" in left else 3]})
+    item["statement"] |= language(rates={"x": "v", "y": "x"})
+    assert says in write_theory(item)
 
 
 def condition(lower, upper, outside=0, **changes):
@@ -118,7 +158,14 @@ def test_equations_that_are_given_come_with_the_cofactors_of_the_certificate():
 
 @pytest.mark.parametrize(
     ("left", "why"),
-    [("diff(x**2, x)", "a derivative"), ("floor(x)", "whole part"), ("integral(y, y, 0, x)", "without an answer")],
+    [
+        ("E(x)", "an order or a moment"),
+        ("floor(x)", "whole part"),
+        ("integral(y, y, 0, x)", "without an answer"),
+        ("sum(diff(x**2, x)*k, k, 1, 2)", "a derivative inside"),
+        ("diff(x**2, z)", "no symbol of the statement"),
+        ("integral(diff(x*y, x), y, 0, 1)", "a derivative inside|without an answer"),
+    ],
 )
 def test_what_the_reader_of_the_checker_computes_is_not_written(left, why):
     item = certificate(left, "=", "x", {"x": REAL})
@@ -140,6 +187,13 @@ def test_coq_proves_what_the_checker_accepts(tmp_path):
         nav.prove("x*y >= 0", given=["x >= 0", "y >= 0"]),
         nav.prove("(x + y)**2 = 2*x*y + 1", given=["x**2 + y**2 = 1"]),
         nav.prove("2*cos(s/2 + pi/4)**2 = 1 - sin(s)"),
+        nav.prove("diff(sqrt(x)*sin(y), x, 2) = -sin(y)/(4*x*sqrt(x))"),
+        nav.prove("diff(x**3, x) = 2*x**2"),
+        nav.prove("cosh(x)**2 - sinh(x)**2 = 1"),
+        nav.prove("integral(x*sin(x), x, 0, t) = sin(t) - t*cos(t)"),
+        nav.prove("integral(x*exp(-x), x, 0, oo) = 1"),
+        nav.prove("sqrt(6)*x = sqrt(2)*sqrt(3)*x"),
+        *(nav.book[name].prove() for name in ("transport-rate", "mercator-ellipsoid", "unscented-covariance")),
     ]
     for place, answer in enumerate(answers):
         (row,) = nav.check(answer, kernel="coq", out=tmp_path / str(place))
@@ -175,9 +229,33 @@ def test_coq_proves_no_false_statement(tmp_path):
         certificate("x**2", ">=", "x", box),
         certificate("x", ">=", "0", box, kind="counterexample", point={"x": "1/2"}),
         certificate("x", "<=", "0", box, kind="counterexample", point={"x": "2"}),
+        certificate("diff(sqrt(x), x)", "=", "1/sqrt(x)", {"x": REAL}),
+        certificate("diff(x*y, x, 2)", "=", "y", {"x": REAL, "y": REAL}),
+        certificate("dot_(x*y)", "=", "v*x", {"x": REAL, "y": REAL, "v": REAL}),
+        nav.prove("integral(x, x, 0, 1) = 1/2").certificate,
+        certificate("diff(x**3, x)", "=", "3*x**2", {"x": REAL}, kind="counterexample", point={"x": "2"}),
     ]
+    for item in false[6:9] + false[10:]:
+        item["statement"] |= language(rates={"x": "v"} if "dot_" in item["statement"]["left"] else {})
+    false[9]["statement"]["right"] = "1/3"
     for place, forged in enumerate(false):
         assert replay.replay(forged, tmp_path / f"{place}.v").status == "FAILED", forged
+
+
+@needs_coq
+@pytest.mark.slow
+def test_coq_proves_no_forgery(tmp_path):
+    """A thousand forgeries of the campaign against both checkers, those among them that are written for Coq."""
+    from tests.checker.test_ocaml_checker import list_forgeries
+
+    rows = []
+    for text in list_forgeries(random.Random(1000), 10_000):
+        with contextlib.suppress(ValueError, checker.Refused, DomainError, RecursionError):
+            rows.append(replay.replay(checker.load(text), tmp_path / "forged.v"))
+            assert rows[-1].status != "PROVED", text
+        if sum(row.status == "FAILED" for row in rows) == 1000:
+            return
+    raise AssertionError(f"only {len(rows)} of the forgeries are theories")
 
 
 @needs_coq

@@ -72,7 +72,10 @@ def test_a_page_says_what_is_trusted_and_lists_what_has_no_certificate(card, rec
     listed = re.findall(r"(\w+) (\d+) [\d,]+ [\d,]+ ", page)
     assert sum(int(number) for _, number in listed) == count > 0
     assert "1 verdict is a computed fact" in page and bare.id in page
-    assert "unchecked, the verdict rests on the code" in " ".join(Reading(made["sample.html"]).text.split())
+    said = " ".join(Reading(made["sample.html"]).text.split())
+    assert "unchecked, the verdict rests on the code" in said
+    backed = re.findall(r"([\w ]+), [\d,]+ bytes, accepted by the checker; second checker and kernel not asked", said)
+    assert {kind.strip() for kind in backed} == {record.certificate["kind"] for record in others if record.certificate}
     assert "every file below" in page and "trust.html" in made["index.html"]
 
 

@@ -17,6 +17,9 @@ from navsym.export.coq.terms import Unwritten, subterms, write_term
 OF_PI = {k: (f"sin_PI{k if k > 1 else ''}", f"cos_PI{k if k > 1 else ''}") for k in (1, 2, 3, 4, 6)}
 #: Multiples of one angle that a script is written for.
 MOST_TURNS = 24
+#: Functions that become others, as the checker has them or without a sum below a line that is not seen to be positive.
+MEANINGS = {"tan": "sin(x)/cos(x)", "sinh": "(exp(x) - exp(-x))/2", "cosh": "(exp(x) + exp(-x))/2"}
+MEANINGS |= {"tanh": "(exp(x) - exp(-x))/(exp(x) + exp(-x))"}
 #: Precision in bits and depth that ``interval`` is given, and seconds for one try.
 BITS, DEPTH, PATIENCE = 60, 20, 20
 
@@ -58,19 +61,19 @@ def prove_equality(terms: Iterable[Term], names: Mapping[str, str]) -> list[str]
     """Functions of sums become those of single angles, logarithms and roots; ``field`` does the rest."""
     script = Script(names)
     parts = [*dict.fromkeys(part for term in terms for part in subterms(term))]
-    for part in parts:
-        if part[0] == "tan":
-            inside = script.write(part[1])
-            script.rewrite(part, f"sin ({inside}) / cos ({inside})", "reflexivity")
-        elif part[0] in ("sinh", "cosh", "tanh"):
-            raise Unwritten("hyperbolic functions in an equality")
+    for part in [*parts]:
+        if part[0] in MEANINGS:
+            meaning = checker.replace(checker.parse(MEANINGS[part[0]]), ("symbol", "x"), part[1])
+            script.rewrite(part, script.write(meaning), "by_meaning")
+            parts += [p for p in subterms(meaning) if p not in parts]
     write_angles([p for p in parts if p[0] in ("sin", "cos", "tan", "cot", "sec", "csc")], script)
     write_exponentials([p for p in parts if p[0] == "exp"], script)
     write_roots([p for p in parts if is_square_root(p)], script)
     write_absolutes([p for p in parts if p[0] == "abs"], script)
     rules = f" [{' '.join(script.rules)}]" if script.rules else ""
+    rewrites = "".join(f"rewrite ?{rule}; " for rule in script.rules)
     last = (
-        f"first [ solve [ring{rules}] | solve [field{rules}; nonzero] ]."
+        f"first [ solve [ring{rules}] | solve [field{rules}; nonzero] | solve [{rewrites}field; nonzero] ]."
         if rules
         else "first [ solve [ring] | field; nonzero ]."
     )
@@ -222,11 +225,16 @@ def write_roots(parts: list[Term], script: Script) -> None:
             continue
         known.add(text)
         q = checker.constant_of(base)
-        if q is not None and q > 0 and (free := square_free(q)) != q:
-            factor = fmpq(isqrt(int((q / free).p)), isqrt(int((q / free).q)))
-            times, rest = (write_term(("number", value), {}) for value in (factor, free))
-            script.replace(f"sqrt ({text})", f"{times} * sqrt ({rest})", f"root_of ({rest})")
-            text = rest
+        if q is not None and q > 0 and q != 1:
+            factor, primes = split_root(q)
+            before = len(script.rules)
+            for prime in primes:
+                script.know(f"sqrt ({prime}) ^ 2 = {prime}", "square_of_root")
+            if (factor, len(primes)) != (1, 1):
+                roots = " * ".join([f"({write_term(('number', factor), {})})", *(f"sqrt ({p})" for p in primes)])
+                rules = f" [{' '.join(script.rules[before:])}]" if primes else ""
+                script.replace(f"sqrt ({text})", roots, f"root_of ltac:(field{rules})")
+            continue
         script.know(f"sqrt ({text}) ^ 2 = {text}", "square_of_root")
 
 
@@ -240,15 +248,18 @@ def write_absolutes(parts: list[Term], script: Script) -> None:
             script.rewrite(part, write_term(("number", abs(q)), {}), "unfold Rabs; destruct Rcase_abs; lra")
 
 
-def square_free(q: fmpq) -> fmpq:
-    """The rational number without squares that q is times the square of another: an integer."""
-    n = int(q.p) * int(q.q)
-    free, d = n, 2
-    while d * d <= min(free, 10**6):
-        while free % (d * d) == 0:
-            free //= d * d
+def split_root(q: fmpq) -> tuple[fmpq, list[int]]:
+    """f and primes p with sqrt(q) = f times the product of all sqrt(p); what has no small factor stands as a prime."""
+    n, d, primes, times = int(q.p) * int(q.q), 2, list[int](), 1
+    while d * d <= min(n, 10**6):
+        while n % (d * d) == 0:
+            n, times = n // (d * d), times * d
+        if n % d == 0:
+            n, primes = n // d, [*primes, d]
         d += 1
-    return fmpq(free)
+    root = isqrt(n)
+    whole, rest = (root, []) if root * root == n else (1, [n])
+    return fmpq(times * whole, q.q), primes + rest
 
 
 # -- Inequalities and counterexamples ----------------------------------
@@ -260,10 +271,10 @@ def prove_bound(names: Mapping[str, str]) -> list[str]:
     tries = [f"i_prec {BITS}, i_depth {DEPTH}{cut}"]
     tries += [f"i_prec {BITS}, i_depth {DEPTH}, i_taylor {name}{cut}" for name in names.values()][:2]
     balls = " | ".join(f"timeout {PATIENCE} by_difference ltac:(interval with ({options}))" for options in tries)
-    return [f"first [ lra | timeout 3 nra | {balls} | timeout {PATIENCE} nra ]."]
+    return [f"first [ lra | timeout 3 nra | by_distances | {balls} | timeout {PATIENCE} nra | by_signs | by_roots ]."]
 
 
-def refute(point: Mapping[str, str], names: Mapping[str, str]) -> list[str]:
-    """The statement at the point: its conditions hold, and its relation does not."""
-    place = " ".join(f"({write_term(checker.parse(point[name]), names)})" for name in names)
-    return ["intro H.", *([f"specialize (H {place})."] if place else []), "discharge H.", "contradict H."]
+def refute(place: Mapping[str, str], lines: Iterable[str]) -> list[str]:
+    """The statement at a point, and lines about what stands in it: its conditions hold, and its relation does not."""
+    texts = " ".join(f"({text})" for text in place.values())
+    return ["intro H.", *([f"specialize (H {texts})."] if place else []), *lines, "discharge H.", "contradict H."]

@@ -1,16 +1,37 @@
+Lemma by_zero : forall x y, x + (- 1) * y = 0 -> x = y.
+Proof. intros. lra. Qed.
 Lemma exp_not_0 : forall x, exp x <> 0.
 Proof. intro x. assert (H := exp_pos x). lra. Qed.
+
+(* What stands above a line is not 0 where the quotient is not 0, and no factor of a product is. *)
+Ltac split_factors :=
+  repeat match goal with
+  | H : ?a / ?b <> 0 |- _ => lazymatch goal with
+    | _ : a <> 0 |- _ => fail
+    | _ => assert (a <> 0) by (let Z := fresh in intro Z; apply H; rewrite Z; unfold Rdiv; ring)
+    end
+  | H : ?a * ?b <> 0 |- _ => lazymatch goal with
+    | _ : b <> 0 |- _ => fail
+    | _ =>
+        assert (a <> 0) by (let Z := fresh in intro Z; apply H; rewrite Z; ring);
+        assert (b <> 0) by (let Z := fresh in intro Z; apply H; rewrite Z; ring)
+    end
+  end.
 
 (* Products, powers and exponentials that are not 0, by hypotheses up to form, sign and a number. *)
 Ltac nonzero :=
   repeat match goal with |- _ /\ _ => split end;
   repeat first
-    [ assumption | lra | apply exp_not_0 | apply Rmult_integral_contrapositive_currified | apply pow_nonzero
+    [ assumption | lra | apply exp_not_0 | apply Rgt_not_eq, sqrt_lt_R0; first [ assumption | lra ] | apply Rmult_integral_contrapositive_currified | apply pow_nonzero
     | apply Rinv_neq_0_compat
     | match goal with H : ?d <> 0 |- ?e <> 0 =>
         let Z := fresh in intro Z; apply H;
         first [ lra | solve [ ring [Z] ] | solve [ rewrite Z; ring ]
               | solve [ replace d with e by field; lra ] | solve [ replace d with (- e) by field; lra ] ]
+      end
+    | match goal with H : ?d <> 0 |- ?e <> 0 =>
+        let Z := fresh in intro Z; apply H; field_simplify_eq;
+        [ transitivity e; [ solve [ ring ] | exact Z ] | repeat split; first [ assumption | lra ] .. ]
       end
     | match goal with H : 0 < ?d |- ?e <> 0 =>
         first [ solve [ replace e with d by field; lra ] | solve [ replace e with (- d) by field; lra ] ]
@@ -25,11 +46,9 @@ Ltac by_addition :=
 
 Ltac by_multiplication := rewrite ?exp_plus, ?exp_Ropp, ?exp_0; field; nonzero.
 
-(* sqrt (f f r) = f * sqrt r, and sqrt x ^ 2 = x. *)
-Ltac root_of r :=
-  apply sqrt_lem_1;
-  [ lra | apply Rmult_le_pos; [ lra | apply sqrt_pos ]
-  | let S := fresh in assert (S := sqrt_sqrt r ltac:(lra)); first [ field [S] | nra ] ].
+(* sqrt (f f p q) = f * sqrt p * sqrt q, and sqrt x ^ 2 = x. *)
+Ltac root_of last :=
+  apply sqrt_lem_1; [ lra | repeat apply Rmult_le_pos; first [ apply sqrt_pos | lra ] | last ].
 Ltac square_of_root := apply pow2_sqrt; first [ assumption | lra | timeout 10 nra | many_digits ].
 
 Lemma half_root : 1 / sqrt 2 = sqrt 2 / 2.
@@ -47,9 +66,30 @@ Ltac by_difference prove :=
   | |- _ > _ => apply Rminus_lt; prove
   end.
 
+Ltac by_roots :=
+  repeat match goal with |- context [sqrt ?x] =>
+    let S := fresh in assert (S := sqrt_sqrt x ltac:(first [ lra | nra ])); revert S; assert (S := sqrt_pos x); revert S;
+    generalize (sqrt x)
+  end; intros; timeout 10 nra.
+(* A function by what it stands for. *)
+Ltac by_meaning :=
+  unfold tan, tanh, sinh, cosh; try reflexivity;
+  match goal with |- context [exp (- ?x)] => replace (- x) with ((- 1) * x) by ring;
+    assert (P := exp_pos x); assert (N := exp_pos ((- 1) * x)); try reflexivity; field; lra end.
+
+(* A symbol between two numbers: the product of its distances from them is not negative. *)
+Ltac by_distances :=
+  repeat match goal with A : ?a <= ?x, B : ?x <= ?b |- _ => lazymatch goal with
+    | _ : 0 <= (x - a) * (b - x) |- _ => fail
+    | _ => assert (0 <= (x - a) * (b - x)) by (apply Rmult_le_pos; lra)
+    end end; timeout 10 nra.
+(* An inequality with absolute values, by the signs of their arguments. *)
+Ltac by_signs := unfold Rabs; repeat match goal with |- context [Rcase_abs ?x] => destruct (Rcase_abs x) end; timeout 10 nra.
+
 (* A relation of numbers. *)
 Ltac numbers :=
   match goal with
+  | |- exists k, _ = IZR k => eexists; reflexivity
   | |- _ <> _ =>
       first [ intro; lra | apply Rminus_not_eq; first [ apply Rgt_not_eq; few_digits | apply Rlt_not_eq; few_digits ] ]
   | |- _ => first [ lra | by_difference ltac:(few_digits) | by_difference ltac:(many_digits) ]

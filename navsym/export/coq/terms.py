@@ -46,7 +46,7 @@ def ranges(box: Mapping[str, Range], names: Mapping[str, str]) -> Iterator[str]:
     """The ranges of the symbols as hypotheses."""
     for name, limit in box.items():
         if limit.integer:
-            raise Unwritten("an integer")
+            yield f"(exists k : Z, {names[name]} = IZR k)"
         for end, is_open, (first, last) in (
             (limit.low, limit.open_low, ("{0}", names[name])),
             (limit.high, limit.open_high, (names[name], "{0}")),
@@ -65,16 +65,21 @@ def defined(terms: Iterable[Term], names: Mapping[str, str]) -> list[str]:
 
 def write_term(term: Term, names: Mapping[str, str], now: Mapping[Term, str] | None = None) -> str:
     """A term in Coq, where parts may have become others; every text is safe as an argument inside parentheses."""
+    if hasattr(term, "write"):
+        return str(term.write(names))
     if now and term in now:
         return now[term]
 
+    def is_other(part: Term) -> bool:
+        return hasattr(part, "write") or bool(now and part in now)
+
     def inside(part: Term) -> str:
         text = write_term(part, names, now)
-        is_call = part[0] in FUNCTIONS and not (now and part in now)
+        is_call = part[0] in FUNCTIONS and not is_other(part)
         return text if is_call or re.fullmatch(r"\w+", text) else f"({text})"
 
     def join_factor(part: Term, first: bool) -> str:
-        if part[0] == "^" and part[2] == checker.MINUS_ONE and not (now and part in now):
+        if part[0] == "^" and part[2] == checker.MINUS_ONE and not is_other(part):
             return f"{'1' if first else ''} / {inside(part[1])}"
         return inside(part) if first else f" * {inside(part)}"
 

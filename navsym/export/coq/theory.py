@@ -9,20 +9,23 @@ checker's parser. The script does not follow the certificate's proof: identities
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from copy import deepcopy
 from importlib.resources import files
-from typing import Any
+from typing import Any, NamedTuple
 
 from navsym import checker
-from navsym.checker import Case, Range, Term
+from navsym.checker import Case, Question, Range, Term, Value
 from navsym.core.errors import DomainError
+from navsym.export.coq.calculus import Writer, list_all, list_slopes, name_questions, put_integral, put_slopes, strip
 from navsym.export.coq.condition import write_condition
 from navsym.export.coq.scripts import prove_bound, prove_equality, prove_modulo, refute
 from navsym.export.coq.terms import RELATIONS, Unwritten, defined, ranges, rename, subterms, write_term
 
 #: How numbers are compared: by polynomials alone, or by balls of few digits, then of many.
 PLAIN = "Ltac few_digits := lra.\nLtac many_digits := lra.\n"
-Names = Mapping[str, str]
+#: Files with lemmas and tactics, in the order in which they rest on one another.
+LEMMAS = ("tactics.v", "calculus.v", "condition.v")
 Said = list[tuple[Term, str, Term]]
 BALLS = "Ltac few_digits := interval with (i_prec 90).\nLtac many_digits := interval with (i_prec 700).\n"
 
@@ -39,7 +42,7 @@ def write_theory(certificate: Mapping[str, Any]) -> str:
     Theorem statement_1 : forall (x : R), 2 * x + (- 1) * x = x.
     """
     parts = certificate.get("of", []) if certificate.get("kind") == "all" else [certificate]
-    theorems = []
+    theorems, libraries = [], set[str]()
     for place, part in enumerate(parts, start=1):
         if part.get("kind") not in ("proof", "counterexample", "condition"):
             message = (
@@ -47,109 +50,138 @@ def write_theory(certificate: Mapping[str, Any]) -> str:
             )
             raise DomainError(message)
         try:
-            write = write_condition if part["kind"] == "condition" else write_theorem
-            theorems.append(write(f"statement_{place}", part))
+            if part["kind"] == "condition":
+                theorems.append(write_condition(f"statement_{place}", part))
+                libraries.add("condition.v")
+                continue
+            cases = [*read_cases(part)]
+            libraries |= {"tactics.v", *(file for case in cases for file in case.list_libraries(part))}
+            theorems.append(write_theorem(f"statement_{place}", part, cases))
         except (Unwritten, checker.Refused) as reason:
             raise DomainError(f"expected what Coq has words for; got {reason}; rest on the checker") from None
     names = ", ".join(re.findall(r"^Theorem (\w+)", "\n".join(theorems), re.M))
-    kinds = {part["kind"] == "condition" for part in parts}
-    balls = any(part["kind"] != "condition" and needs_balls(part) for part in parts)
-    lemmas = [*["tactics.v"] * (False in kinds), *["condition.v"] * (True in kinds)]
+    balls, calculus = "Interval" in libraries, "calculus.v" in libraries
     return "\n".join(
         [
             "Require Import Reals Lra.",
+            *(["From Coquelicot Require Import Coquelicot."] if calculus else []),
             *(["From Interval Require Import Tactic."] if balls else []),
             "Open Scope R_scope.\n",
             BALLS if balls else PLAIN,
-            *(files("navsym.export.coq").joinpath(name).read_text("utf-8") for name in lemmas),
+            *(files("navsym.export.coq").joinpath(name).read_text("utf-8") for name in LEMMAS if name in libraries),
             *theorems,
             f"Definition all := ({names}).\nPrint Assumptions all.\n",
         ]
     )
 
 
-def needs_balls(part: Mapping[str, Any]) -> bool:
-    """Whether anything but polynomials and fractions is compared by size."""
-    statement = part["statement"]
-    cases, _ = checker.read_statement(statement)
-    terms = [t for case in cases for t in (*case.terms, *(goal.term for goal in case.goals))]
-    terms += [checker.parse(text) for text in part.get("point", {}).values()]
-    plain = all(piece[0] in ("number", "symbol", "+", "*", "^") for term in terms for piece in subterms(term))
-    return not plain or (part["kind"] == "proof" and statement["relation"] != "=")
+class Stated(NamedTuple):
+    """One case of a statement: what the checker has of it, and its sides as they were typed."""
+
+    case: Case
+    says: Said
+    questions: Sequence[tuple[Question, Any, Term]]
+    box: Mapping[str, Range]
+
+    def list_libraries(self, part: Mapping[str, Any]) -> Iterator[str]:
+        """What its theorem needs beside the library of real numbers."""
+        said = [t for x, _, y in self.says for t in (x, y)]
+        terms = [*said, *self.case.terms, *(checker.parse(text) for text in part.get("point", {}).values())]
+        plain = all(p[0] in ("number", "symbol", "+", "*", "^") for term in terms for p in subterms(term))
+        if not plain or (part["kind"] == "proof" and any(relation != "=" for _, relation, _ in self.says)):
+            yield "Interval"
+        if self.questions or any(list_slopes(*said, *self.case.terms)):
+            yield "calculus.v"
 
 
-def write_theorem(name: str, part: Mapping[str, Any]) -> str:
-    """One theorem with its script; of vectors, hypotheses and cases one for each case."""
+def read_cases(part: Mapping[str, Any]) -> Iterator[Stated]:
+    """The cases of a statement as the checker reads them, with what it does not keep: sides, derivatives, integrals."""
     statement = part["statement"]
-    cases, box = checker.read_statement(statement)
-    names = rename(box)
+    choices: list[bool] | None = []
+    if {"order", "random"} & set(statement):
+        raise Unwritten("an order or a moment, which the checker reads")
+    box = {name: checker.read_range(item) for name, item in statement["symbols"].items()}
+    shapes = checker.read_shapes(statement.get("shapes", {}), box, {})
+    limit = None if statement["tolerance"] is None else checker.parse(statement["tolerance"])
+    answers = checker.Answers(deepcopy(part.get("answers", [])))
+    while choices is not None:
+        reader = Writer(shapes, statement.get("rates", {}), choices, box)
+        for text in statement.get("given", []):
+            reader.assume(text)
+        for text in statement["exists"]:
+            reader.need(*checker.list_entries(reader.read(text)))
+        x, y = (reader.read(statement[side]) for side in ("left", "right"))
+        says = say(x, statement["relation"], y, limit)
+        kept = {
+            id(s)
+            for s in list_all(*(t for a, _, b in says for t in (a, b)), *reader.exists, *reader.given, *reader.zeros)
+        }
+        if any(id(s) not in kept for s in reader.marked) or (reader.marked and reader.questions):
+            raise Unwritten("a derivative inside of what the checker reads")
+        goals = checker.state_goals(x, statement["relation"], y, limit)
+        asked, entries = [*reader.questions], [*answers.entries]
+        goals = [*goals, *((("symbol", q.value), "=", ()) for q in asked)]
+        goals = checker.settle_questions(reader, goals, box, answers)
+        values = [goals.pop()[0] for _ in asked][::-1]
+        case = reader.make_case(goals, box)
+        if case.fractions:
+            raise Unwritten("a whole part, which the checker reads")
+        yield Stated(case, says, [*zip(asked, entries, values, strict=False)], box)
+        choices = checker.next_choices(reader.choices)
+
+
+def say(x: Value, relation: str, y: Value, tolerance: Term | None) -> Said:
+    """What a statement says of its sides, entry by entry; two bounds for an equality within a tolerance."""
+    pairs = [*zip(checker.list_entries(x), checker.list_entries(y), strict=True)]
+    if tolerance is not None:
+        return [(checker.subtract(*side), "<=", tolerance) for a, b in pairs for side in ((a, b), (b, a))]
+    if relation == "!=" and len(pairs) > 1:
+        return [(term, own, checker.ZERO) for term, own, _ in checker.state_goals(x, relation, y, None)]
+    return [(a, relation, b) for a, b in pairs]
+
+
+def write_theorem(name: str, part: Mapping[str, Any], cases: list[Stated]) -> str:
+    """One theorem with its script; of cases one for each."""
+    statement = part["statement"]
     printed = f"{statement['left']} {statement['relation']} {statement['right']}"
     printed += "" if statement["tolerance"] is None else f", within {statement['tolerance']}"
     printed += "".join(f", given {text}" for text in statement.get("given", []))
-    require_words(statement, cases)
-    says = [[(goal.term, goal.relation, checker.ZERO) for goal in case.goals] for case in cases]
-    if is_plain(statement):
-        says = [relations(statement, [checker.parse(statement[side]) for side in ("left", "right")])]
-    if part["kind"] != "proof" and len(says) > 1:
-        raise Unwritten("a case that fails")
+    if part["kind"] != "proof" and (len(cases) > 1 or cases[0].questions):
+        raise Unwritten("a case or an integral that fails")
     proofs = iter(part.get("proofs", ()))
     theorems = [
-        f"Theorem {name}{f'_{k}' if len(cases) > 1 else ''} : {write_case(part, case, wanted, box, names, proofs)}"
-        for k, (case, wanted) in enumerate(zip(cases, says, strict=True), start=1)
+        f"Theorem {name}{f'_{k}' if len(cases) > 1 else ''} : {write_case(part, stated, proofs)}"
+        for k, stated in enumerate(cases, start=1)
     ]
     return "\n".join([f"(* {printed} *)", *theorems])
 
 
-def require_words(statement: Mapping[str, Any], cases: list[Case]) -> None:
-    """Refuse what the reader of the checker has computed: derivatives, moments, whole parts, orders."""
-    text = " ".join([statement["left"], statement["right"], *statement["exists"], *statement.get("given", [])])
-    computed = re.search(r"\b(diff|dot_|E|cov)\(", text) or {"order", "random"} & set(statement)
-    if computed or any(case.fractions for case in cases):
-        raise Unwritten("a derivative, moment, whole part or order, which the checker reads")
-
-
-def write_case(
-    part: Mapping[str, Any], case: Case, wanted: Said, box: Mapping[str, Range], names: Names, proofs: Iterator[Any]
-) -> str:
+def write_case(part: Mapping[str, Any], stated: Stated, proofs: Iterator[Any]) -> str:
     """What a theorem says of one case, and its script, which takes the cofactors of hypotheses from the proofs."""
+    case, wanted, questions, box = stated
+    symbols = rename(box)
+    names = name_questions([q for q, _, _ in questions], {**symbols})
     needs = [*ranges(box, names), *defined(case.terms, names)]
     needs += [f"{write_term(t, names)} >= 0" for t in case.given] + [f"{write_term(t, names)} = 0" for t in case.zeros]
     says = [(write_term(x, names), RELATIONS[relation], write_term(y, names)) for x, relation, y in wanted]
     claim = " /\\ ".join(map(" ".join, says))
-    whole = (f"forall ({' '.join(names.values())} : R), " if names else "") + "".join(f"{n} -> " for n in needs) + claim
-    lines = ["intros."]
+    whole = (f"forall ({' '.join(symbols.values())} : R), " if symbols else "") + "".join(f"{n} -> " for n in needs)
+    whole += claim
+    slopes = [*list_slopes(*(t for x, _, y in wanted for t in (x, y)), *case.terms)]
+    lines = ["intros; split_factors."]
     if part["kind"] == "counterexample":
-        lines = refute(part["point"], names)
-        whole = f"~ ({whole})"
-    for k, (x, relation, y) in enumerate(wanted if part["kind"] == "proof" else ()):
+        place = {name: write_term(checker.parse(part["point"][name]), {}) for name in symbols}
+        return "\n".join([f"~ ({whole}).", "Proof.", *refute(place, put_slopes(slopes, place)), "Qed.", ""])
+    lines += put_slopes(slopes, names)
+    for question in questions:
+        lines += put_integral(*question, names)
+    for k, ((x, relation, y), goal) in enumerate(zip(wanted, case.goals, strict=True)):
         lines += ["split."] * (k + 1 < len(wanted))
-        script = prove_bound(names)
         proof: Mapping[str, Any] = next(proofs, {})
+        script = prove_bound(symbols)
         if relation == "=" and proof.get("rule") == "modulo":
-            script = prove_modulo(proof, case.zeros, x, names)
+            script = ["apply by_zero.", *prove_modulo(proof, case.zeros, goal.term, names)]
         elif relation == "=":
-            script = ["reflexivity."] if x == y else prove_equality(parts_of(part, case, x, y), names)
+            script = ["reflexivity."] if strip(x) == strip(y) else prove_equality((goal.term,), names)
         lines += ["{", *script, "}"] if len(wanted) > 1 else script
     return "\n".join([f"{whole}.", "Proof.", *lines, "Qed.", ""])
-
-
-def parts_of(part: Mapping[str, Any], case: Case, x: Term, y: Term) -> tuple[Term, ...]:
-    """The terms of an equation."""
-    return case.terms if is_plain(part["statement"]) else (x, y)
-
-
-def is_plain(statement: Mapping[str, Any]) -> bool:
-    """Whether both sides are numbers that the first reader of the checker reads, too."""
-    try:
-        return "given" not in statement and bool(checker.parse(statement["left"]) and checker.parse(statement["right"]))
-    except checker.Refused:
-        return False
-
-
-def relations(statement: Mapping[str, Any], sides: list[Term]) -> list[tuple[Term, str, Term]]:
-    """What has to be shown, as (left, relation, right); two bounds for an equality within a tolerance."""
-    x, y = sides
-    if statement["tolerance"] is None:
-        return [(x, statement["relation"], y)]
-    tolerance = checker.parse(statement["tolerance"])
-    return [(checker.subtract(x, y), "<=", tolerance), (checker.subtract(y, x), "<=", tolerance)]

@@ -186,6 +186,8 @@ let rec check value =
       | "words" -> at_precision 128 (fun () -> Words.check value)
       | "sized" -> at_precision 128 (fun () -> Sized.check value)
       | "gap" | "sliver" -> Gap.check value
+      | "cones" -> Bounds.check_cones value ~at_precision
+      | "design" -> Bounds.check_design value ~at_precision
       | "observability" -> Observability.check value ~get_matrix ~check_width ~determinant
       | "all" -> (
           match get_keys "all" [ "kind"; "of" ] value with
