@@ -88,6 +88,6 @@ def sweep_job(sweep: Any, index: int) -> dict[str, Any]:
     """
     first, second = sweep.parameters(index)
     flight = great_circle(duration=7200.0, step=20.0)
-    found = compare(flight, Errors(), lambda_c=float(first), lambda_h=float(second))
+    found = ins.compare(flight, ins.Errors(), lambda_c=float(first), lambda_h=float(second))
     last = {name: float(errors[-1]) for name, errors in found.rows.items()}
     return {"index": index, "lambda_c": str(first), "lambda_h": str(second), **last}
