@@ -1,7 +1,5 @@
 """Monte-Carlo batches: many series of measurements through one bank."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterable, Sequence
 from typing import Any

@@ -8,8 +8,6 @@ the optimum is where both have entries of equal size. One optimum, found by any 
 reported is certified for the scaling rounded to exact numbers.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 

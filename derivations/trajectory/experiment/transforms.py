@@ -9,8 +9,6 @@ and no candidate needs a covariance of its own. Candidates that carry their own 
 :mod:`navsym_papers.trajectory.experiment.windows`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -4,8 +4,6 @@ Candidates lie in the innermost dimension, so that the compiler takes several at
 whose matrices stay in the first cache through a whole window of steps.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from navsym.core.loops import njit
