@@ -1561,7 +1561,8 @@ class Reader:
     def find_floor(self, x: Term) -> Term:
         """floor(x) as x - f with a symbol f, 0 <= f < 1; floor(n + u) = n + floor(u) for what is seen to be whole.
 
-        A goal that holds for all such f holds for the fraction of x. Equal numbers have one fraction.
+        A goal that holds for all such f holds for the fraction of x. Equal numbers have one fraction. Between two ends
+        u has cases: floor(u) = n where n <= u < n + 1; which n are tried is a guess.
         """
         self.need(x)
         terms = self.list_parts(x)
@@ -1572,11 +1573,17 @@ class Reader:
         u = make_sum(*rest)
         if not symbols_of(u):
             return make_sum(*whole, find_whole(u))
-        name = next((f for f, v in self.fractions.items() if is_identity(subtract(u, v))), None)
-        if name is None:
-            name = f"{FRACTION}{len(self.fractions) + 1}"
-            require(name not in self.box, "a name that is in use")
-            self.fractions[name] = u
+        limits = {name: self.box.get(name, Range(None, None)) for name in symbols_of(u)}
+        if all(limit.low and limit.high for limit in limits.values()):
+            ends = [value_of(substitute(u, {name: limits[name][k] for name in limits}), {}) for k in (0, 1)]
+            first, last = sorted(int(e.mid().floor().unique_fmpz() or 0) if abs(e) < FAR else 0 for e in ends)
+            for n in range(first, min(first + 3, last) + 1):
+                if self.choose(">=", subtract(u, number(n))) and self.choose(">", subtract(number(n + 1), u)):
+                    return make_sum(*whole, number(n))
+        own = f"{FRACTION}{len(self.fractions) + 1}"
+        require(own not in self.box, "a name that is in use")
+        name = next((f for f, v in self.fractions.items() if is_identity(subtract(u, v))), own)
+        self.fractions.setdefault(name, u)
         value = subtract(u, ("symbol", name))
         self.floors[value] = None
         return make_sum(*whole, value)

@@ -362,7 +362,7 @@ def by_contacts(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         limit = goal.box[name]
         for place in ("0", "1", "pi/2", "pi", "-1", "1/2", "2", "-pi/2", "exp(1)", "exp(-1)", "pi/4", "3"):
             value = player.parse(place)
-            inside = limit._replace(open_low=True, open_high=True)
+            inside = limit._replace(open_low=True, open_high=True, nonzero=False)
             if not player.is_inside(value, inside):
                 continue
             touching = player.value_of(goal.term, {name: player.Jet(player.value_of(value, {}))})
