@@ -87,7 +87,11 @@ def main(count: int, seed: int) -> None:
 
 # -- Vectors and matrices ----------------------------------------------------------------------------------------------
 VECTORS, SQUARES, NUMBERS = ("u", "v", "w"), ("A", "B"), ("a", "b")
-NAMES = {**{n: {"vector": 3} for n in VECTORS}, **{n: {"matrix": [3, 3]} for n in SQUARES}, **dict.fromkeys(NUMBERS, "real")}
+NAMES = {
+    **{n: {"vector": 3} for n in VECTORS},
+    **{n: {"matrix": [3, 3]} for n in SQUARES},
+    **dict.fromkeys(NUMBERS, "real"),
+}
 Value = Any
 
 
@@ -286,7 +290,9 @@ def derivatives(rng: random.Random) -> Construct:
 @construct
 def sums(rng: random.Random) -> Construct:
     """sum F(k+1) - F(k) over k = a..n is F(n+1) - F(a)."""
-    shape = rng.choice(("k**{d}", "k**{d} + {c}*k", "{c}*r**k", "k*r**k", "1/(k + {d})", "k**{d}*2**k", "1/(k + {d})**2"))
+    shape = rng.choice(
+        ("k**{d}", "k**{d} + {c}*k", "{c}*r**k", "k*r**k", "1/(k + {d})", "k**{d}*2**k", "1/(k + {d})**2")
+    )
     f = shape.format(d=rng.randint(1, 4), c=rng.choice((2, -3, Fraction(1, 2))))
 
     def put(value: str) -> str:
@@ -452,7 +458,13 @@ def quaternions(rng: random.Random) -> Construct:
     given = {"p": {"quaternion": "unit"}, "q": {"quaternion": "unit"}, "u": {"vector": 3}, "v": {"vector": 3}}
     names = [*"pquv"]
     for name, other in zip(names, rng.sample("pq", 2) + rng.sample("uv", 2), strict=True):
-        left, right = (side.replace(f"({name}", f"(#{other}").replace(f", {name}", f", #{other}").replace(f"*{name}", f"*#{other}").replace(f"@ {name}", f"@ #{other}") for side in (left, right))
+        left, right = (
+            side.replace(f"({name}", f"(#{other}")
+            .replace(f", {name}", f", #{other}")
+            .replace(f"*{name}", f"*#{other}")
+            .replace(f"@ {name}", f"@ #{other}")
+            for side in (left, right)
+        )
     return Construct(f"{left} = {right}".replace("#", ""), truth, given)
 
 
