@@ -1561,24 +1561,23 @@ class Reader:
     def find_floor(self, x: Term) -> Term:
         """floor(x) as x - f with a symbol f, 0 <= f < 1; floor(n + u) = n + floor(u) for what is seen to be whole.
 
-        A goal that holds for all such f holds for the fraction of x. Equal numbers have one fraction. Between two ends
-        u has cases: floor(u) = n where n <= u < n + 1; which n are tried is a guess.
+        A goal that holds for all such f holds for the fraction of x. Equal numbers have one fraction. Cases where
+        n <= u < n + 1 have floor(u) = n.
         """
         self.need(x)
-        terms = self.list_parts(x)
-        whole = [t for t in terms if is_integral(t, self.box, self.floors)]
-        rest = [t for t in terms if t not in whole]
+        whole = [t for t in self.list_parts(x) if is_integral(t, self.box, self.floors)]
+        rest = [t for t in self.list_parts(x) if t not in whole]
         if self.dead or not rest:
             return x
         u = make_sum(*rest)
         if not symbols_of(u):
             return make_sum(*whole, find_whole(u))
-        limits = {name: self.box.get(name, Range(None, None)) for name in symbols_of(u)}
-        if all(limit.low and limit.high for limit in limits.values()):
-            ends = [value_of(substitute(u, {name: limits[name][k] for name in limits}), {}) for k in (0, 1)]
-            first, last = sorted(int(e.mid().floor().unique_fmpz() or 0) if abs(e) < FAR else 0 for e in ends)
-            for n in range(first, min(first + 3, last) + 1):
-                if self.choose(">=", subtract(u, number(n))) and self.choose(">", subtract(number(n + 1), u)):
+        ends = (substitute(u, {s: r[k] for s, r in self.box.items() if r[k]}) for k in (0, 1))
+        near = (e for e in ends if not symbols_of(e) and abs(value_of(e, {})) < FAR)
+        low, *high = sorted(int(find_whole(e)[1].p) for e in near) or [0]
+        if high and high[0] - low < 4 and self.choose(">=", subtract(u, number(low))):
+            for n in range(low, high[0] + 1):
+                if self.choose(">", subtract(number(n + 1), u)):
                     return make_sum(*whole, number(n))
         own = f"{FRACTION}{len(self.fractions) + 1}"
         require(own not in self.box, "a name that is in use")

@@ -122,16 +122,16 @@ def determinant(m: Value) -> Value:
 #: Operation -> kind of its result, kinds of its parts, its text, its value.
 OPERATIONS: dict[str, tuple[str, str, str, Callable[..., Value]]] = {
     "add s": ("s", "ss", "({0} + {1})", lambda x, y: x + y),
-    "mul s": ("s", "ss", "{0}*{1}", lambda x, y: x * y),
+    "mul s": ("s", "ss", "({0}*{1})", lambda x, y: x * y),
     "dot": ("s", "vv", "dot({0}, {1})", lambda x, y: sum(p * q for p, q in zip(x, y, strict=True))),
     "trace": ("s", "m", "trace({0})", lambda x: x[0][0] + x[1][1] + x[2][2]),
     "det": ("s", "m", "det({0})", determinant),
     "add v": ("v", "vv", "({0} + {1})", lambda x, y: each(lambda p, q: p + q, x, y)),
-    "scale v": ("v", "sv", "{0}*{1}", lambda x, y: each(lambda q: x * q, y)),
+    "scale v": ("v", "sv", "({0}*{1})", lambda x, y: each(lambda q: x * q, y)),
     "cross": ("v", "vv", "cross({0}, {1})", cross),
     "turn": ("v", "mv", "({0} @ {1})", times),
     "add m": ("m", "mm", "({0} + {1})", lambda x, y: each(lambda p, q: p + q, x, y)),
-    "scale m": ("m", "sm", "{0}*{1}", lambda x, y: each(lambda q: x * q, y)),
+    "scale m": ("m", "sm", "({0}*{1})", lambda x, y: each(lambda q: x * q, y)),
     "mul m": ("m", "mm", "({0} @ {1})", times),
     "flip": ("m", "m", "({0}).T", lambda x: [list(row) for row in zip(*x, strict=True)]),
     "skew": ("m", "v", "skew({0})", skew),
@@ -456,16 +456,9 @@ def quaternions(rng: random.Random) -> Construct:
     truth = rng.random() < 0.5
     left, right = rng.choice(true if truth else false)
     given = {"p": {"quaternion": "unit"}, "q": {"quaternion": "unit"}, "u": {"vector": 3}, "v": {"vector": 3}}
-    names = [*"pquv"]
-    for name, other in zip(names, rng.sample("pq", 2) + rng.sample("uv", 2), strict=True):
-        left, right = (
-            side.replace(f"({name}", f"(#{other}")
-            .replace(f", {name}", f", #{other}")
-            .replace(f"*{name}", f"*#{other}")
-            .replace(f"@ {name}", f"@ #{other}")
-            for side in (left, right)
-        )
-    return Construct(f"{left} = {right}".replace("#", ""), truth, given)
+    renamed = dict(zip("pquv", rng.sample("pq", 2) + rng.sample("uv", 2), strict=True))
+    text = re.sub(r"\b[pquv]\b", lambda name: renamed[name[0]], f"{left} = {right}")
+    return Construct(text, truth, given)
 
 
 if __name__ == "__main__":
