@@ -37,7 +37,19 @@ SIZES = frozenset(f"{size}{side}" for size in ("big", "Big", "bigg", "Bigg") for
 #: Commands and words that are functions of the language.
 CALLS: Mapping[str, str] = {
     **{name: name for name in FUNCTIONS},
-    **dict(arcsin="asin", arccos="acos", arctan="atan", ln="log", arctan2="atan2", sgn="sign", sign="sign", tr="trace"),
+    **dict(
+        arcsin="asin",
+        arccos="acos",
+        arctan="atan",
+        ln="log",
+        arsinh="asinh",
+        arcosh="acosh",
+        artanh="atanh",
+        arctan2="atan2",
+        sgn="sign",
+        sign="sign",
+        tr="trace",
+    ),
     **dict(
         Tr="trace", trace="trace", det="det", diag="diag", skew="skew", erf="erf", min="min", max="max", expm="expm"
     ),

@@ -170,8 +170,10 @@ def is_positive(limit: Any) -> bool:
 
 
 def choose_branch(form: Any) -> Any:
-    """The general branch of a form by cases."""
-    return form.replace(lambda e: isinstance(e, sp.Piecewise), lambda e: e.args[0][0])
+    """The general branch of a form by cases, with inverse hyperbolic functions as logarithms."""
+    inverse = (sp.asinh, sp.acosh, sp.atanh)
+    form = form.replace(lambda e: isinstance(e, sp.Piecewise), lambda e: e.args[0][0])
+    return form.replace(lambda e: isinstance(e, inverse), lambda e: e.rewrite(sp.log))
 
 
 def turn_logarithms(form: Any, question: Any, goal: Any, pair: Any) -> Any:
