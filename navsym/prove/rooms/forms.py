@@ -242,16 +242,3 @@ def by_hypothesis(goal: Any, sample: list[arb]) -> Iterator[Proof]:
             form = to_text(to_sympy(goal.term).xreplace({v: (u - rest) / c}))
             proof: Proof = {"rule": "abstract", "terms": {name: write_term(given)}, "ranges": {name: ["0", None, []]}}
             yield proof | {"to": form, "inside": Holes(), "defined": Holes(), "proof": Hole()}
-
-
-def by_divisors(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """The term times the roots by which it is divided."""
-    expression, divisors = to_sympy(goal.term), dict[sp.Expr, sp.Rational]()
-    for p in sorted(expression.atoms(sp.Pow), key=str):
-        if p.exp.is_Rational and p.exp.q > 1 and p.exp < 0 and p.base.free_symbols:
-            divisors[p.base] = max(-p.exp, divisors.get(p.base, p.exp))
-    if goal.relation != "=" and divisors:
-        factor = sp.Mul(*(base**power for base, power in divisors.items()))
-        form = to_text(sp.Add(*(factor * term for term in sp.Add.make_args(expression))))
-        proof = {"rule": "equal", "to": form, "defined": Holes(), "proof": Hole()}
-        yield {"rule": "multiply", "by": to_text(factor), "defined": Holes(), "positive": Hole(), "proof": proof}
