@@ -40,7 +40,7 @@ EQUATIONS = (
 )
 SIGNS = (
     choose(
-        "number positive_radicand existence divided_root divided_term identity elimination sums_of_hypotheses "
+        "number positive_radicand existence identity elimination sums_of_hypotheses "
         "range roots bounds corners product sum few_balls values side squares cones forms quadrics"
     ),
     choose(
