@@ -1561,8 +1561,7 @@ class Reader:
     def find_floor(self, x: Term) -> Term:
         """floor(x) as x - f with a symbol f, 0 <= f < 1; floor(n + u) = n + floor(u) for what is seen to be whole.
 
-        A goal that holds for all such f holds for the fraction of x. Equal numbers have one fraction. Cases where
-        n <= u < n + 1 have floor(u) = n.
+        What holds for all such f holds for that of x; equal numbers have one. Where n <= u < n + 1, f is u - n.
         """
         self.need(x)
         whole = [t for t in self.list_parts(x) if is_integral(t, self.box, self.floors)]
@@ -1575,7 +1574,8 @@ class Reader:
         ends = (substitute(u, {s: r[k] for s, r in self.box.items() if r[k]}) for k in (0, 1))
         near = (e for e in ends if not symbols_of(e) and abs(value_of(e, {})) < FAR)
         low, *high = sorted(int(find_whole(e)[1].p) for e in near) or [0]
-        if high and high[0] - low < 4 and self.choose(">=", subtract(u, number(low))):
+        is_new = not self.choices or self.recall(">=", subtract(u, number(low))) is not None
+        if high and high[0] - low < 4 and is_new and self.choose(">=", subtract(u, number(low))):
             for n in range(low, high[0] + 1):
                 if self.choose(">", subtract(number(n + 1), u)):
                     return make_sum(*whole, number(n))
