@@ -1571,7 +1571,7 @@ class Reader:
         u = make_sum(*rest)
         if not symbols_of(u):
             return make_sum(*whole, find_whole(u))
-        ends = (substitute(u, {s: r[k] for s, r in self.box.items() if r[k]}) for k in (0, 1))
+        ends = (substitute(u, {s: r[k] for s, r in self.box.items() if r[k]}) for k in (0, 1))  # type: ignore[misc]
         near = (e for e in ends if not symbols_of(e) and abs(value_of(e, {})) < FAR)
         low, *high = sorted(int(find_whole(e)[1].p) for e in near) or [0]
         is_new = not self.choices or self.recall(">=", subtract(u, number(low))) is not None
