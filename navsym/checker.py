@@ -1565,22 +1565,28 @@ class Reader:
     def find_floor(self, x: Term) -> Term:
         """floor(x) as x - f with a symbol f, 0 <= f < 1; floor(n + u) = n + floor(u) for what is seen to be whole.
 
-        A goal that holds for all such f holds for the fraction of x. Equal numbers have one fraction.
+        What holds for all such f holds for that of x; equal numbers have one. Where n <= u < n + 1, f is u - n.
         """
         self.need(x)
-        terms = self.list_parts(x)
-        whole = [t for t in terms if is_integral(t, self.box, self.floors)]
-        rest = [t for t in terms if t not in whole]
+        whole = [t for t in self.list_parts(x) if is_integral(t, self.box, self.floors)]
+        rest = [t for t in self.list_parts(x) if t not in whole]
         if self.dead or not rest:
             return x
         u = make_sum(*rest)
         if not symbols_of(u):
             return make_sum(*whole, find_whole(u))
-        name = next((f for f, v in self.fractions.items() if is_identity(subtract(u, v))), None)
-        if name is None:
-            name = f"{FRACTION}{len(self.fractions) + 1}"
-            require(name not in self.box, "a name that is in use")
-            self.fractions[name] = u
+        ends = (substitute(u, {s: r[k] for s, r in self.box.items() if r[k]}) for k in (0, 1))  # type: ignore[misc]
+        near = (e for e in ends if not symbols_of(e) and abs(value_of(e, {})) < FAR)
+        low, *high = sorted(int(find_whole(e)[1].p) for e in near) or [0]
+        is_new = not self.choices or self.recall(">=", subtract(u, number(low))) is not None
+        if high and high[0] - low < 4 and is_new and self.choose(">=", subtract(u, number(low))):
+            for n in range(low, high[0] + 1):
+                if self.choose(">", subtract(number(n + 1), u)):
+                    return make_sum(*whole, number(n))
+        own = f"{FRACTION}{len(self.fractions) + 1}"
+        require(own not in self.box, "a name that is in use")
+        name = next((f for f, v in self.fractions.items() if is_identity(subtract(u, v))), own)
+        self.fractions.setdefault(name, u)
         value = subtract(u, ("symbol", name))
         self.floors[value] = None
         return make_sum(*whole, value)

@@ -85,10 +85,14 @@ def side_latex(side: Side, names: Mapping[str, Any]) -> str:
     import sympy as sp
 
     from navsym.language.expression import parse, symbol
+    from navsym.language.names import INVERSES
     from navsym.language.shapes import read_shape
     from navsym.language.vectors import is_wide, print_value_latex, read_value
 
-    wide = is_wide(side_text(side)) or any(isinstance(names[n], dict) for n in names_of(side) & set(names))
+    used = names_of(side)
+    wide = (
+        is_wide(side_text(side)) or used & INVERSES.keys() or any(isinstance(names[n], dict) for n in used & {*names})
+    )
     if wide:
         shapes = [shape for name, value in names.items() for shape in read_shape(name, value, {*names}, "")]
         return print_value_latex(read_value(side_text(side), {shape.name: shape.size for shape in shapes}).tree)

@@ -36,27 +36,11 @@ HINTS = {
 RAISED = {"\u00b2": "2", "\u00b3": "3"}
 
 #: Functions and numbers as they are called elsewhere.
-FOREIGN = {
-    "ln": "log",
-    "arcsin": "asin",
-    "arccos": "acos",
-    "arctan": "atan",
-    "arctg": "atan",
-    "arctan2": "atan2",
-    "tg": "tan",
-    "ctg": "cot",
-    "cosec": "csc",
-    "sh": "sinh",
-    "ch": "cosh",
-    "th": "tanh",
-    "Abs": "abs",
-    "fabs": "abs",
-    "Pi": "pi",
-    "PI": "pi",
-    "e": "exp(...)",
-    "E": "exp(...)",
-    "pow": "**",
-}
+FOREIGN = dict(
+    ln="log", arcsin="asin", arccos="acos", arctan="atan", arctg="atan", arctan2="atan2", tg="tan", ctg="cot",
+    cosec="csc", sh="sinh", ch="cosh", th="tanh", arsinh="asinh", arcosh="acosh", artanh="atanh", Abs="abs",
+    fabs="abs", Pi="pi", PI="pi", e="exp(...)", E="exp(...)", pow="**",
+)  # fmt: skip
 
 UNITS = frozenset(("m", "km", "s", "min", "h", "deg", "rad", "kg", "Hz", "mg"))
 RELATION = {"==": "=", "\u2264": "<=", "=<": "<=", "\u2265": ">=", "=>": ">=", "\u2260": "!=", "<>": "!=", "~=": "!="}

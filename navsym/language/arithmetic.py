@@ -21,25 +21,8 @@ FACTORS = 128  # of one product: the algebra compares all of them
 DENOMINATOR = 1_000_000  # of an exponent: the atmosphere has 5.25588 and its inverse, measured laws have six decimals
 ROOT_BITS = 700  # size of a number under a root: sympy looks for square factors in it
 
-BUILDERS: dict[str, Callable[..., sp.Expr]] = {
-    "sin": sp.sin,
-    "cos": sp.cos,
-    "tan": sp.tan,
-    "cot": sp.cot,
-    "sec": sp.sec,
-    "csc": sp.csc,
-    "exp": sp.exp,
-    "log": sp.log,
-    "sqrt": sp.sqrt,
-    "abs": sp.Abs,
-    "asin": sp.asin,
-    "acos": sp.acos,
-    "atan": sp.atan,
-    "atan2": sp.atan2,
-    "sinh": sp.sinh,
-    "cosh": sp.cosh,
-    "tanh": sp.tanh,
-}
+SAME_NAME = "sin cos tan cot sec csc exp log sqrt asin acos atan atan2 sinh cosh tanh".split()
+BUILDERS: dict[str, Callable[..., sp.Expr]] = {"abs": sp.Abs, **{name: getattr(sp, name) for name in SAME_NAME}}
 
 
 #: Roots are the real ones of numbers that are not negative, as in (-8)**(1/3).

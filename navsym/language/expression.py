@@ -35,7 +35,7 @@ from navsym.language import advice
 from navsym.language.algebra import evaluate, evaluate_freely
 from navsym.language.arithmetic import FACTORS, Refusal, refuse_size
 from navsym.language.domains import list_conditions
-from navsym.language.names import FUNCTIONS, RESERVED, check_name, quote
+from navsym.language.names import FUNCTIONS, INVERSES, RESERVED, check_name, quote
 from navsym.language.printer import to_text
 from navsym.language.tokens import CALLS, DEPTH, LENGTH, Source, Token, split_tokens, tokenize
 from navsym.language.tree import (
@@ -49,7 +49,10 @@ from navsym.language.tree import (
     Tree,
     build,
     build_number,
+    build_symbol,
     list_names,
+    list_parts,
+    replace,
 )
 
 __all__ = ["Expr", "Matrix", "Parsed", "Symbol", "parse", "parse_noting", "read_tree", "symbol", "to_text"]
@@ -327,7 +330,16 @@ class Reader:
             self.fail(self.position, f") after the last argument of {name}", "','", remedy)
         self.close(opening)
         self.calls -= 1
-        return self.make(at, name, *arguments)
+        return self.apply(at, name, arguments)
+
+    def apply(self, at: int, name: str, arguments: list[Tree]) -> Tree:
+        """A function at its arguments; an inverse hyperbolic one is its logarithm."""
+        if name not in INVERSES:
+            return self.make(at, name, *arguments)
+        tree = replace(read_tree(INVERSES[name]), {build_symbol("x"): arguments[0]})
+        for part in list_parts(tree):
+            self.places.setdefault(part, at)
+        return tree
 
     def open(self, name: str) -> None:
         """The parenthesis behind the name of a function."""

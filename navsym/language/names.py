@@ -19,26 +19,11 @@ from navsym.core.errors import DuplicateError, ExpressionSyntaxError, TooLargeEr
 #: Longest name.
 NAME_LENGTH = 64
 
+#: The inverse hyperbolic functions as logarithms with values at the same points: all engines see these.
+INVERSES = {"asinh": "log(x + sqrt(x**2 + 1))", "acosh": "log(x + sqrt(x**2 - 1))", "atanh": "log((1 + x)/(1 - x))/2"}
+
 #: Functions of the language; `atan2` takes two arguments, the others one.
-FUNCTIONS = (
-    "sin",
-    "cos",
-    "tan",
-    "cot",
-    "sec",
-    "csc",
-    "exp",
-    "log",
-    "sqrt",
-    "abs",
-    "asin",
-    "acos",
-    "atan",
-    "atan2",
-    "sinh",
-    "cosh",
-    "tanh",
-)
+FUNCTIONS = (*"sin cos tan cot sec csc exp log sqrt abs asin acos atan atan2 sinh cosh tanh".split(), *INVERSES)
 
 #: Names that have a meaning already.
 RESERVED = frozenset({"pi", *FUNCTIONS})

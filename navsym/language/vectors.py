@@ -93,6 +93,10 @@ class ValueReader(Reader):
             self.sizes[part] = size
         return part
 
+    def apply(self, at: int, name: str, arguments: list[Tree]) -> Tree:
+        """A function of numbers as it is written."""
+        return self.make(at, name, *arguments)
+
     def size_of(self, at: int, part: Tree, sizes: list[Size]) -> Size:
         """The shape of a part from those of its own parts."""
         if part.head in (SUM, *RELATIONS):

@@ -11,9 +11,9 @@ from dataclasses import replace
 
 import sympy as sp
 
-from navsym.claims.statement import Equation
+from navsym.claims.statement import Box, Equation
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
-from navsym.core.balls import UnsupportedError, enclose
+from navsym.core.balls import UnsupportedError, enclose, exact_ball
 from navsym.prove.assumptions import add_sides, conditions_as_written, remaining_assumptions
 from navsym.prove.identities.normal_form import OutsideLanguageError, UndefinedExpressionError, reduce_to_zero
 from navsym.prove.identities.numbers import is_zero
@@ -24,6 +24,7 @@ from navsym.prove.signs.bounds import Sign, prove_sign
 from navsym.prove.wording import decimal_ends, refute_at_point, scope_of
 
 ENOUGH_POINTS = 32
+TURNS = 120  # radians: twenty turns of a wave
 
 #: Functions inside an angle that make angles depend on each other: |a| and a, say.
 BENT = (sp.Abs, sp.sign, sp.Max, sp.Min)
@@ -132,7 +133,9 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
             finite_sides(printed, derived, statement),
             goals=(tolerance - difference, tolerance + difference),
         )
-        return decided or judge_look(look, sample, scope_of(difference, box), f"within {tolerance}")
+        judged = decided or judge_look(look, sample, scope_of(difference, box), f"within {tolerance}")
+        doubt = find_beats(difference, box) if judged.status == CONFIRMED else ""
+        return replace(judged, status=OPEN, evidence=doubt) if doubt else judged
     return Verdict(
         CERTIFIED,
         method="ball arithmetic",
@@ -194,6 +197,20 @@ def decide_unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sam
         evidence = f"{verdict.evidence}, and the normal form of printed - derived is not zero"
         verdict = replace(verdict, status=OPEN, method="normal form", evidence=evidence)
     return replace(verdict, assumptions=assumptions_of(printed, derived, statement))
+
+
+def find_beats(difference: sp.Expr, box: Box) -> str:
+    """Why sines and cosines may meet where no sample was: on a whole line, or in a range with many turns; or empty."""
+    waves = difference.atoms(sp.sin, sp.cos)
+    for symbol in difference.free_symbols:
+        limits = sp.Tuple(*box.get(symbol, (-sp.oo, sp.oo)))
+        slopes = [slope for wave in waves if (slope := sp.diff(wave.args[0], symbol)) != 0]
+        if any(end is None or end.is_infinite for end in limits):
+            if any(not sp.cancel(slope / slopes[0]).is_Rational for slope in slopes[1:]):
+                return "waves whose periods have no common multiple meet as nearly as one likes, far beyond all samples"
+        elif any(abs(exact_ball(slope * (limits[1] - limits[0]))) > TURNS for slope in slopes if slope.is_number):
+            return f"waves turn often between {limits[0]} and {limits[1]}, and may meet where no sample was"
+    return ""
 
 
 def judge_look(look: Look, sample: Sample, scope: str, what: str) -> Verdict:

@@ -24,6 +24,7 @@ from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, V
 from navsym.core.errors import NavsymError
 from navsym.core.numbers import Number
 from navsym.language.expression import to_text
+from navsym.language.names import INVERSES
 from navsym.prove.equations import list_entries, shape_of
 from navsym.prove.rooms.goals import draw_points, player, simple_point, write_term
 from navsym.prove.sampling.points import ranges_of, write_range
@@ -36,6 +37,7 @@ POINTS = 18
 SHARE = "share"
 #: Kinds of certificates that give a statement its verdict.
 GRANTS = ("proof", "counterexample", "condition", "observability", "words", "sized")
+INVERSE = re.compile(rf"\b({'|'.join(INVERSES)})\s*\(", re.ASCII)
 NUMERAL = re.compile(r"(?<![\w.])\d+(?:\.\d+)?[eE][+-]?\d+", re.ASCII)
 IDENTITY = {"rule": "identity"}
 #: The checker and its player are two modules, and each has its own class.
@@ -101,7 +103,17 @@ def write_entry(statement: Equation | Bound, left: str, right: str) -> Document:
 
 
 def write_numerals(text: str) -> str:
-    """The text with 1e-3 and the like as the same decimals in full, the only ones that the checker reads."""
+    """The text with 1e-3 and the like as decimals in full, and inverse hyperbolic functions as their logarithms.
+
+    The checker reads no other ones.
+    """
+    while call := INVERSE.search(text):
+        end, depth = call.end(), 1
+        while depth:
+            depth += {"(": 1, ")": -1}.get(text[end], 0)
+            end += 1
+        form = INVERSES[call[1]].replace("x", f"({text[call.end() : end - 1]})")
+        text = f"{text[: call.start()]}({form}){text[end:]}"
     return NUMERAL.sub(lambda numeral: format(Decimal(numeral[0]), "f"), text)
 
 

@@ -13,7 +13,7 @@ from navsym.claims.verdict import OPEN, REFUTED, Verdict
 from navsym.core.balls import UnsupportedError
 from navsym.core.errors import DomainError
 from navsym.prove.assumptions import add_sides, remaining_assumptions
-from navsym.prove.equations import decide_equation, judge_look, judge_sample, list_entries, shape_of
+from navsym.prove.equations import decide_equation, find_beats, judge_look, judge_sample, list_entries, shape_of
 from navsym.prove.identities.normal_form import OutsideLanguageError, reduce_to_zero
 from navsym.prove.one_symbol import decide_by_roots
 from navsym.prove.sampling.points import Sample, search_counterexample
@@ -106,21 +106,11 @@ def decide_unproved_relation(
         GOALS[relation](difference),
     )
     doubt = doubt_of(look, relation)
-    if not doubt and look.counterexample is None and has_beats(difference, box):
-        doubt = "waves whose periods have no common multiple meet as nearly as one likes, far beyond all samples"
+    if not doubt and look.counterexample is None:
+        doubt = find_beats(difference, box)
     if doubt:
         return Verdict(OPEN, "sampling", scope, evidence=doubt)
     return judge_look(look, sample, scope, f"printed {relation} derived")
-
-
-def has_beats(difference: sp.Expr, box: Box) -> bool:
-    """Whether sines of a symbol without ends have frequencies whose ratio is not seen to be rational."""
-    waves = difference.atoms(sp.sin, sp.cos)
-    for symbol in difference.free_symbols - set(box):
-        slopes = [slope for wave in waves if (slope := sp.diff(wave.args[0], symbol)) != 0 and slope.is_number]
-        if any(not sp.cancel(slope / slopes[0]).is_Rational for slope in slopes[1:]):
-            return True
-    return False
 
 
 def doubt_of(look: Look, relation: str) -> str:

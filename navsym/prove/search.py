@@ -16,82 +16,39 @@ from typing import Any
 from flint import ctx
 
 from navsym.core.errors import NavsymError
-from navsym.prove.relations.cofactors import by_cofactors, by_elimination, by_sums_of_hypotheses
-from navsym.prove.rooms.equations import (
-    by_algebra,
-    by_cases,
-    by_empty_case,
-    by_equal_squares,
-    by_exponents,
-    by_factors_of_roots,
-    by_gradient,
-    by_inverse,
-    by_logarithms_of_products,
-    by_modulus,
-    by_sides_of_zero,
-    by_values,
-    by_values_of_constants,
-)
-from navsym.prove.rooms.forms import (
-    by_divisors,
-    by_forms,
-    by_hypothesis,
-    by_known_signs,
-    by_one_angle,
-    by_roots_of_symbols,
-    by_substitution,
-)
+from navsym.prove.relations import cofactors
+from navsym.prove.rooms import equations, forms, quadrics, signs
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Room, fails, player, sample_goal, subterms
-from navsym.prove.rooms.quadrics import by_quadrics
-from navsym.prove.rooms.signs import (
-    by_bounds,
-    by_concavity,
-    by_cones,
-    by_constant,
-    by_contacts,
-    by_corners,
-    by_divided_root,
-    by_divided_term,
-    by_existence,
-    by_few_balls,
-    by_identity,
-    by_logarithms,
-    by_many_balls,
-    by_number,
-    by_positive_radicand,
-    by_product,
-    by_quadratic,
-    by_range,
-    by_roots,
-    by_side,
-    by_slope,
-    by_squares,
-    by_sum,
-)
+
+ROOMS: dict[str, Room] = {
+    name: room for module in (cofactors, equations, forms, quadrics, signs) for name, room in vars(module).items()
+}
+
+
+def choose(names: str) -> tuple[Room, ...]:
+    """The rooms of these names."""
+    return tuple(ROOMS[f"by_{name}"] for name in names.split())
+
 
 #: The rooms in the order of their cost: cheap ones, those that think longer, those of the last resort.
-EQUATIONS: tuple[tuple[Room, ...], ...] = (
-    (
-        by_algebra, by_one_angle, by_cofactors, by_elimination, by_modulus, by_values,
-        by_values_of_constants, by_inverse, by_factors_of_roots, by_exponents, by_equal_squares,
+EQUATIONS = (
+    choose(
+        "algebra one_angle cofactors elimination modulus values values_of_constants inverse factors_of_roots "
+        "exponents equal_squares"
     ),
-    (
-        by_known_signs, by_roots_of_symbols, by_sums_of_hypotheses, by_logarithms_of_products, by_empty_case,
-        by_sides_of_zero, by_gradient,
+    choose("known_signs roots_of_symbols sums_of_hypotheses logarithms_of_products empty_case sides_of_zero gradient"),
+)
+SIGNS = (
+    choose(
+        "number positive_radicand existence identity elimination sums_of_hypotheses "
+        "range roots bounds corners product sum few_balls values side squares cones forms quadrics"
     ),
-)  # fmt: skip
-SIGNS: tuple[tuple[Room, ...], ...] = (
-    (
-        by_number, by_positive_radicand, by_existence, by_divided_root, by_divided_term, by_identity,
-        by_elimination, by_sums_of_hypotheses, by_range, by_roots, by_bounds, by_corners, by_product, by_sum,
-        by_few_balls, by_values, by_side, by_squares, by_cones, by_forms, by_quadrics,
+    choose(
+        "constant known_signs cofactors hypothesis cases quadratic roots_of_symbols substitution slope "
+        "contacts modulus logarithms empty_case"
     ),
-    (
-        by_constant, by_known_signs, by_cofactors, by_hypothesis, by_cases, by_quadratic, by_divisors,
-        by_roots_of_symbols, by_substitution, by_slope, by_contacts, by_modulus, by_logarithms, by_empty_case,
-    ),
-    (by_concavity, by_many_balls),
-)  # fmt: skip
+    choose("concavity many_balls"),
+)
 
 #: Depth of proofs, number of rules tried and kinds of rooms, one round after the other: the same on every machine.
 #: The time is a net below.
@@ -100,6 +57,7 @@ SECONDS = 30.0
 #: Parts of a term for which only cheap rooms are asked.
 LONG = 600
 
+REFUSALS = (player.Refused, ArithmeticError, ValueError, KeyError, TypeError, RecursionError)
 check_rule = player.prove
 
 
@@ -136,6 +94,24 @@ class Search:
         for proof, goal in zip(player.read_list(proofs, lambda entry: entry, len(goals)), goals, strict=True):
             self.prove(proof, goal)
 
+    def go_round(self, ask: Callable[[], Any], rounds: Sequence[tuple[int, int, int]]) -> Any:
+        """What the player answers, which fills its holes by this search; None where no round has an answer."""
+        before = (ctx.prec, ctx.cap)
+        ctx.prec = 128
+        try:
+            player.prove, player.prove_all = self.prove, self.prove_all
+            for self.most_depth, self.tries, self.kinds in rounds:
+                self.lost.clear()
+                try:
+                    if (answer := ask()) is not None:
+                        return answer
+                except REFUSALS:
+                    continue
+            return None
+        finally:
+            ctx.prec, ctx.cap = before
+            player.prove = check_rule
+
     def find(self, goal: Any) -> Proof | None:
         """A proof of a goal, or None."""
         key = (goal.term, goal.relation, tuple(sorted(goal.box.items())), goal.given, goal.zeros)
@@ -170,15 +146,15 @@ class Search:
 
     def leaves_out(self, room: Room) -> bool:
         """Whether a room is not asked: what it makes has been made already, or rests on many balls."""
-        if room in (by_few_balls, by_many_balls):
+        if room in (signs.by_few_balls, signs.by_many_balls):
             return not self.balls
-        if room is by_forms:
+        if room is forms.by_forms:
             return self.rules[-1:] == ["equal"]  # one form of a form is one of the first
-        if room in (by_squares, by_equal_squares):
+        if room in (signs.by_squares, equations.by_equal_squares):
             return self.rules.count("squares") > 1
-        if room is by_empty_case:
+        if room is equations.by_empty_case:
             return "empty" in self.rules
-        return room is by_gradient and "derivative" in self.rules
+        return room is equations.by_gradient and "derivative" in self.rules
 
     def is_spent(self) -> bool:
         """Whether nothing more is to be tried."""
@@ -189,7 +165,7 @@ class Search:
         self.rules.append(candidate["rule"])
         try:
             check_rule(candidate, goal)
-        except (player.Refused, ZeroDivisionError, ArithmeticError, ValueError, KeyError, TypeError, RecursionError):
+        except REFUSALS:
             return False
         finally:
             self.rules.pop()
@@ -216,37 +192,13 @@ def find_proof(
 
     balls : whether boxes may be divided into cells
     """
-    before, search = (ctx.prec, ctx.cap), Search(time.process_time() + seconds, balls)
-    ctx.prec = 128
-    try:
-        player.prove, player.prove_all = search.prove, search.prove_all
-        for search.most_depth, search.tries, search.kinds in rounds:
-            search.lost.clear()
-            found = search.find(goal)
-            if found is not None:
-                return plain(found)
-        return None
-    finally:
-        ctx.prec, ctx.cap = before
-        player.prove = check_rule
+    search = Search(time.process_time() + seconds, balls)
+    return plain(search.go_round(lambda: search.find(goal), rounds))
 
 
 def find_filled(check: Callable[[], Any], seconds: float) -> Any:
     """What a check of the player returns when the search can fill the holes that it comes upon; else None."""
-    before, search = (ctx.prec, ctx.cap), Search(time.process_time() + seconds)
-    ctx.prec = 128
-    try:
-        player.prove, player.prove_all = search.prove, search.prove_all
-        for search.most_depth, search.tries, search.kinds in ROUNDS[1:3]:
-            search.lost.clear()
-            try:
-                return check()
-            except (player.Refused, ArithmeticError, ValueError, KeyError, TypeError, RecursionError):
-                continue
-        return None
-    finally:
-        ctx.prec, ctx.cap = before
-        player.prove = check_rule
+    return Search(time.process_time() + seconds).go_round(check, ROUNDS[1:3])
 
 
 def plain(proof: Any) -> Any:

@@ -352,6 +352,7 @@ ORDERS = [
     order("abs(x)", "0", {"x": 1}, "no value at the witness", x=LINE),
     order("sqrt(x)*0", "0", {"x": 1}, "no value at the witness", x=POSITIVE),
     order("x + floor(a)", "floor(a)", {"x": 1}, "an order of a floor", x=LINE, a=LINE),
+    order("floor(x)", "0", {"x": 1}, "a hypothesis on a small symbol", x=["0", "1/2", []]),
 ]
 #: Points that refute, or do not: (x - 1)**k has no value for x < 1, also for k = 2.
 REFUTED = [

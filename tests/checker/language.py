@@ -8,7 +8,7 @@ ONES = {f"{n}_{i}_0": str(i + k) for k, n in enumerate("uvw") for i in range(3)}
 TWOS = {f"{n}_{i}_{j}": str(2 * i + 3 * j + k) for k, n in enumerate("AB") for i in range(2) for j in range(2)}
 QUAT = {"q_0_0": "3/5", "q_1_0": "4/5", "q_2_0": "0", "q_3_0": "0"}
 
-WHOLE, NORMAL = [None, None, ["integer"]], {"w": {"mean": "0", "cov": "1", "normal": True}}
+THREES, WHOLE, NORMAL = ["3", "7/2", []], [None, None, ["integer"]], {"w": {"mean": "0", "cov": "1", "normal": True}}
 
 FIVE = {"shapes": {"p": [[f"p{i}"] for i in range(5)]}, "random": {"p": {"mean": "zeros(5, 1)", "cov": "eye(5)"}}}
 FIVE["random"]["p"] |= {"normal": True}
@@ -22,6 +22,7 @@ def some(point, *names):
     return {key: value for key, value in point.items() if key[0] in names}
 
 
+CELL, CELLS = (by("balls", bits=64, cells=n) for n in (1, 30))
 ABOVE_0, BELOW_1 = (by("range", symbol="fraction__1", end=end, share="1") for end in (0, 1))
 #: True statements of the whole language, and false ones that differ in a sign, an index, an order or a transposition.
 #: The same proofs are offered for both.
@@ -122,6 +123,8 @@ LANGUAGE = [
     (("diff(x**3, x, 2)", "=", "6*x"), ("3*x**2", "6"), "", {"x": "1"}, [I], {"x": LINE}),
     (("floor(5/2) + floor(-5/2) + floor(pi)", "=", "2"), ("3", "1"), "", {}, [I], {}),
     (("floor(log(exp(2))) + floor(-log(exp(3)))", "=", "-1"), ("0", "-2"), "", {}, [I], {}),
+    (("floor(x)", "<=", "1"), ("0", "1/2"), "", {"x": "1/3"}, [CELL, CELL, CELLS, CELLS], {"x": ["0", "3/2", []]}),
+    (("-1 - floor(-x)", ">=", "0"), ("1", "1/2"), "", {"x": "1/3"}, [CELL, CELLS, CELLS], {"x": ["1/5", "9/10", []]}),
     (("floor(floor(x) + 1/2)", "=", "floor(x)"), ("floor(x) + 1",), "", {"x": "1/3"}, [I], {"x": LINE}),
     (("diag(x)[1,1]", "=", "x"), ("2",), "", {"x": "1"}, [I], {"x": LINE}),
     *(
@@ -242,6 +245,14 @@ MEANINGLESS = [
     (stated("limit(floor(n), n, 1/2)", "=", "1/2", n=WHOLE), "a whole number that varies"),
     (stated("diff(floor(n), n)", "=", "1", n=WHOLE), "a whole number that varies"),
     (stated("dot_(floor(n))", "=", "1", rates={"n": "1"}, n=WHOLE), "a whole number that varies"),
+    # floor(x) is 3 in the range of x, and not for the variable of a question.
+    (stated("integral(floor(x), x, 0, 2)", "=", "6", x=THREES), "integral of cases"),
+    (stated("sum(floor(x), x, 1, 5)", "=", "15", x=THREES), "sum of cases"),
+    (stated("product(floor(x), x, 1, 2)", "=", "9", x=THREES), "product of cases"),
+    (stated("limit(floor(x), x, 0)", "=", "3", x=THREES), "limit of cases"),
+    (stated("diff(floor(x), x)", "=", "0", x=THREES), "a derivative of cases"),
+    (stated("dot_(floor(x))", "=", "0", rates={"x": "1"}, x=THREES), "a derivative of cases"),
+    (stated("dot_(x)", "=", "3", rates={"x": "floor(y)"}, x=LINE, y=THREES), "a rate of cases"),
     (stated("integral(E(w), w, 0, 1)", "=", "0") | {"random": NORMAL}, "the name of a number"),
     (stated("expm([[1, 2]])", "=", "0"), "expected n by n"),
     (stated("transpose(x)", "=", "x", x=LINE), "malformed"),

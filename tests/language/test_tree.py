@@ -32,6 +32,7 @@ from navsym.language import tree as table
 from navsym.language.algebra import from_sympy, to_sympy
 from navsym.language.domains import enclose_tree, list_conditions, rational_value
 from navsym.language.expression import parse, read_tree, symbol, to_text
+from navsym.language.names import INVERSES
 from navsym.language.polynomials import to_polynomial
 from navsym.language.printer import LatexWriter, print_tree
 from navsym.language.tree import (
@@ -59,7 +60,7 @@ leaves = st.one_of(st.sampled_from([x, y, PI, MINUS_ONE]), numbers, st.integers(
 
 
 def grow(smaller):
-    call = st.sampled_from([name for name in ARITY if name not in ("pi", "atan2")])
+    call = st.sampled_from([name for name in ARITY if name not in ("pi", "atan2", *INVERSES)])
     return st.one_of(
         st.lists(smaller, min_size=2, max_size=4).map(lambda parts: build_sum(*parts)),
         st.lists(smaller, min_size=2, max_size=4).map(lambda parts: build_product(*parts)),

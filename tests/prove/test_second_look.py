@@ -100,6 +100,19 @@ def test_a_margin_that_falls_without_end_is_not_confirmed(statement):
     assert verdict.status == OPEN and "still falls" in verdict.evidence
 
 
+@pytest.mark.parametrize(
+    ("statement", "limits"),
+    [
+        (sp.sin(300 * x) + sp.sin(301 * x) < 2 - sp.Rational(1, 100), {x: (0, 4)}),
+        (sp.sin(x) + sp.sin(sp.sqrt(2) * x) < 2 - sp.Rational(1, 100), {}),
+        (sp.sin(x) + sp.cos(x**2) < 2 - sp.Rational(1, 10**9), {}),
+    ],
+    ids=str,
+)
+def test_waves_that_may_meet_between_all_samples_are_not_confirmed_to_stay_apart(statement, limits):
+    assert decide(Bound(statement.lhs, "<", statement.rhs, limits), seconds=0.5).status in (OPEN, REFUTED)
+
+
 @pytest.mark.parametrize("statement", ON_AN_EDGE, ids=str)
 def test_what_is_false_on_an_edge_without_balls_is_not_proved(statement):
     assert decide(statement).status in (REFUTED, OPEN)

@@ -12,6 +12,7 @@ from typing import Any
 
 from flint import ctx
 
+from navsym.prove.calculus import candidates
 from navsym.prove.calculus.candidates import Signs, list_candidates
 from navsym.prove.grant import BITS, REFUSALS, Document
 from navsym.prove.rooms.goals import Hole, player, values_of
@@ -19,7 +20,7 @@ from navsym.prove.search import find_filled
 
 SECONDS = 8.0
 SHARE = 4.0  # seconds for one candidate
-TROUBLE = (*REFUSALS, ArithmeticError, ValueError, TypeError, KeyError, RecursionError)
+TROUBLE = (*REFUSALS, *candidates.TROUBLE)
 MOST_POINTS = 3
 
 

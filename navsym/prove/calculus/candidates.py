@@ -170,8 +170,10 @@ def is_positive(limit: Any) -> bool:
 
 
 def choose_branch(form: Any) -> Any:
-    """The general branch of a form by cases."""
-    return form.replace(lambda e: isinstance(e, sp.Piecewise), lambda e: e.args[0][0])
+    """The general branch of a form by cases, with inverse hyperbolic functions as logarithms."""
+    inverse = (sp.asinh, sp.acosh, sp.atanh)
+    form = form.replace(lambda e: isinstance(e, sp.Piecewise), lambda e: e.args[0][0])
+    return form.replace(lambda e: isinstance(e, inverse), lambda e: e.rewrite(sp.log))
 
 
 def turn_logarithms(form: Any, question: Any, goal: Any, pair: Any) -> Any:
@@ -351,30 +353,46 @@ def telescope_wave(f: Any, waves: list[Any], k: Any) -> Any:
 
 
 def list_products(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
-    """G with G(k + 1) = f(k) G(k), from linear factors whose roots differ by whole numbers."""
-    k, f = to_sympy(("symbol", question.variable)), to_sympy(question.term)
-    top, bottom = (sp.factor_list(part, k) for part in sp.fraction(sp.together(f)))
-    roots: list[list[Any]] = [[], []]
-    for side, (_, factors) in zip(roots, (top, bottom), strict=True):
-        for factor, power in factors:
-            if sp.degree(factor, k) != 1:
-                return
-            side += [sp.solve(factor, k)[0]] * power
-    share = sp.simplify(f * sp.prod(k - r for r in roots[1]) / sp.prod(k - r for r in roots[0]))
-    form = sp.Integer(1)
-    for root in roots[0]:
-        partner = next((r for r in roots[1] if sp.simplify(r - root).is_Integer), None)
-        if partner is None:
+    """G with G(k + 1) = f(k) G(k), from polynomials above that are those below with k + s in the place of k."""
+    k = to_sympy(("symbol", question.variable))
+    f = join_powers(to_sympy(question.term), k)
+    sides: list[list[sp.Poly]] = []
+    for part in sp.fraction(sp.cancel(f)):
+        rows = sp.factor_list(part, k)[1] if part.is_polynomial(k) else []
+        sides.append([sp.Poly(factor, k).monic() for factor, power in rows for _ in range(power)])
+    share, form = (
+        sp.cancel(f * sp.prod(h.as_expr() for h in sides[1]) / sp.prod(g.as_expr() for g in sides[0])),
+        sp.S.One,
+    )
+    for g in sides[0]:
+        below = [(h, s) for h in sides[1] if (s := find_shift(g, h)) is not None]
+        if not below:
             return
-        roots[1].remove(partner)
-        steps = int(sp.simplify(root - partner))
-        factors = [1 / (k - root + j) for j in range(steps)] if steps > 0 else [k - partner + j for j in range(-steps)]
-        form *= sp.prod(factors)
-    if roots[1] or share.has(k):
+        h, s = below[0]
+        sides[1].remove(h)
+        form *= sp.prod(h.as_expr().subs(k, k + j) for j in range(s))
+        form /= sp.prod(g.as_expr().subs(k, k + j) for j in range(-s))
+    if sides[1] or share.has(k):
         return
     text = from_sympy(form * share**k if share != 1 else form)
     for plain in (True, False):
         yield functools.partial(make_sum, text, plain, player.is_infinite(question.high))
+
+
+def find_shift(g: sp.Poly, h: sp.Poly) -> int | None:
+    """The whole s with g(k) = h(k + s), for polynomials with leading coefficient 1."""
+    n, k = g.degree(), g.gen
+    s = sp.simplify((g.nth(n - 1) - h.nth(n - 1)) / n)
+    is_moved = n == h.degree() and s.is_Integer and sp.expand(h.as_expr().subs(k, k + s) - g.as_expr()) == 0
+    return int(s) if is_moved else None
+
+
+def join_powers(f: Any, k: Any) -> Any:
+    """Powers with k in the exponent as one exponential, which is none where k cancels: r**(k + 1)/r**k = r."""
+    apart = f.replace(
+        lambda e: e.is_Pow and e.exp.has(k), lambda e: sp.exp(e.exp * sp.expand_log(sp.log(e.base), force=True))
+    )
+    return sp.powsimp(apart, combine="exp").replace(sp.exp, lambda e: sp.exp(sp.expand(e)))
 
 
 # Limits

@@ -21,12 +21,13 @@ from navsym.core.errors import NavsymError
 from navsym.prove.calculus.answers import MOST_POINTS, SECONDS, read_with_answers
 from navsym.prove.grant import BITS, IDENTITY, REFUSALS, Document, grant, refute_document, withdraw, write_point
 from navsym.prove.relations.points import Rows, draw_corner_points, draw_special_points
-from navsym.prove.rooms.goals import player, to_sympy, write_term
+from navsym.prove.rooms.goals import player, subterms, to_sympy, write_term
 from navsym.prove.search import find_proof, rules_of
 from navsym.prove.wording import decimal_ends, expression_text
 from navsym.prove.words.judge import decide_words
 
 POINTS = 16
+EDGES = 6  # absolute values and conditions of a case that are 0 at some points
 FEW = 4  # points at which an exact zero is sought
 PRECISIONS = (64, 512)
 TROUBLE = (*REFUSALS, NavsymError, ArithmeticError, RecursionError)
@@ -126,7 +127,10 @@ def list_points(claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]) 
     for case in cases:
         here = {n: case.goals[0].box[n] for n in box}
         corners = draw_corner_points(here, kinds) if box else iter(())
-        for point in chain(draw_special_points(here, case.zeros, kinds, count), corners):
+        bends = [part[1] for goal in case.goals[:EDGES] for part in subterms(goal.term) if part[0] == "abs"]
+        met = [*dict.fromkeys((*bends, *case.given))][: EDGES if box else 0]
+        edges = (draw_special_points(here, (*case.zeros, t), kinds, 2) for t in met)
+        for point in chain(draw_special_points(here, case.zeros, kinds, count), corners, *edges):
             place = {name: player.number(value) for name, value in point.items()}
             try:
                 if all(player.is_inside(place[name], box[name]) for name in box) and player.lies_in(case, place):

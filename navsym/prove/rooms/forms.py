@@ -209,15 +209,20 @@ def by_roots_of_symbols(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def by_known_signs(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """Real symbols that are positive wherever the term has a value, as new ones with that range."""
+    """Real symbols with one sign wherever the term has a value, or by a range without 0, as new ones that are > 0."""
     known = player.with_weaker(player.set_union(map(player.conditions, (goal.term, *goal.exists))))
     terms, ranges, form = {}, {}, goal.term
     for name in sorted(player.symbols_of(goal.term)):
-        v, new = ("symbol", name), f"{name}_p"
-        if (">=", v) in known and goal.box[name].low is None and new not in goal.box:
-            is_open = {(">", v), ("!=", v), ("!=", ("sqrt", v))} & known
-            terms[new], ranges[new] = name, ["0", None, ["open-low"] if is_open else []]
-            form = player.replace(form, v, ("symbol", new))
+        v, new, limit = ("symbol", name), f"{name}_p", goal.box[name]
+        beside = [end == player.ZERO and limit.nonzero for end in (limit.low, limit.high)]
+        if new in goal.box or not (any(beside) or ((">=", v) in known and limit.low is None)):
+            continue
+        is_open = any(beside) or {(">", v), ("!=", v), ("!=", ("sqrt", v))} & known
+        far = None if not any(beside) else limit.high if beside[0] else limit.low and player.negate(limit.low)
+        terms[new] = f"-{name}" if beside == [False, True] else name
+        ranges[new] = ["0", far and write_term(far), ["open-low"] if is_open else []]
+        letter = ("symbol", new)
+        form = player.replace(form, v, player.negate(letter) if beside == [False, True] else letter)
     if terms:
         proof: Proof = {"rule": "abstract", "terms": terms, "ranges": ranges, "to": write_term(form)}
         yield proof | {"inside": Holes(), "defined": Holes(), "proof": Hole()}
@@ -237,16 +242,3 @@ def by_hypothesis(goal: Any, sample: list[arb]) -> Iterator[Proof]:
             form = to_text(to_sympy(goal.term).xreplace({v: (u - rest) / c}))
             proof: Proof = {"rule": "abstract", "terms": {name: write_term(given)}, "ranges": {name: ["0", None, []]}}
             yield proof | {"to": form, "inside": Holes(), "defined": Holes(), "proof": Hole()}
-
-
-def by_divisors(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """The term times the roots by which it is divided."""
-    expression, divisors = to_sympy(goal.term), dict[sp.Expr, sp.Rational]()
-    for p in sorted(expression.atoms(sp.Pow), key=str):
-        if p.exp.is_Rational and p.exp.q > 1 and p.exp < 0 and p.base.free_symbols:
-            divisors[p.base] = max(-p.exp, divisors.get(p.base, p.exp))
-    if goal.relation != "=" and divisors:
-        factor = sp.Mul(*(base**power for base, power in divisors.items()))
-        form = to_text(sp.Add(*(factor * term for term in sp.Add.make_args(expression))))
-        proof = {"rule": "equal", "to": form, "defined": Holes(), "proof": Hole()}
-        yield {"rule": "multiply", "by": to_text(factor), "defined": Holes(), "positive": Hole(), "proof": proof}

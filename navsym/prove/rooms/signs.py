@@ -362,7 +362,7 @@ def by_contacts(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         limit = goal.box[name]
         for place in ("0", "1", "pi/2", "pi", "-1", "1/2", "2", "-pi/2", "exp(1)", "exp(-1)", "pi/4", "3"):
             value = player.parse(place)
-            inside = limit._replace(open_low=True, open_high=True)
+            inside = limit._replace(open_low=True, open_high=True, nonzero=False)
             if not player.is_inside(value, inside):
                 continue
             touching = player.value_of(goal.term, {name: player.Jet(player.value_of(value, {}))})
@@ -380,62 +380,47 @@ def by_logarithms(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         yield {"rule": "exponential", "proof": Hole()}
 
 
+POWER: Proof = {"rule": "product", "factors": [None]}  # a whole power of even exponent, or an exponential
+
+
 def by_positive_radicand(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """sqrt(u) > 0 or != 0 where u > 0: its square is u, and it is >= 0."""
-    if goal.term[0] != "sqrt" or goal.relation not in (">", "!="):
-        return
-    square: Proof = {"rule": "equal", "to": write_term(goal.term[1]), "defined": Holes(), "proof": Hole()}
-    body: Proof = {"rule": "squares", "left": write_term(goal.term), "right": "0", "sign": 1, "defined": Holes()}
-    body |= {"proofs": [square, {"rule": "product", "factors": [None]}]}
-    yield body if goal.relation == ">" else {"rule": "side", "sign": 1, "proof": body}
+    if goal.term[0] == "sqrt" and goal.relation in (">", "!="):
+        square: Proof = {"rule": "equal", "to": write_term(goal.term[1]), "defined": Holes(), "proof": Hole()}
+        body = compare_squares(goal.term, square, POWER)
+        yield body if goal.relation == ">" else {"rule": "side", "sign": 1, "proof": body}
+
+
+def compare_squares(term: Term, above: Proof, side: Proof) -> Proof:
+    """A term > 0 by its square, and because it is >= 0."""
+    body: Proof = {"rule": "squares", "left": write_term(term), "right": "0", "sign": 1, "defined": Holes()}
+    return body | {"proofs": [above, side]}
+
+
+def divide_by_fourth(u: Term) -> Proof:
+    """v > 0 by v u**(-4) = u**(-2), for v = u**2."""
+    powers = [write_term(("^", u, player.number(-n))) for n in (4, 2)]
+    shorter: Proof = {"rule": "equal", "to": powers[1], "defined": Holes(), "proof": POWER}
+    return {"rule": "multiply", "by": powers[0], "defined": Holes(), "positive": POWER, "proof": shorter}
 
 
 def by_existence(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """u >= 0 where something has a root of u, as sqrt(u)**2, and u > 0 where something has its logarithm."""
-    for relation, u in player.set_union(map(player.conditions, goal.exists)) if player.symbols_of(goal.term) else ():
-        enough = relation == ">" or (relation == goal.relation == ">=")
-        if enough and player.is_identity(player.subtract(goal.term, u)):
-            form = ("exp", ("log", u)) if relation == ">" else ("^", ("sqrt", u), player.number(2))
-            product: Proof = {"rule": "product", "factors": [None]}
-            proof = product if goal.relation != "!=" else {"rule": "side", "sign": 1, "proof": product}
-            yield {"rule": "equal", "to": write_term(form), "defined": Holes(), "proof": proof}
-            return
+    """The sign of u where something has a root or the logarithm of u, or is divided by u or by its root.
 
-
-def by_divided_root(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """u > 0 where something is divided by sqrt(u): u sqrt(u)**(-4) = sqrt(u)**(-2)."""
-    if goal.relation not in (">", "!="):
-        return
-    for relation, root in player.set_union(map(player.conditions, goal.exists)):
-        if relation == "!=" and root[0] == "sqrt" and player.is_identity(player.subtract(goal.term, root[1])):
-            powers = [write_term(("^", root, player.number(-n))) for n in (4, 2)]
-            product: Proof = {"rule": "product", "factors": [None]}
-            shorter: Proof = {"rule": "equal", "to": powers[1], "defined": Holes(), "proof": product}
-            yield {"rule": "multiply", "by": powers[0], "defined": Holes(), "positive": product, "proof": shorter}
-
-
-def by_divided_term(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """u > 0 where something is divided by u, and u >= 0: u**2 u**(-4) = u**(-2)."""
-    for relation, u in player.set_union(map(player.conditions, goal.exists if goal.relation == ">" else ())):
-        if relation != "!=" or not player.symbols_of(u):
+    u = sqrt(u)**2 >= 0 and u = exp(log(u)) > 0; divided by sqrt(u), u > 0; divided by u, u > 0 where u >= 0.
+    """
+    own = player.set_union(map(player.conditions, goal.exists)) if player.symbols_of(goal.term) else ()
+    for relation, u in own:
+        inner = u[1] if relation == "!=" and u[0] == "sqrt" else u
+        if not player.symbols_of(u) or (relation == ">=" and goal.relation != ">="):
             continue
-        if any(player.is_identity(player.subtract(goal.term, own)) for own in (u, player.negate(u))):
-            powers = [write_term(("^", u, player.number(-n))) for n in (4, 2)]
-            product: Proof = {"rule": "product", "factors": [None]}
-            shorter: Proof = {"rule": "equal", "to": powers[1], "defined": Holes(), "proof": product}
-            above: Proof = {
-                "rule": "multiply",
-                "by": powers[0],
-                "defined": Holes(),
-                "positive": product,
-                "proof": shorter,
-            }
-            body: Proof = {
-                "rule": "squares",
-                "left": write_term(goal.term),
-                "right": "0",
-                "sign": 1,
-                "defined": Holes(),
-            }
-            yield body | {"proofs": [above, Hole()]}
-            return
+        if player.is_identity(player.subtract(goal.term, inner)):
+            if relation != "!=":
+                form = ("exp", ("log", u)) if relation == ">" else ("^", ("sqrt", u), player.number(2))
+                proof = POWER if goal.relation != "!=" else {"rule": "side", "sign": 1, "proof": POWER}
+                yield {"rule": "equal", "to": write_term(form), "defined": Holes(), "proof": proof}
+            elif inner is not u and goal.relation in (">", "!="):
+                yield divide_by_fourth(u)
+        sides = (u, player.negate(u)) if relation == "!=" and goal.relation == ">" else ()
+        if any(player.is_identity(player.subtract(goal.term, side)) for side in sides):
+            yield compare_squares(goal.term, divide_by_fourth(u), Hole())

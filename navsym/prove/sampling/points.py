@@ -22,24 +22,10 @@ from navsym.language.expression import to_text
 
 Point = dict[sp.Symbol, sp.Expr]
 
-AWKWARD = tuple(
-    sp.sympify(value, strict=True)
-    for value in (
-        sp.Integer(0),
-        sp.Integer(1),
-        sp.Rational(1, 2),
-        sp.sqrt(2),
-        sp.pi / 3,
-        sp.Integer(-1),
-        sp.Integer(2),
-        sp.pi,
-        sp.Rational(-3, 2),
-        sp.pi / 2,
-        sp.Rational(7, 3),
-        sp.Integer(10),
-        sp.Rational(1, 100),
-    )
-)
+AWKWARD: tuple[sp.Expr, ...] = (
+    sp.S.Zero, sp.S.One, sp.S.Half, sp.sqrt(2), sp.pi / 3, -sp.S.One, sp.Integer(2), sp.pi, sp.Rational(-3, 2),
+    sp.pi / 2, sp.Rational(7, 3), sp.Integer(10), sp.Rational(1, 100),
+)  # fmt: skip
 
 #: Candidates outside the range in a row, after which no more are tried.
 PATIENCE = 500
