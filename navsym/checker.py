@@ -324,8 +324,7 @@ def restrict(f: Callable[[arb], arb], x: Jet, low: int, high: int | None) -> Jet
 def evaluate(term: Term, names: dict[str, Jet], field: Any) -> Jet:
     """A term in balls (field arb or clip) or exactly (field Exact), where names have the given values.
 
-    Enclosures of enclosures are enclosures (Moore, Interval Analysis, 1966). Raises Undefined where a division, root
-    or function may have no value.
+    Enclosures of enclosures are enclosures (Moore, Interval Analysis, 1966). Undefined: a part may have no value.
     """
     match term:
         case ("number", q):
@@ -534,8 +533,7 @@ class Exact:
     def exp_of(kind: str, monomial: Any, c: fmpq) -> Exact:
         """exp(c M), or exp(i c M), of a monomial M, wherever M is defined: exp(c log u) = u**c.
 
-        For a whole c, exp(i c M) = (a + i b)**c with (a, b) the point of the unit circle at the angle M = asin u,
-        acos u, atan u or atan2(y, x).
+        For whole c, exp(i c M) = (a + i b)**c, (a, b) on the unit circle at M = asin u, acos u, atan u, atan2(y, x).
         """
         match [*monomial]:
             case [((_, "log", content), 1)] if kind == "exp":
@@ -1079,8 +1077,7 @@ def find_cost(norm: Any, size: Any, w: fmpq_mat, y: fmpq_mat) -> arb:
     """The largest w.r of noise r, where y lies: r' size**-1 r <= 1, |r_j| <= s_j, sum |r_j|/s_j <= 1, or r_j <= 0."""
     n = w.nrows()
     if norm == "nonpositive":
-        require(size == [] and all(e >= 0 for e in w.entries()), "a weight below zero")
-        require(all(e <= 0 for e in y.entries()), "the dual leaves the noise")
+        require(size == [] and all(e >= 0 for e in w.entries()) and all(e <= 0 for e in y.entries()), "a wrong sign")
         return arb(0)
     rows = read_list(size, lambda row: read_list(row, read_number, n if norm == "l2" else 1), n)
     if norm == "l2":
@@ -1584,8 +1581,8 @@ class Reader:
                 if self.choose(">", subtract(number(n + 1), u)):
                     return make_sum(*whole, number(n))
         own = f"{FRACTION}{len(self.fractions) + 1}"
-        require(own not in self.box, "a name that is in use")
         name = next((f for f, v in self.fractions.items() if is_identity(subtract(u, v))), own)
+        require(name not in self.box, "a name that is in use")
         self.fractions.setdefault(name, u)
         value = subtract(u, ("symbol", name))
         self.floors[value] = None
@@ -2985,8 +2982,7 @@ def to_fraction(term: Term) -> tuple[fmpq_poly, fmpq_poly]:
 
 
 # Integrals, sums, products and limits. The reader puts a symbol in the place of each and keeps the question what it is.
-# An answer is a term with a proof that this is its value, at all points of the case where all else that was typed has
-# values; it takes the place of the symbol.
+# An answer is a term, proved to be its value where all else that was typed has values; it takes the symbol's place.
 
 QUESTIONS = ("integral", "sum", "product", "limit")
 INFINITY: Term = ("symbol", "oo")
