@@ -64,7 +64,8 @@ def as_text(data: Mapping[str, Any]) -> str:
         rows = [*dict.fromkeys(rows)]  # neighbours of several cards may differ alike
         blocks.append(table(["neighbour with another", "namely", "is excluded", "at"], rows))
     others = f"{data['examined']} cards examined"
-    proved = "each card is proved, each other one excluded at a point" if data["complete"] else "not all is proved"
+    left = f"{len(data['undecided'])} more cards are undecided: they are neither proved nor excluded"
+    proved = "each card is proved, each other one excluded at a point" if data["complete"] else left
     unused = f"; not looked at: {', '.join(data['unused'])}" if data["unused"] else ""
     return "\n\n".join([*blocks, f"{others}; {proved}{unused}"]) + "\n"
 
@@ -88,6 +89,9 @@ def cards_text(cards: Sequence[Mapping[str, Any]]) -> str:
 
 def conflicts_text(data: Mapping[str, Any]) -> str:
     """The blocks that must change for the nearest card."""
+    if data["undecided"]:
+        head = f"no card is proved; {len(data['undecided'])} are undecided: no point excludes them"
+        return f"{head}\n{cards_text(data['undecided'])}"
     if not data["conflicts"]:
         return "no card, and none is near"
     head = f"no card; the fewest blocks that must change: {len(data['conflicts'])}"

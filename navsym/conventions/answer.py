@@ -80,6 +80,7 @@ class Conventions(Answer):
     excluded     : the neighbours of the cards, with what excludes them; ``examined`` counts all cards
     unused       : tables of the file that say nothing about the error dynamics
     problem      : the model and what was said about it
+    undecided    : cards that no point excludes and that are not proved; they are none of ``cards``
     proofs       : certificates of the entries that agree with a card or differ from it; ``navsym check`` replays them
 
     >>> import navsym as nav
@@ -98,6 +99,7 @@ class Conventions(Answer):
     examined: int
     unused: tuple[str, ...]
     problem: Problem
+    undecided: tuple[Card, ...] = ()
     proofs: tuple[Mapping[str, Any], ...] = ()
 
     def convert(self, card: Card | None = None, **changes: str) -> Conversion:
@@ -154,6 +156,7 @@ class Conventions(Answer):
         return {
             "cards": [card.document() for card in self.cards],
             "complete": self.complete,
+            "undecided": [card.document() for card in self.undecided],
             "conflicts": [conflict.document() for conflict in self.conflicts],
             "nearest": None if self.nearest is None else self.nearest.document(),
             "alternatives": [[list(block) for block in blocks] for blocks in self.alternatives],
@@ -169,6 +172,8 @@ class Conventions(Answer):
             words = ", ".join(str(w) for w in (first.frame, first.axes, first.error, first.angle) if w)
             more = f" and {len(self.cards) - 1} more" if len(self.cards) > 1 else ""
             return f"Conventions({self.name}: {words}{more})"
+        if self.undecided:
+            return f"Conventions({self.name}: no card is proved, {len(self.undecided)} are undecided)"
         blocks = "; ".join(" by ".join(conflict.block) for conflict in self.conflicts)
         return f"Conventions({self.name}: no card; change {blocks})"
 
@@ -182,21 +187,42 @@ def find_conventions(problem: Problem) -> Conventions:
     prover, comparison = Prover(problem), Comparison(problem)
     findings = find_candidates(problem, comparison)
     proved = {card: is_card_proved(card, comparison, prover) for card in findings.candidates}
-    cards, complete = findings.candidates, all(proved.values())
+    cards = tuple(card for card in findings.candidates if proved[card])
+    undecided = tuple(card for card in findings.candidates if not proved[card])
     conflicts: tuple[Conflict, ...] = ()
     nearest: Card | None = None
     alternatives: tuple[tuple[Block, ...], ...] = ()
-    if not cards:
+    if not findings.candidates:
+        require_possible(findings.excluded)
         outcomes = sorted(find_nearest(problem, comparison), key=rank_outcome)
         if outcomes:
             nearest = outcomes[0].card
             conflicts = tuple(state_conflict(outcomes[0], m, comparison, prover) for m in outcomes[0].mismatches)
             sets = dict.fromkeys(tuple(m.block for m in outcome.mismatches) for outcome in outcomes)
             alternatives = tuple(sets)[1:]
-    examined = len(cards) + sum(outcome.count for outcome in findings.excluded)
+    examined = len(findings.candidates) + sum(outcome.count for outcome in findings.excluded)
     excluded = tuple(find_neighbours(cards, findings.excluded, comparison))
-    found = problem.name, cards, complete, conflicts, nearest, alternatives, excluded, examined, problem.unused, problem
-    return Conventions(*found, tuple(prover.certificates))
+    found = (
+        problem.name,
+        cards,
+        not undecided,
+        conflicts,
+        nearest,
+        alternatives,
+        excluded,
+        examined,
+        problem.unused,
+        problem,
+    )
+    return Conventions(*found, undecided, tuple(prover.certificates))
+
+
+def require_possible(excluded: Sequence[Outcome]) -> None:
+    """Refuse quantities that contradict each other under every card."""
+    reasons = dict.fromkeys(outcome.impossible for outcome in excluded)
+    if reasons and all(reasons):
+        message = f"expected quantities that a card may have; got a contradiction in {', '.join(reasons)}; correct them"
+        raise DomainError(message, where="conventions: quantities")
 
 
 def is_card_proved(card: Card, comparison: Comparison, prover: Prover) -> bool:
@@ -234,16 +260,23 @@ def state_conflict(outcome: Outcome, mismatch: Mismatch, comparison: Comparison,
     places = [(rows.index(i), columns.index(j)) for i, j in mismatch.entries]
     granted = all(prover.refutes(plain_card(card), written[i][j], expected[i][j]) for i, j in places)
     entries = tuple((i + 1, j + 1) for i, j in mismatch.entries)
-    change = describe_change(written, expected, prover, card, "1 + " * (block[0] == RESET_MARK + block[1]))
+    order = [sorted(range(len(side)), key=side.__getitem__) for side in (rows, columns)]
+    change = describe_change(written, expected, prover, card, "1 + " * (block[0] == RESET_MARK + block[1]), order)
     return Conflict(block, entries, change, "PROVED" if granted else "OPEN", matrix_of(block))
 
 
 def describe_change(
-    written: list[list[str]], expected: list[list[str]], prover: Prover, card: Card, diagonal: str
+    written: list[list[str]],
+    expected: list[list[str]],
+    prover: Prover,
+    card: Card,
+    diagonal: str,
+    order: list[list[int]],
 ) -> str:
     """The change in words where it is a sign or a transposition, and the mended rows.
 
     diagonal : what stands before the diagonal of the rows, a unit for the reset
+    order    : of rows and columns, as they stand in the matrix
     """
     from navsym.claims.verdict import PROVED
 
@@ -267,6 +300,7 @@ def describe_change(
             words = f"{text}: write"
             break
     rows = [[diagonal * (i == j) + x for j, x in enumerate(row)] for i, row in enumerate(expected)]
+    rows = [[rows[i][j] for j in order[1]] for i in order[0]]
     return f"{words} [{', '.join('[' + ', '.join(row) + ']' for row in rows)}]".replace("1 + 0", "1")
 
 

@@ -16,7 +16,7 @@ from navsym.conventions.card import CHOICES, Card
 from navsym.conventions.measuring import CORRECTED, MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
 from navsym.conventions.mechanisation import BIASES, Mechanisation
 from navsym.conventions.reading import Problem, matrix_of, read_known, read_problem
-from navsym.conventions.search import Block, list_cards, plain_card, sign_of
+from navsym.conventions.search import SIGNS, Block, list_cards, list_problem_structures, list_signs, plain_card, sign_of
 from navsym.conventions.symbols import HIDDEN, Formulas
 from navsym.core.errors import DomainError, EmptyError
 from navsym.language.names import join_place, quote
@@ -81,6 +81,16 @@ def empty_model(document: Mapping[str, Any], model: Mapping[str, Any]) -> dict[s
 def list_zeros(M: Sequence[Sequence[Any]]) -> list[list[str]]:
     """A matrix of zeros and ones as texts."""
     return [["1" if repr(cell) == "<1>" else "0" for cell in row] for row in M]
+
+
+def require_known(problem: Problem, where: str) -> None:
+    """Refuse known words that no card has together."""
+    signs = {name: word for name, word in problem.known.items() if name in SIGNS}
+    shapes = [*problem.known.items() - signs.items()]
+    has_signs = any(all(words[n] == word for n, word in signs.items()) for words in list_signs(problem))
+    structures = list_problem_structures(problem)
+    if not has_signs or not any(all(getattr(card, n) == word for n, word in shapes) for card in structures):
+        choose_card(problem, problem.known, where)
 
 
 def choose_card(problem: Problem, words: Mapping[str, str], where: str) -> Card:

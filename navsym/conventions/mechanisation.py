@@ -397,6 +397,14 @@ def rotate_about_pole(angle: Sequence[Any], rate: Any = 0) -> Grid:
     return [[c, -s, NOTHING], [s, c, NOTHING], [NOTHING, NOTHING, ONE]]
 
 
+def add_centrifugal(card: Card, gravity: list[Any], earth: Sequence[Any], r: Sequence[Any]) -> list[Any]:
+    """Gravity in a turning frame: gravitation of a central field less W x (W x r), where the card keeps this term."""
+    if card.gravity_gradient != "central" or card.centrifugal != KEPT:
+        return gravity
+    whirl = cross(constant(earth), cross(constant(earth), constant(r)))
+    return [x - part.value for x, part in zip(gravity, whirl, strict=True)]
+
+
 def plus_height(radius: Any, height: Any) -> Any:
     """Radius plus height; 0 stands for a height that the model does not know."""
     return radius if type(height) is int else radius + height

@@ -16,7 +16,7 @@ from flint import arb, fmpq
 from navsym.conventions.card import WANDER, Card
 from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED
-from navsym.conventions.mechanisation import World, axes_rows
+from navsym.conventions.mechanisation import World, add_centrifugal, axes_rows
 from navsym.conventions.reading import Problem
 from navsym.core.balls import OPERATIONS, exact_ball, general_power, integer_power, rational_power
 from navsym.core.errors import DomainError
@@ -84,6 +84,7 @@ class Sampler:
         self.values: dict[str, Any] = {}
         if not free:
             self.draw_quaternion()
+            self.draw_rotation()
         bound = [tree for trees in self.problem.quantities.values() for tree in trees if tree.head != SYMBOL]
         for name in list_names(*bound):
             self.values.setdefault(name, self.pick(problem.parameters[name]))
@@ -99,6 +100,12 @@ class Sampler:
             n = 1 + x * x + y * y + z * z
             for tree, part in zip(trees, (1 - 2 / n, 2 * x / n, 2 * y / n, 2 * z / n), strict=False):
                 self.values[tree.args[0]] = arb(part)
+
+    def draw_rotation(self) -> None:
+        """A rotation by Cayley's formula, where its entries are nine names: other quantities may be written by them."""
+        trees = self.problem.quantities.get("rotation", ())
+        if len({*trees}) == 9 and all(tree.head == SYMBOL for tree in trees):
+            self.settle("rotation", [x for row in self.cayley() for x in row])
 
     def pick(self, parameter: Parameter | None, low: float = -2.0, high: float = 2.0) -> Any:
         """A random rational in the declared range."""
@@ -137,18 +144,18 @@ class Sampler:
         return found if len(found) == 3 else [self.pick(None) for _ in range(3)]
 
     def rotation(self) -> list[list[Any]]:
-        """A rotation by Cayley's formula, or what the file says."""
-        trees = self.problem.quantities.get("rotation")
-        if trees is None or all(tree.head == SYMBOL and tree.args[0] not in self.values for tree in trees):
-            flat = self.settle("rotation", [x for row in self.cayley() for x in row])
-        else:
-            flat = self.settle("rotation")
+        """The rotation that the file says, or one by Cayley's formula."""
+        known = "rotation" in self.problem.quantities
+        flat = self.settle("rotation", None if known else [x for row in self.cayley() for x in row])
         C = [flat[3 * k : 3 * k + 3] for k in range(3)]
         for i in range(3):
             for j in range(3):
                 if not (sum((x * y for x, y in zip(C[i], C[j], strict=True)), arb(0)) - int(i == j)).contains(0):
-                    message = "expected a rotation, C C' = E; got another matrix; correct it"
-                    raise DomainError(message, where="quantities: rotation")
+                    message = "expected a rotation, C C' = E for all values of its names; got another matrix; "
+                    raise DomainError(message + "write it by angles or by nine names", where="quantities: rotation")
+        if not sum((x * y for x, y in zip(C[0], turn_right(C[1], C[2]), strict=True)), arb(0)) > 0:
+            message = "expected a rotation, det C = 1; got a reflection; correct the sign or the order of an axis"
+            raise DomainError(message, where="quantities: rotation")
         return C
 
     def cayley(self) -> list[list[Any]]:
@@ -203,8 +210,8 @@ class Sampler:
             r = turn_about_pole(turn, locate(sine, cosine, meridian, h, RN, RE)) if "position" in given else None
         r = self.vector("position") if r is None else self.settle("position", r)
         radius = sum((x * x for x in r), arb(0)).sqrt()
-        pull, gravity = self.gravitation(r, radius, level, normal)
         earth = self.rotation_of_earth(sine, cosine, level)
+        pull, gravity = self.gravitation(r, radius, level, normal, earth)
         motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.settle("radius_slope")[0]
         world = World(
             *motion,
@@ -233,12 +240,17 @@ class Sampler:
     def radii(self) -> tuple[Any, Any, Any]:
         """Meridian, prime vertical, and the radius of gravity."""
         found = self.settle("radii", None, 3.0, 6.0)
+        if not all(radius > 0 for radius in found):
+            message = "expected radii above zero; got another number; correct it or its range"
+            raise DomainError(message, where="quantities: radii")
         if len(found) == 1:
             sphere = self.card.earth != "ellipsoid"
             return found[0], found[0] if sphere else self.pick(None, 3.0, 6.0), found[0]
         return found[0], found[1], found[-1]
 
-    def gravitation(self, r: list[Any], radius: Any, level: bool, normal: list[Any]) -> tuple[Any, list[Any]]:
+    def gravitation(
+        self, r: list[Any], radius: Any, level: bool, normal: list[Any], earth: list[Any]
+    ) -> tuple[Any, list[Any]]:
         """mu/|r|^3, and gravity in the frame or along down."""
         if "gravitational_parameter" in self.problem.quantities:
             pull = self.settle("gravitational_parameter", None, 0.5, 3.0)[0] / radius**3
@@ -255,14 +267,15 @@ class Sampler:
                 self.settle("gravity", self.turned([arb(0), arb(0), scalar]))
             return pull, [scalar]
         if size == 3:
-            fields = {"central": [-pull * x for x in r], "normal": [self.pick(None, 0.5, 3.0) * x for x in normal]}
+            central = add_centrifugal(self.card, [-pull * x for x in r], earth, r)
+            fields = {"central": central, "normal": [self.pick(None, 0.5, 3.0) * x for x in normal]}
             wanted = fields.get(self.card.gravity_gradient)
             return pull, self.settle("gravity", wanted)
         parameter = self.card.gravity_gradient == "central" and "gravitational_parameter" in self.problem.quantities
         size_of = self.settle("gravity", [pull * radius] if parameter else None, 0.5, 3.0)[0]
         if size == 1 and "gravitational_parameter" not in self.problem.quantities:
             pull = size_of / radius
-        return pull, [-size_of * x / radius for x in r]
+        return pull, add_centrifugal(self.card, [-size_of * x / radius for x in r], earth, r)
 
     def rotation_of_earth(self, sine: Any, cosine: Any, level: bool) -> list[Any]:
         """The Earth's rate in the frame, or (north, down) of a local level."""
@@ -289,6 +302,11 @@ class Sampler:
         down = arb(0) if self.card.azimuth == WANDER else -east * world.sin / (across * world.cos)
         wanted = self.turned([east / across, -north / meridian, down])
         return self.settle("transport_rate", wanted)
+
+
+def turn_right(u: Sequence[Any], v: Sequence[Any]) -> list[Any]:
+    """u x v in balls."""
+    return [u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)]
 
 
 def turn_about_pole(angle: Sequence[Any], u: Sequence[Any]) -> list[Any]:

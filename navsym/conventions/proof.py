@@ -162,7 +162,15 @@ class Prover:
             if len(given.get(name, ())) == 3:
                 bind(name, [formulas.write(getattr(x, "value", x)) for x in vector])
         if card.gravity_gradient == "central" and len(given.get("gravity", ())) == 3 and "position" in texts:
-            bind("gravity", [f"-{HIDDEN}pull*({result.get(x, x)})" for x in texts["position"]])
+            r = [result.get(x, x) for x in texts["position"]]
+            spin = [result.get(x, x) for x in texts.get("earth_rate", [HIDDEN + "rate"])]
+            spin = spin if len(spin) == 3 else ["0", "0", *spin]
+            turn, along = (" + ".join(f"({x})*({y})" for x, y in zip(spin, u, strict=True)) for u in (spin, r))
+            whirl = [
+                f" + ({x})*({turn}) - ({w})*({along})" * (card.centrifugal == KEPT)
+                for x, w in zip(r, spin, strict=True)
+            ]
+            bind("gravity", [f"-{HIDDEN}pull*({x}){part}" for x, part in zip(r, whirl, strict=True)])
         return result
 
     def free_motion(self, card: Card) -> tuple[Mechanisation, Formulas]:

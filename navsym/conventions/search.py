@@ -63,7 +63,9 @@ def key_of_points(card: Card) -> Card:
     """The card without what has no influence on the points."""
     shape = card.earth if card.frame == "local-level" else "none"
     field = card.gravity_gradient if card.gravity_gradient in ("central", "normal") else "none"
-    return Card(card.frame, card.axes, card.azimuth, earth=shape, gravity_gradient=field, **card.quaternion())
+    kept = card.centrifugal if field == "central" else None
+    key = Card(card.frame, card.axes, card.azimuth, earth=shape, gravity_gradient=field, centrifugal=kept)
+    return replace(key, **card.quaternion())
 
 
 def plain_card(card: Card) -> Card:
@@ -84,7 +86,8 @@ def narrow_card(card: Card, role: str) -> Card:
         plain = replace(plain, angle=None)
     if level or card.gravity_gradient not in ("central", "normal"):  # these settle gravity itself
         plain = replace(plain, gravity_gradient="none")
-    return replace(plain, centrifugal=None, height_variation=None, radius_variation=None, gravity_radius=None)
+    kept = plain.centrifugal if plain.gravity_gradient == "central" else None  # gravity itself contains it
+    return replace(plain, centrifugal=kept, height_variation=None, radius_variation=None, gravity_radius=None)
 
 
 class Comparison:

@@ -18,7 +18,7 @@ from flint import fmpq_mpoly_ctx
 from navsym.conventions.card import WANDER, Card
 from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED, full_column
-from navsym.conventions.mechanisation import AXES, Mechanisation, World, axes_rows
+from navsym.conventions.mechanisation import AXES, Mechanisation, World, add_centrifugal, axes_rows
 from navsym.conventions.nilpotent import times
 from navsym.conventions.points import gradient_names, turn_about_pole
 from navsym.conventions.reading import Problem
@@ -106,10 +106,11 @@ class Formulas:
         radius = self.symbol("radius", f"sqrt({squares})")
         if self.derived and RN is RE:
             radius = RN + h
+        earth = self.earth_rate(sine, cosine, axes_rows(card, *wander))
         pull, gravity = self.gravitation(r, radius)
+        gravity = add_centrifugal(card, gravity, earth, r)
         mean = self.symbol("mean", f"sqrt(({self.texts['RN']})*({self.texts.get('RE', self.texts['RN'])}))")
         w, v, slope = self.vector("w", "angular_rate"), self.vector("v", "velocity"), self.text("radius_slope")
-        earth = self.earth_rate(sine, cosine, axes_rows(card, *wander))
         motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.symbol("slope", slope)
         return World(
             *motion,

@@ -93,7 +93,8 @@ class Writer:
         self.where = where
         self.measured_names: dict[Any, list[str]] = {}
         quantities = document.get("quantities")
-        self.bound = [*quantities.values()] if isinstance(quantities, Mapping) else []
+        texts = [quantities.get(key) for key in ("rotation", "quaternion")] if isinstance(quantities, Mapping) else []
+        self.bound = {*re.findall(r"[A-Za-z]\w*", " ".join(text for text in texts if isinstance(text, str)))}
         self.arrays: dict[str, tuple[tuple[str, ...], ...]] = {}
         self.scalars: set[str] = {"t"}
         place = join_place(where, "parameters")

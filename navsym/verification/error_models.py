@@ -15,7 +15,7 @@ from navsym.audit.decide import differentiate
 from navsym.audit.questions import Question, list_askings
 from navsym.audit.values import Array, Unread, Value, multiply, raise_to, total
 from navsym.conventions.answer import Conflict, Conventions, find_conventions
-from navsym.conventions.generating import fill_model
+from navsym.conventions.generating import fill_model, require_known
 from navsym.conventions.reading import read_cell, read_problem
 from navsym.core.errors import DomainError, DuplicateError, UnknownSymbolError
 from navsym.language.files import name_file
@@ -32,6 +32,10 @@ if TYPE_CHECKING:
 
 BOOK = "book:"
 WORD = re.compile(r"[A-Za-z]\w*")
+#: Functions that have these values at zero.
+AT_ZERO = dict.fromkeys(("sin", "tan", "asin", "atan", "sinh", "tanh", "sqrt"), ZERO) | dict.fromkeys(
+    ("cos", "cosh", "exp"), ONE
+)
 MATRICES = ("F", "G", "H", "reset", "Phi")
 
 
@@ -87,6 +91,7 @@ def conventions(
     code = read_code(document, folder, where) if "code" in document else None
     document = code.document if code else linearise(write_out(read_entries(document, where), where), where)
     problem = read_problem(fill_model(document, where) if "card" in document else document, where)
+    require_known(problem, join_place(where, "known"))
     answer = find_conventions(problem)
     return answer if code is None else code.point_out(answer)
 
@@ -272,7 +277,14 @@ def put_zero(tree: Tree, symbol: Tree) -> Tree:
             return total(inner) if part.head == SUM else reduce(multiply, inner)
         if part.head == POWER:
             positive = inner[1].head == NUMBER and inner[1].args[0] > 0
-            return ZERO if inner[0] is ZERO and positive else raise_to(*inner)
+            if inner[0] is ZERO and not positive:
+                message = (
+                    f"expected a value where the errors or the step are zero; got {print_tree(part)}; write it without"
+                )
+                raise DomainError(message, where="conventions: model")
+            return ZERO if inner[0] is ZERO else raise_to(*inner)
+        if inner[:1] == [ZERO] and part.head in AT_ZERO:
+            return AT_ZERO[part.head]
         return build(part.head, tuple(inner)) if inner else part
 
     return fold_tree(tree, step)

@@ -122,7 +122,7 @@ class Flight:
         value = self.g if card.gravity_gradient == "none" else -self.mu * r / mp.norm(r) ** 3
         if card.centrifugal == "kept":
             spin = skew(self.turning(self.L, x))
-            value = value - spin * spin * (r - self.r)
+            value = value - spin * spin * (r if card.gravity_gradient == "central" else r - self.r)
         return value
 
     def truth(self) -> dict[str, Any]:

@@ -213,6 +213,69 @@ def test_what_is_no_quaternion_is_refused(change, kind):
     assert "expected" in str(refusal.value)
 
 
+SMALL = {
+    "model": {"states": ["dv[3]", "p[3]"], "F": [["0", "-skew(f)"], ["0", "0"]]},
+    "parameters": {"f": {"vector": 3}, "C": {"matrix": [3, 3]}},
+    "roles": {"velocity": "dv", "attitude": "p"},
+    "quantities": {"specific_force": "f", "rotation": "C"},
+    "known": {"frame": "inertial"},
+}
+
+
+def test_a_card_that_is_neither_proved_nor_excluded_is_none_of_the_cards():
+    tiny = "[[f[1]/10**300, 0, 0], [0, 0, 0], [0, 0, 0]]"  # below every ball
+    answer = nav.conventions({**SMALL, "model": {**SMALL["model"], "F": [["0", "-skew(f)"], ["0", tiny]]}})
+    assert not answer.cards and not answer.complete and answer.undecided and not answer.conflicts
+
+
+REFUSED = [
+    ({"quantities": {"rotation": [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "-1"]]}}, "a reflection"),
+    ({"quantities": {"rotation": [["C_1_1"] * 3] * 3}}, "a rotation"),
+    ({"quantities": {"specific_force": "f", "specific_force_body": "f", "rotation": "C"}}, "a contradiction"),
+    ({"quantities": {"specific_force": "f", "radii": "0"}}, "above zero"),
+    ({"known": {"frame": "inertial", "axes": "NED"}}, "expected axes|expected frame"),
+    ({"known": {"quaternion_order": "scalar first"}}, "quaternion_order"),
+    ({"known": {"innovation": "measurement - prediction"}}, "innovation"),
+]
+
+
+@pytest.mark.parametrize(("change", "words"), REFUSED)
+def test_what_contradicts_itself_is_refused_with_its_reason(change, words):
+    with pytest.raises(nav.NavsymError, match=words):
+        nav.conventions({**SMALL, **change})
+
+
+@pytest.mark.parametrize("body", ["C.T @ f", "[C[1, 1]*f[1] + C[2, 1]*f[2] + C[3, 1]*f[3], 0, 0]"])
+def test_a_quantity_may_be_written_by_the_rotation(body):
+    document = {**SMALL, "quantities": {**SMALL["quantities"], "specific_force_body": body}}
+    if "0" in body:
+        with pytest.raises(nav.NavsymError, match="a contradiction in specific_force"):
+            nav.conventions(document)
+    else:
+        assert len(nav.conventions(document).cards) == len(nav.conventions(SMALL).cards)
+
+
+def test_the_mended_rows_stand_in_the_order_of_the_states():
+    document = {**SMALL, "roles": {"velocity": ["dv_3", "dv_2", "dv_1"], "attitude": ["p_3", "p_2", "p_1"]}}
+    document["quantities"] = {"specific_force": ["f_3", "f_2", "f_1"], "specific_force_body": ["f_3", "f_2", "f_1"]}
+    document["quantities"]["rotation"] = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
+    document["model"] = {
+        **SMALL["model"],
+        "F": [["0", "[[0, f[3], -f[2]], [-f[3], 0, f[1]], [f[2], f[1], 0]]"], ["0", "0"]],
+    }
+    (conflict,) = nav.conventions(document).conflicts
+    assert conflict.change == "write [[0, f_3, -f_2], [-f_3, 0, f_1], [f_2, -f_1, 0]]"
+
+
+def test_what_has_no_derivative_at_zero_is_refused():
+    document = model("C", {"rotation": "C"}, C={"rotation": "b to n"})
+    del document["model"]["F"]
+    for more in ("a*dot(p, p)/dot(dv, dv)", "a*sqrt(dot(p, p))"):
+        document["model"]["dynamics"] = [f"C @ cross(p, a) + {more}", "cross(p, w)", "0", "0"]
+        with pytest.raises(nav.NavsymError, match="a value where the errors or the step are zero"):
+            nav.conventions(document)
+
+
 TEXT = """
 [model]
 states = ["dv[3]", "p[3]"]
