@@ -1077,7 +1077,8 @@ def find_cost(norm: Any, size: Any, w: fmpq_mat, y: fmpq_mat) -> arb:
     """The largest w.r of noise r, where y lies: r' size**-1 r <= 1, |r_j| <= s_j, sum |r_j|/s_j <= 1, or r_j <= 0."""
     n = w.nrows()
     if norm == "nonpositive":
-        require(size == [] and all(e >= 0 for e in w.entries()) and all(e <= 0 for e in y.entries()), "a wrong sign")
+        require(size == [] and all(e >= 0 for e in w.entries()), "a weight below zero")
+        require(all(e <= 0 for e in y.entries()), "the dual leaves the noise")
         return arb(0)
     rows = read_list(size, lambda row: read_list(row, read_number, n if norm == "l2" else 1), n)
     if norm == "l2":
@@ -2782,9 +2783,8 @@ def prove_cones(proof: Any, goal: Goal) -> None:
     """A polynomial whose coefficients in variables >= 0 are all >= 0 is >= 0; else the variables are compared.
 
     A symbol is low + y, high - y, (low z + high y)/(y + z), or y and -y one after the other, with y, z >= 0; a last
-    variable, 1, makes all terms of one degree in it and the y of ranges with one end. Where y_i >= y_j, y_i is put in
-    the place of y_i + y_j. For > every choice of variables that vanish has to leave a term, in which a last variable
-    and those that stand for no end do not.
+    variable, 1, makes all terms of one degree in it and the y of ranges with one end. Where y_i >= y_j, y_i is put for
+    y_i + y_j. For > every choice of vanishing ones, but for the last and those for no end, has to leave a term.
     """
     _, splits = read_fields(proof, "rule splits")
     require(goal.relation in (">=", ">"), "expected >= or >")

@@ -159,7 +159,7 @@ def track(
 
     >>> import navsym as nav
     >>> nav.track("examples/drive.csv", sigma=0.5)
-    <Track: 61 rows, 61 used, method smoother, up to 15.33 m/s>
+    <Track: 61 rows, 61 used, method smoother, up to 13.36 m/s>
     >>> rows = [(k, 45 + 1e-4 * k, 10.0, 100.0) for k in range(20)]
     >>> bool(abs(nav.track(rows, order=2).velocity[10, 1] - 11.11) < 0.01)
     True

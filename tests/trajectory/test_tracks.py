@@ -179,7 +179,10 @@ def test_standard_deviations_are_consistent_with_the_errors(method, order):
 
 @pytest.mark.parametrize("order", [2, pytest.param(3, marks=pytest.mark.long)])
 def test_estimated_noise_costs_no_more_consistency_than_known_noise(order):
-    """On the same tracks the squared errors over their variances agree within five per cent with the known case."""
+    """On the same tracks the squared errors over their variances are at most five per cent above those of known noise.
+
+    They may be an eighth below: what the noise may be has errors that look like motion, and the deviations count them.
+    """
     means = {"known": [], "estimated": []}
     for seed in range(40, 52):
         t, truth, measured = simulated(seed, q=0.02, sigma=2.0, order=order)
@@ -187,7 +190,7 @@ def test_estimated_noise_costs_no_more_consistency_than_known_noise(order):
         known = by_method(track, Noise(np.full(3, 4.0), np.full(3, 0.02)), Settings(order=order, gate=0.0), use)
         for name, found in (("known", known), ("estimated", estimate(track, Settings(order=order))[0])):
             means[name].append((((found.velocity - truth[:, :, 1].T) / found.velocity_sd)[20:-10] ** 2).mean())
-    assert abs(np.mean(means["estimated"]) / np.mean(means["known"]) - 1) < 0.05
+    assert -0.125 < np.mean(means["estimated"]) / np.mean(means["known"]) - 1 < 0.05
 
 
 def test_points_of_the_noise_have_the_covariance_of_its_estimate():

@@ -37,7 +37,8 @@ let read_block m value =
       let h = of_width "H" m (List.map (get_numbers "H") (get_list "H" h)) in
       let p = List.length h in
       let w = get_vector "weights" p weights and rows = List.map (get_numbers "size") (get_list "size" size) in
-      if p = 0 || List.length rows <> p then refuse "size: expected as many rows as weights";
+      let is_signed = get_text "norm" norm = "nonpositive" in
+      if p = 0 || List.length rows <> (if is_signed then 0 else p) then refuse "size: expected as many rows as weights";
       let carried = List.init m (fun j -> sum (List.map2 (fun row x -> Q.mul x (List.nth row j)) h w)) in
       let noise x = List.map (dot x) h in
       let scales () =
@@ -47,6 +48,9 @@ let read_block m value =
       in
       let cost, allows =
         match get_text "norm" norm with
+        | "nonpositive" ->
+            if List.exists (fun x -> Q.sign x < 0) w then refuse "a weight below zero";
+            (ball_zero, List.for_all (fun r -> Q.sign r <= 0))
         | "linf" ->
             let s = scales () in
             (of_rational (dot s (List.map Q.abs w)), List.for_all2 (fun s r -> Q.leq (Q.abs r) s) s)
