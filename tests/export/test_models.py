@@ -123,10 +123,8 @@ def test_the_questions_of_an_audit_are_no_claims_and_the_refusal_says_what_to_wr
 
 @pytest.mark.long
 def test_a_model_runs_in_every_language_that_is_here(tmp_path):
-    here = [
-        name for name in TARGETS if name != "wasm" or importlib.util.find_spec("ziglang")
-    ]  # the compiler is an extra
-    made = nav.export(str(EXAMPLES / "schuler-velocity.toml"), to=here, out=tmp_path, vectors=4)
+    pytest.importorskip("ziglang", reason="WebAssembly needs ziglang (extra cross)")
+    made = nav.export(str(EXAMPLES / "schuler-velocity.toml"), to=[*TARGETS], out=tmp_path, vectors=4)
     assert {outcome.status for outcome in made.outcomes} <= {"verified", "not executed"}
     assert sum(outcome.status == "verified" for outcome in made.outcomes) >= 3
 
