@@ -35,7 +35,7 @@ System = list[Poly]
 LIMITS = (24, 120, 1000)
 BRANCHES = 40
 #: Polynomials whose sign is asked for: number of terms, and the effort of one question.
-DEFINITE_TERMS, SECONDS = 20, 1.0
+DEFINITE_TERMS = 20
 #: Terms of the rows of one step, of a moving and of a constant model.
 MOVING_TERMS, CONSTANT_TERMS = 150, 20_000
 
@@ -133,7 +133,7 @@ def is_definite(f: Poly) -> bool:
         return False
     names = [sp.Symbol(f"x{k}", real=True) for k in range(f.context().nvars())]
     positive = polynomial_sum(names, f, 1 if at_zero > 0 else -1)
-    return prove_sign(positive, {}, Sign.POSITIVE, SECONDS).sign == Sign.POSITIVE
+    return prove_sign(positive, {}, Sign.POSITIVE).sign == Sign.POSITIVE
 
 
 def is_nowhere(system: Sequence[Poly], ring: Ring) -> bool:

@@ -54,8 +54,12 @@ SIGNS = (
 #: The time is a net below.
 ROUNDS = ((8, 200, 1), (8, 300, 2), (8, 400, 3), (12, 1200, 3))
 SECONDS = 30.0
-#: Parts of a term for which only cheap rooms are asked.
-LONG = 600
+#: For signs: fewer rules, of all kinds.
+SIGN_ROUNDS = ((8, 200, 1), (8, 400, 3))
+#: Parts of a term for which only cheap rooms are asked; parts of a goal that count as one more try, and parts of all
+#: cells when balls fail: each takes about as long as a rule on a short term.
+LONG, PARTS, PARTS_OF_CELLS = 600, 40, 2000
+CELLS = {signs.by_few_balls: signs.CELLS[0], signs.by_many_balls: signs.CELLS[1]}
 
 REFUSALS = (player.Refused, ArithmeticError, ValueError, KeyError, TypeError, RecursionError)
 check_rule = player.prove
@@ -74,6 +78,7 @@ class Search:
     depth: int = 0
     lost: dict[Any, int] = field(default_factory=dict)
     rules: list[str] = field(default_factory=list)
+    undecided: set[Any] = field(default_factory=set)  # rooms of balls with goals that they do not prove
 
     def prove(self, proof: Any, goal: Any) -> None:
         """Fill a hole, or check what is no hole."""
@@ -125,12 +130,14 @@ class Search:
         if any(fails(goal.relation, value) for value in sample):
             sample = sample_goal(goal, is_strict=True)
         if not any(fails(goal.relation, value) for value in sample):
+            parts = sum(1 for _ in itertools.islice(subterms(goal.term), LONG + 1))
+            self.tries -= parts // PARTS
             self.depth += 1
             try:
                 kinds = EQUATIONS if goal.relation == "=" else SIGNS
-                few = 1 if is_long(goal.term) else self.kinds
+                few = 1 if parts > LONG else self.kinds
                 for room in itertools.chain(*kinds[:few]):
-                    if self.leaves_out(room):
+                    if self.leaves_out(room) or (room in CELLS and not self.affords_balls(room, key)):
                         continue
                     for candidate in guard(room(goal, sample)):
                         if self.is_spent():
@@ -140,14 +147,19 @@ class Search:
                             del self.lost[key]
                             self.found[key, goal.exists] = candidate
                             return candidate
+                    if room in CELLS:
+                        self.undecided.add((room, key))
+                        self.tries -= count_cells(room, goal.term)
             finally:
                 self.depth -= 1
         return None
 
+    def affords_balls(self, room: Room, key: Any) -> bool:
+        """Whether balls are new to a goal and take no more than what is left."""
+        return self.balls and (room, key) not in self.undecided and count_cells(room, key[0]) <= self.tries
+
     def leaves_out(self, room: Room) -> bool:
-        """Whether a room is not asked: what it makes has been made already, or rests on many balls."""
-        if room in (signs.by_few_balls, signs.by_many_balls):
-            return not self.balls
+        """Whether a room is not asked, because what it makes has been made already."""
         if room is forms.by_forms:
             return self.rules[-1:] == ["equal"]  # one form of a form is one of the first
         if room in (signs.by_squares, equations.by_equal_squares):
@@ -172,9 +184,9 @@ class Search:
         return True
 
 
-def is_long(term: Any) -> bool:
-    """Whether a term has many parts: algebra may take minutes with it."""
-    return next(itertools.islice(subterms(term), LONG, None), None) is not None
+def count_cells(room: Room, term: Any) -> int:
+    """The tries that a room of balls takes where it fails."""
+    return (200 + CELLS[room]) * sum(1 for _ in subterms(term)) // PARTS_OF_CELLS
 
 
 def guard(candidates: Iterator[Proof]) -> Iterator[Proof]:

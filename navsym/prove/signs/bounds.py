@@ -20,13 +20,13 @@ from navsym.prove.identities.ingredients import OutsideLanguageError
 from navsym.prove.rooms.goals import player
 from navsym.prove.sampling.points import Range, ranges_of, value_at, write_range
 from navsym.prove.sampling.second_look import zeros_of
-from navsym.prove.search import find_proof, rules_of
+from navsym.prove.search import SIGN_ROUNDS, find_proof, rules_of
 from navsym.prove.signs.exact import UNKNOWN, Sign, SignProof, constant_sign
 from navsym.prove.signs.one_variable import survey_signs
 from navsym.prove.signs.products import as_product
 
-#: Processor time for one sign.
-SECONDS = 4.0
+#: Processor time for one sign, a net below the counts of the search.
+SECONDS = 60.0
 BITS = 128
 RELATIONS = {Sign.NONNEGATIVE: ">=", Sign.POSITIVE: ">"}
 
@@ -97,7 +97,7 @@ def prove_term(term: Any, relation: str, limits: Mapping[sp.Symbol, Range], seco
         return {name: read(limit) for name, limit in written.items()}
 
     goal = player.Goal(term, relation, goal_of(player.read_range))
-    proof = find_proof(goal, seconds / 2, balls=False) or find_proof(goal, seconds / 2)
+    proof = find_proof(goal, seconds / 2, SIGN_ROUNDS, balls=False) or find_proof(goal, seconds / 2, SIGN_ROUNDS)
     if proof is None:
         return None
     with precision(BITS):
