@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib.util
+import operator
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from typing import Any
@@ -21,6 +22,7 @@ Term = tuple[Any, ...]
 Proof = dict[str, Any]
 Room = Callable[[Any, list[arb]], Iterator[Proof]]
 
+X: Term = ("symbol", "x")
 SHARES = (fmpq(1, 2), fmpq(1, 7), fmpq(12, 13), fmpq(1, 1000), fmpq(1, 3), fmpq(999, 1000))
 
 
@@ -43,6 +45,25 @@ def load_player() -> Any:
 
 player = load_player()
 player.MOST_EFFORT = 30_000  # what takes longer is no candidate
+MOST_KEPT = 1 << 14
+
+
+def keep_by_identity(function: Callable[[Term], Any]) -> Callable[[Term], Any]:
+    """The function, computed once for each object: a cache by equality walks through all of a term each time."""
+    known: dict[int, tuple[Term, Any]] = {}
+
+    def answer(term: Term) -> Any:
+        if id(term) not in known:
+            if len(known) > MOST_KEPT:
+                known.clear()
+            known[id(term)] = (term, function(term))
+        return known[id(term)][1]
+
+    return answer
+
+
+player.symbols_of = keep_by_identity(player.symbols_of.__wrapped__)
+player.constant_of = keep_by_identity(player.constant_of.__wrapped__)
 
 
 # Terms
@@ -157,12 +178,29 @@ def sample_goal(goal: Any, is_strict: bool = False) -> list[arb]:
         if len(values) == wanted:
             break
         place = {name: player.Jet(inner_point(goal.box[name], k, i)) for i, name in enumerate(names)}
-        if any(not player.value_of(t, place) >= 0 for t in goal.given):
+        if any(not value_at(t, place) >= 0 for t in goal.given):
             continue
-        value = player.value_of(goal.term, place)
+        value = value_at(goal.term, place)
         if value.is_finite() and not (is_strict and is_outside(goal, place)):
             values.append(value)
     return values
+
+
+def value_at(term: Term, place: dict[str, Any]) -> arb:
+    """What the checker's ``value_of`` gives, in a quarter of the time: most parts are sums, products and symbols."""
+    kind = term[0]
+    if kind == "symbol":
+        return place[term[1]].parts[0]
+    if kind == "number":
+        return arb(term[1])
+    if kind in ("+", "*"):
+        values = [value_at(part, place) for part in term[1:]]
+        return functools.reduce(operator.add if kind == "+" else operator.mul, values)
+    if kind in ("sin", "cos", "exp"):
+        return getattr(value_at(term[1], place), kind)()
+    if kind == "^" and term[2][0] == "number":
+        return player.value_of(("^", X, term[2]), {"x": player.Jet(value_at(term[1], place))})
+    return player.value_of(term, place)
 
 
 def is_outside(goal: Any, place: dict[str, Any]) -> bool:
