@@ -31,7 +31,7 @@ EDGES = 6  # absolute values and conditions of a case that are 0 at some points
 FEW = 4  # points at which an exact zero is sought
 PRECISIONS = (64, 512)
 TROUBLE = (*REFUSALS, NavsymError, ArithmeticError, RecursionError)
-QUICK = 0.4  # seconds for a condition that need not be listed
+QUICK = 5.0  # seconds, a net below few tries, for a condition that need not be listed
 
 
 @dataclass(frozen=True, slots=True, eq=False)

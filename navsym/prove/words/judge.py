@@ -17,7 +17,7 @@ from navsym.prove.wording import decimal_ends, expression_text
 from navsym.prove.words.points import draw_sized_points, list_numbers, show_point
 from navsym.prove.words.shares import find_shares
 
-QUICK = 0.4  # seconds for a condition that need not be listed
+QUICK = 5.0  # seconds, a net below few tries, for a condition that need not be listed
 FEW = 8  # points that are enough evidence before a proof is sought
 
 
