@@ -24,9 +24,10 @@ from navsym.language.tree import ZERO, Tree, build_number, build_sum, build_symb
 from navsym.language.tree import replace as replace_parts
 from navsym.prove.grant import IDENTITY, REFUSALS, find_witness, grant, refute_document
 from navsym.prove.rooms.goals import player, simple_point
-from navsym.prove.search import find_proof, rules_of
+from navsym.prove.search import ROUNDS, Rounds, find_proof, rules_of
 
-SECONDS = 4.0
+#: Of the search for one entry.
+TRIES = ROUNDS[:3]
 REAL: list[Any] = [None, None, []]  # the range of a symbol that stands for a part
 LONG = 1_500  # characters of both sides: shared parts are named
 TOGETHER = 40  # long entries that are proved at once
@@ -77,7 +78,7 @@ class Scope:
     rotations: tuple[tuple[str, ...], ...] = ()
 
 
-def decide_entry(code: Tree, expected: Tree, scope: Scope, seconds: float = SECONDS) -> Decision:
+def decide_entry(code: Tree, expected: Tree, scope: Scope, rounds: Rounds = TRIES) -> Decision:
     """Whether the code computes what is expected, at all points of the scope."""
     length = measure(code) + measure(expected)
     if length > LONG:
@@ -96,12 +97,12 @@ def decide_entry(code: Tree, expected: Tree, scope: Scope, seconds: float = SECO
         if refuted is not None:
             return refuted
         if scope.relations:
-            lower = search_proof(write_document(code, expected, scope), scope, seconds)
+            lower = search_proof(write_document(code, expected, scope), scope, rounds)
             if lower.status.holds:
                 return replace(lower, sense="manifold")
         # of a case of a condition that is not read nobody knows whether a point is in it
         why = "" if dark is None else f"in a case of a condition that is not read: {dark.text}"
-        return search_proof(document, scope, seconds, why)
+        return search_proof(document, scope, rounds, why)
     except REFUSALS as refusal:
         return Decision(OPEN, why=f"not granted: {refusal}")
 
@@ -181,13 +182,13 @@ def prove_shared(pairs: Sequence[tuple[Tree, Tree]], scope: Scope) -> dict[tuple
     return done
 
 
-def search_proof(document: Document, scope: Scope, seconds: float, why: str = "") -> Decision:
+def search_proof(document: Document, scope: Scope, rounds: Rounds, why: str = "") -> Decision:
     """What the search for proof trees makes of the statement; ``why`` it is left open otherwise."""
     (case,), box = player.read_statement(document)
     witness = find_witness(case.terms, box) if "given" not in document else find_related(case.terms, box, scope)
     if witness is None:
         return Decision(OPEN, why="no point was found at which both sides have a value")
-    proofs = [find_proof(goal, seconds) for goal in case.goals]
+    proofs = [find_proof(goal, rounds=rounds) for goal in case.goals]
     if None in proofs:
         return Decision(OPEN, why=why or "no proof and no counterexample was found")
     certificate = write_proof(document, witness, proofs)

@@ -15,7 +15,7 @@ from typing import Any
 
 from navsym.audit.decide import (
     REAL,
-    SECONDS,
+    TRIES,
     Decision,
     Scope,
     decide_entry,
@@ -34,10 +34,11 @@ from navsym.language.printer import print_tree
 from navsym.language.tree import Tree, build_number, build_product, build_sum, build_symbol, list_names, negate
 from navsym.language.tree import replace as replace_parts
 from navsym.prove.rooms.goals import player
+from navsym.prove.search import Rounds
 
 SMALL = re.compile(r"(?:^|[.>:])(?:dt|delta_?t)$", re.IGNORECASE)  # how a step of time is spelled
 BRIEF = 4_000  # characters of an entry of which weaker senses are tried though nobody admits them
-SHORT = 1.0  # seconds for such a one
+SHORT = TRIES[:2]  # the search for such a one
 MOST_PAIRS = 400
 MOST_STATES = 24
 MOST_ORDERS = 8
@@ -101,7 +102,7 @@ class Table:
             self.readings[sense] = [*READERS[sense](self)]
         return self.readings[sense]
 
-    def decide(self, reading: Reading, seconds: float) -> Decision:
+    def decide(self, reading: Reading, rounds: Rounds) -> Decision:
         """The verdict on a reading: REFUTED where one pair is, PROVED where all are."""
         if reading in self.decided:
             return self.decided[reading]
@@ -112,7 +113,7 @@ class Table:
             near = tuple(r for r in self.scope.relations if used & {*list_names(r)} and not reading.order)
             scope = replace(self.scope, ranges=own, relations=near, order=reading.order)
             try:
-                answer = decide_entry(code, expected, scope, seconds)
+                answer = decide_entry(code, expected, scope, rounds)
             except NavsymError as error:
                 answer = Decision(OPEN, why=error.message)
             if not answer.status.holds:
@@ -177,7 +178,7 @@ def admit(table: Table, at: int, exact: Decision, senses: Sequence[str]) -> Deci
     """
     undecided = list[str]()
     for sense in sorted(senses, key=SENSES.index):
-        found = hold(table, at, sense, SECONDS)
+        found = hold(table, at, sense, TRIES)
         if found is not None and found.status.holds:
             return replace(found, sense=sense)
         if found is None or found.status == OPEN:
@@ -187,14 +188,14 @@ def admit(table: Table, at: int, exact: Decision, senses: Sequence[str]) -> Deci
     return exact
 
 
-def hold(table: Table, at: int, sense: str, seconds: float) -> Decision | None:
+def hold(table: Table, at: int, sense: str, rounds: Rounds) -> Decision | None:
     """Whether an entry holds in a sense: by one of its readings; None where it cannot be asked."""
     readings = [r for r in table.list_readings(sense) if r is None or at in r.places]
     if not readings or not is_read(table.entries[at]):
         return None
     worst: Status = REFUTED
     for reading in readings:
-        found = table.decide(reading, seconds) if reading is not None else Decision(OPEN)
+        found = table.decide(reading, rounds) if reading is not None else Decision(OPEN)
         if found.status.holds:
             return found
         worst = OPEN if found.status == OPEN else worst

@@ -20,6 +20,7 @@ from navsym.prove.relations import cofactors
 from navsym.prove.rooms import equations, forms, quadrics, signs
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Room, fails, player, sample_goal, subterms
 
+Rounds = Sequence[tuple[int, int, int]]
 ROOMS: dict[str, Room] = {
     name: room for module in (cofactors, equations, forms, quadrics, signs) for name, room in vars(module).items()
 }
@@ -99,7 +100,7 @@ class Search:
         for proof, goal in zip(player.read_list(proofs, lambda entry: entry, len(goals)), goals, strict=True):
             self.prove(proof, goal)
 
-    def go_round(self, ask: Callable[[], Any], rounds: Sequence[tuple[int, int, int]]) -> Any:
+    def go_round(self, ask: Callable[[], Any], rounds: Rounds) -> Any:
         """What the player answers, which fills its holes by this search; None where no round has an answer."""
         before = (ctx.prec, ctx.cap)
         ctx.prec = 128
@@ -198,7 +199,7 @@ def guard(candidates: Iterator[Proof]) -> Iterator[Proof]:
 
 
 def find_proof(
-    goal: Any, seconds: float = SECONDS, rounds: Sequence[tuple[int, int, int]] = ROUNDS, balls: bool = True
+    goal: Any, seconds: float = SECONDS, rounds: Rounds = ROUNDS, balls: bool = True
 ) -> Proof | None:
     """A proof of a goal of the checker as plain data, or None; it is still to be granted.
 
