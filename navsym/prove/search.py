@@ -55,8 +55,8 @@ SIGNS = (
 #: The time is a net below.
 ROUNDS = ((8, 200, 1), (8, 300, 2), (8, 400, 3), (12, 1200, 3))
 SECONDS = 30.0
-#: For signs: fewer rules, of all kinds.
-SIGN_ROUNDS = ((8, 200, 1), (8, 400, 3))
+#: Fewer: for signs, and for conditions that need not be listed where they are easy.
+SIGN_ROUNDS, EASY = ((8, 200, 1), (8, 400, 3)), ((6, 60, 2),)
 #: Parts of a term for which only cheap rooms are asked; parts of a goal that count as one more try, and parts of all
 #: cells when balls fail: each takes about as long as a rule on a short term.
 LONG, PARTS, PARTS_OF_CELLS = 600, 40, 2000
@@ -198,9 +198,7 @@ def guard(candidates: Iterator[Proof]) -> Iterator[Proof]:
         return
 
 
-def find_proof(
-    goal: Any, seconds: float = SECONDS, rounds: Rounds = ROUNDS, balls: bool = True
-) -> Proof | None:
+def find_proof(goal: Any, seconds: float = SECONDS, rounds: Rounds = ROUNDS, balls: bool = True) -> Proof | None:
     """A proof of a goal of the checker as plain data, or None; it is still to be granted.
 
     balls : whether boxes may be divided into cells
@@ -215,10 +213,10 @@ def find_filled(check: Callable[[], Any], seconds: float) -> Any:
 
 
 def plain(proof: Any) -> Any:
-    """The same without the classes of holes."""
+    """The same without the classes of holes; of signs, those that were asked for."""
     if isinstance(proof, dict):
         return {key: plain(value) for key, value in proof.items()}
-    return [plain(value) for value in proof] if isinstance(proof, list) else proof
+    return [plain(value) for value in getattr(proof, "noted", proof)] if isinstance(proof, list) else proof
 
 
 def rules_of(proof: Any) -> set[str]:

@@ -10,6 +10,7 @@ import sympy as sp
 from navsym.claims import PROVED, Equation
 from navsym.prove.identities.numbers import is_algebraic_zero, is_zero, separation_bits
 from navsym.prove.ladder import decide
+from navsym.prove.search import EASY
 from navsym.prove.signs.bounds import Sign, prove_sign
 
 x, y, z = sp.symbols("x y z", real=True)
@@ -19,7 +20,7 @@ HAIR = sp.Rational(1, 10**40)
 
 
 def sign_of(expression, box=None):
-    signs = (prove_sign(expression, box or {}, sign, seconds=0.5).sign for sign in (Sign.POSITIVE, Sign.NONNEGATIVE))
+    signs = (prove_sign(expression, box or {}, sign, rounds=EASY).sign for sign in (Sign.POSITIVE, Sign.NONNEGATIVE))
     return next(filter(None, signs), Sign.UNKNOWN)
 
 
@@ -76,7 +77,7 @@ def test_what_vanishes_somewhere_is_not_positive(expression, box):
     ],
 )
 def test_a_false_sign_is_not_proved(false):
-    assert prove_sign(false, {}, seconds=1.0).sign == Sign.UNKNOWN
+    assert prove_sign(false, {}).sign == Sign.UNKNOWN
 
 
 def random_polynomial(source, symbols):

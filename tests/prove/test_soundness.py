@@ -17,6 +17,7 @@ from navsym.core.balls import UnsupportedError
 from navsym.core.errors import DomainError
 from navsym.prove.claimfile import claims_from, decide_claims
 from navsym.prove.ladder import decide
+from navsym.prove.search import EASY
 from navsym.prove.signs.bounds import Sign, prove_sign
 
 x = sp.Symbol("x", real=True)
@@ -72,7 +73,7 @@ def attack(seed: int, rounds: int) -> list[str]:
         if not usable(expression):
             continue
         box = {x: (-1, 2), T: (0, 3)} if source.random() < 0.5 else {x: (0, 4), T: (1, 2)}
-        proof = prove_sign(expression, box, Sign.NONNEGATIVE, seconds=0.4)
+        proof = prove_sign(expression, box, Sign.NONNEGATIVE, rounds=EASY)
         if proof.sign == Sign.UNKNOWN:
             continue
         least = least_on_grid(expression, box, 60)

@@ -16,7 +16,7 @@ from navsym.prove.calculus import candidates
 from navsym.prove.calculus.candidates import Signs, list_candidates
 from navsym.prove.grant import BITS, REFUSALS, Document
 from navsym.prove.rooms.goals import Hole, player, values_of
-from navsym.prove.search import find_filled
+from navsym.prove.search import find_filled, plain
 
 SECONDS = 8.0
 SHARE = 4.0  # seconds for one candidate
@@ -78,16 +78,7 @@ def play(make: Callable[[], Any], question: Any, goal: Any, seconds: float) -> t
         return player.ANSWERS[question.kind](tried[-1], question, goal)
 
     value = find_filled(check, seconds)
-    return None if value is None else (finish(tried[-1]), value)
-
-
-def finish(entry: Any) -> Any:
-    """A candidate as plain data."""
-    if isinstance(entry, dict):
-        return {key: finish(value) for key, value in entry.items()}
-    if isinstance(entry, list):
-        return [finish(value) for value in (entry.noted if isinstance(entry, Signs) else entry)]
-    return entry
+    return None if value is None else (plain(tried[-1]), value)
 
 
 def read_with_answers(document: Document, seconds: float = SECONDS, point: Mapping[str, Any] | None = None) -> Any:

@@ -22,7 +22,7 @@ from navsym.prove.calculus.answers import MOST_POINTS, SECONDS, read_with_answer
 from navsym.prove.grant import BITS, IDENTITY, REFUSALS, Document, grant, refute_document, withdraw, write_point
 from navsym.prove.relations.points import Rows, draw_corner_points, draw_special_points
 from navsym.prove.rooms.goals import player, subterms, to_sympy, write_term
-from navsym.prove.search import find_proof, rules_of
+from navsym.prove.search import EASY, find_proof, rules_of
 from navsym.prove.wording import decimal_ends, expression_text
 from navsym.prove.words.judge import decide_words
 
@@ -31,7 +31,6 @@ EDGES = 6  # absolute values and conditions of a case that are 0 at some points
 FEW = 4  # points at which an exact zero is sought
 PRECISIONS = (64, 512)
 TROUBLE = (*REFUSALS, NavsymError, ArithmeticError, RecursionError)
-QUICK = 5.0  # seconds, a net below few tries, for a condition that need not be listed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -243,7 +242,7 @@ def list_assumptions(claim: TextClaim, cases: Sequence[Any]) -> Iterator[str]:
             continue
         own = goal._replace(term=term, relation=relation, exists=())
         ways = (own._replace(zeros=()), own) if own.zeros else (own,)
-        if all(find_proof(way, QUICK, ((6, 60, 2),)) is None for way in ways):
+        if all(find_proof(way, rounds=EASY) is None for way in ways):
             yield f"{claim.show(write_condition(term))} {relation} 0"
 
 

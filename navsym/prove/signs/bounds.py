@@ -20,18 +20,18 @@ from navsym.prove.identities.ingredients import OutsideLanguageError
 from navsym.prove.rooms.goals import player
 from navsym.prove.sampling.points import Range, ranges_of, value_at, write_range
 from navsym.prove.sampling.second_look import zeros_of
-from navsym.prove.search import SIGN_ROUNDS, find_proof, rules_of
+from navsym.prove.search import SIGN_ROUNDS, Rounds, find_proof, rules_of
 from navsym.prove.signs.exact import UNKNOWN, Sign, SignProof, constant_sign
 from navsym.prove.signs.one_variable import survey_signs
 from navsym.prove.signs.products import as_product
 
-#: Processor time for one sign, a net below the counts of the search.
-SECONDS = 60.0
 BITS = 128
 RELATIONS = {Sign.NONNEGATIVE: ">=", Sign.POSITIVE: ">"}
 
 
-def prove_sign(expression: sp.Expr, box: Box, wanted: Sign = Sign.NONNEGATIVE, seconds: float = SECONDS) -> SignProof:
+def prove_sign(
+    expression: sp.Expr, box: Box, wanted: Sign = Sign.NONNEGATIVE, rounds: Rounds = SIGN_ROUNDS
+) -> SignProof:
     """Prove that the expression has a value everywhere on the box and is nonnegative (or positive), or return unknown.
 
     A product form of it is tried as well.
@@ -47,9 +47,9 @@ def prove_sign(expression: sp.Expr, box: Box, wanted: Sign = Sign.NONNEGATIVE, s
         if is_known_to_fail(expression, limits, wanted):
             return UNKNOWN
         forms = dict.fromkeys(form for form in (expression, as_product(expression)) if form is not None)
-        exact = prove_conditions(expression, limits, seconds)
+        exact = prove_conditions(expression, limits, rounds)
         for form in forms if exact is not None else ():
-            found = prove_goal(form, RELATIONS[wanted], limits, seconds)
+            found = prove_term(player.parse(to_text(form)), RELATIONS[wanted], limits, rounds)
             if found is not None:
                 return SignProof(wanted, f"{form} {RELATIONS[wanted]} 0", exact=found and bool(exact))
     except (NavsymError, UnsupportedError, OutsideLanguageError, checker.Refused, player.Refused, RecursionError):
@@ -73,31 +73,26 @@ def is_known_to_fail(expression: sp.Expr, limits: Mapping[sp.Symbol, Range], wan
     return bool(found.below) or any(not (limit.nonzero and zero.at == 0) for zero in found.zeros)
 
 
-def prove_conditions(expression: sp.Expr, limits: Mapping[sp.Symbol, Range], seconds: float) -> bool | None:
+def prove_conditions(expression: sp.Expr, limits: Mapping[sp.Symbol, Range], rounds: Rounds) -> bool | None:
     """Whether exact proofs show that the expression has a value everywhere; None where that is not proved."""
     exact = True
     for relation, term in player.conditions(player.parse(to_text(expression))):
-        found = prove_term(term, relation, limits, seconds)
+        found = prove_term(term, relation, limits, rounds)
         if found is None:
             return None
         exact = exact and found
     return exact
 
 
-def prove_goal(expression: sp.Expr, relation: str, limits: Mapping[sp.Symbol, Range], seconds: float) -> bool | None:
-    """Whether a proof of ``expression relation 0`` where it has a value is exact; None where there is none."""
-    return prove_term(player.parse(to_text(expression)), relation, limits, seconds)
-
-
-def prove_term(term: Any, relation: str, limits: Mapping[sp.Symbol, Range], seconds: float) -> bool | None:
-    """The same for a term of the checker, whose own rules have the last word."""
+def prove_term(term: Any, relation: str, limits: Mapping[sp.Symbol, Range], rounds: Rounds) -> bool | None:
+    """Whether a proof of ``term relation 0`` that the checker grants is exact; None where there is none."""
     written = {symbol.name: write_range(limit) for symbol, limit in limits.items()}
 
     def goal_of(read: Callable[[Any], Any]) -> dict[str, Any]:
         return {name: read(limit) for name, limit in written.items()}
 
     goal = player.Goal(term, relation, goal_of(player.read_range))
-    proof = find_proof(goal, seconds / 2, SIGN_ROUNDS, balls=False) or find_proof(goal, seconds / 2, SIGN_ROUNDS)
+    proof = find_proof(goal, rounds=rounds, balls=False) or find_proof(goal, rounds=rounds)
     if proof is None:
         return None
     with precision(BITS):

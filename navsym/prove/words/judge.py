@@ -12,12 +12,11 @@ from flint import arb
 from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
 from navsym.prove.grant import REFUSALS, Document, grant, withdraw
 from navsym.prove.rooms.goals import player, to_sympy
-from navsym.prove.search import find_proof
+from navsym.prove.search import EASY, find_proof
 from navsym.prove.wording import decimal_ends, expression_text
 from navsym.prove.words.points import draw_sized_points, list_numbers, show_point
 from navsym.prove.words.shares import find_shares
 
-QUICK = 5.0  # seconds, a net below few tries, for a condition that need not be listed
 FEW = 8  # points that are enough evidence before a proof is sought
 
 
@@ -62,7 +61,7 @@ def list_conditions(algebra: Any) -> Iterator[str]:
     for relation, term in player.set_union(map(player.conditions, algebra.terms)):
         if player.has_trace(term) or not player.symbols_of(term) or algebra.sign_of(term) in (">", relation):
             continue
-        if find_proof(player.Goal(term, relation, algebra.box), QUICK, ((6, 60, 2),)) is None:
+        if find_proof(player.Goal(term, relation, algebra.box), rounds=EASY) is None:
             yield f"{expression_text(to_sympy(term))} {relation} 0"
 
 
