@@ -60,7 +60,7 @@ SIGN_ROUNDS, EASY = ((8, 200, 1), (8, 400, 3)), ((6, 60, 2),)
 #: Parts of a term for which only cheap rooms are asked; parts of a goal that count as one more try, and parts of all
 #: cells when balls fail: each takes about as long as a rule on a short term.
 LONG, PARTS, PARTS_OF_CELLS = 600, 40, 2000
-CELLS = {signs.by_few_balls: signs.CELLS[0], signs.by_many_balls: signs.CELLS[1]}
+BALLS = (signs.by_few_balls, signs.by_many_balls)
 
 REFUSALS = (player.Refused, ArithmeticError, ValueError, KeyError, TypeError, RecursionError)
 check_rule = player.prove
@@ -138,7 +138,7 @@ class Search:
                 kinds = EQUATIONS if goal.relation == "=" else SIGNS
                 few = 1 if parts > LONG else self.kinds
                 for room in itertools.chain(*kinds[:few]):
-                    if self.leaves_out(room) or (room in CELLS and not self.affords_balls(room, key)):
+                    if self.leaves_out(room) or (room in BALLS and not self.affords_balls(room, key)):
                         continue
                     for candidate in guard(room(goal, sample)):
                         if self.is_spent():
@@ -148,7 +148,7 @@ class Search:
                             del self.lost[key]
                             self.found[key, goal.exists] = candidate
                             return candidate
-                    if room in CELLS:
+                    if room in BALLS:
                         self.undecided.add((room, key))
                         self.tries -= count_cells(room, goal.term)
             finally:
@@ -185,9 +185,9 @@ class Search:
         return True
 
 
-def count_cells(room: Room, term: Any) -> int:
+def count_cells(room: Any, term: Any) -> int:
     """The tries that a room of balls takes where it fails."""
-    return (200 + CELLS[room]) * sum(1 for _ in subterms(term)) // PARTS_OF_CELLS
+    return (200 + room.keywords["cells"]) * sum(1 for _ in subterms(term)) // PARTS_OF_CELLS
 
 
 def guard(candidates: Iterator[Proof]) -> Iterator[Proof]:

@@ -54,10 +54,9 @@ def test_a_search_in_vain_ends_by_its_counts_when_the_clock_stands_still(monkeyp
 def test_balls_that_do_not_suffice_are_not_tried_again_and_many_of_them_only_where_tries_are_left(monkeypatch):
     goal = player.Goal(player.parse("x**2 - 2*x + 1 + exp(-40)"), ">=", {"x": player.read_range(["0", "2", []])})
     tried = []
-    balls = dict(search.CELLS)
-    monkeypatch.setattr(search, "SIGNS", (tuple(balls), (), ()))
+    monkeypatch.setattr(search, "SIGNS", (search.BALLS, (), ()))
     monkeypatch.setattr(search.Search, "plays", lambda self, *given: tried.append(given[0]["cells"]))
     assert search.find_proof(goal, rounds=((8, 200, 1), (8, 400, 1))) is None
-    assert len(tried) == len(set(tried)) == len(balls)
+    assert len(tried) == len(set(tried)) == len(search.BALLS)
     tried.clear()
     assert search.find_proof(goal, rounds=((8, 10, 1),)) is None and tried == [signs.CELLS[0] // 4]

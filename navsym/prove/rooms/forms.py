@@ -14,7 +14,7 @@ from sympy.simplify.fu import TR8
 from navsym.core.errors import NavsymError
 from navsym.language.expression import symbol, to_text
 from navsym.prove.rooms.equations import rewrite_atom
-from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, factor, player, to_sympy, write_term
+from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, abstract, factor, player, to_sympy, write_term
 from navsym.prove.signs.products import as_product
 
 #: Digits of a number up to which polynomials are factored.
@@ -101,9 +101,8 @@ def by_substitution(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     new = symbol(name)
     for make in (by_exponentials, by_root, by_tangent, by_lonely_parts):
         for term, form, low, dense in make(expression, u):
-            body: Proof = {"rule": "abstract", "terms": {name: to_text(term)}, "ranges": {name: [low, None, []]}}
-            body |= {"to": to_text(factor(form.xreplace({u: new}))), "inside": Holes(), "defined": Holes()}
-            body |= {"proof": Hole()}
+            to = to_text(factor(form.xreplace({u: new})))
+            body = abstract({name: to_text(term)}, {name: [low, None, []]}, to)
             if dense is None:
                 yield body
             elif goal.relation == ">=":
@@ -197,8 +196,7 @@ def by_roots_of_symbols(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         terms[name], ranges[name] = to_text(sp.root(v, q)), ["0", None, ["open-low"] if is_open else []]
         new[v] = sp.Symbol(name, positive=True)
     form = expression.xreplace({v: u**q for v, u in new.items()}).xreplace({u: symbol(u.name) for u in new.values()})
-    proof: Proof = {"rule": "abstract", "terms": terms, "ranges": ranges, "to": to_text(form)}
-    proof |= {"inside": Holes(), "defined": Holes(), "proof": Hole()}
+    proof = abstract(terms, ranges, to_text(form))
     for p in roots:  # of products: by factors
         apart = sp.Mul(
             *(sp.Pow(v, n * p.exp, evaluate=False) for v, n in p.base.as_powers_dict().items()), evaluate=False
@@ -224,8 +222,7 @@ def by_known_signs(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         letter = ("symbol", new)
         form = player.replace(form, v, player.negate(letter) if beside == [False, True] else letter)
     if terms:
-        proof: Proof = {"rule": "abstract", "terms": terms, "ranges": ranges, "to": write_term(form)}
-        yield proof | {"inside": Holes(), "defined": Holes(), "proof": Hole()}
+        yield abstract(terms, ranges, write_term(form))
 
 
 def by_hypothesis(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -240,5 +237,4 @@ def by_hypothesis(goal: Any, sample: list[arb]) -> Iterator[Proof]:
                 continue
             u = symbol(name)
             form = to_text(to_sympy(goal.term).xreplace({v: (u - rest) / c}))
-            proof: Proof = {"rule": "abstract", "terms": {name: write_term(given)}, "ranges": {name: ["0", None, []]}}
-            yield proof | {"to": form, "inside": Holes(), "defined": Holes(), "proof": Hole()}
+            yield abstract({name: write_term(given)}, {name: ["0", None, []]}, form)

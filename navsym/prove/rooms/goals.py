@@ -34,6 +34,12 @@ class Holes(list[Any]):
     """Proofs of premises whose number is not known yet."""
 
 
+def abstract(terms: dict[str, str], ranges: dict[str, Any], to: str) -> Proof:
+    """The rule that puts new numbers, by name, in the place of terms."""
+    holes: Proof = {"inside": Holes(), "defined": Holes(), "proof": Hole()}
+    return {"rule": "abstract", "terms": terms, "ranges": ranges, "to": to} | holes
+
+
 def load_player() -> Any:
     """A second checker, which fills holes where the first would refuse them; it grants nothing."""
     spec = importlib.util.spec_from_file_location("navsym.prove.player", checker.__file__)
@@ -178,15 +184,15 @@ def sample_goal(goal: Any, is_strict: bool = False) -> list[arb]:
         if len(values) == wanted:
             break
         place = {name: player.Jet(inner_point(goal.box[name], k, i)) for i, name in enumerate(names)}
-        if any(not value_at(t, place) >= 0 for t in goal.given):
+        if any(not ball_of(t, place) >= 0 for t in goal.given):
             continue
-        value = value_at(goal.term, place)
+        value = ball_of(goal.term, place)
         if value.is_finite() and not (is_strict and is_outside(goal, place)):
             values.append(value)
     return values
 
 
-def value_at(term: Term, place: dict[str, Any]) -> arb:
+def ball_of(term: Term, place: dict[str, Any]) -> arb:
     """What the checker's ``value_of`` gives, in a quarter of the time: most parts are sums, products and symbols."""
     kind = term[0]
     if kind == "symbol":
@@ -194,12 +200,12 @@ def value_at(term: Term, place: dict[str, Any]) -> arb:
     if kind == "number":
         return arb(term[1])
     if kind in ("+", "*"):
-        values = [value_at(part, place) for part in term[1:]]
+        values = [ball_of(part, place) for part in term[1:]]
         return functools.reduce(operator.add if kind == "+" else operator.mul, values)
     if kind in ("sin", "cos", "exp"):
-        return getattr(value_at(term[1], place), kind)()
+        return getattr(ball_of(term[1], place), kind)()
     if kind == "^" and term[2][0] == "number":
-        return player.value_of(("^", X, term[2]), {"x": player.Jet(value_at(term[1], place))})
+        return player.value_of(("^", X, term[2]), {"x": player.Jet(ball_of(term[1], place))})
     return player.value_of(term, place)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Iterator
 from fractions import Fraction
@@ -161,22 +162,15 @@ def by_angle(goal: Any, wave: Term) -> Iterator[Proof]:
             yield {"rule": "angle", "turn": k, "share": str(abs(share)), "proofs": Holes()}
 
 
-def by_few_balls(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """A few cells of a bounded box."""
-    yield from by_balls(goal, CELLS[0])
-
-
-def by_many_balls(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """Many cells of a bounded box."""
-    yield from by_balls(goal, CELLS[1])
-
-
-def by_balls(goal: Any, cells: int) -> Iterator[Proof]:
+def by_balls(goal: Any, sample: list[arb], cells: int) -> Iterator[Proof]:
     """Cells of a box; symbols without ends have to stand in functions that are bounded."""
     names = player.symbols_of(goal.term).union(*map(player.symbols_of, goal.given))
     far = {n for n in names if goal.box[n].low is None or goal.box[n].high is None}
     if names and (not far or any(p[0] in player.SPANS and player.symbols_of(p) & far for p in subterms(goal.term))):
         yield {"rule": "balls", "bits": 64 if cells == CELLS[0] else 128, "cells": cells // 4}
+
+
+by_few_balls, by_many_balls = (functools.partial(by_balls, cells=cells) for cells in CELLS)
 
 
 def by_product(goal: Any, sample: list[arb]) -> Iterator[Proof]:
