@@ -138,7 +138,7 @@ class Search:
                 kinds = EQUATIONS if goal.relation == "=" else SIGNS
                 few = 1 if parts > LONG else self.kinds
                 for room in itertools.chain(*kinds[:few]):
-                    if self.leaves_out(room) or (room in BALLS and not self.affords_balls(room, key)):
+                    if self.leaves_out(room) or (room in BALLS and not self.affords_balls(room, key, goal)):
                         continue
                     for candidate in guard(room(goal, sample)):
                         if self.is_spent():
@@ -150,14 +150,14 @@ class Search:
                             return candidate
                     if room in BALLS:
                         self.undecided.add((room, key))
-                        self.tries -= count_cells(room, goal.term)
+                        self.tries -= count_cells(room, goal)
             finally:
                 self.depth -= 1
         return None
 
-    def affords_balls(self, room: Room, key: Any) -> bool:
+    def affords_balls(self, room: Room, key: Any, goal: Any) -> bool:
         """Whether balls are new to a goal and take no more than what is left."""
-        return self.balls and (room, key) not in self.undecided and count_cells(room, key[0]) <= self.tries
+        return self.balls and (room, key) not in self.undecided and count_cells(room, goal) <= self.tries
 
     def leaves_out(self, room: Room) -> bool:
         """Whether a room is not asked, because what it makes has been made already."""
@@ -185,9 +185,10 @@ class Search:
         return True
 
 
-def count_cells(room: Any, term: Any) -> int:
-    """The tries that a room of balls takes where it fails."""
-    return (200 + room.keywords["cells"]) * sum(1 for _ in subterms(term)) // PARTS_OF_CELLS
+def count_cells(room: Any, goal: Any) -> int:
+    """The tries that a room of balls takes where it fails; a box without closed sides is one cell."""
+    closed = any(None not in goal.box[name][:2] for name in player.symbols_of(goal.term))
+    return (200 + room.keywords["cells"] if closed else 1) * sum(1 for _ in subterms(goal.term)) // PARTS_OF_CELLS
 
 
 def guard(candidates: Iterator[Proof]) -> Iterator[Proof]:
