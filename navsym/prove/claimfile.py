@@ -38,13 +38,12 @@ from navsym.language.schema import (
 )
 from navsym.language.shapes import Shape
 from navsym.language.tomlfile import read_toml
-from navsym.prove.assumptions import is_nonzero, is_positive
+from navsym.prove.assumptions import is_nonnegative, is_nonzero, is_positive
 from navsym.prove.grant import write_statements
 from navsym.prove.ladder import decide
 from navsym.prove.relations.judge import TextClaim, decide_text
 from navsym.prove.relations.reading import is_text_claim, limit_scalar, read_shapes, read_text_claim
 from navsym.prove.sampling.points import ranges_of, write_range
-from navsym.prove.signs.bounds import Sign, prove_sign
 from navsym.prove.wording import expression_text, scope_of
 
 RELATIONS = ("=", "!=", "<", "<=", ">", ">=")
@@ -384,8 +383,7 @@ def scope_of_text(claim: FileClaim) -> str:
 def text_conditions(claim: FileClaim) -> list[str]:
     """What the text divides by and takes roots and logarithms of, where the algebra has cancelled it since."""
     found = [f"{expression_text(d)} != 0" for d in claim.divisors if not is_nonzero(d, claim.box)]
-    at_least = (r for r in claim.radicands if not prove_sign(r, claim.box).at_least(Sign.NONNEGATIVE))
-    found += [f"{expression_text(r)} >= 0" for r in at_least]
+    found += [f"{expression_text(r)} >= 0" for r in claim.radicands if not is_nonnegative(r, claim.box)]
     return found + [f"{expression_text(a)} > 0" for a in claim.arguments if not is_positive(a, claim.box)]
 
 

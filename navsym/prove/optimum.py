@@ -18,7 +18,7 @@ import sympy as sp
 
 from navsym.claims.statement import Box, Equation, Optimum
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, Status, Verdict
-from navsym.prove.assumptions import conditions_as_written, remaining_assumptions
+from navsym.prove.assumptions import conditions_as_written, is_nonnegative, remaining_assumptions
 from navsym.prove.equations import decide_equation, weakest_verdict
 from navsym.prove.inequalities import decide_difference
 from navsym.prove.signs.bounds import Sign, SignProof, prove_sign
@@ -159,7 +159,4 @@ def decide_values(statement: Optimum) -> Verdict:
 def prove_modulus(weight: sp.Expr, box: Box) -> sp.Expr | None:
     """|weight| with its sign proved on the whole box, or None."""
     weight = sp.sympify(weight, strict=True)
-    for value in (weight, -weight):
-        if prove_sign(value, box).at_least(Sign.NONNEGATIVE):
-            return value
-    return None
+    return next((value for value in (weight, -weight) if is_nonnegative(value, box)), None)

@@ -219,9 +219,7 @@ def by_quadratic(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     for v in sorted(expression.free_symbols, key=str):
         if expression.is_polynomial(v) and sp.degree(expression, v) == 2:
             texts = [to_text(part) for part in sp.Poly(expression, v).all_coeffs()]
-            yield {"rule": "quadratic", "symbol": v.name, "coefficients": texts} | {
-                "defined": Holes(), "proofs": Holes()
-            }  # fmt: skip
+            yield {"rule": "quadratic", "symbol": v.name, "coefficients": texts, "defined": Holes(), "proofs": Holes()}
 
 
 def by_corners(goal: Any, sample: list[arb]) -> Iterator[Proof]:
