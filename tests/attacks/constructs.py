@@ -50,7 +50,8 @@ def make_construct(number: int, seed: int) -> tuple[str, Construct]:
     names = sorted(SCHEMES)
     name = names[number % len(names)]
     statement = SCHEMES[name](random.Random(f"constructs {seed} {number}"))
-    words = {"given", "order", *re.findall(r"[A-Za-z]\w*", statement.text), *statement.given.get("given", [""])[0]}
+    texts = " ".join([statement.text, *statement.given.get("given", [])])
+    words = {"given", "order", "tolerance", *re.findall(r"[A-Za-z]\w*", texts)}
     used = {key: value for key, value in statement.given.items() if key in words}
     return name, replace(statement, given=used)
 

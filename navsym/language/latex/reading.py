@@ -27,7 +27,9 @@ from navsym.language.tomlfile import toml_text
 SIZE = 4_000_000  # bytes of a document
 FORMULAS = 20_000
 #: A string with one of these holds formulas among other text.
-DELIMITED = re.compile(r"(?<!\\)\$|\\\[|\\\(|\\begin\{(?:equation|align|gather|eqnarray|multline|displaymath|flalign)")
+DELIMITED = re.compile(
+    r"(?<!\\)\$|\\\[|\\\(|\\begin\{(?:equation|align|gather|eqnarray|multline|displaymath|flalign|split)"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -357,6 +359,8 @@ def read_sides(
         got = f"{names} undeclared"
         run = re.fullmatch("[A-Za-z]{2,}", str(first.args[1]))
         question = f"declare it: is {first.args[0]} a product or a name?" if run else "declare it"
+        if first.args[0] == "I" and first.args[1] != "I":
+            question = f"declare it, or write eye = '{first.args[1]}' in [latex] where it is the unit matrix"
         raise Refusal(side.start + first.at, "declared names", got, question)
     both = [name for name, bold in faces.items() if len(bold) > 1]
     if both:
@@ -374,6 +378,10 @@ def read_sides(
         with shifted(side.start):
             terms.append(explain(part, notation, as_column))
     first_term, second_term = fit_sides(terms[0], terms[1], relation.right.start)
+    if "eye(?)" in first_term.text + second_term.text:
+        raise Refusal(
+            relation.left.start, "a unit matrix whose size is known", "one without", "write its size below it"
+        )
     if (first_term.shape or second_term.shape) and relation.sign not in ("=", "!="):
         raise Refusal(relation.right.start, "scalars on both sides of an order", "vectors", "compare entries")
     if order is not None and relation.sign != "=":
