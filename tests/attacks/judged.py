@@ -11,6 +11,7 @@ import random
 import sys
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from itertools import pairwise
 
 import mpmath
 
@@ -43,15 +44,17 @@ def places_of(breaks: set[Fraction], low: Fraction, high: Fraction) -> Iterator[
     """Ends, breaks, and three places between any two neighbours: they settle a function that is linear in between."""
     known = sorted({low, high, *(b for b in breaks if low < b < high)})
     yield from known
-    for a, b in zip(known, known[1:], strict=False):
+    for a, b in pairwise(known):
         yield from ((a + b) / 2, a + (b - a) / 10**9, b - (b - a) / 10**9)
 
 
 @judged
 def steps(rng: random.Random) -> Construct:
     """Weighted whole parts of linear functions, and a linear term, on a range or for all x where they are periodic."""
-    rows = [(rng.choice((1, 1, -1, 2)), Fraction(rng.choice((1, -1, 2, -2, 3)), rng.choice((1, 1, 2))), fraction(rng, 4))
-            for _ in range(rng.randint(1, 3))]  # fmt: skip
+    rows = [
+        (rng.choice((1, 1, -1, 2)), Fraction(rng.choice((1, -1, 2, -2, 3)), rng.choice((1, 1, 2))), fraction(rng, 4))
+        for _ in range(rng.randint(1, 3))
+    ]
     everywhere = rng.random() < 0.5
     slope = -sum((c * a for c, a, _ in rows), Fraction(0)) if everywhere else fraction(rng, 2)
     low = Fraction(0) if everywhere else fraction(rng, 5)
@@ -74,15 +77,25 @@ def steps(rng: random.Random) -> Construct:
 def pairs_of_steps(rng: random.Random) -> Construct:
     """floor(u) + floor(v) <= floor(u + v) <= floor(u) + floor(v) + 1, and what is stronger or turned round."""
     u, v = rng.sample(("x", "y", "2*x", "x - y", "x + 1/2", "-x", "3*y", "x*y"), 2)
-    text, truth = rng.choice((
-        ("floor({0}) + floor({1}) <= floor({0} + {1})", True), ("floor({0} + {1}) <= floor({0}) + floor({1})", False),
-        ("floor({0} + {1}) <= floor({0}) + floor({1}) + 1", True), ("floor({0}) <= {0}", True),
-        ("floor({0}) > {0} - 1", True), ("floor({0}) >= {0} - 1/2", False), ("floor({0}) + floor(-({0})) >= -1", True),
-        ("floor({0}) + floor(-({0})) <= 0", True), ("floor({0}) + floor(-({0})) >= 0", False),
-        ("floor({0} + 3) = floor({0}) + 3", True), ("floor(2*({0})) = floor({0}) + floor({0} + 1/2)", True),
-        ("floor(2*({0})) = 2*floor({0})", False), ("floor(floor({0})) = floor({0})", True),
-        ("floor(floor({0})/2) = floor(({0})/2)", True), ("floor({0}/3) = floor({0})/3", False),
-    ))  # fmt: skip
+    text, truth = rng.choice(
+        (
+            ("floor({0}) + floor({1}) <= floor({0} + {1})", True),
+            ("floor({0} + {1}) <= floor({0}) + floor({1})", False),
+            ("floor({0} + {1}) <= floor({0}) + floor({1}) + 1", True),
+            ("floor({0}) <= {0}", True),
+            ("floor({0}) > {0} - 1", True),
+            ("floor({0}) >= {0} - 1/2", False),
+            ("floor({0}) + floor(-({0})) >= -1", True),
+            ("floor({0}) + floor(-({0})) <= 0", True),
+            ("floor({0}) + floor(-({0})) >= 0", False),
+            ("floor({0} + 3) = floor({0}) + 3", True),
+            ("floor(2*({0})) = floor({0}) + floor({0} + 1/2)", True),
+            ("floor(2*({0})) = 2*floor({0})", False),
+            ("floor(floor({0})) = floor({0})", True),
+            ("floor(floor({0})/2) = floor(({0})/2)", True),
+            ("floor({0}/3) = floor({0})/3", False),
+        )
+    )
     return Construct(text.format(u, v), truth, {"x": "real", "y": "real"})
 
 
@@ -94,8 +107,11 @@ def pieces(rng: random.Random) -> Construct:
     texts = [f"({a})*x**2 + ({b})*x + ({c})" for a, b, c in rows]
     first, second = rng.choice(("<", "<=")), rng.choice(("<", "<="))
     text = f"where(x {first} {cuts[0]}, {texts[0]}, where(x {second} {cuts[1]}, {texts[1]}, {texts[2]}))"
-    ends = [(low, True, cuts[0], first == "<="), (cuts[0], first == "<", cuts[1], second == "<="),
-            (cuts[1], second == "<", high, True)]  # fmt: skip
+    ends = [
+        (low, True, cuts[0], first == "<="),
+        (cuts[0], first == "<", cuts[1], second == "<="),
+        (cuts[1], second == "<", high, True),
+    ]
     values = []  # value, attained
     for (a, b, c), (lower, closed, upper, shut) in zip(rows, ends, strict=True):
         places = [(Fraction(lower), closed), (Fraction(upper), shut)]
@@ -114,15 +130,18 @@ def pieces(rng: random.Random) -> Construct:
 @judged
 def branches(rng: random.Random) -> Construct:
     """Inverse functions of functions: true on the principal range, and false a hair beyond it."""
-    shape, low, high = rng.choice((
-        ("asin(sin({0})) = {0}", Fraction(-1, 2), Fraction(1, 2)), ("acos(cos({0})) = {0}", Fraction(0), Fraction(1)),
-        ("atan2(sin({0}), cos({0})) = {0}", Fraction(-1), Fraction(1)),
-        ("acos(cos({0})) = abs({0})", Fraction(-1), Fraction(1)),
-        ("2*atan(tan(({0})/2)) = {0}", Fraction(-1), Fraction(1)),
-        ("asin(sin({0})) = pi - ({0})", Fraction(1, 2), Fraction(3, 2)),
-        ("acos(cos({0})) = 2*pi - ({0})", Fraction(1), Fraction(2)),
-        ("acos(sin({0})) = pi/2 - ({0})", Fraction(-1, 2), Fraction(1, 2)),
-    ))  # fmt: skip
+    shape, low, high = rng.choice(
+        (
+            ("asin(sin({0})) = {0}", Fraction(-1, 2), Fraction(1, 2)),
+            ("acos(cos({0})) = {0}", Fraction(0), Fraction(1)),
+            ("atan2(sin({0}), cos({0})) = {0}", Fraction(-1), Fraction(1)),
+            ("acos(cos({0})) = abs({0})", Fraction(-1), Fraction(1)),
+            ("2*atan(tan(({0})/2)) = {0}", Fraction(-1), Fraction(1)),
+            ("asin(sin({0})) = pi - ({0})", Fraction(1, 2), Fraction(3, 2)),
+            ("acos(cos({0})) = 2*pi - ({0})", Fraction(1), Fraction(2)),
+            ("acos(sin({0})) = pi/2 - ({0})", Fraction(-1, 2), Fraction(1, 2)),
+        )
+    )
     beyond = rng.choice((Fraction(0), Fraction(0), *TINY[:2], Fraction(1, 7)))
     end = rng.choice(("low", "high"))
     closed_turn = shape.startswith(("2*atan", "atan2"))  # has no value, or another one, at an end
@@ -142,15 +161,31 @@ def edges(rng: random.Random) -> Construct:
     c = rng.choice((Fraction(0), Fraction(1), Fraction(-2), Fraction(1, 3)))
     u = f"(x - ({c}))"
     before = rng.choice((Fraction(0), Fraction(0), *TINY, Fraction(1)))
-    text, truth = rng.choice((
-        (f"sqrt({u}**2) = {u}", before == 0), (f"abs({u}) = {u}", before == 0), (f"sqrt({u})**2 = {u}", True),
-        (f"log({u}**2) = 2*log({u})", True), (f"log({u}**2) = 2*log(abs({u}))", True), (f"{u}/{u} = 1", True),
-        (f"sqrt({u}**3) = {u}*sqrt({u})", True), (f"exp(log({u})) = {u}", True), (f"abs({u}) = -{u}", False),
-        (f"sqrt({u}**2 + 2*{u} + 1) = {u} + 1", before <= 1), (f"{u}**2 > 0", False), (f"{u} >= 0", before == 0),
-        (f"sqrt({u}**4) = {u}**2", True), (f"({u}**6)**(1/3) = {u}**2", True), (f"({u}**6)**(1/2) = {u}**3", before == 0),
-        (f"1/{u}**2 > 1/10**6", True), (f"sqrt({u}) > 0", False), (f"sqrt({u}) >= 0", True),
-        (f"{u}*abs({u}) = {u}**2", before == 0), (f"max({u}, 0) = {u}", before == 0), (f"1/sqrt({u}) > 0", True),
-    ))  # fmt: skip
+    text, truth = rng.choice(
+        (
+            (f"sqrt({u}**2) = {u}", before == 0),
+            (f"abs({u}) = {u}", before == 0),
+            (f"sqrt({u})**2 = {u}", True),
+            (f"log({u}**2) = 2*log({u})", True),
+            (f"log({u}**2) = 2*log(abs({u}))", True),
+            (f"{u}/{u} = 1", True),
+            (f"sqrt({u}**3) = {u}*sqrt({u})", True),
+            (f"exp(log({u})) = {u}", True),
+            (f"abs({u}) = -{u}", False),
+            (f"sqrt({u}**2 + 2*{u} + 1) = {u} + 1", before <= 1),
+            (f"{u}**2 > 0", False),
+            (f"{u} >= 0", before == 0),
+            (f"sqrt({u}**4) = {u}**2", True),
+            (f"({u}**6)**(1/3) = {u}**2", True),
+            (f"({u}**6)**(1/2) = {u}**3", before == 0),
+            (f"1/{u}**2 > 1/10**6", True),
+            (f"sqrt({u}) > 0", False),
+            (f"sqrt({u}) >= 0", True),
+            (f"{u}*abs({u}) = {u}**2", before == 0),
+            (f"max({u}, 0) = {u}", before == 0),
+            (f"1/sqrt({u}) > 0", True),
+        )
+    )
     return Construct(text, truth, {"x": [str(c - before), str(c + 5)]})
 
 
@@ -160,15 +195,26 @@ def extremes(rng: random.Random) -> Construct:
     """Polynomials and curves whose constants are huge or tiny; what is missing to equality is exactly known."""
     N = 10 ** rng.choice((6, 12, 20, 40))
     d = rng.choice((Fraction(0), Fraction(1, N), -Fraction(1, N), Fraction(1, N**3), -Fraction(1, N**3)))
-    text, truth = rng.choice((
-        (f"x**2 - {2 * N}*x + {N * N} >= {d}", d <= 0), (f"x**2 - {2 * N}*x + {N * N} > {d}", d < 0),
-        (f"sqrt(x**2 + {N * N}) - {N} <= x**2/{2 * N} + ({d})", d >= 0), (f"exp(x/{N}) >= 1 + x/{N} + ({d})", d <= 0),
-        (f"cos(x/{N}) >= 1 - x**2/{2 * N * N} + ({d})", d <= 0), (f"(x + {N})**2 - x**2 - {N * N} = {2 * N}*x + ({d})", d == 0),
-        (f"abs(x - {N}) + abs(x + {N}) >= {2 * N} + ({d})", d <= 0), (f"x/(x**2 + {N * N}) <= 1/{2 * N} + ({d})", d >= 0),
-        (f"x**4/{N} + {N} >= 2*x**2 + ({d})", d <= 0), (f"atan(x) < pi/2 + ({d})", d >= 0), (f"tanh(x) < 1 + ({d})", d >= 0),
-        (f"sin({N}*pi + x) = sin(x) + ({d})", d == 0), (f"x**2/(1 + x**2) < 1 + ({d})", d >= 0), (f"exp(-x**2) > ({d})", d <= 0),
-        (f"sqrt(x**2 + 1/{N}) > abs(x) + ({d})", d <= 0), (f"max(x, 1/{N}) >= 1/{N} + ({d})", d <= 0),
-    ))  # fmt: skip
+    text, truth = rng.choice(
+        (
+            (f"x**2 - {2 * N}*x + {N * N} >= {d}", d <= 0),
+            (f"x**2 - {2 * N}*x + {N * N} > {d}", d < 0),
+            (f"sqrt(x**2 + {N * N}) - {N} <= x**2/{2 * N} + ({d})", d >= 0),
+            (f"exp(x/{N}) >= 1 + x/{N} + ({d})", d <= 0),
+            (f"cos(x/{N}) >= 1 - x**2/{2 * N * N} + ({d})", d <= 0),
+            (f"(x + {N})**2 - x**2 - {N * N} = {2 * N}*x + ({d})", d == 0),
+            (f"abs(x - {N}) + abs(x + {N}) >= {2 * N} + ({d})", d <= 0),
+            (f"x/(x**2 + {N * N}) <= 1/{2 * N} + ({d})", d >= 0),
+            (f"x**4/{N} + {N} >= 2*x**2 + ({d})", d <= 0),
+            (f"atan(x) < pi/2 + ({d})", d >= 0),
+            (f"tanh(x) < 1 + ({d})", d >= 0),
+            (f"sin({N}*pi + x) = sin(x) + ({d})", d == 0),
+            (f"x**2/(1 + x**2) < 1 + ({d})", d >= 0),
+            (f"exp(-x**2) > ({d})", d <= 0),
+            (f"sqrt(x**2 + 1/{N}) > abs(x) + ({d})", d <= 0),
+            (f"max(x, 1/{N}) >= 1/{N} + ({d})", d <= 0),
+        )
+    )
     return Construct(text, truth, {"x": "real"})
 
 
@@ -176,12 +222,20 @@ def extremes(rng: random.Random) -> Construct:
 def numerals(rng: random.Random) -> Construct:
     """A printed numeral of a constant, with half a unit of its last place as tolerance, right or one unit off."""
     p, q, r = (rng.randint(2, 40) for _ in range(3))
-    text, value = rng.choice((
-        (f"sqrt({p}) + {q}**(1/3)", lambda: mpmath.sqrt(p) + mpmath.cbrt(q)), (f"exp({p}/{q})", lambda: mpmath.exp(mpmath.mpf(p) / q)),
-        (f"log({p})*sin({q})", lambda: mpmath.log(p) * mpmath.sin(q)), (f"atan({p}/{q})/pi", lambda: mpmath.atan(mpmath.mpf(p) / q) / mpmath.pi),
-        (f"erf({p}/{10 * q})", lambda: mpmath.erf(mpmath.mpf(p) / (10 * q))), (f"cos(pi/{p}) + tanh({r}/{q})", lambda: mpmath.cos(mpmath.pi / p) + mpmath.tanh(mpmath.mpf(r) / q)),
-        (f"integral(exp(-x**2), x, 0, {p}/{10 * q})", lambda: mpmath.sqrt(mpmath.pi) / 2 * mpmath.erf(mpmath.mpf(p) / (10 * q))),
-    ))  # fmt: skip
+    text, value = rng.choice(
+        (
+            (f"sqrt({p}) + {q}**(1/3)", lambda: mpmath.sqrt(p) + mpmath.cbrt(q)),
+            (f"exp({p}/{q})", lambda: mpmath.exp(mpmath.mpf(p) / q)),
+            (f"log({p})*sin({q})", lambda: mpmath.log(p) * mpmath.sin(q)),
+            (f"atan({p}/{q})/pi", lambda: mpmath.atan(mpmath.mpf(p) / q) / mpmath.pi),
+            (f"erf({p}/{10 * q})", lambda: mpmath.erf(mpmath.mpf(p) / (10 * q))),
+            (f"cos(pi/{p}) + tanh({r}/{q})", lambda: mpmath.cos(mpmath.pi / p) + mpmath.tanh(mpmath.mpf(r) / q)),
+            (
+                f"integral(exp(-x**2), x, 0, {p}/{10 * q})",
+                lambda: mpmath.sqrt(mpmath.pi) / 2 * mpmath.erf(mpmath.mpf(p) / (10 * q)),
+            ),
+        )
+    )
     with mpmath.workdps(DIGITS):
         places = rng.choice((2, 5, 12, 25))
         shown = int(mpmath.nint(value() * mpmath.mpf(10) ** places)) + rng.choice((0, 0, 1, -1))
@@ -194,14 +248,21 @@ def numerals(rng: random.Random) -> Construct:
 def lengths(rng: random.Random) -> Construct:
     """Inequalities between lengths and products of vectors, with their best constant or one beside it."""
     c = Fraction(1) + rng.choice((0, 0, Fraction(1, 10**3), Fraction(-1, 10**3), Fraction(-1, 10**9), 1))
-    best, text = rng.choice((
-        (1, "dot(u, v) <= {0}*norm(u)*norm(v)"), (1, "norm(u + v) <= {0}*(norm(u) + norm(v))"),
-        (1, "norm(cross(u, v)) <= {0}*norm(u)*norm(v)"), (1, "abs(norm(u) - norm(v)) <= {0}*norm(u - v)"),
-        (1, "2*dot(u, v) <= {0}*(dot(u, u) + dot(v, v))"), (1, "abs(dot(u, cross(v, w))) <= {0}*norm(u)*norm(v)*norm(w)"),
-        (1, "dot(u, v)**2 <= {0}*dot(u, u)*dot(v, v)"), (1, "abs(u[1]) <= {0}*norm(u)"),
-        (1, "norm(u - w) <= {0}*(norm(u - v) + norm(v - w))"), (1, "dot(u + v, u + v) <= {0}*2*(dot(u, u) + dot(v, v))"),
-        (1, "norm(u) <= {0}*(abs(u[1]) + abs(u[2]) + abs(u[3]))"),
-    ))  # fmt: skip
+    best, text = rng.choice(
+        (
+            (1, "dot(u, v) <= {0}*norm(u)*norm(v)"),
+            (1, "norm(u + v) <= {0}*(norm(u) + norm(v))"),
+            (1, "norm(cross(u, v)) <= {0}*norm(u)*norm(v)"),
+            (1, "abs(norm(u) - norm(v)) <= {0}*norm(u - v)"),
+            (1, "2*dot(u, v) <= {0}*(dot(u, u) + dot(v, v))"),
+            (1, "abs(dot(u, cross(v, w))) <= {0}*norm(u)*norm(v)*norm(w)"),
+            (1, "dot(u, v)**2 <= {0}*dot(u, u)*dot(v, v)"),
+            (1, "abs(u[1]) <= {0}*norm(u)"),
+            (1, "norm(u - w) <= {0}*(norm(u - v) + norm(v - w))"),
+            (1, "dot(u + v, u + v) <= {0}*2*(dot(u, u) + dot(v, v))"),
+            (1, "norm(u) <= {0}*(abs(u[1]) + abs(u[2]) + abs(u[3]))"),
+        )
+    )
     return Construct(text.format(f"({c})"), c >= best, {n: {"vector": 3} for n in "uvw"})
 
 
@@ -209,15 +270,18 @@ def lengths(rng: random.Random) -> Construct:
 def relations(rng: random.Random) -> Construct:
     """Consequences of hypotheses that have points: vectors that are orthogonal, of length one, or add up to zero."""
     a, b = fraction(rng), fraction(rng)
-    given, left, right = rng.choice((
-        (["dot(u, v) = 0"], f"norm(({a})*u + ({b})*v)**2", f"({a * a})*dot(u, u) + ({b * b})*dot(v, v)"),
-        (["dot(u, u) = 1", "dot(v, v) = 1"], "norm(u - v)**2", "2 - 2*dot(u, v)"),
-        (["dot(u, u) = 1"], f"dot(cross(u, v), cross(u, v)) + ({a})", f"dot(v, v) - dot(u, v)**2 + ({a})"),
-        (["cross(u, v) = zeros(3, 1)"], "dot(u, v)**2", "dot(u, u)*dot(v, v)"),
-        (["w = cross(u, v)"], f"dot(w, ({a})*u + ({b})*v)", "0"), (["u + v + w = zeros(3, 1)"], "cross(u, v)[1]", "cross(v, w)[1]"),
-        (["dot(u, v) = 0", "dot(u, u) = 4"], "dot(cross(u, cross(u, v)), v)", "-4*dot(v, v)"),
-        (["w = u - v", "dot(u, u) = dot(v, v)"], "dot(w, u + v)", "0"),
-    ))  # fmt: skip
+    given, left, right = rng.choice(
+        (
+            (["dot(u, v) = 0"], f"norm(({a})*u + ({b})*v)**2", f"({a * a})*dot(u, u) + ({b * b})*dot(v, v)"),
+            (["dot(u, u) = 1", "dot(v, v) = 1"], "norm(u - v)**2", "2 - 2*dot(u, v)"),
+            (["dot(u, u) = 1"], f"dot(cross(u, v), cross(u, v)) + ({a})", f"dot(v, v) - dot(u, v)**2 + ({a})"),
+            (["cross(u, v) = zeros(3, 1)"], "dot(u, v)**2", "dot(u, u)*dot(v, v)"),
+            (["w = cross(u, v)"], f"dot(w, ({a})*u + ({b})*v)", "0"),
+            (["u + v + w = zeros(3, 1)"], "cross(u, v)[1]", "cross(v, w)[1]"),
+            (["dot(u, v) = 0", "dot(u, u) = 4"], "dot(cross(u, cross(u, v)), v)", "-4*dot(v, v)"),
+            (["w = u - v", "dot(u, u) = dot(v, v)"], "dot(w, u + v)", "0"),
+        )
+    )
     right, truth = perturb(right, rng)
     return Construct(
         f"{left} = {right.replace('a**2', '1')}", truth, {**{n: {"vector": 3} for n in "uvw"}, "given": given}
@@ -238,11 +302,15 @@ def triangles(rng: random.Random) -> Construct:
 @judged
 def chains(rng: random.Random) -> Construct:
     """Links that hold one by one; a chain with one broken link does not."""
-    links = rng.choice((
-        ["(x + y)**2", "= x**2 + 2*x*y + y**2", "<= 2*x**2 + 2*y**2", "<= 2*(abs(x) + abs(y))**2"],
-        ["sin(x)**2", "= (1 - cos(2*x))/2", "<= 1", "<= 1 + x**2"], ["x*y", "<= (x**2 + y**2)/2", "<= x**2 + y**2"],
-        ["abs(x + y)", "<= abs(x) + abs(y)", "= max(x, -x) + max(y, -y)"], ["1 + x", "<= exp(x)", "< exp(x) + 1"],
-    ))  # fmt: skip
+    links = rng.choice(
+        (
+            ["(x + y)**2", "= x**2 + 2*x*y + y**2", "<= 2*x**2 + 2*y**2", "<= 2*(abs(x) + abs(y))**2"],
+            ["sin(x)**2", "= (1 - cos(2*x))/2", "<= 1", "<= 1 + x**2"],
+            ["x*y", "<= (x**2 + y**2)/2", "<= x**2 + y**2"],
+            ["abs(x + y)", "<= abs(x) + abs(y)", "= max(x, -x) + max(y, -y)"],
+            ["1 + x", "<= exp(x)", "< exp(x) + 1"],
+        )
+    )
     broken = rng.random() < 0.5
     if broken:
         k = rng.randrange(1, len(links))
@@ -279,17 +347,24 @@ def kinked_integrals(rng: random.Random) -> Construct:
     c, n, a = fraction(rng, 3), rng.randint(0, 4), Fraction(rng.randint(1, 5), rng.randint(1, 3))
     low, high = c - rng.randint(1, 3), c + rng.randint(1, 4)
     area = ((c - low) ** (n + 1) + (high - c) ** (n + 1)) / (n + 1)
-    text, value, exists = rng.choice((
-        (f"integral(abs(x - ({c}))**{n or 1}, x, {low}, {high})", area if n else ((c - low) ** 2 + (high - c) ** 2) / 2, True),
-        (f"integral(x**{n}*exp(-({a})*x), x, 0, oo)", math.factorial(n) / a ** (n + 1), True),
-        (f"integral(1/(x - ({c}))**2, x, {low}, {high})", 1 / (low - c) - 1 / (high - c), False),
-        (f"integral(1/x**{n + 2}, x, 1, oo)", Fraction(1, n + 1), True), (f"integral(x/(x**2 + {n + 1}), x, -oo, oo)", Fraction(0), False),
-        (f"integral(sign(x - ({c})), x, {low}, {high})", (high - c) - (c - low), True),
-        (f"integral(max(x, {c}), x, {low}, {high})", (c - low) * c + (high**2 - c**2) / 2, True),
-        (f"integral(min(x, {c}), x, {low}, {high})", (high - c) * c + (c**2 - low**2) / 2, True),
-        (f"integral(where(x < {c}, 0, x - ({c})), x, {low}, {high})", (high - c) ** 2 / 2, True),
-        (f"integral(1/sqrt(x), x, 0, {a})", None, True),
-    ))  # fmt: skip
+    text, value, exists = rng.choice(
+        (
+            (
+                f"integral(abs(x - ({c}))**{n or 1}, x, {low}, {high})",
+                area if n else ((c - low) ** 2 + (high - c) ** 2) / 2,
+                True,
+            ),
+            (f"integral(x**{n}*exp(-({a})*x), x, 0, oo)", math.factorial(n) / a ** (n + 1), True),
+            (f"integral(1/(x - ({c}))**2, x, {low}, {high})", 1 / (low - c) - 1 / (high - c), False),
+            (f"integral(1/x**{n + 2}, x, 1, oo)", Fraction(1, n + 1), True),
+            (f"integral(x/(x**2 + {n + 1}), x, -oo, oo)", Fraction(0), False),
+            (f"integral(sign(x - ({c})), x, {low}, {high})", (high - c) - (c - low), True),
+            (f"integral(max(x, {c}), x, {low}, {high})", (c - low) * c + (high**2 - c**2) / 2, True),
+            (f"integral(min(x, {c}), x, {low}, {high})", (high - c) * c + (c**2 - low**2) / 2, True),
+            (f"integral(where(x < {c}, 0, x - ({c})), x, {low}, {high})", (high - c) ** 2 / 2, True),
+            (f"integral(1/sqrt(x), x, 0, {a})", None, True),
+        )
+    )
     right, truth = perturb(f"2*sqrt({a})" if value is None else f"{value}", rng)
     return Construct(f"{text} = {right}", truth and exists, {"a": "real"})
 
@@ -300,14 +375,21 @@ def endless_sums(rng: random.Random) -> Construct:
     m, low = rng.randint(1, 4), rng.randint(0, 2)
     harmonic = sum((Fraction(1, j) for j in range(1, m + 1)), Fraction(0))
     inside = {"r": ["-9/10", "9/10"], "a": "real", "n": {"integer": ["0", "oo"]}}
-    text, value, exists, given = rng.choice((
-        (f"sum(r**k, k, {low}, oo)", f"r**{low}/(1 - r)", True, inside), ("sum(k*r**k, k, 0, oo)", "r/(1 - r)**2", True, inside),
-        (f"sum(1/(k*(k + {m})), k, 1, oo)", f"{harmonic / m}", True, inside), ("sum(1/k, k, 1, oo)", "100", False, inside),
-        ("sum(2**k, k, 0, oo)", "-1", False, inside), ("sum((-1)**k, k, 0, oo)", "1/2", False, inside),
-        (f"sum(k**{m}, k, 1, n) - sum(k**{m}, k, 1, n + 1)", f"-(n + 1)**{m}", True, inside),
-        ("sum(k, k, 1, n)", "n*(n + 1)/2", True, inside), ("sum(2*k + 1, k, 0, n)", "(n + 1)**2", True, inside),
-        ("sum((1/2)**k, k, 0, n)", "2 - (1/2)**n", True, inside), ("product(2, k, 1, n)", "2**n", True, inside),
-    ))  # fmt: skip
+    text, value, exists, given = rng.choice(
+        (
+            (f"sum(r**k, k, {low}, oo)", f"r**{low}/(1 - r)", True, inside),
+            ("sum(k*r**k, k, 0, oo)", "r/(1 - r)**2", True, inside),
+            (f"sum(1/(k*(k + {m})), k, 1, oo)", f"{harmonic / m}", True, inside),
+            ("sum(1/k, k, 1, oo)", "100", False, inside),
+            ("sum(2**k, k, 0, oo)", "-1", False, inside),
+            ("sum((-1)**k, k, 0, oo)", "1/2", False, inside),
+            (f"sum(k**{m}, k, 1, n) - sum(k**{m}, k, 1, n + 1)", f"-(n + 1)**{m}", True, inside),
+            ("sum(k, k, 1, n)", "n*(n + 1)/2", True, inside),
+            ("sum(2*k + 1, k, 0, n)", "(n + 1)**2", True, inside),
+            ("sum((1/2)**k, k, 0, n)", "2 - (1/2)**n", True, inside),
+            ("product(2, k, 1, n)", "2**n", True, inside),
+        )
+    )
     right, truth = perturb(value, rng)
     return Construct(f"{text} = {right}", truth and exists, given)
 
@@ -317,14 +399,25 @@ def sided_limits(rng: random.Random) -> Construct:
     """Limits from both sides: some have two different sides, some none, and some are plain."""
     c = rng.choice((0, 1, -2))
     u = f"(x - ({c}))"
-    text, value, exists = rng.choice((
-        (f"limit(abs({u})/{u}, x, {c})", "1", False), (f"limit(floor(x), x, {c})", f"{c}", False), (f"limit(1/{u}, x, {c})", "0", False),
-        (f"limit(sin({u})/{u}, x, {c})", "1", True), (f"limit((exp({u}) - 1 - {u})/{u}**2, x, {c})", "1/2", True),
-        (f"limit(({u}**2 - {u})/{u}, x, {c})", "-1", True), (f"limit(sign({u}), x, {c})", "0", False),
-        (f"limit(abs({u}), x, {c})", "0", True), ("limit(x*exp(-x), x, oo)", "0", True), ("limit(atan(x), x, oo)", "pi/2", True),
-        (f"limit(where(x < {c}, 0, 1), x, {c})", "1", False), ("limit(sin(x), x, oo)", "0", False), ("limit((x + 1)/(x - 1), x, oo)", "1", True),
-        (f"limit((sqrt(1 + {u}) - 1)/{u}, x, {c})", "1/2", True), (f"limit(log(1 + {u})/{u}, x, {c})", "1", True),
-    ))  # fmt: skip
+    text, value, exists = rng.choice(
+        (
+            (f"limit(abs({u})/{u}, x, {c})", "1", False),
+            (f"limit(floor(x), x, {c})", f"{c}", False),
+            (f"limit(1/{u}, x, {c})", "0", False),
+            (f"limit(sin({u})/{u}, x, {c})", "1", True),
+            (f"limit((exp({u}) - 1 - {u})/{u}**2, x, {c})", "1/2", True),
+            (f"limit(({u}**2 - {u})/{u}, x, {c})", "-1", True),
+            (f"limit(sign({u}), x, {c})", "0", False),
+            (f"limit(abs({u}), x, {c})", "0", True),
+            ("limit(x*exp(-x), x, oo)", "0", True),
+            ("limit(atan(x), x, oo)", "pi/2", True),
+            (f"limit(where(x < {c}, 0, 1), x, {c})", "1", False),
+            ("limit(sin(x), x, oo)", "0", False),
+            ("limit((x + 1)/(x - 1), x, oo)", "1", True),
+            (f"limit((sqrt(1 + {u}) - 1)/{u}, x, {c})", "1/2", True),
+            (f"limit(log(1 + {u})/{u}, x, {c})", "1", True),
+        )
+    )
     right, truth = perturb(value, rng)
     return Construct(f"{text} = {right}", truth and exists, {"a": "real"})
 

@@ -11,31 +11,12 @@ from math import prod
 from typing import Any
 
 from navsym.language.latex.clusters import FRACTIONS, Cluster, ClusterReader, entry_rank, list_clusters
-from navsym.language.latex.notation import (
-    ACCENTS,
-    CALLS,
-    COMMANDS,
-    CONDITIONS,
-    DOTS,
-    GREEK,
-    IF,
-    REST,
-    Notation,
-)  # fmt: skip
+from navsym.language.latex.notation import ACCENTS, CALLS, COMMANDS, CONDITIONS, DOTS, GREEK, IF, REST, Notation
 from navsym.language.latex.parts import Part, Refusal, degrees
 from navsym.language.latex.tokens import Token, clean, match_brace, plain_word, split_tokens, underscore
 
-CLOSING = {
-    "(": ")",
-    "[": "]",
-    "|<": ">|",
-    "||<": ">||",
-    "|": "|",
-    "||": "||",
-    "floor<": ">floor",
-    "angle<": ">angle",
-    "{<": ">}",
-}
+CLOSING = {"(": ")", "[": "]", "|": "|", "||": "||"}
+CLOSING |= {f"{mark}<": f">{mark}" for mark in ("|", "||", "floor", "angle")} | {"{<": ">}"}
 MARKS = {r"\cdot": ".", r"\times": "x", r"\otimes": "ox", "/": "/", "*": "*", r"\ast": "*"}
 TRANSPOSES = {r"\top": "top", r"\intercal": "top", "T": "T"}
 

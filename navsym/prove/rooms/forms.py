@@ -101,9 +101,8 @@ def by_substitution(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     new = symbol(name)
     for make in (by_exponentials, by_root, by_tangent, by_lonely_parts):
         for term, form, low, dense in make(expression, u):
-            body: Proof = {"rule": "abstract", "terms": {name: to_text(term)}, "ranges": {name: [low, None, []]}}
-            body |= {"to": to_text(factor(form.xreplace({u: new}))), "inside": Holes(), "defined": Holes()}
-            body |= {"proof": Hole()}
+            to = to_text(factor(form.xreplace({u: new})))
+            body = name_terms({name: to_text(term)}, {name: [low, None, []]}, to)
             if dense is None:
                 yield body
             elif goal.relation == ">=":
@@ -112,23 +111,31 @@ def by_substitution(goal: Any, sample: list[arb]) -> Iterator[Proof]:
                 yield outer
 
 
+def name_terms(terms: dict[str, str], ranges: dict[str, Any], to: str) -> Proof:
+    """The rule that puts new names in the place of terms."""
+    head: Proof = {"rule": "abstract", "terms": terms, "ranges": ranges, "to": to}
+    return head | {"inside": Holes(), "defined": Holes(), "proof": Hole()}
+
+
 def by_exponentials(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
     """u = exp(x/d)."""
     hyper = expression.rewrite(sp.exp) if expression.has(sp.sinh, sp.cosh, sp.tanh) else expression
-    arguments = [node.args[0] for node in hyper.atoms(sp.exp)]
-    symbols = {s for a in arguments for s in a.free_symbols}
-    if len(symbols) != 1:
-        return
-    (x,) = symbols
-    shares = [sp.expand(a / x) for a in arguments]
-    if not all(s.is_Rational for s in shares):
-        return
-    d = sp.ilcm(*(s.q for s in shares))
-    step = sp.igcd(*(int(s * d) for s in shares))
-    powers = {node: u ** (sp.expand(node.args[0] / x) * d / step) for node in hyper.atoms(sp.exp)}
-    form = hyper.xreplace(powers)
-    if not form.has(x):
-        yield sp.exp(x * sp.Rational(step, d)), form, "0", None
+    x, step, turns = count_steps(hyper.atoms(sp.exp))
+    form = hyper.xreplace({node: u**n for node, n in turns.items()})
+    if turns and not form.has(x):
+        yield sp.exp(x * step), form, "0", None
+
+
+def count_steps(nodes: set[Any]) -> tuple[sp.Symbol | None, Any, dict[Any, int]]:
+    """The one symbol x, the largest step and whole numbers n with arguments n step x; nothing where there are none."""
+    symbols = {s for node in nodes for s in node.free_symbols}
+    x = next(iter(symbols), None)
+    shares = {node: sp.expand(node.args[0] / x) for node in nodes} if len(symbols) == 1 else {}
+    if not shares or not all(s.is_Rational for s in shares.values()):
+        return x, 1, {}
+    d = sp.ilcm(*(s.q for s in shares.values()))
+    step = sp.Rational(sp.igcd(*(int(s * d) for s in shares.values())), d)
+    return x, step, {node: int(s / step) for node, s in shares.items()}
 
 
 def by_lonely_parts(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
@@ -160,25 +167,15 @@ def by_root(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
 
 def by_tangent(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
     """u = tan(x/(2 d)) for the one angle of which all others are multiples."""
-    waves = {node for node in expression.atoms(sp.sin, sp.cos) if node.free_symbols}
-    symbols = {s for node in waves for s in node.free_symbols}
-    if len(symbols) != 1:
-        return
-    (x,) = symbols
-    shares = {node: sp.expand(node.args[0] / x) for node in waves}
-    if not all(s.is_Rational for s in shares.values()):
-        return
-    d = sp.ilcm(*(s.q for s in shares.values()))
-    step = sp.igcd(*(int(s * d) for s in shares.values()))
-    turns = {node: int(s * d) // step for node, s in shares.items()}
-    if max(map(abs, turns.values())) > 8:
+    x, step, turns = count_steps({node for node in expression.atoms(sp.sin, sp.cos) if node.free_symbols})
+    if not turns or max(map(abs, turns.values())) > 8:
         return
     cosine, sine = (1 - u**2) / (1 + u**2), 2 * u / (1 + u**2)
     values = {node: (sp.chebyshevt(abs(n), cosine) if node.func is sp.cos else
                      sp.sign(n) * sine * sp.chebyshevu(abs(n) - 1, cosine)) for node, n in turns.items()}  # fmt: skip
     form = expression.xreplace(values)
     if not form.has(x):
-        half = x * sp.Rational(step, 2 * d)
+        half = x * step / 2
         yield sp.tan(half), form, None, sp.cos(half)
 
 
@@ -197,8 +194,7 @@ def by_roots_of_symbols(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         terms[name], ranges[name] = to_text(sp.root(v, q)), ["0", None, ["open-low"] if is_open else []]
         new[v] = sp.Symbol(name, positive=True)
     form = expression.xreplace({v: u**q for v, u in new.items()}).xreplace({u: symbol(u.name) for u in new.values()})
-    proof: Proof = {"rule": "abstract", "terms": terms, "ranges": ranges, "to": to_text(form)}
-    proof |= {"inside": Holes(), "defined": Holes(), "proof": Hole()}
+    proof = name_terms(terms, ranges, to_text(form))
     for p in roots:  # of products: by factors
         apart = sp.Mul(
             *(sp.Pow(v, n * p.exp, evaluate=False) for v, n in p.base.as_powers_dict().items()), evaluate=False
@@ -224,8 +220,7 @@ def by_known_signs(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         letter = ("symbol", new)
         form = player.replace(form, v, player.negate(letter) if beside == [False, True] else letter)
     if terms:
-        proof: Proof = {"rule": "abstract", "terms": terms, "ranges": ranges, "to": write_term(form)}
-        yield proof | {"inside": Holes(), "defined": Holes(), "proof": Hole()}
+        yield name_terms(terms, ranges, write_term(form))
 
 
 def by_hypothesis(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -240,5 +235,4 @@ def by_hypothesis(goal: Any, sample: list[arb]) -> Iterator[Proof]:
                 continue
             u = symbol(name)
             form = to_text(to_sympy(goal.term).xreplace({v: (u - rest) / c}))
-            proof: Proof = {"rule": "abstract", "terms": {name: write_term(given)}, "ranges": {name: ["0", None, []]}}
-            yield proof | {"to": form, "inside": Holes(), "defined": Holes(), "proof": Hole()}
+            yield name_terms({name: write_term(given)}, {name: ["0", None, []]}, form)
