@@ -1,7 +1,6 @@
 """Random statements at edges, steps and extremes, judged by exact fractions, by theorems, or by mpmath with 60 digits.
 
-Importing this module adds its schemes to :mod:`tests.attacks.constructs`, whose runner judges them:
-``python -m tests.attacks.judged COUNT SEED`` prints the outcomes of these schemes alone.
+``python -m tests.attacks.judged COUNT SEED`` prints the outcomes by scheme, as :mod:`tests.attacks.constructs` does.
 """
 
 from __future__ import annotations
@@ -24,9 +23,9 @@ TINY = (Fraction(1, 10**3), Fraction(1, 10**9), Fraction(1, 10**15), Fraction(1,
 
 
 def judged(scheme: constructs.Scheme) -> constructs.Scheme:
-    """Register a scheme here and among the constructs."""
+    """Register a scheme under its name."""
     SCHEMES[scheme.__name__] = scheme
-    return constructs.construct(scheme)
+    return scheme
 
 
 def fraction(rng: random.Random, most: int = 9, divisors: Sequence[int] = (1, 1, 2, 3, 5)) -> Fraction:
@@ -101,7 +100,7 @@ def pairs_of_steps(rng: random.Random) -> Construct:
 
 @judged
 def pieces(rng: random.Random) -> Construct:
-    """A quadratic on each of three pieces beside a bound that is attained, missed, or only approached at an open end."""
+    """A quadratic on each of three pieces, and a bound that is attained, missed, or approached at an open end."""
     low, *cuts, high = sorted(rng.sample(range(-6, 7), 4))
     rows = [(fraction(rng, 3), fraction(rng, 4), fraction(rng, 6)) for _ in range(3)]
     texts = [f"({a})*x**2 + ({b})*x + ({c})" for a, b, c in rows]
@@ -422,12 +421,5 @@ def sided_limits(rng: random.Random) -> Construct:
     return Construct(f"{text} = {right}", truth and exists, {"a": "real"})
 
 
-def main(count: int, seed: int) -> None:
-    """The runner of the constructs, with the schemes of this module alone."""
-    constructs.SCHEMES.clear()
-    constructs.SCHEMES.update(SCHEMES)
-    constructs.main(count, seed)
-
-
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:]))
+    constructs.main(*map(int, sys.argv[1:]), schemes=SCHEMES)
