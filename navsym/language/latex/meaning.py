@@ -511,7 +511,8 @@ def refuse_doubtful(args: tuple[Any, ...], columns: list[bool]) -> bool:
         if mark == "" and before.head == "name" and before.args[0] in ("Delta", "delta") and named.head == "name":
             question = f"is {before.args[0]} {named.args[0]} one name or a product?"
             raise Refusal(before.at, "a difference by its name", question, r"write it in [latex], or \cdot")
-        if mark == "" and before.head == "num" and is_plain_fraction(behind):
+        is_fraction = behind.head == "frac" and all(piece.head == "num" for piece in behind.args)
+        if mark == "" and before.head == "num" and is_fraction:
             raise Refusal(behind.at, "a number or a product", "a mixed number?", r"write \cdot")
         is_open = (before.head == "call" and not before.args[2]) or (before.head == "diff" and not before.args[4])
         if before.head == "integral" or (before.head == "diff" and is_open):
@@ -521,11 +522,6 @@ def refuse_doubtful(args: tuple[Any, ...], columns: list[bool]) -> bool:
         elif is_open and (mark == "/" or (mark == "" and behind.head != "call")):
             raise Refusal(behind.at, *DOUBTFUL_ARGUMENT)
     return open_ended
-
-
-def is_plain_fraction(part: Part) -> bool:
-    """True for a fraction of two numbers."""
-    return part.head == "frac" and all(piece.head == "num" for piece in part.args)
 
 
 def multiply_scalars(factors: list[Term], marks: list[str], args: tuple[Any, ...]) -> Term:

@@ -116,7 +116,7 @@ class Reading(Answer):
 
     def _repr_html_(self) -> str:
         rows = "".join(
-            f"<tr><td>{f.line}</td><td>{f.status}</td><td><code>{html.escape(show_reading(f))}</code></td></tr>"
+            f"<tr><td>{f.line}</td><td>{f.status}</td><td><code>{html.escape(f.text or f.why or '')}</code></td></tr>"
             for f in self.formulas
         )
         return f"<table><thead><tr><th>line</th><th></th><th>reading</th></tr></thead><tbody>{rows}</tbody></table>"
@@ -413,8 +413,3 @@ def compare_readings(part: Part, text: str, notation: Notation) -> None:
 def plain_spelling(spelled: str) -> str:
     """The name that LaTeX means without a table."""
     return re.sub(r"[\\{}\s]", "", re.sub(r"\\(mathbf|boldsymbol|bm|mathrm|text|operatorname)\b", "", spelled))
-
-
-def show_reading(formula: ReadFormula) -> str:
-    """The reading of a formula, or why there is none."""
-    return formula.text or formula.why or ""
