@@ -49,6 +49,7 @@ def test_a_linear_function_on_a_triangle_fails_at_the_corner_where_it_is_largest
     most, given = max(0, p * s, q * s), ["x >= 0", "y >= 0", f"x + y <= {s}"]
     assert decide(f"({p})*x + ({q})*y <= {most - Fraction(1, 10**9)}", given=given).status == "REFUTED"
     assert decide(f"({p})*x + ({q})*y <= {most}", given=given).status == "PROVED"
+    assert decide(f"({p})*x + ({q})*y < {most}", given=given).status == "REFUTED"
 
 
 @pytest.mark.parametrize("square", [4, Fraction(9, 25), 1])

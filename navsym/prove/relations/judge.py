@@ -159,7 +159,7 @@ def refute_at_zero(
 ) -> Verdict | None:
     """REFUTED at a point where a term that must not be 0 seems to be 0, and exact algebra shows it."""
     before = ctx.prec
-    for point, case in points[:FEW]:
+    for point, case in (*points[-FEW:], *points[:FEW]):  # where hypotheses meet, and simple ones
         if len(case.goals) != 1 or case.goals[0].relation not in (">", "!="):
             continue
         try:
