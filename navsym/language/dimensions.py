@@ -438,8 +438,8 @@ def infer_units(
     """
     names = {name for tree in (*trees, *(rates or {}).values()) for name in list_names(tree)}
     names |= {TIME, *(rates or {})}
-    own = [shapes[name] for name in sorted(names & set(shapes))]
-    declared = {shape.name: read_unit(shape.unit) for shape in own if shape.unit}
+    known = [shapes[name] for name in sorted(names & set(shapes))]
+    declared = {shape.name: read_unit(shape.unit) for shape in known if shape.unit}
     if not declared or any(shapes[name].sizes for name in names & set(shapes)):
         return {}
     passes = [False]

@@ -218,7 +218,7 @@ class Descent(SymbolReader):
             self.place += 1
         if not re.fullmatch(r"[0-9]*\.?[0-9]+", text) or start.before != (None, None):
             raise Refusal(start.at, "a number", text, "correct it")
-        if last.sub is None and len(last.sup or ()) == 1 and last.sup[0].is_command("circ"):
+        if last.sub is None and last.sup and len(last.sup) == 1 and last.sup[0].is_command("circ"):
             return degrees(text, start.at)
         if last.sub is not None:
             size = self.sizes(last.sub)
