@@ -417,11 +417,6 @@ def is_integer(shape: Shape) -> bool:
     return any("integer" in limits[2] for limits in shape.ranges.values())
 
 
-def declared_units(shapes: Iterable[Shape]) -> dict[str, Powers]:
-    """Name -> powers of its declared unit."""
-    return {shape.name: read_unit(shape.unit) for shape in shapes if shape.unit}
-
-
 def infer_units(
     trees: Sequence[Tree], shapes: Mapping[str, Shape], rates: Mapping[str, Tree] | None = None, *, where: str = ""
 ) -> dict[str, str]:
@@ -443,7 +438,8 @@ def infer_units(
     """
     names = {name for tree in (*trees, *(rates or {}).values()) for name in list_names(tree)}
     names |= {TIME, *(rates or {})}
-    declared = declared_units(shapes[name] for name in sorted(names & set(shapes)))
+    known = [shapes[name] for name in sorted(names & set(shapes))]
+    declared = {shape.name: read_unit(shape.unit) for shape in known if shape.unit}
     if not declared or any(shapes[name].sizes for name in names & set(shapes)):
         return {}
     passes = [False]

@@ -48,15 +48,11 @@ def check_name(name: object, *, where: str = "") -> str:
             where=where,
         )
     if name in RESERVED:
+        meaning = "the number pi" if name == "pi" else "a function"
         raise DuplicateError(
-            f"expected a new name; got {name!r}, which already means {describe_reserved(name)}; rename it", where=where
+            f"expected a new name; got {name!r}, which already means {meaning}; rename it", where=where
         )
     return name
-
-
-def describe_reserved(name: str) -> str:
-    """What a reserved name means."""
-    return "the number pi" if name == "pi" else "a function"
 
 
 def quote(value: object, limit: int = 40) -> str:

@@ -45,7 +45,7 @@ def parse_toml(data: bytes | str, where: str = "") -> dict[str, Any]:
     text = decode(data if isinstance(data, bytes) else data.encode("utf-8", "replace"), where)
     bound_nesting(text, where)
     try:
-        document = tomllib.loads(text, parse_float=read_numeral)
+        document = tomllib.loads(text, parse_float=lambda digits: Numeral(digits.replace("_", "").lower()))
         check_values(document, where, ())
     except tomllib.TOMLDecodeError as failure:
         raise syntax_error(str(failure), where) from None
@@ -55,11 +55,6 @@ def parse_toml(data: bytes | str, where: str = "") -> dict[str, Any]:
         message = "expected numbers below 1000 digits and real dates; got another; correct it"
         raise TooLargeError(message, where=where) from None
     return document
-
-
-def read_numeral(text: str) -> Numeral:
-    """The digits without separators, in lower case."""
-    return Numeral(text.replace("_", "").lower())
 
 
 def syntax_error(message: str, where: str) -> NavsymError:

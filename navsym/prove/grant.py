@@ -223,7 +223,10 @@ def grant_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict
     """REFUTED by a point that the checker accepts for one of the entries."""
     point, why = dict(verdict.counterexample or {}), "no entry fails there"
     for document in documents:
-        place = {name: point.get(name) or simple_value(limits) for name, limits in document["symbols"].items()}
+        place = {
+            name: point.get(name) or str(simple_point(player.read_range(limits), 0))
+            for name, limits in document["symbols"].items()
+        }
         try:
             return replace(verdict, certificate=refute_document(documents, document, place))
         except REFUSALS as refusal:
@@ -271,11 +274,6 @@ def answer_at_point(document: Document, point: Mapping[str, str]) -> Document:
     place = {name: player.parse(text) for name, text in point.items()}
     answers = read_with_answers(document, point=place)[2]
     return {"answers": answers} if answers else {}
-
-
-def simple_value(limits: Any) -> str:
-    """A simple number in the range of a symbol."""
-    return str(simple_point(player.read_range(limits), 0))
 
 
 def grant_proofs(documents: Sequence[Document], verdict: Verdict, seconds: float) -> Verdict:

@@ -45,12 +45,13 @@ def construct(scheme: Scheme) -> Scheme:
     return scheme
 
 
-def make_construct(number: int, seed: int) -> tuple[str, Construct]:
+def make_construct(number: int, seed: int, schemes: Mapping[str, Scheme] = SCHEMES) -> tuple[str, Construct]:
     """The statement of a number; the constructs take turns."""
-    names = sorted(SCHEMES)
+    names = sorted(schemes)
     name = names[number % len(names)]
-    statement = SCHEMES[name](random.Random(f"constructs {seed} {number}"))
-    words = {"given", "order", *re.findall(r"[A-Za-z]\w*", statement.text), *statement.given.get("given", [""])[0]}
+    statement = schemes[name](random.Random(f"constructs {seed} {number}"))
+    texts = " ".join([statement.text, *statement.given.get("given", [])])
+    words = {"given", "order", "tolerance", *re.findall(r"[A-Za-z]\w*", texts)}
     used = {key: value for key, value in statement.given.items() if key in words}
     return name, replace(statement, given=used)
 
@@ -71,11 +72,11 @@ def outcome_of(statement: Construct, seconds: float = SECONDS) -> tuple[str, str
     return ("decided" if holds == statement.truth else "wrong"), f"{status} {dict(verdict.counterexample or {})}"
 
 
-def main(count: int, seed: int) -> None:
+def main(count: int, seed: int, schemes: Mapping[str, Scheme] = SCHEMES) -> None:
     """Judge ``count`` statements; one line for each that is not decided, then the counts."""
-    counts: dict[str, Counter[str]] = {name: Counter() for name in sorted(SCHEMES)}
+    counts: dict[str, Counter[str]] = {name: Counter() for name in sorted(schemes)}
     for number in range(count):
-        name, statement = make_construct(number, seed)
+        name, statement = make_construct(number, seed, schemes)
         found, why = outcome_of(statement)
         counts[name][found] += 1
         if found != "decided":

@@ -11,31 +11,12 @@ from math import prod
 from typing import Any
 
 from navsym.language.latex.clusters import FRACTIONS, Cluster, ClusterReader, entry_rank, list_clusters
-from navsym.language.latex.notation import (
-    ACCENTS,
-    CALLS,
-    COMMANDS,
-    CONDITIONS,
-    DOTS,
-    GREEK,
-    IF,
-    REST,
-    Notation,
-)  # fmt: skip
-from navsym.language.latex.parts import Part, Refusal
+from navsym.language.latex.notation import ACCENTS, CALLS, COMMANDS, CONDITIONS, DOTS, GREEK, IF, REST, Notation
+from navsym.language.latex.parts import Part, Refusal, degrees
 from navsym.language.latex.tokens import Token, clean, match_brace, plain_word, split_tokens, underscore
 
-CLOSING = {
-    "(": ")",
-    "[": "]",
-    "|<": ">|",
-    "||<": ">||",
-    "|": "|",
-    "||": "||",
-    "floor<": ">floor",
-    "angle<": ">angle",
-    "cases<": ">cases",
-}
+CLOSING = {"(": ")", "[": "]", "|": "|", "||": "||"}
+CLOSING |= {f"{mark}<": f">{mark}" for mark in ("|", "||", "floor", "angle")} | {"{<": ">}"}
 MARKS = {r"\cdot": ".", r"\times": "x", r"\otimes": "ox", "/": "/", "*": "*", r"\ast": "*"}
 TRANSPOSES = {r"\top": "top", r"\intercal": "top", "T": "T"}
 
@@ -110,6 +91,9 @@ class Climber(ClusterReader):
         entry = self.entry()
         if entry is not None:
             name, found, power = entry
+            if name == "eye":
+                self.place = found[-1].after
+                return self.raised(Part("eye", ("?",), found[0].base[0].at), power)
             if name in CALLS and name not in self.notation:
                 return self.function(CALLS[name], found[-1])
             at = found[0].base[0].at if found[0].base else self.tokens[self.place].at
@@ -237,7 +221,7 @@ class Climber(ClusterReader):
         here = self.cluster(place)
         token = here.base[0]
         if entry is not None:
-            return Part("name", (entry[0],), token.at)
+            return Part("eye", ("?",), token.at) if entry[0] == "eye" else Part("name", (entry[0],), token.at)
         word = plain_word(token)
         if word is None or len(here.base) != 1:
             return None
@@ -302,7 +286,7 @@ class Climber(ClusterReader):
         bars = [s for s in outer if s in ("|", "||")]
         if opening in ("|", "||") and bars:
             self.refuse("bars that are not nested", at)
-        if opening == "cases<":
+        if opening == "{<" and [t.text for t in self.tokens[self.place : self.place + 7]] == [r"\begin", "{", *"array"]:
             return self.braced_cases(at)
         self.stops = [opening] if opening in ("|", "||") else []
         items = [self.climb(0)]
@@ -332,8 +316,6 @@ class Climber(ClusterReader):
 
     def braced_cases(self, at: int) -> Part:
         """Behind a brace: an array of cases, and the mark of no bracket."""
-        if not self.look().startswith(r"\begin"):
-            self.refuse("an array of cases", at)
         part = self.table()
         if part.head != "cases" or self.look() != ">cases":
             self.refuse("cases", at)
@@ -397,6 +379,8 @@ class Climber(ClusterReader):
             ):
                 self.refuse("a number without subscript", first.at)
             return self.raised(Part("zeros", tuple(size), first.at), sup)
+        if [t.text for t in sup or ()] == [r"\circ"]:
+            return degrees(text, first.at)
         return self.raised(Part("num", (text,), first.at), sup)
 
     def function(self, name: str, here: Cluster) -> Part:
@@ -408,7 +392,7 @@ class Climber(ClusterReader):
                 self.refuse("a function without subscript")
             name = f"log_{base}"
         self.place = here.after
-        if self.look() in ("(", "["):
+        if self.look() in ("(", "[", "{<"):
             return Part("call", (name, power, True, *self.listed()), at)
         self.open_braces()
         if self.look().isdigit():
@@ -448,6 +432,14 @@ class Climber(ClusterReader):
         inner = here.base[1:]
         inner = inner[1:-1] if inner[0].text == "{" else inner
         scripts = [Token("_", at, at), Token("{", at, at), *here.sub, Token("}", at, at)] if here.sub else []
+        if here.sup:
+            other = copy(self)
+            raised = [Token("^", at, at), Token("{", at, at), *here.sup, Token("}", at, at)]
+            other.tokens, other.place = [*inner, *scripts, *raised], 0
+            entry = other.entry()
+            if entry is not None and entry[2] is None and entry[1][-1].after == len(other.tokens):
+                self.place = here.after
+                return Part("dot", (Part("name", (entry[0],), at), order), at)
         named = self.part_of([*inner, *scripts])
         if named.head != "name":
             self.refuse("a dot above a name", at)
@@ -573,13 +565,17 @@ class Climber(ClusterReader):
         at = here.base[0].at
         start, end = self.part_of(here.sub or []), self.part_of(here.sup or [])
         self.place = here.after
-        self.stops = [*self.stops, "d"]
+        self.stops, outer = [*self.stops, "d"], self.bound
+        places = [p for p in range(self.place, len(self.tokens) - 1) if self.is_differential(p)]
+        clusters = [self.cluster(p + 1) for p in places]
+        self.bound = outer.union(f"{plain_word(c.base[0])}{underscore(c.sub)}" for c in clusters)
         body = self.climb(0)
         if self.place >= len(self.tokens) or not self.is_differential(self.place):
             self.refuse("the differential")
         self.stops = self.stops[:-1]
         variable = self.cluster(self.place + 1)
         found = None if variable.sup else self.meaning(self.place + 1)
+        self.bound = outer
         if found is None:
             self.refuse("the variable of the integral")
         self.place = variable.after
@@ -601,7 +597,7 @@ class Climber(ClusterReader):
         rows = [[[t for t in cell if t.text != r"\hline"] for cell in row] for row in rows]
         rows = [row for row in rows if any(row)]
         cells = [cell for row in rows for cell in row]
-        if opening == "cases" or (opening == "array" and self.look_at(self.place - 1) == "cases<"):
+        if opening == "cases" or (opening == "array" and self.look_at(self.place - 1) == "{<"):
             part = self.list_cases(rows, at)
             sup, self.place = self.cluster_scripts(stop + 3 + len(opening))[1:]
             return self.raised(part, sup)

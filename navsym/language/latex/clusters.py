@@ -11,7 +11,7 @@ from navsym.language.latex.notation import ACCENTS, DOTS
 from navsym.language.latex.parts import Refusal
 from navsym.language.latex.tokens import Token, clean, match_brace
 
-FRACTIONS = (r"\frac", r"\dfrac", r"\tfrac")
+FRACTIONS = (r"\frac", r"\dfrac", r"\tfrac", r"\cfrac")
 
 
 @dataclass(slots=True)

@@ -3,16 +3,18 @@ r"""The first reader: recursive descent over lists of symbols with scripts."""
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from itertools import pairwise
 from math import factorial
 from typing import Any
 
 from navsym.language.latex.mathlists import MATRICES, Noad, list_noads
 from navsym.language.latex.notation import CALLS, COMMANDS, CONDITIONS, DOTS, IF, REST, Notation
-from navsym.language.latex.parts import Part, Refusal, join_factors, join_terms
+from navsym.language.latex.parts import Part, Refusal, degrees, join_factors, join_terms
 from navsym.language.latex.symbols import POWER, SymbolReader, is_power, split_noads, suggest_name, transpose_mark
 
-PAIRS = {"cases": "cases", "(": ")", "[": "]", "|": "|", "||": "||", "floor": "floor", "{": "}", "langle": "langle"}
+PAIRS = {"cases": "cases", "(": ")", "[": "]", "|": "|", "||": "||", "floor": "floor", "{": "}", "{<": ">}",
+         "langle": "langle"}  # fmt: skip
 BIG = {"sum": "sum", "prod": "product"}
 
 
@@ -149,7 +151,8 @@ class Descent(SymbolReader):
             self.bars.append(opening.value)
         kept, self.integrals = self.integrals, 0
         outer, self.bars = self.bars, self.bars if is_bar and opening.kind == "bar" else []
-        items = [self.cases(self.noads[self.place])] if self.opens_cases(opening) else [self.expression()]
+        has_cases = self.opens_cases(opening)
+        items = [self.cases(self.noads[self.place])] if has_cases else [self.expression()]
         while opening.value in ("(", "[", "langle") and self.noad is not None and self.noad.is_sign(","):
             self.place += 1
             items.append(self.expression())
@@ -159,13 +162,14 @@ class Descent(SymbolReader):
         crossed = self.noad is not None and self.noad.is_command("times")
         self.place += crossed
         closing = self.noad
-        if closing is None or closing.kind not in ("close", "bar") or closing.value != PAIRS[opening.value]:
+        wanted = "cases" if has_cases else PAIRS[opening.value]
+        if closing is None or closing.kind not in ("close", "bar") or closing.value != wanted:
             self.refuse(f"the bracket that closes {self.text[opening.at : opening.end]}", "close it")
             raise AssertionError
         self.place += 1
         if len(items) > 1 or opening.value == "langle":
             return self.close_list(opening, items, closing, crossed)
-        if opening.value == "cases":
+        if has_cases:
             return self.power(items[0], closing)
         return self.close(opening, items[0], closing, crossed)
 
@@ -214,6 +218,8 @@ class Descent(SymbolReader):
             self.place += 1
         if not re.fullmatch(r"[0-9]*\.?[0-9]+", text) or start.before != (None, None):
             raise Refusal(start.at, "a number", text, "correct it")
+        if last.sub is None and last.sup and len(last.sup) == 1 and last.sup[0].is_command("circ"):
+            return degrees(text, start.at)
         if last.sub is not None:
             size = self.sizes(last.sub)
             if text == "0" and last.bold and len(size) == 2:
@@ -261,7 +267,7 @@ class Descent(SymbolReader):
         elif noad.is_command("log"):
             name = "log?"
         following = self.noad
-        if following is not None and following.kind == "open" and following.value in ("(", "["):
+        if following is not None and following.kind == "open" and following.value in ("(", "[", "{<"):
             return Part("call", (name, power, True, *self.arguments(following)), noad.at)
         factors: list[Any] = []
         if following is not None and following.kind == "sym" and following.value.isdigit():
@@ -315,6 +321,11 @@ class Descent(SymbolReader):
         if len(inner) != 1 or (inner[0].has_scripts and noad.sub):
             raise Refusal(noad.at, "a dot above one name", "more", "write the derivative as a fraction")
         base = inner[0]
+        if noad.sup and not base.sup:
+            spelled = self.start([replace(base, sub=base.sub or noad.sub, sup=noad.sup)]).spelling()
+            if spelled is not None and not spelled[1].sup:
+                self.place += 1
+                return Part("dot", (spelled[0], DOTS[noad.value]), noad.at)
         joined = Noad(base.kind, base.value, noad.at, noad.end, base.bold, base.args, base.sub or noad.sub, base.sup)
         named = self.start([joined]).factor()
         if named.head not in ("name", "unknown"):
@@ -331,6 +342,8 @@ class Descent(SymbolReader):
         letter = self.differential_letter(above[0])
         if letter and letter == self.differential_letter(below[0]):
             return self.power(self.derivative(noad, letter), noad)
+        if above[0].is_sign("d") and below[0].is_sign("d") and len(below) > 1:
+            raise Refusal(noad.at, "one meaning", "is d a name or a derivative?", r"write \mathrm{d}, or rename d")
         return self.power(Part("frac", (self.inside(above), self.inside(below)), noad.at), noad)
 
     def differential_letter(self, noad: Noad) -> str:
@@ -419,6 +432,8 @@ class Descent(SymbolReader):
         start, end = self.inside(noad.sub), self.inside(noad.sup)
         self.place += 1
         self.integrals += 1
+        kept, letters = self.bound, pairwise(self.noads[self.place :])
+        self.bound = (*kept, *(str(v.value) + self.flat_subscript(v) for d, v in letters if self.is_before(d, v)))
         body = self.expression()
         if not self.is_differential():
             self.refuse("the differential of the integral", "write d and its variable at the end")
@@ -429,18 +444,19 @@ class Descent(SymbolReader):
         if variable is None or name is None or variable.sup:
             self.refuse("the variable of the integral", "write one name behind d")
             raise AssertionError
-        found = self.resolve(variable, name)
-        by = found or self.variable(variable, name)
+        by = self.resolve(variable, name) or self.variable(variable, name)
+        self.bound = kept
         self.place += 1
         return Part("integral", (body, by, start, end), noad.at)
 
     def is_differential(self) -> bool:
         """True before ``d x``."""
-        noad = self.noad
-        behind = self.noads[self.place + 1] if self.place + 1 < len(self.noads) else None
-        if noad is None or behind is None or noad.has_scripts or self.base(behind) is None:
-            return False
-        return self.differential_letter(noad) == "d"
+        here = self.noads[self.place : self.place + 2]
+        return len(here) == 2 and self.is_before(*here)
+
+    def is_before(self, noad: Noad, behind: Noad) -> bool:
+        """True for the d before a name."""
+        return not noad.has_scripts and self.base(behind) is not None and self.differential_letter(noad) == "d"
 
     def matrix(self, noad: Noad) -> Part:
         """A matrix, row by row."""
@@ -455,12 +471,9 @@ class Descent(SymbolReader):
 
     def opens_cases(self, opening: Noad) -> bool:
         """True for a brace and one array in it."""
-        if opening.value != "cases":
-            return False
         noad = self.noad
-        if noad is None or noad.kind != "env" or noad.value[0] != "array" or noad.has_scripts:
-            self.refuse("an array of cases behind the brace", "write the cases as rows of an array")
-        return True
+        is_array = noad is not None and noad.kind == "env" and noad.value[0] == "array" and not noad.has_scripts
+        return opening.value == "{<" and is_array
 
     def cases(self, noad: Noad) -> Part:
         """Values with their conditions, the last one for all the rest."""

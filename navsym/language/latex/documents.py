@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-DISPLAYS = "equation align gather eqnarray multline displaymath flalign alignat math".split()
+DISPLAYS = "equation align gather eqnarray multline displaymath flalign alignat math aligned gathered split".split()
 ENDINGS = {".tex": "tex", ".rst": "rst", ".md": "md", ".dox": "dox"}
 
 TEX = re.compile(

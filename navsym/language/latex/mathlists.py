@@ -10,12 +10,12 @@ from functools import cache, lru_cache
 from typing import Any
 
 from navsym.core.errors import MissingEngineError
-from navsym.language.latex.notation import ACCENTS, BOLD, DOTS, SETTINGS, SIZES, SPACES, WORDS
+from navsym.language.latex.notation import ACCENTS, BOLD, DOTS, SETTINGS, SIZES, SPACES, SWITCHES, WORDS
 from navsym.language.latex.parts import DEPTH, Refusal
 
 MATRICES = ("matrix", "pmatrix", "bmatrix", "Bmatrix", "vmatrix", "smallmatrix", "array", "cases")
-OPENERS = {"lvert": "|", "lVert": "||", "lfloor": "floor", "lbrack": "[", "lparen": "(", "langle": "langle"}
-CLOSERS = {"rvert": "|", "rVert": "||", "rfloor": "floor", "rbrack": "]", "rparen": ")", "rangle": "langle"}
+OPENERS = {"lvert": "|", "lVert": "||", "lfloor": "floor", "lbrack": "[", "lparen": "(", "langle": "langle", "{": "{<"}
+CLOSERS = {"rvert": "|", "rVert": "||", "rfloor": "floor", "rbrack": "]", "rparen": ")", "rangle": "langle", "}": ">}"}
 BRACKETS = {"(": ("open", "("), ")": ("close", ")"), "[": ("open", "["), "]": ("close", "]"), "|": ("bar", "|")}
 
 
@@ -85,7 +85,9 @@ def load_context() -> Any:
         raise MissingEngineError(message, where="read") from None
     context = LatexContextDb()
     one = (*BOLD, *(WORDS - {"rm"}), *ACCENTS, *DOTS)
-    macros = [MacroSpec(name, "{") for name in one] + [MacroSpec(name, "{{") for name in ("frac", "dfrac", "tfrac")]
+    macros = [MacroSpec(name, "{") for name in one] + [
+        MacroSpec(name, "{{") for name in ("frac", "dfrac", "tfrac", "cfrac")
+    ]
     arrays = [EnvironmentSpec(name, "{" if name == "array" else "") for name in MATRICES]
     context.add_context_category(
         "formulas", macros=[*macros, MacroSpec("sqrt", "[{")], environments=arrays, specials=[]
@@ -131,6 +133,8 @@ class Builder:
 
     def build(self, nodes: list[Any], bold: bool) -> list[Noad]:
         """A list: scripts go to the symbol before them, or to the one behind them where there is none."""
+        if nodes and getattr(nodes[0], "macroname", "") in SWITCHES:
+            return self.switch(nodes[0].macroname, nodes[1:])
         units = merge_sides([unit for node in nodes for unit in self.list_units(node, bold)])
         done: list[Noad] = []
         side = ""
@@ -153,6 +157,14 @@ class Builder:
         if side:
             raise Refusal(len(self.text), "a script behind ^ or _", "nothing", "write it")
         return self.place_prescripts(done)
+
+    def switch(self, name: str, nodes: list[Any]) -> list[Noad]:
+        r"""What stands behind ``{\bf`` or ``{\rm``."""
+        if name != "rm":
+            return self.build(nodes, True)
+        if len(nodes) != 1 or type(nodes[0]).__name__ != "LatexCharsNode":
+            raise Refusal(nodes[0].pos if nodes else len(self.text), r"one word behind \rm", "others", r"write \mathrm")
+        return [Noad("word", nodes[0].chars.strip(), nodes[0].pos, nodes[0].pos + nodes[0].len)]
 
     def attach(self, noad: Noad, side: str, unit: Noad, following: list[Noad]) -> None:
         """A script: one symbol, or a group."""
@@ -268,7 +280,7 @@ class Builder:
         return [
             Noad(
                 "arg" if args else "cmd",
-                name.replace("dfrac", "frac").replace("tfrac", "frac"),
+                "frac" if name in ("dfrac", "tfrac", "cfrac") else name,
                 at,
                 end if args else name_end,
                 bold,
@@ -315,9 +327,8 @@ def merge_sides(units: list[Noad]) -> list[Noad]:
     for unit in units:
         if done and done[-1].kind == "side":
             side = done.pop()
-            brace = side.value == "left" and unit.is_command("{")
-            if brace or (side.value == "right" and unit.is_sign(".")):
-                unit.kind, unit.value = ("open", "cases") if brace else ("close", "cases")
+            if side.value == "right" and unit.is_sign("."):
+                unit.kind, unit.value = "close", "cases"
             if unit.kind not in ("open", "close", "bar"):
                 raise Refusal(unit.at, f"a bracket behind \\{side.value}", "another symbol", "write ( ) [ ] or |")
             unit.kind, unit.at = ("open" if side.value == "left" else "close"), side.at

@@ -6,7 +6,7 @@ The outcome is text of the language of files. Where readers of the printed line 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -17,6 +17,7 @@ from navsym.language.names import FUNCTIONS
 #: How tightly a text binds.
 SUM, PRODUCT, POWER, WHOLE = range(4)
 SCALAR: Shape = ()
+WAVES = ("sin", "cos", "tan")
 WRITE = "write parentheses"
 
 
@@ -82,8 +83,15 @@ def is_row(part: Part) -> bool:
     return part.head == "list" or (part.head == "matrix" and part.args[0] == 1 and len(part.args) > 2)
 
 
+def size_unit(term: Term, size: str) -> Term:
+    """A multiple of the unit matrix, of which the size was not printed, with its size."""
+    is_open = "eye(?)" in term.text and term.shape == ("?", "?")
+    return replace(term, text=term.text.replace("eye(?)", f"eye({size})"), shape=(size, size)) if is_open else term
+
+
 def fit_sides(left: Term, right: Term, at: int) -> tuple[Term, Term]:
     """Two sides of one shape; a plain 0 takes the shape of the other side."""
+    left, right = size_unit(left, (*right.shape, "?")[0]), size_unit(right, (*left.shape, "?")[0])
     if left.shape != right.shape and not may_be_same(left.shape, right.shape):
         for one, other in ((left, right), (right, left)):
             if one.text == "0" and other.shape:
@@ -176,6 +184,7 @@ class Explainer:
             if not may_be_same(term.shape, shape):
                 got = f"{say(shape)} and {say(term.shape)}"
                 raise Refusal(piece.at, "terms of one shape", got, "correct the formula or a declaration")
+        terms = [size_unit(term, shape[0]) if shape else term for term in terms]
         signs = [term.head == "-" for term in part.args]
         text = ("-" if signs[0] else "") + terms[0].inside(PRODUCT)
         for minus, term in zip(signs[1:], terms[1:], strict=True):
@@ -189,8 +198,9 @@ class Explainer:
         args = self.drop_variables(part.args)
         if len(args) == 1:
             return self.explain(args[0])
-        refuse_doubtful(args)
         factors, marks = [self.explain(factor) for factor in args[::2]], ["", *args[1::2]]
+        columns = [f.shape[1:] == ("1",) or (bool(f.shape) and f.shape[0] == f.shape[1]) for f in factors]
+        open_ended = refuse_doubtful(args, columns if "." not in marks else [False] * len(columns))
         places = [place for place, factor in enumerate(factors) if factor.shape]
         for place, mark in enumerate(marks):
             if mark == "*" and places:
@@ -200,6 +210,8 @@ class Explainer:
         if not places:
             return multiply_scalars(factors, marks, args)
         whole = self.multiply([factors[p] for p in places], [marks[p] for p in places[1:]], args[2 * places[-1]].at)
+        if open_ended and not whole.shape:
+            raise Refusal(args[0].at, *DOUBTFUL_ARGUMENT)
         scalars = [(m, f) for m, f in zip(marks, factors, strict=True) if not f.shape]
         return scale(whole, [f for m, f in scalars if m != "/"], [f for m, f in scalars if m == "/"])
 
@@ -208,7 +220,9 @@ class Explainer:
         kept: list[Any] = [args[0]]
         for mark, factor in zip(args[1::2], args[2::2], strict=True):
             before = kept[-1].args[0] if kept[-1].head in ("dot", "^") else kept[-1]
-            single = factor.head == "()" and factor.args[0] in ("(", "[") and factor.args[1].head in ("name", "num")
+            single = (
+                factor.head == "()" and factor.args[0] in ("(", "[", "{<") and factor.args[1].head in ("name", "num")
+            )
             if mark == "" and single and before.head in ("name", "index"):
                 name, inner = before.args[0], factor.args[1].args[0]
                 if self.notation.functions.get(name) == inner and kept[-1].head != "^":
@@ -477,9 +491,15 @@ def list_letters(latex: str, name: str) -> set[str]:
     return letters | {f"{one}_{other}" for _, one, other in found if other}
 
 
-def refuse_doubtful(args: tuple[Any, ...]) -> None:
-    """Refuse a product that readers take differently."""
-    factors, marks = args[::2], args[1::2]
+DOUBTFUL_ARGUMENT = ("an argument in parentheses", "is this factor part of the argument?", WRITE)
+
+
+def refuse_doubtful(args: tuple[Any, ...], columns: list[bool]) -> bool:
+    r"""Refuse a product that readers take differently. True where a column or square matrix ends the ``\sin a``.
+
+    columns : which factors are such, so that no sine can be taken of them
+    """
+    factors, marks, open_ended = args[::2], args[1::2], False
     for place, mark in enumerate(marks):
         before, behind = factors[place], factors[place + 1]
         if "/" in marks[:place]:
@@ -491,18 +511,17 @@ def refuse_doubtful(args: tuple[Any, ...]) -> None:
         if mark == "" and before.head == "name" and before.args[0] in ("Delta", "delta") and named.head == "name":
             question = f"is {before.args[0]} {named.args[0]} one name or a product?"
             raise Refusal(before.at, "a difference by its name", question, r"write it in [latex], or \cdot")
-        if mark == "" and before.head == "num" and is_plain_fraction(behind):
+        is_fraction = behind.head == "frac" and all(piece.head == "num" for piece in behind.args)
+        if mark == "" and before.head == "num" and is_fraction:
             raise Refusal(behind.at, "a number or a product", "a mixed number?", r"write \cdot")
         is_open = (before.head == "call" and not before.args[2]) or (before.head == "diff" and not before.args[4])
         if before.head == "integral" or (before.head == "diff" and is_open):
             raise Refusal(behind.at, "parentheses around what is integrated or differentiated", "none", WRITE)
-        if is_open and (mark == "/" or (mark == "" and behind.head != "call")):
-            raise Refusal(behind.at, "an argument in parentheses", "is this factor part of the argument?", WRITE)
-
-
-def is_plain_fraction(part: Part) -> bool:
-    """True for a fraction of two numbers."""
-    return part.head == "frac" and all(piece.head == "num" for piece in part.args)
+        if is_open and mark == "" and before.head == "call" and before.args[0] in WAVES and columns[place + 1]:
+            open_ended = True
+        elif is_open and (mark == "/" or (mark == "" and behind.head != "call")):
+            raise Refusal(behind.at, *DOUBTFUL_ARGUMENT)
+    return open_ended
 
 
 def multiply_scalars(factors: list[Term], marks: list[str], args: tuple[Any, ...]) -> Term:
@@ -554,6 +573,9 @@ def join_chain(factors: list[Term]) -> Term:
     """Matrices with ``@`` between them."""
     if len(factors) == 1:
         return factors[0]
+    for place, factor in enumerate(factors):
+        near = factors[place - 1].shape[1] if place else factors[1].shape[0]
+        factors = [*factors[:place], size_unit(factor, near), *factors[place + 1 :]]
     text = " @ ".join([factors[0].inside(PRODUCT) if "*" not in factors[0].text else factors[0].inside(POWER),
                        *(f.inside(POWER) for f in factors[1:])])  # fmt: skip
     quaternion = factors[-1].is_quaternion

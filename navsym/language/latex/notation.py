@@ -23,6 +23,8 @@ GREEK = frozenset(
     "".split()
 )
 BOLD = frozenset("mathbf boldsymbol bm pmb".split())
+#: Fonts from here to the end of the group.
+SWITCHES = frozenset("bf bfseries rm".split())
 WORDS = frozenset("mathrm text textrm operatorname operatorname* mathop rm textnormal".split())
 ACCENTS = frozenset(
     "hat widehat tilde widetilde bar overline vec check breve acute grave mathring underline underbar mathcal mathbb "
@@ -126,7 +128,7 @@ def require_spellings(latex: Mapping[str, Any], shapes: Mapping[str, Shape], whe
         if not isinstance(spelling, str) or not spelling.strip() or len(spelling) > 200:
             message = f"expected LaTeX as text, at most 200 characters; got {quote(spelling)}; write {name} = '…'"
             raise ExpressionSyntaxError(message, where=place)
-        if name not in shapes and name not in CALLS:
+        if name not in shapes and name not in CALLS and name != "eye":
             message = f"expected a declared name; got {quote(name)}; declare it below [symbols]"
             raise ExpressionSyntaxError(message, where=place)
         plain = re.sub(r"\s+", "", spelling)

@@ -42,6 +42,11 @@ def join_factors(factors: list[Any]) -> Part:
     return factors[0] if len(factors) == 1 else Part("*", tuple(factors), factors[0].at)
 
 
+def degrees(text: str, at: int) -> Part:
+    """A number of degrees in radians."""
+    return Part("frac", (Part("*", (Part("num", (text,)), "", Part("num", ("pi",)))), Part("num", ("180",))), at)
+
+
 def list_unknown(part: Part) -> list[Part]:
     """The names in a part that nobody declared."""
     found = [part] if part.head == "unknown" else []

@@ -27,7 +27,9 @@ from navsym.language.tomlfile import toml_text
 SIZE = 4_000_000  # bytes of a document
 FORMULAS = 20_000
 #: A string with one of these holds formulas among other text.
-DELIMITED = re.compile(r"(?<!\\)\$|\\\[|\\\(|\\begin\{(?:equation|align|gather|eqnarray|multline|displaymath|flalign)")
+DELIMITED = re.compile(
+    r"(?<!\\)\$|\\\[|\\\(|\\begin\{(?:equation|align|gather|eqnarray|multline|displaymath|flalign|split)"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +116,7 @@ class Reading(Answer):
 
     def _repr_html_(self) -> str:
         rows = "".join(
-            f"<tr><td>{f.line}</td><td>{f.status}</td><td><code>{html.escape(show_reading(f))}</code></td></tr>"
+            f"<tr><td>{f.line}</td><td>{f.status}</td><td><code>{html.escape(f.text or f.why or '')}</code></td></tr>"
             for f in self.formulas
         )
         return f"<table><thead><tr><th>line</th><th></th><th>reading</th></tr></thead><tbody>{rows}</tbody></table>"
@@ -357,6 +359,8 @@ def read_sides(
         got = f"{names} undeclared"
         run = re.fullmatch("[A-Za-z]{2,}", str(first.args[1]))
         question = f"declare it: is {first.args[0]} a product or a name?" if run else "declare it"
+        if first.args[0] == "I" and first.args[1] != "I":
+            question = f"declare it, or write eye = '{first.args[1]}' in [latex] where it is the unit matrix"
         raise Refusal(side.start + first.at, "declared names", got, question)
     both = [name for name, bold in faces.items() if len(bold) > 1]
     if both:
@@ -374,6 +378,10 @@ def read_sides(
         with shifted(side.start):
             terms.append(explain(part, notation, as_column))
     first_term, second_term = fit_sides(terms[0], terms[1], relation.right.start)
+    if "eye(?)" in first_term.text + second_term.text:
+        raise Refusal(
+            relation.left.start, "a unit matrix whose size is known", "one without", "write its size below it"
+        )
     if (first_term.shape or second_term.shape) and relation.sign not in ("=", "!="):
         raise Refusal(relation.right.start, "scalars on both sides of an order", "vectors", "compare entries")
     if order is not None and relation.sign != "=":
@@ -405,8 +413,3 @@ def compare_readings(part: Part, text: str, notation: Notation) -> None:
 def plain_spelling(spelled: str) -> str:
     """The name that LaTeX means without a table."""
     return re.sub(r"[\\{}\s]", "", re.sub(r"\\(mathbf|boldsymbol|bm|mathrm|text|operatorname)\b", "", spelled))
-
-
-def show_reading(formula: ReadFormula) -> str:
-    """The reading of a formula, or why there is none."""
-    return formula.text or formula.why or ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from copy import copy
+from dataclasses import replace
 from typing import Any, Self
 
 from navsym.language.latex.mathlists import Noad, is_same, is_same_list, list_spelling
@@ -64,6 +65,9 @@ class SymbolReader:
             if len(found) == len(wanted) and all(
                 is_same(w, f, last=w is wanted[-1]) for w, f in zip(wanted, found, strict=True)
             ):
+                if name == "eye":
+                    self.place += len(wanted)
+                    return Part("eye", ("?",), found[0].at), replace(found[-1], sub=None)
                 if name in CALLS and name not in self.notation:
                     self.place += len(wanted) - 1
                     return self.call(CALLS[name]), Noad("group", None, 0, 0)
@@ -88,7 +92,7 @@ class SymbolReader:
             self.refuse_operator(noad)
         if word is None or noad.before != (None, None):
             return self.unknown(noad)
-        if noad.is_sign("e") and noad.sup and not noad.sub and "e" not in self.notation:
+        if word == "e" and noad.sup and not noad.sub and "e" not in self.notation:
             self.place += 1
             return Part("call", ("exp", None, True, self.inside(noad.sup)), noad.at)
         run = self.run()

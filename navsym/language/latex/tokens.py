@@ -12,7 +12,7 @@ TOKEN = re.compile(r"\\(?:operatorname\*|[A-Za-z]+|.)|\s+|[^\\]", re.S)
 DELIMITERS = {
     r"\lvert": "|<", r"\rvert": ">|", r"\lVert": "||<", r"\rVert": ">||", r"\|": "||", r"\Vert": "||", r"\vert": "|",
     r"\lfloor": "floor<", r"\rfloor": ">floor", r"\lbrack": "[", r"\rbrack": "]", r"\lparen": "(", r"\rparen": ")",
-    r"\langle": "angle<", r"\rangle": ">angle",
+    r"\langle": "angle<", r"\rangle": ">angle", r"\{": "{<", r"\}": ">}",
 }  # fmt: skip
 
 
@@ -52,8 +52,8 @@ def clean(text: str) -> list[Token]:
         if side:
             if token.text in ("|", "||"):
                 token.text = f"{token.text}<" if side == "left" else f">{token.text}"
-            elif (side, token.text) in (("left", r"\{"), ("right", ".")):
-                token.text = "cases<" if side == "left" else ">cases"
+            elif (side, token.text) == ("right", "."):
+                token.text = ">cases"
             elif token.text not in "()[]" and "<" not in token.text and ">" not in token.text:
                 raise Refusal(token.at, f"a bracket behind \\{side}", token.text, "write one")
             side = ""
@@ -69,6 +69,8 @@ def join_words(tokens: list[Token], text: str) -> list[Token]:
         token = tokens[place]
         if token.text[1:] in WORDS and token.text[0] == "\\" and place + 1 < len(tokens):
             stop = match_brace(tokens, place + 1) if tokens[place + 1].text == "{" else place + 1
+            if token.text == r"\rm" and tokens[place - 1].text == "{" and place > 0:
+                stop = match_brace(tokens, place - 1) - 1
             word = text[tokens[place + 1].at : tokens[stop].end].strip("{} ")
             done.append(Token(word, token.at, tokens[stop].end, word=True))
             place = stop + 1
@@ -82,7 +84,12 @@ def embolden(tokens: list[Token]) -> list[Token]:
     """Bold type as a flag of what it sets."""
     place = 0
     while place < len(tokens):
-        if tokens[place].text[:1] == "\\" and tokens[place].text[1:] in BOLD and not tokens[place].word:
+        switched = tokens[place].text in (r"\bf", r"\bfseries") and place > 0 and tokens[place - 1].text == "{"
+        if switched:
+            for token in tokens[place : match_brace(tokens, place - 1)]:
+                token.bold = True
+            del tokens[place]
+        elif tokens[place].text[:1] == "\\" and tokens[place].text[1:] in BOLD and not tokens[place].word:
             if place + 1 == len(tokens):
                 raise Refusal(tokens[place].at, "what is bold", "the end", "write it")
             del tokens[place]

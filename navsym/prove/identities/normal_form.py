@@ -98,16 +98,12 @@ def describe_ring(converter: Converter) -> str:
     """The ring in words: ``Q(zeta_24)[T, exp(i T/4)]``."""
     found = converter.found
     field_name = "Q" if found.unity <= 2 else f"Q(zeta_{found.unity})"
-    generators = [root_name(symbol, q) for symbol, q in found.symbols.items()]
+    generators = [symbol.name if q == 1 else f"{symbol.name}^(1/{q})" for symbol, q in found.symbols.items()]
     generators += [f"exp(i {angle_name(m, d)})" for m, d in found.angles.items()]
     generators += [f"exp({angle_name(m, d)})" for m, d in found.exponents.items()]
     generators += [str(atom) for atom in converter.atoms]
     generators += [f"({radicand})^(1/{q})" for radicand, q in converter.roots]
     return f"{field_name}[{', '.join(generators)}]" if generators else field_name
-
-
-def root_name(symbol: sp.Symbol, q: int) -> str:
-    return symbol.name if q == 1 else f"{symbol.name}^(1/{q})"
 
 
 def angle_name(monomial: Monomial, denominator: int) -> str:

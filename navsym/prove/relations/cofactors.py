@@ -150,7 +150,7 @@ def solve_modulo(
     entries = [[0] * (len(keys) + 1) for _ in monomials]
     for j, table in enumerate((*columns.values(), wanted)):
         for m, c in table.items():
-            entries[rows[m]][j] = reduce_number(c)
+            entries[rows[m]][j] = int(c.p) * pow(int(c.q), -1, PRIME) % PRIME
     reduced, rank = nmod_mat(entries, PRIME).rref()
     solution = {}
     for i in range(rank):
@@ -163,10 +163,6 @@ def solve_modulo(
         if value != 0:
             solution[keys[pivot]] = value
     return solution
-
-
-def reduce_number(q: fmpq) -> int:
-    return int(q.p) * pow(int(q.q), -1, PRIME) % PRIME
 
 
 def guess_fraction(residue: int) -> fmpq | None:

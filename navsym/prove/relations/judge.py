@@ -10,7 +10,7 @@ import re
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import chain, islice
+from itertools import chain, combinations, islice
 from typing import Any
 
 from flint import arb, ctx
@@ -128,7 +128,8 @@ def list_points(claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]) 
         corners = draw_corner_points(here, kinds) if box else iter(())
         bends = [part[1] for goal in case.goals[:EDGES] for part in subterms(goal.term) if part[0] == "abs"]
         met = [*dict.fromkeys((*bends, *case.given))][: EDGES if box else 0]
-        edges = (draw_special_points(here, (*case.zeros, t), kinds, 2) for t in met)
+        pairs = combinations(case.given[:EDGES], 2)  # where two hypotheses >= 0 meet, bounds are attained
+        edges = (draw_special_points(here, (*case.zeros, *ends), kinds, 2) for ends in (*((t,) for t in met), *pairs))
         for point in chain(draw_special_points(here, case.zeros, kinds, count), corners, *edges):
             place = {name: player.number(value) for name, value in point.items()}
             try:
@@ -157,7 +158,7 @@ def refute_at_zero(
 ) -> Verdict | None:
     """REFUTED at a point where a term that must not be 0 seems to be 0, and exact algebra shows it."""
     before = ctx.prec
-    for point, case in points[:FEW]:
+    for point, case in (*points[-FEW:], *points[:FEW]):  # where hypotheses meet, and simple ones
         if len(case.goals) != 1 or case.goals[0].relation not in (">", "!="):
             continue
         try:

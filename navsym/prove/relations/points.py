@@ -50,15 +50,18 @@ def draw_special_points(
                 entries if kind in ("rotation", "quaternion", "orthogonal", "positive") or (values and k % 3) else ()
             )
         for zero in zeros:
+            for kind, rows in kinds.values() if k % 3 else ():
+                if kind == "vector" and player.symbols_of(zero) <= {name for row in rows for name in row}:
+                    stretch(zero, point)
             solve_for_one(zero, point, fixed)
         yield point
 
 
 def draw_corner_points(box: Mapping[str, Any], kinds: Mapping[str, tuple[str, Rows]]) -> Iterator[Point]:
-    """Equal numbers, with unit and half turns: where bounds are attained, or missed, that no random point meets."""
-    for value in (0, 1, -1, 50, -50):
+    """Equal numbers, with unit and half turns, vectors on a line: where bounds are attained, or missed."""
+    for value in (0, 1, -1, 50, -50, 2):
         point = {name: fmpq(value) for name in box}
-        for kind, rows in kinds.values():
+        for place, (kind, rows) in enumerate(kinds.values()):
             n, entries = len(rows), [name for row in rows for name in row]
             if kind in ("rotation", "orthogonal", "positive"):
                 turned = value if kind == "rotation" and n == 3 else 0
@@ -66,7 +69,8 @@ def draw_corner_points(box: Mapping[str, Any], kinds: Mapping[str, tuple[str, Ro
                 diagonal = [-size if turned and i != turned % 3 else size for i in range(n)]
                 point.update({rows[i][j]: fmpq(diagonal[i] if i == j else 0) for i in range(n) for j in range(n)})
             elif kind == "quaternion" or (kind == "vector" and value):
-                point.update({name: fmpq((value or 1) * (k == (value < 0))) for k, name in enumerate(entries)})
+                far = place + 1 if kind == "vector" and value == 2 else value or 1  # 2: one behind the other on a line
+                point.update({name: fmpq(far * (k == (value < 0))) for k, name in enumerate(entries)})
         yield point
 
 
@@ -139,6 +143,18 @@ def draw_square(kind: str, n: int, generator: random.Random) -> list[list[fmpq]]
 
 def transpose(rows: list[list[fmpq]]) -> list[list[fmpq]]:
     return [list(column) for column in zip(*rows, strict=True)]
+
+
+def stretch(zero: Any, point: Point) -> None:
+    """Move a vector along its line to where a hypothesis on its length holds, if that is a rational number."""
+    here = {name: player.number(point[name]) for name in player.symbols_of(zero)}
+    values = [player.constant_of(player.substitute(zero, place)) for place in (dict.fromkeys(here, player.ZERO), here)]
+    if None in values or values[0] == values[1] or values[0] == 0:
+        return
+    square = values[0] / (values[0] - values[1])
+    root = fmpq(isqrt(abs(int(square.p))), isqrt(int(square.q)))
+    if root * root == square:
+        point.update({name: root * point[name] for name in here})
 
 
 def solve_for_one(zero: Any, point: Point, fixed: set[str]) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
+from itertools import combinations
 from typing import Any
 
 import sympy as sp
@@ -83,6 +85,7 @@ def by_modulus(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 def by_factors_of_roots(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """A root of a product: whole powers before it, then as the product of the roots of what has one sign."""
+    yield from by_another_root(goal)
     for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] in ("sqrt", "^") and is_root(p)):
         exponent = sp.Rational(1, 2) if part[0] == "sqrt" else sp.Rational(str(player.constant_of(part[2])))
         factors = factor(to_sympy(part[1])).as_powers_dict()
@@ -94,6 +97,26 @@ def by_factors_of_roots(goal: Any, sample: list[arb]) -> Iterator[Proof]:
                 yield rewrite_atom(write_term(part), text)
             elif text is None and rows is not factors:
                 yield from by_sides_of_zero(goal, sample)
+
+
+def by_another_root(goal: Any) -> Iterator[Proof]:
+    """sqrt(c u) = sqrt(c) sqrt(u) for a number c; sqrt(u) = sqrt(u v)/sqrt(v) for numbers with a simple sqrt(u v)."""
+    roots = [p for p in dict.fromkeys(subterms(goal.term)) if p[0] == "sqrt" and player.constant_of(p[1]) is None]
+    for one, other in combinations(roots, 2):
+        value = None
+        if not player.symbols_of(one) | player.symbols_of(other):
+            whole = sp.sqrtdenest(sp.sqrt(sp.expand(to_sympy(one[1]) * to_sympy(other[1]))))
+            simple = all(power.base.is_Rational for power in whole.atoms(sp.Pow))
+            value = f"({to_text(whole)})/({write_term(one)})" if simple else None
+        elif player.symbols_of(one) == player.symbols_of(other):
+            pairs = zip(values_of(goal, other[1]), values_of(goal, one[1]), strict=False)
+            ratio = next((Fraction(float(v / u)).limit_denominator(1000) for v, u in pairs if u > 0 and v > 0), None)
+            multiple = player.parse(f"({ratio or 0})*({write_term(one[1])})")
+            value = (
+                f"sqrt({ratio})*{write_term(one)}" if player.is_identity(player.subtract(other[1], multiple)) else None
+            )
+        if value is not None:
+            yield rewrite_atom(write_term(other), value)
 
 
 def write_roots(goal: Any, factors: dict[sp.Expr, Any], exponent: sp.Rational) -> str | None:

@@ -114,20 +114,22 @@ def by_substitution(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 def by_exponentials(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
     """u = exp(x/d)."""
     hyper = expression.rewrite(sp.exp) if expression.has(sp.sinh, sp.cosh, sp.tanh) else expression
-    arguments = [node.args[0] for node in hyper.atoms(sp.exp)]
-    symbols = {s for a in arguments for s in a.free_symbols}
-    if len(symbols) != 1:
-        return
-    (x,) = symbols
-    shares = [sp.expand(a / x) for a in arguments]
-    if not all(s.is_Rational for s in shares):
-        return
-    d = sp.ilcm(*(s.q for s in shares))
-    step = sp.igcd(*(int(s * d) for s in shares))
-    powers = {node: u ** (sp.expand(node.args[0] / x) * d / step) for node in hyper.atoms(sp.exp)}
-    form = hyper.xreplace(powers)
-    if not form.has(x):
-        yield sp.exp(x * sp.Rational(step, d)), form, "0", None
+    x, step, turns = count_steps(hyper.atoms(sp.exp))
+    form = hyper.xreplace({node: u**n for node, n in turns.items()})
+    if turns and not form.has(x):
+        yield sp.exp(x * step), form, "0", None
+
+
+def count_steps(nodes: set[Any]) -> tuple[sp.Symbol | None, Any, dict[Any, int]]:
+    """The one symbol x, the largest step and whole numbers n with arguments n step x; nothing where there are none."""
+    symbols = {s for node in nodes for s in node.free_symbols}
+    x = next(iter(symbols), None)
+    shares = {node: sp.expand(node.args[0] / x) for node in nodes} if len(symbols) == 1 else {}
+    if not shares or not all(s.is_Rational for s in shares.values()):
+        return x, 1, {}
+    d = sp.ilcm(*(s.q for s in shares.values()))
+    step = sp.Rational(sp.igcd(*(int(s * d) for s in shares.values())), d)
+    return x, step, {node: int(s / step) for node, s in shares.items()}
 
 
 def by_lonely_parts(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
@@ -159,25 +161,15 @@ def by_root(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
 
 def by_tangent(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
     """u = tan(x/(2 d)) for the one angle of which all others are multiples."""
-    waves = {node for node in expression.atoms(sp.sin, sp.cos) if node.free_symbols}
-    symbols = {s for node in waves for s in node.free_symbols}
-    if len(symbols) != 1:
-        return
-    (x,) = symbols
-    shares = {node: sp.expand(node.args[0] / x) for node in waves}
-    if not all(s.is_Rational for s in shares.values()):
-        return
-    d = sp.ilcm(*(s.q for s in shares.values()))
-    step = sp.igcd(*(int(s * d) for s in shares.values()))
-    turns = {node: int(s * d) // step for node, s in shares.items()}
-    if max(map(abs, turns.values())) > 8:
+    x, step, turns = count_steps({node for node in expression.atoms(sp.sin, sp.cos) if node.free_symbols})
+    if not turns or max(map(abs, turns.values())) > 8:
         return
     cosine, sine = (1 - u**2) / (1 + u**2), 2 * u / (1 + u**2)
     values = {node: (sp.chebyshevt(abs(n), cosine) if node.func is sp.cos else
                      sp.sign(n) * sine * sp.chebyshevu(abs(n) - 1, cosine)) for node, n in turns.items()}  # fmt: skip
     form = expression.xreplace(values)
     if not form.has(x):
-        half = x * sp.Rational(step, 2 * d)
+        half = x * step / 2
         yield sp.tan(half), form, None, sp.cos(half)
 
 

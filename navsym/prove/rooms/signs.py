@@ -205,10 +205,26 @@ def by_sum(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         return
     values = [values_of(goal, term) for term in terms]
     if any(is_below(v) for v in values):
+        yield from split_slack(goal)
         return
     strict = [k for k, v in enumerate(values) if v and all(x > 0 for x in v)]
     for k in strict[:3] if goal.relation == ">" else [0]:
         yield {"rule": "sum", "proofs": Holes(), "strict": k}
+
+
+def split_slack(goal: Any) -> Iterator[Proof]:
+    """c P > Q with c > 1 by P > Q and (c - 1) P >= 0, for what the terms > 0 have as common factor c."""
+    if not any(is_root(part) for part in subterms(goal.term)):
+        return
+    expression = sp.expand(to_sympy(goal.term))
+    terms = expression.as_coefficients_dict()
+    above = {t: c for t, c in terms.items() if c > 0 and not is_below(values_of(goal, player.parse(to_text(t))))}
+    c = min(above.values(), default=sp.Integer(1))
+    if c > 1 and len(above) < len(terms):
+        rest = sp.Add(*((c - 1) / c * share * t for t, share in above.items()))
+        to = f"1*({to_text(sp.expand(expression - rest))}) + ({to_text(sp.factor_terms(rest))})"
+        proof: Proof = {"rule": "sum", "proofs": Holes(), "strict": 0}
+        yield {"rule": "equal", "to": to, "defined": Holes(), "proof": proof}
 
 
 def by_quadratic(goal: Any, sample: list[arb]) -> Iterator[Proof]:

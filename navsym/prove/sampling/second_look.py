@@ -68,7 +68,7 @@ def unwrap_factor(factor: sp.Expr) -> sp.Expr:
 def zeros_in(base: sp.Expr, symbol: sp.Symbol, limits: Mapping[sp.Symbol, Range]) -> Iterator[Point]:
     """Points where a part vanishes, by one symbol, at ordinary points of the others."""
     others = [other for other in limits if other is not symbol]
-    for point in draw_points(others, box_of_ranges(limits), PLACES):
+    for point in draw_points(others, {s: (limit.lower, limit.upper) for s, limit in limits.items()}, PLACES):
         for value in zeros_of(base, symbol, point):
             if limits[symbol].contains(value):
                 yield {**point, symbol: value}
@@ -141,11 +141,6 @@ def invert(part: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
             return []
         part = own
     return values
-
-
-def box_of_ranges(limits: Mapping[sp.Symbol, Range]) -> dict[sp.Symbol, tuple[sp.Expr | None, sp.Expr | None]]:
-    """The ranges as a box."""
-    return {symbol: (limit.lower, limit.upper) for symbol, limit in limits.items()}
 
 
 def roots_of(a: sp.Expr, b: sp.Expr, c: sp.Expr) -> list[sp.Expr]:

@@ -168,7 +168,10 @@ def survey_range(branches: list[Branch], others: tuple[Fraction, ...], piece: In
     """Signs between the roots, and the zeros."""
     fractions = [f for branch in branches for f in (branch.value, *(test for _, test in branch.tests))]
     places = [root for root in find_real_roots([part for f in fractions for part in f]) if is_root_inside(root, piece)]
-    inside = sorted((root for root in places if not is_root_at_end(root, piece)), key=cmp_to_key(compare_numbers))
+    inside = sorted(
+        (root for root in places if not any(is_at_end(root, end) for end in (piece.lower, piece.upper))),
+        key=cmp_to_key(compare_numbers),
+    )
     cells = [number_between(left, right) for left, right in pairwise([piece.lower, *inside, piece.upper])]
     known = [branch_at(branches, u) for u in cells]
     signs: dict[int, list[sp.Expr]] = {1: [], 0: [], -1: []}
@@ -196,11 +199,6 @@ def is_root_inside(root: RealNumber, piece: Interval) -> bool:
     low = 1 if piece.lower is None else compare_numbers(root, piece.lower)
     high = -1 if piece.upper is None else compare_numbers(root, piece.upper)
     return (low > 0 or (low == 0 and piece.closed[0])) and (high < 0 or (high == 0 and piece.closed[1]))
-
-
-def is_root_at_end(root: RealNumber, piece: Interval) -> bool:
-    """True for a root at one of the ends of the piece."""
-    return is_at_end(root, piece.lower) or is_at_end(root, piece.upper)
 
 
 def is_at_end(root: RealNumber, end: RealNumber | None) -> bool:

@@ -183,7 +183,7 @@ def are_equal(left: RealNumber, right: RealNumber) -> bool:
     if left.factor is not None and right.factor is not None:
         return left.factor == right.factor and hold_one_root(left, right)
     if left.factor is None and right.factor is None:
-        return is_same_number(left, right)
+        return left.value is not None and right.value is not None and is_zero(left.value - right.value)
     root, end = (left, right) if left.factor is not None else (right, left)
     assert root.factor is not None
     if end.exact or end.value is None or not is_zero(polynomial_at(root.factor, end.value)):
@@ -198,11 +198,6 @@ def hold_one_root(left: RealNumber, right: RealNumber) -> bool:
     low, high = max(left.lower, right.lower), min(left.upper, right.upper)
     assert left.factor is not None
     return bool(low < high and left.factor(low) * left.factor(high) < 0)
-
-
-def is_same_number(left: RealNumber, right: RealNumber) -> bool:
-    """True when the formulas of two numbers are proved to be equal."""
-    return left.value is not None and right.value is not None and is_zero(left.value - right.value)
 
 
 def polynomial_at(polynomial: fmpq_poly, at: sp.Expr) -> sp.Expr:

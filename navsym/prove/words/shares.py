@@ -30,7 +30,8 @@ class Letters:
         self.algebra = algebra
         letters = [(name, turned) for name in algebra.sizes for turned in (False, True)]
         letters = [pair for pair in letters if not (pair[1] and pair[0] in algebra.symmetric)]
-        letters.sort(key=lambda pair: rank_letter(pair[0]))
+        # those in the place of sums come first, inverses last: the last ones are replaced
+        letters.sort(key=lambda pair: 0 if pair[0].startswith("arg__") else 2 if pair[0].startswith("inv__") else 1)
         self.letters = letters
         self.signs = {pair: chr(0x100 + k) for k, pair in enumerate(letters)}
         numbers = [*numbers, *(c for r in algebra.relations for c in r.body.values())]
@@ -58,11 +59,6 @@ class Letters:
             return player.number(c)
         top, bottom = (player.parse(write_polynomial(read_terms(p), self.parts) or "0") for p in c.quotient)
         return top if bottom == player.ONE else player.multiply_terms(top, ("^", bottom, player.MINUS_ONE))
-
-
-def rank_letter(name: str) -> int:
-    """Letters in the place of sums come first, inverses last: the last ones are replaced."""
-    return 0 if name.startswith("arg__") else 2 if name.startswith("inv__") else 1
 
 
 def find_shares(document: Any, end: float) -> list[Share] | None:

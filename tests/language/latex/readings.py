@@ -12,14 +12,14 @@ SYMBOLS = {
     "Id": {"matrix": ["n", "n"]},
     "E3": {"matrix": [3, 3]}, "lat": {"function": "t"}, "f_tau": {"function": "tau"},
     "r_k": "real", "r_tau": "real", "ep": "real", "g_xy": {"vector": 3}, "Z3": {"matrix": [3, 3]}, 
-    "pos": {"vector": 3, "function": "t"},
+    "pos": {"vector": 3, "function": "t"}, "dn": {"vector": 3, "function": "t"},
 }  # fmt: skip
 SPELLINGS = {
     "C_bn": "C_b^n", "R_GI": r"{}^G_I\mathbf{R}", "Pm": "P_k^-", "xh": r"\hat{x}_k", "xm": r"\hat{\mathbf{x}}_k^-",
     "zk": r"\mathbf{z}_k", "Id": r"\mathbf{I}", "vdot": r"\dot{v}_N", "dt": r"\Delta t", "xdd": "x''", "f_12": "f(1,2)",
     "lat": r"\varphi", "pos": r"\mathbf{s}", "ep": "e'",
     "g_xy": r"\mathbf{g}(x, y)", "Z3": r"\mathbf{0}_3", "r_tau": r"r_\tau", "f_tau": r"f(\tau)",
-    "E3": r"I_{3\times 3}",
+    "E3": r"I_{3\times 3}", "dn": r"\mathbf{d}^n",
 }  # fmt: skip
 
 READ = {
@@ -274,6 +274,21 @@ READ |= {
     r"\underbrace{a + b}_{\text{gain}} c": "(a + b)*c",
     r"\begin{bmatrix} a & b \\ & \\ b & c \end{bmatrix}": "[[a, b], [b, c]]",
     r"\int_0^t f(\tau)\, d\tau": "integral(f_tau, tau, 0, t)",
+    # habits: old fonts, upright e, degrees, braces, undeclared letters under an integral, a frame beside a dot
+    r"{\bf C}^{\rm T} {\bf u}": "C.T @ u",
+    r"{\rm tr}(A)": "trace(A)",
+    r"\mathrm{e}^{-a t}": "exp(-a*t)",
+    r"\exp\left\{-\cfrac{a}{b}\right\}": "exp(-a/b)",
+    r"\min\{a, b\}": "min(a, b)",
+    r"\left\{a + b\right\}^2": "(a + b)**2",
+    r"\sin 30^\circ": "sin(30*pi/180)",
+    r"22.5^{\circ} + a": "22.5*pi/180 + a",
+    r"\int_0^T \!\sin^2(a s_1)\,\mathrm{d}s_1": "integral(sin(a*s_1)**2, s_1, 0, T)",
+    r"\int_0^1 \int_0^{s_1} s_2\, ds_2\, ds_1": "integral(integral(s_2, s_2, 0, s_1), s_1, 0, 1)",
+    r"\dot{\mathbf{d}}^n": "dot_(dn)",
+    r"\dot{C}_b^n u": "dot_(C_bn) @ u",
+    r"\cos a\, u + \sin a\, v \times u": "cos(a)*u + sin(a)*cross(v, u)",
+    r"\sin a\, A u": "sin(a)*(A @ u)",
 }  # fmt: skip
 
 #: Line -> column of the trouble, and a word of the reason.
@@ -301,7 +316,12 @@ REFUSED = {
     r"\delta \vartheta": (1, "undeclared"),
     r"a \text{ if } b": (3, "words"),
     r"\mathbf{0}_4": (9, "undeclared"),
-    r"\left\{ a \right.": (9, "cases"),
+    r"\left\{ a \right.": (11, "bracket"),
+    r"\{a, b\}": (4, "bracket"),
+    r"h\{x\}": (2, "product or a function"),
+    r"\cos a\, u^T v": (10, "argument"),
+    r"\cos a\, u \cdot v": (10, "argument"),
+    r"\det A u": (8, "argument"),
     "a/bc": (4, "divisor"),
     "1/2a": (4, "divisor"),
     "a/b/c": (5, "divisor"),
@@ -388,7 +408,7 @@ REFUSED = {
     r"a\%": (2, "symbol"),
     r"\input{secret}": (1, "symbol"),
     r"\write18{ls}": (1, "symbol"),
-    r"30^\circ": (4, "index"),
+    r"a^\circ": (1, "undeclared"),
     r"\text{for all } a": (1, "words"),
     r"a \cdot -b": (9, "symbol"),
     "a +": (4, "number"),

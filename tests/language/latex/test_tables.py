@@ -31,6 +31,42 @@ def test_a_doubtful_line_is_refused_with_its_place_and_reason(latex):
     assert word in formula.why and formula.why.count("expected ") == 1 and "; got " in formula.why
 
 
+def test_a_declared_d_is_no_sign_of_a_derivative():
+    known = dict.fromkeys("dxty", "real")
+    for latex in (r"\frac{d}{dt}(x y) = 0", r"\frac{d^2 x}{dt^2} = y", r"\frac{dx}{dt} = y"):
+        (formula,) = nav.read(latex, symbols=known).formulas
+        assert formula.status == "REFUSED" and "is d a name or a derivative?" in formula.why
+    assert nav.read(r"\frac{\mathrm{d}x}{\mathrm{d}t} = d", symbols=known).formulas[0].left == "diff(x, t)"
+    assert nav.read(r"\frac{d}{x} = y", symbols=known).formulas[0].left == "d/x"
+
+
+def test_the_unit_matrix_has_the_size_that_its_neighbours_give_it():
+    known = {"C": {"rotation": "b to n"}, "w": {"vector": 3}, "a": "real", "K": {"matrix": ["n", "m"]}}
+    known |= {"H": {"matrix": ["m", "n"]}, "P": {"matrix": ["n", "n"]}}
+    lines = {
+        r"(\mathbf{I} - {\bf KH}) P": "(eye(n) - K @ H) @ P", r"C C^T - \mathbf I": "C @ C.T - eye(3)",
+        r"\mathbf{I} w": "eye(3) @ w", r"w^T \mathbf{I}": "w.T @ eye(3)", r"a \mathbf{I} + C": "a*eye(3) + C",
+    }  # fmt: skip
+    for latex, text in lines.items():
+        (formula,) = nav.read(f"{latex} = {latex}", symbols=known, latex={"eye": r"\mathbf{I}"}).formulas
+        assert (formula.left, formula.right) == (text, text), formula.why
+    for latex in (
+        r"\operatorname{tr} \mathbf{I} = a",
+        r"\mathbf{I}^{-1} = \mathbf{I}",
+        r"\mathbf{I} + \mathbf{I} = \mathbf{I}",
+    ):
+        (formula,) = nav.read(latex, symbols=known, latex={"eye": r"\mathbf{I}"}).formulas
+        assert formula.status == "REFUSED" and "write its size below it" in formula.why
+    (formula,) = nav.read(r"C C^T = \mathbf{I}", symbols=known).formulas
+    assert "eye = '\\mathbf{I}' in [latex]" in formula.why
+
+
+def test_a_display_without_its_equation_is_read():
+    for name in ("aligned", "gathered", "split", "align"):
+        formulas = nav.read(rf"\begin{{{name}}} a &= b \\ c &= a \end{{{name}}}", symbols=dict.fromkeys("abc", "real"))
+        assert [f.text for f in formulas.formulas] == ["a = b", "c = a"]
+
+
 def test_the_tables_are_long_enough():
     assert len(READ) >= 150 and len(REFUSED) >= 60
 

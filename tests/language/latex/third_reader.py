@@ -81,6 +81,7 @@ def list_units(latex, bold=False):
         ),
         latex,
     )
+    text = re.sub(r"\\\{(?!\s*\\begin)", "(", text).replace(r"\}", ")")
     return build(re.findall(r"\\operatorname\*|\\[A-Za-z]+|\\.|[^\s]", text), bold)
 
 
@@ -105,6 +106,10 @@ def group_of(marks, at):
 
 def build(marks, bold):
     units, at, pre = [], 0, None
+    if marks[:1] == [r"\rm"]:
+        return [Unit(("word", [Unit("".join(marks[1:]))]))]
+    if marks[:1] in ([r"\bf"], [r"\bfseries"]):
+        return build(marks[1:], True)
     while at < len(marks):
         mark, name = marks[at], marks[at][1:] if marks[at][0] == "\\" else ""
         if mark in ("_", "^", "'"):
@@ -142,7 +147,7 @@ def build(marks, bold):
         elif name in WORDS:
             inner, at = group_of(marks, at + 1)
             new = [Unit(("word", [Unit("".join(inner))]))]
-        elif name in ("frac", "dfrac", "tfrac"):
+        elif name in ("frac", "dfrac", "tfrac", "cfrac"):
             above, at = group_of(marks, at + 1)
             below, at = group_of(marks, at)
             new = [Unit(("frac", build(above, bold), build(below, bold)))]
@@ -481,6 +486,8 @@ class Third:
                 return self.raised((np.zeros((N, 1) if show(u.sub).endswith("1") else (N, N)), False), u.sup), at + 1
             if at + 1 < len(units) and units[at + 1].base == "!":
                 return (float(np.prod(range(1, int(text) + 1))), False), at + 2
+            if u.sup and show(u.sup) == r"\circ":
+                return (over(times(float(text), FUNCTIONS["pi"]), 180.0), False), at + 1
             return self.raised((float(text), False), u.sup), at + 1
         if word in CALLS and word not in self.symbols and (base[0] == "\\" or base[0] == "word"):
             return self.call(CALLS[word], u, units, at + 1)
@@ -492,7 +499,7 @@ class Third:
             return self.integral(u, units, at)
         if isinstance(base, tuple) and base[0] in ("frac", "sqrt", "env", "group", r"\dot", r"\ddot", r"\dddot"):
             return self.built(u, units, at)
-        if base == "e" and u.sup and "e" not in self.symbols:
+        if "e" in (base, word) and u.sup and "e" not in self.symbols:
             return (exponential(self.value(u.sup)[0]), False), at + 1
         return self.letter(u, units, at)
 
@@ -552,6 +559,10 @@ class Third:
         if base[0] != "frac":
             inner = base[1][0]
             inner.sub = inner.sub or u.sub
+            framed = Unit(inner.base, inner.bold, inner.pre)
+            framed.sub, framed.sup = inner.sub, u.sup
+            if u.sup and not inner.sup and (found := self.named([framed], 0)) and not found[1]:
+                inner, u = framed, Unit("")
             (value, quaternion), _ = self.factor([inner], 0)
             for _ in range(base[0].count("d")):
                 value = FUNCTIONS["dot_"](value)
@@ -597,6 +608,7 @@ class Third:
         while count:
             stop += 1
             count += (units[stop].base == r"\int") - self.is_differential(units, stop)
-        (x, _), behind = self.factor(units, stop + 1)
-        body = self.value(units[at + 1 : stop])[0]
+        other = self.within(show(units[stop + 1]).strip("\\★").replace("{", "").replace("}", ""))
+        (x, _), behind = other.factor(units, stop + 1)
+        body = other.value(units[at + 1 : stop])[0]
         return (FUNCTIONS["integral"](body, x, *ends), False), behind
