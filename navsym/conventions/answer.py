@@ -6,14 +6,24 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
+from navsym.claims.verdict import PROVED
 from navsym.conventions.card import Card
 from navsym.conventions.converting import Conversion, convert, print_matrix
 from navsym.conventions.measuring import RESET_MARK
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
 from navsym.conventions.reading import Problem, matrix_of
-from navsym.conventions.search import SIGNS, Block, Comparison, Mismatch, Outcome, find_candidates, find_nearest
-from navsym.conventions.search import list_blocks, plain_card
+from navsym.conventions.search import (
+    SIGNS,
+    Block,
+    Comparison,
+    Mismatch,
+    Outcome,
+    find_candidates,
+    find_nearest,
+    list_blocks,
+    plain_card,
+)
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
@@ -255,17 +265,13 @@ def describe_change(
     diagonal : what stands before the diagonal of the rows, a unit for the reset
     order    : of rows and columns, as they stand in the matrix
     """
-    from navsym.claims.verdict import PROVED
 
     def agrees(sign: str, turned: bool) -> bool:
-        pairs = (
-            (f"{sign}({written[j][i] if turned else written[i][j]})", expected[i][j])
-            for i in range(len(written))
-            for j in range(3)
-        )
-        return (not turned or len(written) == 3) and all(
-            prover.compare(plain_card(card), *pair).status == PROVED for pair in pairs
-        )
+        if turned and len(written) != 3:
+            return False
+        rows = [*zip(*written, strict=True)] if turned else written
+        pairs = ((f"{sign}({rows[i][j]})", expected[i][j]) for i in range(len(rows)) for j in range(3))
+        return all(prover.compare(plain_card(card), *pair).status == PROVED for pair in pairs)
 
     words = "write"
     for sign, turned, text in (

@@ -60,9 +60,8 @@ class Prover:
     def block_texts(self, card: Card, block: Block, sign: int) -> list[list[str]]:
         """The card's block in the user's names."""
         still = card.earth == "none" and card.earth_rate in (None, DROPPED) and card.vector_error != "rotated"
-        if still and not block[0].startswith(
-            (MEASURED_MARK, RESET_MARK)
-        ):  # without gravity among the terms a flat Earth that does not turn is an inertial frame
+        # Without gravity among the terms a flat Earth that does not turn is an inertial frame.
+        if still and not block[0].startswith((MEASURED_MARK, RESET_MARK)):
             names = ("attitude_error", "vector_error", "position_error")
             card = Card("inertial", **{name: getattr(card, name) for name in names}, **card.quaternion())
         return self.formulas(narrow_card(card, block[1])).block(*block, sign)
@@ -144,10 +143,8 @@ class Prover:
             rotation = euler_texts()
         if {"specific_force", "specific_force_body"} <= set(given):
             body = texts["specific_force_body"]
-            bind(
-                "specific_force",
-                [" + ".join(f"({rotation[3 * i + k]})*({body[k]})" for k in range(3)) for i in range(3)],
-            )
+            rows = [[f"({rotation[3 * i + k]})*({body[k]})" for k in range(3)] for i in range(3)]
+            bind("specific_force", [*map(" + ".join, rows)])
         flow, formulas = self.free_motion(card)
         vectors: dict[str, Any] = {}
         if card.frame == "local-level":
