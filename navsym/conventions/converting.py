@@ -278,7 +278,8 @@ def convert(
         pairs.append((G, multiply_texts(T, print_matrix(problem.G))))
     frozen = (freeze(M) for M in (T, inverse, rate, neglected, F, H, G, reset))
     is_proved = converter.is_proved(pairs)
-    return Conversion(source, target, *frozen, is_proved, problem, tuple(converter.prover.certificates))  # type: ignore[arg-type]
+    proofs = tuple(converter.prover.certificates)
+    return Conversion(source, target, *frozen, is_proved, problem, proofs)  # type: ignore[call-arg,arg-type]
 
 
 def print_matrix(M: Sequence[Sequence[Any]]) -> list[list[str]]:
