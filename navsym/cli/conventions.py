@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
 from navsym.cli.derive import aligned
 from navsym.cli.output import emit, table
@@ -29,7 +30,8 @@ def command(
 
     answer = nav.conventions(file, card=card)
     changes = {} if convert is None else values_of(convert, "--convert", "FIELD=WORD", "--convert attitude_error=body")
-    shown: Any = answer.convert(None, **changes) if changes else answer
+    with Progress("steps") as bar:
+        shown: Any = answer.convert(None, bar.follow, **changes) if changes else answer
     if html is not None:
         from navsym.language.files import write_text
         from navsym.report.conventions_page import conventions_page

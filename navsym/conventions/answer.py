@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
+from navsym.claims.verdict import PROVED
 from navsym.conventions.card import Card
 from navsym.conventions.converting import Conversion, convert, print_matrix
 from navsym.conventions.measuring import RESET_MARK
@@ -102,12 +103,15 @@ class Conventions(Answer):
     undecided: tuple[Card, ...] = ()
     proofs: tuple[Mapping[str, Any], ...] = ()
 
-    def convert(self, card: Card | None = None, **changes: str) -> Conversion:
+    def convert(
+        self, card: Card | None = None, progress: Callable[[int, int], None] = lambda done, of: None, **changes: str
+    ) -> Conversion:
         """The model in the errors of another card: T, F, H and G, proved on the text of the model.
 
-        card    : one of ``cards``; the first one unless it is given
-        changes : fields that define the errors, such as ``attitude_error="frame"``: also error, rotation_sign,
-                  bias_sign, angle, position_error, vector_error; everything else stays
+        card     : one of ``cards``; the first one unless it is given, which is that of the file where it has one
+        progress : called with (steps done, all steps)
+        changes  : fields that define the errors, such as ``attitude_error="frame"``: also error, rotation_sign,
+                   bias_sign, angle, position_error, vector_error; everything else stays
 
         Raises DomainError for another field, for a model without a card or with dropped blocks.
 
@@ -119,7 +123,7 @@ class Conventions(Answer):
         if not self.cards or (card is not None and card not in self.cards):
             message = "expected a card of the model; got none; mend the conflicts first, or take one of cards"
             raise DomainError(message, where="convert: card")
-        return convert(self.problem, card or self.cards[0], changes)
+        return convert(self.problem, card or self.cards[0], changes, progress)
 
     def model(self) -> dict[str, Any]:
         """F, and H, G and reset where there are any, as the table [model] of a file.
@@ -202,19 +206,8 @@ def find_conventions(problem: Problem) -> Conventions:
             alternatives = tuple(sets)[1:]
     examined = len(findings.candidates) + sum(outcome.count for outcome in findings.excluded)
     excluded = tuple(find_neighbours(cards, findings.excluded, comparison))
-    found = (
-        problem.name,
-        cards,
-        not undecided,
-        conflicts,
-        nearest,
-        alternatives,
-        excluded,
-        examined,
-        problem.unused,
-        problem,
-    )
-    return Conventions(*found, undecided, tuple(prover.certificates))
+    said = cards, not undecided, conflicts, nearest, alternatives, excluded, examined
+    return Conventions(problem.name, *said, problem.unused, problem, undecided, tuple(prover.certificates))
 
 
 def require_possible(excluded: Sequence[Outcome]) -> None:
@@ -239,14 +232,8 @@ def rank_outcome(outcome: Outcome) -> tuple[Any, ...]:
     biased = -sum(m.block == ("velocity", "accelerometer_bias") for m in outcome.mismatches)
     gyros = -sum(m.block == ("attitude", "gyro_bias") for m in outcome.mismatches)
     card = outcome.card
-    return (
-        biased,
-        gyros,
-        entries,
-        len(card.dropped),
-        card.vector_error != "difference",
-        card.error != "estimate - truth",
-    )
+    plain = card.vector_error != "difference", card.error != "estimate - truth"
+    return biased, gyros, entries, len(card.dropped), *plain
 
 
 def state_conflict(outcome: Outcome, mismatch: Mismatch, comparison: Comparison, prover: Prover) -> Conflict:
@@ -278,17 +265,13 @@ def describe_change(
     diagonal : what stands before the diagonal of the rows, a unit for the reset
     order    : of rows and columns, as they stand in the matrix
     """
-    from navsym.claims.verdict import PROVED
 
     def agrees(sign: str, turned: bool) -> bool:
-        pairs = (
-            (f"{sign}({written[j][i] if turned else written[i][j]})", expected[i][j])
-            for i in range(len(written))
-            for j in range(3)
-        )
-        return (not turned or len(written) == 3) and all(
-            prover.compare(plain_card(card), *pair).status == PROVED for pair in pairs
-        )
+        if turned and len(written) != 3:
+            return False
+        rows = [*zip(*written, strict=True)] if turned else written
+        pairs = ((f"{sign}({rows[i][j]})", expected[i][j]) for i in range(len(rows)) for j in range(3))
+        return all(prover.compare(plain_card(card), *pair).status == PROVED for pair in pairs)
 
     words = "write"
     for sign, turned, text in (

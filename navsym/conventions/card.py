@@ -176,15 +176,8 @@ def list_cartesian(frame: str, roles: frozenset[str], radii: int = 0, height: bo
     for (gradient, shape, radius), rate in product(gradients, rates):
         centrifugal: tuple[str | None, ...] = (KEPT, DROPPED) if rate == KEPT and metres else (None,)
         for kept in centrifugal:
-            yield Card(
-                frame,
-                earth=shape,
-                earth_rate=rate,
-                gravity_gradient=gradient,
-                gravity_radius=radius,
-                centrifugal=kept,
-                position_error=metres,
-            )
+            still = Card(frame, earth=shape, earth_rate=rate, centrifugal=kept, position_error=metres)
+            yield replace(still, gravity_gradient=gradient, gravity_radius=radius)
 
 
 def list_level(frame: str, azimuth: str, roles: frozenset[str], radii: int, height: bool) -> Iterator[Card]:

@@ -7,7 +7,7 @@ Then F_to T = T F + T', H_to T = H and G_to = T G.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -20,7 +20,7 @@ from navsym.conventions.mechanisation import ROLES, Mechanisation
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
 from navsym.conventions.reading import Problem, matrix_of
-from navsym.conventions.search import Comparison, change, list_cards, plain_card
+from navsym.conventions.search import TERMS, Comparison, change, list_cards, plain_card
 from navsym.conventions.symbols import Formulas
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
@@ -32,11 +32,6 @@ from navsym.language.printer import print_tree
 CONVERTED = (
     "error", "attitude_error", "angle", "rotation_sign", "bias_sign", "position_error", "vector_error", "axes",
     "azimuth", "frame",
-)  # fmt: skip
-#: Terms that a conversion may keep or drop within a frame; what that changes is ``neglected``.
-TERMS = (
-    "earth_rate", "transport_rate", "gravity_gradient", "gravity_radius", "centrifugal", "height_variation",
-    "radius_variation",
 )  # fmt: skip
 LONG = 400  # letters of a statement that are too many for the checker
 Texts = tuple[tuple[str, ...], ...]
@@ -54,6 +49,7 @@ class Conversion(Answer):
     F, H, G, reset : of the target; empty where the model has none; Q and R stay. In other axes or another frame a
                      measurement stays as it was resolved; the corrections of the reset are those of the target
     problem        : the model that was converted; ``export`` writes T and its inverse as code
+    proofs         : certificates of the entries that the checker granted; longer ones are decided by exact algebra
     proved         : True where the checker grants F_to T = T (F + neglected) + T', T inverse = E, H_to T = H and
                      G_to = T G
     """
@@ -70,6 +66,11 @@ class Conversion(Answer):
     reset: Texts
     proved: bool
     problem: Problem
+    proofs: tuple[Mapping[str, Any], ...] = ()
+
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """The certificates of single entries."""
+        return [*self.proofs]
 
     def document(self) -> dict[str, Any]:
         """The conversion as JSON data."""
@@ -147,11 +148,20 @@ def transform(way: Passage, role: str, component: int) -> dict[str, list[Any]]:
 class Converter:
     """The matrices of one conversion as texts in the user's names."""
 
-    def __init__(self, problem: Problem, source: Card, target: Card):
+    def __init__(
+        self, problem: Problem, source: Card, target: Card, progress: Callable[[int, int], None] = lambda done, of: None
+    ):
         self.problem, self.source, self.target = problem, source, target
         self.prover, self.comparison = Prover(problem), Comparison(problem)
         self.n = len(problem.states)
         self.formulas = Formulas(problem, plain_card(source))
+        roles = len(problem.roles)  # columns of T and its inverse, blocks of F, rows of what is proved
+        self.progress, self.done, self.steps = progress, 0, 6 * roles + roles * roles + 2 * self.n
+
+    def step(self) -> None:
+        """One more step is done."""
+        self.done += 1
+        self.progress(self.done, max(self.done, self.steps))
 
     def transformation(self, way: Passage, back: bool = False) -> tuple[list[list[str]], list[list[str]]]:
         """T and its rate, or its inverse; states without a role stay as they are."""
@@ -161,6 +171,7 @@ class Converter:
         signs = [self.source.signs(), self.target.signs()]
         for column, places in self.problem.roles.items():
             for k, j in enumerate(places):
+                self.step()
                 parts = transform(way, column, k)
                 for row, rows in self.problem.roles.items():
                     sign = signs[not back][row] * signs[back][column]
@@ -175,6 +186,7 @@ class Converter:
         moves = any(getattr(self.source, n) != getattr(self.target, n) for n in ("frame", "axes", "azimuth"))
 
         def sign(block: tuple[str, str]) -> int:
+            self.step()
             if block[1].startswith(NOISE_MARK):  # the sign of a noise is that of the model as it was
                 return signs[block[0]] * own[block[0]] * self.comparison.block_sign(self.source, block)
             return self.comparison.block_sign(self.target, block)
@@ -203,19 +215,16 @@ class Converter:
 
     def is_proved(self, pairs: Sequence[tuple[list[list[str]], list[list[str]]]]) -> bool:
         """True where matrices are equal, entry by entry."""
-        return all(
-            x == y or self.is_equal(x, y)
-            for left, right in pairs
-            for rows in zip(left, right, strict=True)
-            for x, y in zip(*rows, strict=True)
-        )
+        for rows in (rows for pair in pairs for rows in zip(*pair, strict=True)):
+            self.step()
+            if not all(x == y or self.is_equal(x, y) for x, y in zip(*rows, strict=True)):
+                return False
+        return True
 
     def is_equal(self, x: str, y: str) -> bool:
         """True where the checker grants that formulas are equal, or exact algebra where they are long."""
-        if len(x) + len(y) > LONG:
-            left, right = self.formulas.read(x), self.formulas.read(y)
-            if left is not None and right is not None and self.formulas.write(left - right) == "0":
-                return True
+        if len(x) + len(y) > LONG and self.formulas.agree(x, y):
+            return True
         return self.prover.compare(plain_card(self.source), x, y).status == PROVED
 
 
@@ -243,10 +252,15 @@ def add_texts(A: list[list[str]], B: list[list[str]]) -> list[list[str]]:
     ]
 
 
-def convert(problem: Problem, source: Card, changes: Mapping[str, str]) -> Conversion:
+def convert(
+    problem: Problem,
+    source: Card,
+    changes: Mapping[str, str],
+    progress: Callable[[int, int], None] = lambda done, of: None,
+) -> Conversion:
     """The model of a problem, which is right under ``source``, in the errors of another card."""
     target, whole = read_target(source, changes, problem)
-    converter = Converter(problem, whole, target)
+    converter = Converter(problem, whole, target, progress)
     flow = Mechanisation(plain_card(whole), converter.formulas.world)
     way = Passage(flow, carry_motion(flow, plain_card(target)))
     (T, rate), (inverse, _) = converter.transformation(way), converter.transformation(way, back=True)
@@ -263,7 +277,9 @@ def convert(problem: Problem, source: Card, changes: Mapping[str, str]) -> Conve
     if G:
         pairs.append((G, multiply_texts(T, print_matrix(problem.G))))
     frozen = (freeze(M) for M in (T, inverse, rate, neglected, F, H, G, reset))
-    return Conversion(source, target, *frozen, proved=converter.is_proved(pairs), problem=problem)  # type: ignore[misc,arg-type]
+    is_proved = converter.is_proved(pairs)
+    proofs = tuple(converter.prover.certificates)
+    return Conversion(source, target, *frozen, is_proved, problem, proofs)  # type: ignore[call-arg,arg-type]
 
 
 def print_matrix(M: Sequence[Sequence[Any]]) -> list[list[str]]:

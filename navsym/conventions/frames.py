@@ -151,12 +151,8 @@ def carry_motion(source: Mechanisation, card: Card) -> Mechanisation:
     same: dict[str, Any] = {"C": values_of(multiply(A, source.truth().attitude)), "seen": rotate_vector(A, world.seen)}
     if not moves:
         transport = None if world.transport is None else rotate_vector(A, world.transport)
-        vectors: dict[str, Any] = {
-            "v": rotate_vector(A, world.v),
-            "r": rotate_vector(A, world.r),
-            "transport": transport,
-        }
-        return Mechanisation(card, replace(world, **same, **vectors))
+        same |= {"v": rotate_vector(A, world.v), "r": rotate_vector(A, world.r), "transport": transport}
+        return Mechanisation(card, replace(world, **same))
     _, truth = way.to_earth(source.truth(), source.truth())
     at, velocity = ([Nilpotent(x.value) for x in vector] for vector in (truth.position, truth.velocity))
     gravity, W = apply(axes_of(source), source.gravity(source.truth())), way.spin()

@@ -12,7 +12,7 @@ from dataclasses import fields
 from functools import cache
 from typing import Any
 
-from navsym.conventions.card import CHOICES, Card
+from navsym.conventions.card import CHOICES, NORTH, Card
 from navsym.conventions.measuring import CORRECTED, MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
 from navsym.conventions.mechanisation import BIASES, Mechanisation
 from navsym.conventions.reading import Problem, matrix_of, read_known, read_problem
@@ -41,6 +41,8 @@ def fill_model(document: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     model = as_table(document.get("model", {}), join_place(where, "model"))
     if "F" in model:
         return {**rest, "known": {**as_table(document.get("known", {}), join_place(where, "known")), **words}}
+    if words.get("azimuth") == NORTH and "wander_angle" in as_table(rest.get("quantities", {}), where):
+        rest["known"] = {"azimuth": NORTH}  # the angle is for conversions
     problem = read_problem({**rest, "model": empty_model(rest, model)}, where)
     card = choose_card(problem, words, place)
     formulas = Formulas(problem, plain_card(card))

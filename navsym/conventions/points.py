@@ -207,7 +207,7 @@ class Sampler:
         if {"latitude", "longitude", "radii"} <= set(given) and not level:
             turn = angle if card.frame == "inertial" else (arb(0), arb(1))
             normal = turn_about_pole(turn, (-cosine * meridian[1], -cosine * meridian[0], -sine))
-            r = turn_about_pole(turn, locate(sine, cosine, meridian, h, RN, RE)) if "position" in given else None
+            r = turn_about_pole(turn, locate(sine, cosine, meridian, h, RN, RE))
         r = self.vector("position") if r is None else self.settle("position", r)
         radius = sum((x * x for x in r), arb(0)).sqrt()
         earth = self.rotation_of_earth(sine, cosine, level)
@@ -273,6 +273,8 @@ class Sampler:
             return pull, self.settle("gravity", wanted)
         parameter = self.card.gravity_gradient == "central" and "gravitational_parameter" in self.problem.quantities
         size_of = self.settle("gravity", [pull * radius] if parameter else None, 0.5, 3.0)[0]
+        if self.card.gravity_gradient == "normal":
+            return pull, [size_of * x for x in normal]
         if size == 1 and "gravitational_parameter" not in self.problem.quantities:
             pull = size_of / radius
         return pull, add_centrifugal(self.card, [-size_of * x / radius for x in r], earth, r)

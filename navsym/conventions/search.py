@@ -77,9 +77,10 @@ def plain_card(card: Card) -> Card:
 def narrow_card(card: Card, role: str) -> Card:
     """The card without the fields that have no influence on the columns of a role (a test compares them)."""
     plain = replace(plain_card(card), innovation=None, **card.quaternion())
-    if role == "position":
-        return plain
     level = card.frame == "local-level"
+    turned = role == "attitude" and card.vector_error == "rotated" and not level  # the position turns with the attitude
+    if role == "position" or turned:
+        return plain
     if role in BIASES or role.startswith(NOISE_MARK):
         plain = replace(plain, angle=None, earth_rate=None, transport_rate=None)
     if role == "attitude" and card.vector_error != "rotated":
@@ -124,7 +125,7 @@ class Comparison:
     def sign(self, card: Card, block: Block, sign: int) -> Mismatch | None:
         """The first point that tells the user's block from ``sign`` times the card's, with all entries that differ."""
         if block[0] in BIASES and block[1] in BIASES:
-            return self.bias_block(block)
+            return self.bias_block(block, key_of_points(card))
         return self.signs(narrow_card(card, block[1]), key_of_points(card), block, sign)
 
     def compare(self, card: Card, key: Card, block: Block, sign: int) -> Mismatch | None:
@@ -142,10 +143,10 @@ class Comparison:
                 return Mismatch(block, tuple(wrong), number)
         return None
 
-    def bias_block(self, block: Block) -> Mismatch | None:
+    def bias_block(self, block: Block, key: Card) -> Mismatch | None:
         """What no bias may do: depend on another one or on the motion, or grow where its constants have known signs."""
         moving = {name for trees in self.problem.quantities.values() for name in list_names(*trees)}
-        values = self.point(Card("inertial"), 0).values
+        values = self.point(key, 0).values
         wrong = []
         for i, j in product(*(range(3) for _ in range(2))):
             tree = self.problem.block(*block)[i][j]
@@ -246,7 +247,7 @@ def list_problem_structures(problem: Problem, frames: tuple[str, ...] = CHOICES[
     """Every card without its signs that a model with these roles and quantities may have."""
     given = problem.quantities
     placed = {"latitude", "longitude"} <= set(given)
-    azimuth = WANDER if "wander_angle" in given else NORTH
+    azimuth = WANDER if "wander_angle" in given and problem.known.get("azimuth") != NORTH else NORTH
     sizes = len(given.get("radii", ())), frames, "height" in given, placed, azimuth, "quaternion" in given
     return list_structures(frozenset(problem.roles), *sizes)
 
@@ -336,25 +337,21 @@ def is_same(x: Any, y: Any) -> bool:
     return difference == 0 if type(difference) is int else bool(difference.contains(0))
 
 
-FREE_FIELDS = (
-    "earth_rate",
-    "transport_rate",
-    "gravity_gradient",
-    "gravity_radius",
-    "centrifugal",
-    "height_variation",
+#: Terms of a card that a model may keep or drop within a frame.
+TERMS = (
+    "earth_rate", "transport_rate", "gravity_gradient", "gravity_radius", "centrifugal", "height_variation",
     "radius_variation",
-)
+)  # fmt: skip
 
 
 def keep_simplest(cards: Sequence[Card]) -> list[Card]:
     """Of cards with the same conventions those that drop least: fewest blocks, then fewest terms."""
 
     def convention(card: Card) -> Card:
-        return change(card, {**dict.fromkeys(FREE_FIELDS), "dropped": ()})
+        return change(card, {**dict.fromkeys(TERMS), "dropped": ()})
 
     def cost(card: Card) -> tuple[int, int]:
-        return len(card.dropped), sum(getattr(card, name) == DROPPED for name in FREE_FIELDS)
+        return len(card.dropped), sum(getattr(card, name) == DROPPED for name in TERMS)
 
     best: dict[Card, Card] = {}
     for card in cards:

@@ -107,7 +107,10 @@ class Formulas:
         if self.derived and RN is RE:
             radius = RN + h
         earth = self.earth_rate(sine, cosine, axes_rows(card, *wander))
-        pull, gravity = self.gravitation(r, radius)
+        east, ahead = circles[0]
+        spin = circles[1] if card.frame == "inertial" else (0, 1)
+        normal = turn_about_pole(spin, [cosine * ahead * -1, cosine * east * -1, sine * -1])
+        pull, gravity = self.gravitation(r, radius, normal)
         gravity = add_centrifugal(card, gravity, earth, r)
         mean = self.symbol("mean", f"sqrt(({self.texts['RN']})*({self.texts.get('RE', self.texts['RN'])}))")
         w, v, slope = self.vector("w", "angular_rate"), self.vector("v", "velocity"), self.text("radius_slope")
@@ -138,7 +141,7 @@ class Formulas:
         RE = self.symbol("RE", self.text("radii", 1))
         return RN, RE, self.symbol("third", self.text("radii", 2)) if count == 3 else RE
 
-    def gravitation(self, r: list[Ratio], radius: Ratio) -> tuple[Ratio, list[Ratio]]:
+    def gravitation(self, r: list[Ratio], radius: Ratio, normal: list[Ratio]) -> tuple[Ratio, list[Ratio]]:
         """mu/|r|^3, and gravity in the frame or along down."""
         size = len(self.problem.quantities.get("gravity", ()))
         central = self.card.gravity_gradient == "central"
@@ -154,6 +157,8 @@ class Formulas:
         if central and "gravitational_parameter" in self.problem.quantities:
             return pull, [pull * x * -1 for x in r]
         scalar = self.symbol("gravity", self.text("gravity"))
+        if self.card.gravity_gradient == "normal":
+            return pull, [scalar * x for x in normal]
         if size == 1 and "gravitational_parameter" not in self.problem.quantities:
             pull = scalar / radius
         return pull, [scalar * x / radius * -1 for x in r]
@@ -208,6 +213,11 @@ class Formulas:
             return sum(inner[1:], inner[0]) if part.head == SUM else prod(inner[1:], start=inner[0])
 
         return fold_tree(read_tree(text, None), step)
+
+    def agree(self, left: str, right: str) -> bool:
+        """True where formulas are equal by exact algebra modulo the relations of the quantities."""
+        pair = self.read(left), self.read(right)
+        return None not in pair and self.write(pair[0] - pair[1]) == "0"
 
     def write(self, value: Any, sign: int = 1) -> str:
         """A coefficient in the user's names."""

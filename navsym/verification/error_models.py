@@ -93,6 +93,9 @@ def conventions(
     problem = read_problem(fill_model(document, where) if "card" in document else document, where)
     require_known(problem, join_place(where, "known"))
     answer = find_conventions(problem)
+    words = as_table(document.get("card", {}), where).items()
+    cards = sorted(answer.cards, key=lambda found: sum(getattr(found, name) != word for name, word in words))
+    answer = replace(answer, cards=tuple(cards))  # the card of the file is first: conversions start from it
     return answer if code is None else code.point_out(answer)
 
 
