@@ -14,7 +14,7 @@ from navsym import checker
 from navsym.claims.display import write_card, write_table
 from navsym.core.answers import Answer, Answers
 from navsym.core.errors import DomainError, EmptyError, NavsymError
-from navsym.export.coq.replay import Replay, replay, require_kernel
+from navsym.export.replay import Replay, replay, require_kernel
 from navsym.export.roundtrip import check_export
 from navsym.language.files import decode
 from navsym.language.names import quote
@@ -108,7 +108,7 @@ def check(
     items    : paths of certificates (JSON), of the ``certificates.json`` that ``verify`` keeps, of exported folders or
                of folders of either; certificates as plain data; answers, of which every certificate is replayed
     kernel   : ``"coq"`` has Coq prove the statement of every accepted certificate as well, from a theory in ``out``;
-               UNWRITTEN and FAILED say that no theory, or no proof, is found, and count as not confirmed
+               ``"ocaml"`` asks the second checker; UNWRITTEN and FAILED count as not confirmed
     out      : folder of the theories; default: beside the certificate's file, build/coq for answers
     progress : called with (done, all, name) after each
 

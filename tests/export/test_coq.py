@@ -14,8 +14,7 @@ import pytest
 import navsym as nav
 from navsym import checker
 from navsym.core.errors import DomainError, MissingEngineError
-from navsym.export import processes
-from navsym.export.coq import replay
+from navsym.export import processes, replay
 from navsym.export.coq.theory import write_theory
 
 needs_coq = pytest.mark.skipif(shutil.which("coqc") is None, reason="no coqc on this machine")
