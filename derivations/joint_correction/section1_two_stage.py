@@ -2,7 +2,8 @@
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, Finding, claim, fact
+from navsym.claims import PROVED, Equation, Finding, claim, fact, state
+from navsym.language.expression import to_text
 from navsym.models.linear import LinearModel
 from navsym.observability.splits import companion, last_row
 from navsym_papers.joint_correction.matrices import exact_inverse, unit_row
@@ -187,14 +188,29 @@ def characteristic_polynomial_factors():
 @claim("1.two_stage.separate")
 def first_stage_ignores_the_second():
     """x° does not depend on sigma_2, z° nor K_z: the first rows of the closed loop contain none of them."""
-    found = True
+    found, meaning = True, list[dict]()
     for m, rest in PAIRS:
         b = blocks(m, rest)
         rows = closed_loop(b)[:m, :]
+        meaning += say_free(rows[:, :m], rows[:, m:], b["Kz"])
         found = found and not rows[:, m:].free_symbols and not any(rows.has(s) for s in b["Kz"])
         found = found and all(value == 0 for value in rows[:, m:])
-    method, unsaid = "entries of the closed loop", "which symbols a formula has is read off it, not its value"
-    return fact(True, found, method, PROVED, scope=f"(m, n - m) in {PAIRS}, all coefficients", unsaid=unsaid)
+    scope = f"(m, n - m) in {PAIRS}, all coefficients"
+    return fact(True, found, "entries of the closed loop", PROVED, scope=scope, meaning=meaning)
+
+
+def say_free(rows: sp.Matrix, beyond: sp.Matrix, gains: sp.Matrix) -> list[dict]:
+    """That the derivatives of rows by all gains are zero, and so is what stands beyond them."""
+    names = sorted({s.name for s in (*rows.free_symbols, *beyond.free_symbols, *gains.free_symbols)})
+    symbols = {name: [None, None, []] for name in names}
+
+    def write(matrix: sp.Matrix) -> str:
+        return "[" + ", ".join(f"[{', '.join(map(to_text, row))}]" for row in matrix.tolist()) + "]"
+
+    (m, n), width = rows.shape, beyond.cols
+    slopes = [state(f"diff({write(rows)}, {gain})", "=", f"zeros({m}, {n})", symbols) for gain in gains]
+    used = {s: symbols[s] for s in symbols if s in {x.name for x in beyond.free_symbols}}
+    return [*slopes, state(write(beyond), "=", f"zeros({m}, {width})", used)]
 
 
 @claim("1.two_stage.influence")

@@ -31,13 +31,12 @@ from navsym_papers.joint_correction.inertial import (
     full_model,
     lowest_order,
     position_group,
+    say_orders,
     truncate,
     velocity_group,
 )
 from navsym_papers.joint_correction.kinematics import ALPHA, BETA, EPSILON
 from navsym_papers.joint_correction.section1_systems import say_ranks
-
-ORDER_ONLY = "orders of terms in a small parameter are compared, not values"
 
 mu = MU
 a1, a2 = ALPHA[:2]
@@ -233,11 +232,13 @@ def neglected_terms():
 
     No lower, and nothing of higher order either.
     """
-    orders = {term.order for group in (velocity(), position()) for row_ in group.dropped for term in row_}
+    dropped = [term for group in (velocity(), position()) for row_ in group.dropped for term in row_]
+    orders = {term.order for term in dropped}
     method = "bookkeeping of every monomial"
     scope = "alpha, pi, epsilon, nu, w of order rho; beta, gamma of order rho/mu; d omega/d tau of order mu"
-    evidence = f"{sum(len(r) for g in (velocity(), position()) for r in g.dropped)} terms, listed by the model"
-    return fact((2,), tuple(sorted(orders)), method, PROVED, scope=scope, evidence=evidence, unsaid=ORDER_ONLY)
+    evidence = f"{len(dropped)} terms, listed by the model"
+    meaning = [say_orders([(term.term, 2) for term in dropped], ORDERS)]
+    return fact((2,), tuple(sorted(orders)), method, PROVED, scope=scope, evidence=evidence, meaning=meaning)
 
 
 @claim("2.8.inhomogeneous")
@@ -247,22 +248,31 @@ def inhomogeneous_terms():
     orders = {lowest_order(term, ORDERS) for term in forcing if term != 0}
     found = tuple(sorted(orders)) if {truncate(term, ORDERS, 2).dropped for term in forcing} == {()} else None
     method = "bookkeeping of every monomial"
-    return fact((1,), found, method, PROVED, scope="orders as declared in 2.8.neglected", unsaid=ORDER_ONLY)
+    meaning = [say_order_one(*(term for term in forcing if term != 0))]
+    return fact((1,), found, method, PROVED, scope="orders as declared in 2.8.neglected", meaning=meaning)
+
+
+def say_order_one(*forcing: sp.Expr) -> dict:
+    """That all monomials have the order mu."""
+    return say_orders([(term, 1) for value in forcing for term in sp.Add.make_args(sp.expand(value))], ORDERS)
+
+
+def order_one(term: sp.Expr) -> Property:
+    """That a term has the order mu."""
+    return fact(1, lowest_order(term, ORDERS), "bookkeeping of every monomial", PROVED, meaning=[say_order_one(term)])
 
 
 inhomogeneous_term_as_printed = claim(
     "2.9.inhomogeneous_printed",
     "The printed inhomogeneous term mu omega_2 beta_3 of y_2 has the order mu (times rho).",
-    lambda: fact(1, lowest_order(mu * w2 * b3, ORDERS), "bookkeeping of every monomial", PROVED, unsaid=ORDER_ONLY),
+    lambda: order_one(mu * w2 * b3),
     slip="scan",
     reason=DOT,
 )
 inhomogeneous_term = claim(
     "2.9.inhomogeneous_printed*",
     "With the derivative of omega the inhomogeneous term of y_2 has the order mu (times rho).",
-    lambda: fact(
-        1, lowest_order(position().linear()[2][1], ORDERS), "bookkeeping of every monomial", PROVED, unsaid=ORDER_ONLY
-    ),
+    lambda: order_one(position().linear()[2][1]),
 )
 
 
