@@ -3,11 +3,10 @@
 import sympy as sp
 
 from navsym.claims import PROVED, Equation, Finding, claim, fact, state
-from navsym.language.expression import to_text
 from navsym.models.linear import LinearModel
 from navsym.observability.splits import companion, last_row
-from navsym_papers.joint_correction.matrices import exact_inverse, unit_row
-from navsym_papers.joint_correction.section1_chains import SIZES, characteristic, coefficients, rank_of
+from navsym_papers.joint_correction.matrices import exact_inverse, unit_row, write_matrix
+from navsym_papers.joint_correction.section1_chains import SIZES, characteristic, coefficients, rank_of, say_affine
 from navsym_papers.joint_correction.section1_systems import (
     System,
     coefficients_of_polynomial,
@@ -159,20 +158,19 @@ PAIRS = ((1, 1), (2, 1), (1, 2), (2, 2), (3, 2))
 @claim("1.11.gain_unique")
 def second_gain_is_unique():
     """Prescribed roots of |pE - G_z2 + K_z g_z^T| determine K_z uniquely."""
-    found = True
+    found, meaning = True, list[dict]()
     for size in (1, 2, 3):
         phi = sp.symbols(f"phi1:{size + 1}", real=True)
         C2 = free("z", size)
         G = C2 * companion(phi) * exact_inverse("C2", C2)
         K = sp.Matrix(k[:size])
-        jacobian = sp.Matrix(coefficients_of_polynomial(G - K * unit_row(size) * exact_inverse("C2", C2))[1:]).jacobian(
-            K
-        )
+        values = coefficients_of_polynomial(G - K * unit_row(size) * exact_inverse("C2", C2))[1:]
+        jacobian = sp.Matrix(values).jacobian(K)
+        meaning += say_affine(values, K, C2.det())
         found = found and rank_of(jacobian) == size and not any(jacobian.has(symbol) for symbol in K)
     method = "the coefficients are affine in K_z with an invertible matrix"
     scope = "n - m = 1, 2, 3, all phi"
-    unsaid = "that a map is affine and invertible is said of all its values at once"
-    return fact(True, found, method, PROVED, scope=scope, assumptions=("det C_2 != 0",), unsaid=unsaid)
+    return fact(True, found, method, PROVED, scope=scope, assumptions=("det C_2 != 0",), meaning=meaning)
 
 
 @claim("1.11.characteristic")
@@ -204,13 +202,10 @@ def say_free(rows: sp.Matrix, beyond: sp.Matrix, gains: sp.Matrix) -> list[dict]
     names = sorted({s.name for s in (*rows.free_symbols, *beyond.free_symbols, *gains.free_symbols)})
     symbols = {name: [None, None, []] for name in names}
 
-    def write(matrix: sp.Matrix) -> str:
-        return "[" + ", ".join(f"[{', '.join(map(to_text, row))}]" for row in matrix.tolist()) + "]"
-
     (m, n), width = rows.shape, beyond.cols
-    slopes = [state(f"diff({write(rows)}, {gain})", "=", f"zeros({m}, {n})", symbols) for gain in gains]
+    slopes = [state(f"diff({write_matrix(rows)}, {gain})", "=", f"zeros({m}, {n})", symbols) for gain in gains]
     used = {s: symbols[s] for s in symbols if s in {x.name for x in beyond.free_symbols}}
-    return [*slopes, state(write(beyond), "=", f"zeros({m}, {width})", used)]
+    return [*slopes, state(write_matrix(beyond), "=", f"zeros({m}, {width})", used)]
 
 
 @claim("1.two_stage.influence")

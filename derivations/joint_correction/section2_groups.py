@@ -10,7 +10,8 @@ from functools import cache
 
 import sympy as sp
 
-from navsym.claims import PROVED, Claim, Equation, Finding, Property, claim, fact
+from navsym.claims import PROVED, Claim, Equation, Finding, Property, claim, fact, state
+from navsym.language.expression import to_text
 from navsym.observability.chains import observe_jointly
 from navsym.observability.rank_drops import find_drops
 from navsym_papers.joint_correction.inertial import (
@@ -36,6 +37,7 @@ from navsym_papers.joint_correction.inertial import (
     velocity_group,
 )
 from navsym_papers.joint_correction.kinematics import ALPHA, BETA, EPSILON
+from navsym_papers.joint_correction.matrices import write_matrix
 from navsym_papers.joint_correction.section1_systems import say_ranks
 
 mu = MU
@@ -283,6 +285,35 @@ def rank_and_drops(group: Group) -> tuple[int, tuple[str, ...]]:
     return found.joint_dimension, conditions
 
 
+def say_observable(group: Group, rank: int, unseen: tuple[sp.Expr, ...]) -> list[dict]:
+    """That sums of H F^k from the left are d eye(n), and that F keeps vectors N, H N = 0, at unseen values of mu u_3.
+
+    The rank is n where the determinant d is not zero; it drops where such vectors exist.
+    """
+    F, H = map(sp.Matrix, group.linear()[:2])
+    powers = [(H * F**k).applyfunc(sp.expand) for k in range(rank // H.rows)]
+    seen = sp.Matrix.vstack(*powers)
+    shares = seen.adjugate().applyfunc(sp.expand)
+    F_text, H_text, d = write_matrix(F), write_matrix(H), to_text(sp.factor(seen.det()))
+    parts = [
+        " @ ".join([write_matrix(shares[:, k * H.rows : (k + 1) * H.rows]), H_text, *[F_text] * k])
+        for k in range(len(powers))
+    ]
+    symbols = {s.name: [None, None, []] for s in sorted(F.free_symbols | H.free_symbols, key=str)}
+    said = [state(" + ".join(parts), "=", f"({d})*eye({rank})", symbols)]
+    for value in unseen:
+        there = {u3: value / mu}
+        N = sp.Matrix.hstack(*seen.subs(there).nullspace())
+        M = (N.T * N).inv() * N.T * F * N
+        other = {"mu": ["0", None, ["open-low"]]}
+        said.append(
+            state(f"{write_matrix(H.subs(there))} @ {write_matrix(N)}", "=", f"zeros({H.rows}, {N.cols})", other)
+        )
+        said.append(state(f"{F_text} @ {write_matrix(N)}", "=", f"{write_matrix(N)} @ {write_matrix(M)}"))
+        said.append(state(to_text(sum(x**2 for x in N)), ">", "0"))
+    return said
+
+
 velocity_group_is_observable = claim(
     "2.8.observable",
     "x_1 ... x_6 are observable by velocity information, except where mu u_3 = 1 or -1.",
@@ -292,7 +323,7 @@ velocity_group_is_observable = claim(
         "fraction-free rank, all split determinants",
         PROVED,
         scope="homogeneous part of (2.8)",
-        unsaid="that a rank drops nowhere else is said of all points at once",
+        meaning=say_observable(velocity(), 6, (sp.Integer(-1), sp.Integer(1))),
     ),
 )
 position_group_is_observable = claim(
@@ -304,7 +335,7 @@ position_group_is_observable = claim(
         "fraction-free rank, a split determinant that is a number",
         PROVED,
         scope="homogeneous part of (2.9)",
-        unsaid="that a rank drops nowhere is said of all points at once",
+        meaning=say_observable(position(), 8, ()),
     ),
 )
 # mu -> 0 in the motion, mu beta is kept; u_1, u_2, u_3 are arbitrary.

@@ -16,7 +16,6 @@ import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cache
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -32,14 +31,13 @@ REMEDIES = {
     "ocaml": "expected OCaml with its library zarith; got no compiler that has it; install the packages ocaml-nox, "
     "ocaml-findlib and libzarith-ocaml-dev of Debian, or zarith of opam",
 }
-#: Files of the second checker, in the order in which they need each other.
-MODULES = tuple(
-    "text tree ball value algebra calculus goal cones rules language statement condition observability gap bounds "
-    "sized words checker".split()
+#: The second checker, in the order in which its files need each other.
+SOURCES = tuple(
+    Path(__file__).with_name("ocaml") / f"{name}.ml"
+    for name in "text tree ball value algebra calculus goal cones rules language statement condition observability gap "
+    "bounds sized words checker".split()
 )
 COMPILE = "ocamlfind ocamlopt -w +a-4-9-40-41-42-44-45-70 -package zarith -linkpkg".split()
-#: What its exit status says.
-ANSWERS = {0: "PROVED", 1: "FAILED", 2: "UNWRITTEN"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,22 +91,17 @@ def ocaml_version() -> str | None:
     _, folder = processes.run(["ocamlfind", "query", "zarith"], Path())
     if not Path(folder.strip() or "absent", "z.cmi").is_file():  # its running part alone has none
         return None
-    return key_of(platform.machine(), *(path.read_text("utf-8") for path in list_sources()))[:12]
+    return key_of(platform.machine(), *(path.read_text("utf-8") for path in SOURCES))[:12]
 
 
-def list_sources() -> list[Path]:
-    """The files of the second checker."""
-    return [Path(str(files("navsym.export.ocaml").joinpath(f"{name}.ml"))) for name in MODULES]
-
-
-def build_checker(folder: Path) -> tuple[Path, str]:
-    """The second checker, compiled in a folder, and what the compiler said; raises MissingEngineError without it."""
-    for source in list_sources():
+def build_checker(folder: Path) -> str:
+    """Compile the second checker to ``checker`` in a folder; what the compiler said, or MissingEngineError."""
+    for source in SOURCES:
         shutil.copy(source, folder)
-    status, said = processes.run([*COMPILE, *(f"{name}.ml" for name in MODULES), "-o", "checker"], folder)
+    status, said = processes.run([*COMPILE, *(source.name for source in SOURCES), "-o", "checker"], folder)
     if status != 0:
         raise MissingEngineError(f"{REMEDIES['ocaml']} ({' '.join(said.split()[-20:])})", where="kernel")
-    return folder / "checker", said
+    return said
 
 
 def find_checker(version: str) -> Path:
@@ -118,7 +111,8 @@ def find_checker(version: str) -> Path:
         if not program.is_file():
             program.parent.mkdir(parents=True, exist_ok=True)
             with tempfile.TemporaryDirectory(dir=program.parent) as folder:
-                os.replace(build_checker(Path(folder))[0], program)
+                build_checker(Path(folder))
+                os.replace(Path(folder, "checker"), program)
     except OSError as error:
         message = f"expected a cache that can be written; got '{error.strerror}'; set NAVSYM_CACHE to another folder"
         raise OutputError(message, where=str(program)) from error
@@ -139,8 +133,7 @@ def replay(certificate: Mapping[str, Any], file: Path, kernel: str = "coq") -> R
     except DomainError as error:
         text, row = "", Replay(kernel, version, "UNWRITTEN", why=error.message)
     else:
-        row = recall(kernel, certificate, key_of(version, text))
-        row = row or (ask_coq(text, version) if kernel == "coq" else ask_ocaml(text, version))
+        row = recall(kernel, certificate, key_of(version, text)) or ask(kernel, version, text)
         if kernel == "coq":
             file.write_text(text, "utf-8")
             row = replace(row, file=str(file))
@@ -151,36 +144,28 @@ def replay(certificate: Mapping[str, Any], file: Path, kernel: str = "coq") -> R
 def recall(kernel: str, certificate: Mapping[str, Any], content: str) -> Replay | None:
     """What the same version proved of the same text before."""
     (known,) = read_outcomes(kernel, [certificate])
-    if known is None or known.pop("content") != content or known["status"] != "PROVED":
+    if known is None or known.pop("content", None) != content or known["status"] != "PROVED":
         return None
     return Replay(**known | {"axioms": tuple(known["axioms"])})
 
 
-def ask_coq(text: str, version: str) -> Replay:
-    """Have Coq compile a theory."""
+def ask(kernel: str, version: str, text: str) -> Replay:
+    """Have Coq compile a theory, or the second checker look at a certificate."""
+    name = "theory.v" if kernel == "coq" else "certificate.json"
+    command = ["coqc", "-q"] if kernel == "coq" else [str(find_checker(version))]
     began = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
-        Path(folder, "theory.v").write_text(text, "utf-8")
-        status, output = processes.run(["coqc", "-q", "theory.v"], Path(folder))
+        Path(folder, name).write_text(text, "utf-8")
+        status, said = processes.run([*command, name], Path(folder))
     seconds = round(time.perf_counter() - began, 2)
     if status != 0:
-        return Replay("coq", version, "FAILED", seconds=seconds, why=" ".join(output.split()[-30:]) or "no words")
-    return Replay("coq", version, "PROVED", read_axioms(output), seconds)
+        answer = "UNWRITTEN" if (kernel, status) == ("ocaml", 2) else "FAILED"
+        why = " ".join(said.split()[-30:]) or "it ended without a word"
+        return Replay(kernel, version, answer, seconds=seconds, why=why)
+    return Replay(kernel, version, "PROVED", read_axioms(said), seconds)
 
 
 def read_axioms(output: str) -> tuple[str, ...]:
     """Names after the line ``Axioms:``; a name starts its line."""
     _, _, listed = output.partition("Axioms:\n")
     return tuple(dict.fromkeys(re.findall(r"^([A-Za-z_][\w.']*)(?=\s*(?::|$))", listed, re.M)))
-
-
-def ask_ocaml(text: str, version: str) -> Replay:
-    """The second checker's answer to the text of a certificate."""
-    program, began = find_checker(version), time.perf_counter()
-    with tempfile.TemporaryDirectory() as folder:
-        Path(folder, "certificate.json").write_text(text, "utf-8")
-        status, said = processes.run([str(program), "certificate.json"], Path(folder))
-    seconds = round(time.perf_counter() - began, 2)
-    return Replay(
-        "ocaml", version, ANSWERS.get(status, "FAILED"), seconds=seconds, why="" if status == 0 else said.strip()
-    )
