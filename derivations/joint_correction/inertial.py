@@ -8,11 +8,15 @@ and terms of order mu^2 rho are dropped, each of them on record.
 Kalenova, Morozov, Parusnikov, Shakot'ko 1979, (2.6)-(2.9).
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import sympy as sp
 
+from navsym.claims import state
+from navsym.language.expression import to_text
 from navsym.models.linear import LinearModel
 from navsym_papers.joint_correction import kinematics as physical
 from navsym_papers.joint_correction.kinematics import ALPHA, BETA, EPSILON, ErrorEquations, error_equations
@@ -65,6 +69,23 @@ def lowest_order(expression: sp.Expr, orders: Mapping[sp.Symbol, int]) -> int | 
     """The smallest order of a monomial; None for zero."""
     terms = [t for t in sp.Add.make_args(sp.expand(expression)) if t != 0]
     return min((monomial_order(t, orders) for t in terms), default=None)
+
+
+def say_orders(terms: Sequence[tuple[sp.Expr, int]], orders: Mapping[sp.Symbol, int], least: int = 0) -> dict[str, Any]:
+    """That every monomial is mu to its order times what has none, where each symbol is mu to its own order."""
+    powers = {symbol.name: order for symbol, order in orders.items() if symbol != MU}
+
+    def declare(name: re.Match[str]) -> str:
+        return f"({name[0]}*mu**({powers[name[0]]}))" if name[0] in powers else name[0]
+
+    texts = [to_text(term) for term, _ in terms]
+    left = [re.sub(r"\b[A-Za-z]\w*", declare, text) for text in texts]
+    right = [f"mu**{order - least}*({to_text(term.subs(MU, 1))})" for term, order in terms]
+    symbols = {
+        name: ["0", None, ["open-low"]] for name in sorted({s.name for term, _ in terms for s in term.free_symbols})
+    }
+    sides = f"[{', '.join(left)}]", f"mu**{least}*[{', '.join(right)}]"
+    return state(sides[0], "=", sides[1], symbols | {"mu": ["0", "1", ["open-low", "open-high"]]})
 
 
 MU = sp.Symbol("mu", positive=True)

@@ -4,6 +4,7 @@ import sympy as sp
 
 from navsym.core.errors import DomainError
 from navsym.core.rational_functions import clear_denominators
+from navsym.language.expression import to_text
 from navsym.observability.linear import determinant, linear_relation
 from navsym.observability.ring import Ring
 from navsym.observability.splits import companion
@@ -44,3 +45,8 @@ def to_lowest_terms(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
     """Entries as quotients of polynomials in lowest terms."""
     ring = Ring.of(matrix)
     return sp.ImmutableMatrix(*matrix.shape, [ring.expression(ring.quotient(x)) for x in matrix])
+
+
+def write_matrix(matrix: sp.MatrixBase) -> str:
+    """A matrix in the language of statements."""
+    return "[" + ", ".join(f"[{', '.join(map(to_text, row))}]" for row in matrix.tolist()) + "]"

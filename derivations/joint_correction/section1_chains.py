@@ -2,14 +2,15 @@
 
 import sympy as sp
 
-from navsym.claims import PROVED, Bound, Equation, Finding, claim, fact
+from navsym.claims import PROVED, Bound, Equation, Finding, claim, fact, state
+from navsym.language.expression import to_text
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import numerators
 from navsym.observability.linear import linear_relation, pivot_rows
 from navsym.observability.ring import Ring
 from navsym.observability.splits import companion
 from navsym_papers.joint_correction import section1_systems
-from navsym_papers.joint_correction.matrices import exact_inverse, unit_row
+from navsym_papers.joint_correction.matrices import exact_inverse, unit_row, write_matrix
 
 SIZES = "systems with (n, m) = (2, 1), (3, 2), (4, 2), (5, 3), one family of C_1 and C_2, not every size"
 
@@ -104,17 +105,35 @@ def observer(size: int) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
 @claim("1.6.gain_unique")
 def gain_is_unique():
     """Prescribed roots of |pE - G_x + K_x g_x^T| determine K_x uniquely, for every choice of them."""
-    found = True
+    found, meaning = True, list[dict]()
     for size in (1, 2, 3):
         G, K, row = observer(size)
         values = section1_systems.coefficients_of_polynomial(G - K * row)[1:]
         jacobian = sp.Matrix(values).jacobian(K)
+        meaning += say_affine(values, K, section1_systems.free("x", size).det())
         linear = not any(jacobian.has(symbol) for symbol in K)
         found = found and linear and rank_of(jacobian) == size
     method = "the coefficients are affine in K_x with an invertible matrix"
     scope = "m = 1, 2, 3, all theta"
-    unsaid = "that a map is affine and invertible is said of all its values at once"
-    return fact(True, found, method, PROVED, scope=scope, assumptions=("det C_1 != 0",), unsaid=unsaid)
+    return fact(True, found, method, PROVED, scope=scope, assumptions=("det C_1 != 0",), meaning=meaning)
+
+
+def say_affine(values: list[sp.Expr], K: sp.Matrix, determinant: sp.Expr) -> list[dict]:
+    """That values are affine in K, and that the determinant of their slopes times another number is 1."""
+    slopes = sp.Matrix(values).jacobian(K)
+    constants = [value.subs(dict.fromkeys(K, 0)) for value in values]
+    names = {s.name for value in (*values, determinant) for s in value.free_symbols}
+    symbols = {name: [None, None, []] for name in sorted(names)}
+    values_text, start = write_matrix(sp.Matrix(values)), write_matrix(sp.Matrix(constants))
+    matrix, used = write_matrix(slopes), {s.name for s in slopes.free_symbols | determinant.free_symbols}
+    moved = (
+        f"{matrix} @ {write_matrix(sp.Matrix(K))}" if len(K) > 1 else write_matrix(slopes * K[0])
+    )  # 1 by 1: a number
+    product = f"det({matrix})*({to_text(determinant)})"
+    return [
+        state(values_text, "=", f"{start} + {moved}", symbols),
+        state(product, "=", "1", {s: symbols[s] for s in sorted(used)}),
+    ]
 
 
 @claim("1.6.gain_unique.determinant")

@@ -2,11 +2,11 @@
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, Finding, claim, fact
+from navsym.claims import PROVED, Equation, Finding, claim, fact, state
 from navsym.models.linear import LinearModel
 from navsym.observability.splits import companion, last_row
-from navsym_papers.joint_correction.matrices import exact_inverse, unit_row
-from navsym_papers.joint_correction.section1_chains import SIZES, characteristic, coefficients, rank_of
+from navsym_papers.joint_correction.matrices import exact_inverse, unit_row, write_matrix
+from navsym_papers.joint_correction.section1_chains import SIZES, characteristic, coefficients, rank_of, say_affine
 from navsym_papers.joint_correction.section1_systems import (
     System,
     coefficients_of_polynomial,
@@ -158,20 +158,19 @@ PAIRS = ((1, 1), (2, 1), (1, 2), (2, 2), (3, 2))
 @claim("1.11.gain_unique")
 def second_gain_is_unique():
     """Prescribed roots of |pE - G_z2 + K_z g_z^T| determine K_z uniquely."""
-    found = True
+    found, meaning = True, list[dict]()
     for size in (1, 2, 3):
         phi = sp.symbols(f"phi1:{size + 1}", real=True)
         C2 = free("z", size)
         G = C2 * companion(phi) * exact_inverse("C2", C2)
         K = sp.Matrix(k[:size])
-        jacobian = sp.Matrix(coefficients_of_polynomial(G - K * unit_row(size) * exact_inverse("C2", C2))[1:]).jacobian(
-            K
-        )
+        values = coefficients_of_polynomial(G - K * unit_row(size) * exact_inverse("C2", C2))[1:]
+        jacobian = sp.Matrix(values).jacobian(K)
+        meaning += say_affine(values, K, C2.det())
         found = found and rank_of(jacobian) == size and not any(jacobian.has(symbol) for symbol in K)
     method = "the coefficients are affine in K_z with an invertible matrix"
     scope = "n - m = 1, 2, 3, all phi"
-    unsaid = "that a map is affine and invertible is said of all its values at once"
-    return fact(True, found, method, PROVED, scope=scope, assumptions=("det C_2 != 0",), unsaid=unsaid)
+    return fact(True, found, method, PROVED, scope=scope, assumptions=("det C_2 != 0",), meaning=meaning)
 
 
 @claim("1.11.characteristic")
@@ -187,14 +186,26 @@ def characteristic_polynomial_factors():
 @claim("1.two_stage.separate")
 def first_stage_ignores_the_second():
     """x° does not depend on sigma_2, z° nor K_z: the first rows of the closed loop contain none of them."""
-    found = True
+    found, meaning = True, list[dict]()
     for m, rest in PAIRS:
         b = blocks(m, rest)
         rows = closed_loop(b)[:m, :]
+        meaning += say_free(rows[:, :m], rows[:, m:], b["Kz"])
         found = found and not rows[:, m:].free_symbols and not any(rows.has(s) for s in b["Kz"])
         found = found and all(value == 0 for value in rows[:, m:])
-    method, unsaid = "entries of the closed loop", "which symbols a formula has is read off it, not its value"
-    return fact(True, found, method, PROVED, scope=f"(m, n - m) in {PAIRS}, all coefficients", unsaid=unsaid)
+    scope = f"(m, n - m) in {PAIRS}, all coefficients"
+    return fact(True, found, "entries of the closed loop", PROVED, scope=scope, meaning=meaning)
+
+
+def say_free(rows: sp.Matrix, beyond: sp.Matrix, gains: sp.Matrix) -> list[dict]:
+    """That the derivatives of rows by all gains are zero, and so is what stands beyond them."""
+    names = sorted({s.name for s in (*rows.free_symbols, *beyond.free_symbols, *gains.free_symbols)})
+    symbols = {name: [None, None, []] for name in names}
+
+    (m, n), width = rows.shape, beyond.cols
+    slopes = [state(f"diff({write_matrix(rows)}, {gain})", "=", f"zeros({m}, {n})", symbols) for gain in gains]
+    used = {s: symbols[s] for s in symbols if s in {x.name for x in beyond.free_symbols}}
+    return [*slopes, state(write_matrix(beyond), "=", f"zeros({m}, {width})", used)]
 
 
 @claim("1.two_stage.influence")

@@ -5,15 +5,15 @@ Newton's equation solved for the rates, the velocity seen in platform axes. Term
 mu^2 rho are dropped, and :func:`dropped_terms` says which.
 """
 
+import re
 from functools import cache
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, Bound, Equation, claim, fact
+from navsym.claims import CERTIFIED, PROVED, Bound, Equation, claim, fact, state
+from navsym.language.expression import to_text
 from navsym_papers.joint_correction import kinematics
-from navsym_papers.joint_correction.inertial import PHYSICAL_ORDERS, truncate
-
-EXPONENTS = "units are compared as exponents, and statements are about numbers"
+from navsym_papers.joint_correction.inertial import PHYSICAL_ORDERS, monomial_order, say_orders, truncate
 
 a1, a2, a3 = kinematics.ALPHA
 b1, b2, b3 = kinematics.BETA
@@ -60,8 +60,10 @@ def climb_is_negligible():
     values += [c - e for c, e in zip(climbing.velocity, equations().velocity, strict=True)]
     orders = tuple(truncate(sp.expand(value), PHYSICAL_ORDERS, 2).kept == 0 for value in values)
     method = "orders of all added terms, climb/(a omega_0) counted as mu^2"
-    unsaid = "orders of terms in a small parameter are compared, not values"
-    return fact((True,) * 4, orders, method, PROVED, scope="linear in the errors, alpha_3 up to rho/mu", unsaid=unsaid)
+    terms = [term for value in values for term in sp.Add.make_args(sp.expand(value)) if term != 0]
+    meaning = [say_orders([(term, monomial_order(term, PHYSICAL_ORDERS)) for term in terms], PHYSICAL_ORDERS, 2)]
+    scope = "linear in the errors, alpha_3 up to rho/mu"
+    return fact((True,) * 4, orders, method, PROVED, scope=scope, meaning=meaning)
 
 
 @claim("2.condition2.height")
@@ -140,6 +142,17 @@ def degree(expression: sp.Expr) -> sp.Expr:
 
 
 RATE = sp.sqrt(w1**2 + w2**2)
+TURN = sum(sp.diff(RATE, w) * dw for w, dw in zip((w1, w2), kinematics.OMEGA_X_RATE[:2], strict=True))
+
+
+def say_units(left: sp.Expr, right: sp.Expr) -> tuple[dict]:
+    """Both sides, squared, change by one factor where seconds are divided by k: their units have one power of 1/s."""
+    powers = {w1.name: 1, w2.name: 1, **{rate.name: 2 for rate in kinematics.OMEGA_X_RATE[:2]}}
+    texts = [to_text(sp.cancel(side**2)) for side in (left, right)]
+    scaled = [re.sub(r"\b[A-Za-z]\w*", lambda name: f"({name[0]}*k**{powers[name[0]]})", text) for text in texts]
+    symbols = {name: ["0", None, ["open-low"]] for name in sorted(powers) if any(name in text for text in texts)}
+    sides = [f"({new})/({old})" for new, old in zip(scaled, texts, strict=True)]
+    return (state(sides[0], "=", sides[1], symbols | {"k": ["1", None, ["open-low"]]}),)
 
 
 # Both sides have one unit.
@@ -147,7 +160,11 @@ stationarity_units_printed = claim(
     "2.assumption1.units",
     "(omega_x1^2 + omega_x2^2)^(1/2) < max(omega_x1^2 + omega_x2^2), as printed.",
     lambda: fact(
-        degree(RATE**2), degree(RATE), "powers of 1/s on the right and on the left side", PROVED, unsaid=EXPONENTS
+        degree(RATE**2),
+        degree(RATE),
+        "powers of 1/s on the right and on the left side",
+        PROVED,
+        meaning=say_units(RATE, RATE**2),
     ),
     slip="scan",
     reason="a rate (1/s) is compared with a squared rate (1/s^2); the dot of the derivative over the root is lost, "
@@ -159,12 +176,17 @@ stationarity_units = claim(
     "|d/dt (omega_x1^2 + omega_x2^2)^(1/2)| < max(omega_x1^2 + omega_x2^2): both sides in 1/s^2.",
     lambda: fact(
         degree(RATE**2),
-        degree(sum(sp.diff(RATE, w) * dw for w, dw in zip((w1, w2), kinematics.OMEGA_X_RATE[:2], strict=True))),
+        degree(TURN),
         "powers of 1/s on the right and on the left side",
         PROVED,
-        unsaid=EXPONENTS,
+        meaning=say_units(TURN, RATE**2),
     ),
 )
+
+
+def squared_rate(speed: sp.Expr, course: sp.Expr, place: sp.Expr) -> sp.Expr:
+    """omega^2 of :func:`stationarity`."""
+    return speed**2 + 2 * speed * course + course**2 + (1 - course**2) * place
 
 
 def stationarity(speed: sp.Expr, course: sp.Expr, place: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
@@ -174,9 +196,9 @@ def stationarity(speed: sp.Expr, course: sp.Expr, place: sp.Expr) -> tuple[sp.Ex
     circle (Clairaut); cos^2(latitude) = course^2 + (1 - course^2) place with 0 <= place <= 1. Then
     omega^2 = speed^2 + 2 speed course + cos^2(latitude), and its largest value is at the equator.
     """
-    square = speed**2 + 2 * speed * course + course**2 + (1 - course**2) * place
-    largest = speed**2 + 2 * speed * course + 1
-    return (1 - course**2) ** 2 * place * (1 - place) * speed**2, largest**2 * square
+    largest = squared_rate(speed, course, sp.S.One)
+    left = (1 - course**2) ** 2 * place * (1 - place) * speed**2
+    return left, largest**2 * squared_rate(speed, course, place)
 
 
 @claim("2.assumption1.orthodrome", expect=CERTIFIED)
@@ -199,8 +221,10 @@ def where_great_circles_are_not_stationary():
     point = (sp.Rational(9, 10), sp.Rational(-99, 100), sp.Rational(1, 2))
     left, right = stationarity(*point)
     scope = "speed 0.9 Omega R = 419 m/s, course constant -0.99"
-    unsaid = "a maximum over a flight is compared, and no formula is given for it"
-    return fact(False, bool(left < right), "exact values at one flight", PROVED, scope=scope, unsaid=unsaid)
+    place = sp.Symbol("place", real=True)
+    sides = [to_text(squared_rate(*point[:2], where)) for where in (place, sp.S.One)]
+    meaning = [state(str(left), ">=", str(right)), state(sides[0], "<=", sides[1], {"place": ["0", "1", []]})]
+    return fact(False, bool(left < right), "exact values at one flight", PROVED, scope=scope, meaning=meaning)
 
 
 @claim("2.assumption1.orthodrome.much", expect=CERTIFIED)

@@ -10,7 +10,8 @@ from functools import cache
 
 import sympy as sp
 
-from navsym.claims import PROVED, Claim, Equation, Finding, Property, claim, fact
+from navsym.claims import PROVED, Claim, Equation, Finding, Property, claim, fact, state
+from navsym.language.expression import to_text
 from navsym.observability.chains import observe_jointly
 from navsym.observability.rank_drops import find_drops
 from navsym_papers.joint_correction.inertial import (
@@ -31,13 +32,13 @@ from navsym_papers.joint_correction.inertial import (
     full_model,
     lowest_order,
     position_group,
+    say_orders,
     truncate,
     velocity_group,
 )
 from navsym_papers.joint_correction.kinematics import ALPHA, BETA, EPSILON
+from navsym_papers.joint_correction.matrices import write_matrix
 from navsym_papers.joint_correction.section1_systems import say_ranks
-
-ORDER_ONLY = "orders of terms in a small parameter are compared, not values"
 
 mu = MU
 a1, a2 = ALPHA[:2]
@@ -233,11 +234,13 @@ def neglected_terms():
 
     No lower, and nothing of higher order either.
     """
-    orders = {term.order for group in (velocity(), position()) for row_ in group.dropped for term in row_}
+    dropped = [term for group in (velocity(), position()) for row_ in group.dropped for term in row_]
+    orders = {term.order for term in dropped}
     method = "bookkeeping of every monomial"
     scope = "alpha, pi, epsilon, nu, w of order rho; beta, gamma of order rho/mu; d omega/d tau of order mu"
-    evidence = f"{sum(len(r) for g in (velocity(), position()) for r in g.dropped)} terms, listed by the model"
-    return fact((2,), tuple(sorted(orders)), method, PROVED, scope=scope, evidence=evidence, unsaid=ORDER_ONLY)
+    evidence = f"{len(dropped)} terms, listed by the model"
+    meaning = [say_orders([(term.term, 2) for term in dropped], ORDERS)]
+    return fact((2,), tuple(sorted(orders)), method, PROVED, scope=scope, evidence=evidence, meaning=meaning)
 
 
 @claim("2.8.inhomogeneous")
@@ -247,22 +250,31 @@ def inhomogeneous_terms():
     orders = {lowest_order(term, ORDERS) for term in forcing if term != 0}
     found = tuple(sorted(orders)) if {truncate(term, ORDERS, 2).dropped for term in forcing} == {()} else None
     method = "bookkeeping of every monomial"
-    return fact((1,), found, method, PROVED, scope="orders as declared in 2.8.neglected", unsaid=ORDER_ONLY)
+    meaning = [say_order_one(*(term for term in forcing if term != 0))]
+    return fact((1,), found, method, PROVED, scope="orders as declared in 2.8.neglected", meaning=meaning)
+
+
+def say_order_one(*forcing: sp.Expr) -> dict:
+    """That all monomials have the order mu."""
+    return say_orders([(term, 1) for value in forcing for term in sp.Add.make_args(sp.expand(value))], ORDERS)
+
+
+def order_one(term: sp.Expr) -> Property:
+    """That a term has the order mu."""
+    return fact(1, lowest_order(term, ORDERS), "bookkeeping of every monomial", PROVED, meaning=[say_order_one(term)])
 
 
 inhomogeneous_term_as_printed = claim(
     "2.9.inhomogeneous_printed",
     "The printed inhomogeneous term mu omega_2 beta_3 of y_2 has the order mu (times rho).",
-    lambda: fact(1, lowest_order(mu * w2 * b3, ORDERS), "bookkeeping of every monomial", PROVED, unsaid=ORDER_ONLY),
+    lambda: order_one(mu * w2 * b3),
     slip="scan",
     reason=DOT,
 )
 inhomogeneous_term = claim(
     "2.9.inhomogeneous_printed*",
     "With the derivative of omega the inhomogeneous term of y_2 has the order mu (times rho).",
-    lambda: fact(
-        1, lowest_order(position().linear()[2][1], ORDERS), "bookkeeping of every monomial", PROVED, unsaid=ORDER_ONLY
-    ),
+    lambda: order_one(position().linear()[2][1]),
 )
 
 
@@ -271,6 +283,35 @@ def rank_and_drops(group: Group) -> tuple[int, tuple[str, ...]]:
     drops = find_drops(found).drops
     conditions = tuple(d.condition for d in drops if d.subspace == "joint" and d.complete)
     return found.joint_dimension, conditions
+
+
+def say_observable(group: Group, rank: int, unseen: tuple[sp.Expr, ...]) -> list[dict]:
+    """That sums of H F^k from the left are d eye(n), and that F keeps vectors N, H N = 0, at unseen values of mu u_3.
+
+    The rank is n where the determinant d is not zero; it drops where such vectors exist.
+    """
+    F, H = map(sp.Matrix, group.linear()[:2])
+    powers = [(H * F**k).applyfunc(sp.expand) for k in range(rank // H.rows)]
+    seen = sp.Matrix.vstack(*powers)
+    shares = seen.adjugate().applyfunc(sp.expand)
+    F_text, H_text, d = write_matrix(F), write_matrix(H), to_text(sp.factor(seen.det()))
+    parts = [
+        " @ ".join([write_matrix(shares[:, k * H.rows : (k + 1) * H.rows]), H_text, *[F_text] * k])
+        for k in range(len(powers))
+    ]
+    symbols = {s.name: [None, None, []] for s in sorted(F.free_symbols | H.free_symbols, key=str)}
+    said = [state(" + ".join(parts), "=", f"({d})*eye({rank})", symbols)]
+    for value in unseen:
+        there = {u3: value / mu}
+        N = sp.Matrix.hstack(*seen.subs(there).nullspace())
+        M = (N.T * N).inv() * N.T * F * N
+        other = {"mu": ["0", None, ["open-low"]]}
+        said.append(
+            state(f"{write_matrix(H.subs(there))} @ {write_matrix(N)}", "=", f"zeros({H.rows}, {N.cols})", other)
+        )
+        said.append(state(f"{F_text} @ {write_matrix(N)}", "=", f"{write_matrix(N)} @ {write_matrix(M)}"))
+        said.append(state(to_text(sum(x**2 for x in N)), ">", "0"))
+    return said
 
 
 velocity_group_is_observable = claim(
@@ -282,7 +323,7 @@ velocity_group_is_observable = claim(
         "fraction-free rank, all split determinants",
         PROVED,
         scope="homogeneous part of (2.8)",
-        unsaid="that a rank drops nowhere else is said of all points at once",
+        meaning=say_observable(velocity(), 6, (sp.Integer(-1), sp.Integer(1))),
     ),
 )
 position_group_is_observable = claim(
@@ -294,7 +335,7 @@ position_group_is_observable = claim(
         "fraction-free rank, a split determinant that is a number",
         PROVED,
         scope="homogeneous part of (2.9)",
-        unsaid="that a rank drops nowhere is said of all points at once",
+        meaning=say_observable(position(), 8, ()),
     ),
 )
 # mu -> 0 in the motion, mu beta is kept; u_1, u_2, u_3 are arbitrary.

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, claim, fact
+from navsym.claims import PROVED, Equation, claim, fact, state
 from navsym_papers.terrain_search.model import free_motion, inverse, slopes, symmetric
 
 G, M1, M2 = symmetric("G"), symmetric("M"), symmetric("N")
@@ -108,24 +108,31 @@ def sequential_normal(t):
     return matrix, right
 
 
-def least_criteria(start: Fraction, velocity: Fraction) -> tuple[Fraction, Fraction]:
-    """Least (6) about t_G of (10) and least (4), two measurements over ground of slope one, all grids -1, 0, 1."""
+def list_criteria(start: Fraction, velocity: Fraction) -> tuple[list[Fraction], list[Fraction]]:
+    """(6) about t_G of (10), and (4), of all hypotheses: two measurements over ground of slope one, grids -1, 0, 1."""
     grid, times = (-1, 0, 1), (0, 1)
     error = [start + velocity * k for k in times]
-    joint = min(sum((e - i - w * k) ** 2 for k, e in zip(times, error, strict=True)) for i in grid for w in grid)
+    joint = [sum((e - i - w * k) ** 2 for k, e in zip(times, error, strict=True)) for i in grid for w in grid]
     coarse = min(grid, key=lambda i: sum((e - i) ** 2 for e in error))
     turn = Fraction(sum(times), len(times))  # equal slopes
-    second = (sum((e - coarse - w * (k - turn)) ** 2 for k, e in zip(times, error, strict=True)) for w in grid)
-    return min(second), joint
+    second = [sum((e - coarse - w * (k - turn)) ** 2 for k, e in zip(times, error, strict=True)) for w in grid]
+    return second, joint
+
+
+def say_least(values: list[Fraction], least: Fraction) -> list[dict]:
+    """That no value is smaller, and one is equal."""
+    product = "*".join(f"({value} - {least})" for value in values)
+    return [*(state(str(value), ">=", str(least)) for value in values), state(product, "=", "0")]
 
 
 @claim("sequential.below")
 def sequential_search_may_fit_better():
     """Least (6) may be below least (4) on one grid: here 0 and 1/2, since (6) turns about t_G, off the grid of (4)."""
-    found = least_criteria(Fraction(-1, 2), Fraction(1))
+    found = list_criteria(Fraction(-1, 2), Fraction(1))
+    printed = Fraction(0), Fraction(1, 2)
     scope = "heights h(x) = x, n = 1, steps of one, errors -1/2 of the position and 1 of the velocity"
-    unsaid = "a least value over a grid is found by trying all hypotheses"
-    return fact((Fraction(0), Fraction(1, 2)), found, "all hypotheses counted", PROVED, scope=scope, unsaid=unsaid)
+    meaning = [text for values, least in zip(found, printed, strict=True) for text in say_least(values, least)]
+    return fact(printed, tuple(map(min, found)), "all hypotheses counted", PROVED, scope=scope, meaning=meaning)
 
 
 @claim("sequential.shrinks")

@@ -4,8 +4,9 @@ Worked in the variables f of the first stage, where all matrices are integer; th
 differ by the constant positive diagonal D_s, which changes none of the statements.
 """
 
+import re
 from fractions import Fraction
-from itertools import product
+from itertools import pairwise, product
 
 import sympy as sp
 
@@ -185,7 +186,6 @@ def field_size_power():
 
 
 COUNTED = "the different values of a list are counted, and statements are about one value"
-UNITS = "units are compared as exponents, and statements are about numbers"
 #: What the counts are made for: other centres give other numbers.
 FIELD_SCOPE = "n = 5, centre 1, 1/3, ..., 1/9, start f = 0, P = E, R = 1, tau = 0.2, row of ones as printed"
 
@@ -289,6 +289,19 @@ def units_of_terms(speed_power: int, acceleration_power: int) -> set[tuple[int, 
     return {unit((POSITION, 2)), unit((SPEED, 2), speed), unit((ACCELERATION, 2), acceleration)}
 
 
+def say_units(speed_power: int, acceleration_power: int, relation: str) -> list[dict]:
+    """How the factors of two neighbouring terms compare where metres are divided by a and seconds by b."""
+    terms = "(a*x)**2/x**2", f"(a/b*v)**2*(b*tau)**{speed_power}/(v**2*tau**{speed_power})"
+    terms += (f"(a/b**2*c)**2*(b*tau)**{acceleration_power}/(c**2*tau**{acceleration_power})",)
+    symbols = {name: ["0", None, ["open-low"]] for name in ("c", "tau", "v", "x")}
+    symbols |= {name: ["1", None, ["open-low"]] for name in "ab"}
+
+    def choose(left: str, right: str) -> dict:
+        return state(left, relation, right, {s: symbols[s] for s in symbols if re.search(rf"\b{s}\b", left + right)})
+
+    return [choose(*pair) for pair in pairwise(terms)]
+
+
 criterion_units = claim(
     "algorithm.J.units",
     "The terms of J have three units as printed (m^2, m^2/s, m^2/s^2), and one when weighted by tau^2 and tau^4.",
@@ -297,7 +310,7 @@ criterion_units = claim(
         (len(units_of_terms(1, 2)), len(units_of_terms(2, 4))),
         "exponents of metre and second",
         PROVED,
-        unsaid=UNITS,
+        meaning=(*say_units(1, 2, ">"), *say_units(2, 4, "=")),
     ),
 )
 

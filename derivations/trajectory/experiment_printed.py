@@ -121,30 +121,35 @@ OTHER_SPEEDS = tuple(
     )
 )
 
-EXPONENTS = "units are compared as exponents, and statements are about numbers"
 #: Exponents of metre and second.
 UNITS = {"m": (1, 0), "m/s": (1, -1), "m/s^2": (1, -2)}
 
 
-def rate(unit: tuple[int, int]) -> Finding:
-    """Unit of the time derivative of a quantity."""
-    return Finding((unit[0], unit[1] - 1), "unit of a time derivative, exponents of metre and second", PROVED)
+def rate_has(printed: str, quantity: str) -> Property:
+    """That the time derivative of a quantity has the printed unit.
+
+    Where metres are divided by a and seconds by b, so do change d, the quotient of differences by t, and the printed.
+    """
+    (p, q), (P, Q) = UNITS[quantity], UNITS[printed]
+    method = "unit of a time derivative, exponents of metre and second"
+    symbols = {"a": ["1", None, ["open-low"]], "b": ["1", None, ["open-low"]], "t": ["0", None, ["open-low"]]}
+    texts = f"a**{p}*b**({q})*d/(b*t)", f"a**{P}*b**({Q})*(d/t)"
+    meaning = [state(texts[0], "=", texts[1], symbols | {"d": ["0", None, ["open-low"]]})]
+    return fact((P, Q), (p, q - 1), method, PROVED, meaning=meaning)
 
 
 speed_error_unit_printed = claim(
     "experiment.sigma_v.unit",
     "The error of the speed V_2 at |V| = 100 m/s is printed in metres.",
-    lambda: Property(printed=UNITS["m"], derived=rate(UNITS["m"]), unsaid=EXPONENTS),
+    lambda: rate_has("m", "m"),
     slip="paper",
     reason="an error of V_2 is in m/s; the same figures for 2 and 300 m/s are printed with m/s",
 )
 speed_error_unit = claim(
-    "experiment.sigma_v.unit*",
-    "The error of a speed is in metres per second.",
-    lambda: Property(printed=UNITS["m/s"], derived=rate(UNITS["m"]), unsaid=EXPONENTS),
+    "experiment.sigma_v.unit*", "The error of a speed is in metres per second.", lambda: rate_has("m/s", "m")
 )
 acceleration_error_unit = claim(
     "experiment.sigma_a.unit",
     "The error of the acceleration dV_2/dt is in metres per second squared.",
-    lambda: Property(printed=UNITS["m/s^2"], derived=rate(UNITS["m/s"]), unsaid=EXPONENTS),
+    lambda: rate_has("m/s^2", "m/s"),
 )

@@ -14,7 +14,7 @@ from navsym import checker
 from navsym.claims.display import write_card, write_table
 from navsym.core.answers import Answer, Answers
 from navsym.core.errors import DomainError, EmptyError, NavsymError
-from navsym.export.coq.replay import Replay, replay, require_kernel
+from navsym.export.replay import Replay, replay, require_kernel
 from navsym.export.roundtrip import check_export
 from navsym.language.files import decode
 from navsym.language.names import quote
@@ -108,7 +108,7 @@ def check(
     items    : paths of certificates (JSON), of the ``certificates.json`` that ``verify`` keeps, of exported folders or
                of folders of either; certificates as plain data; answers, of which every certificate is replayed
     kernel   : ``"coq"`` has Coq prove the statement of every accepted certificate as well, from a theory in ``out``;
-               UNWRITTEN and FAILED say that no theory, or no proof, is found, and count as not confirmed
+               ``"ocaml"`` asks the second checker; UNWRITTEN and FAILED count as not confirmed
     out      : folder of the theories; default: beside the certificate's file, build/coq for answers
     progress : called with (done, all, name) after each
 
@@ -204,11 +204,22 @@ def check_plain(name: str, certificate: Mapping[str, Any], asked: Asked) -> list
     if kind == "all" and isinstance(certificate.get("of"), list):
         parts = enumerate(certificate["of"], start=1)
         return [row for place, part in parts for row in check_plain(f"{name}.{place}", part, asked)]
+    beside = Path("build", "coq", f"{name.replace(' ', '-').replace('.', '-')}.json")
     try:
-        row = Check(name, checker.check(checker.load(json.dumps(certificate))), "ACCEPTED", "")
-    except (checker.Refused, TypeError, ValueError) as error:
+        text = json.dumps(certificate)
+    except (TypeError, ValueError) as error:
         return [Check(name, kind if isinstance(kind, str) else None, "REJECTED", str(error))]
-    return [asked.confirm(row, certificate, Path("build", "coq", f"{name.replace(' ', '-').replace('.', '-')}.json"))]
+    return [check_text(name, text, beside, asked)]
+
+
+def check_text(name: str, text: str, beside: Path, asked: Asked) -> Check:
+    """The text of a certificate."""
+    try:
+        certificate = checker.load(text)
+        row = Check(name, checker.check(certificate), "ACCEPTED", "")
+    except checker.Refused as error:
+        return Check(name, kind_of(text), "REJECTED", str(error))
+    return asked.confirm(row, certificate, beside)
 
 
 def check_in_folder(file: Path, asked: Asked) -> list[Check]:
@@ -225,22 +236,19 @@ def check_file(path: Path, asked: Asked) -> Check:
     """A certificate in a file."""
     try:
         if path.stat().st_size > LARGEST:
-            raise checker.Refused("longer than 50 MB")
-        certificate = checker.load(decode(path.read_bytes(), str(path)))
-        kind = checker.check(certificate)
+            return Check(str(path), None, "REJECTED", "longer than 50 MB")
+        text = decode(path.read_bytes(), str(path))
     except OSError as error:
         return Check(str(path), None, "REJECTED", f"cannot be read: {error.strerror}")
     except NavsymError as error:
         return Check(str(path), None, "REJECTED", error.message)
-    except checker.Refused as error:
-        return Check(str(path), kind_of(path), "REJECTED", str(error))
-    return asked.confirm(Check(str(path), kind, "ACCEPTED", ""), certificate, path)
+    return check_text(str(path), text, path, asked)
 
 
-def kind_of(path: Path) -> str | None:
-    """The kind that a file says it has."""
+def kind_of(text: str) -> str | None:
+    """The kind that a text says it has."""
     try:
-        document = json.loads(path.read_text("utf-8"))
+        document = json.loads(text)
     except (ValueError, RecursionError):
         return None
     kind = document.get("kind") if isinstance(document, dict) else None

@@ -28,7 +28,7 @@ from navsym.report.formula.latex import sentence_html, sentence_latex
 from navsym.report.formula.sides import Formula, coordinates, formula, only_truth
 from navsym.report.names import latex_escape
 from navsym.report.plots import refutation_svg
-from navsym.report.trust import backing_words, trust_of
+from navsym.report.trust import backing_words, list_parts, trust_of
 from navsym.report.wording import Words
 from navsym.verification.ledger import Ledger, is_only_in_the_copy, records_about, sort_records
 
@@ -37,11 +37,9 @@ from navsym.verification.ledger import Ledger, is_only_in_the_copy, records_abou
 
 def certificates_by_file(record: Record) -> list[tuple[str, Any]]:
     """File names and certificates of a record: one for each entry where a claim has several."""
-    whole = record.certificate
-    if not whole:
+    parts, name = list_parts(record.certificate or {}), f"certificates/{slug(record.id)}"
+    if not record.certificate:
         return []
-    parts = whole["of"] if whole.get("kind") == "all" and isinstance(whole.get("of"), list) else [whole]
-    name = f"certificates/{slug(record.id)}"
     if len(parts) == 1:
         return [(f"{name}.json", parts[0])]
     return [(f"{name}.{place}.json", part) for place, part in enumerate(parts, start=1)]

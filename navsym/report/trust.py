@@ -12,6 +12,7 @@ from typing import Any
 
 from navsym import checker
 from navsym.prove.grant import UNCHECKED
+from navsym.verification.certificates import JUDGES, read_outcomes
 from navsym.verification.ledger import Ledger, Record
 
 
@@ -34,6 +35,7 @@ class Trust:
     unchecked : verdicts that rest on the code that computes them
     sampled   : verdicts that are neither proved nor refuted
     lines     : of the checker
+    judged    : what the second checker and Coq have said of all certificates
     """
 
     rows: tuple[KindRow, ...]
@@ -41,16 +43,18 @@ class Trust:
     unchecked: tuple[Record, ...]
     sampled: tuple[Record, ...]
     lines: int
+    judged: tuple[str, ...]
 
 
 def trust_of(ledger: Ledger) -> Trust:
     """Counts of the certificates of a ledger, and what has none."""
     kinds, rules = defaultdict[str, list[int]](list), Counter[str]()
-    for record in ledger.claims:
-        if record.certificate:
-            for part in list_parts(record.certificate):
-                kinds[str(part.get("kind"))].append(len(json.dumps(part, ensure_ascii=False).encode()))
-            rules.update({*list_rules(record.certificate)})
+    certificates = [record.certificate for record in ledger.claims if record.certificate]
+    parts = [part for certificate in certificates for part in list_parts(certificate)]
+    for part in parts:
+        kinds[str(part.get("kind"))].append(len(json.dumps(part, ensure_ascii=False).encode()))
+    for certificate in certificates:
+        rules.update({*list_rules(certificate)})
     rows = [KindRow(kind, len(sizes), round(median(sizes)), max(sizes)) for kind, sizes in kinds.items()]
     return Trust(
         rows=tuple(sorted(rows, key=lambda row: (-row.count, row.kind))),
@@ -58,6 +62,7 @@ def trust_of(ledger: Ledger) -> Trust:
         unchecked=ledger.unchecked,
         sampled=tuple(record for record in ledger.claims if record.status in ("CONFIRMED", "OPEN")),
         lines=len(Path(checker.__file__).read_text(encoding="utf-8").splitlines()),
+        judged=tuple(outcome_words(judge, parts) for judge in JUDGES),
     )
 
 
@@ -81,10 +86,23 @@ def list_rules(value: Any) -> Iterator[str]:
 def backing_words(record: Record) -> str:
     """What stands behind a verdict, in words: kind and size of its certificate, who accepted it; or none."""
     if record.certificate:
-        size = sum(len(json.dumps(part, ensure_ascii=False).encode()) for part in list_parts(record.certificate))
-        kinds = " and ".join(sorted({part["kind"] for part in list_parts(record.certificate)}))
+        parts = list_parts(record.certificate)
+        size = sum(len(json.dumps(part, ensure_ascii=False).encode()) for part in parts)
+        kinds = " and ".join(sorted({part["kind"] for part in parts}))
         judge = "not looked at by the checker" if UNCHECKED in record.evidence else "accepted by the checker"
-        return f"{kinds}, {size:,} bytes, {judge}; second checker and kernel not asked"
+        return "; ".join([f"{kinds}, {size:,} bytes, {judge}", *(outcome_words(name, parts) for name in JUDGES)])
     if record.status in ("CONFIRMED", "OPEN"):
         return "none: nothing is proved"
     return "none: unchecked, the verdict rests on the code that computes it"
+
+
+def outcome_words(judge: str, parts: Sequence[Mapping[str, Any]]) -> str:
+    """What the second checker, or Coq, has said of the parts of a certificate when it was asked."""
+    name, verb = {"coq": ("Coq", "proved"), "ocaml": ("second checker", "accepted")}[judge]
+    outcomes = [outcome for outcome in read_outcomes(judge, parts) if outcome]
+    if not outcomes:
+        return f"{name} not asked"
+    counts = Counter(outcome["status"] for outcome in outcomes)
+    words = {"PROVED": verb, "FAILED": f"not {verb}", "UNWRITTEN": "no words for it"}
+    said = ", ".join(f"{words[status]} {count} of {len(parts)}" for status, count in sorted(counts.items()))
+    return f"{name} ({', '.join(sorted({outcome['version'] for outcome in outcomes}))}): {said}"

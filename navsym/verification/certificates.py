@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import json
 import signal
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,8 @@ LARGEST = 200_000_000  # bytes of the file
 NAMED = 12  # claims that a remark names
 #: What of a record is kept: all that does not come from the source.
 KEPT = ("status", "method", "scope", "assumptions", "evidence", "counterexample", "difference", "certificate")
+#: Who may look at a certificate beside the checker.
+JUDGES = ("coq", "ocaml")
 REMEDY = "restore the file, or make it again with navsym verify --write"
 
 
@@ -178,3 +180,22 @@ class Certificates:
 def store_key(statement: str) -> str:
     """The key in the user's store for the hash of a statement."""
     return key_of("certificate", statement)
+
+
+def keep_outcome(judge: str, certificate: Mapping[str, Any], outcome: Mapping[str, Any]) -> None:
+    """Keep what one of JUDGES said of a certificate, under the certificate's own text."""
+    with contextlib.suppress(StoreError), open_store(cache_file()) as own:
+        own.put(outcome_key(judge, certificate), outcome)
+
+
+def read_outcomes(judge: str, certificates: Sequence[Mapping[str, Any]]) -> list[dict[str, Any] | None]:
+    """What one of JUDGES said of each certificate when it was asked last; None where it was not asked."""
+    keys, kept = [outcome_key(judge, certificate) for certificate in certificates], dict[str, Any]()
+    with contextlib.suppress(StoreError), open_store(cache_file()) as own:
+        kept = own.get(keys)
+    return [kept.get(key) for key in keys]
+
+
+def outcome_key(judge: str, certificate: Mapping[str, Any]) -> str:
+    """The key in the user's store for a certificate and the one who looked at it."""
+    return key_of("outcome", judge, json.dumps(certificate))

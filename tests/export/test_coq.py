@@ -14,8 +14,7 @@ import pytest
 import navsym as nav
 from navsym import checker
 from navsym.core.errors import DomainError, MissingEngineError
-from navsym.export import processes
-from navsym.export.coq import replay
+from navsym.export import processes, replay
 from navsym.export.coq.theory import write_theory
 
 needs_coq = pytest.mark.skipif(shutil.which("coqc") is None, reason="no coqc on this machine")
@@ -246,12 +245,19 @@ def test_coq_proves_no_false_statement(tmp_path):
 @pytest.mark.slow
 def test_coq_proves_no_forgery(tmp_path):
     """A thousand forgeries of the campaign against both checkers, those among them that are written for Coq."""
-    from tests.checker.test_ocaml_checker import list_forgeries
+    from tests.checker.test_ocaml_checker import list_forgeries, read_ledger, read_page
 
+    def say(item):
+        return json.dumps(item["statement"], sort_keys=True)
+
+    honest = {say(item) for item in [*read_ledger(), *read_page()[0]] if "statement" in item}
     rows = []
     for text in list_forgeries(random.Random(1000), 10_000):
         with contextlib.suppress(ValueError, checker.Refused, DomainError, RecursionError):
-            rows.append(replay.replay(checker.load(text), tmp_path / "forged.v"))
+            item = checker.load(text)
+            if say(item) in honest:  # it is damaged elsewhere: what it says is true, and Coq may prove it
+                continue
+            rows.append(replay.replay(item, tmp_path / "forged.v"))
             assert rows[-1].status != "PROVED", text
         if sum(row.status == "FAILED" for row in rows) == 1000:
             return

@@ -12,6 +12,8 @@ import pytest
 from navsym.claims.verdict import PROVED
 from navsym.prove.grant import UNCHECKED
 from navsym.report.page import certificates_by_file, slug, visible
+from navsym.report.trust import backing_words
+from navsym.verification.certificates import keep_outcome
 from navsym.verification.ledger import is_only_in_the_copy, records_about, sort_records
 from tests.report.hostile import ledger, site
 
@@ -74,9 +76,29 @@ def test_a_page_says_what_is_trusted_and_lists_what_has_no_certificate(card, rec
     assert "1 verdict is a computed fact" in page and bare.id in page
     said = " ".join(Reading(made["sample.html"]).text.split())
     assert "unchecked, the verdict rests on the code" in said
-    backed = re.findall(r"([\w ]+), [\d,]+ bytes, accepted by the checker; second checker and kernel not asked", said)
+    backed = re.findall(
+        r"([\w ]+), [\d,]+ bytes, accepted by the checker; Coq not asked; second checker not asked", said
+    )
     assert {kind.strip() for kind in backed} == {record.certificate["kind"] for record in others if record.certificate}
     assert "every file below" in page and "trust.html" in made["index.html"]
+
+
+def test_a_page_shows_what_others_said_of_this_very_certificate_and_nothing_else(card, records, tmp_path, monkeypatch):
+    """Only what was kept under the certificate's own text counts: not for one that differs, nor by another judge."""
+    monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path))
+    record = next(record for record in records if record.certificate)
+    parts = [{"kind": "identity", "left": text} for text in ("x", "y", "z")]
+    keep_outcome("ocaml", parts[0], {"status": "PROVED", "version": "abc"})
+    keep_outcome("ocaml", parts[1], {"status": "FAILED", "version": "abc"})
+    keep_outcome("coq", parts[0], {"status": "UNWRITTEN", "version": "8"})
+    said = backing_words(replace(record, certificate={"kind": "all", "of": parts}))
+    assert "; second checker (abc): not accepted 1 of 3, accepted 1 of 3" in said
+    assert "; Coq (8): no words for it 1 of 3" in said
+    said = backing_words(replace(record, certificate=parts[2]))
+    assert said.endswith("; Coq not asked; second checker not asked")
+    one = replace(record, certificate={"kind": "all", "of": parts})
+    page = " ".join(Reading(site(ledger([one], card))["trust.html"]).text.split())
+    assert "second checker (abc): not accepted 1 of 3, accepted 1 of 3" in page
 
 
 def test_tags_are_closed_in_order_and_identifiers_are_used_once(files, hostile_files):

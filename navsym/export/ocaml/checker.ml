@@ -188,6 +188,7 @@ let rec check value =
       | "gap" | "sliver" -> Gap.check value
       | "cones" -> Bounds.check_cones value ~at_precision
       | "design" -> Bounds.check_design value ~at_precision
+      | "exclusion" -> Bounds.check_exclusion value ~at_precision
       | "observability" -> Observability.check value ~get_matrix ~check_width ~determinant
       | "all" -> (
           match get_keys "all" [ "kind"; "of" ] value with

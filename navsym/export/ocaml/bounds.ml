@@ -1,4 +1,5 @@
-(* The kinds `cones` and `design` of docs/certificates.md: optima between weights and duals, by numbers alone. *)
+(* The kinds `cones` and `design` of docs/certificates.md: optima between weights and duals,
+   and epochs of gross errors, by numbers alone. *)
 
 open Text
 open Ball
@@ -107,11 +108,11 @@ let read_row m prices value =
 
 let is_number = function Text _ as v -> (match get_number "number" v with _ -> true | exception Refused _ -> false) | _ -> false
 
-(* The weights as balls, with whether each is 0 *)
-let solve_support functional columns =
+(* The weights as balls, with whether each is 0; exact where all entries are numbers *)
+let solve_support ?(exact = true) functional columns =
   let m = List.length functional in
   let rows read = List.init m (fun i -> (List.map (fun c -> read (List.nth c i)) columns, read (List.nth functional i))) in
-  if List.for_all is_number (functional @ List.concat columns) then
+  if exact && List.for_all is_number (functional @ List.concat columns) then
     List.map (fun w -> (of_rational w, Q.sign w = 0)) (fst (solve_exactly (rows (get_number "support"))))
   else
     match Gap.solve (rows (number_of "support")) with
@@ -168,4 +169,57 @@ let check_design value ~at_precision =
           let needed = List.fold_left (fun all (k, _) -> join (List.nth rows k).needs all) [] used in
           if not (is_affordable needed) then refuse "the weights need more than the budget";
           look (List.sort compare (List.map fst (List.filter (fun (_, c) -> Q.sign c = 0) prices))))
+  | _ -> assert false
+
+type reading = { epoch : Q.t; regressor : json list; z : ball; bound : ball }
+
+(* Whether at most so many epochs, `without` not among them, are met by all sets: one of them is in the first. *)
+let rec can_meet left without most met =
+  decr left;
+  if !left < 0 then refuse "more sets than announced";
+  let misses e = List.filter (fun set -> not (List.exists (Q.equal e) set)) in
+  match met with
+  | [] -> true
+  | first :: _ ->
+      let try_epoch e = (not (Q.equal e without)) && can_meet left without (most - 1) (misses e met) in
+      most > 0 && List.exists try_epoch first
+
+let check_exclusion value ~at_precision =
+  match get_keys "exclusion" [ "kind"; "rows"; "most"; "excluded"; "contradictions"; "bits"; "cells" ] value with
+  | [ _; rows; most; excluded; contradictions; bits; cells ] ->
+      let bits = get_integer "bits" 53 20000 bits and most = get_integer "most" 0 4 most in
+      let left = ref (Value.cells_allowed (get_integer "cells" 0 (Value.most_cells bits) cells)) in
+      at_precision bits (fun () ->
+          let read v =
+            match get_keys "row" [ "epoch"; "H"; "z"; "sigma" ] v with
+            | [ epoch; h; z; sigma ] ->
+                let sigma = get_number "sigma" sigma in
+                if Q.sign sigma < 0 then refuse "expected noise bounds that are not negative";
+                let bound = of_rational sigma and z = of_rational (get_number "z" z) in
+                { epoch = get_number "epoch" epoch; regressor = get_list "H" h; z; bound }
+            | _ -> assert false
+          in
+          let table = List.map read (get_list "rows" rows) in
+          let entries = List.concat_map (fun row -> row.regressor) table in
+          let exact = List.for_all is_number entries in
+          List.iter (fun e -> ignore (number_of "H" e)) entries;
+          let find k = List.nth table (get_integer "contradictions" 0 (List.length table - 1) k) in
+          let total = List.fold_left plus ball_zero in
+          let meet places =
+            match List.rev_map find (get_list "contradictions" places) with
+            | [] -> refuse "contradictions: expected rows"
+            | last :: basis ->
+                let m = List.length basis in
+                let columns = of_width "H" m (List.map (fun row -> row.regressor) (last :: basis)) in
+                let weights = solve_support ~exact (List.hd columns) (List.tl columns) in
+                let used = List.filter (fun (_, (_, is_zero)) -> not is_zero) (List.combine basis weights) in
+                let shift = total (List.map (fun (row, (w, _)) -> times w row.z) used) in
+                let noise = total (List.map (fun (row, (w, _)) -> times (size w) row.bound) used) in
+                let distance = size (less last.z shift) in
+                if not (is_above (less distance (plus last.bound noise))) then refuse "no contradiction";
+                List.map (fun row -> row.epoch) (last :: List.map fst used)
+          in
+          let met = List.map meet (get_list "contradictions" contradictions) in
+          let check e = if can_meet left e most met then refuse "a set without the epoch may explain the data" in
+          List.iter (fun e -> check (get_number "excluded" e)) (get_list "excluded" excluded))
   | _ -> assert false

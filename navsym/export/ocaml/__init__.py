@@ -1,0 +1,1 @@
+"""The second checker, in OCaml, written from docs/certificates.md alone."""
