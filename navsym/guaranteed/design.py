@@ -12,9 +12,9 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import count
+from itertools import count, product
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from flint import arb, arb_mat, fmpq, fmpq_mat
@@ -24,12 +24,13 @@ from navsym.claims.display import write_card, write_table
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError, EmptyError, NotEstimableError, TooLargeError, UnknownSymbolError
-from navsym.core.exact import decimal, from_decimal, lower_end, upper_end
+from navsym.core.exact import decimal, from_decimal, lower_end, to_rational, upper_end
 from navsym.core.numbers import Number
 from navsym.guaranteed.baselines import LP_SOLVERS, Comparison, compare_on_grid
 from navsym.guaranteed.convex import GridProblem
+from navsym.guaranteed.problem import list_sums
 from navsym.guaranteed.streaming.exchange import Cloud, Optimum, bounds_of, exchange, rehearse, solve_basis, to_doubles
-from navsym.guaranteed.streaming.flow import BITS, Flow
+from navsym.guaranteed.streaming.flow import BITS, Flow, name_measurements
 from navsym.guaranteed.streaming.guard import whole_number
 from navsym.guaranteed.streaming.memory import Row
 from navsym.guaranteed.streaming.numbers import middle, read_exact, write_rational
@@ -38,8 +39,10 @@ from navsym.language.names import quote, suggest_nearest
 from navsym.language.schema import as_table, expect_keys
 from navsym.language.tomlfile import read_toml
 from navsym.models.model import contents_of, file_in_errors
+from navsym.models.modelfile import BasisFile, Measurement, ModelFile
 
 Needs = frozenset[str]
+
 
 MOST_ROWS, MOST_DUALS, MOST_CELLS = 400, 3000, 80_000
 MOST_DIGITS = 40
@@ -48,6 +51,14 @@ FAR = 10**6
 #: Parts of the way at which a slope in time is taken, in seconds: its error is of this order.
 STEP = fmpq(1, 2**60)
 ORDERS = 3
+
+
+class Offer(NamedTuple):
+    """A measurement that may be had at every instant: its place in the model, what it needs, and its own bound."""
+
+    place: int
+    needs: Needs
+    own: fmpq | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,25 +181,27 @@ def design(
             raise EmptyError(message, where="design")
         whole_number(digits, 1, MOST_DIGITS, "design: digits")
         with precision(BITS):
-            flow = Flow(contents_of(model, values, {}, "design"), target, "design")
-            rows, needs, prices = list_candidates(flow, times, instant, sensors)
+            contents = contents_of(model, values, {}, "design")
+            offers, prices = read_offers(contents, sensors)
+            contents, sums = add_sums(contents, offers)
+            flow = Flow(contents, target, "design")
+            rows, needs, prices = list_candidates(flow, times, instant, [*offers, *sums], prices)
             limit = read_exact(budget, "design: budget")
             return Market(flow, rows, needs, prices, limit, digits).answer()
 
 
-def list_candidates(
-    flow: Flow, times: Sequence[Any], instant: Any, sensors: Mapping[str, Any] | None
-) -> tuple[list[Row], list[Needs], dict[str, fmpq]]:
-    """All rows that may be bought, what each needs, and what things cost. Raises DomainError, TooLargeError."""
-    if isinstance(times, str) or not isinstance(times, Iterable) or not isinstance(sensors, Mapping | None):
-        message = "expected a list of times and a mapping of sensors to costs; got others; write them so"
+def read_offers(
+    contents: ModelFile | BasisFile, sensors: Mapping[str, Any] | None
+) -> tuple[list[Offer], dict[str, fmpq]]:
+    """Measurements on offer and what they cost. Raises DomainError and UnknownSymbolError."""
+    if not isinstance(sensors, Mapping | None):
+        message = "expected a mapping of sensors to costs; got another value; write one"
         raise DomainError(message, where="design")
-    at = sorted({read_exact(t, "design: times") for t in times})
-    prices = {f"t = {write_rational(t)}": read_exact(instant, "design: instant") for t in at}
-    offers: list[tuple[int, str, fmpq | None]] = []
-    for name, offer in (dict.fromkeys(flow.names, 0) if sensors is None else sensors).items():
-        if name not in flow.names:
-            hint = suggest_nearest(name, flow.names)
+    names = name_measurements(contents)
+    prices, offers = dict[str, fmpq](), list[Offer]()
+    for name, offer in (dict.fromkeys(names, 0) if sensors is None else sensors).items():
+        if name not in names:
+            hint = suggest_nearest(name, names)
             message = f"expected a measurement of the model; got {quote(name)}; correct it: {hint}"
             raise UnknownSymbolError(message, where="design: sensors")
         where = f"design: sensors.{name}"
@@ -202,7 +215,42 @@ def list_candidates(
                 raise DomainError(f"expected a positive noise bound; got {quote(grade[0])}; correct it", where=where)
             item = name if own is None else f"{name} {write_rational(own)}"
             prices[item] = read_exact(grade[1], where)
-            offers.append((flow.names.index(name), item, own))
+            offers.append(Offer(names.index(name), frozenset({item}), own))
+    return offers, prices
+
+
+def add_sums(contents: ModelFile | BasisFile, offers: Sequence[Offer]) -> tuple[ModelFile | BasisFile, list[Offer]]:
+    """The model with sums of measurements in place of blocks of norm "l1", for each choice of members on offer."""
+    if isinstance(contents, BasisFile) or not contents.blocks:
+        return contents, []
+    measurements, sums = [*contents.measurements], list[Offer]()
+    for block in contents.blocks:
+        if block.norm == "linf" or len(block.names) == 1:
+            continue
+        if block.norm == "l2":
+            message = 'expected blocks with "l1" or "linf" in a design; got "l2", which no finite list of rows states'
+            raise DomainError(f'{message}; choose "l1", or ask solve_blocks for each selection', where="design: model")
+        each = [[None, *(o for o in offers if contents.measurements[o.place].name == name)] for name in block.names]
+        for chosen in product(*each):
+            members = [o for o in chosen if o is not None]
+            rows = [contents.measurements[o.place] for o in members]
+            graded = zip(rows, members, strict=True)
+            rows = [m if o.own is None else Measurement(" ".join(o.needs), m.h, to_rational(o.own)) for m, o in graded]
+            for one in list_sums(rows) if len(rows) > 1 else ():
+                sums.append(Offer(len(measurements), frozenset().union(*(o.needs for o in members)), None))
+                measurements.append(one)
+    return replace(contents, measurements=tuple(measurements), blocks=()), sums
+
+
+def list_candidates(
+    flow: Flow, times: Sequence[Any], instant: Any, offers: Sequence[Offer], sensors: Mapping[str, fmpq]
+) -> tuple[list[Row], list[Needs], dict[str, fmpq]]:
+    """All rows that may be bought, what each needs, and what things cost. Raises DomainError, TooLargeError."""
+    if isinstance(times, str) or not isinstance(times, Iterable):
+        message = "expected a list of times; got another value; write one"
+        raise DomainError(message, where="design")
+    at = sorted({read_exact(t, "design: times") for t in times})
+    prices = {f"t = {write_rational(t)}": read_exact(instant, "design: instant") for t in at} | dict(sensors)
     negative = [name for name, price in prices.items() if price < 0]
     if negative or not at or not offers:
         got = f"a negative one of {quote(negative[0])}" if negative else "no instants or no sensors"
@@ -212,10 +260,10 @@ def list_candidates(
         raise TooLargeError(f"expected at most {MOST_ROWS} measurements; got {got}; thin them out", where="design")
     rows, needs = [], []
     for t in at:
-        for j, item, own in offers:
+        for j, items, own in offers:
             sigma, text = flow.sigma(j, t) if own is None else (arb(own), write_rational(own))
             rows.append(Row(t, j, fmpq(0), sigma, text, own))
-            needs.append(frozenset({f"t = {write_rational(t)}", item}))
+            needs.append(items | {f"t = {write_rational(t)}"})
     return rows, needs, prices
 
 

@@ -224,13 +224,22 @@ def divide_blocks(found: ModelFile, where: str) -> ModelFile:
                 message = f"expected at most {MOST_TOGETHER} measurements in a block; got {got}; split the block"
                 raise TooLargeError(message, where=f"{where}: model")
             members = [m for m in rows if m.name in block.names]
-            rows = [m for m in rows if m.name not in block.names]
-            for signs in product((1, -1), repeat=len(members) - 1):
-                pairs = [*zip((1, *signs), members, strict=True)]
-                h = tuple(sum(s * m.h[k] / m.sigma for s, m in pairs) for k in range(len(found.states)))
-                name = " ".join(f"{'+' if s > 0 else '-'} {m.name}/sigma" for s, m in pairs).removeprefix("+ ")
-                rows.append(Measurement(name, h, sp.S.One))
+            rows = [*(m for m in rows if m.name not in block.names), *list_sums(members)]
     return replace(found, measurements=tuple(rows), blocks=())
+
+
+def list_sums(members: Sequence[Measurement]) -> list[Measurement]:
+    """All sums ``+-z_j/sigma_j``, up to their sign, each with the bound 1."""
+    found = []
+    for signs in product((1, -1), repeat=len(members) - 1):
+        pairs = [*zip((1, *signs), members, strict=True)]
+        h = tuple(
+            sum(s * e / m.sigma for (s, m), e in zip(pairs, column, strict=True))
+            for column in zip(*(m.h for m in members), strict=True)
+        )
+        name = " ".join(f"{'+' if s > 0 else '-'} {m.name}/sigma" for s, m in pairs).removeprefix("+ ")
+        found.append(Measurement(name, h, sp.S.One))
+    return found
 
 
 def regressor_pieces(found: ModelFile) -> tuple[tuple[RegressorPiece, ...], sp.Rational]:

@@ -91,6 +91,43 @@ def test_two_hundred_designs_are_the_best_of_all_purchases():
     assert check_against_enumeration(range(100, 300)) >= 100
 
 
+def test_a_design_with_a_sum_of_errors_is_the_best_of_all_purchases_and_members_may_be_left_out():
+    """Every purchase within the budget is solved by itself, its members bounded together as far as they are bought."""
+    rng, compared = np.random.default_rng(6), 0
+    for _ in range(6):
+        both = [{"measurements": "z1 z2", "norm": "l1"}]
+        P = [int(rng.integers(-3, 4)), int(rng.integers(1, 4))]
+        model = nav.Model(**LINE | {"targets": {"goal": P}}, sigma=["1", "2"], blocks=both)
+        instant = int(rng.integers(1, 3))
+        prices = {f"t = {k}": instant for k in range(3)}
+        offers = {("z1", "1"): 1, ("z2", "2"): int(rng.integers(1, 3)), ("z2", "1/2"): 4}
+        budget, best = int(rng.integers(4, 9)), None
+        for size in range(7):
+            for bought in combinations([*prices, *offers], size):
+                if sum((prices | offers)[i] for i in bought) > budget:
+                    continue
+                blocks = []
+                for k in range(3):
+                    grades = [[g for g in bought if g[0] == name] for name in ("z1", "z2")]
+                    if f"t = {k}" not in bought or not any(grades):
+                        continue
+                    pairs = [(a, b) for a in grades[0] or [None] for b in grades[1] or [None]]
+                    for pair in pairs:
+                        rows = [([1, k - 2] if g[0] == "z1" else [0, 1], g[1]) for g in pair if g]
+                        blocks.append(nav.Block([h for h, _ in rows], [s for _, s in rows], "l1"))
+                try:
+                    value = float(nav.solve_blocks(blocks, P).value) if blocks else None
+                except nav.NavsymError:
+                    continue
+                best = value if best is None or (value is not None and value < best) else best
+        sensors = {"z1": [("1", 1)], "z2": [(s, c) for (name, s), c in offers.items() if name == "z2"]}
+        if best is not None:
+            found = nav.design(model, times=range(3), budget=budget, instant=instant, sensors=sensors)
+            assert float(found.value) == pytest.approx(best, rel=1e-9) and found.check().accepted
+            compared += "sigma" in str(found)
+    assert compared >= 1
+
+
 def test_a_velocity_is_best_known_from_the_two_ends_and_the_slopes_say_so():
     """Two positions of bound 1, four seconds apart, give a velocity with 2/4; it grows when they come closer."""
     found = nav.design(nav.Model(**LINE), "v", times=range(5), budget=2, sensors={"z1": 0})

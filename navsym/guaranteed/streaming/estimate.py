@@ -73,14 +73,14 @@ class Plan:
 class Exclusion:
     """Why no set of at most ``most`` epochs explains the data without those excluded.
 
-    rows           : measurements that contradict each other
+    rows           : measurements that contradict each other: those of one epoch with factors, and the bound of the sum
     contradictions : places among them: m independent rows, and one that depends on these
     excluded       : times of the epochs
     """
 
     flow: Flow
     now: fmpq
-    rows: Sequence[Row]
+    rows: Sequence[tuple[Sequence[Row], Sequence[fmpq], arb]]
     columns: Sequence[int]
     contradictions: Sequence[Sequence[int]]
     excluded: Sequence[fmpq]
@@ -217,19 +217,19 @@ def write_exclusion(why: Exclusion) -> dict[str, Any] | None:
     """The certificate of kind exclusion; None where a regressor has no formula."""
     flow, rows = why.flow, []
     with precision(BITS):
-        exact = [flow.exact_row(row.j, row.t, why.now) for row in why.rows]
-        for row, numbers in zip(why.rows, exact, strict=True):
-            known = numbers is not None and None not in exact
-            texts = [write_rational(e) for e in numbers] if known else flow.row_text(row.j, row.t, why.now)  # type: ignore[union-attr]
-            if texts is None:
+        exact = [[flow.exact_row(row.j, row.t, why.now) for row in members] for members, *_ in why.rows]
+        known = not any(None in numbers for numbers in exact)
+        for (members, factors, sigma), numbers in zip(why.rows, exact, strict=True):
+            texts = [flow.row_text(row.j, row.t, why.now) for row in members] if not known else numbers
+            if None in texts:
                 return None
-            bound = upper_end(row.sigma, DIGITS) if row.own is None else write_rational(row.own)
+            own = members[0].own if len(members) == 1 else None
             rows.append(
                 {
-                    "epoch": write_rational(row.t),
-                    "H": [texts[k] for k in why.columns],
-                    "z": write_rational(row.z),
-                    "sigma": bound,
+                    "epoch": write_rational(members[0].t),
+                    "H": [combine_entries(factors, [line[k] for line in texts]) for k in why.columns],  # type: ignore[index]
+                    "z": combine_entries(factors, [row.z for row in members]),
+                    "sigma": upper_end(sigma, DIGITS) if own is None else write_rational(own),
                 }
             )
     return {
@@ -241,6 +241,14 @@ def write_exclusion(why: Exclusion) -> dict[str, Any] | None:
         "bits": BITS + 64,
         "cells": min(len(why.excluded) * len(why.columns) ** why.most + 1000, 20_000),
     }
+
+
+def combine_entries(factors: Sequence[fmpq], entries: Sequence[Any]) -> str:
+    """The sum of factors times entries: a number where these are numbers, else a formula."""
+    if not any(isinstance(e, str) for e in entries):
+        return write_rational(sum((a * e for a, e in zip(factors, entries, strict=True)), fmpq(0)))
+    terms = [str(e) if a == 1 else f"({write_rational(a)})*({e})" for a, e in zip(factors, entries, strict=True)]
+    return " + ".join(terms)
 
 
 def write_cones(plan: Plan) -> dict[str, Any] | None:

@@ -12,15 +12,16 @@ dual breaks join the others until it breaks none (Kelley 1960).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from flint import arb, arb_mat
 from numpy.typing import NDArray
 
 from navsym.core.simplex import spread_rows
-from navsym.guaranteed.search.cones import Cone
+from navsym.guaranteed.search.cones import Cone, largest, solve_touching
+from navsym.guaranteed.search.exchange import independent_rows
 
 Array = NDArray[np.float64]
 
@@ -69,15 +70,25 @@ class Cloud:
         if self.offset and self.shifted is not None:
             offset = sum((self.offset[i] * f for i, f in zip(places, a, strict=True)), arb(0))
             self.offset, self.shifted = [*self.offset, offset], np.append(self.shifted, float((offset / sigma).mid()))
-        self.atoms.append((places, factors))
+        if self.active is not None:
+            self.active = np.append(self.active, True)
+        self.atoms = [*self.atoms, (places, factors)]
+
+    def parts(self, i: int) -> tuple[Sequence[int], arb_mat]:
+        """The rows of a combination with their factors; of a row itself and 1."""
+        k = i - len(self.vectors) + len(self.atoms)
+        return self.atoms[k] if k >= 0 else ([i], arb_mat([[1]]))
+
+    def may_use(self, i: int) -> bool:
+        """Whether a row is active."""
+        return self.active is None or bool(self.active[i - self.first])
 
     def spread(self, found: Optimum) -> dict[int, arb]:
         """Weights of rows, from those of rows and combinations in an optimum or a ray."""
         done: dict[int, arb] = {}
         weights = found.ray or dict(zip(found.basis, found.weights.entries(), strict=True))
         for i, w in weights.items():
-            k = i - len(self.vectors) + len(self.atoms)
-            places, factors = self.atoms[k] if k >= 0 else ([i], arb_mat([[1]]))
+            places, factors = self.parts(i)
             for place, factor in zip(places, factors.entries(), strict=True):
                 done[place] = done.get(place, arb(0)) + w * factor
         return done
@@ -111,6 +122,15 @@ class Cloud:
             places = places[np.argsort(-size[places], kind="stable")]
         return [int(i) + self.first for i in places]
 
+    def gauge(self, x: arb_mat, rows: Sequence[int]) -> arb:
+        """The largest part of its bound that an error of some rows, or of rows bounded together, takes at x."""
+        parts = [abs(self.excess(i, x)) / self.sigma[i] for i in rows]
+        for cone, places in self.cones:
+            if self.may_use(places[0]):
+                parts.append(cone.gauge(arb_mat([[self.excess(i, x)] for i in places])))
+        size = largest(parts or [arb(0)])
+        return arb(size.upper()) if size.is_finite() else arb("inf")
+
     def excess(self, i: int, x: arb_mat) -> arb:
         """``v_i x - e_i``."""
         value = (self.vectors[i] * x)[0, 0]
@@ -141,23 +161,116 @@ class Optimum:
 def exchange(cloud: Cloud, target: arb_mat, basis: Sequence[int], signs: Sequence[int] = ()) -> Optimum | None:
     """The optimum from a start; None where the rows are not seen to be independent, or the limit is met."""
     found = exchange_rows(cloud, target, basis, signs)
+    before = None
     for _ in range(MOST_CUTS):
-        if found is None or found.ray is not None or not cut_cones(cloud, found):
+        if found is None or found.ray is not None:
             break
+        support = list_touching(cloud, found)
+        if cloud.cones and support[:2] == before:
+            sharp = sharpen(cloud, target, found.dual, *support)
+            if sharp is not None:
+                return sharp
+        before = support[:2]
+        if not cut_cones(cloud, found):
+            return found
         found = exchange_rows(cloud, target, found.basis, found.signs)
+    if found is not None:
+        found.ratio = found.ratio.max(cloud.gauge(found.dual, []))
     return found
 
 
+def list_touching(cloud: Cloud, found: Optimum) -> tuple[list[int], list[int], list[float]]:
+    """Balls and other rows that carry weight in an optimum, by their places, and how much."""
+    owner = {i: k for k, (cone, places) in enumerate(cloud.cones) if cone.norm == "l2" for i in places}
+    weights = to_doubles(found.weights)
+    balls, rows = dict[int, float](), dict[int, float]()
+    for i, w in zip(found.basis, weights, strict=True):
+        k = owner.get(cloud.parts(i)[0][0])
+        if abs(w) > 1e-9 * np.abs(weights).max():
+            if k is None:
+                rows[i] = w
+            else:
+                balls[k] = balls.get(k, 0.0) + abs(w) * float(cloud.sigma[i].mid())
+    order = sorted(balls), sorted(rows)
+    return *order, [*(balls[k] for k in order[0]), *(rows[i] for i in order[1])]
+
+
+def sharpen(
+    cloud: Cloud, target: arb_mat, x: arb_mat, balls: Sequence[int], rows: Sequence[int], start: Sequence[float]
+) -> Optimum | None:
+    """The optimum where these balls and rows touch, as a basis of their faces and of rows without weight, or None."""
+    m, cones = target.ncols(), [cloud.cones[k] for k in balls]
+    if not balls or len(balls) + len(rows) > m:
+        return None
+    signs = [1 if w > 0 else -1 for w in start[len(balls) :]]
+    offset = cloud.offset or [arb(0)] * len(cloud.vectors)
+    solved = solve_touching(
+        [(cone, stack(cloud.vectors[i] for i in at), arb_mat([[offset[i]] for i in at])) for cone, at in cones],
+        stack((cloud.vectors[i] for i in rows), m),
+        arb_mat(len(rows), 1, [offset[i] + cloud.sigma[i] * s for i, s in zip(rows, signs, strict=True)]),
+        target,
+        [*to_doubles(x.transpose()), *start],
+    )
+    if solved is None or not all(u * s > 0 for u, s in zip(solved[m:], [1] * len(balls) + signs, strict=True)):
+        return None
+    dual = arb_mat([[e] for e in solved[:m]])
+    ratio = cloud.gauge(dual, cloud.suspects(to_doubles(dual.transpose()), np.zeros(m))).max(arb(1))
+    if not ratio <= 1 + BEYOND:
+        return None
+    faces = [cone.face(arb_mat([[cloud.excess(i, dual)] for i in at])) for cone, at in cones]
+    normals = [
+        face.transpose() * stack(cloud.vectors[i] for i in at) for face, (_, at) in zip(faces, cones, strict=True)
+    ]
+    lines = [*map(to_doubles, normals), *(cloud.scaled[i - cloud.first] for i in rows)]
+    more = complete_basis(cloud, np.array(lines), [i for _, places in cones for i in places])
+    if len(lines) + len(more) < m:
+        return None
+    end = len(cloud.vectors)
+    for face, (cone, places) in zip(faces, cones, strict=True):
+        cloud.combine(cone, places, face)
+    found = solve_basis(cloud, target, [*range(end, end + len(cones)), *rows, *more], [])
+    return None if found is None else replace(found, dual=dual, ratio=ratio)
+
+
+def stack(rows: Iterable[arb_mat], m: int = 0) -> arb_mat:
+    """Rows (1, m) below each other."""
+    entries = [row.entries() for row in rows]
+    return arb_mat(entries) if entries else arb_mat(0, m)
+
+
+def complete_basis(cloud: Cloud, lines: Array, near: Sequence[int]) -> list[int]:
+    """Rows that make a basis of some independent lines: of those near, if these are enough; fewer where none do."""
+    rows, first = cloud.scaled, cloud.first
+    lack = rows.shape[1] - len(lines)
+    turn = np.linalg.qr(lines.T)[0]
+    for places in (near, [i + first for i in range(len(rows)) if cloud.may_use(i + first)]):
+        rest = rows[np.array(places) - first]
+        size = np.linalg.norm(rest, axis=1).max()
+        chosen = independent_rows(rest - rest @ turn @ turn.T, lack, 1e-9 * size)
+        if len(chosen) == lack:
+            break
+    return [places[k] for k in chosen]
+
+
 def cut_cones(cloud: Cloud, found: Optimum) -> bool:
-    """Note by how much the dual breaks the bounds of several measurements; whether combinations were put in."""
+    """Put combinations in where the dual breaks bounds of several measurements; whether it does.
+
+    Doubles see most of it; balls look at all where they see none.
+    """
     before = len(cloud.atoms)
-    for cone, places in cloud.cones:
-        y = arb_mat([[cloud.excess(i, found.dual)] for i in places])
-        size = cone.gauge(y)
-        found.ratio = found.ratio.max(arb(size.upper())) if size.is_finite() else arb("inf")
-        if size > 1 + BEYOND:
-            cloud.combine(cone, places, cone.face(y))
-    return len(cloud.atoms) > before
+    cones = [(cone, places) for cone, places in cloud.cones if cloud.may_use(places[0])]
+    parts = cloud.scaled @ to_doubles(found.dual.transpose()) - (0.0 if cloud.shifted is None else cloud.shifted)
+    beyond = [pair for pair in cones if not pair[0].estimate(parts[np.array(pair[1]) - cloud.first]) < 1.0 + 1e-9]
+    for some in (beyond, cones):
+        for cone, places in some:
+            y = arb_mat([[cloud.excess(i, found.dual)] for i in places])
+            size = cone.gauge(y)
+            found.ratio = found.ratio.max(arb(size.upper())) if size.is_finite() else arb("inf")
+            if size > 1 + BEYOND:
+                cloud.combine(cone, places, cone.face(y))
+        if len(cloud.atoms) > before:
+            return True
+    return False
 
 
 def exchange_rows(cloud: Cloud, target: arb_mat, basis: Sequence[int], signs: Sequence[int] = ()) -> Optimum | None:
@@ -288,5 +401,6 @@ def bounds_of(cloud: Cloud, found: Optimum) -> tuple[arb, arb]:
     """Bounds of the optimum with e = 0: ``P d`` of the dual, shrunk to feasible, and the cost of the weights."""
     lower, upper = arb(0), arb(0)
     for i, s, w in zip(found.basis, found.signs, found.weights.entries(), strict=True):
-        lower, upper = lower + cloud.sigma[i] * w * s, upper + cloud.sigma[i] * abs(w)
+        part = cloud.excess(i, found.dual) if cloud.cones else cloud.sigma[i] * s
+        lower, upper = lower + part * w, upper + cloud.sigma[i] * abs(w)
     return lower / found.ratio, upper

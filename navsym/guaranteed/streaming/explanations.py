@@ -5,23 +5,35 @@ empty one. Where the rows outside E admit no state, Farkas' weights contradict e
 explanation that contains E contains one of their epochs too. Where they admit one, the weights of the optimum bound the
 target for every explanation that keeps their epochs; the others contain one of them. So the children of E are
 E with one of these at most m + 1 epochs, the tree ends at sets of K epochs, and its bounds hold for all explanations.
+Combinations of measurements that are bounded together are rows of their epoch.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
 
 import numpy as np
-from flint import arb, arb_mat
+from flint import arb, arb_mat, fmpq
 
 from navsym.core.errors import InconsistentError
+from navsym.core.exact import to_fmpq
 from navsym.guaranteed.streaming.exchange import Cloud, Optimum, cost_of, exchange
 from navsym.guaranteed.streaming.memory import Memory
 from navsym.guaranteed.streaming.numbers import to_float
 
 Epochs = frozenset[int]
+#: A dual is drawn by less than this part of the way to states that keep all bounds.
+NEAR = 1e-14
+
+
+class Combination(NamedTuple):
+    """Rows of one epoch with exact factors, and the bound of their sum."""
+
+    places: tuple[int, ...]
+    factors: tuple[fmpq, ...]
+    sigma: arb
 
 
 @dataclass(slots=True)
@@ -30,7 +42,7 @@ class Search:
 
     epoch    : (N,) the epoch of each row in memory
     upper    : bound of the target that no explanation exceeds
-    reached  : a value that one explanation takes
+    best     : the set of epochs with that bound, and its optimum
     explained : sets of epochs that explain the data
     refuted   : those that do not, with m independent rows and one more, which contradict each other
     open     : whether some set stays undecided, so that no bound is known
@@ -41,45 +53,75 @@ class Search:
     epoch: np.ndarray
     most: int
     upper: arb | None = None
-    reached: arb | None = None
+    best: tuple[Epochs, Optimum] | None = None
     explained: set[Epochs] = field(default_factory=set)
-    refuted: dict[Epochs, list[int]] = field(default_factory=dict)
+    refuted: dict[Epochs, list[Combination]] = field(default_factory=dict)
     open: bool = False
-    dual: arb_mat | None = None
+
+    def without(self, excluded: Epochs) -> Cloud:
+        """The rows of all other epochs, as yet without combinations: two that are nearly one make a weak basis."""
+        return replace(self.cloud, active=~np.isin(self.epoch, list(excluded)) if excluded else None)
 
     def visit(self, excluded: Epochs, start: Sequence[int], signs: Sequence[int]) -> None:
         """The tree below a set of epochs."""
         if self.open or excluded in self.refuted or excluded in self.explained:
             return
-        self.cloud.active = ~np.isin(self.epoch, list(excluded)) if excluded else None
-        first = self.cloud.first
-        if any(self.epoch[i - first] in excluded for i in start):
-            start, signs = self.cloud.start() or [], []
-        found = exchange(self.cloud, self.target, start, signs) if start else None
+        cloud, first = self.without(excluded), self.cloud.first
+        if cloud.cones or any(self.epoch[i - first] in excluded for i in start):
+            start, signs = cloud.start() or [], []
+        found = exchange(cloud, self.target, start, signs) if start else None
         if found is None:
             self.open = True
             return
         if found.ray is not None:
             rows = [i for i, w in found.ray.items() if not w.is_zero()]
-            self.refuted[excluded] = [*found.basis, list(found.ray)[-1]]
+            self.refuted[excluded] = [combination_of(cloud, i) for i in (*found.basis, rows[-1])]
         else:
             rows = [i for i, w in zip(found.basis, found.weights.entries(), strict=True) if not w.is_zero()]
-            self.note(excluded, found)
+            self.note(cloud, excluded, found)
         if len(excluded) < self.most:
-            for e in sorted({int(self.epoch[i - first]) for i in rows}):
+            for e in sorted({int(self.epoch[cloud.parts(i)[0][0] - first]) for i in rows}):
                 self.visit(excluded | {e}, found.basis, found.signs)
 
-    def note(self, excluded: Epochs, found: Optimum) -> None:
+    def note(self, cloud: Cloud, excluded: Epochs, found: Optimum) -> None:
         """The bound of a set that is not refuted."""
         self.explained.add(excluded)
         weights = dict(zip(found.basis, found.weights.entries(), strict=True))
-        cost = arb(cost_of(self.cloud, weights).upper())
+        cost = arb(cost_of(cloud, weights).upper())
         if self.upper is None or cost > self.upper:
-            self.upper = cost
+            self.upper, self.best = cost, (excluded, found)
+
+    def reached(self) -> arb:
+        """A value that some explanation takes, near the bound; minus infinity where none is known.
+
+        A dual that breaks bounds of several measurements by its rounding is drawn towards the middle of states that
+        keep them, as far as convexity asks: (1 - p) outside + p inside = 1.
+        """
+        if self.best is None:
+            return arb("-inf")
+        excluded, found = self.best
         if found.ratio == 1:  # the dual keeps every bound for certain: it is a state
-            value = (self.target * found.dual)[0, 0]
-            if self.reached is None or value > self.reached:
-                self.reached, self.dual = value, found.dual
+            return (self.target * found.dual)[0, 0]  # type: ignore[no-any-return]
+        cloud, m = self.without(excluded), self.target.ncols()
+        rows = [i for i in range(cloud.first, len(cloud.vectors)) if cloud.may_use(i)]
+        end, sides = found.dual.mid(), arb_mat([[int(i == k) for i in range(m)] for k in range(m)]).tolist()
+        outside, states = cloud.gauge(end, rows), [end]
+        for target in (-self.target, *(arb_mat([row]) * sign for row in sides for sign in (1, -1))):
+            other = exchange(replace(cloud), target, cloud.start() or [])
+            if other is None or other.ray is not None:
+                break
+            states.append(other.dual.mid())
+            middle = (sum(states[1:], states[0]) / len(states)).mid()
+            part = arb(((outside - 1) / (outside - cloud.gauge(middle, rows))).upper()).max(arb(0))
+            if part < NEAR:
+                return (self.target * (end + (middle - end) * part))[0, 0]  # type: ignore[no-any-return]
+        return arb("-inf")
+
+
+def combination_of(cloud: Cloud, i: int) -> Combination:
+    """A row or a combination as it stays when the exchange goes on."""
+    places, factors = cloud.parts(i)
+    return Combination(tuple(places), tuple(map(to_fmpq, factors.entries())), cloud.sigma[i])
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +136,7 @@ class Explanations:
     low: tuple[arb, arb] | None
     high: tuple[arb, arb] | None
     sets: tuple[Epochs, ...]
-    contradictions: tuple[Sequence[int], ...] = ()
+    contradictions: tuple[Sequence[Combination], ...] = ()
 
     @property
     def excluded(self) -> list[int]:
@@ -119,7 +161,8 @@ def explain_data(memory: Memory, most: int, basis: Sequence[int], signs: Sequenc
         search = Search(memory.cloud(data=True), target * sign, epoch, most)
         search.visit(frozenset(), basis, [s * sign for s in signs])
         if not search.open and not search.explained:
-            raise contradiction(memory, epoch, search.refuted[frozenset()], most)
+            rows = [i for one in search.refuted[frozenset()] for i in one.places]
+            raise contradiction(memory, epoch, rows, most)
         searches.append(search)
     up, down = searches
     if up.open or down.open:
@@ -127,8 +170,7 @@ def explain_data(memory: Memory, most: int, basis: Sequence[int], signs: Sequenc
     sets = up.explained | down.explained
     smallest = sorted((s for s in sets if not any(other < s for other in sets)), key=sorted)
     assert up.upper is not None and down.upper is not None
-    high = (up.reached if up.reached is not None else arb("-inf"), up.upper)
-    low = (-down.upper, -down.reached if down.reached is not None else arb("inf"))
+    high, low = (up.reached(), up.upper), (-down.upper, -down.reached())
     return Explanations(low, high, tuple(smallest), tuple({**up.refuted, **down.refuted}.values()))
 
 

@@ -67,12 +67,11 @@ class Flow:
             self.time, self.F = contents.variable, []
             self.h = list(contents.H)
             self.sigmas = tuple(contents.sigma)
-            self.names = tuple(f"z{k + 1}" for k in range(len(self.h)))
         else:
             self.time, self.F = contents.time, list(contents.pieces)
             self.h = [m.h for m in contents.measurements]
             self.sigmas = tuple(m.sigma for m in contents.measurements)
-            self.names = tuple(m.name for m in contents.measurements)
+        self.names = name_measurements(contents)
         self.blocks = list_blocks(contents, self.names, where)
         self.need_values(where)
         n = len(self.functional)
@@ -335,12 +334,20 @@ class Flow:
         return " + ".join(terms) or "0"
 
 
+def name_measurements(contents: ModelFile | BasisFile) -> tuple[str, ...]:
+    """The names of measurements; z1, z2 … where there are regressors alone."""
+    if isinstance(contents, BasisFile):
+        return tuple(f"z{k + 1}" for k in range(len(contents.H)))
+    return tuple(m.name for m in contents.measurements)
+
+
 def list_blocks(contents: ModelFile | BasisFile, names: Sequence[str], where: str) -> list[Together]:
     """Measurements of a model that are bounded together; bounds of each alone are left out. Raises DomainError."""
     found = [b for b in getattr(contents, "blocks", ()) if b.norm != "linf" and len(b.names) > 1]
     if found and where != "Guard":
         message = f"expected measurements that are bounded one by one; got a [[block]] with {quote(found[0].norm)}"
-        raise DomainError(f"{message}; drop it, or ask Guard or solve", where=f"{where}: model")
+        why = "combinations of these join the search without a bound of their number"
+        raise DomainError(f"{message}: {why}; drop it, or ask nav.Guard", where=f"{where}: model")
     shapes = [fmpq_mat([[to_fmpq(e) for e in row] for row in b.shape.tolist()]) for b in found]
     return [Together(tuple(map(names.index, b.names)), b.norm, shape) for b, shape in zip(found, shapes, strict=True)]
 

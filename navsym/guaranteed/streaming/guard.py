@@ -24,7 +24,7 @@ from navsym.guaranteed.streaming.exchange import (
     to_doubles,
     violated_row,
 )
-from navsym.guaranteed.streaming.explanations import contradiction, explain_data
+from navsym.guaranteed.streaming.explanations import Combination, contradiction, explain_data
 from navsym.guaranteed.streaming.flow import BITS, Flow
 from navsym.guaranteed.streaming.memory import MOST_ROWS, Memory
 from navsym.guaranteed.streaming.numbers import middle, read_exact, to_float, write_rational
@@ -99,12 +99,9 @@ class Guard:
         self.model = as_model(model, "Guard: model").with_values(**dict(values or {}))
         with precision(BITS):
             self.flow = Flow(self.model.read(), target, "Guard")
-        if self.flow.blocks and (
-            self.outliers or (bound == "variance" and any(b.norm == "l1" for b in self.flow.blocks))
-        ):
-            law = "gross errors" if self.outliers else "standard deviations"
-            message = f"expected bounded errors where some are bounded together; got {law}; drop the [[block]]"
-            raise DomainError(message, where="Guard: outliers" if self.outliers else "Guard: bound")
+        if bound == "variance" and any(b.norm == "l1" for b in self.flow.blocks):
+            message = 'expected bounded errors where their sizes add up; got standard deviations; drop the "l1" block'
+            raise DomainError(message, where="Guard: bound")
         self.memory = Memory(self.flow, self.length)
         # Hints for the search; nothing that is said of an epoch rests on them.
         self.basis: list[int] = []
@@ -373,15 +370,16 @@ class Guard:
     def need_consistent(self, fresh: int) -> None:
         """Raise InconsistentError where it is proved that no state keeps all bounds; look only where doubles doubt."""
         memory = self.memory
-        if self.state is not None and not self.flow.blocks:
-            new = slice(len(memory.rows) - fresh, len(memory.rows))
-            gap = np.abs(memory.scaled[new] @ self.state - memory.shifted[new])
-            if (gap <= 1.0).all():
+        if self.state is not None:
+            new = len(memory.rows) - fresh
+            gap = memory.scaled[new : new + fresh] @ self.state - memory.shifted[new : new + fresh]
+            together = [(cone, np.array(at) - new) for cone, at in memory.cones if at[0] >= new]
+            if (np.abs(gap) <= 1.0).all() and all(cone.estimate(gap[at]) <= 1.0 for cone, at in together):
                 return
-        cloud, target = memory.cloud(data=True), memory.target()
-        ends, start = [], self.basis or cloud.start() or []
+        ends, start = [], self.basis or memory.cloud().start() or []
         for sign in (1, -1):
-            found = exchange(cloud, target * sign, start, [s * sign for s in self.signs])
+            cloud = memory.cloud(data=True)
+            found = exchange(cloud, memory.target() * sign, start, [s * sign for s in self.signs])
             if found is None:
                 return
             if found.ray is not None:
@@ -415,14 +413,15 @@ class Guard:
             exclusion=self.prepare_exclusion(at, excluded, found.contradictions) if excluded else None,
         )
 
-    def prepare_exclusion(self, at: fmpq, excluded: list[fmpq], contradictions: Sequence[Sequence[int]]) -> Exclusion:
+    def prepare_exclusion(
+        self, at: fmpq, excluded: list[fmpq], contradictions: Sequence[Sequence[Combination]]
+    ) -> Exclusion:
         """What the certificate of the excluded epochs is made of, when it is asked for."""
-        places = sorted({i for rows in contradictions for i in rows})
-        renamed = {i: k for k, i in enumerate(places)}
-        found = [[renamed[i] for i in rows] for rows in contradictions]
-        return Exclusion(
-            self.flow, at, [self.memory.rows[i] for i in places], self.flow.columns, found, excluded, self.outliers
-        )
+        used = {(one.places, one.factors): one for rows in contradictions for one in rows}
+        renamed = {key: k for k, key in enumerate(sorted(used, key=lambda key: key[0]))}
+        found = [[renamed[one.places, one.factors] for one in rows] for rows in contradictions]
+        rows = [([self.memory.rows[i] for i in key[0]], key[1], used[key].sigma) for key in renamed]
+        return Exclusion(self.flow, at, rows, self.flow.columns, found, excluded, self.outliers)
 
 
 class Window(Sequence[Any]):

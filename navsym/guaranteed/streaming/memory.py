@@ -72,6 +72,7 @@ class Memory:
         self.vectors: list[arb_mat] = []
         self.sigmas: list[arb] = []
         self.data: list[arb] = []
+        self.cones: list[tuple[Cone, list[int]]] = []
         self.first = self.oldest = 0
         self.gone = 0  # epochs that have left since the reference time was chosen
         self.scaled = np.zeros((64, flow.size))
@@ -94,13 +95,19 @@ class Memory:
             sigma, text = (arb(own), write_rational(own)) if own is not None else self.flow.sigma(j, at)
             self.seen[j] += 1
             self.put(Row(at, j, z, sigma, text, own))
-        self.times.append(at)
-        self.counts.append(len(taken))
+        self.end_epoch(at, len(taken))
         if self.length is not None and len(self.times) - self.oldest > self.length:
             self.seen.subtract(row.j for row in self.rows[self.first : self.first + self.counts[self.oldest]])
             self.first += self.counts[self.oldest]
             self.oldest += 1
             self.gone += 1
+
+    def end_epoch(self, at: fmpq, count: int) -> None:
+        """Note an epoch whose rows are in."""
+        self.times.append(at)
+        self.counts.append(count)
+        start = len(self.rows) - count
+        self.cones += list_cones(self.flow, self.rows[start:], start)
 
     def put(self, row: Row) -> None:
         """A row at the end of all lists."""
@@ -132,6 +139,7 @@ class Memory:
             del entries[size:]
         for column in (self.rows, self.vectors, self.sigmas, self.data):
             del column[rows:]  # type: ignore[attr-defined]
+        self.cones = [pair for pair in self.cones if pair[1][0] < rows]
         self.seen = Counter(row.j for row in self.rows[self.first :])
 
     def mark(self) -> tuple[Any, ...]:
@@ -147,6 +155,7 @@ class Memory:
         """Drop what has left, and refer everything to a time: the oldest epoch in memory where none is given."""
         times, counts, rows = self.times[self.oldest :], self.counts[self.oldest :], self.rows[self.first :]
         self.times, self.counts, self.rows, self.vectors, self.sigmas, self.data = [], [], [], [], [], []
+        self.cones = []
         self.widen()
         self.first = self.oldest = 0
         if reference is None:
@@ -169,8 +178,7 @@ class Memory:
             self.carry = self.flow.transition(self.reference, at)  # type: ignore[arg-type]
             for _ in range(count):
                 self.put(next(entries))
-            self.times.append(at)
-            self.counts.append(count)
+            self.end_epoch(at, count)
 
     def cloud(self, *, data: bool = False, active: Any = None) -> Cloud:
         """The rows in memory as the exchange takes them, with the measurements where they matter."""
@@ -184,7 +192,7 @@ class Memory:
             self.wide,
             self.first,
             active,
-            list_cones(self.flow, self.rows[window], self.first),
+            [pair for pair in self.cones if pair[1][0] >= self.first],
         )
 
     def target(self) -> arb_mat:
