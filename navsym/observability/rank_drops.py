@@ -24,7 +24,7 @@ from navsym.observability.chains import Chain, Chains, JointObservability
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
 from navsym.observability.reduction import System, components, irredundant, krylov_remainder, lies_in_ideal
-from navsym.observability.ring import Poly, Ring, irreducible_factors, is_odd
+from navsym.observability.ring import Poly, Ring, degree_in, irreducible_factors, is_odd
 from navsym.observability.tree import SPLIT_TERMS, Leaf, is_covered, leaf_on, lost_columns, search_drops
 from navsym.prove.assumptions import is_nonzero
 
@@ -41,11 +41,6 @@ from navsym.prove.assumptions import is_nonzero
 
 #: So many points at most: about ten seconds of processor time for ten states.
 POINTS = 120_000
-
-
-def degree_in(entry: Poly, place: int) -> int:
-    """Degree of a polynomial in one generator; 0 for the zero polynomial."""
-    return int(entry.degrees()[place]) if entry != 0 else 0
 
 
 def affine_steps(matrix: Matrix, place: int) -> int | None:
@@ -165,6 +160,7 @@ class RankDrop:
 
     subspace   : name of a measurement, or "joint"
     zeros      : polynomials, irreducible over the rationals where that could be reached
+    nonzero    : polynomials that do not vanish on the drop; none where all points of the zeros belong to it
     complete   : True when the drops listed for this subspace are proved to be all real ones
     lasting    : False where the condition holds at an instant only: the motion leaves it, and the interval shows all
     excluded   : True when what the symbols are declared to be excludes it
@@ -178,6 +174,7 @@ class RankDrop:
     subspace: str
     zeros: tuple[sp.Expr, ...]
     complete: bool
+    nonzero: tuple[sp.Expr, ...] = ()
     lasting: bool = True
     excluded: bool = False
     rank: int | None = None
@@ -188,8 +185,8 @@ class RankDrop:
 
     @property
     def condition(self) -> str:
-        """The drop as text: ``zero = 0`` for every polynomial, joined by ``and``."""
-        return join_conditions(self.zeros)
+        """The drop as text: ``zero = 0`` and ``factor != 0`` for every polynomial, joined by ``and``."""
+        return " and ".join([join_conditions(self.zeros), *(f"{factor} != 0" for factor in self.nonzero)])
 
 
 def join_conditions(zeros: Iterable[sp.Expr]) -> str:
@@ -225,6 +222,7 @@ def find_drops(found: JointObservability, box: Box | None = None) -> DropList:
         generic = leaf_on([], rows, ring, chains.motion) if locus.lasting else None
         view = View(name, rows, generic, chains.motion, locus.complete, box or {})
         drops += view.list_drops(locus.lasting, NESTED if name == "joint" else 0)
+        drops += view.list_partial(locus.partial)
         written = (conditions_on(system, ring) for system in join_half_angles(locus.passing, ring))
         drops += [view.make_drop(zeros, lasting=False) for zeros in written if zeros]
     return DropList(tuple(sorted(drops, key=lambda drop: not drop.lasting)), complete, left)
@@ -242,7 +240,7 @@ def find_joint_drops(found: JointObservability, known: Iterable[sp.Symbol], node
     cases = search_drops(rows, found.joint_dimension, ring, motion, nodes=nodes)
     generic = leaf_on([], rows, ring, motion) if cases.drops else None
     view = View("joint", rows, generic, motion, not cases.open, {})
-    drops = view.list_drops([leaf.system for leaf in cases.drops], 0)
+    drops = [*view.list_drops([leaf.system for leaf in cases.drops], 0), *view.list_partial(cases.partial)]
     left = tuple(join_conditions(conditions_on(system, ring)) for system in cases.open)
     return DropList(tuple(drops), {"joint": not cases.open}, {"joint": left})
 
@@ -291,12 +289,27 @@ class View:
                     zeros,
                     rank=leaves[0].rank,
                     directions=sp.ImmutableMatrix(len(short), self.motion.size, entries),
-                    inside=tuple(self.list_drops([x.system for x in inner.drops], depth - 1)) if inner else (),
+                    inside=(
+                        *self.list_drops([x.system for x in inner.drops], depth - 1),
+                        *self.list_partial(inner.partial),
+                    )
+                    if inner
+                    else (),
                     whole=inner is not None and not inner.open,
                     leaves=leaves,
                 )
             )
         return listed
+
+    def list_partial(self, leaves: Sequence[Leaf]) -> list[RankDrop]:
+        """Drops at all points of leaves whose closures are too long, with what does not vanish on them."""
+        ring = self.motion.ring
+        listed = [(conditions_on(leaf.system, ring), leaf) for leaf in leaves]
+        return [
+            self.make_drop(zeros, nonzero=tuple(map(ring.condition, leaf.nonzero)), rank=leaf.rank)
+            for zeros, leaf in listed
+            if zeros
+        ]
 
     def leaves_on(self, system: System) -> tuple[Leaf, ...]:
         """What is shown on a system, on both of its parts where it joins half angles; none where it was not found."""
@@ -377,11 +390,13 @@ def join_half_angles(systems: list[System], ring: Ring) -> list[System]:
 class Locus:
     """Where the rank of a subspace is smaller: systems that the motion keeps, and those that hold in passing.
 
-    open : systems among whose zeros nothing was decided
+    partial : leaves that the motion keeps, whose closures are too long
+    open    : systems among whose zeros nothing was decided
     """
 
     lasting: list[System]
     passing: list[System] = field(default_factory=list)
+    partial: list[Leaf] = field(default_factory=list)
     open: list[System] = field(default_factory=list)
     complete: bool = True
 
@@ -404,17 +419,18 @@ def locus_of(chains: Chains, part: tuple[Chain, ...], rank: int) -> Locus:
     listed = None if ended or motion.rates else drops_by_staircases(chains, part, rank, determinant_by_values)
     if listed is not None:
         return Locus(irredundant(listed))
-    left: list[System] = []
+    left, partial = list[System](), list[Leaf]()
     if not ended:
         found = search_drops([chain.vectors[0] for chain in part], rank, ring, motion)
         lasting, left = irredundant([*lasting, *(leaf.system for leaf in found.drops)]), found.open
+        partial = [leaf for leaf in found.partial if not is_covered(leaf.system, lasting)]
     if motion.rates:
         passing = [system for system in systems if not is_covered(system, lasting)]
-        return Locus(lasting, passing, left, whole and not left)
-    listed = drops_by_staircases(chains, part, rank, determinant_by_elimination) if left else None
+        return Locus(lasting, passing, partial, left, whole and not left)
+    listed = drops_by_staircases(chains, part, rank, determinant_by_elimination) if left or partial else None
     if listed is not None:
         return Locus(irredundant(listed))
-    return Locus(irredundant([*lasting, *systems]), [], left, not left)
+    return Locus(irredundant([*lasting, *systems]), [], partial, left, not left)
 
 
 def written_drops(part: tuple[Chain, ...], rank: int, motion: Motion) -> tuple[list[System], bool]:
