@@ -24,7 +24,7 @@ from navsym.observability.chains import Chain, Chains, JointObservability
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
 from navsym.observability.reduction import System, components, irredundant, krylov_remainder, lies_in_ideal
-from navsym.observability.ring import Poly, Ring, degree_in, irreducible_factors, is_odd
+from navsym.observability.ring import Poly, Ring, irreducible_factors, is_odd
 from navsym.observability.tree import SPLIT_TERMS, Leaf, is_covered, leaf_on, lost_columns, search_drops
 from navsym.prove.assumptions import is_nonzero
 
@@ -41,6 +41,11 @@ from navsym.prove.assumptions import is_nonzero
 
 #: So many points at most: about ten seconds of processor time for ten states.
 POINTS = 120_000
+
+
+def degree_in(entry: Poly, place: int) -> int:
+    """Degree of a polynomial in one generator; 0 for the zero polynomial."""
+    return int(entry.degrees()[place]) if entry != 0 else 0
 
 
 def affine_steps(matrix: Matrix, place: int) -> int | None:
@@ -221,8 +226,7 @@ def find_drops(found: JointObservability, box: Box | None = None) -> DropList:
         rows = [chain.vectors[0] for chain in part]
         generic = leaf_on([], rows, ring, chains.motion) if locus.lasting else None
         view = View(name, rows, generic, chains.motion, locus.complete, box or {})
-        drops += view.list_drops(locus.lasting, NESTED if name == "joint" else 0)
-        drops += view.list_partial(locus.partial)
+        drops += view.list_drops(locus.lasting, NESTED if name == "joint" else 0, locus.leaves)
         written = (conditions_on(system, ring) for system in join_half_angles(locus.passing, ring))
         drops += [view.make_drop(zeros, lasting=False) for zeros in written if zeros]
     return DropList(tuple(sorted(drops, key=lambda drop: not drop.lasting)), complete, left)
@@ -240,7 +244,7 @@ def find_joint_drops(found: JointObservability, known: Iterable[sp.Symbol], node
     cases = search_drops(rows, found.joint_dimension, ring, motion, nodes=nodes)
     generic = leaf_on([], rows, ring, motion) if cases.drops else None
     view = View("joint", rows, generic, motion, not cases.open, {})
-    drops = [*view.list_drops([leaf.system for leaf in cases.drops], 0), *view.list_partial(cases.partial)]
+    drops = view.list_drops(closed_systems(cases.drops), 0, cases.drops)
     left = tuple(join_conditions(conditions_on(system, ring)) for system in cases.open)
     return DropList(tuple(drops), {"joint": not cases.open}, {"joint": left})
 
@@ -265,15 +269,18 @@ class View:
         """True when something is declared of a symbol beside that it is real."""
         return any(symbol in self.box or symbol.is_nonzero for symbol in zero.free_symbols)
 
-    def list_drops(self, systems: list[System], depth: int) -> list[RankDrop]:
-        """Drops on some systems, each with its rank, its lost directions, and the drops inside it."""
+    def list_drops(self, systems: list[System], depth: int, known: Sequence[Leaf]) -> list[RankDrop]:
+        """Drops on some systems, each with its rank, its lost directions, and the drops inside it.
+
+        known : leaves of the tree: those with what does not vanish on them are listed, too
+        """
         ring = self.motion.ring
         listed = []
         for system in join_half_angles(systems, ring):
             zeros = conditions_on(system, ring)
             if not zeros:
                 continue
-            leaves = self.leaves_on(system)
+            leaves = self.leaves_on(system) or tuple(leaf for leaf in known if leaf.system == system and leaf.dense)
             if not leaves:
                 listed.append(self.make_drop(zeros))
                 continue
@@ -289,25 +296,15 @@ class View:
                     zeros,
                     rank=leaves[0].rank,
                     directions=sp.ImmutableMatrix(len(short), self.motion.size, entries),
-                    inside=(
-                        *self.list_drops([x.system for x in inner.drops], depth - 1),
-                        *self.list_partial(inner.partial),
-                    )
-                    if inner
-                    else (),
+                    inside=tuple(self.list_drops(closed_systems(inner.drops), depth - 1, inner.drops)) if inner else (),
                     whole=inner is not None and not inner.open,
                     leaves=leaves,
                 )
             )
-        return listed
-
-    def list_partial(self, leaves: Sequence[Leaf]) -> list[RankDrop]:
-        """Drops at all points of leaves whose closures are too long, with what does not vanish on them."""
-        ring = self.motion.ring
-        listed = [(conditions_on(leaf.system, ring), leaf) for leaf in leaves]
-        return [
+        partial = [(conditions_on(leaf.system, ring), leaf) for leaf in known if leaf.nonzero]
+        return listed + [
             self.make_drop(zeros, nonzero=tuple(map(ring.condition, leaf.nonzero)), rank=leaf.rank)
-            for zeros, leaf in listed
+            for zeros, leaf in partial
             if zeros
         ]
 
@@ -318,6 +315,11 @@ class View:
         found = [leaf_on(part, self.rows, ring, self.motion) for part in ([] if long else parts)]
         leaves = tuple(leaf for leaf in found if leaf is not None)
         return leaves if len(leaves) == len(parts) and len({leaf.rank for leaf in leaves}) == 1 else ()
+
+
+def closed_systems(leaves: Sequence[Leaf]) -> list[System]:
+    """Systems of leaves whose closures are known."""
+    return [leaf.system for leaf in leaves if not leaf.nonzero]
 
 
 def conditions_on(system: System, ring: Ring) -> tuple[sp.Expr, ...]:
@@ -390,13 +392,13 @@ def join_half_angles(systems: list[System], ring: Ring) -> list[System]:
 class Locus:
     """Where the rank of a subspace is smaller: systems that the motion keeps, and those that hold in passing.
 
-    partial : leaves that the motion keeps, whose closures are too long
-    open    : systems among whose zeros nothing was decided
+    leaves : of the tree
+    open   : systems among whose zeros nothing was decided
     """
 
     lasting: list[System]
     passing: list[System] = field(default_factory=list)
-    partial: list[Leaf] = field(default_factory=list)
+    leaves: list[Leaf] = field(default_factory=list)
     open: list[System] = field(default_factory=list)
     complete: bool = True
 
@@ -419,18 +421,22 @@ def locus_of(chains: Chains, part: tuple[Chain, ...], rank: int) -> Locus:
     listed = None if ended or motion.rates else drops_by_staircases(chains, part, rank, determinant_by_values)
     if listed is not None:
         return Locus(irredundant(listed))
-    left, partial = list[System](), list[Leaf]()
+    left, leaves = list[System](), list[Leaf]()
     if not ended:
         found = search_drops([chain.vectors[0] for chain in part], rank, ring, motion)
-        lasting, left = irredundant([*lasting, *(leaf.system for leaf in found.drops)]), found.open
-        partial = [leaf for leaf in found.partial if not is_covered(leaf.system, lasting)]
+        lasting, left = irredundant([*lasting, *closed_systems(found.drops)]), found.open
+        leaves = [leaf for leaf in found.drops if not leaf.nonzero or not is_covered(leaf.system, lasting)]
     if motion.rates:
         passing = [system for system in systems if not is_covered(system, lasting)]
-        return Locus(lasting, passing, partial, left, whole and not left)
-    listed = drops_by_staircases(chains, part, rank, determinant_by_elimination) if left or partial else None
+        return Locus(lasting, passing, leaves, left, whole and not left)
+    listed = (
+        drops_by_staircases(chains, part, rank, determinant_by_elimination)
+        if left or any(leaf.nonzero for leaf in leaves)
+        else None
+    )
     if listed is not None:
         return Locus(irredundant(listed))
-    return Locus(irredundant([*lasting, *systems]), [], partial, left, not left)
+    return Locus(irredundant([*lasting, *systems]), [], leaves, left, not left)
 
 
 def written_drops(part: tuple[Chain, ...], rank: int, motion: Motion) -> tuple[list[System], bool]:

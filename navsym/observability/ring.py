@@ -326,11 +326,6 @@ def is_odd(value: Poly, cosine: int) -> bool:
     return powers is not None and (int(powers[cosine - 1]) + int(powers[cosine])) % 2 == 1
 
 
-def degree_in(entry: Poly, place: int) -> int:
-    """Degree of a polynomial in one generator; 0 for the zero polynomial."""
-    return int(entry.degrees()[place]) if entry != 0 else 0
-
-
 def is_divisor(bottom: Poly, top: Poly) -> bool:
     """True when the division leaves no remainder."""
     return divmod(top, bottom)[1] == 0

@@ -16,7 +16,6 @@ Along a motion an equation holds with all its derivatives, or almost never: q = 
 from __future__ import annotations
 
 import heapq
-import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -38,19 +37,19 @@ from navsym.observability.reduction import (
     is_definite,
     is_nowhere,
     lies_in_ideal,
+    reduce_generators,
+    small_points,
 )
-from navsym.observability.ring import Poly, Ring, degree_in, irreducible_factors
+from navsym.observability.ring import Poly, Ring, irreducible_factors
 
 #: Nodes looked at, terms of a row, and terms of an entry to split on; what lies beyond is listed as open.
 NODES, TERMS, SPLIT_TERMS = 120, 2000, 400
 #: Nodes of a model that moves, whose rows get long.
 MOVING_NODES = 24
-#: Points at which the sign of a condition is looked at.
-TRIALS = 200
 #: Equations added when a condition is to hold along a motion, and terms of them.
 STEPS, MOVED_TERMS = 200, 120
 #: Groebner bases of saturations: number of polynomials, terms, bits.
-SATURATION = (100, 600, 3000)
+SATURATION = (40, 150, 500)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,12 +60,14 @@ class Leaf:
     rank   : on the points
     unseen : n - rank columns that no row sees there, polynomials modulo the system
     nonzero : where the closure is too long to write, what does not vanish on the points; none otherwise
+    dense  : True when the real points are known to be dense among the complex ones
     """
 
     system: System
     rank: int
     unseen: Matrix
     nonzero: System = field(default_factory=list)
+    dense: bool = False
 
 
 Advance = Callable[[list[Poly]], list[Poly]]
@@ -149,13 +150,11 @@ class Cases:
     full   : the first leaf of the wanted rank, None where there is none
     drops  : leaves of smaller ranks, without those inside others; their closures are all points of smaller rank
              except for those of the open systems
-    partial : leaves of smaller ranks by themselves, whose closures are too long
     open   : systems that were not decided
     """
 
     full: Leaf | None
     drops: list[Leaf]
-    partial: list[Leaf]
     open: list[System]
 
 
@@ -171,7 +170,6 @@ class Tree:
     heap: list[tuple[int, int, Node]] = field(default_factory=list)
     full: Leaf | None = None
     drops: list[Leaf] = field(default_factory=list)
-    partial: list[Leaf] = field(default_factory=list)
     open: list[System] = field(default_factory=list)
     count: int = 0
 
@@ -185,7 +183,7 @@ class Tree:
         visited = 0
         while self.heap:
             node = heapq.heappop(self.heap)[2]
-            if any(all(lies_in_ideal(f, node.system) for f in leaf.system) for leaf in self.drops):
+            if is_covered(node.system, [leaf.system for leaf in self.drops if not leaf.nonzero]):
                 continue
             visited += 1
             if visited > self.most:
@@ -195,11 +193,11 @@ class Tree:
                 self.visit(node)
             except TooLargeError:
                 self.open.append(node.system)
-        listed = irredundant([leaf.system for leaf in self.drops])
+        listed = irredundant([leaf.system for leaf in self.drops if not leaf.nonzero])
         drops = [next(leaf for leaf in self.drops if leaf.system == system) for system in listed]
+        drops += [leaf for leaf in self.drops if leaf.nonzero and not is_covered(leaf.system, listed)]
         left = [system for system in irredundant(self.open) if not is_covered(system, listed)]
-        partial = [leaf for leaf in self.partial if not is_covered(leaf.system, listed)]
-        return Cases(self.full, drops, partial, left)
+        return Cases(self.full, drops, left)
 
     def visit(self, node: Node) -> None:
         """Make a node a leaf, or split it."""
@@ -211,11 +209,13 @@ class Tree:
         if rank >= self.wanted:
             self.full = self.full or Leaf(node.system, rank, node.unseen(self.width))
             return
-        unseen = node.unseen(self.width)
+        system, unseen = node.system, node.unseen(self.width)
+        dense = is_irreducible(system, node.ring) and has_dense_points(system, node.ring)
         try:
-            self.drops += [Leaf(system, rank, unseen) for system in closures(node.system, node.ring, self.ring)]
+            closed, nonzero = closures(system, node.ring, self.ring), list[Poly]()
         except TooLargeError:
-            self.partial.append(Leaf(node.system, rank, unseen, solving_units(node.system, node.ring, self.ring)))
+            closed, nonzero = [system], solving_units(system, node.ring, self.ring)
+        self.drops += [Leaf(part, rank, unseen, nonzero, dense) for part in closed]
 
     def split(self, node: Node, entries: Sequence[Poly]) -> None:
         """p != 0, and the factors of p one by one, for the entry p that is simplest without its units."""
@@ -282,9 +282,11 @@ def solve_further(system: System, ring: Ring, motion: Motion | None) -> Parts | 
         rest = [g for g in system if g is not f]
         nonzero = ring.with_units([c])
         return [(system, nonzero), ([*rest, c, f - c * ring.context.gen(k)], ring)]
-    common = shared_variable(unsolved)
-    if common is not None:
-        return divided(common, system, unsolved, ring)
+    tidy = reduce_generators(unsolved, ring) if len(unsolved) > 1 else unsolved
+    if tidy is None:
+        return []
+    if {*map(str, tidy)} != {*map(str, unsolved)}:
+        return [([*(f for f in system if all(f is not g for g in unsolved)), *tidy], ring)]
     if any(len(f) > SOLUTION for f in system):
         raise TooLargeError(f"expected equations of at most {SOLUTION} terms; got more; fix some parameters")
     return derived_parts(system, unsolved, ring, motion)
@@ -293,39 +295,6 @@ def solve_further(system: System, ring: Ring, motion: Motion | None) -> Parts | 
 def linear_places(f: Poly) -> list[tuple[int, Poly]]:
     """Variables of degree one in a polynomial, with their factors, which do not hold them."""
     return [(k, f.derivative(k)) for k, degree in enumerate(f.degrees()) if degree == 1]
-
-
-def shared_variable(unsolved: System) -> int | None:
-    """The variable of smallest degree that two equations hold; None where each has its own ones."""
-    shared = [
-        k
-        for k in range(len(unsolved[0].degrees()) if unsolved else 0)
-        if sum(degree_in(f, k) > 0 for f in unsolved) > 1
-    ]
-    return min(shared, key=lambda k: min(degree_in(f, k) for f in unsolved if degree_in(f, k)), default=None)
-
-
-def divided(place: int, system: System, unsolved: System, ring: Ring) -> Parts:
-    """A system with its equations divided by that of smallest degree in a variable, where its leading factor is a unit.
-
-    Where it is none, the points at which it vanishes go their own way.
-    """
-    f = min((g for g in unsolved if degree_in(g, place)), key=lambda g: (degree_in(g, place), len(g)))
-    degree, rest = degree_in(f, place), [g for g in system if g is not f]
-    x, top = ring.context.gen(place), leading_factor(f, place)
-    if not ring.is_unit(top):
-        return [(system, ring.with_units([top])), ([*rest, top, f - top * x**degree], ring)]
-    found = []
-    for g in rest:
-        while g != 0 and degree_in(g, place) >= degree:
-            g = ring.without_units(top * g - leading_factor(g, place) * x ** (degree_in(g, place) - degree) * f)
-        found.append(g)
-    return [([f, *found], ring)]
-
-
-def leading_factor(f: Poly, place: int) -> Poly:
-    """The factor of the highest power of a variable."""
-    return powers_apart(f, place)[degree_in(f, place),]
 
 
 def substituted(f: Poly, place: int, others: System, ring: Ring) -> Parts:
@@ -419,8 +388,7 @@ def has_dense_points(system: System, ring: Ring) -> bool:
     that the other equations name follow.
     """
     rest = [f for f in system if solved_variable(f, system, ring) is None]
-    source = random.Random(7)
-    points = [[source.choice((0, 0, 1, -1, 2, -3, 7)) for _ in ring.symbols] for _ in range(TRIALS)]
+    points = small_points(len(ring.symbols))
     return all(len({f(*point) > 0 for point in points if f(*point) != 0}) == 2 for f in rest)
 
 
