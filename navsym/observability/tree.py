@@ -267,6 +267,8 @@ def solve_further(system: System, ring: Ring, motion: Motion | None) -> Parts | 
     variables, and where something is not zero it is not zero almost everywhere. Where c is no unit, the points with
     c = 0 and g = 0 go their own way.
     """
+    if any(len(f) > SPLIT_TERMS for f in system):
+        raise TooLargeError(f"expected conditions of at most {SPLIT_TERMS} terms; got more; fix some parameters")
     for k, f in enumerate(system):
         parts = alternatives(f, ring)
         if parts != [[f]]:
