@@ -23,7 +23,7 @@ from navsym.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_cases
 from navsym.observability.chains import Chain, Chains, JointObservability
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
-from navsym.observability.reduction import System, components, irredundant, krylov_remainder, lies_in_ideal
+from navsym.observability.reduction import System, components, irredundant, krylov_remainder
 from navsym.observability.ring import Poly, Ring, irreducible_factors, is_odd
 from navsym.observability.tree import SPLIT_TERMS, Leaf, is_covered, leaf_on, lost_columns, search_drops
 from navsym.prove.assumptions import is_nonzero
@@ -153,8 +153,6 @@ def newton(bound: int) -> fmpz_mat:
 
 #: So many staircases at most, when the joint locus is written down by its definition.
 MOST_STAIRCASES = 40
-#: Systems that are looked at when the part of a drop is sought that the motion keeps.
-KEPT_STEPS, KEPT_TERMS = 60, 40
 #: Drops inside drops inside drops are looked for so deep; more directions have too many terms to be read.
 NESTED, DIRECTION_TERMS = 3, 60
 
@@ -339,32 +337,6 @@ def conditions_on(system: System, ring: Ring) -> tuple[sp.Expr, ...]:
     return (*fixed, *(zero for zero in rest if zero != 0))
 
 
-def kept_parts(systems: list[System], motion: Motion) -> tuple[list[System], bool]:
-    """The parts of some real zeros that the motion never leaves, and whether all of them were found.
-
-    Where a system holds along the motion, so do the derivatives of its equations. They are added until nothing is new:
-    an ideal that holds its derivatives is kept.
-    """
-    if not motion.rates:
-        return systems, True
-    waiting, steps = list(systems), 0
-    kept: list[System] = []
-    whole = True
-    while waiting:
-        system = waiting.pop()
-        steps += 1
-        if steps > KEPT_STEPS:
-            return irredundant(kept), False
-        fresh = [f for f in map(motion.derivative, system) if not lies_in_ideal(f, system)]
-        if sum(map(len, fresh)) > KEPT_TERMS:
-            whole = False
-        elif fresh:
-            waiting += components([*system, *fresh], motion.ring)
-        else:
-            kept.append(system)
-    return irredundant(kept), whole
-
-
 def join_half_angles(systems: list[System], ring: Ring) -> list[System]:
     """Two equations in half an angle that make one in the whole angle stand as that one.
 
@@ -417,15 +389,13 @@ def locus_of(chains: Chains, part: tuple[Chain, ...], rank: int) -> Locus:
     if motion.roots:
         return Locus([], complete=False)
     systems, whole = written_drops(part, rank, motion)
-    lasting, ended = kept_parts(systems, motion) if whole else ([], False)
-    listed = None if ended or motion.rates else drops_by_staircases(chains, part, rank, determinant_by_values)
+    if whole and not motion.rates:
+        return Locus(irredundant(systems))
+    listed = None if motion.rates else drops_by_staircases(chains, part, rank, determinant_by_values)
     if listed is not None:
         return Locus(irredundant(listed))
-    left, leaves = list[System](), list[Leaf]()
-    if not ended:
-        found = search_drops([chain.vectors[0] for chain in part], rank, ring, motion)
-        lasting, left = irredundant([*lasting, *closed_systems(found.drops)]), found.open
-        leaves = [leaf for leaf in found.drops if not leaf.nonzero or not is_covered(leaf.system, lasting)]
+    found = search_drops([chain.vectors[0] for chain in part], rank, ring, motion)
+    lasting, left, leaves = closed_systems(found.drops), found.open, found.drops
     if motion.rates:
         passing = [system for system in systems if not is_covered(system, lasting)]
         return Locus(lasting, passing, leaves, left, whole and not left)
