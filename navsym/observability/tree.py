@@ -38,6 +38,7 @@ from navsym.observability.reduction import (
     is_nowhere,
     lies_in_ideal,
     reduce_generators,
+    row_weight,
     small_points,
 )
 from navsym.observability.ring import Poly, Ring, irreducible_factors
@@ -92,6 +93,7 @@ class Node:
         """Take rows while they have a unit as pivot; entries to split on where none has, none at a leaf."""
         stuck: Matrix = []
         while self.waiting and len(self.basis.rows) < wanted:
+            self.waiting.sort(key=row_weight)
             row = need_short(self.tidy(self.waiting.pop(0)))
             if all(entry == 0 for entry in row):
                 continue
