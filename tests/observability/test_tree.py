@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+import math
 import random
 
 import pytest
@@ -13,8 +14,11 @@ from flint import fmpq, fmpq_mat
 import navsym as nav
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import chains_of, observe_jointly
-from navsym.observability.rank_drops import find_drops
+from navsym.observability.linear import PRIME, residue_rank
+from navsym.observability.motion import residue_chains
+from navsym.observability.rank_drops import find_drops, find_joint_drops
 from navsym.observability.tree import search_drops
+from navsym.studies.atlas.cells import model_of
 from tests.sampling import thinned
 
 a, b, c = sp.symbols("a b c", real=True)
@@ -155,3 +159,46 @@ def test_a_condition_on_a_turning_angle_lasts_where_the_turn_stops_or_nothing_is
             a, b, c, w, q = values
             rests = w == 0 and (q == 0 or "w" not in rates) and a * cosine_of + b * sine_of + c == 0
             assert here == (a == b == c == 0 or rests), values
+
+
+def point_of_graph(zeros, symbols, source):
+    """Residues where the zeros vanish: each is solved for a variable of its own, or the first for a square root."""
+    free = [
+        zero.free_symbols - set().union(*(other.free_symbols for other in zeros if other is not zero)) for zero in zeros
+    ]
+    named = [
+        (zero, [s for s in sorted(own, key=str) if sp.degree(zero, s) == 1])
+        for zero, own in zip(zeros, free, strict=True)
+    ]
+    for _ in range(30):
+        point = {s: source.randrange(2, PRIME) for s in symbols}
+        for zero, own in sorted(named, key=lambda item: bool(item[1])):
+            x = own[0] if own else next(s for s in sorted(zero.free_symbols, key=str) if sp.degree(zero, s) == 2)
+            *above, b, c = (value_modulo(part, point) for part in sp.Poly(zero, x).all_coeffs())
+            a = above[0] if above else 0
+            root = pow(b * b - 4 * a * c, (PRIME + 1) // 4, PRIME)
+            point[x] = (root - b) * pow(2 * a, -1, PRIME) % PRIME if a else -c * pow(b, -1, PRIME) % PRIME
+        if not any(value_modulo(zero, point) for zero in zeros):
+            return point
+    raise AssertionError("no point")
+
+
+def value_modulo(expression, point):
+    """A polynomial with whole coefficients at residues."""
+    terms = sp.Poly(expression, *point).terms()
+    values = [*point.values()]
+    return sum(int(c) * math.prod(map(pow, values, powers, [PRIME] * len(values))) for powers, c in terms) % PRIME
+
+
+def test_what_a_drop_excepts_leaves_its_rank_at_all_other_points():
+    joint = observe_jointly(model_of("INS: straight: position, known lever arm"))
+    chains, source = joint.chains, random.Random(3)
+    found = find_joint_drops(joint, [sp.Symbol("g", real=True)], 300)
+    drops = [drop for drop in found.drops if drop.nonzero]
+    assert found.complete["joint"] and drops
+    assert all(f"{factor} != 0" in drop.condition for drop in drops for factor in drop.nonzero)
+    for drop in drops:
+        point = point_of_graph(drop.zeros, chains.ring.symbols, source)
+        assert all(value_modulo(factor, point) for factor in drop.nonzero)
+        rows = residue_chains([chain.vectors[0] for chain in chains.chains], chains.motion, [*point.values()])
+        assert residue_rank(rows) == drop.rank < joint.joint_dimension
