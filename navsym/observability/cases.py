@@ -28,7 +28,7 @@ DEPTH = 6
 #: Different minors that one case looks at: more of them leave fewer components to examine.
 MINORS = 3
 #: A variable is replaced by at most so many terms; longer solutions stay equations.
-SOLUTION = 12
+SOLUTION = 120
 #: Products of terms for one entry on the way; beyond that a minor is not formed, and the list not called complete.
 PRODUCTS = 60_000
 #: The same for determinants of staircases, and terms of all of them: nobody reads a longer condition.

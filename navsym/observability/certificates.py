@@ -101,7 +101,7 @@ class Certifier:
         places = range(len(names)) if drop.subspace == "joint" else [names.index(drop.subspace)]
         found = [self.certify(leaf.rank, leaf.unseen, leaf.system, places) for leaf in drop.leaves]
         parts = [item for item in found if item is not None]
-        if not parts or len(parts) < len(found):
+        if not parts or len(parts) < len(found) or drop.nonzero:
             return None
         return parts[0] if len(parts) == 1 else {"kind": "all", "of": parts}
 

@@ -93,9 +93,10 @@ def drop_data(drop: RankDrop, certifier: Certifier | None) -> dict[str, Any]:
     """
     zeros = [to_text(zero) for zero in drop.zeros]
     text = zeros[0] if len(zeros) == 1 else " + ".join(f"({zero})**2" for zero in zeros)
+    nonzero = [to_text(factor) for factor in drop.nonzero]
     return {
         "subspace": drop.subspace,
-        "condition": f"{text} = 0",
+        "condition": " and ".join([f"{text} = 0", *(f"{factor} != 0" for factor in nonzero)]),
         "zeros": zeros,
         "complete": drop.complete,
         "excluded_by_declaration": drop.excluded,
@@ -104,7 +105,7 @@ def drop_data(drop: RankDrop, certifier: Certifier | None) -> dict[str, Any]:
         "lost_basis": text_rows(drop.directions),
         "inside": [drop_data(inner, certifier) for inner in drop.inside],
         "inside_complete": drop.whole,
-    }
+    } | ({"nonzero": nonzero} if nonzero else {})
 
 
 def split_data(chosen: Split) -> dict[str, Any]:
@@ -169,9 +170,9 @@ def captioned_formulas(answer: Observability) -> list[Formula]:
         listed.append(("not observed by any measurement", "N", answer.unobservable_basis))
     for drop in answer.rank_drops:
         text = "proved complete" if drop.complete else "perhaps not complete"
-        listed.append(
-            (f"the rank of {drop.subspace} drops where all of these vanish ({text})", "d", row_matrix(drop.zeros))
-        )
+        but = f" and {', '.join(map(str, drop.nonzero))} do not" if drop.nonzero else ""
+        caption = f"the rank of {drop.subspace} drops where all of these vanish{but} ({text})"
+        listed.append((caption, "d", row_matrix(drop.zeros)))
     if chosen is not None:
         listed += [
             (f"split i = {chosen.i}, j = {chosen.j}", "L", chosen.L),

@@ -23,7 +23,7 @@ from navsym.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_cases
 from navsym.observability.chains import Chain, Chains, JointObservability
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
-from navsym.observability.reduction import System, components, irredundant, krylov_remainder, lies_in_ideal
+from navsym.observability.reduction import System, components, irredundant, krylov_remainder
 from navsym.observability.ring import Poly, Ring, irreducible_factors, is_odd
 from navsym.observability.tree import SPLIT_TERMS, Leaf, is_covered, leaf_on, lost_columns, search_drops
 from navsym.prove.assumptions import is_nonzero
@@ -153,8 +153,6 @@ def newton(bound: int) -> fmpz_mat:
 
 #: So many staircases at most, when the joint locus is written down by its definition.
 MOST_STAIRCASES = 40
-#: Systems that are looked at when the part of a drop is sought that the motion keeps.
-KEPT_STEPS, KEPT_TERMS = 60, 40
 #: Drops inside drops inside drops are looked for so deep; more directions have too many terms to be read.
 NESTED, DIRECTION_TERMS = 3, 60
 
@@ -165,6 +163,7 @@ class RankDrop:
 
     subspace   : name of a measurement, or "joint"
     zeros      : polynomials, irreducible over the rationals where that could be reached
+    nonzero    : polynomials that do not vanish on the drop; none where all points of the zeros belong to it
     complete   : True when the drops listed for this subspace are proved to be all real ones
     lasting    : False where the condition holds at an instant only: the motion leaves it, and the interval shows all
     excluded   : True when what the symbols are declared to be excludes it
@@ -178,6 +177,7 @@ class RankDrop:
     subspace: str
     zeros: tuple[sp.Expr, ...]
     complete: bool
+    nonzero: tuple[sp.Expr, ...] = ()
     lasting: bool = True
     excluded: bool = False
     rank: int | None = None
@@ -188,8 +188,8 @@ class RankDrop:
 
     @property
     def condition(self) -> str:
-        """The drop as text: ``zero = 0`` for every polynomial, joined by ``and``."""
-        return join_conditions(self.zeros)
+        """The drop as text: ``zero = 0`` and ``factor != 0`` for every polynomial, joined by ``and``."""
+        return " and ".join([join_conditions(self.zeros), *(f"{factor} != 0" for factor in self.nonzero)])
 
 
 def join_conditions(zeros: Iterable[sp.Expr]) -> str:
@@ -224,7 +224,7 @@ def find_drops(found: JointObservability, box: Box | None = None) -> DropList:
         rows = [chain.vectors[0] for chain in part]
         generic = leaf_on([], rows, ring, chains.motion) if locus.lasting else None
         view = View(name, rows, generic, chains.motion, locus.complete, box or {})
-        drops += view.list_drops(locus.lasting, NESTED if name == "joint" else 0)
+        drops += view.list_drops(locus.lasting, NESTED if name == "joint" else 0, locus.leaves)
         written = (conditions_on(system, ring) for system in join_half_angles(locus.passing, ring))
         drops += [view.make_drop(zeros, lasting=False) for zeros in written if zeros]
     return DropList(tuple(sorted(drops, key=lambda drop: not drop.lasting)), complete, left)
@@ -242,7 +242,7 @@ def find_joint_drops(found: JointObservability, known: Iterable[sp.Symbol], node
     cases = search_drops(rows, found.joint_dimension, ring, motion, nodes=nodes)
     generic = leaf_on([], rows, ring, motion) if cases.drops else None
     view = View("joint", rows, generic, motion, not cases.open, {})
-    drops = view.list_drops([leaf.system for leaf in cases.drops], 0)
+    drops = view.list_drops(closed_systems(cases.drops), 0, cases.drops)
     left = tuple(join_conditions(conditions_on(system, ring)) for system in cases.open)
     return DropList(tuple(drops), {"joint": not cases.open}, {"joint": left})
 
@@ -267,15 +267,18 @@ class View:
         """True when something is declared of a symbol beside that it is real."""
         return any(symbol in self.box or symbol.is_nonzero for symbol in zero.free_symbols)
 
-    def list_drops(self, systems: list[System], depth: int) -> list[RankDrop]:
-        """Drops on some systems, each with its rank, its lost directions, and the drops inside it."""
+    def list_drops(self, systems: list[System], depth: int, known: Sequence[Leaf]) -> list[RankDrop]:
+        """Drops on some systems, each with its rank, its lost directions, and the drops inside it.
+
+        known : leaves of the tree: those with what does not vanish on them are listed, too
+        """
         ring = self.motion.ring
         listed = []
         for system in join_half_angles(systems, ring):
             zeros = conditions_on(system, ring)
             if not zeros:
                 continue
-            leaves = self.leaves_on(system)
+            leaves = self.leaves_on(system) or tuple(leaf for leaf in known if leaf.system == system and leaf.dense)
             if not leaves:
                 listed.append(self.make_drop(zeros))
                 continue
@@ -291,12 +294,17 @@ class View:
                     zeros,
                     rank=leaves[0].rank,
                     directions=sp.ImmutableMatrix(len(short), self.motion.size, entries),
-                    inside=tuple(self.list_drops([x.system for x in inner.drops], depth - 1)) if inner else (),
+                    inside=tuple(self.list_drops(closed_systems(inner.drops), depth - 1, inner.drops)) if inner else (),
                     whole=inner is not None and not inner.open,
                     leaves=leaves,
                 )
             )
-        return listed
+        partial = [(conditions_on(leaf.system, ring), leaf) for leaf in known if leaf.nonzero]
+        return listed + [
+            self.make_drop(zeros, nonzero=tuple(map(ring.condition, leaf.nonzero)), rank=leaf.rank)
+            for zeros, leaf in partial
+            if zeros
+        ]
 
     def leaves_on(self, system: System) -> tuple[Leaf, ...]:
         """What is shown on a system, on both of its parts where it joins half angles; none where it was not found."""
@@ -305,6 +313,11 @@ class View:
         found = [leaf_on(part, self.rows, ring, self.motion) for part in ([] if long else parts)]
         leaves = tuple(leaf for leaf in found if leaf is not None)
         return leaves if len(leaves) == len(parts) and len({leaf.rank for leaf in leaves}) == 1 else ()
+
+
+def closed_systems(leaves: Sequence[Leaf]) -> list[System]:
+    """Systems of leaves whose closures are known."""
+    return [leaf.system for leaf in leaves if not leaf.nonzero]
 
 
 def conditions_on(system: System, ring: Ring) -> tuple[sp.Expr, ...]:
@@ -322,32 +335,6 @@ def conditions_on(system: System, ring: Ring) -> tuple[sp.Expr, ...]:
     if any(zero.is_Number and zero != 0 for zero in rest):
         return ()
     return (*fixed, *(zero for zero in rest if zero != 0))
-
-
-def kept_parts(systems: list[System], motion: Motion) -> tuple[list[System], bool]:
-    """The parts of some real zeros that the motion never leaves, and whether all of them were found.
-
-    Where a system holds along the motion, so do the derivatives of its equations. They are added until nothing is new:
-    an ideal that holds its derivatives is kept.
-    """
-    if not motion.rates:
-        return systems, True
-    waiting, steps = list(systems), 0
-    kept: list[System] = []
-    whole = True
-    while waiting:
-        system = waiting.pop()
-        steps += 1
-        if steps > KEPT_STEPS:
-            return irredundant(kept), False
-        fresh = [f for f in map(motion.derivative, system) if not lies_in_ideal(f, system)]
-        if sum(map(len, fresh)) > KEPT_TERMS:
-            whole = False
-        elif fresh:
-            waiting += components([*system, *fresh], motion.ring)
-        else:
-            kept.append(system)
-    return irredundant(kept), whole
 
 
 def join_half_angles(systems: list[System], ring: Ring) -> list[System]:
@@ -377,11 +364,13 @@ def join_half_angles(systems: list[System], ring: Ring) -> list[System]:
 class Locus:
     """Where the rank of a subspace is smaller: systems that the motion keeps, and those that hold in passing.
 
-    open : systems among whose zeros nothing was decided
+    leaves : of the tree
+    open   : systems among whose zeros nothing was decided
     """
 
     lasting: list[System]
     passing: list[System] = field(default_factory=list)
+    leaves: list[Leaf] = field(default_factory=list)
     open: list[System] = field(default_factory=list)
     complete: bool = True
 
@@ -400,21 +389,24 @@ def locus_of(chains: Chains, part: tuple[Chain, ...], rank: int) -> Locus:
     if motion.roots:
         return Locus([], complete=False)
     systems, whole = written_drops(part, rank, motion)
-    lasting, ended = kept_parts(systems, motion) if whole else ([], False)
-    listed = None if ended or motion.rates else drops_by_staircases(chains, part, rank, determinant_by_values)
+    if whole and not motion.rates:
+        return Locus(irredundant(systems))
+    listed = None if motion.rates else drops_by_staircases(chains, part, rank, determinant_by_values)
     if listed is not None:
         return Locus(irredundant(listed))
-    left: list[System] = []
-    if not ended:
-        found = search_drops([chain.vectors[0] for chain in part], rank, ring, motion)
-        lasting, left = irredundant([*lasting, *(leaf.system for leaf in found.drops)]), found.open
+    found = search_drops([chain.vectors[0] for chain in part], rank, ring, motion)
+    lasting, left, leaves = closed_systems(found.drops), found.open, found.drops
     if motion.rates:
         passing = [system for system in systems if not is_covered(system, lasting)]
-        return Locus(lasting, passing, left, whole and not left)
-    listed = drops_by_staircases(chains, part, rank, determinant_by_elimination) if left else None
+        return Locus(lasting, passing, leaves, left, whole and not left)
+    listed = (
+        drops_by_staircases(chains, part, rank, determinant_by_elimination)
+        if left or any(leaf.nonzero for leaf in leaves)
+        else None
+    )
     if listed is not None:
         return Locus(irredundant(listed))
-    return Locus(irredundant([*lasting, *systems]), [], left, not left)
+    return Locus(irredundant([*lasting, *systems]), [], leaves, left, not left)
 
 
 def written_drops(part: tuple[Chain, ...], rank: int, motion: Motion) -> tuple[list[System], bool]:

@@ -7,7 +7,9 @@ keeps their degrees low. What remains has few rows and columns, and its rank dro
 
 from __future__ import annotations
 
+import functools
 import itertools
+import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import gcd
@@ -34,8 +36,10 @@ System = list[Poly]
 #: Groebner bases: number of polynomials, terms of each, bits of a coefficient.
 LIMITS = (24, 120, 1000)
 BRANCHES = 40
-#: Polynomials whose sign is asked for: number of terms, and the effort of one question.
+#: Terms of a polynomial whose sign is asked for.
 DEFINITE_TERMS = 20
+#: Points at which a sign is looked at before it is asked for.
+TRIALS = 200
 #: Terms of the rows of one step, of a moving and of a constant model.
 MOVING_TERMS, CONSTANT_TERMS = 150, 20_000
 
@@ -131,9 +135,19 @@ def is_definite(f: Poly) -> bool:
     at_zero = terms.get((0,) * f.context().nvars(), 0)
     if at_zero == 0 or f.total_degree() % 2 or len(terms) > DEFINITE_TERMS:
         return False
-    names = [sp.Symbol(f"x{k}", real=True) for k in range(f.context().nvars())]
+    size = f.context().nvars()
+    if any(f(*point) * at_zero <= 0 for point in small_points(size)):
+        return False
+    names = [sp.Symbol(f"x{k}", real=True) for k in range(size)]
     positive = polynomial_sum(names, f, 1 if at_zero > 0 else -1)
     return prove_sign(positive, {}, Sign.POSITIVE).sign == Sign.POSITIVE
+
+
+@functools.cache
+def small_points(size: int) -> list[list[int]]:
+    """Points of so many small integers, often zero; always the same ones."""
+    source = random.Random(7)
+    return [[source.choice((0, 0, 1, -1, 2, -3, 7)) for _ in range(size)] for _ in range(TRIALS)]
 
 
 def is_nowhere(system: Sequence[Poly], ring: Ring) -> bool:

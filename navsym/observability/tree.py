@@ -16,7 +16,6 @@ Along a motion an equation holds with all its derivatives, or almost never: q = 
 from __future__ import annotations
 
 import heapq
-import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -25,20 +24,31 @@ from flint import Ordering, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
 from navsym.core.errors import TooLargeError
 from navsym.core.rational_functions import powers_apart
-from navsym.observability.cases import is_irreducible, solved_variable, substitute_row
+from navsym.observability.cases import SOLUTION, is_irreducible, replace_in_row, solved_variable, substitute_row
 from navsym.observability.linear import Matrix, primitive_vector
 from navsym.observability.motion import Motion
-from navsym.observability.reduction import System, UnitBasis, components, irredundant, lies_in_ideal
+from navsym.observability.reduction import (
+    Hashed,
+    System,
+    UnitBasis,
+    alternatives,
+    components,
+    irredundant,
+    is_definite,
+    is_nowhere,
+    lies_in_ideal,
+    reduce_generators,
+    row_weight,
+    small_points,
+)
 from navsym.observability.ring import Poly, Ring, irreducible_factors
 
 #: Nodes looked at, terms of a row, and terms of an entry to split on; what lies beyond is listed as open.
-NODES, TERMS, SPLIT_TERMS = 120, 2000, 120
+NODES, TERMS, SPLIT_TERMS = 120, 2000, 400
 #: Nodes of a model that moves, whose rows get long.
 MOVING_NODES = 24
-#: Points at which the sign of a condition is looked at.
-TRIALS = 200
 #: Equations added when a condition is to hold along a motion, and terms of them.
-STEPS, MOVED_TERMS = 12, 60
+STEPS, MOVED_TERMS = 200, 120
 #: Groebner bases of saturations: number of polynomials, terms, bits.
 SATURATION = (40, 150, 500)
 
@@ -50,11 +60,15 @@ class Leaf:
     system : equations of the closure of these points
     rank   : on the points
     unseen : n - rank columns that no row sees there, polynomials modulo the system
+    nonzero : where the closure is too long to write, what does not vanish on the points; none otherwise
+    dense  : True when the real points are known to be dense among the complex ones
     """
 
     system: System
     rank: int
     unseen: Matrix
+    nonzero: System = field(default_factory=list)
+    dense: bool = False
 
 
 Advance = Callable[[list[Poly]], list[Poly]]
@@ -79,6 +93,7 @@ class Node:
         """Take rows while they have a unit as pivot; entries to split on where none has, none at a leaf."""
         stuck: Matrix = []
         while self.waiting and len(self.basis.rows) < wanted:
+            self.waiting.sort(key=row_weight)
             row = need_short(self.tidy(self.waiting.pop(0)))
             if all(entry == 0 for entry in row):
                 continue
@@ -170,7 +185,7 @@ class Tree:
         visited = 0
         while self.heap:
             node = heapq.heappop(self.heap)[2]
-            if any(all(lies_in_ideal(f, node.system) for f in leaf.system) for leaf in self.drops):
+            if is_covered(node.system, [leaf.system for leaf in self.drops if not leaf.nonzero]):
                 continue
             visited += 1
             if visited > self.most:
@@ -180,8 +195,9 @@ class Tree:
                 self.visit(node)
             except TooLargeError:
                 self.open.append(node.system)
-        listed = irredundant([leaf.system for leaf in self.drops])
+        listed = irredundant([leaf.system for leaf in self.drops if not leaf.nonzero])
         drops = [next(leaf for leaf in self.drops if leaf.system == system) for system in listed]
+        drops += [leaf for leaf in self.drops if leaf.nonzero and not is_covered(leaf.system, listed)]
         left = [system for system in irredundant(self.open) if not is_covered(system, listed)]
         return Cases(self.full, drops, left)
 
@@ -195,37 +211,120 @@ class Tree:
         if rank >= self.wanted:
             self.full = self.full or Leaf(node.system, rank, node.unseen(self.width))
             return
-        for system in closures(node.system, node.ring, self.ring):
-            self.drops.append(Leaf(system, rank, node.unseen(self.width)))
+        system, unseen = node.system, node.unseen(self.width)
+        dense = is_irreducible(system, node.ring) and has_dense_points(system, node.ring)
+        try:
+            closed, nonzero = closures(system, node.ring, self.ring), list[Poly]()
+        except TooLargeError:
+            closed, nonzero = [system], solving_units(system, node.ring, self.ring)
+        self.drops += [Leaf(part, rank, unseen, nonzero, dense) for part in closed]
 
     def split(self, node: Node, entries: Sequence[Poly]) -> None:
         """p != 0, and the factors of p one by one, for the entry p that is simplest without its units."""
         factors = node.split_on(entries)
         for factor in factors:
-            for system in self.held(components([*node.system, factor], node.ring)):
-                child = restricted(node, system)
-                if child is not None:
-                    self.push(child)
+            self.push_parts(node, [*node.system, factor])
         node.assume_nonzero(factors)
         self.push(node)
 
-    def held(self, systems: list[System]) -> list[System]:
-        """The systems with all derivatives of their equations along the motion."""
-        if self.motion is None or not self.motion.rates:
-            return systems
-        kept, steps = [], 0
-        while systems:
-            system = systems.pop()
-            fresh = [f for f in map(self.motion.derivative, system) if not lies_in_ideal(f, system)]
-            parts = list_turns(system, self.motion) if fresh else []
-            steps += 1
-            if fresh and (steps > STEPS or (not parts and sum(map(len, fresh)) > MOVED_TERMS)):
-                self.open.append(system)
-            elif fresh:
-                systems += [found for part in parts or [[*system, *fresh]] for found in components(part, self.ring)]
-            else:
-                kept.append(system)
-        return irredundant(kept)
+    def push_parts(self, node: Node, system: System) -> None:
+        """Put the points of a node on which a larger system holds in the line, solved as far as possible."""
+        waiting = [(system, node.ring)]
+        for _ in range(STEPS):
+            if not waiting:
+                return
+            part, ring = waiting.pop()
+            tidy = tidy_system(part, ring)
+            if tidy is None:
+                continue
+            try:
+                parts = solve_further(tidy, ring, self.motion)
+            except TooLargeError:
+                self.open.append(tidy)
+                continue
+            if parts is None:
+                child = restricted(replace(node, ring=ring), tidy)
+                parts = []
+                if child is not None:
+                    self.push(child)
+            waiting += parts
+        self.open.append(system)
+
+
+def tidy_system(system: System, ring: Ring) -> System | None:
+    """The equations without units and repetitions; None where no real point satisfies them."""
+    plain = [ring.without_units(f.primitive()[1]) for f in system if f != 0]
+    listed = [item.poly for item in dict.fromkeys(map(Hashed, plain))]
+    none = any(f.is_constant() for f in listed) or is_nowhere(listed, ring) or any(map(is_definite, listed))
+    return None if none else listed
+
+
+Parts = list[tuple[System, Ring]]
+
+
+def solve_further(system: System, ring: Ring, motion: Motion | None) -> Parts | None:
+    """The points of a system where no unit vanishes, as a union one step nearer to a graph; None where that is reached.
+
+    In a graph every equation names a variable of its own, c x = g, where c is a unit: its points are those of the other
+    variables, and where something is not zero it is not zero almost everywhere. Where c is no unit, the points with
+    c = 0 and g = 0 go their own way.
+    """
+    if any(len(f) > SPLIT_TERMS for f in system):
+        raise TooLargeError(f"expected conditions of at most {SPLIT_TERMS} terms; got more; fix some parameters")
+    for k, f in enumerate(system):
+        parts = alternatives(f, ring)
+        if parts != [[f]]:
+            return [([*system[:k], *part, *system[k + 1 :]], ring) for part in parts]
+    unsolved = [f for f in system if solved_variable(f, system, ring) is None]
+    for f in unsolved:
+        place = next((k for k, c in linear_places(f) if ring.is_unit(c)), None)
+        if place is not None:
+            return substituted(f, place, [g for g in system if g is not f], ring)
+    places = [(c, k, f) for f in unsolved for k, c in linear_places(f)]
+    if places:
+        c, k, f = min(places, key=lambda found: (len(found[0]), found[0].total_degree(), len(found[2])))
+        rest = [g for g in system if g is not f]
+        nonzero = ring.with_units([c])
+        return [(system, nonzero), ([*rest, c, f - c * ring.context.gen(k)], ring)]
+    tidy = reduce_generators(unsolved, ring) if len(unsolved) > 1 else unsolved
+    if tidy is None:
+        return []
+    if {*map(str, tidy)} != {*map(str, unsolved)}:
+        return [([*(f for f in system if all(f is not g for g in unsolved)), *tidy], ring)]
+    if any(len(f) > SOLUTION for f in system):
+        raise TooLargeError(f"expected equations of at most {SOLUTION} terms; got more; fix some parameters")
+    return derived_parts(system, unsolved, ring, motion)
+
+
+def linear_places(f: Poly) -> list[tuple[int, Poly]]:
+    """Variables of degree one in a polynomial, with their factors, which do not hold them."""
+    return [(k, f.derivative(k)) for k, degree in enumerate(f.degrees()) if degree == 1]
+
+
+def substituted(f: Poly, place: int, others: System, ring: Ring) -> Parts:
+    """A system with the variable that f = c x - g names put into its other equations and the units."""
+    units = [replace_in_row([unit], f, place, ring)[0] for unit in ring.units]
+    if any(unit == 0 for unit in units):
+        return []
+    found = [replace_in_row([g], f, place, ring)[0] for g in others]
+    return [([f, *(g for g in found if g != 0)], replace(ring, units=()).with_units(units))]
+
+
+def derived_parts(system: System, unsolved: System, ring: Ring, motion: Motion | None) -> Parts | None:
+    """The system with the derivative of an equation along a motion; None where all are zero on it."""
+    if motion is None or not motion.rates:
+        return None
+    moved = [ring.without_units(substitute_row([motion.derivative(f)], system, ring)[0]) for f in system]
+    fresh = [f for f in moved if f != 0 and not lies_in_ideal(f, unsolved)]
+    if not fresh:
+        return None
+    turns = list_turns(system, motion)
+    if turns:
+        return [(part, ring) for part in turns]
+    shortest = min(fresh, key=len)
+    if len(shortest) > MOVED_TERMS:
+        raise TooLargeError(f"expected conditions of at most {MOVED_TERMS} terms; got more; fix some parameters")
+    return [([*system, shortest], ring)]
 
 
 def list_turns(system: System, motion: Motion) -> list[System]:
@@ -266,9 +365,7 @@ def search_drops(
     """
     most = nodes or (MOVING_NODES if motion is not None and motion.rates else NODES)
     tree = Tree(ring, wanted, len(rows[0]) if rows else 0, motion, most)
-    start = restricted(Node([], ring, UnitBasis(ring), [list(row) for row in rows]), system or [])
-    if start is not None:
-        tree.push(start)
+    tree.push_parts(Node([], ring, UnitBasis(ring), [list(row) for row in rows]), system or [])
     return tree.search()
 
 
@@ -295,8 +392,7 @@ def has_dense_points(system: System, ring: Ring) -> bool:
     that the other equations name follow.
     """
     rest = [f for f in system if solved_variable(f, system, ring) is None]
-    source = random.Random(7)
-    points = [[source.choice((0, 0, 1, -1, 2, -3, 7)) for _ in ring.symbols] for _ in range(TRIALS)]
+    points = small_points(len(ring.symbols))
     return all(len({f(*point) > 0 for point in points if f(*point) != 0}) == 2 for f in rest)
 
 
@@ -338,10 +434,23 @@ def closures(system: System, ring: Ring, domain: Ring) -> list[System]:
     """
     if is_irreducible(system, domain):
         return [system]  # a unit does not vanish on a part of it
-    known = [*map(str, domain.units)]
-    for unit in (unit for unit in ring.units if str(unit) not in known):
+    for unit in solving_units(system, ring, domain):
         system = saturate(system, unit, domain)
     return components(system, domain)
+
+
+def solving_units(system: System, ring: Ring, domain: Ring) -> list[Poly]:
+    """The units of a ring, but not of the domain, that can vanish on a part of the closure of a system.
+
+    In a graph over at most one more equation these are the factors of its variables.
+    """
+    units = ring.units
+    if is_irreducible(system, ring):
+        places = [(f, solved_variable(f, system, ring)) for f in system]
+        factors = [f.derivative(k) for f, k in places if k is not None]
+        units = tuple(unit for factor in factors for unit in irreducible_factors(factor))
+    known = [*map(str, domain.units)]
+    return list({str(unit): unit for unit in units if str(unit) not in known}.values())
 
 
 def saturate(system: System, unit: Poly, ring: Ring) -> System:

@@ -149,6 +149,12 @@ KINDS = {
 }
 
 
+def holds(drop, at) -> bool:
+    """True at the points of a drop: its zeros vanish, and what it excepts does not."""
+    zero, nonzero = ([abs(value_of(f, at)) for f in listed] for listed in (drop.zeros, drop.nonzero))
+    return all(value < ZERO for value in zero) and all(value > ZERO for value in nonzero)
+
+
 def look_at(kind, seed, count, seen) -> None:
     """One model at some points, half of them on its sets; the others beside, or where values meet."""
     source = random.Random(f"{kind} {seed}")
@@ -166,7 +172,7 @@ def look_at(kind, seed, count, seen) -> None:
                 continue
             if drop is not None and k % 4 == 2:  # a step beside the set
                 at[source.choice(names)] += number(Fraction(source.choice((1, -1)), source.randrange(2, 9)))
-            here = [drop for drop in drops if all(abs(value_of(zero, at)) < ZERO for zero in drop.zeros)]
+            here = [drop for drop in drops if holds(drop, at)]
             there = rank(at)
             seen["points"] += 1
             seen["on"] += bool(here)

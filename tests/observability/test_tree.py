@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+import math
 import random
 
 import pytest
@@ -13,8 +14,11 @@ from flint import fmpq, fmpq_mat
 import navsym as nav
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import chains_of, observe_jointly
-from navsym.observability.rank_drops import find_drops
+from navsym.observability.linear import PRIME, residue_rank
+from navsym.observability.motion import residue_chains
+from navsym.observability.rank_drops import find_drops, find_joint_drops
 from navsym.observability.tree import search_drops
+from navsym.studies.atlas.cells import model_of
 from tests.sampling import thinned
 
 a, b, c = sp.symbols("a b c", real=True)
@@ -49,8 +53,8 @@ def grid(seed: int) -> list[dict[sp.Symbol, int]]:
     return [dict(zip((a, b, c), values, strict=True)) for values in points]
 
 
-def holds(zeros, at) -> bool:
-    return all(zero.subs(at) == 0 for zero in zeros)
+def holds(zeros, at, nonzero=()) -> bool:
+    return all(zero.subs(at) == 0 for zero in zeros) and all(factor.subs(at) != 0 for factor in nonzero)
 
 
 @pytest.mark.parametrize("seed", thinned([(seed,) for seed in range(12)]))
@@ -61,9 +65,13 @@ def test_the_tree_alone_finds_the_points_of_smaller_rank_and_no_others(seed):
     found = search_drops([chain.vectors[0] for chain in chains.chains], chains.joint_dimension, ring, motion)
     drops = [[ring.condition(f) for f in leaf.system] for leaf in found.drops]
     left = [[ring.condition(f) for f in system] for system in found.open]
+
+    def apart(leaf):
+        return [ring.condition(f) for f in leaf.nonzero]
+
     for at in grid(seed):
         rank = exact_rank(model, at)
-        listed = [leaf.rank for leaf, zeros in zip(found.drops, drops, strict=True) if holds(zeros, at)]
+        listed = [leaf.rank for leaf, zeros in zip(found.drops, drops, strict=True) if holds(zeros, at, apart(leaf))]
         assert not listed or rank <= min(listed) < chains.joint_dimension, at
         if not any(holds(zeros, at) for zeros in left):
             assert listed or rank == chains.joint_dimension, at
@@ -84,7 +92,7 @@ def test_nested_drops_give_the_rank_of_every_point(seed):
     sure = all(drop.complete for drop in drops) and all(drop.whole for drop, depth in listed if depth < 2)
     for at in grid(seed):
         rank = exact_rank(model, at)
-        here = [(drop.rank, depth) for drop, depth in listed if holds(drop.zeros, at)]
+        here = [(drop.rank, depth) for drop, depth in listed if holds(drop.zeros, at, drop.nonzero)]
         ranks = [known for known, _ in here if known is not None]
         assert not ranks or rank <= min(ranks), at
         if sure and ranks and None not in [known for known, _ in here] and max(depth for _, depth in here) < 2:
@@ -102,7 +110,7 @@ def test_lost_directions_are_not_seen_on_their_condition(seed):
     model, drops = joint_drops(seed)
     for drop in drops:
         for at in grid(seed):
-            if holds(drop.zeros, at) and drop.directions.rows:
+            if holds(drop.zeros, at, drop.nonzero) and drop.directions.rows:
                 lost = drop.directions.subs(at).T
                 assert all((model.H * model.F**k).subs(at) * lost == sp.zeros(2, lost.cols) for k in range(model.size))
 
@@ -151,3 +159,46 @@ def test_a_condition_on_a_turning_angle_lasts_where_the_turn_stops_or_nothing_is
             a, b, c, w, q = values
             rests = w == 0 and (q == 0 or "w" not in rates) and a * cosine_of + b * sine_of + c == 0
             assert here == (a == b == c == 0 or rests), values
+
+
+def point_of_graph(zeros, symbols, source):
+    """Residues where the zeros vanish: each is solved for a variable of its own, or the first for a square root."""
+    free = [
+        zero.free_symbols - set().union(*(other.free_symbols for other in zeros if other is not zero)) for zero in zeros
+    ]
+    named = [
+        (zero, [s for s in sorted(own, key=str) if sp.degree(zero, s) == 1])
+        for zero, own in zip(zeros, free, strict=True)
+    ]
+    for _ in range(30):
+        point = {s: source.randrange(2, PRIME) for s in symbols}
+        for zero, own in sorted(named, key=lambda item: bool(item[1])):
+            x = own[0] if own else next(s for s in sorted(zero.free_symbols, key=str) if sp.degree(zero, s) == 2)
+            *above, b, c = (value_modulo(part, point) for part in sp.Poly(zero, x).all_coeffs())
+            a = above[0] if above else 0
+            root = pow(b * b - 4 * a * c, (PRIME + 1) // 4, PRIME)
+            point[x] = (root - b) * pow(2 * a, -1, PRIME) % PRIME if a else -c * pow(b, -1, PRIME) % PRIME
+        if not any(value_modulo(zero, point) for zero in zeros):
+            return point
+    raise AssertionError("no point")
+
+
+def value_modulo(expression, point):
+    """A polynomial with whole coefficients at residues."""
+    terms = sp.Poly(expression, *point).terms()
+    values = [*point.values()]
+    return sum(int(c) * math.prod(map(pow, values, powers, [PRIME] * len(values))) for powers, c in terms) % PRIME
+
+
+def test_what_a_drop_excepts_leaves_its_rank_at_all_other_points():
+    joint = observe_jointly(model_of("INS: straight: position, known lever arm"))
+    chains, source = joint.chains, random.Random(3)
+    found = find_joint_drops(joint, [sp.Symbol("g", real=True)], 300)
+    drops = [drop for drop in found.drops if drop.nonzero]
+    assert found.complete["joint"] and drops
+    assert all(f"{factor} != 0" in drop.condition for drop in drops for factor in drop.nonzero)
+    for drop in drops:
+        point = point_of_graph(drop.zeros, chains.ring.symbols, source)
+        assert all(value_modulo(factor, point) for factor in drop.nonzero)
+        rows = residue_chains([chain.vectors[0] for chain in chains.chains], chains.motion, [*point.values()])
+        assert residue_rank(rows) == drop.rank < joint.joint_dimension
