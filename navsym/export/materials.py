@@ -92,6 +92,7 @@ def functions_of_claim(
     if is_program(text):
         return algorithm(text, lambda claim: material_of_claim(claim, allow_confirmed), real)
     if text.endswith(".toml") and is_model(path := file_of_source(text)):
+        refuse_code(path, "a model")
         return functions_of_system(Model.load(path), real, units or {})
     name, _, claims = text.rpartition("=") if "=" in text else ("", "", text)
     module, _, target = split_id(claims)
@@ -150,9 +151,7 @@ def material_from_paper(module: str, number: str, allow_confirmed: bool) -> Mate
 def material_from_file(name: str, wanted: str, allow_confirmed: bool) -> Material:
     """A claim of a claim file, decided now."""
     path = file_of_source(name)
-    if "code" in read_toml(path):
-        message = "expected claims; got questions about code; write the mended formula as a claim of its own"
-        raise DomainError(message, where=path.name)
+    refuse_code(path, "claims")
     claims = {claim.id: claim for claim in read_claims(path).claims}
     if wanted not in claims:
         raise unknown_claim(wanted, list(claims), path.name)
@@ -168,6 +167,16 @@ def material_from_file(name: str, wanted: str, allow_confirmed: bool) -> Materia
         correction=next((f"{name}:{c.id}" for c in claims.values() if c.notes.get("corrects") == wanted), None),
         allow_confirmed=allow_confirmed,
     )
+
+
+def refuse_code(path: Path, expected: str) -> None:
+    """DomainError for a file that asks about source code, whose formulas are there already."""
+    if "code" in (contents := read_toml(path)):
+        got, remedy = "questions about code", "write the mended formula as a claim of its own"
+        if "question" not in contents:
+            got = "an error model that is read from code"
+            remedy = "write F as formulas in a model file; 'navsym conventions' names the card of this one"
+        raise DomainError(f"expected {expected}; got {got}; {remedy}", where=path.name)
 
 
 def functions_of_target(path: Path, target: str, real: str, units: Mapping[str, str]) -> list[ExportedFunction]:
