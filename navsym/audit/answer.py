@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -58,6 +58,7 @@ class AuditedEntry:
     suggestion     : of REFUTED, the mended right side of the assignment; the mended entry is proved
     why            : of OPEN, the reason; of a case, its conditions; of a weaker sense, what it says
     weaker         : of an entry that does not hold, a sense in which the whole question would hold
+    expected       : what the entry should be, in the symbols of the question; None in cases, and where it is not read
     """
 
     entry: tuple[int, int]
@@ -71,6 +72,7 @@ class AuditedEntry:
     why: str = ""
     certificate: Mapping[str, Any] | None = None
     weaker: str | None = None
+    expected: str | None = None
 
     def document(self) -> dict[str, Any]:
         """The entry as plain data."""
@@ -97,11 +99,15 @@ class AuditedEntry:
 
 @dataclass(frozen=True, slots=True)
 class AuditedQuestion:
-    """A question with the verdicts on its entries; its own is the worst of them."""
+    """A question with the verdicts on its entries; its own is the worst of them.
+
+    inputs : symbol -> how the source spells it, and its declaration; in the order of the function's arguments
+    """
 
     name: str
     kind: str
     entries: tuple[AuditedEntry, ...]
+    inputs: Mapping[str, tuple[str, Any]] = field(default_factory=dict)
 
     @property
     def status(self) -> Status:
@@ -330,7 +336,7 @@ def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQue
         known = worst.get(entry.place)
         if known is None or order.index(answer.status) > order.index(known.status):
             worst[entry.place] = answer
-    return AuditedQuestion(question.name, question.kind, tuple(worst.values()))
+    return AuditedQuestion(question.name, question.kind, tuple(worst.values()), question.inputs())
 
 
 def decide_cells(entry: Entry, scope: Scope, decided: dict[Any, Decision]) -> Decision:
@@ -357,6 +363,7 @@ def write_answer(question: Question, entry: Entry, scope: Scope, decision: Decis
     """The verdict on one entry with its line, and with a mend where it is refuted."""
     from navsym.audit.mend import suggest
     from navsym.audit.values import Unread
+    from navsym.language.printer import print_tree
 
     unit = entry.source.unit if entry.source else next(iter(question.sources.values())).unit
     line = next((cell.line for cell in (entry.code, entry.expected) if isinstance(cell, Unread)), None)
@@ -369,9 +376,10 @@ def write_answer(question: Question, entry: Entry, scope: Scope, decision: Decis
         if mend is not None:
             line, suggestion = mend.line, mend.text
         why = "; ".join(filter(None, (describe_case(entry), why)))
+    right = None if isinstance(entry.expected, Unread) or entry.conditions else print_tree(entry.expected.tree)
     return AuditedEntry(
         entry.place, *unit.locate(line), decision.status, decision.sense, point, decision.values, suggestion, why,
-        decision.certificate, decision.weaker,
+        decision.certificate, decision.weaker, right,
     )  # fmt: skip
 
 
