@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import html
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from navsym.claims.display import write_table
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.answers import Answer
 from navsym.core.errors import ExpressionSyntaxError, NavsymError, ShapeError
@@ -178,6 +180,31 @@ class Audit(Answer):
     def __repr__(self) -> str:
         counts = ", ".join(f"{q.name}: {q.status}" for q in self.questions)
         return f"<audit of {', '.join(Path(f.file).name for f in self.files)}; {counts or 'formulas'}>"
+
+    def tables(self, every: bool = False) -> list[tuple[str, tuple[str, ...], list[Any]]]:
+        """Title, heads and rows of what people see; of the entries those that fail, or all."""
+        files = [(f.file, f.language, f"{f.statements - f.unread} of {f.statements}") for f in self.files]
+        refused = [(f"{f.file}:{line}", why) for f in self.files for line, why in f.refused]
+        outputs = [(f.name, str(f.line or ""), f.formula, f.case) for f in self.formulas]
+        found: list[tuple[str, tuple[str, ...], list[Any]]] = [
+            ("", ("file", "language", "statements read"), files),
+            ("", ("not read", "because"), refused),
+            ("", ("output", "line", "formula", "case"), outputs),
+        ]
+        for q in self.questions:
+            title = f"{q.name} ({q.kind}): {q.status}, {sum(e.status.holds for e in q.entries)} of {len(q.entries)}"
+            title += f" entries proved, {q.sense}" if q.status.holds else " entries proved"
+            rows = [
+                (f"{e.entry[0]},{e.entry[1]}", f"{Path(e.file).name}:{e.line}", str(e.status), e.remark())
+                for e in q.entries
+                if every or not e.status.holds
+            ]
+            found.append((title, ("entry", "place", "verdict", "remark"), rows))
+        return found
+
+    def _repr_html_(self) -> str:
+        shown = [(html.escape(title), heads, rows) for title, heads, rows in self.tables() if title or rows]
+        return "".join((f"<p>{t}</p>" if t else "") + (write_table(h, r) if r else "") for t, h, r in shown)
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """The certificates of all entries that have one."""
