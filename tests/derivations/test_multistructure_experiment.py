@@ -102,7 +102,9 @@ def test_the_interval_of_a_mean_holds_for_few_runs_too():
 
 
 @pytest.mark.parametrize(("method", "calibrated"), [("gpb2", True), ("polygaussian", False)])
-def test_deviations_hold_in_95_per_cent_of_simulated_states_and_probabilities_are_frequencies(models, method, calibrated):
+def test_deviations_hold_in_95_per_cent_of_simulated_states_and_probabilities_are_frequencies(
+    models, method, calibrated
+):
     """Modes that never switch say 0.85 and are right in 58 % of the cases: the count sees that."""
     signals = multimodel_study.simulate(models, 1500, 7, seed=5)
     found = multimodel_study.filter_all(models, signals, method)

@@ -107,16 +107,7 @@ def test_a_file_that_cannot_be_read_is_missing(tmp_path, read, name):
 
 
 @pytest.mark.parametrize(
-    "data",
-    [
-        b"\xff\xfe{\0}\0",
-        b"\xfe\xff\0{\0}",
-        b"{\x80}",
-        b"a\0",
-        b"PK\x03\x04",
-        b"\x7fELF",
-        b"\x1f\x8b",
-    ],
+    "data", [b"\xff\xfe{\0}\0", b"\xfe\xff\0{\0}", b"{\x80}", b"a\0", b"PK\x03\x04", b"\x7fELF", b"\x1f\x8b"]
 )
 @pytest.mark.parametrize("read", [read_json, read_toml])
 def test_what_is_not_plain_utf8_is_said(tmp_path, read, data):
