@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import html
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from navsym.claims.display import write_table
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.answers import Answer
 from navsym.core.errors import ExpressionSyntaxError, NavsymError, ShapeError
@@ -58,6 +60,7 @@ class AuditedEntry:
     suggestion     : of REFUTED, the mended right side of the assignment; the mended entry is proved
     why            : of OPEN, the reason; of a case, its conditions; of a weaker sense, what it says
     weaker         : of an entry that does not hold, a sense in which the whole question would hold
+    expected       : what the entry should be, in the symbols of the question; None in cases, and where it is not read
     """
 
     entry: tuple[int, int]
@@ -71,6 +74,7 @@ class AuditedEntry:
     why: str = ""
     certificate: Mapping[str, Any] | None = None
     weaker: str | None = None
+    expected: str | None = None
 
     def document(self) -> dict[str, Any]:
         """The entry as plain data."""
@@ -97,11 +101,15 @@ class AuditedEntry:
 
 @dataclass(frozen=True, slots=True)
 class AuditedQuestion:
-    """A question with the verdicts on its entries; its own is the worst of them."""
+    """A question with the verdicts on its entries; its own is the worst of them.
+
+    inputs : symbol -> how the source spells it, and its declaration; in the order of the function's arguments
+    """
 
     name: str
     kind: str
     entries: tuple[AuditedEntry, ...]
+    inputs: Mapping[str, tuple[str, Any]] = field(default_factory=dict)
 
     @property
     def status(self) -> Status:
@@ -172,6 +180,31 @@ class Audit(Answer):
     def __repr__(self) -> str:
         counts = ", ".join(f"{q.name}: {q.status}" for q in self.questions)
         return f"<audit of {', '.join(Path(f.file).name for f in self.files)}; {counts or 'formulas'}>"
+
+    def tables(self, every: bool = False) -> list[tuple[str, tuple[str, ...], list[Any]]]:
+        """Title, heads and rows of what people see; of the entries those that fail, or all."""
+        files = [(f.file, f.language, f"{f.statements - f.unread} of {f.statements}") for f in self.files]
+        refused = [(f"{f.file}:{line}", why) for f in self.files for line, why in f.refused]
+        outputs = [(f.name, str(f.line or ""), f.formula, f.case) for f in self.formulas]
+        found: list[tuple[str, tuple[str, ...], list[Any]]] = [
+            ("", ("file", "language", "statements read"), files),
+            ("", ("not read", "because"), refused),
+            ("", ("output", "line", "formula", "case"), outputs),
+        ]
+        for q in self.questions:
+            title = f"{q.name} ({q.kind}): {q.status}, {sum(e.status.holds for e in q.entries)} of {len(q.entries)}"
+            title += f" entries proved, {q.sense}" if q.status.holds else " entries proved"
+            rows = [
+                (f"{e.entry[0]},{e.entry[1]}", f"{Path(e.file).name}:{e.line}", str(e.status), e.remark())
+                for e in q.entries
+                if every or not e.status.holds
+            ]
+            found.append((title, ("entry", "place", "verdict", "remark"), rows))
+        return found
+
+    def _repr_html_(self) -> str:
+        shown = [(html.escape(title), heads, rows) for title, heads, rows in self.tables() if title or rows]
+        return "".join((f"<p>{t}</p>" if t else "") + (write_table(h, r) if r else "") for t, h, r in shown)
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """The certificates of all entries that have one."""
@@ -330,7 +363,7 @@ def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQue
         known = worst.get(entry.place)
         if known is None or order.index(answer.status) > order.index(known.status):
             worst[entry.place] = answer
-    return AuditedQuestion(question.name, question.kind, tuple(worst.values()))
+    return AuditedQuestion(question.name, question.kind, tuple(worst.values()), question.inputs())
 
 
 def decide_cells(entry: Entry, scope: Scope, decided: dict[Any, Decision]) -> Decision:
@@ -357,6 +390,7 @@ def write_answer(question: Question, entry: Entry, scope: Scope, decision: Decis
     """The verdict on one entry with its line, and with a mend where it is refuted."""
     from navsym.audit.mend import suggest
     from navsym.audit.values import Unread
+    from navsym.language.printer import print_tree
 
     unit = entry.source.unit if entry.source else next(iter(question.sources.values())).unit
     line = next((cell.line for cell in (entry.code, entry.expected) if isinstance(cell, Unread)), None)
@@ -369,9 +403,10 @@ def write_answer(question: Question, entry: Entry, scope: Scope, decision: Decis
         if mend is not None:
             line, suggestion = mend.line, mend.text
         why = "; ".join(filter(None, (describe_case(entry), why)))
+    right = None if isinstance(entry.expected, Unread) or entry.conditions else print_tree(entry.expected.tree)
     return AuditedEntry(
         entry.place, *unit.locate(line), decision.status, decision.sense, point, decision.values, suggestion, why,
-        decision.certificate, decision.weaker,
+        decision.certificate, decision.weaker, right,
     )  # fmt: skip
 
 

@@ -105,6 +105,14 @@ class Question:
         """What is zero by the mappings of all sources."""
         return tuple(dict.fromkeys(relation for source in self.sources.values() for relation in source.relations))
 
+    def inputs(self) -> dict[str, tuple[str, Any]]:
+        """Symbol -> spelling and declaration of what the sources read, in the order of their arguments."""
+        order = [argument.name for source in self.sources.values() for argument in source.function.arguments]
+        known = {n: (self.names.spellings.get(n, n), word) for n, word in self.names.declarations.items()}
+        bases = {name: re.split(r"\W", spelling)[0] for name, (spelling, _) in known.items()}
+        places = {name: order.index(base) if base in order else len(order) for name, base in bases.items()}
+        return dict(sorted(known.items(), key=lambda item: places[item[0]]))
+
 
 def read_question(block: Any, sources: Mapping[str, Source], names: Names, folder: Path, where: str) -> Question:
     """One ``[[question]]`` block."""

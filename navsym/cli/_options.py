@@ -58,7 +58,8 @@ def called_options(function: str) -> Iterator[None]:
         yield
     except NavsymError as error:
         if error.where.startswith(f"{function}: "):
-            error.where = ", ".join(f"--{name}" for name in error.where.removeprefix(f"{function}: ").split(", "))
+            names = error.where.removeprefix(f"{function}: ").replace("values", "set").split(", ")
+            error.where = ", ".join(f"--{name}" for name in names)
         switched = FLAG.sub(lambda found: f"--{found[1].replace('_', '-')}", error.remedy)
         error.message = error.message.removesuffix(error.remedy) + switched
         raise

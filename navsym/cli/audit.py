@@ -44,25 +44,7 @@ def command(
 
 def as_text(answer: Audit, every: bool) -> str:
     """What was read, then the questions with their entries, or the formulas."""
-    files = [(f.file, f.language, f"{f.statements - f.unread} of {f.statements}") for f in answer.files]
-    blocks = [table(("file", "language", "statements read"), files)]
-    refused = [(f"{f.file}:{line}", why) for f in answer.files for line, why in f.refused]
-    if refused:
-        blocks.append(table(("not read", "because"), refused))
-    if answer.formulas:
-        rows = [(formula.name, str(formula.line or ""), formula.formula, formula.case) for formula in answer.formulas]
-        blocks.append(table(("output", "line", "formula", "case"), rows))
-    for question in answer.questions:
-        listed = [e for e in question.entries if every or not e.status.holds]
-        proved = sum(e.status.holds for e in question.entries)
-        head = (
-            f"{question.name} ({question.kind}): {question.status}, {proved} of {len(question.entries)} entries proved"
-        )
-        blocks.append(f"{head}, {question.sense}\n" if question.status.holds else f"{head}\n")
-        if listed:
-            rows = [
-                (f"{e.entry[0]},{e.entry[1]}", f"{Path(e.file).name}:{e.line}", str(e.status), e.remark())
-                for e in listed
-            ]
-            blocks.append(table(("entry", "place", "verdict", "remark"), rows))
+    blocks = []
+    for title, heads, rows in answer.tables(every):
+        blocks += ([f"{title}\n"] if title else []) + ([table(heads, rows)] if rows else [])
     return "\n".join(blocks)

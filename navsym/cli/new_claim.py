@@ -70,10 +70,10 @@ def read_words(settings: list[str]) -> dict[str, Any]:
 def as_text(document: dict[str, Any], number: str, is_numeral: bool) -> str:
     """The verdict, the file, and the next step."""
     lines = [f"{document['id']}  {document['status']}  {document['evidence']}", document["path"]]
+    module = document["id"].partition(":")[0]
     if document["equation"] is None:
-        lines.append(f"note: {number} is none of the numbered equations of PAPER; it counts as a remark")
+        lines.append(f"note: {number} is none of the numbered equations of {module}; it counts as a remark")
     if document["status"] == "REFUTED":
-        module = document["id"].partition(":")[0]
         command = f"navsym new-claim {module} '{number}*' --corrects {number} --printed … --derived …"
         lines.append(f"next: its correction, {command}")
         if is_numeral:

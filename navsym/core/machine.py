@@ -157,14 +157,12 @@ def program(name: str, about: Mapping[str, Any]) -> Equipment:
 
 
 def answer(words: Sequence[str]) -> tuple[int, str]:
-    """Exit status and output of a short command; status 127 when it cannot run or takes too long."""
+    """Exit status and output of a short command, its complaints last; status 127 when it cannot run or is too slow."""
     try:
-        done = subprocess.run(
-            words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=SECONDS
-        )
+        done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, timeout=SECONDS, check=False)
     except (OSError, subprocess.TimeoutExpired) as error:
         return 127, str(error)
-    return done.returncode, done.stdout.decode("utf-8", "replace")
+    return done.returncode, (done.stdout + done.stderr).decode("utf-8", "replace")
 
 
 def data_folder() -> Equipment:

@@ -44,7 +44,7 @@ def export(
             ("kalman"), or a list of these; a verdict of :func:`navsym.prove`; an Estimator, as a function of its
             measurements; Phases with closed forms, as functions of the parameter; a Derivation, as Phi and the
             regressors; a Model or its file, as F, H, Phi, Qd and steps of a Kalman filter in Joseph's and UD form; a
-            Guard with memory and step, or its file, as its streaming rule; a conversion, as T and its inverse
+            Guard or its file, as its streaming rule; a conversion, as T and its inverse; an Audit, as it should be
     to    : languages: c, cpp, python, batch, javascript, rust, fortran, casadi, wasm, html, julia, octave
     out   : folder for the code; made when it is not there
     real  : "double" or "float"; force : replace files that are there

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import itertools
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -10,8 +11,10 @@ from typing import Any
 
 import sympy as sp
 
+from navsym.audit.answer import Audit, AuditedQuestion, audit_specification
+from navsym.audit.names import squeeze
 from navsym.book.entries import Entry, book
-from navsym.claims import CERTIFIED, PROVED, Claim, Equation, Record, Verdict, Verdicts, equation_of
+from navsym.claims import CERTIFIED, OPEN, PROVED, Claim, Equation, Record, Verdict, Verdicts, equation_of
 from navsym.conventions.converting import Conversion
 from navsym.core.errors import DomainError, NavsymError
 from navsym.core.sandbox import Exhausted, run_limited
@@ -24,7 +27,7 @@ from navsym.guaranteed.phases.answer import Phases, Regime
 from navsym.guaranteed.phases.front import phases
 from navsym.guaranteed.solver import Estimator, solve
 from navsym.language.algebra import to_sympy
-from navsym.language.declarations import box_of, symbols_of
+from navsym.language.declarations import box_of, read_parameters, symbols_of
 from navsym.language.expression import read_tree
 from navsym.language.names import quote
 from navsym.language.tomlfile import read_toml
@@ -38,7 +41,7 @@ from navsym.verification.papers import file_of_source, is_model, load_papers, sp
 SECONDS = 90.0
 MEGABYTES = 4096
 LARGEST_DENOMINATOR = 10**9  # of an exact end; beyond it an end is the middle of an enclosure
-EXPORTABLE = "a claim id, a verdict, an entry of the book, an Estimator, Phases, a Derivation, a Conversion or a Model"
+EXPORTABLE = "a claim id, a verdict, an entry of the book, an Audit, Estimator, Phases, Derivation, Conversion or Model"
 
 
 def functions_from(
@@ -63,6 +66,8 @@ def functions_from(
     if isinstance(item, Verdict):
         part = material_of_verdict(item, allow_confirmed)
         return [function_of([part], real=real, name=function_name(part.claim), layout=Layout(units=units))]
+    if isinstance(item, Audit) and item.questions:
+        return [function_of_question(q, Path(item.files[0].file).stem, real, units) for q in item.questions]
     if isinstance(item, Estimator):
         return [function_of_estimator(item, real, units)]
     if isinstance(item, Phases):
@@ -92,11 +97,19 @@ def functions_of_claim(
     if is_program(text):
         return algorithm(text, lambda claim: material_of_claim(claim, allow_confirmed), real)
     if text.endswith(".toml") and is_model(path := file_of_source(text)):
+        if "code" in read_toml(path):
+            got, remedy = "an error model that is read from code", "write F as formulas in a model file"
+            raise DomainError(f"expected formulas; got {got}; {remedy}", where=path.name)
         return functions_of_system(Model.load(path), real, units or {})
     name, _, claims = text.rpartition("=") if "=" in text else ("", "", text)
     module, _, target = split_id(claims)
     if module.endswith(".toml") and is_model(file := file_of_source(module)):
         return functions_of_target(file, target, real, units or {})
+    if module.endswith(".toml") and "question" in read_toml(file := file_of_source(module)):
+        asked = audit_specification(file, target or None).questions
+        if not asked:
+            raise unknown_claim(target, [q["name"] for q in read_toml(file)["question"]], file.name)
+        return [function_of_question(question, file.stem, real, units or {}) for question in asked]
     parts = [material_of_claim(part, allow_confirmed) for part in split_regimes(claims)]
     known = {**units_of_paper(claims.partition(":")[0]), **(units or {})}
     return [function_of(parts, real=real, name=function_name(name) if name else None, layout=Layout(units=known))]
@@ -150,9 +163,6 @@ def material_from_paper(module: str, number: str, allow_confirmed: bool) -> Mate
 def material_from_file(name: str, wanted: str, allow_confirmed: bool) -> Material:
     """A claim of a claim file, decided now."""
     path = file_of_source(name)
-    if "code" in read_toml(path):
-        message = "expected claims; got questions about code; write the mended formula as a claim of its own"
-        raise DomainError(message, where=path.name)
     claims = {claim.id: claim for claim in read_claims(path).claims}
     if wanted not in claims:
         raise unknown_claim(wanted, list(claims), path.name)
@@ -168,6 +178,49 @@ def material_from_file(name: str, wanted: str, allow_confirmed: bool) -> Materia
         correction=next((f"{name}:{c.id}" for c in claims.values() if c.notes.get("corrects") == wanted), None),
         allow_confirmed=allow_confirmed,
     )
+
+
+ENTRY = re.compile(r"(\w+)\[(\d+(?:,\d+)*)\]", re.ASCII)
+
+
+def function_of_question(found: AuditedQuestion, stem: str, real: str, units: Mapping[str, str]) -> ExportedFunction:
+    """What a question of an audit expects, right where the code is wrong; the inputs are those of the code.
+
+    An array of the code is one argument, row by row. Raises RefusedError where an entry is OPEN or has cases.
+    """
+    label = f"{stem}:{found.name}"
+    for entry in found.entries:
+        if entry.status == OPEN or entry.expected is None:
+            got = f"entry {','.join(map(str, entry.entry))} of {found.name}, which is {entry.status} or has cases"
+            raise RefusedError(f"expected a question whose entries are decided in one case; got {got}; ask for less")
+    parameters = read_parameters({name: word for name, (_, word) in found.inputs.items()}, "code.symbols")
+    symbols, box = symbols_of(parameters), box_of(parameters)
+    cells = {e.entry: to_sympy(read_tree(e.expected, None), symbols) for e in found.entries if e.expected}
+    rows, columns = (max(place[axis] for place in cells) for axis in (0, 1))
+    matrix = sp.Matrix(rows, columns, lambda i, j: cells[i + 1, j + 1])
+    arrays = arrays_of({name: spelling for name, (spelling, _) in found.inputs.items()})
+    entry_of = {name: array for array, names in arrays.items() for name in names}
+    order = tuple(dict.fromkeys(entry_of.get(name, name) for name in found.inputs))
+    title = f"What question {found.name} expects of {found.entries[0].file}"
+    layout = Layout(arrays=arrays, order=order, units=units)
+    used = {s: ends for s, ends in box.items() if s in matrix.free_symbols}
+    return matrix_function(label, matrix, None, title, real, layout, used)
+
+
+def arrays_of(spellings: Mapping[str, str]) -> dict[str, tuple[str, ...]]:
+    """Arrays of the code -> symbols of their entries, row by row; entries that the code does not read get a name."""
+    places = dict[str, dict[tuple[int, ...], str]]()
+    for name, spelling in spellings.items():
+        if match := ENTRY.fullmatch(squeeze(spelling)):
+            places.setdefault(match[1], {})[tuple(map(int, match[2].split(",")))] = name
+    first = int(any("(" in spelling for spelling in spellings.values()))  # MATLAB counts from 1
+    ranges = {
+        base: [range(first, max(axis) + 1) for axis in zip(*known, strict=True)] for base, known in places.items()
+    }
+    return {
+        base: tuple(places[base].get(at, f"{base}_unread_{'_'.join(map(str, at))}") for at in itertools.product(*axes))
+        for base, axes in ranges.items()
+    }
 
 
 def functions_of_target(path: Path, target: str, real: str, units: Mapping[str, str]) -> list[ExportedFunction]:

@@ -11,7 +11,6 @@ from pathlib import Path
 from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError, OutputError, TooLargeError, printable
 
 MARKS = {
-    codecs.BOM_UTF8: "a byte order mark",
     codecs.BOM_UTF16_LE: "UTF-16",
     codecs.BOM_UTF16_BE: "UTF-16",
     b"PK\x03\x04": "a zip archive",
@@ -56,13 +55,14 @@ def missing_file(where: str, got: str) -> NavsymError:
 
 
 def decode(data: bytes, where: str) -> str:
-    """UTF-8 text without a byte order mark and without NUL.
+    """UTF-8 text without NUL; a byte order mark, which some editors and spreadsheets write, is no part of it.
 
     Raises ExpressionSyntaxError for other bytes, and EmptyError when nothing but white space is in it.
     """
     for mark, what in MARKS.items():
         if data.startswith(mark):
             raise not_text(f"{what} at the start", where)
+    data = data.removeprefix(codecs.BOM_UTF8)
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError as failure:
@@ -79,9 +79,7 @@ def decode(data: bytes, where: str) -> str:
 
 def not_text(got: str, where: str) -> NavsymError:
     """The error for bytes that are not plain UTF-8."""
-    return ExpressionSyntaxError(
-        f"expected plain UTF-8 text; got {got}; save it as UTF-8 without a byte order mark", where=where
-    )
+    return ExpressionSyntaxError(f"expected plain UTF-8 text; got {got}; save it as UTF-8", where=where)
 
 
 def write_text(path: str | os.PathLike[str], text: str, *, durable: bool = True) -> None:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from navsym.core import arrays
 from navsym.core.errors import DomainError, NavsymError, NotFiniteError, ShapeError
@@ -155,7 +156,26 @@ def run_filter(
         twin = run if count >= WORTH_REPEATING else twin
     with np.errstate(over="ignore", invalid="ignore"):  # what leaves the range is refused, with its step
         estimate = require_range(settle(require_range(run(models, z=z)), twin, rule, models, z))
+    is_blind = models.modes > 1 and method != "exact" and not np.isnan(z).all()
+    if is_blind and is_chain(estimate.probabilities, models):
+        notes = (*notes, BLIND)
     return replace(estimate, notes=(*notes, *estimate.notes))
+
+
+#: The remark on mode probabilities that no measurement has changed.
+BLIND = (
+    "the mode probabilities are those of the chain alone: no measurement tells the modes apart as this method looks "
+    "back; ask for one that looks further back, gpb2 or k-pulsating"
+)
+
+
+def is_chain(probabilities: NDArray[np.floating[Any]], models: Bank) -> bool:
+    """Whether mode probabilities (T, m) of more than one step are those of the Markov chain without a measurement."""
+    alone, now = [], models.probabilities
+    for k in range(1, len(probabilities) + 1):
+        now = now @ models.at("mode_transition", k)
+        alone.append(now)
+    return len(alone) > 1 and bool(np.abs(np.array(alone) - probabilities).max() < 1e-12)
 
 
 def require_range(estimate: Estimates) -> Estimates:

@@ -54,6 +54,7 @@ def assert_claim(
     Returns the verdict: its scope and its assumptions belong to what was proved. Raises ClaimFailedError, an
     AssertionError, with the counterexample or with what was tried, and NavsymError for what is no formula or id.
     """
+    __tracebackhide__ = True  # pytest shows the line of the test
     limit = BUDGET.get() if seconds is None else seconds
     if right is None and isinstance(left, str):
         return assert_text(left, limit, sampled, {"box": box, "tolerance": tolerance, **symbols})
@@ -90,6 +91,7 @@ def assert_audited(spec: str | os.PathLike[str]) -> Audit:
     """
     from navsym.audit.answer import audit as decide_audit
 
+    __tracebackhide__ = True
     audit = decide_audit(spec)
     if not audit.questions:
         raise EmptyError("expected [[question]] blocks; got none; ask a question", where=str(spec))
@@ -100,6 +102,7 @@ def assert_audited(spec: str | os.PathLike[str]) -> Audit:
 
 def assert_text(text: str, seconds: float, sampled: bool, options: Mapping[str, Any]) -> Verdict:
     """The verdict of a formula as text, or of a claim by its id."""
+    __tracebackhide__ = True
     if ":" not in text or RELATION.search(text):
         return require_holds(prove(text, seconds=seconds, **options), text, sampled)
     record = decide_claim_of(text, seconds)[1]
@@ -112,6 +115,7 @@ def assert_text(text: str, seconds: float, sampled: bool, options: Mapping[str, 
 
 def require_holds(verdict: Verdict, statement: str, sampled: bool = False) -> Verdict:
     """The verdict when it is PROVED or CERTIFIED; raises ClaimFailedError for another one."""
+    __tracebackhide__ = True
     if verdict.status.holds or (sampled and verdict.status == CONFIRMED):
         return verdict
     raise ClaimFailedError(describe_failure(statement, verdict), verdict)

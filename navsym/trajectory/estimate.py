@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -246,22 +246,46 @@ def estimate(track: Positions, settings: Settings) -> tuple[TrackEstimate, Noise
     return by_method(track, noises[0][1], settings, use), noises[0][1]
 
 
-def marginal(track: Positions, noises: list[tuple[float, Noise]], settings: Settings, use: Rows) -> TrackEstimate:
+def marginal(track: Positions, noises: list[tuple[Array, Noise]], settings: Settings, use: Rows) -> TrackEstimate:
     """Filter or smoother, averaged over what the noise may be; gains and flags are those of the likeliest.
 
-    noises : with weights that sum to one, the likeliest first; each stands for all about it
+    noises : with weights (3,) of their channels that sum to one, the likeliest first; each stands for all about it
+
+    The noises of Up have nothing to do with those of East and North, the points about two noises move together.
     """
-    found, weights = [], np.empty(0)
-    for weight, noise in noises:
+    wanted, values, variances = range(1, min(settings.order, 3)), list[Any](), list[Any]()
+    first = passed(track, noises[0][1], settings, use)
+    for _, noise in noises:
         points = noise_points(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
         factors = local_scales(track, noise, settings, use)
-        found += [by_method(track, moved, settings, use, factors) for _, moved in points]
-        weights = np.append(weights, [weight * share for share, _ in points])
-    parts = [
-        mixture(weights, [values for values, _ in derivative], [spread for _, spread in derivative])
-        for derivative in zip(*(f.derivatives for f in found), strict=True)
-    ]
-    return TrackEstimate(parts, found[0].flags, found[0].gains)
+        runs = [first if moved is noises[0][1] else passed(track, moved, settings, use) for _, moved in points]
+        values.append([[run.states[:, :, i] for i in wanted] for run in runs])
+        variances.append([[variance(run, i) * factors for i in wanted] for run in runs])
+    weights, shares = np.array([weight for weight, _ in noises]), np.array([share for share, _ in points])
+    mean, covariance = mixture(weights, shares, np.array(values), np.array(variances))
+    return from_states(track, first, words_of(use, first), settings.order, list(zip(mean, covariance, strict=True)))
+
+
+def mixture(weights: Array, shares: Array, values: Array, variances: Array) -> tuple[Array, Array]:
+    """Means (d, 3, N) and covariances (d, 3, 3, N) of d derivatives.
+
+    weights : (I, 3) of noises in each channel ; shares : (K,) of the points about each noise
+    values, variances : (I, K, d, 3, N)
+    """
+    mean = np.einsum("ic,k,ikdcn->dcn", weights, shares, values)
+    away = values - mean
+    common = np.einsum("ic,ikdcn->kdcn", weights, away)
+    covariance = np.einsum("k,kdcn,kden->dcen", shares, common, common)
+    for group in (slice(0, 2), slice(2, 3)):
+        own = away[:, :, :, group]
+        covariance[:, group, group] = np.einsum("i,k,ikdcn,ikden->dcen", weights[:, group.start], shares, own, own)
+    within = np.einsum("ic,k,ikdcn->dcn", weights, shares, variances)
+    return mean, covariance + on_diagonal(within)
+
+
+def on_diagonal(variances: Array) -> Array:
+    """Covariances (..., 3, 3, N) of variances (..., 3, N)."""
+    return np.asarray(np.einsum("...cn,ce->...cen", variances, np.eye(3)))
 
 
 #: Rows to each side over which squared innovations are averaged (deviation of a bell), what the model itself weighs
@@ -305,13 +329,6 @@ def bell(values: Array, method: str, own: bool) -> Array:
     return np.asarray(whole[3 * NEAR : 3 * NEAR + len(values)])
 
 
-def mixture(weights: Array, means: list[Array], deviations: list[Array]) -> tuple[Array, Array]:
-    """Mean and standard deviation of a mixture, element by element."""
-    values, spread = np.array(means), np.array(deviations)
-    mean = np.einsum("p,pkc->kc", weights, values)
-    return mean, np.sqrt(np.einsum("p,pkc->kc", weights, spread**2 + (values - mean) ** 2))
-
-
 def departures(track: Positions, noise: Noise, settings: Settings, use: Rows) -> Mask:
     """(N,) True where a position contradicts all others, further than its neighbours do.
 
@@ -343,19 +360,16 @@ def agreeing(track: Positions, noise: Noise, settings: Settings, use: Rows) -> M
     return fits
 
 
-def by_method(
-    track: Positions, noise: Noise, settings: Settings, use: Rows, factors: Array | float = 1.0
-) -> TrackEstimate:
+def by_method(track: Positions, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
     """Velocity and acceleration by the method of the settings, for one noise.
 
-    use : (N,) 1 for rows that count, 0 for outliers ; factors : (3, N) on the variances of filter and smoother
+    use : (N,) 1 for rows that count, 0 for outliers
     """
-    run = filtered(track, noise, settings, use)
-    words = tuple(word(use[k], run.flags[k]) for k in range(len(track.t)))
+    run = passed(track, noise, settings, use)
+    words = words_of(use, run)
     if settings.method in ("filter", "smoother"):
-        if settings.method == "smoother":
-            smoothed(track, noise, run)
-        return from_states(track, run, words, factors)
+        derivatives = [(run.states[:, :, i], on_diagonal(variance(run, i))) for i in range(1, min(settings.order, 3))]
+        return from_states(track, run, words, settings.order, derivatives)
     if settings.method == "differences":
         windows = nearest_windows(track, use, 3)
         return from_weights(track, noise, windows, settings.order, least_squares, words)
@@ -375,6 +389,19 @@ def window_of(track: Positions, noise: Noise, settings: Settings) -> float:
     return min(4 * memory(noise, track.variance, settings.order), LONGEST_WINDOW * usual_step(track.t))
 
 
+def passed(track: Positions, noise: Noise, settings: Settings, use: Rows) -> FilterRun:
+    """The filter's run, and the smoother's where that is the method."""
+    run = filtered(track, noise, settings, use)
+    if settings.method == "smoother":
+        smoothed(track, noise, run)
+    return run
+
+
+def words_of(use: Rows, run: FilterRun) -> tuple[str, ...]:
+    """What happened to each row."""
+    return tuple(word(use[k], run.flags[k]) for k in range(len(use)))
+
+
 def word(used: int, flags: Rows) -> str:
     """What happened to a row: ``outlier`` (left out), ``doubtful`` (believed less) or ``used``."""
     if not used:
@@ -387,10 +414,10 @@ def word(used: int, flags: Rows) -> str:
 
 @dataclass(slots=True, eq=False)
 class FilterRun:
-    """Arrays of a run, channel first: states, gains (3, N, n+2), roots of covariances (3, N, n+2, n+2), flags (N, 3).
+    """Arrays of a run, channel first: states, gains (3, N, m), roots of covariances (3, N, m, m), flags (N, 3).
 
-    The last states are the coloured error of the position and the rate of its drift; the first is the position with
-    coloured error and drift.
+    The first of the n states of the motion is the position with its errors. Where errors are coloured or drift, the
+    coloured error and the rate of the drift follow.
     """
 
     states: Array
@@ -405,10 +432,11 @@ class FilterRun:
 def filtered(track: Positions, noise: Noise, settings: Settings, use: Rows) -> FilterRun:
     """Forward run of the three channels; every root is kept for the smoother."""
     N, n = len(track.t), settings.order
+    m = n + noise.error_states()
     run = FilterRun(
-        states=np.empty((3, N, n + 2)),
-        roots=np.empty((3, N, n + 2, n + 2)),
-        gains=np.empty((3, N, n + 2)),
+        states=np.empty((3, N, m)),
+        roots=np.empty((3, N, m, m)),
+        gains=np.empty((3, N, m)),
         innovations=np.empty((3, N)),
         variances=np.empty((3, N)),
         jumps=np.empty((3, N)),
@@ -428,7 +456,8 @@ def smoothed(track: Positions, noise: Noise, run: FilterRun) -> None:
     """Replace the filtered states and roots of a run by the smoothed ones."""
     for c in range(3):
         errors = noise.coloured(track, c), noise.drifting(track, c)
-        backward(track.t, *errors, run.jumps[c], run.states[c], run.roots[c], noise.model(c))
+        n = run.states.shape[2] - noise.error_states()
+        backward(track.t, *errors, run.jumps[c], n, run.states[c], run.roots[c], noise.model(c))
 
 
 def variance(run: FilterRun, i: int) -> Array:
@@ -438,27 +467,25 @@ def variance(run: FilterRun, i: int) -> Array:
 
 
 def from_states(
-    track: Positions, run: FilterRun, words: tuple[str, ...], factors: Array | float = 1.0
+    track: Positions, run: FilterRun, words: tuple[str, ...], order: int, derivatives: list[tuple[Array, Array]]
 ) -> TrackEstimate:
-    """The answer of a filter or smoother run.
+    """The answer of a filter or smoother run with these derivatives.
 
     The gains are those of the last row at which the first channel used its measurement.
     """
     last = int(np.flatnonzero((run.gains[0] != 0).any(axis=1))[-1])
-    n = run.states.shape[2] - 2
-    gains = {name: run.gains[c, last, :n].tolist() for c, name in enumerate(CHANNELS)}
-    derivatives = [(run.states[:, :, i], variance(run, i) * factors) for i in (1, 2) if i < n]
+    gains = {name: run.gains[c, last, :order].tolist() for c, name in enumerate(CHANNELS)}
     return turned(track, derivatives, words, gains)
 
 
 def turned(
     track: Positions, derivatives: list[tuple[Array, Array]], words: tuple[str, ...], gains: dict[str, list[float]]
 ) -> TrackEstimate:
-    """East, North, Up of each row from channels: values and variances (3, N) of the speed, and of an acceleration."""
+    """East, North, Up of each row from channels: values (3, N) and covariances (3, 3, N) of each derivative."""
     turn = axes_of(track, words)
     parts = [
-        (np.einsum("kij,jk->ki", turn, values), np.sqrt(np.einsum("kij,jk->ki", turn**2, variances)))
-        for values, variances in derivatives
+        (np.einsum("kij,jk->ki", turn, values), np.sqrt(np.einsum("kij,kil,jlk->ki", turn, turn, covariances)))
+        for values, covariances in derivatives
     ]
     return TrackEstimate(parts, words, gains)
 
@@ -523,7 +550,7 @@ def from_weights(
                 variances[d - 1, c, k] = deviation**2 * noise.scale[c] * (1.0 + noise.ratio[c])
         if not same:
             cache.clear()
-    return turned(track, list(zip(values, variances, strict=True)), words, {})
+    return turned(track, list(zip(values, on_diagonal(variances), strict=True)), words, {})
 
 
 def grain_of(track: Positions) -> float:

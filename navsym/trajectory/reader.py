@@ -195,13 +195,10 @@ def columns_in(data: Any, log: Log) -> list[Any]:
 
 
 def text_of(data: bytes, log: Log) -> str:
-    """UTF-8 text; when repairing also after a byte order mark or from latin-1."""
+    """UTF-8 text; when repairing also from latin-1."""
     if not data.strip():
         raise EmptyError("expected a track; got an empty file; check the export", where=log.where)
     if log.policy == "repair":
-        if data.startswith(b"\xef\xbb\xbf"):
-            data = data[3:]
-            log.repairs.append("line 1: byte order mark removed")
         try:
             data.decode("utf-8")
         except UnicodeDecodeError:

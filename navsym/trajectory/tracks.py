@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import partial
+from itertools import zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,12 +45,14 @@ class Positions:
     position : (N, 3) East, North, Up axes of the most central row, metres
     variance : (N, 3) variances of the positions up to a common factor, m^2
     turn     : (N, 3, 3) from those axes to East, North, Up of each row
+    widest   : deviations of position and speed that are wide in the scale of the track, found at construction
     """
 
     t: Array
     position: Array
     variance: Array
     turn: Array
+    widest: tuple[float, float] = field(init=False)
 
     def __post_init__(self) -> None:
         N = len(self.t)
@@ -73,6 +76,9 @@ class Positions:
                 f"t: expected steps of {SHORTEST:g} to {LONGEST:g} s; got {steps.min():.3g} to {steps.max():.3g}; "
                 "check the unit of the times"
             )
+        steps = np.maximum(steps, usual_step(self.t) if N > 1 else 1.0)
+        speed = np.abs(np.diff(self.position, axis=0) / steps[:, None]).max(initial=0.0)
+        put("widest", (float(np.sqrt(self.variance.max()) * 10 + 1.0), float(10 * speed + 1.0)))
 
 
 def three(value: float) -> Array:
@@ -113,6 +119,10 @@ class Noise:
     def white(self, track: Positions, c: int) -> Array:
         """(N,) variances of the white errors of a channel."""
         return raised(track.variance[:, c], float(self.exponent[c])) * self.scale[c]
+
+    def error_states(self) -> int:
+        """How many states the errors have: one for a coloured error, one more for its drift."""
+        return 2 if self.drift.any() else int(self.ratio.any())
 
     def coloured(self, track: Positions, c: int) -> Array:
         """(N,) standard deviations of the coloured errors of a channel."""
@@ -265,13 +275,11 @@ def running_median(values: Array, width: int) -> Array:
 
 
 def first_spread(track: Positions, order: int, density: float = 0.0, rate: float = 0.0) -> Array:
-    """Standard deviations of the state before the first measurement: wide, in the scale of the track.
+    """Standard deviations of the state before the first measurement, wide in the scale of the track.
 
     density, rate : of the motion; one that forgets begins as it goes on, with the variance density / (2 rate)
     """
-    steps = np.maximum(np.diff(track.t), usual_step(track.t))
-    speed = np.abs(np.diff(track.position, axis=0) / steps[:, None]).max()
-    spread = np.array([np.sqrt(track.variance.max()) * 10 + 1.0, 10 * speed + 1.0, *([50.0] * (order - 2))])
+    spread = np.array([*track.widest, *([50.0] * (order - 2))])
     if rate > 0.0:
         spread[-1] = min(spread[-1], np.sqrt(density / (2.0 * rate)))
     return spread
@@ -390,21 +398,23 @@ FIRST_STEPS = (0.7, 0.7, 0.7, 0.5, 0.8, 0.5, 0.7, 0.5, 0.0)
 
 def shaped(
     track: Positions, order: int, use: Rows, noise: Noise, *, gate: float, fixed_scale: bool
-) -> list[tuple[float, Noise]]:
-    """Noises with weights: coloured errors, a motion that forgets, stretched variances, where the track asks for them.
+) -> list[tuple[Array, Noise]]:
+    """Noises with weights (3,) of their channels: coloured errors, a motion that forgets, stretched variances.
 
-    The first is the likeliest: a shape is taken when minus twice the log-likelihood falls by more than the logarithm of
-    the number of innovations for each of its parameters (Schwarz 1978). The others are :func:`explanations`. East and
-    North have one shape, Up its own.
+    Plain noise where the track asks for no more. The first is the likeliest: a shape is taken when minus twice the
+    log-likelihood falls by more than the logarithm of the number of innovations for each of its parameters (Schwarz
+    1978). The others are :func:`explanations`. East and North have one shape, Up its own.
     """
     if not SHORTEST_FIT <= usual_step(track.t) <= LONGEST_STEP or len(track.t) < 10 * order:
-        return [(1.0, noise)]
+        return [(three(1.0), noise)]
     here = middle_rows(track, use)
     level, up = (
         explanations(fit, search_shape(fit, float(noise.scale[fit.channels[0]]), float(noise.density[fit.channels[0]])))
         for fit in (Fit(here[0], order, here[1], channels, gate, fixed_scale) for channels in ((0, 1), (2,)))
     )
-    return [(w * v, noise_at((at, at, over))) for w, at in level for v, over in up]
+    pairs = zip_longest(level, up)  # what one has no more of is its likeliest, which does not count again
+    both = [(a or (0.0, level[0][1]), b or (0.0, up[0][1])) for a, b in pairs]
+    return [(np.array([w, w, v]), noise_at((at, at, over))) for (w, at), (v, over) in both]
 
 
 def noise_at(points: Sequence[Array]) -> Noise:

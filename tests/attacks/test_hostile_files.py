@@ -36,7 +36,6 @@ BROKEN = {
     # not text
     "empty": (b"", EMPTY),
     "blank": (b" \n\t\r\n", EMPTY),
-    "byte order mark": (b"\xef\xbb\xbf" + MODEL.encode(), SYNTAX),
     "UTF-16": (MODEL.encode("utf-16"), SYNTAX),
     "UTF-16 without a mark": (MODEL.encode("utf-16-le"), SYNTAX),
     "UTF-32": (MODEL.encode("utf-32"), SYNTAX),
@@ -144,7 +143,6 @@ JSON = {
     "two documents": (b"{}{}", SYNTAX),
     "undefined": (b"undefined", SYNTAX),
     "Python": (b"__import__('os').system('touch PWNED')", SYNTAX),
-    "byte order mark": (b"\xef\xbb\xbf{}", SYNTAX),
     "UTF-16": ("{}".encode("utf-16"), SYNTAX),
     "UTF-16 without a mark": ("{}".encode("utf-16-be"), SYNTAX),
     "broken UTF-8": (b'"\xff"', SYNTAX),

@@ -10,6 +10,7 @@ from IPython.core.error import UsageError
 from IPython.core.interactiveshell import InteractiveShell
 from nbclient import NotebookClient
 
+import navsym as nav
 from navsym.cli._magics import prove_cell
 from navsym.core.errors import NavsymError
 
@@ -66,6 +67,18 @@ def test_a_cell_of_formulas_as_printed_is_decided_line_by_line(shell):
 def test_a_wrong_line_is_an_error_without_a_traceback(shell, line, hint):
     with pytest.raises(UsageError, match=hint):
         shell.run_line_magic("prove", line)
+
+
+def test_an_audit_shows_itself_as_tables_and_runs_nothing_of_the_source(tmp_path):
+    """The failing entry with its mend, the outputs of a function, and a hostile name as text."""
+    shown = nav.audit("examples/audit/yaw_jacobian.toml")._repr_html_()
+    assert "✗ REFUTED" in shown and "yaw_jacobian.c:14" in shown and "write -v * sinf(x[2]) * dt" in shown
+    assert shown.count("<table>") == 2
+    spec = Path("examples/audit/yaw_jacobian.toml").read_text().replace('"transition"', '"<script>"')
+    (tmp_path / "spec.toml").write_text(spec)
+    (tmp_path / "yaw_jacobian.c").write_text(Path("examples/audit/yaw_jacobian.c").read_text())
+    assert "<script>" not in nav.audit(tmp_path / "spec.toml")._repr_html_()
+    assert "xn[0]" in nav.audit("examples/audit/yaw_jacobian.c", function="predict")._repr_html_()
 
 
 def test_questions_about_source_code_are_decided_on_a_line(shell):

@@ -116,9 +116,72 @@ def test_an_entry_of_the_book_with_vectors_is_refused_and_says_what_to_write():
         nav.export("book:skew-is-cross")
 
 
-def test_the_questions_of_an_audit_are_no_claims_and_the_refusal_says_what_to_write():
-    with pytest.raises(nav.NavsymError, match="got questions about code; write the mended formula as a claim"):
-        nav.export(f"{EXAMPLES / 'audit' / 'yaw_jacobian.toml'}:transition")
+@pytest.mark.parametrize(
+    ("item", "words"),
+    [
+        (f"{EXAMPLES / 'audit' / 'yaw_jacobian.toml'}:transitoin", "did you mean transition"),
+        (EXAMPLES / "error_model.toml", "read from code; write F as formulas in a model file"),
+    ],
+)
+def test_what_is_no_formula_of_an_audit_is_refused_and_says_what_to_write(item, words):
+    with pytest.raises(nav.NavsymError, match=words):
+        nav.export(str(item))
+
+
+FAULTY = """#include <math.h>
+void measure(const double pose[3], const double mark[2], double z[2], double H[2][3])
+{
+    double dx = mark[0] - pose[0], dy = mark[1] - pose[1];
+    z[0] = sqrt(dx*dx + dy*dy);
+    z[1] = dy*cos(pose[2]) - dx*sin(pose[2]);
+    H[0][0] = -dx/z[0]; H[0][1] = dy/z[0]; H[0][2] = 0.0;
+    H[1][0] = sin(pose[2]); H[1][1] = -cos(pose[2]); H[1][2] = -dy*sin(pose[2]) + dx*cos(pose[2]);
+}
+"""
+QUESTION = """[[code]]
+name = "m"
+file = "measure.c"
+function = "measure"
+[code.symbols]
+"mark[0]" = ["5", "9"]
+"pose[0]" = ["-1", "1"]
+[[question]]
+name = "H"
+kind = "jacobian"
+of = "m:z"
+by = "m:pose"
+is = "m:H"
+"""
+
+
+def test_a_question_of_an_audit_leaves_as_what_the_code_should_be(tmp_path):
+    """Two wrong signs of a Jacobian: the arguments are the arrays of the code, and differences agree."""
+    (tmp_path / "measure.c").write_text(FAULTY)
+    (tmp_path / "spec.toml").write_text(QUESTION)
+    audit = nav.audit(tmp_path / "spec.toml")
+    assert [entry.entry for entry in audit["H"].entries if entry.suggestion] == [(1, 2), (2, 3)]
+    made = nav.export(f"{tmp_path / 'spec.toml'}:H", to=["c", "python"], out=tmp_path / "out", vectors=8)
+    assert {outcome.status for outcome in made.outcomes} == {"verified"}
+    whole = nav.export(audit, to="python", out=tmp_path / "whole", run=False)
+    assert [f["name"] for f in whole.document()["functions"]] == ["measure_H"]
+    spec = importlib.util.spec_from_file_location("audited", tmp_path / "out" / "python" / "navsym_functions.py")
+    spec.loader.exec_module(module := importlib.util.module_from_spec(spec))
+    pose, mark = np.array([0.3, -2.0, 0.7]), np.array([6.0, 1.5])
+
+    def predict(at):
+        dx, dy = mark - at[:2]
+        return np.array([np.hypot(dx, dy), dy * np.cos(at[2]) - dx * np.sin(at[2])])
+
+    steps = 1e-6 * np.eye(3)
+    expected = np.column_stack([(predict(pose + d) - predict(pose - d)) / 2e-6 for d in steps])
+    np.testing.assert_allclose(np.reshape(module.spec_H(pose, mark), (2, 3)), expected, atol=1e-8)
+
+
+def test_a_question_that_is_open_does_not_leave(tmp_path):
+    (tmp_path / "measure.c").write_text(FAULTY.replace("sqrt(dx*dx + dy*dy)", "unknown(dx)"))
+    (tmp_path / "spec.toml").write_text(QUESTION)
+    with pytest.raises(nav.NavsymError, match="entry 1,1 of H, which is OPEN or has cases"):
+        nav.export(f"{tmp_path / 'spec.toml'}:H", out=tmp_path / "out")
 
 
 @pytest.mark.long

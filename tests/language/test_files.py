@@ -107,17 +107,7 @@ def test_a_file_that_cannot_be_read_is_missing(tmp_path, read, name):
 
 
 @pytest.mark.parametrize(
-    "data",
-    [
-        b"\xef\xbb\xbf{}",
-        b"\xff\xfe{\0}\0",
-        b"\xfe\xff\0{\0}",
-        b"{\x80}",
-        b"a\0",
-        b"PK\x03\x04",
-        b"\x7fELF",
-        b"\x1f\x8b",
-    ],
+    "data", [b"\xff\xfe{\0}\0", b"\xfe\xff\0{\0}", b"{\x80}", b"a\0", b"PK\x03\x04", b"\x7fELF", b"\x1f\x8b"]
 )
 @pytest.mark.parametrize("read", [read_json, read_toml])
 def test_what_is_not_plain_utf8_is_said(tmp_path, read, data):
@@ -126,6 +116,13 @@ def test_what_is_not_plain_utf8_is_said(tmp_path, read, data):
     with pytest.raises(NavsymError, match="UTF-8") as caught:
         read(path)
     assert caught.value.kind == "syntax" and caught.value.where.startswith(str(path))
+
+
+@pytest.mark.parametrize("read, text", [(read_json, b'{"a": 1}'), (read_toml, b"a = 1")])
+def test_a_byte_order_mark_is_no_part_of_a_file(tmp_path, read, text):
+    path = tmp_path / "file"
+    path.write_bytes(b"\xef\xbb\xbf" + text)
+    assert read(path) == {"a": 1}
 
 
 @pytest.mark.parametrize("read", [read_json, read_toml])

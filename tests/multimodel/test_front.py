@@ -54,6 +54,18 @@ def test_a_gap_of_time_stamps_is_steps_without_measurements() -> None:
     assert abs(closed.covariance[2] - stamped.covariance[2]).max() > 1e-3
 
 
+def test_modes_that_one_step_cannot_tell_apart_are_remarked() -> None:
+    """A jump of the speed shows in the position one step later; a method that has merged the modes by then is blind."""
+    quiet = {"F": [[1, 1], [0, 1]], "Q": [[0.01, 0], [0, 0.01]], "H": [[1, 0]], "R": [[1]]}
+    start = {"mean": [0, 0], "covariance": [[4, 0], [0, 4]], "probabilities": [0.9, 0.1]}
+    document = {"models": [quiet, {**quiet, "Q": [[0.01, 0], [0, 4]]}], "mode_transition": SWITCH, "initial": start}
+    rows = [[0.3], [1.2], [0.4], [5.0], [11.0], [17.5]]
+    blind, seeing = (nav.filter({**document, "measurements": rows}, method=word) for word in ("pulsating", "gpb2"))
+    assert "mode probabilities are those of the chain" in blind.remarks[0] and not blind.modes.any()
+    assert not seeing.remarks and seeing.modes[4] == 1
+    assert not nav.filter({**document, "measurements": [None] * 4, "missing": True}).remarks
+
+
 @pytest.mark.parametrize(
     ("extra", "kind", "words"),
     [

@@ -69,7 +69,7 @@ def run_of(t, z, r, q, spread, c=0.0, rate=0.0, tau=1.0, w=0.0, lasting=1.0, fad
     )
     model = np.array(model)
     forward(t, z, r, c, w, np.full(N, use), model, spread, 0.0, states, roots, gains, *rest)
-    backward(t, c, w, rest[2], states, roots, model)
+    backward(t, c, w, rest[2], n, states, roots, model)
     return states, np.einsum("kmi,kmj->kij", roots, roots)
 
 

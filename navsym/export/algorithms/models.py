@@ -131,7 +131,7 @@ def require_ranges(names: Sequence[str], declared: Mapping[str, Any]) -> None:
         raise DomainError(
             f"expected a range of every input, from which vectors are drawn; got none of {', '.join(missing)}; "
             f"write in the model file: [ranges] {lines}",
-            where="export: ranges",
+            where="model: ranges",
         )
 
 

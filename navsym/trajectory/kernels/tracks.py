@@ -110,21 +110,26 @@ def noise_root(dt: float, rate: float, rows: Array, g: Array) -> None:
 
 
 @njit()
-def colour(dt: float, model: Array, c0: float, c1: float, w0: float, w1: float, Phi: Array, root: Array) -> None:
-    """Write what the errors add to Phi (n+2, n+2) and root (n+3, n+2): their entries, and their shares of the first.
+def colour(
+    dt: float, model: Array, c0: float, c1: float, w0: float, w1: float, n: int, Phi: Array, root: Array
+) -> None:
+    """Write what the errors add to Phi (m, m) and root (m+1, m): their entries, and their shares of the first.
 
     model : (q, rate, tau, lasting, fading) ; c0, c1, w0, w1 : deviations of coloured error and drift at both ends
+    n     : states of the motion; m - n is 0, 1 with a coloured error, 2 with a drift also
     """
-    n = Phi.shape[0] - 2
-    for i in range(n + 2):
-        Phi[n, i], Phi[i, n], root[n, i], root[i, n] = 0.0, 0.0, 0.0, 0.0
-        Phi[n + 1, i], Phi[i, n + 1], root[n + 1, i], root[i, n + 1], root[n + 2, i] = 0.0, 0.0, 0.0, 0.0, 0.0
+    m = Phi.shape[0]
+    if m == n:
+        return
+    for i in range(m):
+        for j in range(n, m):
+            Phi[j, i], Phi[i, j], root[j, i], root[i, j], root[m, i] = 0.0, 0.0, 0.0, 0.0, 0.0
     kept = np.exp(-dt / model[2])
     ratio = kept * c1 / c0 if c0 > 0.0 else 0.0
     fresh = c1 * np.sqrt(-np.expm1(-2.0 * dt / model[2]))
     Phi[n, n], Phi[0, n] = ratio, ratio - 1.0
     root[n, 0], root[n, n] = fresh, fresh
-    if w0 == 0.0 and w1 == 0.0:
+    if m == n + 1 or (w0 == 0.0 and w1 == 0.0):
         return
     lasting, fading = model[3], model[4]
     kept = np.exp(-dt / lasting)
@@ -207,7 +212,7 @@ def step_of(
         for i in range(n):
             for j in range(n):
                 root[i, j] = np.sqrt(model[0]) * rows[i, j]
-    colour(dt, model, c[k - 1], c[k], w[k - 1], w[k], Phi, root)
+    colour(dt, model, c[k - 1], c[k], w[k - 1], w[k], n, Phi, root)
 
 
 @njit()
@@ -246,10 +251,11 @@ def begin(first: float, spread: Array, c: float, w: float, y: Array, U: Array) -
     for i in range(n):
         U[i, i] = spread[i]
     y[0] = first
-    # Position and coloured error are independent, their sum and the error are not.
-    U[0, 0] = np.hypot(spread[0], c)
-    U[0, n], U[n, n] = c * c / U[0, 0], c * spread[0] / U[0, 0]
-    U[n + 1, n + 1] = w
+    if y.shape[0] > n:  # position and coloured error are independent, their sum and the error are not
+        U[0, 0] = np.hypot(spread[0], c)
+        U[0, n], U[n, n] = c * c / U[0, 0], c * spread[0] / U[0, 0]
+    if y.shape[0] > n + 1:
+        U[n + 1, n + 1] = w
 
 
 @njit()
@@ -261,12 +267,12 @@ def believed(innovation: float, S: float, gate: float) -> float:
 
 
 @njit()
-def leap(U: Array, excess: float, W: Array) -> None:
-    """U after a jump of the coloured error of variance ``excess``: root of P + excess d d^T, d = (1, 0, ..., 1, 0)."""
+def leap(U: Array, excess: float, n: int, W: Array) -> None:
+    """U after a jump of the coloured error of variance ``excess``: root of P + excess d d^T, d one at 0 and n."""
     m = U.shape[0]
     W[: m + 1, :m] = 0.0
     W[:m, :m] = U
-    W[m, 0], W[m, m - 2] = np.sqrt(excess), np.sqrt(excess)
+    W[m, 0], W[m, n] = np.sqrt(excess), np.sqrt(excess)
     triangularise(W[: m + 1, :m], m)
     for i in range(m):
         for j in range(i, m):
@@ -295,15 +301,16 @@ def forward(
     """Filter one channel.
 
     t, z, r, c, w (N,): times, measurements, variances of white, deviations of coloured errors and of their drift;
-    w is zero in all rows or in none; use (N,): zero leaves the measurement out; model : (q, rate, tau, lasting, fading)
-    spread (n,) : standard deviations of the first state
+    c and w are zero in all rows or in none; use (N,): zero leaves the measurement out
+    model : (q, rate, tau, lasting, fading) ; spread (n,) : standard deviations of the first state
     gate : largest |innovation| in sigmas, 0 for none
-    states, gains (N, n+2); roots (N, n+2, n+2) of the covariances; innovations, variances, flags (N,) are filled, and
-    jumps (N,): variances of jumps of the coloured error, to which wild innovations are put down where there is one
+    states, gains (N, m); roots (N, m, m) of the covariances, m as in :func:`colour`; innovations, variances,
+    flags (N,) are filled, and jumps (N,): variances of jumps of the coloured error, to which wild innovations are put
+    down where there is one
     """
-    N, m = states.shape
-    Phi, root, W, rows = np.zeros((m, m)), np.zeros((m + 1, m)), np.empty((2 * m + 1, m)), np.empty((ROWS, m - 2))
-    y, U, gain, g = np.empty(m), np.empty((m, m)), np.empty(m), np.empty(m - 2)
+    N, m, n = states.shape[0], states.shape[1], spread.shape[0]
+    Phi, root, W, rows = np.zeros((m, m)), np.zeros((m + 1, m)), np.empty((2 * m + 1, m)), np.empty((ROWS, n))
+    y, U, gain, g = np.empty(m), np.empty((m, m)), np.empty(m), np.empty(n)
     begin(z[0], spread, c[0], w[0], y, U)
     last = -1.0
     for k in range(N):
@@ -321,7 +328,7 @@ def forward(
             flags[k] = DOUBTED if variances[k] < S else USED
             if flags[k] == DOUBTED and c[k] > 0.0 and k > 0:
                 jumps[k] = S - variances[k]
-                leap(U, jumps[k], W)
+                leap(U, jumps[k], n, W)
                 correct(y, U, gain, innovation, S, r[k])
             else:
                 correct(y, U, gain, innovation, S, r[k] if flags[k] == USED else S - before)
@@ -342,40 +349,40 @@ def gain_and_rest(W: Array, back: Array) -> None:
 
 
 @njit()
-def backward(t: Array, c: Array, w: Array, jumps: Array, states: Array, roots: Array, model: Array) -> None:
-    """Smooth in place: states (N, n+2) and roots (N, n+2, n+2) of the filter become those given all data.
+def backward(t: Array, c: Array, w: Array, jumps: Array, n: int, states: Array, roots: Array, model: Array) -> None:
+    """Smooth in place: states (N, m) and roots (N, m, m) of the filter become those given all data.
 
     Turning [[U Phi^T, U], [root of Q, 0]] into [[A, B], [0, D]] gives the gain C^T = A^-1 B, and D is a root of
     what the next state leaves unknown; with the next root V the new one is the triangle of [D; V C^T].
     """
-    N, n = states.shape
-    Phi, root, back = np.zeros((n, n)), np.zeros((n + 1, n)), np.empty((n, n))
-    W, V, ahead = np.empty((2 * n + 1, 2 * n)), np.empty((2 * n + 1, n)), np.empty(n)
-    rows, g, last = np.empty((ROWS, n - 2)), np.empty(n - 2), -1.0
+    N, m = states.shape
+    Phi, root, back = np.zeros((m, m)), np.zeros((m + 1, m)), np.empty((m, m))
+    W, V, ahead = np.empty((2 * m + 1, 2 * m)), np.empty((2 * m + 1, m)), np.empty(m)
+    rows, g, last = np.empty((ROWS, n)), np.empty(n), -1.0
     for k in range(N - 2, -1, -1):
         dt = t[k + 1] - t[k]
         step_of(dt, last, model, c, w, k + 1, Phi, root, rows, g)
         last = dt
         if jumps[k + 1] > 0.0:
-            fresh = np.sqrt(root[n - 2, 0] ** 2 + jumps[k + 1])
-            root[n - 2, 0], root[n - 2, n - 2] = fresh, fresh
+            fresh = np.sqrt(root[n, 0] ** 2 + jumps[k + 1])
+            root[n, 0], root[n, n] = fresh, fresh
         stack(roots[k], Phi, root, W)
-        W[:n, n:] = roots[k]
-        W[n:, n:] = 0.0
-        triangularise(W, n)
+        W[:m, m:] = roots[k]
+        W[m:, m:] = 0.0
+        triangularise(W, m)
         gain_and_rest(W, back)
         move(Phi, states[k], ahead)
-        for i in range(n):
-            for m in range(n):
-                states[k, i] += back[m, i] * (states[k + 1, m] - ahead[m])
-                V[m, i] = W[n + m, n + i]
+        for i in range(m):
+            for q in range(m):
+                states[k, i] += back[q, i] * (states[k + 1, q] - ahead[q])
+                V[q, i] = W[m + q, m + i]
                 total = 0.0
-                for j in range(m, n):
-                    total += roots[k + 1, m, j] * back[j, i]
-                V[n + m, i] = total
-            V[2 * n, i] = W[2 * n, n + i]
-        triangularise(V, n)
-        for i in range(n):
+                for j in range(q, m):
+                    total += roots[k + 1, q, j] * back[j, i]
+                V[m + q, i] = total
+            V[2 * m, i] = W[2 * m, m + i]
+        triangularise(V, m)
+        for i in range(m):
             roots[k, i, :i] = 0.0
             roots[k, i, i:] = V[i, i:]
 
@@ -389,7 +396,7 @@ def misfit(
     With a gate the variance of a wild innovation is raised as in :func:`forward`.
     """
     n = spread.shape[0]
-    m = n + 2
+    m = n + 2 if w[0] > 0.0 else n + 1 if c[0] > 0.0 else n
     Phi, root, W, rows = np.zeros((m, m)), np.zeros((m + 1, m)), np.empty((2 * m + 1, m)), np.empty((ROWS, n))
     y, U, gain, g = np.empty(m), np.empty((m, m)), np.empty(m), np.empty(n)
     begin(z[0], spread, c[0], w[0], y, U)
@@ -411,7 +418,7 @@ def misfit(
             count += 1
         seen += 1
         if before + r[k] < S and c[k] > 0.0 and k > 0:
-            leap(U, S - before - r[k], W)
+            leap(U, S - before - r[k], n, W)
             correct(y, U, gain, innovation, S, r[k])
         else:
             correct(y, U, gain, innovation, S, r[k] if before + r[k] == S else S - before)
