@@ -193,7 +193,7 @@ def value_modulo(expression, point):
 def test_what_a_drop_excepts_leaves_its_rank_at_all_other_points():
     joint = observe_jointly(model_of("INS: straight: position, known lever arm"))
     chains, source = joint.chains, random.Random(3)
-    found = find_joint_drops(joint, [sp.Symbol("g", real=True)], 300)
+    found = find_joint_drops(joint, [sp.Symbol("g", real=True)], 150)
     drops = [drop for drop in found.drops if drop.nonzero]
     assert found.complete["joint"] and drops
     assert all(f"{factor} != 0" in drop.condition for drop in drops for factor in drop.nonzero)

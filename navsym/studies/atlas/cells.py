@@ -19,7 +19,7 @@ from navsym.studies.atlas.kept import KEPT, Cell, atlas
 from navsym.studies.atlas.scenes import ARM, MANOEUVRES, MODELS, Aiding, Scene, error_model, g, list_columns, make_scene
 
 #: Cases looked at for the exceptional set of a cell, and letters of a condition that is written.
-NODES, LETTERS = 300, 160
+NODES, LETTERS = 150, 160
 #: Components in the frame of the INS, and in the body or camera.
 AXES: Mapping[bool, Sequence[str]] = {True: ("north", "east", "down"), False: "xyz"}
 
