@@ -9,7 +9,8 @@ from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, names_in
 from navsym.audit.functions import METHODS
-from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, text_of
+from navsym.audit.syntax import SourceReader, descend, field_of, identifiers_in, line_of, named, text_of, whole_kind
+from navsym.audit.values import LIMITS
 
 RULES = Rules(integer=True)
 RULES_OF_CPP = Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))
@@ -49,6 +50,7 @@ class Reader(SourceReader):
     """Walks the syntax tree of C and C++.
 
     locals : the names that the function being read declares
+    pointers : those of them that are pointers
     hidden : first byte of a name that stands in the tree as a number, since the grammar would take it for a type
     """
 
@@ -56,6 +58,7 @@ class Reader(SourceReader):
     OPEN = ("if_statement", "for_statement", "compound_statement")
 
     locals: set[str] = field(default_factory=set)
+    pointers: set[str] = field(default_factory=set)
     hidden: dict[int, str] = field(default_factory=dict)
 
     def parse(self, source: bytes) -> Any:
@@ -143,10 +146,19 @@ class Reader(SourceReader):
         name = text_of(field_of(declarator, "declarator")).split("::")[-1]
         parameters = named(field_of(declarator, "parameters"))
         declared = (n for n in descend(node) if n.type in ("declaration", "parameter_declaration"))
-        inner = (field_of(c, "declarator") or c for n in declared for c in n.children_by_field_name("declarator"))
+        inner = [field_of(c, "declarator") or c for n in declared for c in n.children_by_field_name("declarator")]
         self.locals = {text_of(n) for c in inner for n in descend(c) if n.type == "identifier"}
+        self.pointers = {
+            text_of(n)
+            for c in inner
+            if any(p.type in POINTER for p in (c, c.parent) if p is not None)
+            for n in descend(c)
+            if n.type == "identifier"
+        }
         arguments = tuple(self.argument(p) for p in parameters if text_of(p) != "void")
-        function = Function(name, line_of(node), arguments, self.block(body))
+        is_plain = field_of(node, "declarator").type == "function_declarator" and field_of(node, "type") is not None
+        number = number_of(text_of(field_of(node, "type"))) if is_plain else "auto"
+        function = Function(name, line_of(node), arguments, self.block(body), number=number)
         self.unit.functions.setdefault(name, []).append(function)
 
     def argument(self, node: Any) -> Argument:
@@ -154,8 +166,7 @@ class Reader(SourceReader):
         kind = text_of(field_of(node, "type")) if field_of(node, "type") else ""
         name, sizes, shared = self.declared(field_of(node, "declarator"))
         shape = sizes or self.sizes(node, shape_of_type(kind))
-        constant = any(text_of(child) == "const" for child in node.children)
-        return Argument(name, number_of(kind), shape, shared and not constant)
+        return Argument(name, number_of(kind), shape, shared)
 
     def declared(self, node: Any) -> tuple[str, tuple[Part, ...] | None, bool]:
         """Name, sizes and whether it is shared, of a declarator."""
@@ -209,7 +220,8 @@ class Reader(SourceReader):
     def branch(self, node: Any) -> Part:
         test = field_of(node, "condition")
         value = field_of(test, "value") or next(iter(named(test)), None)
-        if value is None or any(text_of(child) == "constexpr" for child in node.children):
+        is_other = field_of(test, "initializer") is not None or any(text_of(c) == "constexpr" for c in node.children)
+        if value is None or is_other:
             return self.unread(node, "a condition outside the language of audit")
         then, other = self.block(field_of(node, "consequence")), self.block(field_of(node, "alternative"))
         return self.part("if", node, self.expression(value), then, other)
@@ -229,6 +241,8 @@ class Reader(SourceReader):
             return unread
         name = first[0].parts[0] if first[0].kind == "declare" else text_of(field_of(start, "left"))
         value = first[0].parts[3] if first[0].kind == "declare" else first[0].parts[2]
+        if first[0].kind == "declare" and first[0].parts[1] in LIMITS:
+            value = self.part("cast", start, first[0].parts[1], value)
         sign, left = text_of(field_of(test, "operator")), text_of(field_of(test, "left"))
         counter = update[0].parts[0]
         if sign == "!=" and self.unit.text(update[0].parts[2]) in ("1", text_of(step)):  # i != n; i++
@@ -271,7 +285,12 @@ class Reader(SourceReader):
                 if shape is None:  # MatrixXd K(n, m), or the declaration of a function
                     done.append(self.unread(child, "a declaration with parentheses of a type without known sizes"))
                     continue
-            is_link = shared and sizes is None and inner.type != "function_declarator"
+            is_pointer = any(n.type in POINTER for n in descend(inner))
+            if is_pointer and sizes is not None:  # an array of pointers, or a pointer to an array
+                done.append(self.unread(child, "pointers and sizes in one declaration"))
+                continue
+            is_link: bool | str = shared and sizes is None and inner.type != "function_declarator"
+            is_link = (is_link and ("const" in words and "const")) or is_link
             done.append(self.part("declare", child, name, number_of(kind), shape, start, is_link))
         return tuple(done)
 
@@ -283,7 +302,10 @@ class Reader(SourceReader):
 
     def effect(self, node: Any) -> tuple[Part, ...]:
         """What an expression that stands alone writes."""
+        moved = text_of(field_of(node, "left") or field_of(node, "argument"))
         match node.type:
+            case "assignment_expression" | "update_expression" if moved in self.pointers:
+                return (self.part("moved", node, moved, "a pointer that is set again", identifiers_in(node)),)
             case "assignment_expression":
                 sign = text_of(field_of(node, "operator"))[:-1]
                 if sign not in ("", "+", "-", "*", "/"):
@@ -318,7 +340,7 @@ class Reader(SourceReader):
         if first.type != "binary_expression" or text_of(field_of(first, "operator")) != "<<":
             return None
         cells = tuple(map(self.expression, (field_of(first, "right"), *items)))
-        return self.part("assign", node, self.expression(field_of(first, "left")), "", self.part("list", node, cells))
+        return self.part("assign", node, self.expression(field_of(first, "left")), "<<", self.part("list", node, cells))
 
     # -- expressions --
 
@@ -361,7 +383,7 @@ class Reader(SourceReader):
                 return self.part("choose", node, *map(self.expression, fields))
             case "cast_expression":
                 number = number_of(text_of(field_of(node, "type")))
-                if number not in ("int", "real"):
+                if number not in (*LIMITS, "real"):
                     return self.refuse(node, "a cast to a type that is not known, or a name alone in parentheses")
                 return self.part("cast", node, number, self.expression(field_of(node, "value")))
             case "initializer_list":
@@ -384,13 +406,12 @@ class Reader(SourceReader):
         if re.fullmatch(r"0\d+", bare):
             return self.refuse(node, "an octal number")
         suffix = "" if bare.lower().startswith("0x") else bare.lstrip("0123456789.eE+-")
-        is_known = suffix.lower() in ("", "f", "l", "u", "ul")
-        number = self.literal(
-            node, bare.removesuffix(suffix) if is_known else "", any(c in bare.lower() for c in ".ef")
-        )
-        if number.kind != "number" or bare == text:
+        digits = bare.removesuffix(suffix) if suffix.lower() in ("", "f", "l", "u", "ul") else ""
+        number = self.literal(node, digits, any(c in bare.lower() for c in ".ef"))
+        if number.kind != "number":
             return number
-        return self.part("number", node, -number.parts[0], number.parts[1])
+        kind = "unsigned" if "u" in suffix.lower() else number.parts[1]
+        return self.part("number", node, number.parts[0] * (1 if bare == text else -1), kind)
 
     def call(self, node: Any) -> Part:
         """A function, a method, an entry ``M(i, j)``, or an accessor without arguments, which is a name."""
@@ -488,10 +509,10 @@ def list_commas(node: Any) -> list[Any]:
 
 
 def number_of(kind: str) -> str:
-    """Whether a type holds integers ("int"), real numbers ("real") or something else ("other")."""
+    """Whether a type holds integers (a name in LIMITS), real numbers ("real") or something else ("other")."""
     kind = re.sub(r"\b(const|static|constexpr|struct)\b", "", kind).strip()
     if WHOLE.fullmatch(kind):
-        return "int"
+        return whole_kind(kind)
     if kind.rstrip("&* ") == "auto":
         return "auto"
     is_real = kind in REAL or kind in ("long double", "") or shape_of_type(kind) is not None

@@ -38,7 +38,7 @@ class Part:
 class Argument:
     """A parameter of a function.
 
-    number : "int" or "real"
+    number : "real", or a type of integers
     shape  : its sizes, None where the source does not say
     shared : True when the caller sees what is written to it
     """
@@ -51,13 +51,14 @@ class Argument:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Function:
-    """A function as it is written; ``outputs`` are the names that MATLAB returns."""
+    """A function as it is written; ``outputs`` are the names that MATLAB returns, ``number`` is what others return."""
 
     name: str
     line: int
     arguments: tuple[Argument, ...]
     body: tuple[Part, ...]
     outputs: tuple[str, ...] = ()
+    number: str = "auto"
 
 
 @dataclass(frozen=True, slots=True)

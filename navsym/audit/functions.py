@@ -17,6 +17,7 @@ from navsym.audit.values import (
     Unreadable,
     Value,
     add,
+    as_real,
     constant_of,
     count_cells,
     cross_product,
@@ -48,6 +49,8 @@ ANGLES = {"deg2rad": Fraction(1, 180), "radians": Fraction(1, 180), "rad2deg": F
 CONSTANTS: dict[str, Tree] = dict.fromkeys(("M_PI", "math.pi", "np.pi", "numpy.pi", "pi", "M_PI_F", "PI"), PI)
 CONSTANTS |= dict.fromkeys(("M_PI_2", "M_PI_2_F"), multiply(build_number(Fraction(1, 2)), PI))
 TWICE = build_number(2)
+#: Functions of numpy that give another name of their argument.
+VIEWS = ("asarray", "transpose")
 HARMLESS = frozenset(("printf", "fprintf", "print", "assert", "disp", "static_assert", "puts"))
 #: Functions without a formula that write nothing, by language.
 PURE = {
@@ -90,6 +93,13 @@ def is_known(name: str, language: str) -> bool:
     return language == "cpp" and (bare == "cross" or MAKE.search(name) is not None)
 
 
+def does_take(name: str, count: int, language: str) -> bool:
+    """True for a known function that only reads so many arguments; one more of numpy is where it writes."""
+    bare = bare_name(name)
+    most = 1 if bare in (*PLAIN, *ANGLES, "square") else max((n for known, n in ARRAYS if known == bare), default=2)
+    return is_known(name, language) and (language != "python" or count <= most)
+
+
 def extreme_of(name: str, language: str) -> str:
     """``>=`` for a name of the larger of two numbers, ``<=`` for one of the smaller; else nothing."""
     known = {"c": ("fmax", "fmin"), "cpp": ("fmax", "fmin"), "matlab": ("max", "min"), "python": ("maximum", "minimum")}
@@ -115,8 +125,7 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
     if bare in PLAIN and len(values) == 1:
         if bare == "abs" and unit.language in ("c",):
             raise Unreadable(line, "abs, which cuts to an integer in C; fabs does not")
-        result = map_cells(lambda x: build_call(PLAIN[bare], x), values[0])
-        return Scalar(result.tree) if isinstance(result, Scalar) else result
+        return as_real(map_cells(lambda x: build_call(PLAIN[bare], x), values[0]))
     if bare in ANGLES and len(values) == 1:
         factor = ANGLES[bare]
         turn = multiply(build_number(factor), PI if factor < 1 else build_inverse(PI))
@@ -142,11 +151,6 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
     raise Unreadable(line, f"the function {name} with {len(values)} arguments")
 
 
-def as_real(value: Value) -> Value:
-    """Not an integer any more."""
-    return Scalar(value.tree) if isinstance(value, Scalar) else value
-
-
 def filled(shape: tuple[int, ...], number: int) -> Array:
     """An array of one number."""
     return make_array(shape, lambda *_: Scalar(build_number(number)))
@@ -166,7 +170,8 @@ def make_diagonal(values: Sequence[Value], unit: Unit) -> Value:
     (value,) = values
     if not isinstance(value, Array) or len(value.shape) != 1:
         raise Unreadable(0, "diag of what is no vector")
-    zero = Scalar(build_number(0))
+    whole = all(isinstance(cell, Scalar) and cell.number == "int" for cell in value.cells)
+    zero = Scalar(build_number(0), "int" if whole else "real")
     return make_array(value.shape * 2, lambda i, j: value.cells[i] if i == j else zero)
 
 

@@ -21,6 +21,8 @@ from navsym.audit.syntax import (
 
 RULES = Rules(first=1, matrix=True, entry=("{}({})", "{}({},{})"))
 POWERS = ("^", ".^")
+#: Commands that write no name.
+QUIET = ("format", "hold", "close", "clc", "more", "warning", "figure", "disp", "drawnow")
 SIGNS = {**{sign: sign for sign in (".*", "./", ".^")}, "^": "**"}
 OTHERS: dict[str, tuple[str, ...]] = {"~=": ("compare", "!="), "&": ("both",), "|": ("either",)}
 
@@ -64,6 +66,10 @@ class Reader(SourceReader):
                 return (self.loop(node),)
             case "return_statement":
                 return (self.unread(node, "a return before the end"),)
+            case "command" if text_of(node).split()[0] in QUIET:
+                return ()
+            case "command" | "global_operator" | "persistent_operator":
+                return (self.part("jump", node, f"the command {text_of(node).split()[0]}", ()),)
             case "function_call" if text_of(field_of(node, "name")) == "error":
                 return (self.part("fail", node, "an error is raised"),)
             case "function_call":

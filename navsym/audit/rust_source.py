@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, names_in
-from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, text_of
+from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, text_of, whole_kind
 
 RULES = Rules(integer=True, matrix=True, entry=("{}[{}]", "{}[{}][{}]"))
 REAL = ("f32", "f64", "N", "T", "R", "Real", "Self")
@@ -27,7 +27,7 @@ QUIET = "println eprintln debug_assert debug_assert_eq assert assert_eq trace de
 
 
 def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
-    """What a type holds ("int", "real", "quaternion", "other"), and its sizes."""
+    """What a type holds (a name in LIMITS, "real", "quaternion", "other"), and its sizes."""
     bare = re.sub(r"\s|&|'\w+\b|\bmut\b", "", text)
     if QUATERNION.fullmatch(bare):
         return "quaternion", (4,)
@@ -40,7 +40,7 @@ def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
         kind, inner = type_of(found[1])
         return kind, None if inner is None or kind == "quaternion" else (int(found[2]), *inner)
     if WHOLE.fullmatch(bare):
-        return "int", ()
+        return whole_kind(bare), ()
     return ("real", ()) if bare in REAL and bare != "Self" else ("other", None)
 
 

@@ -116,6 +116,15 @@ def read_decimal(text: str) -> Fraction | None:
     return Fraction(text)
 
 
+def whole_kind(text: str) -> str:
+    """The name in LIMITS of a type of integers of C or Rust."""
+    bits = next((bits for mark, bits in (("8", 8), ("char", 8), ("16", 16), ("short", 16)) if mark in text), 0)
+    if text == "bool":
+        return "bool"
+    is_unsigned = text.startswith(("u", "size_t"))
+    return f"{'u' * is_unsigned}int{bits}" if bits else "unsigned" if is_unsigned else "int"
+
+
 #: Where the order of statements is left, in any of the grammars.
 JUMPS = frozenset(
     "return_statement goto_statement break_statement continue_statement throw_statement raise_statement yield "
