@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules, names_in
+from navsym.audit.form import Argument, Function, Part, Rules, names_in, walk
 from navsym.audit.functions import METHODS
 from navsym.audit.syntax import SourceReader, descend, field_of, identifiers_in, line_of, named, text_of, whole_kind
 from navsym.audit.values import LIMITS
@@ -55,7 +55,14 @@ class Reader(SourceReader):
     """
 
     HEAD = "int a_ = "
-    OPEN = ("if_statement", "for_statement", "compound_statement")
+    OPEN = (
+        "if_statement",
+        "for_statement",
+        "while_statement",
+        "do_statement",
+        "switch_statement",
+        "compound_statement",
+    )
 
     locals: set[str] = field(default_factory=set)
     pointers: set[str] = field(default_factory=set)
@@ -202,8 +209,10 @@ class Reader(SourceReader):
                 return tuple(s for child in named(node) for s in self.effect(child))
             case "if_statement":
                 return (self.branch(node),)
-            case "for_statement":
+            case "for_statement" | "while_statement" | "do_statement":
                 return (self.loop(node),)
+            case "switch_statement":
+                return (self.switch(node),)
             case "return_statement":
                 values = named(node)
                 return (self.part("return", node, self.expression(values[0]) if values else None),)
@@ -227,38 +236,46 @@ class Reader(SourceReader):
         return self.part("if", node, self.expression(value), then, other)
 
     def loop(self, node: Any) -> Part:
-        """``for (int i = a; i < b; i++)`` and its like."""
+        """``for``, ``while`` and ``do``."""
         start, test, step = (field_of(node, name) for name in ("initializer", "condition", "update"))
-        body = field_of(node, "body")
-        unread = self.unread(node, "a loop that does not count from one constant to another")
-        if start is None or test is None or step is None or test.type != "binary_expression":
-            return unread
-        first = [s for s in self.statement(start) if s.kind in ("declare", "assign")]
-        if start.type == "assignment_expression":
-            first = [s for s in self.effect(start) if s.kind == "assign"]
-        update = [s for s in self.effect(step) if s.kind == "assign"]
-        if len(first) != 1 or len(update) != 1 or update[0].parts[1] not in ("+", "-"):
-            return unread
-        name = first[0].parts[0] if first[0].kind == "declare" else text_of(field_of(start, "left"))
-        value = first[0].parts[3] if first[0].kind == "declare" else first[0].parts[2]
-        if first[0].kind == "declare" and first[0].parts[1] in LIMITS:
-            value = self.part("cast", start, first[0].parts[1], value)
-        sign, left = text_of(field_of(test, "operator")), text_of(field_of(test, "left"))
-        counter = update[0].parts[0]
-        if sign == "!=" and self.unit.text(update[0].parts[2]) in ("1", text_of(step)):  # i != n; i++
-            sign = "<" if update[0].parts[1] == "+" else ">"
-        if left != name or counter.kind != "name" or counter.parts[0] != name or sign not in ("<", "<=", ">", ">="):
-            return unread
-        stop = self.expression(field_of(test, "right"))
-        if sign in ("<=", ">="):
-            one = self.part("number", test, 1, "int")
-            stop = self.part("op", test, "+" if sign == "<=" else "-", stop, one)
-        by = update[0].parts[2]
-        if update[0].parts[1] == "-":
-            by = self.part("minus", step, by)
-        if (update[0].parts[1] == "-") != (sign in (">", ">=")):
-            return unread
-        return self.part("for", node, name, value, stop, by, self.block(body))
+        test = field_of(test, "value") or (named(test)[0] if test is not None and "parenth" in test.type else test)
+        first = () if start is None else self.declaration(start) if start.type == "declaration" else self.effect(start)
+        after = () if step is None else self.effect(step)
+        body = self.block(field_of(node, "body"))
+        return self.part("loop", node, first, self.expression(test), after, body, node.type == "do_statement")
+
+    def switch(self, node: Any) -> Part:
+        """``switch`` as ``if``: a case goes on into the next one unless it ends in a jump."""
+        value = field_of(field_of(node, "condition"), "value") or next(iter(named(field_of(node, "condition"))), None)
+        cases, test = named(field_of(node, "body")), self.expression(value)
+        if any(case.type != "case_statement" for case in cases) or any(
+            p.kind in ("call", "refused") for p in walk(test)
+        ):
+            return self.unread(node, "a switch over a call, or with statements before its first case")
+        following, other = tuple[Part, ...](), tuple[Part, ...]()
+        ways: list[tuple[Any, tuple[Part, ...]]] = []
+        for case in reversed(cases):
+            label = field_of(case, "value")
+            inner, is_end = self.case([c for c in named(case) if label is None or c.id != label.id])
+            following = inner if is_end else (*inner, *following)
+            ways.append((case, following)) if label is not None else None
+            other = following if label is None else other
+        for case, body in ways:
+            label = self.expression(field_of(case, "value"))
+            other = (self.part("if", case, self.part("compare", case, "==", test, label), body, other),)
+        return self.part("block", node, other)
+
+    def case(self, nodes: list[Any]) -> tuple[tuple[Part, ...], bool]:
+        """The statements of a case, and whether it ends there."""
+        last = nodes[-1] if nodes else None
+        if last is not None and last.type == "attributed_statement" and "fallthrough" in text_of(last):
+            return self.case(nodes[:-1])
+        if last is not None and last.type == "compound_statement":
+            inner, is_end = self.case(named(last))
+            return tuple(s for n in nodes[:-1] for s in self.statement(n)) + (self.part("block", last, inner),), is_end
+        is_break = last is not None and last.type == "break_statement"
+        done = tuple(s for n in nodes[: len(nodes) - is_break] for s in self.statement(n))
+        return done, is_break or (last is not None and last.type in ("return_statement", "throw_statement"))
 
     def declaration(self, node: Any) -> tuple[Part, ...]:
         """One statement for each declared name."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -52,7 +53,9 @@ from navsym.audit.values import (
 from navsym.core.errors import TooLargeError
 from navsym.language.tree import NUMBER, build_number
 
+Body = tuple[Part, ...]
 STEPS = 250_000
+ROUNDS = 20_000  # of one loop
 #: First two ways for all that is undecided.
 WAYS = ((True, True), (False, True), (False, False))
 
@@ -153,10 +156,16 @@ class Machine(Evaluator):
 
     def block(self, body: tuple[Part, ...]) -> None:
         """Statements with names of their own."""
-        self.shadows.append({})
-        try:
+        with self.scope():
             for statement in body:
                 self.statement(statement)
+
+    @contextlib.contextmanager
+    def scope(self) -> Iterator[None]:
+        """Names that are declared here hide others until the end."""
+        self.shadows.append({})
+        try:
+            yield
         finally:
             for name, hidden in self.shadows.pop().items():
                 if hidden is not None:
@@ -488,31 +497,36 @@ class Machine(Evaluator):
         first, end, by = (self.whole(part) for part in (start, stop, step))
         if by == 0 or len(range(first, end, by)) > STEPS:
             raise Unreadable(statement.line, "a loop without an end")
-        if self.unit.language in ("c", "cpp") and self.names_changed(body) & {name, *names_in(stop, step)}:
-            raise Unreadable(statement.line, "a loop whose counter or end changes inside it")
-        hidden, number = self.frame.get(name), promote(self.kind_of(start)) if start.kind == "cast" else "int"
         for i in range(first, end, by):
-            self.frame[name] = Variable(name, number, (), {(): Scalar(build_number(i), number, statement.line)})
+            self.frame[name] = Variable(name, "int", (), {(): Scalar(build_number(i), "int", statement.line)})
             self.block(body)
-        if hidden is not None and self.unit.language in ("c", "cpp"):
-            self.frame[name] = Variable(name, "int", (), all_unread=Unread(statement.line, "a counter behind its loop"))
 
-    def names_changed(self, body: tuple[Part, ...]) -> set[str]:
-        """The names that statements may change, by themselves, in a loop or in a called function."""
-        names: set[str] = set()
-        for part in walk(*body):
-            if part.kind == "assign":
-                names |= self.root_names(part.parts[0])
-            elif part.kind == "for":
-                names.add(part.parts[0])
-            elif part.kind in ("unread", "jump", "refused"):
-                names = names.union(*part.parts[1:2])
-            elif part.kind == "call":
-                shared = [a.shared for f in self.unit.functions.get(part.parts[0], ()) for a in f.arguments]
-                names |= names_in(part) if any(shared) else set()
-            if part.kind == "address" or (part.kind == "declare" and part.parts[4]):
-                names |= names_in(part)
-        return names
+    def run_loop(self, first: Body, test: Part, step: Body, body: Body, is_late: bool, statement: Part) -> None:
+        """``for`` of C and ``while``: the condition is known from whole numbers each time."""
+        with self.scope():
+            for part in first:
+                getattr(self, f"run_{part.kind}")(*part.parts, statement=part)
+            for _ in range(ROUNDS):
+                if not is_late and not self.does_go_on(test):
+                    return
+                self.block(body)
+                for part in step:
+                    getattr(self, f"run_{part.kind}")(*part.parts, statement=part)
+                is_late = False
+        raise Unreadable(statement.line, "a loop without an end")
+
+    def does_go_on(self, test: Part) -> bool:
+        """Whether a condition between whole numbers holds; others may be rounded, or depend on inputs."""
+        choices, self.choices = self.choices, None
+        leaves = [side for part in walk(test) if part.kind == "compare" for side in part.parts[1:]] or [test]
+        try:
+            if all(is_integer(self.value(leaf)) for leaf in leaves):  # type: ignore[arg-type]
+                return self.decide_known(test)
+        except Unreadable:
+            pass
+        finally:
+            self.choices = choices
+        raise Unreadable(test.line, "a loop that does not count from one constant to another")
 
     def run_return(self, value: Part | None, statement: Part) -> None:
         if value is None:

@@ -18,7 +18,8 @@ class Part:
     """A part of an expression or a statement.
 
     kind  : of a statement: declare (name, number, shape, value, shared) · assign (target, sign, value) · block (body) ·
-            if (test, then, else) · for (name, start, stop, step, body) · return (value) · do (call) · unread (why,
+            if (test, then, else) · for (name, start, stop, step, body) · loop (first, test, step, body, whether the test
+            comes late) · moved (name, why, names), a pointer that is set again · return (value) · do (call) · unread (why,
             names) · jump (why, names) · fail (why) · several (targets, call); of an expression: number (value,
             kind) · name (text) · index (base, indices) · call (name, arguments) · method (base, name, arguments) ·
             op (sign, a, b) · minus (a) · compare (sign, a, b) · both (a, b) · either (a, b) · not (a) · list (items) ·

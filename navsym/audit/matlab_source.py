@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -62,6 +63,11 @@ class Reader(SourceReader):
             case "if_statement":
                 clauses = [c for c in named(node) if c.type in ("elseif_clause", "else_clause")]
                 return (self.chain(node, clauses, find_block),)
+            case "while_statement":
+                test = self.expression(field_of(node, "condition"))
+                return (self.part("loop", node, (), test, (), self.block(find_block(node)), False),)
+            case "switch_statement":
+                return self.switch(node)
             case "for_statement":
                 return (self.loop(node),)
             case "return_statement":
@@ -84,6 +90,21 @@ class Reader(SourceReader):
         if left.type not in ("identifier", "function_call", "field_expression"):
             return self.unread(node, "several names assigned at once")
         return self.part("assign", node, self.expression(left), "", self.expression(right))
+
+    def switch(self, node: Any) -> tuple[Part, ...]:
+        """``switch`` over numbers as ``if``."""
+        test, other = self.expression(field_of(node, "condition")), tuple[Part, ...]()
+        for clause in reversed([c for c in named(node) if c.type.endswith("_clause")]):
+            label, body = field_of(clause, "condition"), self.block(find_block(clause))
+            if label is None:
+                other = body
+                continue
+            rows = named(label) if label.type == "cell" else [label]
+            labels = [cell for row in rows for cell in (named(row) if row.type == "row" else [row])]
+            tests = [self.part("compare", clause, "==", test, self.expression(cell)) for cell in labels]
+            whole = functools.reduce(lambda a, b: self.part("either", clause, a, b), tests)
+            other = (self.part("if", clause, whole, body, other),)
+        return other
 
     def loop(self, node: Any) -> Part:
         """``for i = a:b`` and ``for i = a:step:b``."""

@@ -132,6 +132,9 @@ class Reader(SourceReader):
                 return (self.chain(node, clauses, lambda n: field_of(n, "consequence") or field_of(n, "body")),)
             case "for_statement":
                 return (self.loop(node),)
+            case "while_statement" if field_of(node, "alternative") is None:
+                test = self.expression(field_of(node, "condition"))
+                return (self.part("loop", node, (), test, (), self.block(field_of(node, "body")), False),)
             case "raise_statement":
                 return (self.part("fail", node, "an error is raised"),)
             case "pass_statement" | "assert_statement" | "import_statement" | "import_from_statement":

@@ -140,6 +140,9 @@ class Reader(SourceReader):
                 return (self.branch(node, self.block),)
             case "for_expression":
                 return (self.loop(node),)
+            case "while_expression" if field_of(node, "condition").type not in ("let_condition", "let_chain"):
+                test = self.expression(field_of(node, "condition"))
+                return (self.part("loop", node, (), test, (), self.block(field_of(node, "body")), False),)
             case "block":
                 return (self.part("block", node, self.block(node)),)
             case "return_expression":
