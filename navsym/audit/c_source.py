@@ -28,12 +28,16 @@ DECLARING = (
     "field_declaration"
 ).split()
 ROUNDS = 6  # in which names are told from types; a cast that is left is refused
+#: Of Eigen, whose coefficients are x, y, z, w; other libraries have other orders.
+QUATERNION = re.compile(r"Quaternion[fd]|(Eigen::)Quaternion([fd]|<\w+>)")
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
 
 
 def shape_of_type(text: str) -> tuple[int, ...] | None:
     """The sizes of a vector or matrix type; None for others."""
     text = text.replace(" ", "").replace("const", "")
+    if QUATERNION.fullmatch(text):
+        return (4,)
     if found := VECTOR.fullmatch(text):
         return (int(found[1] or found[2]),)
     if found := MATRIX.fullmatch(text):
@@ -55,14 +59,7 @@ class Reader(SourceReader):
     """
 
     HEAD = "int a_ = "
-    OPEN = (
-        "if_statement",
-        "for_statement",
-        "while_statement",
-        "do_statement",
-        "switch_statement",
-        "compound_statement",
-    )
+    OPEN = (*SourceReader.OPEN, "while_statement", "do_statement", "switch_statement", "compound_statement")
 
     locals: set[str] = field(default_factory=set)
     pointers: set[str] = field(default_factory=set)
@@ -248,9 +245,8 @@ class Reader(SourceReader):
         """``switch`` as ``if``: a case goes on into the next one unless it ends in a jump."""
         value = field_of(field_of(node, "condition"), "value") or next(iter(named(field_of(node, "condition"))), None)
         cases, test = named(field_of(node, "body")), self.expression(value)
-        if any(case.type != "case_statement" for case in cases) or any(
-            p.kind in ("call", "refused") for p in walk(test)
-        ):
+        kinds = {case.type for case in cases} | {part.kind for part in walk(test)} - {"name", "number", "index", "op"}
+        if kinds - {"case_statement"}:
             return self.unread(node, "a switch over a call, or with statements before its first case")
         following, other = tuple[Part, ...](), tuple[Part, ...]()
         ways: list[tuple[Any, tuple[Part, ...]]] = []
@@ -272,7 +268,8 @@ class Reader(SourceReader):
             return self.case(nodes[:-1])
         if last is not None and last.type == "compound_statement":
             inner, is_end = self.case(named(last))
-            return tuple(s for n in nodes[:-1] for s in self.statement(n)) + (self.part("block", last, inner),), is_end
+            before = (s for n in nodes[:-1] for s in self.statement(n))
+            return (*before, self.part("block", last, inner)), is_end
         is_break = last is not None and last.type == "break_statement"
         done = tuple(s for n in nodes[: len(nodes) - is_break] for s in self.statement(n))
         return done, is_break or (last is not None and last.type in ("return_statement", "throw_statement"))
@@ -302,6 +299,7 @@ class Reader(SourceReader):
                 if shape is None:  # MatrixXd K(n, m), or the declaration of a function
                     done.append(self.unread(child, "a declaration with parentheses of a type without known sizes"))
                     continue
+            start = None if start is None else self.quaternion(child, kind, start)
             is_pointer = any(n.type in POINTER for n in descend(inner))
             if is_pointer and sizes is not None:  # an array of pointers, or a pointer to an array
                 done.append(self.unread(child, "pointers and sizes in one declaration"))
@@ -310,6 +308,13 @@ class Reader(SourceReader):
             is_link = (is_link and ("const" in words and "const")) or is_link
             done.append(self.part("declare", child, name, number_of(kind), shape, start, is_link))
         return tuple(done)
+
+    def quaternion(self, node: Any, kind: str, start: Part) -> Part:
+        """What a quaternion is made of: w, x, y and z, or another one."""
+        if not QUATERNION.fullmatch(kind) or start.kind == "call":
+            return start
+        items = start.parts[0] if start.kind == "list" else (start,)
+        return self.part("call", node, "Quaternion::new" if len(items) > 1 else "Quaternion::new_unchecked", items)
 
     def taken_for_parameter(self, node: Any) -> Part:
         """An expression in parentheses behind a declared name: a name alone looks like the type of a parameter."""
@@ -448,6 +453,10 @@ class Reader(SourceReader):
             return self.part("cast", node, number_of(name), arguments[0]) if arguments else self.refuse(node, "a cast")
         if name in ("static_cast<float>", "static_cast<double>") and arguments:
             return self.part("cast", node, "real", arguments[0])
+        if QUATERNION.fullmatch(name):
+            return self.quaternion(node, name, self.part("list", node, arguments))
+        if name.endswith("::Identity") and QUATERNION.fullmatch(name.removesuffix("::Identity")):
+            return self.part("call", node, "Quaternion::identity", ())
         if shape_of_type(name) is not None:
             is_copy = len(arguments) == 1  # of a matrix
             return self.part("method", node, *arguments, "eval", ()) if is_copy else self.part("list", node, arguments)
@@ -530,6 +539,8 @@ def number_of(kind: str) -> str:
     kind = re.sub(r"\b(const|static|constexpr|struct)\b", "", kind).strip()
     if WHOLE.fullmatch(kind):
         return whole_kind(kind)
+    if QUATERNION.fullmatch(kind):
+        return "quaternion"
     if kind.rstrip("&* ") == "auto":
         return "auto"
     is_real = kind in REAL or kind in ("long double", "") or shape_of_type(kind) is not None

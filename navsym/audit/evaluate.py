@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
+from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write, names_in, spell_entry, walk
 from navsym.audit.functions import CONSTANTS, METHODS, call_known, extreme_of, is_known, is_method
 from navsym.audit.values import (
     CUT,
@@ -250,6 +250,8 @@ class Evaluator:
         if part.kind == "method" and part.parts[0].kind == "name" and part.parts[2] and self.unit.language == "cpp":
             member = Part("name", part.line, (f"{part.parts[0].parts[0]}.{part.parts[1]}",), part.span)  # s.v(0)
             part = Part("index", part.line, (member, part.parts[2]), part.span)
+        if part.kind == "method" and part.parts[0].kind == "name" and self.variable_shape(part.parts[0].parts[0]):
+            part = self.component(part) if not part.parts[2] else part  # v.x()
         if part.kind not in ("index", "call") and not (part.kind == "method" and part.parts[1] == "block"):
             raise Unreadable(part.line, "a target that is no entry")
         indices: list[Part] = []
@@ -657,7 +659,9 @@ class Evaluator:
         base, name, arguments = part.parts
         shape = self.variable_shape(base.parts[0]) or ()
         is_short = shape in ((2,), (3,))
-        letters = "ijkw" if self.variable(base.parts[0]).number == "quaternion" else "xyz"[: shape[0] * is_short]
+        of_quaternion = "xyzw" if self.unit.language == "cpp" else "ijkw"
+        is_quaternion = self.variable(base.parts[0]).number == "quaternion"
+        letters = of_quaternion if is_quaternion else "xyz"[: shape[0] * is_short]
         if not arguments and len(name) == 1 and name in letters:
             place = Part("number", part.line, (letters.index(name), "int"))
             return Part("index", part.line, (base, (place,)), part.span)
@@ -679,32 +683,6 @@ def convert(value: Value, number: str, line: int) -> Value:
     return replace(value, number=promote(number))
 
 
-def may_write(function: Function, name: str) -> bool:
-    """True for a function that may write to a parameter of its own; one that only reads it may share the caller's."""
-    for part in walk(*function.body):
-        if part.kind == "assign" and name in {*names_in(part.parts[0]), *called_in(part.parts[0])}:
-            return True
-        is_link = part.kind == "declare" and part.parts[4]
-        if (is_link or part.kind in ("do", "address", "refused", "unread")) and name in {
-            *names_in(part),
-            *called_in(part),
-        }:
-            return True
-        if part.kind == "call" and any(a.kind == "name" and a.parts[0] == name for a in part.parts[1]):
-            return True
-    return False
-
-
-def called_in(part: Part) -> set[str]:
-    """The names before parentheses: ``v`` of ``v(0)``."""
-    return {inner.parts[0] for inner in walk(part) if inner.kind == "call"}
-
-
-def head_of(name: str) -> str:
-    """The structure to which a member belongs: ``s`` of ``s->a.b``."""
-    return name.replace("->", ".").split(".")[0]
-
-
 class CellView(dict[Index, Cell]):
     """The one cell of a reference, which lives in another variable."""
 
@@ -722,14 +700,3 @@ class CellView(dict[Index, Cell]):
 
     def __contains__(self, _: object) -> bool:
         return True
-
-
-def spell_entry(unit: Unit, name: str, place: Index) -> str:
-    """An entry as the source writes it: ``F[0][1]``, ``F(0, 1)``."""
-    if not place:
-        return name
-    numbers = [i + unit.rules.first for i in place]
-    one, two = unit.rules.entry
-    if len(numbers) < 3:
-        return (one if len(numbers) == 1 else two).format(name, *numbers)
-    return f"{name}[{', '.join(map(str, numbers))}]"

@@ -20,9 +20,8 @@ from navsym.audit.evaluate import (
     Reading,
     Returning,
     convert,
-    head_of,
 )
-from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
+from navsym.audit.form import Argument, Function, Part, Unit, head_of, names_in, walk
 from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, VIEWS, bare_name, does_take, is_method
 from navsym.audit.values import (
     CUT,
@@ -584,7 +583,7 @@ class Machine(Evaluator):
         if base.kind != "name":
             raise Unreadable(statement.line, f"{name} of what is no variable")
         variable = self.variable(base.parts[0])
-        if not variable.shape:
+        if not variable.shape or variable.number == "quaternion":
             raise Unreadable(statement.line, f"{name} of an array without a known size")
         number = self.value(arguments[0]) if arguments else Scalar(build_number(0))
         if name == "memset" and constant_of(number) != 0:
@@ -592,7 +591,7 @@ class Machine(Evaluator):
         is_identity = name in ("setIdentity", "identity")
         one = Scalar(build_number(1))
         for place in places_of(variable.shape):
-            on_diagonal = is_identity and len(set(place)) == 1
+            on_diagonal = is_identity and len({*place, 0} if len(place) == 1 else {*place}) == 1
             self.write_cell(variable, place, one if on_diagonal else number, statement)  # type: ignore[arg-type]
         variable.all_unread = None
 

@@ -10,8 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.decide import Scope, decide_entry, draw_points
-from navsym.audit.evaluate import called_in, spell_entry
-from navsym.audit.form import Function, Part, Unit, names_in, walk
+from navsym.audit.form import Function, Part, Unit, called_in, names_in, spell_entry, walk
 from navsym.audit.names import squeeze
 from navsym.audit.questions import Entry, NotThereError
 from navsym.audit.sources import Source, read_expression

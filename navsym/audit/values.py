@@ -83,9 +83,13 @@ class Array:
             where = where * size + i
         return self.cells[where]
 
+    def row(self, i: int) -> Array:
+        """One row of a matrix."""
+        return Array(self.shape[1:], self.cells[i * self.shape[1] : (i + 1) * self.shape[1]])
+
 
 class Quaternion(Array):
-    """The cells of a quaternion of nalgebra: i, j, k and w, in this order."""
+    """The cells of a quaternion of nalgebra or Eigen: i, j, k and w, in this order."""
 
 
 class List(Array):
@@ -351,6 +355,17 @@ def quaternion_product(a: Quaternion, b: Quaternion) -> Quaternion:
     return Quaternion((4,), tuple(map(cell, signed)))
 
 
+def rotate(quaternion: Value, vector: Value) -> Array:
+    """``q*v`` of Eigen and nalgebra: v + w t + u x t, where t = 2 u x v; a rotation where q has the length one."""
+    assert isinstance(quaternion, Array)
+    u, w = Array((3,), quaternion.cells[:3]), quaternion.cells[3]
+    t = map_cells(lambda x: multiply(build_number(2), x), cross_product(u, vector))
+    turned: Array = map_cells(  # type: ignore[assignment]
+        lambda x, y, z: add(x, add(y, z)), vector, map_cells(multiply, w, t), cross_product(u, t)
+    )
+    return turned
+
+
 def square_sum(value: Value) -> Cell:
     """The sum of the squares of all cells."""
     cells = value.cells if isinstance(value, Array) else (value,)
@@ -416,6 +431,8 @@ def operate(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
         kinds = [isinstance(value, Quaternion) for value in (a, b)]
         if isinstance(a, Quaternion) and isinstance(b, Quaternion):
             return quaternion_product(a, b)
+        if kinds == [True, False] and both and unit.language in ("cpp", "rust") and b.shape == (3,):  # type: ignore[union-attr]
+            return rotate(a, b)
         if both and any(kinds):
             raise Unreadable(line, "the product of a quaternion and a vector")
         if both and unit.language == "rust" and len(a.shape) == len(b.shape) == 1:  # type: ignore[union-attr]
