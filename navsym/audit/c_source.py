@@ -372,17 +372,6 @@ class Reader(SourceReader):
                 return self.part("name", node, self.hidden[node.start_byte])
             case "number_literal":
                 return self.number(node)
-            case "true" | "false":
-                return self.part("number", node, int(node.type == "true"), "int")
-            case "identifier" | "field_identifier" | "qualified_identifier" | "this":
-                return self.part("name", node, text_of(node))
-            case "parenthesized_expression":
-                return self.inside(node)
-            case "binary_expression":
-                sign, *sides = (field_of(node, key) for key in ("operator", "left", "right"))
-                return self.operate(node, text_of(sign), *sides)
-            case "unary_expression":
-                return self.operate_alone(node, text_of(field_of(node, "operator")), field_of(node, "argument"))
             case "subscript_expression":
                 index = field_of(node, "index") or field_of(node, "indices")
                 places = named(index) if index.type == "subscript_argument_list" else [index]

@@ -26,6 +26,7 @@ from navsym.audit.values import (
     as_real,
     combine,
     constant_of,
+    convert,
     divide,
     does_fit,
     join,
@@ -276,6 +277,8 @@ class Evaluator:
             spot = self.index_range(indices[0], max(sizes), line)
             shape = (1, *spot[1]) if sizes[0] == 1 and spot[1] else spot[1]
             return [(0, k) if sizes[0] == 1 else (k, 0) for k in spot[0]], shape
+        if sizes and len(sizes) == 2 and len(indices) == 1 and self.unit.language in ("cpp", "rust"):
+            raise Unreadable(line, "one index of a matrix, which Eigen and nalgebra count by columns")
         if sizes and len(indices) < len(sizes) and self.unit.language != "matlab":
             indices = [*indices, *(Part("slice", line, (None, None)) for _ in range(len(sizes) - len(indices)))]
         is_column = sizes is not None and len(indices) == 2 and len(sizes) == 1 and self.unit.rules.matrix
@@ -672,15 +675,6 @@ class Evaluator:
         name = self.canonical(name)
         known = self.frame.get(name) or self.file_names.get(name) or self.globals.get(name)
         return known.shape if known else self.shapes.get(name)
-
-
-def convert(value: Value, number: str, line: int) -> Value:
-    """A returned number in the type that a function returns."""
-    if not isinstance(value, Scalar) or number not in (*LIMITS, "real"):
-        return value
-    if number != "real" and not does_fit(value, number):
-        return Unread(line, CUT)
-    return replace(value, number=promote(number))
 
 
 class CellView(dict[Index, Cell]):

@@ -9,18 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from navsym.audit.evaluate import (
-    CASES,
-    Case,
-    CellView,
-    Condition,
-    Evaluator,
-    Failing,
-    Inputs,
-    Reading,
-    Returning,
-    convert,
-)
+from navsym.audit.evaluate import CASES, Case, CellView, Condition, Evaluator, Failing, Inputs, Reading, Returning
 from navsym.audit.form import Argument, Function, Part, Unit, head_of, names_in, walk
 from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, VIEWS, bare_name, does_take, is_method
 from navsym.audit.values import (
@@ -38,6 +27,7 @@ from navsym.audit.values import (
     Variable,
     combine,
     constant_of,
+    convert,
     count_cells,
     does_fit,
     join,

@@ -127,18 +127,8 @@ class Reader(SourceReader):
             case "number":
                 value = read_decimal(text_of(node))
                 return self.literal(node, text_of(node), value is not None and value.denominator != 1)
-            case "boolean":
-                return self.part("number", node, int(text_of(node) == "true"), "int")
-            case "identifier" | "end_keyword":
-                return self.part("name", node, text_of(node))
-            case "parenthesis":
-                return self.inside(node)
             case "binary_operator" if sign_of(node) in POWERS:
                 return self.power(node)
-            case "binary_operator" | "boolean_operator" | "comparison_operator" if len(named(node)) == 2:
-                return self.operate(node, sign_of(node), *named(node))
-            case "unary_operator" | "not_operator":
-                return self.operate_alone(node, sign_of(node), named(node)[0])
             case "postfix_operator":
                 return self.part("method", node, self.expression(field_of(node, "operand")), "T", ())
             case "matrix":

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, names_in
-from navsym.audit.syntax import OPERATORS, SourceReader, descend, field_of, line_of, named, sign_of, text_of
+from navsym.audit.syntax import OPERATORS, SourceReader, descend, field_of, line_of, named, text_of
 
 RULES = Rules(entry=("{}[{}]", "{}[{}, {}]"))
 #: Decorators that leave a function what it is.
@@ -209,21 +209,6 @@ class Reader(SourceReader):
         match node.type:
             case "integer" | "float":
                 return self.literal(node, text_of(node), node.type == "float")
-            case "true" | "false":
-                return self.part("number", node, int(node.type == "true"), "int")
-            case "identifier":
-                return self.part("name", node, text_of(node))
-            case "parenthesized_expression":
-                return self.inside(node)
-            case "binary_operator" | "boolean_operator":
-                sign, *sides = (field_of(node, key) for key in ("operator", "left", "right"))
-                return self.operate(node, text_of(sign), *sides)
-            case "unary_operator" | "not_operator":
-                return self.operate_alone(node, sign_of(node), field_of(node, "argument"))
-            case "comparison_operator":
-                if len(named(node)) != 2:
-                    return self.refuse(node, "a chain of comparisons")
-                return self.operate(node, sign_of(node), *named(node))
             case "conditional_expression":
                 then, test, other = named(node)
                 return self.part("choose", node, *map(self.expression, (test, then, other)))

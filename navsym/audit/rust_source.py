@@ -224,20 +224,13 @@ class Reader(SourceReader):
                 bare = re.sub(r"(f32|f64|[iu](8|16|32|64|128|size))$", "", text)
                 is_real = node.type == "float_literal" or text.endswith(("f32", "f64"))
                 return self.literal(node, bare.removesuffix("."), is_real)
-            case "boolean_literal":
-                return self.part("number", node, int(text_of(node) == "true"), "int")
-            case "identifier" | "self":
-                return self.part("name", node, text_of(node))
             case "scoped_identifier":
                 last = text_of(field_of(node, "name"))
                 return self.part("name", node, "M_PI" if last == "PI" else "".join(text_of(node).split()))
-            case "parenthesized_expression" | "reference_expression":
-                return self.expression(field_of(node, "value") or named(node)[-1])
+            case "reference_expression":
+                return self.expression(field_of(node, "value"))
             case "unary_expression":
                 return self.operate_alone(node, text_of(node)[0].replace("*", "+"), named(node)[-1])  # *x is x here
-            case "binary_expression":
-                sign, *sides = (field_of(node, key) for key in ("operator", "left", "right"))
-                return self.operate(node, text_of(sign), *sides)
             case "index_expression":
                 base, place = named(node)
                 places = named(place) if place.type == "tuple_expression" else [place]

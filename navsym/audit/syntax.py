@@ -213,9 +213,26 @@ class SourceReader:
             return Part("refused", 0, ("a syntax error", (), True, True))
         if node.has_error:
             return self.refuse(node, "a syntax error")
-        found = self.read_expression(node)
+        found = self.read_expression(node) or self.read_plain(node)
         kind = node.type.replace("_", " ")
         return self.refuse(node, f"an expression outside the language of audit ({kind})") if found is None else found
+
+    def read_plain(self, node: Any) -> Part | None:
+        """What most languages have, by its kinds in their grammars."""
+        match node.type:
+            case "true" | "false" | "boolean" | "boolean_literal":
+                return self.part("number", node, int(text_of(node).lower() == "true"), "int")
+            case "identifier" | "field_identifier" | "qualified_identifier" | "this" | "self" | "end_keyword":
+                return self.part("name", node, text_of(node))
+            case "parenthesized_expression" | "parenthesis":
+                return self.inside(node)
+            case "binary_expression" | "binary_operator" | "boolean_operator" | "comparison_operator":
+                if len(sides := named(node)) == 2:
+                    return self.operate(node, sign_of(node), *sides)
+                return self.refuse(node, "a chain of comparisons")
+            case "unary_expression" | "unary_operator" | "not_operator":
+                return self.operate_alone(node, sign_of(node), named(node)[-1])
+        return None
 
     def inside(self, node: Any) -> Part:
         """What stands in parentheses."""

@@ -415,6 +415,15 @@ def as_real(value: Value) -> Value:
     return replace(value, number="real") if isinstance(value, Scalar) else value
 
 
+def convert(value: Value, number: str, line: int) -> Value:
+    """A returned number in the type that a function returns."""
+    if not isinstance(value, Scalar) or number not in (*LIMITS, "real"):
+        return value
+    if number != "real" and not does_fit(value, number):
+        return Unread(line, CUT)
+    return replace(value, number=promote(number))
+
+
 def combine(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
     """The arithmetic of a language."""
     return require_fit(unit, operate(unit, sign, a, b, line), line)
