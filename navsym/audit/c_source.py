@@ -103,9 +103,19 @@ class Reader(SourceReader):
                 self.unit.macros[text_of(field_of(node, "name"))] = "a macro with arguments"
             elif node.type == "enumerator_list":
                 self.read_enumerators(node)
-            elif node.type == "declaration" and is_constant(node):
+            elif node.type == "field_declaration" or (node.type == "declaration" and not is_constant(node)):
+                self.read_field(node)
+            elif node.type == "declaration":
                 self.unit.constants += [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
         self.unit.constants.sort(key=lambda statement: statement.span)
+
+    def read_field(self, node: Any) -> None:
+        """A member of a structure, or a variable of the file; one name with two types is left open."""
+        kind = number_of(text_of(field_of(node, "type")))
+        kind = kind if kind in LIMITS else "real"
+        for child in node.children_by_field_name("declarator") if is_outside(node) else ():
+            name, members = self.declared(field_of(child, "declarator") or child)[0], self.unit.members
+            members[name] = (kind if members.get(name, (kind,))[0] == kind else "other", None)
 
     def kept_way(self, node: Any) -> list[Any] | None:
         """What is compiled of ``#ifdef NAME`` or ``#ifndef NAME``; None where nobody has said what is defined."""
@@ -536,11 +546,13 @@ def number_of(kind: str) -> str:
     return "real" if is_real else "other"
 
 
+def is_outside(node: Any) -> bool:
+    """True for what stands in no function."""
+    while node is not None and node.type != "function_definition":
+        node = node.parent
+    return node is None
+
+
 def is_constant(node: Any) -> bool:
     """True for a declaration of the file, or of a class, that is const."""
-    parent = node.parent
-    while parent is not None:
-        if parent.type == "function_definition":
-            return False
-        parent = parent.parent
-    return any(text_of(child) in ("const", "constexpr") for child in node.children)
+    return is_outside(node) and any(text_of(child) in ("const", "constexpr") for child in node.children)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -180,7 +181,8 @@ class Evaluator:
             shape, head = self.shapes.get(name), head_of(name)
             if head in self.lost_heads:
                 return Variable(name, shape=shape, is_input=True, all_unread=self.lost_heads[head])
-            number, sizes = self.unit.members.get(name, ("real", None))
+            own = self.unit.members.get(re.split(r"->|\.", name)[-1] if self.unit.language in ("c", "cpp") else name)
+            number, sizes = own or ("real", None)
             shape = sizes if shape is None else shape
             self.globals[name] = Variable(name, number, shape, is_input=True, all_unread=self.lost)
         return self.globals[name]

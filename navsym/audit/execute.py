@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 from navsym.audit.evaluate import CASES, Case, CellView, Condition, Evaluator, Failing, Inputs, Reading, Returning
-from navsym.audit.form import Argument, Function, Part, Unit, head_of, names_in, walk
+from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_return_view, names_in, walk
 from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, VIEWS, bare_name, does_take, is_method
 from navsym.audit.values import (
     CUT,
@@ -186,6 +186,8 @@ class Machine(Evaluator):
             elif part.kind in ("declare", "for"):
                 is_open = part.kind == "declare" and part.parts[4] is True  # what is written there is written elsewhere
                 targets |= {part.parts[0], *(names_in(part) if is_open else ())}
+                if part.kind == "declare" and part.parts[1] in ("auto", "other") and part.parts[3] is not None:
+                    targets |= {variable.name for variable in self.arrays_in(part.parts[3])}  # a view of them
             elif part.kind == "several":
                 targets = targets.union(*map(self.root_names, part.parts[0]))
             elif part.kind == "unread":
@@ -207,6 +209,10 @@ class Machine(Evaluator):
             if name in self.frame or name not in self.file_names:
                 lose(self.variable(name), unread)
                 self.lose_members(name, unread)
+        if self.unit.language == "python" and statement.kind == "assign" and statement.parts[0].kind == "name":
+            variable = Variable(statement.parts[0].parts[0], all_unread=unread)  # it may be a view
+            share(variable, self.arrays_in(statement.parts[2]))
+            self.frame[variable.name] = variable
         if any(part.kind == "return" for part in walk(statement)):
             self.stop(unread)
 
@@ -322,11 +328,14 @@ class Machine(Evaluator):
         self.aliases.pop(name, None)
         if is_link:
             self.frame[name] = self.linked(value, statement)
-            if number == "other" and value is not None and (owner := self.owner_of(value)):
+            owner = self.owner_of(value) if value is not None and not self.frame[name].shape else None
+            if number == "other" and owner is not None:
                 self.aliases[name] = owner
-            elif number == "other" and is_link != "const":
+            elif number == "other" and (is_link != "const" or self.frame[name].shape):
                 raise Unreadable(statement.line, "a reference or pointer to a structure that is no name")
             return
+        if number == "other" and any(name in table for table in self.shadows[:-1]):
+            raise Unreadable(statement.line, "a structure that hides another of its name")
         sizes = () if shape is None else tuple(self.whole(size) for size in shape)
         result = None if value is None else self.value(value)
         if shape is None and isinstance(result, Array):
@@ -342,7 +351,7 @@ class Machine(Evaluator):
             self.note_unread(result, statement)
             self.write(variable, self.fill(result, sizes), statement)
         if shape is None and sizes and value is not None and value.kind in ("op", "minus", "method", "index"):
-            self.share(variable, value)  # auto of Eigen: computed when it is used
+            share(variable, self.arrays_in(value))  # auto of Eigen: computed when it is used
 
     def note_unread(self, value: Value, statement: Part) -> None:
         """Keep in mind an assignment of what is not read."""
@@ -380,7 +389,7 @@ class Machine(Evaluator):
                 variable.shape = result.shape
             elif not isinstance(result, Array) and variable.shape is None:
                 variable.shape = ()
-            if self.unit.language in ("python", "matlab") and not (sign and isinstance(result, Array)):
+            if self.unit.language in ("python", "matlab") and not (sign and isinstance(result, Array | Unread)):
                 self.rename(target.parts[0], value, result, statement)
                 return
             self.write(variable, result, statement)
@@ -409,6 +418,8 @@ class Machine(Evaluator):
     def fill_by_commas(self, target: Part, value: Part) -> Value:
         """``M << A, b, c`` of Eigen: blocks side by side until a row is full, and then below."""
         *_, shape = self.targets(target)
+        if names_in(target) & {*names_in(value), *(p.parts[0] for p in walk(value) if p.kind == "call")}:
+            raise Unreadable(value.line, "a matrix that is filled with its own entries")
         rows: list[list[Value]] = [[]]
         for block in map(self.value, value.parts[0]):
             rows[-1].append(block)
@@ -425,7 +436,7 @@ class Machine(Evaluator):
         if is_python and value.kind == "name" and isinstance(result, Array):
             self.frame[name] = self.variable(value.parts[0])
             return
-        is_view = value.kind in ("index", "method") or (value.kind == "call" and bare_name(value.parts[0]) in VIEWS)
+        bases = self.arrays_in(value) if is_python else []
         number = "list" if isinstance(result, List) else "real"
         variable = Variable(name, number, result.shape if isinstance(result, Array) else ())
         cells = result.cells if isinstance(result, Array) else ()
@@ -433,17 +444,22 @@ class Machine(Evaluator):
             variable.number = "int"  # an array of integers cuts what is assigned to its entries
         self.write(variable, result, statement)
         self.frame[name] = variable
-        if is_python and cells and is_view:
-            self.share(variable, value)
-        if is_python and isinstance(result, List) and any(map(self.variable_shape, names_in(value))):
-            variable.views.append(variable)  # two of its rows may be one
-            self.share(variable, value)
+        if cells and bases and isinstance(result, List):
+            share(variable, [*bases, variable])  # two of its rows may be one
+        elif cells and self.is_view(value):
+            share(variable, bases)
 
-    def share(self, variable: Variable, value: Part) -> None:
-        """A variable that may share cells with the arrays of an expression."""
-        for base in (self.variable(name) for name in names_in(value) if self.variable_shape(name)):
-            base.views.append(variable)
-            variable.views.append(base)
+    def is_view(self, value: Part) -> bool:
+        """True for an expression of Python whose value may share cells with an array in it."""
+        if value.kind != "call":
+            return value.kind in ("index", "method", "choose")
+        functions = self.unit.functions.get(value.parts[0], [])
+        return bare_name(value.parts[0]) in VIEWS or any(map(may_return_view, functions))
+
+    def arrays_in(self, value: Part) -> list[Variable]:
+        """The arrays that an expression names."""
+        hidden = (part.parts[1] for part in walk(value) if part.kind == "refused" and len(part.parts) > 1)
+        return [self.variable(name) for name in names_in(value).union(*hidden) if self.variable_shape(name)]
 
     def write(self, variable: Variable, value: Value, statement: Part) -> None:
         """A whole variable."""
@@ -652,6 +668,13 @@ def is_finiteness(test: Part) -> bool:
     sign, left, right = test.parts
     is_bound = right.kind == "name" and right.parts[0] in ("DBL_MAX", "FLT_MAX")
     return sign == "<=" and is_bound and left.kind == "call" and left.parts[0] in ("fabs", "fabsf")
+
+
+def share(variable: Variable, bases: list[Variable]) -> None:
+    """A variable that may share cells with others."""
+    for base in bases:
+        base.views.append(variable)
+        variable.views.append(base)
 
 
 def is_integer(cell: Cell) -> bool:
