@@ -38,6 +38,7 @@ from navsym.audit.values import (
     places_of,
     promote,
     require_fit,
+    share,
 )
 from navsym.core.errors import TooLargeError
 from navsym.language.tree import NUMBER, build_number
@@ -329,6 +330,8 @@ class Machine(Evaluator):
         if is_link:
             self.frame[name] = self.linked(value, statement)
             owner = self.owner_of(value) if value is not None and not self.frame[name].shape else None
+            if number == "other" and owner is not None and is_link == "const" and not self.may_change(owner[0]):
+                return  # its members keep the names by which they are called here
             if number == "other" and owner is not None:
                 self.aliases[name] = owner
             elif number == "other" and (is_link != "const" or self.frame[name].shape):
@@ -352,6 +355,16 @@ class Machine(Evaluator):
             self.write(variable, self.fill(result, sizes), statement)
         if shape is None and sizes and value is not None and value.kind in ("op", "minus", "method", "index"):
             share(variable, self.arrays_in(value))  # auto of Eigen: computed when it is used
+
+    def may_change(self, owner: str) -> bool:
+        """True for a structure that the function, or one that it calls, may write to."""
+        parts = [*walk(*self.reading.function.body)]
+        called = [f.body for p in parts if p.kind == "call" for f in self.unit.functions.get(p.parts[0], ())]
+        changing = ("assign", "moved", "address", "do", "unread", "jump", "refused")
+        changed = (p for p in [*parts, *walk(*called)] if p.kind in changing)
+        names = {n for p in changed for n in (names_in(p.parts[0]) if p.kind == "assign" else names_in(p))}
+        hidden = (p.parts[1] for p in parts if p.kind in ("unread", "jump", "refused") and len(p.parts) > 1)
+        return head_of(owner) in {*map(head_of, names)}.union(*hidden)
 
     def note_unread(self, value: Value, statement: Part) -> None:
         """Keep in mind an assignment of what is not read."""
@@ -668,13 +681,6 @@ def is_finiteness(test: Part) -> bool:
     sign, left, right = test.parts
     is_bound = right.kind == "name" and right.parts[0] in ("DBL_MAX", "FLT_MAX")
     return sign == "<=" and is_bound and left.kind == "call" and left.parts[0] in ("fabs", "fabsf")
-
-
-def share(variable: Variable, bases: list[Variable]) -> None:
-    """A variable that may share cells with others."""
-    for base in bases:
-        base.views.append(variable)
-        variable.views.append(base)
 
 
 def is_integer(cell: Cell) -> bool:

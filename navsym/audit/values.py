@@ -138,6 +138,13 @@ def lose_views(variable: Variable, unread: Unread) -> None:
             variable.all_unread = kept
 
 
+def share(variable: Variable, bases: list[Variable]) -> None:
+    """A variable that may share cells with others."""
+    for base in bases:
+        base.views.append(variable)
+        variable.views.append(base)
+
+
 def places_of(shape: Index) -> Iterator[Index]:
     """All places of a shape, row by row."""
     return product(*map(range, shape))
