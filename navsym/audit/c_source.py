@@ -7,9 +7,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules, names_in
+from navsym.audit.form import Argument, Function, Part, Rules, names_in, walk
 from navsym.audit.functions import METHODS
-from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, text_of
+from navsym.audit.syntax import SourceReader, descend, field_of, identifiers_in, line_of, named, text_of, whole_kind
+from navsym.audit.values import LIMITS
 
 RULES = Rules(integer=True)
 RULES_OF_CPP = Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))
@@ -27,12 +28,16 @@ DECLARING = (
     "field_declaration"
 ).split()
 ROUNDS = 6  # in which names are told from types; a cast that is left is refused
+#: Of Eigen, whose coefficients are x, y, z, w; other libraries have other orders.
+QUATERNION = re.compile(r"Quaternion[fd]|(Eigen::)Quaternion([fd]|<\w+>)")
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
 
 
 def shape_of_type(text: str) -> tuple[int, ...] | None:
     """The sizes of a vector or matrix type; None for others."""
     text = text.replace(" ", "").replace("const", "")
+    if QUATERNION.fullmatch(text):
+        return (4,)
     if found := VECTOR.fullmatch(text):
         return (int(found[1] or found[2]),)
     if found := MATRIX.fullmatch(text):
@@ -49,13 +54,15 @@ class Reader(SourceReader):
     """Walks the syntax tree of C and C++.
 
     locals : the names that the function being read declares
+    pointers : those of them that are pointers
     hidden : first byte of a name that stands in the tree as a number, since the grammar would take it for a type
     """
 
     HEAD = "int a_ = "
-    OPEN = ("if_statement", "for_statement", "compound_statement")
+    OPEN = (*SourceReader.OPEN, "while_statement", "do_statement", "switch_statement", "compound_statement")
 
     locals: set[str] = field(default_factory=set)
+    pointers: set[str] = field(default_factory=set)
     hidden: dict[int, str] = field(default_factory=dict)
 
     def parse(self, source: bytes) -> Any:
@@ -96,9 +103,19 @@ class Reader(SourceReader):
                 self.unit.macros[text_of(field_of(node, "name"))] = "a macro with arguments"
             elif node.type == "enumerator_list":
                 self.read_enumerators(node)
-            elif node.type == "declaration" and is_constant(node):
+            elif node.type == "field_declaration" or (node.type == "declaration" and not is_constant(node)):
+                self.read_field(node)
+            elif node.type == "declaration":
                 self.unit.constants += [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
         self.unit.constants.sort(key=lambda statement: statement.span)
+
+    def read_field(self, node: Any) -> None:
+        """A member of a structure, or a variable of the file; one name with two types is left open."""
+        kind = number_of(text_of(field_of(node, "type")))
+        kind = kind if kind in LIMITS else "real"
+        for child in node.children_by_field_name("declarator") if is_outside(node) else ():
+            name, members = self.declared(field_of(child, "declarator") or child)[0], self.unit.members
+            members[name] = (kind if members.get(name, (kind,))[0] == kind else "other", None)
 
     def kept_way(self, node: Any) -> list[Any] | None:
         """What is compiled of ``#ifdef NAME`` or ``#ifndef NAME``; None where nobody has said what is defined."""
@@ -143,10 +160,19 @@ class Reader(SourceReader):
         name = text_of(field_of(declarator, "declarator")).split("::")[-1]
         parameters = named(field_of(declarator, "parameters"))
         declared = (n for n in descend(node) if n.type in ("declaration", "parameter_declaration"))
-        inner = (field_of(c, "declarator") or c for n in declared for c in n.children_by_field_name("declarator"))
+        inner = [field_of(c, "declarator") or c for n in declared for c in n.children_by_field_name("declarator")]
         self.locals = {text_of(n) for c in inner for n in descend(c) if n.type == "identifier"}
+        self.pointers = {
+            text_of(n)
+            for c in inner
+            if any(p.type in POINTER for p in (c, c.parent) if p is not None)
+            for n in descend(c)
+            if n.type == "identifier"
+        }
         arguments = tuple(self.argument(p) for p in parameters if text_of(p) != "void")
-        function = Function(name, line_of(node), arguments, self.block(body))
+        is_plain = field_of(node, "declarator").type == "function_declarator" and field_of(node, "type") is not None
+        number = number_of(text_of(field_of(node, "type"))) if is_plain else "auto"
+        function = Function(name, line_of(node), arguments, self.block(body), number=number)
         self.unit.functions.setdefault(name, []).append(function)
 
     def argument(self, node: Any) -> Argument:
@@ -154,8 +180,7 @@ class Reader(SourceReader):
         kind = text_of(field_of(node, "type")) if field_of(node, "type") else ""
         name, sizes, shared = self.declared(field_of(node, "declarator"))
         shape = sizes or self.sizes(node, shape_of_type(kind))
-        constant = any(text_of(child) == "const" for child in node.children)
-        return Argument(name, number_of(kind), shape, shared and not constant)
+        return Argument(name, number_of(kind), shape, shared)
 
     def declared(self, node: Any) -> tuple[str, tuple[Part, ...] | None, bool]:
         """Name, sizes and whether it is shared, of a declarator."""
@@ -191,8 +216,10 @@ class Reader(SourceReader):
                 return tuple(s for child in named(node) for s in self.effect(child))
             case "if_statement":
                 return (self.branch(node),)
-            case "for_statement":
+            case "for_statement" | "while_statement" | "do_statement":
                 return (self.loop(node),)
+            case "switch_statement":
+                return (self.switch(node),)
             case "return_statement":
                 values = named(node)
                 return (self.part("return", node, self.expression(values[0]) if values else None),)
@@ -209,42 +236,53 @@ class Reader(SourceReader):
     def branch(self, node: Any) -> Part:
         test = field_of(node, "condition")
         value = field_of(test, "value") or next(iter(named(test)), None)
-        if value is None or any(text_of(child) == "constexpr" for child in node.children):
+        is_other = field_of(test, "initializer") is not None or any(text_of(c) == "constexpr" for c in node.children)
+        if value is None or is_other:
             return self.unread(node, "a condition outside the language of audit")
         then, other = self.block(field_of(node, "consequence")), self.block(field_of(node, "alternative"))
         return self.part("if", node, self.expression(value), then, other)
 
     def loop(self, node: Any) -> Part:
-        """``for (int i = a; i < b; i++)`` and its like."""
+        """``for``, ``while`` and ``do``."""
         start, test, step = (field_of(node, name) for name in ("initializer", "condition", "update"))
-        body = field_of(node, "body")
-        unread = self.unread(node, "a loop that does not count from one constant to another")
-        if start is None or test is None or step is None or test.type != "binary_expression":
-            return unread
-        first = [s for s in self.statement(start) if s.kind in ("declare", "assign")]
-        if start.type == "assignment_expression":
-            first = [s for s in self.effect(start) if s.kind == "assign"]
-        update = [s for s in self.effect(step) if s.kind == "assign"]
-        if len(first) != 1 or len(update) != 1 or update[0].parts[1] not in ("+", "-"):
-            return unread
-        name = first[0].parts[0] if first[0].kind == "declare" else text_of(field_of(start, "left"))
-        value = first[0].parts[3] if first[0].kind == "declare" else first[0].parts[2]
-        sign, left = text_of(field_of(test, "operator")), text_of(field_of(test, "left"))
-        counter = update[0].parts[0]
-        if sign == "!=" and self.unit.text(update[0].parts[2]) in ("1", text_of(step)):  # i != n; i++
-            sign = "<" if update[0].parts[1] == "+" else ">"
-        if left != name or counter.kind != "name" or counter.parts[0] != name or sign not in ("<", "<=", ">", ">="):
-            return unread
-        stop = self.expression(field_of(test, "right"))
-        if sign in ("<=", ">="):
-            one = self.part("number", test, 1, "int")
-            stop = self.part("op", test, "+" if sign == "<=" else "-", stop, one)
-        by = update[0].parts[2]
-        if update[0].parts[1] == "-":
-            by = self.part("minus", step, by)
-        if (update[0].parts[1] == "-") != (sign in (">", ">=")):
-            return unread
-        return self.part("for", node, name, value, stop, by, self.block(body))
+        test = field_of(test, "value") or (named(test)[0] if test is not None and "parenth" in test.type else test)
+        first = () if start is None else self.declaration(start) if start.type == "declaration" else self.effect(start)
+        after = () if step is None else self.effect(step)
+        body = self.block(field_of(node, "body"))
+        return self.part("loop", node, first, self.expression(test), after, body, node.type == "do_statement")
+
+    def switch(self, node: Any) -> Part:
+        """``switch`` as ``if``: a case goes on into the next one unless it ends in a jump."""
+        value = field_of(field_of(node, "condition"), "value") or next(iter(named(field_of(node, "condition"))), None)
+        cases, test = named(field_of(node, "body")), self.expression(value)
+        kinds = {case.type for case in cases} | {part.kind for part in walk(test)} - {"name", "number", "index", "op"}
+        if kinds - {"case_statement"}:
+            return self.unread(node, "a switch over a call, or with statements before its first case")
+        following, other = tuple[Part, ...](), tuple[Part, ...]()
+        ways: list[tuple[Any, tuple[Part, ...]]] = []
+        for case in reversed(cases):
+            label = field_of(case, "value")
+            inner, is_end = self.case([c for c in named(case) if label is None or c.id != label.id])
+            following = inner if is_end else (*inner, *following)
+            ways.append((case, following)) if label is not None else None
+            other = following if label is None else other
+        for case, body in ways:
+            label = self.expression(field_of(case, "value"))
+            other = (self.part("if", case, self.part("compare", case, "==", test, label), body, other),)
+        return self.part("block", node, other)
+
+    def case(self, nodes: list[Any]) -> tuple[tuple[Part, ...], bool]:
+        """The statements of a case, and whether it ends there."""
+        last = nodes[-1] if nodes else None
+        if last is not None and last.type == "attributed_statement" and "fallthrough" in text_of(last):
+            return self.case(nodes[:-1])
+        if last is not None and last.type == "compound_statement":
+            inner, is_end = self.case(named(last))
+            before = (s for n in nodes[:-1] for s in self.statement(n))
+            return (*before, self.part("block", last, inner)), is_end
+        is_break = last is not None and last.type == "break_statement"
+        done = tuple(s for n in nodes[: len(nodes) - is_break] for s in self.statement(n))
+        return done, is_break or (last is not None and last.type in ("return_statement", "throw_statement"))
 
     def declaration(self, node: Any) -> tuple[Part, ...]:
         """One statement for each declared name."""
@@ -271,9 +309,22 @@ class Reader(SourceReader):
                 if shape is None:  # MatrixXd K(n, m), or the declaration of a function
                     done.append(self.unread(child, "a declaration with parentheses of a type without known sizes"))
                     continue
-            is_link = shared and sizes is None and inner.type != "function_declarator"
+            start = None if start is None else self.quaternion(child, kind, start)
+            is_pointer = any(n.type in POINTER for n in descend(inner))
+            if is_pointer and sizes is not None:  # an array of pointers, or a pointer to an array
+                done.append(self.unread(child, "pointers and sizes in one declaration"))
+                continue
+            is_link: bool | str = shared and sizes is None and inner.type != "function_declarator"
+            is_link = (is_link and ("const" in words and "const")) or is_link
             done.append(self.part("declare", child, name, number_of(kind), shape, start, is_link))
         return tuple(done)
+
+    def quaternion(self, node: Any, kind: str, start: Part) -> Part:
+        """What a quaternion is made of: w, x, y and z, or another one."""
+        if not QUATERNION.fullmatch(kind) or start.kind == "call":
+            return start
+        items = start.parts[0] if start.kind == "list" else (start,)
+        return self.part("call", node, "Quaternion::new" if len(items) > 1 else "Quaternion::new_unchecked", items)
 
     def taken_for_parameter(self, node: Any) -> Part:
         """An expression in parentheses behind a declared name: a name alone looks like the type of a parameter."""
@@ -283,7 +334,10 @@ class Reader(SourceReader):
 
     def effect(self, node: Any) -> tuple[Part, ...]:
         """What an expression that stands alone writes."""
+        moved = text_of(field_of(node, "left") or field_of(node, "argument"))
         match node.type:
+            case "assignment_expression" | "update_expression" if moved in self.pointers:
+                return (self.part("moved", node, moved, "a pointer that is set again", identifiers_in(node)),)
             case "assignment_expression":
                 sign = text_of(field_of(node, "operator"))[:-1]
                 if sign not in ("", "+", "-", "*", "/"):
@@ -318,7 +372,7 @@ class Reader(SourceReader):
         if first.type != "binary_expression" or text_of(field_of(first, "operator")) != "<<":
             return None
         cells = tuple(map(self.expression, (field_of(first, "right"), *items)))
-        return self.part("assign", node, self.expression(field_of(first, "left")), "", self.part("list", node, cells))
+        return self.part("assign", node, self.expression(field_of(first, "left")), "<<", self.part("list", node, cells))
 
     # -- expressions --
 
@@ -328,17 +382,6 @@ class Reader(SourceReader):
                 return self.part("name", node, self.hidden[node.start_byte])
             case "number_literal":
                 return self.number(node)
-            case "true" | "false":
-                return self.part("number", node, int(node.type == "true"), "int")
-            case "identifier" | "field_identifier" | "qualified_identifier" | "this":
-                return self.part("name", node, text_of(node))
-            case "parenthesized_expression":
-                return self.inside(node)
-            case "binary_expression":
-                sign, *sides = (field_of(node, key) for key in ("operator", "left", "right"))
-                return self.operate(node, text_of(sign), *sides)
-            case "unary_expression":
-                return self.operate_alone(node, text_of(field_of(node, "operator")), field_of(node, "argument"))
             case "subscript_expression":
                 index = field_of(node, "index") or field_of(node, "indices")
                 places = named(index) if index.type == "subscript_argument_list" else [index]
@@ -361,7 +404,7 @@ class Reader(SourceReader):
                 return self.part("choose", node, *map(self.expression, fields))
             case "cast_expression":
                 number = number_of(text_of(field_of(node, "type")))
-                if number not in ("int", "real"):
+                if number not in (*LIMITS, "real"):
                     return self.refuse(node, "a cast to a type that is not known, or a name alone in parentheses")
                 return self.part("cast", node, number, self.expression(field_of(node, "value")))
             case "initializer_list":
@@ -384,13 +427,12 @@ class Reader(SourceReader):
         if re.fullmatch(r"0\d+", bare):
             return self.refuse(node, "an octal number")
         suffix = "" if bare.lower().startswith("0x") else bare.lstrip("0123456789.eE+-")
-        is_known = suffix.lower() in ("", "f", "l", "u", "ul")
-        number = self.literal(
-            node, bare.removesuffix(suffix) if is_known else "", any(c in bare.lower() for c in ".ef")
-        )
-        if number.kind != "number" or bare == text:
+        digits = bare.removesuffix(suffix) if suffix.lower() in ("", "f", "l", "u", "ul") else ""
+        number = self.literal(node, digits, any(c in bare.lower() for c in ".ef"))
+        if number.kind != "number":
             return number
-        return self.part("number", node, -number.parts[0], number.parts[1])
+        kind = "unsigned" if "u" in suffix.lower() else number.parts[1]
+        return self.part("number", node, number.parts[0] * (1 if bare == text else -1), kind)
 
     def call(self, node: Any) -> Part:
         """A function, a method, an entry ``M(i, j)``, or an accessor without arguments, which is a name."""
@@ -410,6 +452,10 @@ class Reader(SourceReader):
             return self.part("cast", node, number_of(name), arguments[0]) if arguments else self.refuse(node, "a cast")
         if name in ("static_cast<float>", "static_cast<double>") and arguments:
             return self.part("cast", node, "real", arguments[0])
+        if QUATERNION.fullmatch(name):
+            return self.quaternion(node, name, self.part("list", node, arguments))
+        if name.endswith("::Identity") and QUATERNION.fullmatch(name.removesuffix("::Identity")):
+            return self.part("call", node, "Quaternion::identity", ())
         if shape_of_type(name) is not None:
             is_copy = len(arguments) == 1  # of a matrix
             return self.part("method", node, *arguments, "eval", ()) if is_copy else self.part("list", node, arguments)
@@ -488,21 +534,25 @@ def list_commas(node: Any) -> list[Any]:
 
 
 def number_of(kind: str) -> str:
-    """Whether a type holds integers ("int"), real numbers ("real") or something else ("other")."""
+    """Whether a type holds integers (a name in LIMITS), real numbers ("real") or something else ("other")."""
     kind = re.sub(r"\b(const|static|constexpr|struct)\b", "", kind).strip()
     if WHOLE.fullmatch(kind):
-        return "int"
+        return whole_kind(kind)
+    if QUATERNION.fullmatch(kind):
+        return "quaternion"
     if kind.rstrip("&* ") == "auto":
         return "auto"
     is_real = kind in REAL or kind in ("long double", "") or shape_of_type(kind) is not None
     return "real" if is_real else "other"
 
 
+def is_outside(node: Any) -> bool:
+    """True for what stands in no function."""
+    while node is not None and node.type != "function_definition":
+        node = node.parent
+    return node is None
+
+
 def is_constant(node: Any) -> bool:
     """True for a declaration of the file, or of a class, that is const."""
-    parent = node.parent
-    while parent is not None:
-        if parent.type == "function_definition":
-            return False
-        parent = parent.parent
-    return any(text_of(child) in ("const", "constexpr") for child in node.children)
+    return is_outside(node) and any(text_of(child) in ("const", "constexpr") for child in node.children)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
+from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write, names_in, spell_entry, walk
 from navsym.audit.functions import CONSTANTS, METHODS, call_known, extreme_of, is_known, is_method
 from navsym.audit.values import (
+    CUT,
+    LIMITS,
     Array,
     Cell,
     Index,
@@ -21,13 +24,18 @@ from navsym.audit.values import (
     Value,
     Variable,
     add,
+    as_real,
     combine,
     constant_of,
+    convert,
     divide,
+    does_fit,
     join,
     map_cells,
     minus,
     places_of,
+    promote,
+    require_fit,
     total,
 )
 from navsym.language.tree import Tree, build_call, build_number
@@ -109,6 +117,7 @@ class Evaluator:
     is_bold : True where a condition that is not read has two ways as well
     is_split : True where a minimum or maximum has two ways; else it is a formula
     frame   : the names of the running function
+    aliases : reference or pointer to a structure -> the structure, and the sign before a member of it
     shadows : what a block's own names have hidden, one table for each block
     outputs : what the last function of MATLAB that was read returned
     """
@@ -121,6 +130,7 @@ class Evaluator:
     is_bold: bool = True
     is_split: bool = True
     frame: dict[str, Variable] = field(default_factory=dict)
+    aliases: dict[str, tuple[str, str]] = field(default_factory=dict)
     file_names: dict[str, Variable] = field(default_factory=dict)
     globals: dict[str, Variable] = field(default_factory=dict)
     conditions: list[Condition] = field(default_factory=list)
@@ -162,6 +172,7 @@ class Evaluator:
 
     def variable(self, name: str) -> Variable:
         """What a name stands for; an unknown one is an input."""
+        name = self.canonical(name)
         if name in self.frame:
             return self.frame[name]
         if name in self.file_names:
@@ -170,10 +181,30 @@ class Evaluator:
             shape, head = self.shapes.get(name), head_of(name)
             if head in self.lost_heads:
                 return Variable(name, shape=shape, is_input=True, all_unread=self.lost_heads[head])
-            number, sizes = self.unit.members.get(name, ("real", None))
+            own = self.unit.members.get(re.split(r"->|\.", name)[-1] if self.unit.language in ("c", "cpp") else name)
+            number, sizes = own or ("real", None)
             shape = sizes if shape is None else shape
             self.globals[name] = Variable(name, number, shape, is_input=True, all_unread=self.lost)
         return self.globals[name]
+
+    def canonical(self, name: str) -> str:
+        """A member of a structure by the structure's own name."""
+        head = head_of(name)
+        if head == name or head not in self.aliases:
+            return name
+        (owner, sign), rest = self.aliases[head], name[len(head) :]
+        return owner + (sign + rest.lstrip("->.") if sign else rest)
+
+    def owner_of(self, value: Part) -> tuple[str, str] | None:
+        """The structure to which a reference or pointer leads, and the sign before its members where it is another."""
+        if value.kind not in ("name", "address", "first"):
+            return None
+        sign, inner = {"name": "", "address": ".", "first": "->"}[value.kind], value
+        inner = value if value.kind == "name" else value.parts[0]
+        if inner.kind != "name":
+            return None
+        owner, before = self.aliases.get(inner.parts[0], (self.canonical(inner.parts[0]), ""))
+        return (owner, before if sign in ("", "->") and before else sign)
 
     def spell(self, name: str, place: Index) -> str:
         """An entry as the source writes it."""
@@ -186,7 +217,7 @@ class Evaluator:
         if variable.all_unread is not None:
             return variable.all_unread
         if variable.is_input:
-            cell = Scalar(self.inputs(self.spell(variable.name, place)), variable.number, 0)
+            cell = Scalar(self.inputs(self.spell(variable.name, place)), promote(variable.number), 0)
             if variable.shape is None:  # a number or an array from now on
                 variable.shape = () if not place else None
                 variable.cells[place] = cell
@@ -210,8 +241,8 @@ class Evaluator:
     def targets(self, part: Part) -> tuple[Variable, list[Index], Index]:
         """Variable, places and shape of an entry or a block."""
         if part.kind == "name":
-            if self.member_of_array(part) is not None:
-                raise Unreadable(part.line, "a member of an array as a target")
+            if (member := self.member_of_array(part)) is not None:
+                return self.targets(self.component(member))
             variable = self.variable(part.parts[0])
             shape = variable.shape or ()
             return variable, [*places_of(shape)], shape
@@ -222,6 +253,8 @@ class Evaluator:
         if part.kind == "method" and part.parts[0].kind == "name" and part.parts[2] and self.unit.language == "cpp":
             member = Part("name", part.line, (f"{part.parts[0].parts[0]}.{part.parts[1]}",), part.span)  # s.v(0)
             part = Part("index", part.line, (member, part.parts[2]), part.span)
+        if part.kind == "method" and part.parts[0].kind == "name" and self.variable_shape(part.parts[0].parts[0]):
+            part = self.component(part) if not part.parts[2] else part  # v.x()
         if part.kind not in ("index", "call") and not (part.kind == "method" and part.parts[1] == "block"):
             raise Unreadable(part.line, "a target that is no entry")
         indices: list[Part] = []
@@ -246,6 +279,8 @@ class Evaluator:
             spot = self.index_range(indices[0], max(sizes), line)
             shape = (1, *spot[1]) if sizes[0] == 1 and spot[1] else spot[1]
             return [(0, k) if sizes[0] == 1 else (k, 0) for k in spot[0]], shape
+        if sizes and len(sizes) == 2 and len(indices) == 1 and self.unit.language in ("cpp", "rust"):
+            raise Unreadable(line, "one index of a matrix, which Eigen and nalgebra count by columns")
         if sizes and len(indices) < len(sizes) and self.unit.language != "matlab":
             indices = [*indices, *(Part("slice", line, (None, None)) for _ in range(len(sizes) - len(indices)))]
         is_column = sizes is not None and len(indices) == 2 and len(sizes) == 1 and self.unit.rules.matrix
@@ -309,7 +344,7 @@ class Evaluator:
                 sign, a, b = part.parts
                 return combine(self.unit, sign, self.value(a), self.value(b), part.line)
             if kind == "minus":
-                return map_cells(minus, self.value(part.parts[0]))
+                return require_fit(self.unit, map_cells(minus, self.value(part.parts[0])), part.line)
             if kind in ("index", "first"):
                 return self.entries(part)
             if kind == "call":
@@ -324,7 +359,8 @@ class Evaluator:
             if kind == "compare" or (kind in ("both", "either", "not") and self.unit.rules.integer):
                 return Scalar(build_number(int(self.decide_known(part))), "int")
             if kind == "choose":
-                return self.value(part.parts[1 if self.decide(part.parts[0]) else 2])
+                chosen, other = part.parts[1:] if self.decide(part.parts[0]) else part.parts[:0:-1]
+                return self.common(self.value(chosen), other)
             if kind == "cast":
                 return self.cast(part)
         except Unreadable as refusal:
@@ -337,7 +373,7 @@ class Evaluator:
         if name not in self.frame and name in self.unit.macros:
             return self.macro(name, part.line)
         if (member := self.member_of_array(part)) is not None:
-            return self.component(member)
+            return self.entries(self.component(member))
         if name not in self.frame and name not in self.file_names and name in CONSTANTS:
             return Scalar(CONSTANTS[name])
         variable = self.variable(name)
@@ -358,14 +394,46 @@ class Evaluator:
         finally:
             self.expanding.pop()
 
+    def common(self, value: Value, other: Part) -> Value:
+        """The chosen one of two numbers of C, in the type that both have."""
+        if self.unit.language not in ("c", "cpp") or not isinstance(value, Scalar) or value.number not in LIMITS:
+            return value
+        kind = self.kind_of(other)
+        if not kind:
+            raise Unreadable(other.line, "a choice between numbers whose type is not known")
+        number = "real" if kind == "real" else max(promote(kind), value.number)
+        return require_fit(self.unit, replace(value, number=number), other.line)
+
+    def kind_of(self, part: Part) -> str:
+        """The type of a number of C that is not computed; nothing where it is not known."""
+        kind = ""
+        if part.kind in ("number", "cast"):
+            kind = part.parts[part.kind == "number"]
+        elif part.kind in ("compare", "both", "either", "not"):
+            kind = "int"
+        elif part.kind in ("op", "choose", "minus"):
+            kinds = {promote(self.kind_of(side)) for side in part.parts[-2:] if isinstance(side, Part)}
+            kind = "real" if "real" in kinds else "" if "" in kinds else max(kinds)
+        elif part.kind == "call" and part.parts[0] in self.unit.functions:
+            numbers = {function.number for function in self.unit.functions[part.parts[0]]}
+            kind = numbers.pop() if len(numbers) == 1 else ""
+        elif part.kind == "call" and is_known(part.parts[0], self.unit.language):
+            kind = "" if part.parts[0].endswith("abs") and "f" not in part.parts[0] else "real"
+        elif part.kind in ("name", "index") and (names := [p for p in walk(part) if p.kind == "name"]):
+            name = next(p for p in names if part.kind == "name" or p.span[0] == part.span[0]).parts[0]
+            meaning = self.unit.macros.get(name)
+            if isinstance(meaning, Part) and meaning.kind != "name":
+                return self.kind_of(meaning)
+            kind = "real" if name in CONSTANTS else "" if meaning else self.variable(name).number
+        return kind if kind in (*LIMITS, "real") else ""
+
     def cast(self, part: Part) -> Value:
-        value = self.value(part.parts[1])
-        if part.parts[0] == "int":
-            exact = constant_of(value)
-            if exact is None or (exact.denominator != 1 and not (isinstance(value, Scalar) and value.number == "int")):
-                raise Unreadable(part.line, "a real number cut to an integer")
-            return Scalar(build_number(exact), "int")
-        return Scalar(value.tree) if isinstance(value, Scalar) else value
+        value, kind = self.value(part.parts[1]), part.parts[0]
+        if kind not in LIMITS:
+            return as_real(value)
+        if constant_of(value) is None or not does_fit(value, kind):  # type: ignore[arg-type]
+            raise Unreadable(part.line, CUT)
+        return replace(value, number=promote(kind))  # type: ignore[arg-type]
 
     def entries(self, part: Part) -> Value:
         """An entry or a block of a variable."""
@@ -403,6 +471,7 @@ class Evaluator:
         """The variable to which a reference or pointer is a second name."""
         while value is not None and value.kind == "address":
             value = value.parts[0]
+        value = value.parts[0] if value is not None and value.kind == "first" else value  # *p
         if value is not None and value.kind == "name":
             return self.variable(value.parts[0])
         if value is not None and value.kind in ("index", "call", "method"):
@@ -472,7 +541,8 @@ class Evaluator:
                 whole = total([a.tree, b.tree, apart if sign == ">=" else minus(apart)])
                 return Scalar(divide(whole, build_number(2)))
             is_first = self.choose(Condition(text, part.line, True, ">=", a.tree, b.tree))
-        return a if is_first == (sign == ">=") else b
+        result = a if is_first == (sign == ">=") else b
+        return as_real(result) if "fm" in part.parts[0] and self.unit.language in ("c", "cpp") else result
 
     def is_constant(self, part: Part) -> bool:
         """True for an index that is a whole number."""
@@ -494,22 +564,22 @@ class Evaluator:
         frame = {a.name: self.bind(a, given, function) for a, given in zip(function.arguments, arguments, strict=True)}
         for output in function.outputs:
             frame.setdefault(output, Variable(output))
-        outer, shadows = self.frame, self.shadows
-        self.frame, self.shadows, returned = frame, [], None
+        outer, shadows, aliases = self.frame, self.shadows, self.aliases
+        self.frame, self.shadows, self.aliases, returned = frame, [], {}, None
         self.calls.append(name)
         try:
             self.block(function.body)
         except Returning as end:
             returned = end.value
         finally:
-            self.frame, self.shadows = outer, shadows
+            self.frame, self.shadows, self.aliases = outer, shadows, aliases
             self.calls.pop()
         if function.outputs and returned is None:
             self.outputs = [self.whole_value(frame[output], part.line) for output in function.outputs]
             returned = self.outputs[0]
         if returned is None and wants_value:
             raise Unreadable(part.line, f"{name} returns no value")
-        return returned if returned is not None else Unread(part.line, "no value")
+        return convert(returned, function.number, part.line) if returned is not None else Unread(part.line, "no value")
 
     def require_no_structure(self, function: Function, arguments: tuple[Part, ...], line: int) -> None:
         """Refuse a structure under another name: its members would be other names."""
@@ -545,6 +615,13 @@ class Evaluator:
                 raise Unreadable(given.line, f"a copy of {variable.name}, of unknown size; declare it")
         if given.kind == "address":
             return self.linked(given, given)
+        is_place = inner.kind == "index" or (inner.kind == "call" and inner.parts[0] in self.frame)
+        if argument.shared and is_place:
+            _, _, sides = self.targets(inner)
+            if sides and may_write(function, argument.name):
+                raise Unreadable(given.line, f"a part of an array that {function.name} may change")
+            if not sides and self.unit.language != "python":
+                return self.linked(inner, given)
         value = self.value(given)
         shape = value.shape if isinstance(value, Array) else ()
         variable = Variable(argument.name, "list" if isinstance(value, List) else argument.number, shape)
@@ -561,7 +638,7 @@ class Evaluator:
         if is_method(name, len(arguments), self.unit.language) and is_array:
             return METHODS[name, len(arguments)](self.value(base), [self.value(a) for a in arguments], self.unit)
         if base.kind == "name" and self.variable_shape(base.parts[0]):
-            return self.component(part)
+            return self.entries(self.component(part))
         if is_method(
             name, len(arguments), self.unit.language
         ):  # never an accessor: without its size nobody knows what it gives
@@ -577,52 +654,29 @@ class Evaluator:
 
     def member_of_array(self, part: Part) -> Part | None:
         """``v.x`` of a vector as the method of that name; None for a name that is no member of an array."""
-        base, dot, field = part.parts[0].rpartition(".")
+        base, dot, field = part.parts[0].rpartition(".") if part.kind == "name" else ("", "", "")
         if not dot or part.parts[0] in self.shapes or not self.variable_shape(base):
             return None
         return Part("method", part.line, (Part("name", part.line, (base,), part.span), field, ()), part.span)
 
-    def component(self, part: Part) -> Value:
-        """``v.x()`` of a vector of two or three, and ``M(i, j)`` in the long spellings."""
+    def component(self, part: Part) -> Part:
+        """``v.x()`` of a vector of two or three as an entry."""
         base, name, arguments = part.parts
         shape = self.variable_shape(base.parts[0]) or ()
         is_short = shape in ((2,), (3,))
-        letters = "ijkw" if self.variable(base.parts[0]).number == "quaternion" else "xyz"[: shape[0] * is_short]
+        of_quaternion = "xyzw" if self.unit.language == "cpp" else "ijkw"
+        is_quaternion = self.variable(base.parts[0]).number == "quaternion"
+        letters = of_quaternion if is_quaternion else "xyz"[: shape[0] * is_short]
         if not arguments and len(name) == 1 and name in letters:
             place = Part("number", part.line, (letters.index(name), "int"))
-            return self.entries(Part("index", part.line, (base, (place,)), part.span))
+            return Part("index", part.line, (base, (place,)), part.span)
         raise Unreadable(part.line, f"the method {name}")
 
     def variable_shape(self, name: str) -> Index | None:
         """The shape of a name that is known already."""
+        name = self.canonical(name)
         known = self.frame.get(name) or self.file_names.get(name) or self.globals.get(name)
         return known.shape if known else self.shapes.get(name)
-
-
-def may_write(function: Function, name: str) -> bool:
-    """True for a function that may write to a parameter of its own; one that only reads it may share the caller's."""
-    for part in walk(*function.body):
-        if part.kind == "assign" and name in {*names_in(part.parts[0]), *called_in(part.parts[0])}:
-            return True
-        is_link = part.kind == "declare" and part.parts[4]
-        if (is_link or part.kind in ("do", "address", "refused", "unread")) and name in {
-            *names_in(part),
-            *called_in(part),
-        }:
-            return True
-        if part.kind == "call" and any(a.kind == "name" and a.parts[0] == name for a in part.parts[1]):
-            return True
-    return False
-
-
-def called_in(part: Part) -> set[str]:
-    """The names before parentheses: ``v`` of ``v(0)``."""
-    return {inner.parts[0] for inner in walk(part) if inner.kind == "call"}
-
-
-def head_of(name: str) -> str:
-    """The structure to which a member belongs: ``s`` of ``s->a.b``."""
-    return name.replace("->", ".").split(".")[0]
 
 
 class CellView(dict[Index, Cell]):
@@ -642,14 +696,3 @@ class CellView(dict[Index, Cell]):
 
     def __contains__(self, _: object) -> bool:
         return True
-
-
-def spell_entry(unit: Unit, name: str, place: Index) -> str:
-    """An entry as the source writes it: ``F[0][1]``, ``F(0, 1)``."""
-    if not place:
-        return name
-    numbers = [i + unit.rules.first for i in place]
-    one, two = unit.rules.entry
-    if len(numbers) < 3:
-        return (one if len(numbers) == 1 else two).format(name, *numbers)
-    return f"{name}[{', '.join(map(str, numbers))}]"

@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from navsym.audit.evaluate import (
-    CASES,
-    Case,
-    CellView,
-    Condition,
-    Evaluator,
-    Failing,
-    Inputs,
-    Reading,
-    Returning,
-    head_of,
-)
-from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
-from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, is_known, is_method
+from navsym.audit.evaluate import CASES, Case, CellView, Condition, Evaluator, Failing, Inputs, Reading, Returning
+from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_return_view, names_in, walk
+from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, VIEWS, bare_name, does_take, is_method
 from navsym.audit.values import (
+    CUT,
+    LIMITS,
     Array,
     Cell,
     Index,
@@ -35,16 +27,25 @@ from navsym.audit.values import (
     Variable,
     combine,
     constant_of,
+    convert,
     count_cells,
+    does_fit,
+    join,
     lose,
     lose_views,
     make_array,
+    map_cell,
     places_of,
+    promote,
+    require_fit,
+    share,
 )
 from navsym.core.errors import TooLargeError
 from navsym.language.tree import NUMBER, build_number
 
+Body = tuple[Part, ...]
 STEPS = 250_000
+ROUNDS = 20_000  # of one loop
 #: First two ways for all that is undecided.
 WAYS = ((True, True), (False, True), (False, False))
 
@@ -127,7 +128,8 @@ class Machine(Evaluator):
             returned = end.value
         except Failing:
             has_failed = True
-        return Case(tuple(self.conditions), {**self.globals, **self.frame}, returned, has_failed)
+        value = None if returned is None else convert(returned, function.number, function.line)
+        return Case(tuple(self.conditions), {**self.globals, **self.frame}, value, has_failed)
 
     def make_argument(self, argument: Argument) -> Variable:
         """A parameter of the function that is audited: an input."""
@@ -144,10 +146,16 @@ class Machine(Evaluator):
 
     def block(self, body: tuple[Part, ...]) -> None:
         """Statements with names of their own."""
-        self.shadows.append({})
-        try:
+        with self.scope():
             for statement in body:
                 self.statement(statement)
+
+    @contextlib.contextmanager
+    def scope(self) -> Iterator[None]:
+        """Names that are declared here hide others until the end."""
+        self.shadows.append({})
+        try:
+            yield
         finally:
             for name, hidden in self.shadows.pop().items():
                 if hidden is not None:
@@ -177,7 +185,10 @@ class Machine(Evaluator):
             if part.kind == "assign" and not (part is statement and self.lose_entries(part, unread)):
                 targets |= self.root_names(part.parts[0])
             elif part.kind in ("declare", "for"):
-                targets.add(part.parts[0])
+                is_open = part.kind == "declare" and part.parts[4] is True  # what is written there is written elsewhere
+                targets |= {part.parts[0], *(names_in(part) if is_open else ())}
+                if part.kind == "declare" and part.parts[1] in ("auto", "other") and part.parts[3] is not None:
+                    targets |= {variable.name for variable in self.arrays_in(part.parts[3])}  # a view of them
             elif part.kind == "several":
                 targets = targets.union(*map(self.root_names, part.parts[0]))
             elif part.kind == "unread":
@@ -195,10 +206,14 @@ class Machine(Evaluator):
                 targets.update(part.parts[1])
             if part.kind == "call" and self.is_closure(part.parts[0]):
                 targets |= {*self.frame}
-        for name in targets:
+        for name in {*targets, *(self.canonical(name + ".").rstrip(".->") for name in targets)}:
             if name in self.frame or name not in self.file_names:
                 lose(self.variable(name), unread)
                 self.lose_members(name, unread)
+        if self.unit.language == "python" and statement.kind == "assign" and statement.parts[0].kind == "name":
+            variable = Variable(statement.parts[0].parts[0], all_unread=unread)  # it may be a view
+            share(variable, self.arrays_in(statement.parts[2]))
+            self.frame[variable.name] = variable
         if any(part.kind == "return" for part in walk(statement)):
             self.stop(unread)
 
@@ -250,7 +265,7 @@ class Machine(Evaluator):
         name = part.parts[0]
         is_entry = name in self.frame and not self.is_closure(name)
         is_pure = name in HARMLESS or name in PURE.get(self.unit.language, ())
-        return is_entry or is_pure or is_known(name, self.unit.language)
+        return is_entry or is_pure or does_take(name, len(part.parts[1]), self.unit.language)
 
     def is_closure(self, name: str) -> bool:
         """True for a name that is called though its value is not read: it may hold a function that writes any name."""
@@ -268,7 +283,8 @@ class Machine(Evaluator):
         while target.kind in ("index", "method", "first"):
             target = target.parts[0]
         if target.kind in ("name", "call"):
-            return {str(target.parts[0])}
+            is_member = target.kind == "name" and self.member_of_array(target) is not None
+            return {str(target.parts[0]), *([target.parts[0].rpartition(".")[0]] if is_member else ())}
         refused = (part.parts[1:2] for part in walk(target) if part.kind == "refused")
         return names_in(target).union(*(names for several in refused for names in several))
 
@@ -276,6 +292,16 @@ class Machine(Evaluator):
         raise Unreadable(statement.line, why)
 
     run_jump = run_unread
+
+    def run_moved(self, name: str, why: str, names: tuple[str, ...], statement: Part) -> None:
+        """A pointer that is set again: nobody knows any more what is written through it."""
+        unread = Unread(statement.line, why)
+        for known in (name, *names):
+            lose(self.variable(known), unread)
+            self.lose_members(known, unread)
+        self.frame[name] = Variable(name, all_unread=unread)
+        self.aliases.pop(name, None)
+        raise Unreadable(statement.line, why)
 
     def run_fail(self, why: str, statement: Part) -> None:
         raise Failing(why)
@@ -300,12 +326,24 @@ class Machine(Evaluator):
         """A new name, its value, or a second name of another variable."""
         if self.shadows and name not in self.shadows[-1]:
             self.shadows[-1][name] = self.frame.get(name)
+        self.aliases.pop(name, None)
         if is_link:
             self.frame[name] = self.linked(value, statement)
+            owner = self.owner_of(value) if value is not None and not self.frame[name].shape else None
+            if number == "other" and owner is not None and is_link == "const" and not self.may_change(owner[0]):
+                return  # its members keep the names by which they are called here
+            if number == "other" and owner is not None:
+                self.aliases[name] = owner
+            elif number == "other" and (is_link != "const" or self.frame[name].shape):
+                raise Unreadable(statement.line, "a reference or pointer to a structure that is no name")
             return
+        if number == "other" and any(name in table for table in self.shadows[:-1]):
+            raise Unreadable(statement.line, "a structure that hides another of its name")
         sizes = () if shape is None else tuple(self.whole(size) for size in shape)
         result = None if value is None else self.value(value)
         if shape is None and isinstance(result, Array):
+            if number == "other":
+                raise Unreadable(statement.line, "a structure made of a list")
             sizes = result.shape  # auto
         if number == "auto":
             is_quaternion = isinstance(result, Quaternion)
@@ -315,6 +353,18 @@ class Machine(Evaluator):
         if result is not None:
             self.note_unread(result, statement)
             self.write(variable, self.fill(result, sizes), statement)
+        if shape is None and sizes and value is not None and value.kind in ("op", "minus", "method", "index"):
+            share(variable, self.arrays_in(value))  # auto of Eigen: computed when it is used
+
+    def may_change(self, owner: str) -> bool:
+        """True for a structure that the function, or one that it calls, may write to."""
+        parts = [*walk(*self.reading.function.body)]
+        called = [f.body for p in parts if p.kind == "call" for f in self.unit.functions.get(p.parts[0], ())]
+        changing = ("assign", "moved", "address", "do", "unread", "jump", "refused")
+        changed = (p for p in [*parts, *walk(*called)] if p.kind in changing)
+        names = {n for p in changed for n in (names_in(p.parts[0]) if p.kind == "assign" else names_in(p))}
+        hidden = (p.parts[1] for p in parts if p.kind in ("unread", "jump", "refused") and len(p.parts) > 1)
+        return head_of(owner) in {*map(head_of, names)}.union(*hidden)
 
     def note_unread(self, value: Value, statement: Part) -> None:
         """Keep in mind an assignment of what is not read."""
@@ -335,24 +385,24 @@ class Machine(Evaluator):
 
     def run_assign(self, target: Part, sign: str, value: Part, statement: Part) -> None:
         """An assignment, also of a whole array, a row or a block."""
-        result = self.value(value)
-        if self.unit.language == "cpp" and b"Eigen" in self.unit.source and self.overlaps(value, names_in(target)):
-            raise Unreadable(statement.line, "a matrix that Eigen changes while its transpose is read; write .eval()")
+        result = self.fill_by_commas(target, value) if sign == "<<" else self.value(value)
+        sign = sign.removesuffix("<<")
+        if self.unit.language == "cpp" and b"Eigen" in self.unit.source and self.overlaps(value, target):
+            raise Unreadable(statement.line, "a matrix that Eigen changes while a part of it is read; write .eval()")
         if sign:
             before = self.value(target)
             if isinstance(before, List):
                 raise Unreadable(statement.line, f"{sign}= of a list, which is no array")
             result = combine(self.unit, sign, before, result, statement.line)
         self.note_unread(result, statement)
-        if target.kind == "name" and self.member_of_array(target) is not None:
-            raise Unreadable(statement.line, "a member of an array as a target")
+        target = self.component(member) if (member := self.member_of_array(target)) else target
         if target.kind == "name":
             variable = self.variable(target.parts[0])
             if isinstance(result, Array) and variable.shape in (None, ()) and not variable.is_input:
                 variable.shape = result.shape
             elif not isinstance(result, Array) and variable.shape is None:
                 variable.shape = ()
-            if self.unit.language in ("python", "matlab") and not (sign and isinstance(result, Array)):
+            if self.unit.language in ("python", "matlab") and not (sign and isinstance(result, Array | Unread)):
                 self.rename(target.parts[0], value, result, statement)
                 return
             self.write(variable, result, statement)
@@ -364,16 +414,31 @@ class Machine(Evaluator):
         for place, cell in zip(places, cells, strict=True):
             self.write_cell(variable, place, cell, statement)
 
-    def overlaps(self, value: Part, names: set[str]) -> bool:
-        """True for a transpose of the target that is read cell by cell; a product of matrices is made before."""
+    def overlaps(self, value: Part, target: Part) -> bool:
+        """True for a transpose or a block of the target that is read cell by cell; a product is made before."""
         if value.kind == "method" and value.parts[1] == "transpose":
-            return bool(names_in(value.parts[0]) & names)
+            return bool(names_in(value.parts[0]) & names_in(target))
+        if value.kind == "index" and target.kind == "index" and names_in(value) & names_in(target):
+            (base, places, _), (other, written, _) = self.targets(value), self.targets(target)
+            return base is other and len(places) > 1 and places != written and bool({*places} & {*written})
         if value.kind not in ("op", "minus"):
             return False
         sides = [part for part in value.parts if isinstance(part, Part)]
         if value.parts[0] == "*" and all(isinstance(self.value(side), Array) for side in sides):
             return False
-        return any(self.overlaps(side, names) for side in sides)
+        return any(self.overlaps(side, target) for side in sides)
+
+    def fill_by_commas(self, target: Part, value: Part) -> Value:
+        """``M << A, b, c`` of Eigen: blocks side by side until a row is full, and then below."""
+        *_, shape = self.targets(target)
+        if names_in(target) & {*names_in(value), *(p.parts[0] for p in walk(value) if p.kind == "call")}:
+            raise Unreadable(value.line, "a matrix that is filled with its own entries")
+        rows: list[list[Value]] = [[]]
+        for block in map(self.value, value.parts[0]):
+            rows[-1].append(block)
+            if join(*rows[-1], across=True).shape[1:] == ((*shape, 1)[1],):  # type: ignore[union-attr]
+                rows.append([])
+        return join(*(join(*row, across=True) for row in rows if row), across=False)
 
     def rename(self, name: str, value: Part, result: Value, statement: Part) -> None:
         """An assignment of Python or MATLAB: the name stands for another value from now on.
@@ -384,18 +449,30 @@ class Machine(Evaluator):
         if is_python and value.kind == "name" and isinstance(result, Array):
             self.frame[name] = self.variable(value.parts[0])
             return
+        bases = self.arrays_in(value) if is_python else []
         number = "list" if isinstance(result, List) else "real"
         variable = Variable(name, number, result.shape if isinstance(result, Array) else ())
         cells = result.cells if isinstance(result, Array) else ()
-        if is_python and value.kind == "call" and cells and all(is_integer(cell) for cell in cells):
+        if is_python and not isinstance(result, List) and cells and all(is_integer(cell) for cell in cells):
             variable.number = "int"  # an array of integers cuts what is assigned to its entries
         self.write(variable, result, statement)
         self.frame[name] = variable
-        if is_python and cells and value.kind in ("index", "method"):
-            bases = [self.variable(base) for base in names_in(value) if self.variable_shape(base)]
-            for base in bases:
-                base.views.append(variable)
-                variable.views.append(base)
+        if cells and bases and isinstance(result, List):
+            share(variable, [*bases, variable])  # two of its rows may be one
+        elif cells and self.is_view(value):
+            share(variable, bases)
+
+    def is_view(self, value: Part) -> bool:
+        """True for an expression of Python whose value may share cells with an array in it."""
+        if value.kind != "call":
+            return value.kind in ("index", "method", "choose")
+        functions = self.unit.functions.get(value.parts[0], [])
+        return bare_name(value.parts[0]) in VIEWS or any(map(may_return_view, functions))
+
+    def arrays_in(self, value: Part) -> list[Variable]:
+        """The arrays that an expression names."""
+        hidden = (part.parts[1] for part in walk(value) if part.kind == "refused" and len(part.parts) > 1)
+        return [self.variable(name) for name in names_in(value).union(*hidden) if self.variable_shape(name)]
 
     def write(self, variable: Variable, value: Value, statement: Part) -> None:
         """A whole variable."""
@@ -418,11 +495,9 @@ class Machine(Evaluator):
     def write_cell(self, variable: Variable, place: Index, cell: Cell, statement: Part) -> None:
         """One cell, with the line of the statement."""
         if isinstance(cell, Scalar):
-            if variable.number == "int" and cell.number != "int":
-                exact = constant_of(cell)
-                if exact is None or exact.denominator != 1:
-                    raise Unreadable(statement.line, "a real number cut to an integer")
-            number = variable.number if self.unit.rules.integer else cell.number
+            if variable.number in LIMITS and not does_fit(cell, variable.number):
+                raise Unreadable(statement.line, CUT)
+            number = promote(variable.number) if self.unit.rules.integer else cell.number
             number = "real" if number in ("quaternion", "auto") else number
             cell = Scalar(cell.tree, number, statement.line, statement)
         variable.cells[place] = cell
@@ -440,12 +515,36 @@ class Machine(Evaluator):
         first, end, by = (self.whole(part) for part in (start, stop, step))
         if by == 0 or len(range(first, end, by)) > STEPS:
             raise Unreadable(statement.line, "a loop without an end")
-        hidden = self.frame.get(name)
         for i in range(first, end, by):
             self.frame[name] = Variable(name, "int", (), {(): Scalar(build_number(i), "int", statement.line)})
             self.block(body)
-        if hidden is not None and self.unit.language in ("c", "cpp"):
-            self.frame[name] = Variable(name, "int", (), all_unread=Unread(statement.line, "a counter behind its loop"))
+
+    def run_loop(self, first: Body, test: Part, step: Body, body: Body, is_late: bool, statement: Part) -> None:
+        """``for`` of C and ``while``: the condition is known from whole numbers each time."""
+        with self.scope():
+            for part in first:
+                getattr(self, f"run_{part.kind}")(*part.parts, statement=part)
+            for _ in range(ROUNDS):
+                if not is_late and not self.does_go_on(test):
+                    return
+                self.block(body)
+                for part in step:
+                    getattr(self, f"run_{part.kind}")(*part.parts, statement=part)
+                is_late = False
+        raise Unreadable(statement.line, "a loop without an end")
+
+    def does_go_on(self, test: Part) -> bool:
+        """Whether a condition between whole numbers holds; others may be rounded, or depend on inputs."""
+        choices, self.choices = self.choices, None
+        leaves = [side for part in walk(test) if part.kind == "compare" for side in part.parts[1:]] or [test]
+        try:
+            if all(is_integer(self.value(leaf)) for leaf in leaves):  # type: ignore[arg-type]
+                return self.decide_known(test)
+        except Unreadable:
+            pass
+        finally:
+            self.choices = choices
+        raise Unreadable(test.line, "a loop that does not count from one constant to another")
 
     def run_return(self, value: Part | None, statement: Part) -> None:
         if value is None:
@@ -503,7 +602,7 @@ class Machine(Evaluator):
         if base.kind != "name":
             raise Unreadable(statement.line, f"{name} of what is no variable")
         variable = self.variable(base.parts[0])
-        if not variable.shape:
+        if not variable.shape or variable.number == "quaternion":
             raise Unreadable(statement.line, f"{name} of an array without a known size")
         number = self.value(arguments[0]) if arguments else Scalar(build_number(0))
         if name == "memset" and constant_of(number) != 0:
@@ -511,7 +610,7 @@ class Machine(Evaluator):
         is_identity = name in ("setIdentity", "identity")
         one = Scalar(build_number(1))
         for place in places_of(variable.shape):
-            on_diagonal = is_identity and len(set(place)) == 1
+            on_diagonal = is_identity and len({*place, 0} if len(place) == 1 else {*place}) == 1
             self.write_cell(variable, place, one if on_diagonal else number, statement)  # type: ignore[arg-type]
         variable.all_unread = None
 
@@ -543,6 +642,8 @@ class Machine(Evaluator):
             a, b = self.value(test.parts[1]), self.value(test.parts[2])
             if not (isinstance(a, Scalar) and isinstance(b, Scalar)):
                 raise Unreadable(test.line, "a condition on what is not read")
+            require_fit(self.unit, map_cell(lambda x, _: x, a, b), test.line)  # -1 < 1U does not hold
+            require_fit(self.unit, map_cell(lambda x, _: x, b, a), test.line)
             left, right = a.tree, b.tree
             if left.head == right.head == NUMBER:
                 return COMPARE[sign](left.args[0], right.args[0])
@@ -584,7 +685,7 @@ def is_finiteness(test: Part) -> bool:
 
 def is_integer(cell: Cell) -> bool:
     """True for a cell that holds an integer of the source."""
-    return isinstance(cell, Scalar) and cell.number == "int"
+    return isinstance(cell, Scalar) and cell.number in LIMITS
 
 
 COMPARE: Mapping[str, Callable[[Fraction, Fraction], bool]] = {

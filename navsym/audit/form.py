@@ -18,7 +18,8 @@ class Part:
     """A part of an expression or a statement.
 
     kind  : of a statement: declare (name, number, shape, value, shared) · assign (target, sign, value) · block (body) ·
-            if (test, then, else) · for (name, start, stop, step, body) · return (value) · do (call) · unread (why,
+            if (test, then, else) · for (name, start, stop, step, body) · loop (first, test, step, body, whether the
+            test comes late) · moved (name, why, names), of a pointer · return (value) · do (call) · unread (why,
             names) · jump (why, names) · fail (why) · several (targets, call); of an expression: number (value,
             kind) · name (text) · index (base, indices) · call (name, arguments) · method (base, name, arguments) ·
             op (sign, a, b) · minus (a) · compare (sign, a, b) · both (a, b) · either (a, b) · not (a) · list (items) ·
@@ -38,7 +39,7 @@ class Part:
 class Argument:
     """A parameter of a function.
 
-    number : "int" or "real"
+    number : "real", or a type of integers
     shape  : its sizes, None where the source does not say
     shared : True when the caller sees what is written to it
     """
@@ -51,13 +52,14 @@ class Argument:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Function:
-    """A function as it is written; ``outputs`` are the names that MATLAB returns."""
+    """A function as it is written; ``outputs`` are the names that MATLAB returns, ``number`` is what others return."""
 
     name: str
     line: int
     arguments: tuple[Argument, ...]
     body: tuple[Part, ...]
     outputs: tuple[str, ...] = ()
+    number: str = "auto"
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,3 +136,52 @@ def walk(*parts: Any) -> Iterator[Part]:
 def names_in(*parts: Any) -> set[str]:
     """The names that parts read or write."""
     return {inner.parts[0] for inner in walk(*parts) if inner.kind == "name"}
+
+
+def may_write(function: Function, name: str) -> bool:
+    """True for a function that may write to a parameter of its own; one that only reads it may share the caller's."""
+    for part in walk(*function.body):
+        if part.kind == "assign" and name in {*names_in(part.parts[0]), *called_in(part.parts[0])}:
+            return True
+        is_link = part.kind == "declare" and part.parts[4]
+        if (is_link or part.kind in ("do", "address", "refused", "unread")) and name in {
+            *names_in(part),
+            *called_in(part),
+        }:
+            return True
+        if part.kind == "call" and any(a.kind == "name" and a.parts[0] == name for a in part.parts[1]):
+            return True
+    return False
+
+
+def called_in(part: Part) -> set[str]:
+    """The names before parentheses: ``v`` of ``v(0)``."""
+    return {inner.parts[0] for inner in walk(part) if inner.kind == "call"}
+
+
+def head_of(name: str) -> str:
+    """The structure to which a member belongs: ``s`` of ``s->a.b``."""
+    return name.replace("->", ".").replace("[", ".").split(".")[0]
+
+
+def may_return_view(function: Function) -> bool:
+    """True for a function of Python that may return what it was given, or a part of it."""
+    fresh = {"op", "minus", "number", "compare", "call", "refused"}
+    parts = [*walk(*function.body)]
+    values = {p.parts[0].parts[0]: p.parts[2] for p in parts if p.kind == "assign" and p.parts[0].kind == "name"}
+    for part in (p.parts[0] for p in parts if p.kind == "return"):
+        value = values.get(part.parts[0]) if part is not None and part.kind == "name" else part
+        if part is not None and (value is None or value.kind not in fresh):
+            return True
+    return False
+
+
+def spell_entry(unit: Unit, name: str, place: tuple[int, ...]) -> str:
+    """An entry as the source writes it: ``F[0][1]``, ``F(0, 1)``."""
+    if not place:
+        return name
+    numbers = [i + unit.rules.first for i in place]
+    one, two = unit.rules.entry
+    if len(numbers) < 3:
+        return (one if len(numbers) == 1 else two).format(name, *numbers)
+    return f"{name}[{', '.join(map(str, numbers))}]"

@@ -29,6 +29,7 @@ def take_lines(unit: Unit, function: Function, first: int, last: int, where: str
         before += [s for s in body if s.line < near[0].line] + near
         body = inner[0]
     before += [s for s in body if s.line < near[0].line]
+    before = [inner for s in before for inner in ((s, *s.parts[0]) if s.kind == "loop" else (s,))]
     declared = {s.parts[0]: s for s in before if s.kind in ("declare", "for")}
     reseated = {s.parts[0].parts[0] for s in walk(*function.body) if s.kind == "assign" and s.parts[0].kind == "name"}
     links = [s for s in declared.values() if is_link(s) and s.parts[0] not in reseated]

@@ -17,6 +17,7 @@ from navsym.audit.values import (
     Unreadable,
     Value,
     add,
+    as_real,
     constant_of,
     count_cells,
     cross_product,
@@ -32,6 +33,7 @@ from navsym.audit.values import (
     multiply,
     raise_to,
     root,
+    rotate,
     square_sum,
     total,
     transpose,
@@ -48,6 +50,8 @@ ANGLES = {"deg2rad": Fraction(1, 180), "radians": Fraction(1, 180), "rad2deg": F
 CONSTANTS: dict[str, Tree] = dict.fromkeys(("M_PI", "math.pi", "np.pi", "numpy.pi", "pi", "M_PI_F", "PI"), PI)
 CONSTANTS |= dict.fromkeys(("M_PI_2", "M_PI_2_F"), multiply(build_number(Fraction(1, 2)), PI))
 TWICE = build_number(2)
+#: Functions of numpy that give another name of their argument.
+VIEWS = ("asarray", "transpose")
 HARMLESS = frozenset(("printf", "fprintf", "print", "assert", "disp", "static_assert", "puts"))
 #: Functions without a formula that write nothing, by language.
 PURE = {
@@ -81,13 +85,22 @@ def is_known(name: str, language: str) -> bool:
             or bare in ("arctan2", "power", "square", *ANGLES)
         )
         return known and (PREFIX.match(name) is not None or name == "abs")
-    if language == "rust" and (name in {known for known, _ in NALGEBRA} or bare in ("zeros", "eye")):
+    if language in ("rust", "cpp") and (
+        name in {known for known, _ in NALGEBRA} or (language == "rust" and bare in ("zeros", "eye"))
+    ):
         return True
     if bare in TWO or (bare in PLAIN and not bare.startswith("arc") and bare != "absolute"):
         return True
     if language == "matlab":
         return bare in {known for known, _ in ARRAYS} or bare in ("deg2rad", "rad2deg")
     return language == "cpp" and (bare == "cross" or MAKE.search(name) is not None)
+
+
+def does_take(name: str, count: int, language: str) -> bool:
+    """True for a known function that only reads so many arguments; one more of numpy is where it writes."""
+    bare = bare_name(name)
+    most = 1 if bare in (*PLAIN, *ANGLES, "square") else max((n for known, n in ARRAYS if known == bare), default=2)
+    return is_known(name, language) and (language != "python" or count <= most)
 
 
 def extreme_of(name: str, language: str) -> str:
@@ -115,8 +128,7 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
     if bare in PLAIN and len(values) == 1:
         if bare == "abs" and unit.language in ("c",):
             raise Unreadable(line, "abs, which cuts to an integer in C; fabs does not")
-        result = map_cells(lambda x: build_call(PLAIN[bare], x), values[0])
-        return Scalar(result.tree) if isinstance(result, Scalar) else result
+        return as_real(map_cells(lambda x: build_call(PLAIN[bare], x), values[0]))
     if bare in ANGLES and len(values) == 1:
         factor = ANGLES[bare]
         turn = multiply(build_number(factor), PI if factor < 1 else build_inverse(PI))
@@ -129,7 +141,7 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
         return map_cells(lambda x, y: root(add(raise_to(x, TWICE), raise_to(y, TWICE))), *values)
     if bare == "square" and len(values) == 1:
         return map_cells(lambda x: raise_to(x, TWICE), values[0])
-    if unit.language == "rust" and (name, len(values)) in NALGEBRA:
+    if unit.language in ("rust", "cpp") and (name, len(values)) in NALGEBRA:
         return NALGEBRA[name, len(values)](values, unit)
     if (bare, len(values)) in ARRAYS:
         return ARRAYS[bare, len(values)](values, unit)
@@ -140,11 +152,6 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
         if len(sides) == 2:
             return identity_array(*sides) if found[4] == "Identity" else filled(sides, 0)
     raise Unreadable(line, f"the function {name} with {len(values)} arguments")
-
-
-def as_real(value: Value) -> Value:
-    """Not an integer any more."""
-    return Scalar(value.tree) if isinstance(value, Scalar) else value
 
 
 def filled(shape: tuple[int, ...], number: int) -> Array:
@@ -166,7 +173,8 @@ def make_diagonal(values: Sequence[Value], unit: Unit) -> Value:
     (value,) = values
     if not isinstance(value, Array) or len(value.shape) != 1:
         raise Unreadable(0, "diag of what is no vector")
-    zero = Scalar(build_number(0))
+    whole = all(isinstance(cell, Scalar) and cell.number == "int" for cell in value.cells)
+    zero = Scalar(build_number(0), "int" if whole else "real")
     return make_array(value.shape * 2, lambda i, j: value.cells[i] if i == j else zero)
 
 
@@ -254,7 +262,7 @@ def require_quaternion(values: Sequence[Value], unit: Unit) -> Value:
     return value
 
 
-#: Constructors of nalgebra; the reader of Rust writes the sizes of a type before the entries.
+#: Constructors of nalgebra and Eigen; the reader of Rust writes the sizes of a type before the entries.
 NALGEBRA: dict[tuple[str, int], Known] = {
     ("Matrix::new", 2): make_matrix, ("Matrix::new", 3): make_matrix, ("Quaternion::new", 4): make_quaternion,
     ("Quaternion::from_parts", 2): make_of_parts, ("Quaternion::new_unchecked", 1): require_quaternion,
@@ -308,6 +316,32 @@ def conjugate(value: Value, _: Sequence[Value], unit: Unit) -> Value:
     return Quaternion((4,), (*(map_cell(minus, cell) for cell in value.cells[:3]), value.cells[3]))
 
 
+def invert_any(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+    """The inverse of a matrix; of a quaternion of Eigen its conjugate over its square."""
+    if isinstance(value, Quaternion) and unit.language == "cpp":
+        return map_cells(divide, conjugate(value, (), unit), square_sum(value))
+    return invert(value)
+
+
+def rotation_of(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+    """The matrix of a quaternion, whose columns are the turned axes; as it stands also where its length is not one."""
+    if not isinstance(value, Quaternion):
+        raise Unreadable(0, "the rotation of what is no quaternion")
+    axes = identity_array(3, 3)
+    return transpose(Array((3, 3), tuple(c for i in range(3) for c in rotate(value, axes.row(i)).cells)), True)
+
+
+def coefficients_of(count: int) -> Method:
+    """The first coefficients of a quaternion, as a vector."""
+
+    def take(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+        if not isinstance(value, Quaternion):
+            raise Unreadable(0, "the coefficients of what is no quaternion")
+        return Array((count,), value.cells[:count])
+
+    return take
+
+
 def transposed(value: Value, _: Sequence[Value], unit: Unit) -> Value:
     return transpose(value, unit.rules.matrix)
 
@@ -321,7 +355,8 @@ METHODS: dict[tuple[str, int], Method] = {
     ("dot", 1): lambda value, others, unit: dot_of([value, *others], unit),
     ("cross", 1): lambda value, others, unit: cross_product(value, others[0]),
     ("norm", 0): lambda value, _, unit: norm_of([value], unit),
-    ("conjugate", 0): conjugate, ("inverse", 0): lambda value, _, unit: invert(value),
+    ("conjugate", 0): conjugate, ("inverse", 0): invert_any,
+    ("toRotationMatrix", 0): rotation_of, ("coeffs", 0): coefficients_of(4), ("vec", 0): coefficients_of(3),
     ("trace", 0): trace_of, ("sum", 0): sum_of, ("diagonal", 0): diagonal_of,
     ("determinant", 0): determine, ("asDiagonal", 0): lambda value, _, unit: make_diagonal([value], unit),
     ("cwiseProduct", 1): lambda value, others, unit: map_cells(multiply, value, others[0]),

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from navsym.audit.answer import OutputFormula
 from navsym.audit.decide import measure
-from navsym.audit.evaluate import Case, spell_entry
+from navsym.audit.evaluate import Case
+from navsym.audit.form import spell_entry
 from navsym.audit.sources import Source
 from navsym.audit.values import Array, Cell, Scalar, Unread, Value, places_of
 from navsym.language.printer import print_tree

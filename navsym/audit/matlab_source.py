@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -21,6 +22,8 @@ from navsym.audit.syntax import (
 
 RULES = Rules(first=1, matrix=True, entry=("{}({})", "{}({},{})"))
 POWERS = ("^", ".^")
+#: Commands that write no name.
+QUIET = ("format", "hold", "close", "clc", "more", "warning", "figure", "disp", "drawnow")
 SIGNS = {**{sign: sign for sign in (".*", "./", ".^")}, "^": "**"}
 OTHERS: dict[str, tuple[str, ...]] = {"~=": ("compare", "!="), "&": ("both",), "|": ("either",)}
 
@@ -60,10 +63,19 @@ class Reader(SourceReader):
             case "if_statement":
                 clauses = [c for c in named(node) if c.type in ("elseif_clause", "else_clause")]
                 return (self.chain(node, clauses, find_block),)
+            case "while_statement":
+                test = self.expression(field_of(node, "condition"))
+                return (self.part("loop", node, (), test, (), self.block(find_block(node)), False),)
+            case "switch_statement":
+                return self.switch(node)
             case "for_statement":
                 return (self.loop(node),)
             case "return_statement":
                 return (self.unread(node, "a return before the end"),)
+            case "command" if text_of(node).split()[0] in QUIET:
+                return ()
+            case "command" | "global_operator" | "persistent_operator":
+                return (self.part("jump", node, f"the command {text_of(node).split()[0]}", ()),)
             case "function_call" if text_of(field_of(node, "name")) == "error":
                 return (self.part("fail", node, "an error is raised"),)
             case "function_call":
@@ -78,6 +90,21 @@ class Reader(SourceReader):
         if left.type not in ("identifier", "function_call", "field_expression"):
             return self.unread(node, "several names assigned at once")
         return self.part("assign", node, self.expression(left), "", self.expression(right))
+
+    def switch(self, node: Any) -> tuple[Part, ...]:
+        """``switch`` over numbers as ``if``."""
+        test, other = self.expression(field_of(node, "condition")), tuple[Part, ...]()
+        for clause in reversed([c for c in named(node) if c.type.endswith("_clause")]):
+            label, body = field_of(clause, "condition"), self.block(find_block(clause))
+            if label is None:
+                other = body
+                continue
+            rows = named(label) if label.type == "cell" else [label]
+            labels = [cell for row in rows for cell in (named(row) if row.type == "row" else [row])]
+            tests = [self.part("compare", clause, "==", test, self.expression(cell)) for cell in labels]
+            whole = functools.reduce(lambda a, b: self.part("either", clause, a, b), tests)
+            other = (self.part("if", clause, whole, body, other),)
+        return other
 
     def loop(self, node: Any) -> Part:
         """``for i = a:b`` and ``for i = a:step:b``."""
@@ -100,18 +127,8 @@ class Reader(SourceReader):
             case "number":
                 value = read_decimal(text_of(node))
                 return self.literal(node, text_of(node), value is not None and value.denominator != 1)
-            case "boolean":
-                return self.part("number", node, int(text_of(node) == "true"), "int")
-            case "identifier" | "end_keyword":
-                return self.part("name", node, text_of(node))
-            case "parenthesis":
-                return self.inside(node)
             case "binary_operator" if sign_of(node) in POWERS:
                 return self.power(node)
-            case "binary_operator" | "boolean_operator" | "comparison_operator" if len(named(node)) == 2:
-                return self.operate(node, sign_of(node), *named(node))
-            case "unary_operator" | "not_operator":
-                return self.operate_alone(node, sign_of(node), named(node)[0])
             case "postfix_operator":
                 return self.part("method", node, self.expression(field_of(node, "operand")), "T", ())
             case "matrix":

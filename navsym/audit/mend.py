@@ -10,8 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.decide import Scope, decide_entry, draw_points
-from navsym.audit.evaluate import called_in, spell_entry
-from navsym.audit.form import Function, Part, Unit, names_in, walk
+from navsym.audit.form import Function, Part, Unit, called_in, names_in, spell_entry, walk
 from navsym.audit.names import squeeze
 from navsym.audit.questions import Entry, NotThereError
 from navsym.audit.sources import Source, read_expression
@@ -239,7 +238,7 @@ def list_places(source: Source, own: Part | None, expected: Tree) -> list[Place]
         fresh = [f for name in called for f in source.unit.functions.get(name, [])]
         functions += [f for f in dict.fromkeys(fresh) if f not in functions]
         at += 1
-    kinds = ("assign", "declare", "return", "do", "for")
+    kinds = ("assign", "declare", "return", "do", "for", "loop")
     statements = [
         (function, statement)
         for function in functions
@@ -287,6 +286,8 @@ def whole_side(statement: Part) -> Any:
 
 def right_sides(statement: Part) -> list[Part]:
     """The expressions of a statement that may be wrong: the items of a list one by one, the bounds of a loop."""
+    if statement.kind == "loop":
+        return [*statement.parts[1].parts[1:]] if statement.parts[1].kind == "compare" else []
     if statement.kind == "for":
         return [bound for bound in statement.parts[1:4] if bound.span[0] < bound.span[1]]
     waiting, done = [unwrap(whole_side(statement))], list[Part]()

@@ -2,22 +2,37 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, names_in
-from navsym.audit.syntax import OPERATORS, SourceReader, field_of, line_of, named, sign_of, text_of
+from navsym.audit.syntax import OPERATORS, SourceReader, descend, field_of, line_of, named, text_of
 
 RULES = Rules(entry=("{}[{}]", "{}[{}, {}]"))
+#: Decorators that leave a function what it is.
+PLAIN_DECORATORS = re.compile(
+    r"@((abc\.)?(abstractmethod|staticmethod|classmethod|property)|((nb|numba)\.)?(jit|njit)(\(.*\))?"
+    r"|functools\.\w*cache(\(.*\))?|override|final)", re.DOTALL
+)  # fmt: skip
 MODULES = {"numpy": "np.", "math": "math.", "numpy.linalg": "np.linalg."}
+NUMERIC = ("numpy", "math", "autograd.numpy", "jax.numpy")
+AGAIN = "a function whose name stands for something else later"
 
 
 @dataclass(slots=True, eq=False)
 class Reader(SourceReader):
-    """Walks the syntax tree of Python."""
+    """Walks the syntax tree of Python.
+
+    rebound : names of modules that the file uses for something else
+    changed : names outside of functions that hold more than their one value
+    """
 
     HEAD, TAIL = "(", ")"
+
+    rebound: set[str] = field(default_factory=set)
+    changed: set[str] = field(default_factory=set)
     OPERATORS = OPERATORS | {sign: ("op", sign) for sign in ("//", "@", "**")}
 
     @staticmethod
@@ -27,6 +42,7 @@ class Reader(SourceReader):
     def read_file(self, root: Any) -> None:
         """The functions and constants of a source in Python."""
         self.read_imports(named(root))
+        self.read_changes(root)
         self.read_body(named(root))
 
     def read_imports(self, nodes: list[Any]) -> None:
@@ -41,31 +57,63 @@ class Reader(SourceReader):
             if node.type in ("function_definition", "class_definition"):
                 self.unit.imported.pop(text_of(field_of(node, "name")), None)
 
+    def read_changes(self, root: Any) -> None:
+        """Note the names that are written by parts, by more than one assignment, or as ``global``."""
+        for node in descend(root):
+            bound = list[str]()
+            if node.type == "global_statement":
+                self.changed |= {text_of(name) for name in named(node)}
+            elif node.type in ("assignment", "augmented_assignment", "for_statement"):
+                left = field_of(node, "left")
+                for target in named(left) if left.type.endswith(("_list", "_pattern")) else [left]:
+                    bound.append(re.match(r"\w*", text_of(target))[0])  # type: ignore[index]
+                    is_local = target.type == "identifier" and is_inside(node, "function_definition")
+                    is_alone = node.type == "assignment" and target is left and left.type == "identifier"
+                    if not is_local and not (is_alone and is_top(node)):
+                        self.changed.add(bound[-1])
+            elif node.type in ("function_definition", "class_definition"):
+                bound = [text_of(field_of(node, "name"))]
+            elif node.type == "parameters":
+                bound = [text_of(inner) for inner in descend(node) if inner.type == "identifier"]
+            elif node.type == "aliased_import" and text_of(field_of(node, "name")) not in NUMERIC:
+                bound = [text_of(field_of(node, "alias"))]
+            self.rebound |= {*bound} & {"np", "numpy", "math"}
+
     def read_body(self, nodes: list[Any]) -> None:
         """Functions and methods, and names of the module that are assigned once, to numbers."""
         assigned: dict[str, list[Part]] = {}
         for node in nodes:
+            other = None
             if node.type == "decorated_definition":
+                decorators = (c for c in named(node) if c.type == "decorator")
+                other = next((c for c in decorators if not PLAIN_DECORATORS.fullmatch(text_of(c))), None)
                 node = field_of(node, "definition")
             if node.type == "class_definition":
                 self.read_body(named(field_of(node, "body")))
             elif node.type == "function_definition":
-                self.read_function(node)
+                self.read_function(node, other)
             elif node.type == "expression_statement":
                 for statement in self.statement(node):
                     if statement.kind != "assign" or self.unit.text(statement.parts[2]) == "None":  # set elsewhere
                         continue
                     if statement.parts[0].kind == "name":
                         assigned.setdefault(statement.parts[0].parts[0], []).append(statement)
-        self.unit.constants += [many[0] for many in assigned.values() if len(many) == 1 and not many[0].parts[1]]
+        for name, many in assigned.items():
+            if len(many) == 1 and not many[0].parts[1] and name not in self.changed:
+                self.unit.constants += many
+            for function in self.unit.functions.get(name, []):
+                self.unit.functions[name] = [replace(function, body=(self.part("jump", nodes[0], AGAIN, ()),))]
 
-    def read_function(self, node: Any) -> None:
+    def read_function(self, node: Any, decorator: Any = None) -> None:
+        """A function; one whose decorator may change it is not read."""
         name = text_of(field_of(node, "name"))
         arguments = []
         for child in named(field_of(node, "parameters")):
             label = child if child.type == "identifier" else field_of(child, "name") or next(iter(named(child)), child)
             arguments.append(Argument(text_of(label), shared=True))
         body = tuple(s for child in named(field_of(node, "body")) for s in self.statement(child))
+        if decorator is not None:
+            body = (self.part("jump", decorator, "a decorator that may change the function", ()),)
         if arguments and arguments[0].name == "self":
             arguments = arguments[1:]
         self.unit.functions.setdefault(name, []).append(Function(name, line_of(node), tuple(arguments), body))
@@ -84,15 +132,22 @@ class Reader(SourceReader):
                 return (self.chain(node, clauses, lambda n: field_of(n, "consequence") or field_of(n, "body")),)
             case "for_statement":
                 return (self.loop(node),)
+            case "while_statement" if field_of(node, "alternative") is None:
+                test = self.expression(field_of(node, "condition"))
+                return (self.part("loop", node, (), test, (), self.block(field_of(node, "body")), False),)
             case "raise_statement":
                 return (self.part("fail", node, "an error is raised"),)
             case "pass_statement" | "assert_statement" | "import_statement" | "import_from_statement":
                 return ()
+            case "global_statement":
+                return (self.part("jump", node, "a global name", ()),)
         return None
 
     def loop(self, node: Any) -> Part:
         """``for i in range(...)``."""
         name, source = field_of(node, "left"), self.expression(field_of(node, "right"))
+        if field_of(node, "alternative") is not None:
+            return self.unread(node, "a loop with an else")
         is_range = source.kind == "call" and source.parts[0] == "range" and 1 <= len(source.parts[1]) <= 3
         if name.type != "identifier" or not is_range:
             return self.unread(node, "a loop over something else than a range")
@@ -154,21 +209,6 @@ class Reader(SourceReader):
         match node.type:
             case "integer" | "float":
                 return self.literal(node, text_of(node), node.type == "float")
-            case "true" | "false":
-                return self.part("number", node, int(node.type == "true"), "int")
-            case "identifier":
-                return self.part("name", node, text_of(node))
-            case "parenthesized_expression":
-                return self.inside(node)
-            case "binary_operator" | "boolean_operator":
-                sign, *sides = (field_of(node, key) for key in ("operator", "left", "right"))
-                return self.operate(node, text_of(sign), *sides)
-            case "unary_operator" | "not_operator":
-                return self.operate_alone(node, sign_of(node), field_of(node, "argument"))
-            case "comparison_operator":
-                if len(named(node)) != 2:
-                    return self.refuse(node, "a chain of comparisons")
-                return self.operate(node, sign_of(node), *named(node))
             case "conditional_expression":
                 then, test, other = named(node)
                 return self.part("choose", node, *map(self.expression, (test, then, other)))
@@ -228,6 +268,8 @@ class Reader(SourceReader):
             return self.part("cast", node, "real", arguments[0])
         if function.type == "attribute":
             base = text_of(field_of(function, "object"))
+            if base.partition(".")[0] in self.rebound:
+                return self.refuse(node, f"{base}, which this file uses for something else")
             if base in ("np", "numpy", "math", "np.linalg", "numpy.linalg"):
                 return self.part("call", node, name, tuple(arguments))
             if base == "self":
@@ -237,3 +279,17 @@ class Reader(SourceReader):
         if function.type == "identifier":
             return self.part("call", node, self.unit.imported.get(name, name), tuple(arguments))
         return self.refuse(node, "a call of an expression")
+
+
+def is_top(node: Any) -> bool:
+    """True for an assignment of a module or a class, in no other statement."""
+    above = node.parent.parent if node.parent is not None else None
+    is_class = above is not None and above.parent is not None and above.parent.type == "class_definition"
+    return above is not None and (above.type == "module" or is_class)
+
+
+def is_inside(node: Any, kind: str) -> bool:
+    """True for a node below one of a kind."""
+    while node is not None and node.type != kind:
+        node = node.parent
+    return node is not None

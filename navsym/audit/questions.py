@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from navsym.audit.decide import differentiate
-from navsym.audit.evaluate import Case, Condition, spell_entry
+from navsym.audit.evaluate import Case, Condition
+from navsym.audit.form import spell_entry
 from navsym.audit.names import Names
 from navsym.audit.sources import Source
 from navsym.audit.values import (

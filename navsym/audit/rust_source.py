@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, names_in
-from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, text_of
+from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, text_of, whole_kind
 
 RULES = Rules(integer=True, matrix=True, entry=("{}[{}]", "{}[{}][{}]"))
 REAL = ("f32", "f64", "N", "T", "R", "Real", "Self")
@@ -27,7 +27,7 @@ QUIET = "println eprintln debug_assert debug_assert_eq assert assert_eq trace de
 
 
 def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
-    """What a type holds ("int", "real", "quaternion", "other"), and its sizes."""
+    """What a type holds (a name in LIMITS, "real", "quaternion", "other"), and its sizes."""
     bare = re.sub(r"\s|&|'\w+\b|\bmut\b", "", text)
     if QUATERNION.fullmatch(bare):
         return "quaternion", (4,)
@@ -40,7 +40,7 @@ def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
         kind, inner = type_of(found[1])
         return kind, None if inner is None or kind == "quaternion" else (int(found[2]), *inner)
     if WHOLE.fullmatch(bare):
-        return "int", ()
+        return whole_kind(bare), ()
     return ("real", ()) if bare in REAL and bare != "Self" else ("other", None)
 
 
@@ -140,6 +140,9 @@ class Reader(SourceReader):
                 return (self.branch(node, self.block),)
             case "for_expression":
                 return (self.loop(node),)
+            case "while_expression" if field_of(node, "condition").type not in ("let_condition", "let_chain"):
+                test = self.expression(field_of(node, "condition"))
+                return (self.part("loop", node, (), test, (), self.block(field_of(node, "body")), False),)
             case "block":
                 return (self.part("block", node, self.block(node)),)
             case "return_expression":
@@ -221,20 +224,13 @@ class Reader(SourceReader):
                 bare = re.sub(r"(f32|f64|[iu](8|16|32|64|128|size))$", "", text)
                 is_real = node.type == "float_literal" or text.endswith(("f32", "f64"))
                 return self.literal(node, bare.removesuffix("."), is_real)
-            case "boolean_literal":
-                return self.part("number", node, int(text_of(node) == "true"), "int")
-            case "identifier" | "self":
-                return self.part("name", node, text_of(node))
             case "scoped_identifier":
                 last = text_of(field_of(node, "name"))
                 return self.part("name", node, "M_PI" if last == "PI" else "".join(text_of(node).split()))
-            case "parenthesized_expression" | "reference_expression":
-                return self.expression(field_of(node, "value") or named(node)[-1])
+            case "reference_expression":
+                return self.expression(field_of(node, "value"))
             case "unary_expression":
                 return self.operate_alone(node, text_of(node)[0].replace("*", "+"), named(node)[-1])  # *x is x here
-            case "binary_expression":
-                sign, *sides = (field_of(node, key) for key in ("operator", "left", "right"))
-                return self.operate(node, text_of(sign), *sides)
             case "index_expression":
                 base, place = named(node)
                 places = named(place) if place.type == "tuple_expression" else [place]

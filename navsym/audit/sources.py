@@ -13,9 +13,9 @@ from typing import Any
 
 from flint import ctx, fmpq
 
-from navsym.audit.evaluate import Reading, spell_entry
+from navsym.audit.evaluate import Reading
 from navsym.audit.execute import read_function
-from navsym.audit.form import Argument, Function, Part, Unit, names_in
+from navsym.audit.form import Argument, Function, Part, Unit, names_in, spell_entry
 from navsym.audit.fragment import take_lines
 from navsym.audit.names import Names
 from navsym.audit.syntax import SIZE, read_decimal

@@ -116,6 +116,15 @@ def read_decimal(text: str) -> Fraction | None:
     return Fraction(text)
 
 
+def whole_kind(text: str) -> str:
+    """The name in LIMITS of a type of integers of C or Rust."""
+    bits = next((bits for mark, bits in (("8", 8), ("char", 8), ("16", 16), ("short", 16)) if mark in text), 0)
+    if text == "bool":
+        return "bool"
+    is_unsigned = text.startswith(("u", "size_t"))
+    return f"{'u' * is_unsigned}int{bits}" if bits else "unsigned" if is_unsigned else "int"
+
+
 #: Where the order of statements is left, in any of the grammars.
 JUMPS = frozenset(
     "return_statement goto_statement break_statement continue_statement throw_statement raise_statement yield "
@@ -204,9 +213,26 @@ class SourceReader:
             return Part("refused", 0, ("a syntax error", (), True, True))
         if node.has_error:
             return self.refuse(node, "a syntax error")
-        found = self.read_expression(node)
+        found = self.read_expression(node) or self.read_plain(node)
         kind = node.type.replace("_", " ")
         return self.refuse(node, f"an expression outside the language of audit ({kind})") if found is None else found
+
+    def read_plain(self, node: Any) -> Part | None:
+        """What most languages have, by its kinds in their grammars."""
+        match node.type:
+            case "true" | "false" | "boolean" | "boolean_literal":
+                return self.part("number", node, int(text_of(node).lower() == "true"), "int")
+            case "identifier" | "field_identifier" | "qualified_identifier" | "this" | "self" | "end_keyword":
+                return self.part("name", node, text_of(node))
+            case "parenthesized_expression" | "parenthesis":
+                return self.inside(node)
+            case "binary_expression" | "binary_operator" | "boolean_operator" | "comparison_operator":
+                if len(sides := named(node)) == 2:
+                    return self.operate(node, sign_of(node), *sides)
+                return self.refuse(node, "a chain of comparisons")
+            case "unary_expression" | "unary_operator" | "not_operator":
+                return self.operate_alone(node, sign_of(node), named(node)[-1])
+        return None
 
     def inside(self, node: Any) -> Part:
         """What stands in parentheses."""

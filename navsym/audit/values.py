@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import product
 
@@ -27,6 +27,12 @@ Index = tuple[int, ...]
 LARGEST = 4096  # cells of one array
 TERMS = 2000  # of one sum
 LARGEST_INVERSE = 4
+CUT = "a real number cut to an integer"
+#: Types of integers and what they hold; C counts with those of less than 32 bits as with "int".
+LIMITS = {
+    "bool": (0, 1), "int8": (-(2**7), 2**7 - 1), "uint8": (0, 2**8 - 1), "int16": (-(2**15), 2**15 - 1),
+    "uint16": (0, 2**16 - 1), "int": (-(2**31), 2**31 - 1), "unsigned": (0, 2**32 - 1),
+}  # fmt: skip
 
 
 class Unreadable(Exception):
@@ -41,7 +47,7 @@ class Unreadable(Exception):
 class Scalar:
     """A number as a formula of the inputs.
 
-    number : "int" or "real"
+    number : "int", "unsigned" or "real"
     line   : where it was assigned, 0 for what was not
     origin : the statement that assigned it
     """
@@ -77,9 +83,13 @@ class Array:
             where = where * size + i
         return self.cells[where]
 
+    def row(self, i: int) -> Array:
+        """One row of a matrix."""
+        return Array(self.shape[1:], self.cells[i * self.shape[1] : (i + 1) * self.shape[1]])
+
 
 class Quaternion(Array):
-    """The cells of a quaternion of nalgebra: i, j, k and w, in this order."""
+    """The cells of a quaternion of nalgebra or Eigen: i, j, k and w, in this order."""
 
 
 class List(Array):
@@ -124,7 +134,15 @@ def lose_views(variable: Variable, unread: Unread) -> None:
     kept = variable.all_unread
     if variable.views:
         lose(variable, unread)
-        variable.all_unread = kept
+        if variable not in variable.views:
+            variable.all_unread = kept
+
+
+def share(variable: Variable, bases: list[Variable]) -> None:
+    """A variable that may share cells with others."""
+    for base in bases:
+        base.views.append(variable)
+        variable.views.append(base)
 
 
 def places_of(shape: Index) -> Iterator[Index]:
@@ -213,8 +231,8 @@ def map_cell(step: Callable[..., Tree], *cells: Cell) -> Cell:
         if isinstance(cell, Unread):
             return cell
         trees.append(cell.tree)
-    number = "int" if all(isinstance(c, Scalar) and c.number == "int" for c in cells) else "real"
-    return Scalar(step(*trees), number)
+    kinds = {cell.number for cell in cells if isinstance(cell, Scalar)}
+    return Scalar(step(*trees), "real" if not kinds <= {"int", "unsigned"} else max(kinds, default="int"))
 
 
 def count_cells(shape: Index) -> int:
@@ -344,6 +362,17 @@ def quaternion_product(a: Quaternion, b: Quaternion) -> Quaternion:
     return Quaternion((4,), tuple(map(cell, signed)))
 
 
+def rotate(quaternion: Value, vector: Value) -> Array:
+    """``q*v`` of Eigen and nalgebra: v + w t + u x t, where t = 2 u x v; a rotation where q has the length one."""
+    assert isinstance(quaternion, Array)
+    u, w = Array((3,), quaternion.cells[:3]), quaternion.cells[3]
+    t = map_cells(lambda x: multiply(build_number(2), x), cross_product(u, vector))
+    turned: Array = map_cells(  # type: ignore[assignment]
+        lambda x, y, z: add(x, add(y, z)), vector, map_cells(multiply, w, t), cross_product(u, t)
+    )
+    return turned
+
+
 def square_sum(value: Value) -> Cell:
     """The sum of the squares of all cells."""
     cells = value.cells if isinstance(value, Array) else (value,)
@@ -365,8 +394,50 @@ def constant_of(value: Value) -> Fraction | None:
 # The operators of the languages
 
 
+def promote(kind: str) -> str:
+    """The type in which C counts with a number of a type."""
+    return "int" if kind in LIMITS and kind != "unsigned" else kind
+
+
+def does_fit(cell: Scalar, kind: str) -> bool:
+    """True for what a variable of a type of integers holds as it is; other numbers than constants fit in 32 bits."""
+    exact, (low, high) = constant_of(cell), LIMITS[kind]
+    if exact is None:
+        return cell.number in LIMITS and kind in ("int", "unsigned")
+    return exact.denominator == 1 and low <= exact <= high
+
+
+def require_fit(unit: Unit, value: Value, line: int) -> Value:
+    """The value, where no constant among its integers is past the ends of its type."""
+    for cell in (value.cells if isinstance(value, Array) else (value,)) if unit.rules.integer else ():
+        if isinstance(cell, Scalar) and cell.number in LIMITS and not does_fit(cell, cell.number):
+            raise Unreadable(line, "integers that do not fit their type")
+    return value
+
+
+def as_real(value: Value) -> Value:
+    """Not an integer any more."""
+    if isinstance(value, Array):
+        return type(value)(value.shape, tuple(as_real(cell) for cell in value.cells))  # type: ignore[misc]
+    return replace(value, number="real") if isinstance(value, Scalar) else value
+
+
+def convert(value: Value, number: str, line: int) -> Value:
+    """A returned number in the type that a function returns."""
+    if not isinstance(value, Scalar) or number not in (*LIMITS, "real"):
+        return value
+    if number != "real" and not does_fit(value, number):
+        return Unread(line, CUT)
+    return replace(value, number=promote(number))
+
+
 def combine(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
     """The arithmetic of a language."""
+    return require_fit(unit, operate(unit, sign, a, b, line), line)
+
+
+def operate(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
+    """The same, whatever fits."""
     if isinstance(a, Unread) or isinstance(b, Unread):
         return a if isinstance(a, Unread) else b
     both, rules = isinstance(a, Array) and isinstance(b, Array), unit.rules
@@ -376,6 +447,8 @@ def combine(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
         kinds = [isinstance(value, Quaternion) for value in (a, b)]
         if isinstance(a, Quaternion) and isinstance(b, Quaternion):
             return quaternion_product(a, b)
+        if kinds == [True, False] and both and unit.language in ("cpp", "rust") and b.shape == (3,):  # type: ignore[union-attr]
+            return rotate(a, b)
         if both and any(kinds):
             raise Unreadable(line, "the product of a quaternion and a vector")
         if both and unit.language == "rust" and len(a.shape) == len(b.shape) == 1:  # type: ignore[union-attr]
@@ -407,6 +480,8 @@ def join_lists(sign: str, a: Value, b: Value) -> Value | None:
     (size, *rest), cells = pair[0].shape, pair[0].cells
     if len(pair) == 2 and sign == "+" and [*pair[1].shape[1:]] == rest:
         return List((size + pair[1].shape[0], *rest), cells + pair[1].cells)
+    if len(pair) == 1 and sign == "*" and rest:
+        raise Unreadable(0, "a list repeated in a list, which shares its rows")
     if len(pair) == 1 and sign == "*" and times is not None and times.denominator == 1 and 0 < times <= LARGEST:
         return List((size * int(times), *rest), cells * int(times))
     if len(pair) == 2 or not (isinstance(a, Array) and isinstance(b, Array)):
@@ -420,10 +495,9 @@ def quotient(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
         if unit.language != "matlab" or len(b.shape) != 2:
             raise Unreadable(line, "division by a matrix")
         return matrix_product(a, invert(b))
-    whole = [isinstance(v, Scalar) and v.number == "int" for v in (a, b)]
+    whole = [isinstance(v, Scalar) and v.number in LIMITS for v in (a, b)]
     if sign == "/" and not (unit.rules.integer and all(whole)):
-        result = map_cells(divide, a, b)
-        return Scalar(result.tree) if isinstance(result, Scalar) else result
+        return as_real(map_cells(divide, a, b))
     x, y = constant_of(a), constant_of(b)
     if x is None or y is None or y == 0 or not all(whole) or x < 0 or y < 0:
         raise Unreadable(line, "a quotient or remainder of integers that are no constants")

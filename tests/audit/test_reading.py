@@ -74,14 +74,16 @@ def final(result, name, *place, case=0):
             "a statement outside the language of audit (break statement)",
         ),
         ("y = a; RETURN_IF(a); y = 0;", "the function RETURN_IF, which this file does not define"),
-        ("y = a; switch (1) { case 1: y = 0; }", "a statement outside the language of audit (switch statement)"),
+        ("y = a; switch (1) { case 1: y = 0; }", "0"),
+        ("y = a; switch (3) { case 1: y = 0; break; case 3: y = 2; default: y += a; }", "2 + a"),
         ("y = a;\n#if 1\n y = 0;\n#endif\n", "a statement outside the language of audit (preproc if)"),
         (
             "static float s = 1; s = 2*s; y = s;",
             "a variable that keeps its value between calls, or is changed elsewhere",
         ),
         ("static const float s = 3; y = s*a;", "3*a"),
-        ("y = a; while (y > 0) { y -= 1; }", "a statement outside the language of audit (while statement)"),
+        ("y = a; while (y > 0) { y -= 1; }", "a loop that does not count from one constant to another"),
+        ("y = a; for (int i = 3; i > 0; i--) { i -= 1; y += i; }", "a + 2"),
     ],
 )
 def test_a_line_of_c_means_what_c_says_or_is_refused_with_its_reason(tmp_path, body, expected):

@@ -32,7 +32,7 @@ struct State { attitude: UnitQuaternion<f64>, rate: Vector3<f64>, gain: f64 }
         ("*y = a.max(b);", "a"),
         ("let v = Vector3::new(a, b, 1.0); *y = v.dot(&v);", "a*a + b*b + 1"),
         ("let v = Vector3::new(a, b, 1.0); let w = v * v; *y = w[0];", "the product of two columns"),
-        ("*y = a; while a > 0.0 { *y = b; }", "a statement outside the language of audit (while expression)"),
+        ("*y = a; while a > 0.0 { *y = b; }", "a loop that does not count from one constant to another"),
         ("*y = a; match b { _ => { *y = b; } }", "a statement outside the language of audit (match expression)"),
         ("*y = read(a)?;", "an expression outside the language of audit (try expression)"),
         ("*y = a; hide!(y);", "a statement outside the language of audit (macro invocation)"),
