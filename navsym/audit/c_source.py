@@ -70,6 +70,8 @@ class Reader(SourceReader):
         root, text = SourceReader.parse(self, source), bytearray(source)
         known = self.unit.variables
         known |= list_variables(root)
+        unions = (inner for node in descend(root) if node.type == "union_specifier" for inner in descend(node))
+        self.unit.overlaid |= {text_of(inner) for inner in unions if inner.type == "field_identifier"}
         for _ in range(ROUNDS):
             found = [n for n in map(find_type, descend(root)) if n is not None and text_of(n) in known]
             if not found:
@@ -394,6 +396,8 @@ class Reader(SourceReader):
                 if not re.fullmatch(r"[\w.:\[\]()>\- ]*", owner) or re.search(r"\(\s*[^)\s]|\[[^\]\d]", owner):
                     return self.refuse(node, "a member of an expression")
                 name = re.sub(r"\s", "", text_of(node))
+                if self.unit.overlaid & {*re.findall(r"\w+", name)}:
+                    return self.refuse(node, "a member of a union, which shares its place with others")
                 member = name.removeprefix("this->")
                 is_alone = self.shift < 0  # of a mend nobody knows what is local
                 if member != name and (is_alone or re.match(r"\w+", member)[0] in self.locals):  # type: ignore[index]

@@ -91,6 +91,7 @@ class Unit:
     members   : member of a structure -> what it holds and its sizes, where the file says so
     decimals  : decimal of the source -> the number for which it stands, as a mapping declares
     variables : names of C that are values, and no types
+    overlaid : names of members of unions, which share their place with others
     imported  : what names of numpy and math are called in Python
     """
 
@@ -107,6 +108,7 @@ class Unit:
     members: dict[str, tuple[str, tuple[int, ...] | None]] = field(default_factory=dict)
     decimals: dict[Fraction, Tree] = field(default_factory=dict)
     variables: set[str] = field(default_factory=set)
+    overlaid: set[str] = field(default_factory=set)
     imported: dict[str, str] = field(default_factory=dict)
 
     def locate(self, line: int) -> tuple[str, int]:

@@ -116,6 +116,8 @@ def test_an_unknown_call_leaves_unread_what_does_not_belong_to_the_function(tmp_
          "a structure that g knows by another name"),
         ("namespace a { const float k = 1; } namespace b { const float k = 2; }\nvoid f(float &y) { y = k; }",
          "k, which has several values in this file"),
+        ("union U { float x; float v[1]; };\nvoid f(float a, float &y) { U u; u.x = 2; u.v[0] = a; y = u.x; }",
+         "a member of a union, which shares its place with others"),
     ],
 )  # fmt: skip
 def test_what_is_no_number_is_refused_with_its_members(text, why, tmp_path):
