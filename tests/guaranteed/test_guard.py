@@ -395,6 +395,22 @@ def test_data_that_no_state_explains_name_their_epochs_and_leave_the_guard_as_it
     assert guard.step(5, t=5).value == pytest.approx(1)
 
 
+@pytest.mark.parametrize("memory", [None, 3, 5])
+def test_a_contradiction_with_a_sensor_that_was_silent_leaves_the_guard_as_it_was(memory):
+    """A new measurement brings an unknown of its own, so that all rows are written anew before the contradiction."""
+    model = nav.Model(states="x b", F=[["0", "0"], ["0", "0"]], H=["x", "x+b"], sigma=["1", "1"], targets={"x": "x"})
+    once, twice = (nav.Guard(model, "x", memory=memory) for _ in range(2))
+    for k, value in enumerate(["0", "1/4", "0", "-1/4", "0", "1/8"]):
+        for guard in (once, twice):
+            guard.step([value, None], t=k)
+    with pytest.raises(InconsistentError):
+        twice.step(["100", "0"], t=6)
+    for k, z in enumerate((["1/2", None], ["0", "3"], ["0", None]), start=7):
+        answers = [guard.step(z, t=k) for guard in (once, twice)]
+        assert answers[0].document() == answers[1].document()
+        assert once.interval() == twice.interval() and once.remembered == twice.remembered
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_contradictions_are_those_of_the_linear_programme(seed):
     rng = np.random.default_rng(300 + seed)

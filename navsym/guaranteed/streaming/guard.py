@@ -147,7 +147,7 @@ class Guard:
         """
         at = self.next_time(t)
         taken = self.read_values(z, sigma, at)
-        before = self.memory.mark(), self.basis, self.signs, self.solved, self.state, self.alike, self.pattern
+        before, mark = vars(self).copy(), self.memory.mark()
         with precision(BITS):
             try:
                 self.memory.add(at, taken)
@@ -155,9 +155,8 @@ class Guard:
                 self.change_kinds()
                 answer = self.answer(at, len(taken))
             except NavsymError:
-                mark, self.basis, self.signs, self.solved, self.state, self.alike, self.pattern = before
+                self.__dict__.update(before)
                 self.memory.take_back(mark)
-                self.change_kinds()
                 raise
             self.epochs += 1
             if self.memory.is_due():

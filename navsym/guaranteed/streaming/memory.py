@@ -134,7 +134,8 @@ class Memory:
 
     def take_back(self, before: tuple[Any, ...]) -> None:
         """The state that :meth:`mark` described."""
-        epochs, rows, self.first, self.oldest, self.gone, self.carry, self.reference, self.flow.stride = before
+        kept, epochs, rows, (self.flow.stride, self.flow.columns, self.flow.size) = before
+        self.__dict__.update(kept)
         for entries, size in ((self.times, epochs), (self.counts, epochs)):
             del entries[size:]
         for column in (self.rows, self.vectors, self.sigmas, self.data):
@@ -143,9 +144,9 @@ class Memory:
         self.seen = Counter(row.j for row in self.rows[self.first :])
 
     def mark(self) -> tuple[Any, ...]:
-        """What :meth:`take_back` needs."""
-        place = len(self.times), len(self.rows), self.first, self.oldest, self.gone
-        return *place, self.carry, self.reference, self.flow.stride
+        """What :meth:`take_back` needs: the lists themselves, since other unknowns make new ones, and their lengths."""
+        flow = self.flow
+        return vars(self).copy(), len(self.times), len(self.rows), (flow.stride, flow.columns, flow.size)
 
     def is_due(self) -> bool:
         """Whether half of what is kept has left the memory."""
@@ -165,7 +166,8 @@ class Memory:
 
     def widen(self) -> None:
         """Room for rows of the present number of unknowns."""
-        self.scaled, self.wide = np.zeros((len(self.scaled), self.flow.size)), 0.0
+        self.scaled, self.shifted = np.zeros((len(self.scaled), self.flow.size)), np.zeros(len(self.shifted))
+        self.wide = 0.0
 
     def kinds(self) -> frozenset[int]:
         """The measurements of the model that are in memory."""
