@@ -50,8 +50,8 @@ class Conversion(Answer):
                      measurement stays as it was resolved; the corrections of the reset are those of the target
     problem        : the model that was converted; ``export`` writes T and its inverse as code
     proofs         : certificates of the entries that the checker granted; longer ones are decided by exact algebra
-    proved         : True where the checker grants F_to T = T (F + neglected) + T', T inverse = E, H_to T = H and
-                     G_to = T G
+    proved         : True where F_to = T (F + neglected) + T', T inverse = E, H_to T = H and G_to = T G: each entry
+                     granted by the checker, or decided by exact algebra where it is long
     """
 
     source: Card
