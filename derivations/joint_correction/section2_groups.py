@@ -7,6 +7,7 @@ order mu^2 rho is dropped term by term (``navsym_papers.joint_correction.inertia
 
 from collections.abc import Callable
 from functools import cache
+from itertools import pairwise
 
 import sympy as sp
 
@@ -288,19 +289,18 @@ def rank_and_drops(group: Group) -> tuple[int, tuple[str, ...]]:
 def say_observable(group: Group, rank: int, unseen: tuple[sp.Expr, ...]) -> list[dict]:
     """That sums of H F^k from the left are d eye(n), and that F keeps vectors N, H N = 0, at unseen values of mu u_3.
 
-    The rank is n where the determinant d is not zero; it drops where such vectors exist.
+    Each H F^k is the one before times F. The rank is n where the determinant d is not zero; it drops where such
+    vectors exist.
     """
     F, H = map(sp.Matrix, group.linear()[:2])
     powers = [(H * F**k).applyfunc(sp.expand) for k in range(rank // H.rows)]
     seen = sp.Matrix.vstack(*powers)
     shares = seen.adjugate().applyfunc(sp.expand)
-    F_text, H_text, d = write_matrix(F), write_matrix(H), to_text(sp.factor(seen.det()))
-    parts = [
-        " @ ".join([write_matrix(shares[:, k * H.rows : (k + 1) * H.rows]), H_text, *[F_text] * k])
-        for k in range(len(powers))
-    ]
+    F_text, rows, d = write_matrix(F), [*map(write_matrix, powers)], to_text(sp.factor(seen.det()))
+    parts = [f"{write_matrix(shares[:, k * H.rows : (k + 1) * H.rows])} @ {row}" for k, row in enumerate(rows)]
     symbols = {s.name: [None, None, []] for s in sorted(F.free_symbols | H.free_symbols, key=str)}
-    said = [state(" + ".join(parts), "=", f"({d})*eye({rank})", symbols)]
+    said = [state(f"{row} @ {F_text}", "=", after, symbols) for row, after in pairwise(rows)]
+    said.append(state(" + ".join(parts), "=", f"({d})*eye({rank})", symbols))
     for value in unseen:
         there = {u3: value / mu}
         N = sp.Matrix.hstack(*seen.subs(there).nullspace())
