@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import sympy as sp
@@ -18,16 +17,7 @@ from flint import arb, arb_mat, fmpq
 
 from navsym.core.balls import precision, series_terms
 from navsym.core.exact import decimal, from_decimal, to_fmpq
-from navsym.guaranteed.certificate.enclosure import (
-    Expansion,
-    PanelCell,
-    PanelProblem,
-    Touch,
-    dot_product,
-    interval_ball,
-    is_cell_bounded,
-    taylor_order,
-)
+from navsym.guaranteed.certificate.enclosure import PanelProblem
 from navsym.guaranteed.certificate.fixed import certificate_header, end_place
 from navsym.guaranteed.certificate.moving import EVERY, Member, MovingProblem, expand_polynomial, series_coefficient
 
@@ -36,8 +26,8 @@ BITS = 192
 ORDER = 2
 DEGREE = 5
 DIGITS = 32
-#: Cells for one panel: so many, and so many more for each contact on it.
-MOST_CELLS, CELLS_EACH = 24, 12
+#: Cells of one piece: so many for each panel, and so many for each contact.
+CELLS, CELLS_EACH = 24, 12
 HUGE = 10**9
 #: A box has this much more room than Newton's step in it needs.
 MARGIN = arb(5) / 4
@@ -55,6 +45,7 @@ class PatternTrack:
 
     first  : p -> Member of this pattern to start from, or None
     moving : (a, b) -> the problem on that piece
+    holds  : whether the checker accepts the certificate of a piece alone
     """
 
     problem: PanelProblem
@@ -62,11 +53,12 @@ class PatternTrack:
     pattern: Pattern
     first: Callable[[fmpq], Member | None]
     moving: Callable[[fmpq, fmpq], MovingProblem]
+    holds: Callable[[RangePiece], bool]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RangePiece:
-    """One verified piece: its certificate, the cells that it took, its optima, the solution at either end."""
+    """One verified piece: its certificate, cells that suffice, its optima, the solution at either end."""
 
     lower: fmpq
     upper: fmpq
@@ -112,16 +104,22 @@ def fraction(x: fmpq) -> str:
 
 
 def verify_piece(track: PatternTrack, member: Member, a: fmpq, b: fmpq) -> RangePiece | None:
-    """The piece between two values, from a solution near it; None when a test fails."""
+    """The piece between two values, from a solution near it; None when a test fails.
+
+    Its place in the parameter and its box are searched here; the checker decides whether the optimum is in the box.
+    """
     a, b = min(a, b), max(a, b)
     with precision(BITS):
         moving = track.moving(a, b)
         curves = solution_curves(moving, track.pattern, moving.local_member(member))
-        found = None if curves is None else verify_curves(track, moving, curves)
-        if curves is None or found is None:
+        box = None if curves is None else find_box(moving, track.pattern, curves)
+        if curves is None or box is None:
             return None
+        radius, value = box
         ends = tuple(moving.global_member(*curve_values(curves, s, moving.size)) for s in (-1, 1))
-        return RangePiece(a, b, *found, ends)  # type: ignore[arg-type]
+        cells = CELLS * len(track.problem.panels) + CELLS_EACH * len(track.pattern)
+        found = RangePiece(a, b, piece_row(track, moving, curves, radius), cells, value, ends)  # type: ignore[arg-type]
+    return found if track.holds(found) else None
 
 
 def curve_values(curves: Sequence[Sequence[fmpq]], s: int, m: int) -> tuple[list[fmpq], list[fmpq], list[fmpq]]:
@@ -230,13 +228,12 @@ def dot(x: Sequence[Any], y: Sequence[Any]) -> Any:
     return value
 
 
-def verify_curves(
-    track: PatternTrack, moving: MovingProblem, curves: Sequence[Sequence[fmpq]]
-) -> tuple[dict[str, Any], int, arb] | None:
-    """Krawczyk's test for all s, signs, places and the bound off the contacts; the row, cells, the value."""
-    pattern, m = track.pattern, moving.size
+def find_box(
+    moving: MovingProblem, pattern: Pattern, curves: Sequence[Sequence[fmpq]]
+) -> tuple[dict[int, arb], arb] | None:
+    """Radii of a box about the curves in which Krawczyk's test holds for all s, and the value there; or None."""
     z = [list(map(arb, c)) for c in curves]
-    free = free_unknowns(pattern, m)
+    free = free_unknowns(pattern, moving.size)
     residual = enclose_series(lambda s: moving_system(moving, pattern, z, {}, s)[0])
     radius: dict[int, arb] = {}
     for attempt in range(4):
@@ -244,22 +241,10 @@ def verify_curves(
         if move is None or not all(bool(abs(d) < HUGE) for d in move.values()):
             return None
         if attempt and all(bool(abs(d) * MARGIN < radius[k]) for k, d in move.items()):
-            break
+            spread = {k: abs(move[k]).upper() * moving.slack for k in range(moving.size)}
+            return radius, value_ball(moving, z[: moving.size], spread)
         radius = {k: arb(from_decimal(decimal(r, 3, 1))) for k, r in box_radius(move, z, moving.slack).items()}
-    else:
-        return None
-    here = [ball_over_piece(c) + move.get(k, arb(0)) for k, c in enumerate(z)]
-    touches = piece_touches(track, here, m)
-    if touches is None:
-        return None
-    spread = {k: abs(move[k]).upper() * moving.slack for k in range(m)}
-    cells = 0
-    for k, mine in enumerate(touches):
-        used = prove_by_halving(mine, partial(expand_moving_cell, moving, z[:m], spread, k))
-        if used is None:
-            return None
-        cells += used
-    return piece_row(track, moving, curves, radius), cells, value_ball(moving, z[:m], spread)
+    return None
 
 
 def box_radius(move: dict[int, arb], z: Sequence[Sequence[arb]], slack: int) -> dict[int, arb]:
@@ -316,75 +301,9 @@ def newton_image(
     return dict(zip(free, moved, strict=True)) if all(d.is_finite() for d in moved) else None
 
 
-def prove_by_halving(touches: Sequence[Touch], expand: Expansion) -> int | None:
-    """Number of cells that prove ``|f| < 1`` off the contacts by halving [0, 1], or None; as the checker does it.
-
-    A cell nearer to the middle of a contact than its own length is tested on the interval about that
-    middle that covers it, by curvature or slope; any other by the size of f.
-    """
-    stack, used = [(fmpq(0), fmpq(1))], 0
-    marks = [(to_fmpq(t.at), t) for t in touches]
-    while stack:
-        a, b = stack.pop()
-        used += 1
-        if used > MOST_CELLS + CELLS_EACH * len(touches):
-            return None
-        if not is_cell_bounded(expand, cell_around(a, b, marks), arb(1), bool(touches)):
-            stack += [(a, (a + b) / 2), ((a + b) / 2, b)]
-    return used
-
-
-def cell_around(a: fmpq, b: fmpq, marks: Sequence[tuple[fmpq, Touch]]) -> PanelCell:
-    """The cell itself, or the interval about a contact next to it."""
-    middle = (a + b) / 2
-    at, touch = min(marks, key=lambda mark: abs(mark[0] - middle), default=(None, None))
-    if at is None or touch is None or not abs(at - middle) < b - a:
-        return PanelCell(a, b)
-    radius = max(at - a, b - at)
-    return PanelCell(at - radius, at + radius, touch)
-
-
 def ball_over_piece(c: Sequence[arb]) -> arb:
     """A ball around the polynomial for all |s| <= 1."""
     return c[0] + sum((a * EVERY for a in c[1:]), arb(0))
-
-
-def piece_touches(track: PatternTrack, here: Sequence[arb], m: int) -> list[list[Touch]] | None:
-    """Contacts as balls over the piece, by panel; None when a sign or a place is not certain."""
-    l = len(track.pattern)
-    touches: list[list[Touch]] = [[] for _ in track.problem.panels]
-    for i, (k, kind, s) in enumerate(track.pattern):
-        v, w = here[m + i], here[m + l + i]
-        inside = kind != "no" or (bool(v > 0) and bool(v < 1))
-        if not inside or not bool(s * w > 0):
-            return None
-        touches[k].append(Touch(v, s, True, kind))
-    return touches
-
-
-def expand_moving_cell(
-    moving: MovingProblem,
-    y: Sequence[Sequence[arb]],
-    spread: dict[int, arb],
-    k: int,
-    cell: PanelCell,
-    centre: fmpq,
-    radius: fmpq,
-) -> list[arb]:
-    """Taylor coefficients of f in w, place ``centre + radius w``, for all |s| <= 1; the last over the whole cell."""
-    order = taylor_order(moving.size)
-
-    def values(s: arb) -> list[Any]:
-        x = [expand_polynomial(c, s) + spread[j] * EVERY for j, c in enumerate(y)]
-        q = moving.rows(k, arb(centre), arb(radius), s, order - 1)
-        return [dot(x, [row_[d] for row_ in q]) for d in range(order)]
-
-    point = [ball_over_piece(c) for c in enclose_series(values)]
-    with series_terms(1):
-        x = [ball_over_piece(c) + spread[j] * EVERY for j, c in enumerate(y)]
-        wide = moving.rows(k, interval_ball(cell.lower, cell.upper), arb(radius), EVERY, order)
-        last = dot_product(x, [series_coefficient(row_[order], 0) for row_ in wide])
-    return [*point, last]
 
 
 def piece_row(
@@ -426,24 +345,16 @@ def never() -> bool:
     return False
 
 
-def always(piece: RangePiece) -> bool:
-    """Every piece is accepted."""
-    return True
-
-
-Accepts = Callable[[RangePiece], bool]
-
-
 def follow_pattern(
-    track: PatternTrack, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never, accepts: Accepts = always
+    track: PatternTrack, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never
 ) -> list[RangePiece]:
-    """Pieces from the middle towards both ends, each as long as its tests allow and accepted, until it is enough."""
+    """Pieces from the middle towards both ends, each as long as its tests allow, until it is enough."""
     middle = short_decimal((lower + upper) / 2, upper - lower)
     member = track.first(middle)
     if member is None:
         return []
-    up = march_pieces(track, member, middle, upper, MOST_FAILURES, enough, accepts)
-    down = march_pieces(track, up[0].ends[0] if up else member, middle, lower, MOST_FAILURES, enough, accepts)
+    up = march_pieces(track, member, middle, upper, MOST_FAILURES, enough)
+    down = march_pieces(track, up[0].ends[0] if up else member, middle, lower, MOST_FAILURES, enough)
     return [*reversed(down), *up]
 
 
@@ -454,13 +365,11 @@ def march_pieces(
     last: fmpq,
     failures: int = MOST_FAILURES,
     enough: Callable[[], bool] = never,
-    accepts: Accepts = always,
 ) -> list[RangePiece]:
     """Pieces from ``at`` to ``last``, upwards or downwards.
 
     failures : halvings of one step after which the march stops
     enough   : asked before every step; True stops the march
-    accepts  : further test of a piece
 
     Towards the end of a regime a weight, the distance of a contact from an end or the slack below the bound vanishes.
     A piece may then be about as long as the square root of the distance, so steps square their distance.
@@ -472,9 +381,8 @@ def march_pieces(
         made = None
         for end in ends_to_try(at, last, step, span):
             made = verify_piece(track, member, at, end)
-            if made is not None and accepts(made):
+            if made is not None:
                 break
-            made = None
         if made is None:
             if abs(last - at) < span * NEAREST:
                 break

@@ -346,13 +346,10 @@ def follow_from_middle(
     family: Family, pattern: Pattern, lower: fmpq, upper: fmpq, enough: Callable[[], bool]
 ) -> list[RangePiece]:
     """Pieces from the middle towards both ends; in a turned basis where the first one makes none."""
-    accepts = checker_accepts(partial(plain_certificate, family))
-    found = follow_pattern(plain_track(family, pattern, conditioning_matrix), lower, upper, enough, accepts)
-    return found or (
-        []
-        if enough()
-        else follow_pattern(plain_track(family, pattern, reflected_matrix), lower, upper, enough, accepts)
-    )
+    found = follow_pattern(plain_track(family, pattern, conditioning_matrix), lower, upper, enough)
+    if found or enough():
+        return found
+    return follow_pattern(plain_track(family, pattern, reflected_matrix), lower, upper, enough)
 
 
 def covered(pieces: Sequence[RangePiece]) -> list[tuple[fmpq, fmpq]]:
@@ -405,7 +402,8 @@ def plain_track(family: Family, pattern: Pattern, basis: Callable[[Family, fmpq]
             bases.append((middle, half, basis(family, middle)))
         return MovingProblem(family.moving, family.parameter, bases[-1][2], middle, half)
 
-    return PatternTrack(family.moving, family.parameter, pattern, lambda p: pattern_member(family, pattern, p), moving)
+    first, holds = partial(pattern_member, family, pattern), checker_accepts(partial(plain_certificate, family))
+    return PatternTrack(family.moving, family.parameter, pattern, first, moving, holds)
 
 
 def follow_from_zero(
@@ -416,10 +414,10 @@ def follow_from_zero(
         family.moving,
         family.parameter,
         pattern,
-        lambda p: pattern_member(family, pattern, p),
-        lambda a, b: scaled_problem(family, form, a, b),
+        partial(pattern_member, family, pattern),
+        partial(scaled_problem, family, form),
+        checker_accepts(lambda part: scaled_certificate(family, form, part)["of"][0]),
     )
-    accepts = checker_accepts(lambda part: scaled_certificate(family, form, part)["of"][0])
     last = min(short_decimal(upper * fmpq(7, 8), upper), short_decimal(form.reach, form.reach))
     end = last
     for _ in range(12):
@@ -427,8 +425,8 @@ def follow_from_zero(
             break
         start = track.first(end / 2)
         first = None if start is None else verify_piece(track, start, fmpq(0), end)
-        if first is not None and accepts(first):
-            return [first, *march_pieces(track, first.ends[1], end, last, 3, enough, accepts)]
+        if first is not None:
+            return [first, *march_pieces(track, first.ends[1], end, last, 3, enough)]
         end = short_decimal(end / 2, end)
     return []
 
