@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import difflib
 import itertools
+import math
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +23,11 @@ from navsym.core.sandbox import Exhausted, run_limited
 from navsym.export.algorithms.models import functions_of_model, matrix_function, plain_name, require_ranges
 from navsym.export.functions import RefusedError, formula_lines, function_of, material
 from navsym.export.languages.names import function_name
-from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source
+from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source, inside
 from navsym.export.ready import READY, algorithm, is_program, units_of_paper
-from navsym.guaranteed.phases.answer import Phases, Regime
+from navsym.guaranteed.phases.answer import Phases, Regime, end_text
 from navsym.guaranteed.phases.front import phases
+from navsym.guaranteed.phases.tables import TablePiece, tabulate_regime
 from navsym.guaranteed.solver import Estimator, solve
 from navsym.language.algebra import to_sympy
 from navsym.language.declarations import box_of, read_parameters, symbols_of
@@ -36,6 +39,7 @@ from navsym.models.model import Model, contents_of
 from navsym.models.modelfile import BasisFile
 from navsym.prove.claimfile import claims_from, decide_claim, read_claims, statement_of
 from navsym.prove.ladder import decide_within, leave_open
+from navsym.prove.wording import expression_text
 from navsym.verification.papers import file_of_source, is_model, load_papers, split_id
 
 SECONDS = 90.0
@@ -318,7 +322,8 @@ def function_of_estimator(found: Estimator, real: str, units: Mapping[str, str])
 def function_of_phases(found: Phases, real: str, units: Mapping[str, str]) -> ExportedFunction:
     """Value, weights and times as functions of the parameter, one piece for each regime.
 
-    Raises RefusedError where a regime has no closed form, is not proved, or ends at a number known by its digits only.
+    A regime without a closed form is a table of polynomials, with the errors of interpolation as two more results.
+    Raises RefusedError where a regime is not proved, or ends at a number known by its digits only.
     """
     name, parameter = found.target, found.parameter
     if found.uncovered:
@@ -326,46 +331,114 @@ def function_of_phases(found: Phases, real: str, units: Mapping[str, str]) -> Ex
         raise RefusedError(
             f"expected regimes on the whole range; got none proved for {parameter} from {gap}; narrow it"
         )
+    tabled = any(regime.closed is None for regime in found.regimes)
+    parts: list[Material] = []
     for regime in found.regimes:
         start, end = regime.ends
-        lacking = "no closed form" if regime.closed is None else "" if regime.status == PROVED else str(regime.status)
-        if not lacking and any(e.is_Rational and e.q > LARGEST_DENOMINATOR for e in (regime.lower, regime.upper)):
-            lacking = "an end without a closed form"
+        lacking = "" if regime.status == (PROVED if regime.closed else CERTIFIED) else str(regime.status)
+        if regime.closed and any(e.is_Rational and e.q > LARGEST_DENOMINATOR for e in (regime.lower, regime.upper)):
+            lacking = lacking or "an end without a closed form"
         if lacking:
-            message = f"expected proved closed forms; got {lacking} for {parameter} from {start} to {end}"
+            message = f"expected proved closed forms or tables; got {lacking} for {parameter} from {start} to {end}"
             raise RefusedError(f"{message}; choose another range, or export phases.at({parameter}=…)")
-    parts = [material_of_regime(found, regime) for regime in found.regimes]
+        if regime.closed is None:
+            parts += [material_of_piece(found, regime, piece) for piece in tabulate_regime(regime)]
+        else:
+            parts.append(material_of_regime(found, regime, [sp.S.Zero] * 2 if tabled else []))
+    parts = join_pieces(parts, found) if tabled else parts
     return function_of(parts, real=real, name=function_name(name), layout=Layout(units=units))
 
 
-def material_of_regime(found: Phases, regime: Regime) -> Material:
+def material_of_regime(found: Phases, regime: Regime, errors: Sequence[sp.Expr]) -> Material:
     """Value, weights, times and the places of the measurements of one regime."""
     assert regime.closed is not None and regime.value is not None
-    points, verdict = regime.support, regime.closed.verdict
+    rows = [(point.measurement, point.at, point.weight) for point in regime.support]
+    said = (regime.closed.verdict.method, regime.closed.verdict.scope, tuple(regime.closed.verdict.assumptions))
+    ends, proof = (regime.lower, regime.upper), regime.closed.verdict.certificate
+    return material_of_support(found, str(regime.status), ends, regime.value, rows, errors, said, proof)
+
+
+def material_of_piece(found: Phases, regime: Regime, piece: TablePiece) -> Material:
+    """The same of one piece of a table, as polynomials in the share of the piece that the parameter has passed."""
+    family = found.family
+    share = sp.Symbol("share" if found.parameter != "share" else "part", real=True)
+
+    def horner(coefficients: Sequence[sp.Expr]) -> sp.Expr:
+        total = sp.S.Zero
+        for c in reversed(coefficients):
+            total = c + share * total
+        return total
+
+    power, rows, values = family.parameter**piece.shift, [], []
+    for k, place, weight in piece.contacts:
+        start, stop = family.panels[k]
+        size = horner(weight) / power
+        rows.append(
+            (family.measurements[k], family.time(start + (stop - start) * horner(place)), size / family.sigma[k])
+        )
+        values.append([c if weight[0] > 0 else -c for c in weight])
+    value = horner([sum(column) for column in itertools.zip_longest(*values, fillvalue=sp.S.Zero)]) / power
+    error, late = (expression_text(e) for e in (piece.error, piece.time_error))
+    scope = f"value and sum of sigma |error of a weight| within {error}, times within {late}, beside rounding"
+    said = "interpolation about the certified optimum", scope, ()
+    rows = list(reversed(rows)) if family.backward else rows
+    ends, errors = (piece.lower, piece.upper), [piece.error, piece.time_error]
+    made = material_of_support(found, str(regime.status), ends, value, rows, errors, said, piece.certificate)
+    return replace(made, lets=((share, piece.share),))
+
+
+def material_of_support(
+    found: Phases,
+    status: str,
+    ends: tuple[sp.Expr, sp.Expr],
+    value: sp.Expr,
+    support: Sequence[tuple[str, Any, Any]],
+    errors: Sequence[sp.Expr],
+    said: tuple[str, str, tuple[str, ...]],
+    certificate: Mapping[str, Any] | None,
+) -> Material:
+    """Value, weights and times between two values of the parameter, with the sentences about them.
+
+    support : (measurement, time, weight)
+    errors  : of the value and of the times; none where no regime has a table
+    said    : method, scope, assumptions
+    """
     names = list(dict.fromkeys(found.family.measurements))
     columns: list[tuple[str, Sequence[Any]]] = [
-        ("weights", [point.weight for point in points]),
-        ("times", [point.at for point in points]),
+        ("weights", [weight for *_, weight in support]),
+        ("times", [at for _, at, _ in support]),
     ]
     if len(names) > 1:
-        columns.append(("measurement", [sp.Integer(names.index(point.measurement)) for point in points]))
-    results = [(Output("value"), [regime.value])]
+        columns.append(("measurement", [sp.Integer(names.index(name)) for name, *_ in support]))
+    results = [(Output("value"), [value])]
     results += [(Output(name, (len(column),)), list(column)) for name, column in columns]
+    results += [(Output(name), [e]) for name, e in zip(("error", "time_error"), errors, strict=False)]
     formula = formula_lines(results)
-    start, end = regime.ends
+    start, end = map(end_text, ends)
     source = Source(
-        claim=f"phases:{found.target} for {found.parameter} from {start} to {end}",
-        title=f"Guaranteed estimator of {found.target}",
-        paper="",
-        equation="",
-        status=str(regime.status),
-        method=verdict.method,
-        scope=verdict.scope,
-        assumptions=tuple(verdict.assumptions),
+        f"phases:{found.target} for {found.parameter} from {start} to {end}",
+        f"Guaranteed estimator of {found.target}",
+        "",
+        "",
+        status,
+        *said,
         formula=formula + tuple(f"measurement {k} is {name}" for k, name in enumerate(names) if len(names) > 1),
-        certificate=verdict.certificate,
+        certificate=certificate,
     )
-    return Material(source.claim, results, {found.family.parameter: (regime.lower, regime.upper)}, source)
+    return Material(source.claim, results, {found.family.parameter: ends}, source)
+
+
+def join_pieces(parts: Sequence[Material], found: Phases) -> list[Material]:
+    """Pieces that meet: a gap between two of them without a double in it is closed. Raises RefusedError for others."""
+    parameter, done, end = found.family.parameter, [], found.lower
+    for part in parts:
+        low, high = part.box[parameter]
+        if inside(low, 1) > math.nextafter(inside(end, -1), math.inf):
+            ends = f"{end_text(end)} to {end_text(low)}"
+            raise RefusedError(f"expected tables on the whole range; got none from {ends}; narrow the range")
+        done.append(replace(part, box={parameter: (end, high)}))
+        end = high
+    return done
 
 
 def functions_of_derivation(found: Derivation, real: str, units: Mapping[str, str]) -> list[ExportedFunction]:

@@ -162,6 +162,12 @@ class Panel:
         return joint_tape(self.functions)
 
     @cached_property
+    def slopes(self) -> JointTape:
+        """H, all first derivatives, and all second ones halved."""
+        first = [h.diff(self.variable) for h in self.functions]
+        return joint_tape([*self.functions, *first, *(d.diff(self.variable) / 2 for d in first)])
+
+    @cached_property
     def ends(self) -> JointTape:
         return joint_tape([self.start, self.end, self.sigma])
 

@@ -1,4 +1,4 @@
-"""Regressors of a problem whose parameter moves: series in s, jets in the place.
+"""Regressors of a problem whose parameter moves: series in s, with two derivatives by the place.
 
 In a piece of a range ``p = middle + half s`` with |s| <= 1. A place is a fraction v of its panel,
 ``t = start(p) + (end(p) - start(p)) v``, and ``q = A H / sigma`` with a rational matrix A. Near p = 0,
@@ -17,128 +17,6 @@ from flint import arb, arb_mat, arb_series, ctx, fmpq, fmpq_mat
 
 from navsym.core.exact import to_fmpq
 from navsym.guaranteed.certificate.enclosure import PanelProblem
-
-# Power series in two variables: a jet in w whose coefficients are series in s.
-#
-# ``f(w, s) = sum_k f_k(s) w**k`` up to an order in w; every f_k is an ``arb_series`` in s, or a ball. The
-# functions of the language follow from their differential equations in w, for instance
-# ``k e_k = sum_j j a_j e_{k-j}`` for e = exp(a). Everything is an enclosure when the coefficients are.
-
-
-class Jet:
-    """Coefficients of w**0 … w**order; trailing ones may be left out and are zero."""
-
-    __slots__ = ("_waves", "order", "parts")
-
-    def __init__(self, parts: Sequence[Any], order: int):
-        self.parts, self.order = tuple(parts[: order + 1]), order
-        self._waves: tuple[Jet, Jet] | None = None
-
-    def __add__(self, other: Any) -> Jet:
-        mine, theirs = self.parts, jet_parts(other)
-        longer, shorter = (mine, theirs) if len(mine) >= len(theirs) else (theirs, mine)
-        both = [a + b for a, b in zip(longer, shorter, strict=False)]
-        return Jet([*both, *longer[len(shorter) :]], self.order)
-
-    __radd__ = __add__
-
-    def __mul__(self, other: Any) -> Jet:
-        theirs = jet_parts(other)
-        if len(theirs) == 1:
-            return Jet([a * theirs[0] for a in self.parts], self.order)
-        size = min(len(self.parts) + len(theirs) - 1, self.order + 1)
-        return Jet([convolve_at(self.parts, theirs, k) for k in range(size)], self.order)
-
-    __rmul__ = __mul__
-
-    def __neg__(self) -> Jet:
-        return Jet([-a for a in self.parts], self.order)
-
-    def __sub__(self, other: Any) -> Jet:
-        return self + (-other)
-
-    def __truediv__(self, other: Any) -> Jet:
-        return self * (1 / other)
-
-    def __rtruediv__(self, other: Any) -> Jet:
-        a = self.parts
-        done = [1 / a[0]]
-        for k in range(1, self.size()):
-            done.append(-done[0] * add_up(a[j] * done[k - j] for j in range(1, min(k, len(a) - 1) + 1)))
-        return Jet(done, self.order) * other
-
-    def size(self) -> int:
-        """Terms of a function of the jet: one for a jet that does not depend on w."""
-        return 1 if len(self.parts) == 1 else self.order + 1
-
-    # What the tapes ask of an argument before they divide or take a logarithm.
-
-    def head(self) -> Any:
-        first = self.parts[0]
-        return first[0] if isinstance(first, arb_series) else first
-
-    def contains(self, value: int) -> bool:
-        return bool(self.head().contains(value))
-
-    def __gt__(self, value: Any) -> bool:
-        return bool(self.head() > value)
-
-    def __lt__(self, value: Any) -> bool:
-        return bool(self.head() < value)
-
-    def exp(self) -> Jet:
-        a, done = self.parts, [self.parts[0].exp()]
-        for k in range(1, self.size()):
-            done.append(add_up(j * a[j] * done[k - j] for j in range(1, min(k, len(a) - 1) + 1)) / k)
-        return Jet(done, self.order)
-
-    def log(self) -> Jet:
-        a, below = self.parts, 1 / self.parts[0]
-        done = [a[0].log()]
-        for k in range(1, self.size()):
-            known = [j * done[j] * a[k - j] for j in range(1, k) if k - j < len(a)]
-            own = [k * a[k]] if k < len(a) else []
-            done.append(add_up([*own, *(-x for x in known)]) * below / k)
-        return Jet(done, self.order)
-
-    def sqrt(self) -> Jet:
-        return (self.log() / 2).exp()
-
-    def waves(self) -> tuple[Jet, Jet]:
-        """sin and cos, computed together and kept."""
-        if self._waves is None:
-            a = self.parts
-            sine, cosine = [a[0].sin()], [a[0].cos()]
-            for k in range(1, self.size()):
-                js = range(1, min(k, len(a) - 1) + 1)
-                up = add_up(j * a[j] * cosine[k - j] for j in js) / k
-                cosine.append(-add_up(j * a[j] * sine[k - j] for j in js) / k)
-                sine.append(up)
-            self._waves = Jet(sine, self.order), Jet(cosine, self.order)
-        return self._waves
-
-    def sin(self) -> Jet:
-        return self.waves()[0]
-
-    def cos(self) -> Jet:
-        return self.waves()[1]
-
-
-def jet_parts(x: Any) -> tuple[Any, ...]:
-    return x.parts if isinstance(x, Jet) else (x,)
-
-
-def convolve_at(a: Sequence[Any], b: Sequence[Any], k: int) -> Any:
-    low, high = max(0, k - len(b) + 1), min(k, len(a) - 1)
-    return add_up(a[i] * b[k - i] for i in range(low, high + 1))
-
-
-def add_up(terms: Any) -> Any:
-    value = None
-    for term in terms:
-        value = term if value is None else value + term
-    return arb_series([0]) if value is None else value
-
 
 EVERY = arb(0, 1)
 
@@ -212,33 +90,27 @@ class MovingProblem:
         """The parameter about s."""
         return arb_series([arb(self.middle) + arb(self.half) * s, arb(self.half)])
 
-    def rows(self, k: int, v: Any, r: Any, s: arb, order: int) -> list[list[Any]]:
-        """Coefficients 0 … order in w of every q on panel k, at the fraction ``v + r w``."""
-        return self.mixed(self.mix, *self.functions(k, v, r, s, order), order)
-
-    def functions(self, k: int, v: Any, r: Any, s: arb, order: int) -> tuple[list[list[Any]], Any]:
-        """Coefficients of every H, and ``1 / sigma``."""
+    def rows(self, k: int, v: Any, s: arb) -> list[list[Any]]:
+        """q, q' and q''/2 by the fraction v of panel k, for every q."""
         panel, p = self.problem.panels[k], self.value(s)
         start, end, sigma = panel.ends.run({self.parameter: p})
-        t = Jet([start + (end - start) * v, (end - start) * r], order)
-        H = panel.program.run({panel.variable: t, self.parameter: Jet([p], order)})
-        return [pad_jet(h, order) for h in H], 1 / sigma
+        length = end - start
+        found = panel.slopes.run({panel.variable: start + length * v, self.parameter: p})
+        m = len(panel.functions)
+        H = [[found[j], found[m + j] * length, found[2 * m + j] * length * length] for j in range(m)]
+        return self.mixed(H, 1 / sigma)
 
-    def mixed(self, matrix: arb_mat, H: Sequence[Sequence[Any]], scale: Any, order: int) -> list[list[Any]]:
-        n = ctx.cap
+    def mixed(self, H: Sequence[Sequence[Any]], scale: Any) -> list[list[Any]]:
+        """A H times a series."""
+        n, parts = ctx.cap, range(len(H[0]))
         flat = arb_mat([[series_coefficient(part, j) for part in h for j in range(n)] for h in H])
-        q = (matrix * flat).tolist()
-        return [[arb_series(row[n * k : n * (k + 1)]) * scale for k in range(order + 1)] for row in q]
+        q = (self.mix * flat).tolist()
+        return [[arb_series(row[n * k : n * (k + 1)]) * scale for k in parts] for row in q]
 
     def target(self, s: arb) -> list[Any]:
         """``A P`` about s."""
         P = self.problem.functional_program.run({self.parameter: self.value(s)})
-        return [row[0] for row in self.mixed(self.mix, [[p] for p in P], arb(1), 0)]
-
-
-def pad_jet(h: Any, order: int) -> list[Any]:
-    parts = list(h.parts) if isinstance(h, Jet) else [h]
-    return parts + [arb(0)] * (order + 1 - len(parts))
+        return [row[0] for row in self.mixed([[p] for p in P], arb(1))]
 
 
 # -- next to a vanishing interval -------------------------------------------------------------------
@@ -275,17 +147,17 @@ class VanishingProblem(MovingProblem):
         plain = [c / p**low for c, low in zip(y, self.lows, strict=True)]
         return super().global_member(plain, places, [w / p**self.shift for w in weights])
 
-    def rows(self, k: int, v: Any, r: Any, s: arb, order: int) -> list[list[Any]]:
-        p = self.value(s)
-        place = Jet([v, arb_series([r])], order)
-        u, done = place * p, []
+    def rows(self, k: int, v: Any, s: arb) -> list[list[Any]]:
+        p, done = self.value(s), []
         for low, c in zip(self.lows, self.local[k], strict=True):
-            value: Any = Jet([arb_series([c[-1]])], order)
-            for a in reversed(c[low:-1]):
-                value = value * u + a
-            for _ in range(low):
-                value = value * place
-            done.append(pad_jet(value, order))
+            power, factors = arb_series([1]), [arb(0)] * low
+            for a in c[low:]:
+                factors.append(power * a)
+                power = power * p
+            value, slope, half = (arb_series([0]) for _ in range(3))
+            for a in reversed(factors):  # Horner's scheme with two derivatives
+                value, slope, half = value * v + a, slope * v + value, half * v + slope
+            done.append([value, slope, half])
         return done
 
     def target(self, s: arb) -> list[Any]:

@@ -129,14 +129,16 @@ def curve_values(curves: Sequence[Sequence[fmpq]], s: int, m: int) -> tuple[list
     return values[:m], values[m : m + l], values[m + l :]
 
 
-def solution_curves(moving: MovingProblem, pattern: Pattern, start: Sequence[fmpq]) -> list[list[fmpq]] | None:
+def solution_curves(
+    moving: MovingProblem, pattern: Pattern, start: Sequence[fmpq], degree: int = DEGREE
+) -> list[list[fmpq]] | None:
     """Taylor polynomials of the solution about the middle: ``z <- z - F'(0)^-1 F(z(s))``, an order a step."""
     free = free_unknowns(pattern, moving.size)
     found = correct_centre(moving, pattern, [[c] for c in start], free)
     if found is None:
         return None
     curves, inverse = found
-    for count in (*range(2, DEGREE + 2), DEGREE + 1):
+    for count in (*range(2, degree + 2), degree + 1):
         with series_terms(count):
             F, _ = moving_system(moving, pattern, curves, {}, arb(0))
             steps = [(inverse * arb_mat([[series_coefficient(f, k)] for f in F])).tolist() for k in range(count)]
@@ -208,7 +210,7 @@ def moving_system(
     balance = [-t for t in moving.target(s)]
     rows: list[dict[int, Any]] = [{} for _ in range(m)]
     for i, (k, kind, sign) in enumerate(pattern):
-        q = moving.rows(k, here[m + i], arb(1), s, 2)
+        q = moving.rows(k, here[m + i], s)
         f = [dot(y, [row[d] for row in q]) for d in range(3)]
         F.append(f[0] - sign)
         J.append({j: q[j][0] for j in range(m)} | {m + i: f[1]})
@@ -263,14 +265,14 @@ def value_ball(moving: MovingProblem, y: Sequence[Sequence[arb]], spread: dict[i
     return ball_over_piece(enclose_series(product)[0])
 
 
-def enclose_series(function: Callable[[arb], list[Any]]) -> list[list[arb]]:
+def enclose_series(function: Callable[[arb], list[Any]], order: int = ORDER) -> list[list[arb]]:
     """Taylor coefficients about s = 0 of every entry; the last holds over all |s| <= 1."""
-    with series_terms(ORDER):
+    with series_terms(order):
         thin = function(arb(0))
-    with series_terms(ORDER + 1):
+    with series_terms(order + 1):
         wide = function(EVERY)
     return [
-        [*(series_coefficient(a, k) for k in range(ORDER)), series_coefficient(b, ORDER)]
+        [*(series_coefficient(a, k) for k in range(order)), series_coefficient(b, order)]
         for a, b in zip(thin, wide, strict=True)
     ]
 

@@ -261,8 +261,8 @@ class Guard:
         before = self.solved
         if self.length is None or before is None or self.alike <= self.length + 1 or not self.flow.is_invariant:
             return None
-        if self.flow.blocks:
-            return None
+        if self.spread:
+            self.spread = {i + fresh: w for i, w in self.spread.items()}
         self.basis = [i + fresh for i in self.basis]
         return self.make_plan(at, before)
 
