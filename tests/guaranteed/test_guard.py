@@ -157,6 +157,43 @@ def test_a_full_memory_of_equal_epochs_repeats_its_weights():
     assert repeating.alike > 13
 
 
+@pytest.mark.parametrize("norm", ["l2", "l1"])
+def test_equal_epochs_with_blocks_repeat_their_weights_too(norm):
+    """The twin solves every epoch: its balls differ in places far beyond the digits that are shown."""
+    model = nav.Model(
+        "x y u v", [["0", "0", "1", "0"], ["0", "0", "0", "1"], ["0"] * 4, ["0"] * 4], ["x", "y"], ["1", "2"],
+        targets={"turn": "u - v"}, blocks=[{"measurements": "z1 z2", "norm": norm}],
+    )  # fmt: skip
+    repeating, fresh = (nav.Guard(model, "turn", memory=5) for _ in range(2))
+    fresh.repeat = lambda at, new: None
+    rng, repeated = np.random.default_rng(4), 0
+    for k in range(24):
+        z = None if k == 14 else [round(float(e), 6) for e in rng.uniform(-0.4, 0.4, 2)]
+        before = repeating.plan
+        one, other = (guard.step(z, t=k) for guard in (repeating, fresh))
+        repeated += before is not None and repeating.plan.weights is before.weights
+        if other.radius is None:
+            assert one.radius is None
+            continue
+        assert one.value == pytest.approx(other.value, abs=1e-15)
+        assert Fraction(one.radius.upper) / Fraction(other.radius.upper) == pytest.approx(1, abs=1e-20)
+        assert [w[:2] for w in one.weights] == [w[:2] for w in other.weights] and one.check().accepted
+        noise = {(t, name): r for t, name, r in one.worst_case()}
+        assert sum(w * noise[t, name] for t, name, w in one.weights) == pytest.approx(float(one.radius.upper))
+    assert repeated > 8
+
+
+@pytest.mark.parametrize("blocks", [[], [{"measurements": "z1 z2"}]])
+def test_a_contradiction_after_repeated_epochs_is_noticed_wherever_the_memory_is_written_anew(blocks):
+    model = nav.Model("x y", [["0", "0"], ["0", "0"]], ["x", "y"], targets={"x": "x"}, blocks=blocks)
+    guard = nav.Guard(model, "x", memory=3)
+    for k in range(140):
+        guard.step(["1/4", "-1/4"], t=2 * k)
+        if k > 4:
+            with pytest.raises(InconsistentError):
+                guard.step(["9", "-1/4"], t=2 * k + 1)
+
+
 def test_a_gap_ends_the_repetition_and_the_answer_is_right_again():
     model = nav.Model("x v", [["0", "1"], ["0", "0"]], ["x"], targets={"speed": "v"})
     guard = nav.Guard(model, "speed", "variance", memory=5)

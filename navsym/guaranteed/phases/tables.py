@@ -120,7 +120,7 @@ def refine_curves(moving: MovingProblem, row: Mapping[str, Any]) -> tuple[list[l
     free = free_unknowns(pattern, moving.size)
     z = [list(map(arb, c)) for c in curves]
     radius = {k: arb(from_decimal(row["radius"][k])) + distance(curves[k], known[k]) for k in free}
-    residual = enclose_series(lambda s: moving_system(moving, pattern, z, {}, s)[0], DEGREE + 1)
+    residual = enclose_series(lambda s: moving_system(moving, pattern, z, {}, s)[0], DEGREE + 4)
     for _ in range(IMAGES):
         move = newton_image(moving, pattern, z, residual, radius, free)
         if move is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -107,6 +108,7 @@ class Guard:
         self.basis: list[int] = []
         self.signs: list[int] = []
         self.solved: Optimum | None = None
+        self.plan: Plan | None = None
         self.state: np.ndarray | None = None
         self.epochs = 0
         self.alike = 0
@@ -219,7 +221,7 @@ class Guard:
         self.choose_kinds()
         if self.flow.columns != before:
             self.memory.refer(self.memory.reference)
-            self.basis, self.signs, self.solved, self.state = [], [], None, None
+            self.basis, self.signs, self.solved, self.plan, self.state = [], [], None, None, None
 
     def note_pattern(self, at: fmpq, taken: Taken) -> None:
         """Count the epochs that repeat the one before: same step, same measurements, same bounds."""
@@ -241,9 +243,10 @@ class Guard:
             return Estimate(to_float(at), self.target, None, self.radius_kind)
         if self.outliers:
             return self.answer_with_outliers(at)
-        plan = self.repeat(at, fresh) or self.optimise(at, fresh) or self.solve_scarcely(at)
-        if self.bound == "bounded" and self.solved is not None:
+        self.plan = self.repeat(at, fresh) or self.optimise(at, fresh)
+        if self.bound == "bounded" and self.plan is not None:
             self.need_consistent(fresh)
+        plan = self.plan or self.solve_scarcely(at)
         if plan is None:
             return Estimate(to_float(at), self.target, None, self.radius_kind)
         value = middle(plan.value())
@@ -258,13 +261,11 @@ class Guard:
         With F, h and bounds constant a shift of all times changes nothing, so that a full memory of equal epochs has
         the optimum that it had: a fixed-memory rule with constant weights.
         """
-        before = self.solved
+        before, memory = self.plan, self.memory
         if self.length is None or before is None or self.alike <= self.length + 1 or not self.flow.is_invariant:
             return None
-        if self.spread:
-            self.spread = {i + fresh: w for i, w in self.spread.items()}
         self.basis = [i + fresh for i in self.basis]
-        return self.make_plan(at, before)
+        return replace(before, now=at, rows=Window(memory.rows, memory.first, len(memory.rows)))
 
     def optimise(self, at: fmpq, fresh: int) -> Plan | None:
         """The optimum, from the last support where that is still in memory."""
