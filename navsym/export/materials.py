@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import difflib
 import itertools
-import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import sympy as sp
 
 from navsym.audit.answer import Audit, AuditedQuestion, audit_specification
@@ -345,7 +345,7 @@ def function_of_phases(found: Phases, real: str, units: Mapping[str, str]) -> Ex
             parts += [material_of_piece(found, regime, piece) for piece in tabulate_regime(regime)]
         else:
             parts.append(material_of_regime(found, regime, [sp.S.Zero] * 2 if tabled else []))
-    parts = join_pieces(parts, found) if tabled else parts
+    parts = join_pieces(parts, found, real) if tabled else parts
     return function_of(parts, real=real, name=function_name(name), layout=Layout(units=units))
 
 
@@ -381,9 +381,9 @@ def material_of_piece(found: Phases, regime: Regime, piece: TablePiece) -> Mater
     error, late = (expression_text(e) for e in (piece.error, piece.time_error))
     scope = f"value and sum of sigma |error of a weight| within {error}, times within {late}, beside rounding"
     said = "interpolation about the certified optimum", scope, ()
-    rows = list(reversed(rows)) if family.backward else rows
     ends, errors = (piece.lower, piece.upper), [piece.error, piece.time_error]
-    made = material_of_support(found, str(regime.status), ends, value, rows, errors, said, piece.certificate)
+    support = rows[:: -1 if family.backward else 1]
+    made = material_of_support(found, str(regime.status), ends, value, support, errors, said, piece.certificate)
     return replace(made, lets=((share, piece.share),))
 
 
@@ -428,16 +428,21 @@ def material_of_support(
     return Material(source.claim, results, {found.family.parameter: ends}, source)
 
 
-def join_pieces(parts: Sequence[Material], found: Phases) -> list[Material]:
-    """Pieces that meet: a gap between two of them without a double in it is closed. Raises RefusedError for others."""
+def join_pieces(parts: Sequence[Material], found: Phases, real: str) -> list[Material]:
+    """Pieces that meet: a gap without a number of the type in it is closed, and a piece without one is left out.
+
+    Raises RefusedError for other gaps.
+    """
     parameter, done, end = found.family.parameter, [], found.lower
+    kind = np.float32 if real == "float" else np.float64
     for part in parts:
         low, high = part.box[parameter]
-        if inside(low, 1) > math.nextafter(inside(end, -1), math.inf):
+        if inside(low, 1, real) > np.nextafter(kind(inside(end, -1, real)), kind(np.inf)):
             ends = f"{end_text(end)} to {end_text(low)}"
             raise RefusedError(f"expected tables on the whole range; got none from {ends}; narrow the range")
-        done.append(replace(part, box={parameter: (end, high)}))
-        end = high
+        if inside(end, 1, real) <= inside(high, -1, real):
+            done.append(replace(part, box={parameter: (end, high)}))
+            end = high
     return done
 
 

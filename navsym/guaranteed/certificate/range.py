@@ -20,6 +20,7 @@ from navsym.core.exact import decimal, from_decimal, to_fmpq
 from navsym.guaranteed.certificate.enclosure import PanelProblem
 from navsym.guaranteed.certificate.fixed import certificate_header, end_place
 from navsym.guaranteed.certificate.moving import EVERY, Member, MovingProblem, expand_polynomial, series_coefficient
+from navsym.guaranteed.streaming.numbers import write_rational
 
 BITS = 192
 #: Order of the series in s, the last coefficient over the whole piece; and degree of the curves.
@@ -84,7 +85,7 @@ class RangeProof:
 def range_document(problem: PanelProblem, parameter: str, pieces: Sequence[RangePiece]) -> dict[str, Any]:
     """The certificate of pieces that lie next to each other."""
     head = certificate_header(problem, "range", BITS, sum(p.cells for p in pieces), *value_bounds(pieces))
-    ends = {"parameter": parameter, "from": fraction(pieces[0].lower), "to": fraction(pieces[-1].upper)}
+    ends = {"parameter": parameter, "from": write_rational(pieces[0].lower), "to": write_rational(pieces[-1].upper)}
     return head | ends | {"pieces": [p.row for p in pieces]}
 
 
@@ -93,11 +94,6 @@ def value_bounds(pieces: Sequence[RangePiece]) -> tuple[str, str]:
     low, high = (min(to_fmpq(p.value.lower()) for p in pieces), max(to_fmpq(p.value.upper()) for p in pieces))
     room = max(abs(low), abs(high)) / ROOM
     return decimal(low - room, 9, -1), decimal(high + room, 9, 1)
-
-
-def fraction(x: fmpq) -> str:
-    """The number as text, a fraction when it is none of the integers."""
-    return str(int(x.p)) if x.q == 1 else f"{int(x.p)}/{int(x.q)}"
 
 
 # -- one piece ---------------------------------------------------------------------------------------
@@ -323,9 +319,9 @@ def piece_row(
         for i, (k, kind, _) in enumerate(track.pattern)
     ]
     return {
-        "from": fraction(moving.middle - moving.half),
-        "to": fraction(moving.middle + moving.half),
-        "basis": [[fraction(moving.basis[i, j]) for j in range(m)] for i in range(m)],
+        "from": write_rational(moving.middle - moving.half),
+        "to": write_rational(moving.middle + moving.half),
+        "basis": [[write_rational(moving.basis[i, j]) for j in range(m)] for i in range(m)],
         "dual": [text(c) for c in curves[:m]],
         "contacts": contacts,
         "radius": [decimal(to_fmpq(radius.get(k, smallest)), 12, 1) for k in range(m + 2 * l)],

@@ -1,8 +1,7 @@
 """Regimes without a closed form as tables: polynomials of times and weights, and how far they are from the optimum.
 
 The checker has shown that the optimum of a piece of a range lies in a box about its curves. Newton's step from other
-curves, of higher degree, has its image about the same optimum (Neumaier 1990, chapter 5); a residual of their order
-makes that image small. Nothing here rests on how the curves were found.
+curves has its image about the same optimum (Neumaier 1990, chapter 5); a residual of their order makes it small.
 """
 
 from __future__ import annotations
@@ -31,10 +30,10 @@ from navsym.guaranteed.phases.answer import Regime
 from navsym.guaranteed.phases.certify_range import echelon_form, rescale_family
 from navsym.guaranteed.phases.family import Family
 
-#: Degree of the polynomials, and how often Newton's image is taken.
-DEGREE, IMAGES = 10, 4
-#: Digits of an error, rounded up.
-ERROR_DIGITS = 3
+#: Degrees of the polynomials: the first is taken whose errors are below NEAR of the largest weight, or else the last.
+DEGREES, NEAR = (2, 4, 7, 10), fmpq(1, 2**58)
+#: How often Newton's image is taken, and digits of an error, rounded up.
+IMAGES, DIGITS = 4, 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,32 +80,34 @@ def tabulate_regime(regime: Regime) -> Iterator[TablePiece]:
             basis = fmpq_mat([[to_fmpq(sp.Rational(e)) for e in line] for line in row["basis"]])
             moving = MovingProblem(scaled.moving, family.parameter, basis, (a + b) / 2, (b - a) / 2)
             with precision(BITS):
-                curves, errors = refine_curves(moving, row)
                 m, panels = moving.size, [c["panel"] for c in row["contacts"]]
                 l = len(panels)
+                for degree in DEGREES:
+                    curves, errors = refine_curves(moving, row, degree)
+                    if max(errors[m:]) < NEAR * max(abs(w[0]) for w in curves[m + l :]):
+                        break
                 cost = sum(errors[m + l :], arb(0)) / (arb(a) ** shift)
-                late = [e * panel_length(family, k, a, b) for e, k in zip(errors[m:], panels, strict=False)]
-                time_error = max(to_fmpq(e.upper()) for e in late)
+                sizes = [panel_length(family, k, a, b) for k in panels]
+                late = max((e * size).upper() for e, size in zip(errors[m:], sizes, strict=False))
             exact = [tuple(map(to_rational, c)) for c in curves]
             share = (family.parameter - (low + high) / 2) * 2 / (high - low)
             contacts = tuple(zip(panels, exact[m : m + l], exact[m + l :], strict=True))
-            errors_up = round_up(to_fmpq(cost.upper())), round_up(time_error)
-            yield TablePiece(low, high, share, contacts, shift, *errors_up, proof)
+            yield TablePiece(low, high, share, contacts, shift, round_up(cost), round_up(late), proof)
 
 
 def panel_length(family: Family, panel: int, a: fmpq, b: fmpq) -> arb:
-    """The largest length of a panel between two values of the parameter."""
+    """The length of a panel for all values of the parameter between two."""
     start, stop = family.panels[panel]
-    return arb(abs(tape(stop - start).run({family.parameter: interval_ball(a, b)})).upper())
+    return arb(tape(stop - start).run({family.parameter: interval_ball(a, b)}))
 
 
-def round_up(x: fmpq) -> sp.Rational:
-    """A short number that is not below."""
-    return sp.Rational(decimal(x, ERROR_DIGITS, 1)) if x else sp.S.Zero
+def round_up(x: arb) -> sp.Rational:
+    """A short number that is not below a ball."""
+    return sp.Rational(decimal(to_fmpq(x.upper()), DIGITS, 1))
 
 
-def refine_curves(moving: MovingProblem, row: Mapping[str, Any]) -> tuple[list[list[fmpq]], list[arb]]:
-    """Curves of higher degree through the box of a piece, and how far the optimum is from each at most, for all s.
+def refine_curves(moving: MovingProblem, row: Mapping[str, Any], degree: int) -> tuple[list[list[fmpq]], list[arb]]:
+    """Curves of a degree through the box of a piece, and how far the optimum is from each at most, for all s.
 
     Raises DomainError where Newton's image is not finite.
     """
@@ -116,11 +117,11 @@ def refine_curves(moving: MovingProblem, row: Mapping[str, Any]) -> tuple[list[l
         (c["panel"], {"0": "from", "1": "to"}[c["at"][0]] if c["at"] in (["0"], ["1"]) else "no", 1 if w[0] > 0 else -1)
         for c, w in zip(row["contacts"], known[-len(row["contacts"]) :], strict=True)
     )
-    curves = solution_curves(moving, pattern, [c[0] for c in known], DEGREE) or known
+    curves = solution_curves(moving, pattern, [c[0] for c in known], degree) or known
     free = free_unknowns(pattern, moving.size)
     z = [list(map(arb, c)) for c in curves]
     radius = {k: arb(from_decimal(row["radius"][k])) + distance(curves[k], known[k]) for k in free}
-    residual = enclose_series(lambda s: moving_system(moving, pattern, z, {}, s)[0], DEGREE + 4)
+    residual = enclose_series(lambda s: moving_system(moving, pattern, z, {}, s)[0], degree + 4)
     for _ in range(IMAGES):
         move = newton_image(moving, pattern, z, residual, radius, free)
         if move is None:
