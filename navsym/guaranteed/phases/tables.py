@@ -87,15 +87,14 @@ def tabulate_regime(regime: Regime) -> Iterator[TablePiece]:
                     if max(errors[m:]) < NEAR * max(abs(w[0]) for w in curves[m + l :]):
                         break
                 cost = sum(errors[m + l :], arb(0)) / (arb(a) ** shift)
-                sizes = [panel_length(family, k, a, b) for k in panels]
-                late = max((e * size).upper() for e, size in zip(errors[m:], sizes, strict=False))
+                late = max((e * measure(family, k, a, b)).upper() for e, k in zip(errors[m:], panels, strict=False))
             exact = [tuple(map(to_rational, c)) for c in curves]
             share = (family.parameter - (low + high) / 2) * 2 / (high - low)
             contacts = tuple(zip(panels, exact[m : m + l], exact[m + l :], strict=True))
             yield TablePiece(low, high, share, contacts, shift, round_up(cost), round_up(late), proof)
 
 
-def panel_length(family: Family, panel: int, a: fmpq, b: fmpq) -> arb:
+def measure(family: Family, panel: int, a: fmpq, b: fmpq) -> arb:
     """The length of a panel for all values of the parameter between two."""
     start, stop = family.panels[panel]
     return arb(tape(stop - start).run({family.parameter: interval_ball(a, b)}))
