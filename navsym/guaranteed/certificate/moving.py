@@ -150,13 +150,13 @@ class VanishingProblem(MovingProblem):
     def rows(self, k: int, v: Any, s: arb) -> list[list[Any]]:
         p, done = self.value(s), []
         for low, c in zip(self.lows, self.local[k], strict=True):
-            power, factors = arb_series([1]), [arb(0)] * low
+            power, factors = arb_series([1]), [arb_series([0])] * low
             for a in c[low:]:
                 factors.append(power * a)
                 power = power * p
             value, slope, half = (arb_series([0]) for _ in range(3))
-            for a in reversed(factors):  # Horner's scheme with two derivatives
-                value, slope, half = value * v + a, slope * v + value, half * v + slope
+            for factor in reversed(factors):  # Horner's scheme with two derivatives
+                value, slope, half = value * v + factor, slope * v + value, half * v + slope
             done.append([value, slope, half])
         return done
 
