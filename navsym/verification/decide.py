@@ -1,4 +1,4 @@
-"""Deciding the claims of papers: each in a limited child process, with the certificates that are kept."""
+"""Deciding the claims of papers: in limited child processes, with the certificates that are kept."""
 
 from __future__ import annotations
 
@@ -22,6 +22,8 @@ from navsym.verification.sides import hash_statement, sides
 SECONDS = 90.0
 #: Of these, for the search for proofs.
 SEARCH = 60.0
+#: Most claims that one child decides one after another: those of a section share what they derive.
+TOGETHER = 16
 SHARE = 3  # of the seconds of a claim, one in so many for a kept certificate: the search has the rest
 
 
@@ -143,7 +145,9 @@ def decide_papers(
         return record_of(*pair, kept, known.get(pair[1].id), seconds)
 
     warm_up()
-    for outcome in run_many(work, claims, jobs or os.cpu_count() or 1, seconds):
+    jobs = jobs or os.cpu_count() or 1
+    share = max(1, min(TOGETHER, len(claims) // (4 * jobs)))
+    for outcome in run_many(work, claims, jobs, seconds, share=share):
         paper, claim = claims[outcome.place]
         value = outcome.value
         if isinstance(value, (Exhausted, Failed)):
