@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import gc
 import multiprocessing
 import os
 import resource
@@ -175,6 +176,7 @@ def die_with_parent(parent: int) -> None:
 def work_in_child(sender: Connection, function: Callable[[Any], Any], items: Sequence[Any], limits: Limits) -> None:
     """Runs in the child. Ctrl-C reaches the whole group; here the parent answers it, and kills its children."""
     die_with_parent(limits.parent)
+    gc.freeze()  # what came from the parent is neither looked through nor copied
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.dup2(2, 1)  # a C library that gives up writes to standard output, where the parent's document is to stand alone
     limits.apply(len(items))
