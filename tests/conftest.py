@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import re
 
@@ -67,3 +68,8 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if item.get_closest_marker("slow"):
             item.add_marker(pytest.mark.timeout(1800))
+
+
+def pytest_collection_finish():
+    """Thousands of collected tests stay to the end: the collector of garbage need not look through them."""
+    gc.freeze()

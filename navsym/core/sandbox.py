@@ -1,7 +1,7 @@
 """Child processes with limits on time and memory, for work that might not end.
 
-A child is forked, so that it has the parent's loaded engines and objects and only its result
-travels back. A child that exceeds its limits is killed; the parent never waits for it longer. Time is
+A child is forked, so that it has the parent's loaded engines and objects and only its results
+travel back. A child that exceeds its limits is killed; the parent never waits for it longer. Time is
 processor time, so that what is decided does not depend on what else the machine does.
 """
 
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import gc
 import multiprocessing
 import os
 import resource
@@ -62,9 +63,10 @@ class Limits:
     megabytes: int
     parent: int
 
-    def apply(self) -> None:
-        """Bound memory and, should nobody watch any more, processor time; no core files."""
-        size, cpu = address_space() + self.megabytes * 2**20, int(self.seconds + 1) * (os.cpu_count() or 1) + 10
+    def apply(self, items: int) -> None:
+        """Bound memory and, should nobody watch any more, processor time of so many items; no core files."""
+        size = address_space() + self.megabytes * 2**20
+        cpu = items * int(self.seconds + 1) * (os.cpu_count() or 1) + 10
         resource.setrlimit(resource.RLIMIT_AS, (size, size))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         _, most = resource.getrlimit(resource.RLIMIT_CPU)
@@ -81,14 +83,15 @@ def address_space() -> int:
         return 0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(slots=True, eq=False)
 class Child:
-    """A running child."""
+    """A running child: places of the items before it, of which the first is at work, and both clocks when it began."""
 
-    place: int
+    places: list[int]
     process: Any
     receiver: Connection
     started: float
+    used: float = 0.0
 
 
 def run_limited(
@@ -114,22 +117,28 @@ def run_many(
     jobs: int,
     seconds: float = DEFAULT_SECONDS,
     megabytes: int = DEFAULT_MEGABYTES,
+    share: int = 1,
 ) -> Iterator[Outcome]:
-    """Outcomes of ``function(item)``, each in a child of its own, at most ``jobs`` at once.
+    """Outcomes of ``function(item)``, each in a limited child, at most ``jobs`` at once.
+
+    share : so many items at most have one child, one after another, so that what one loads and keeps serves the next.
+            A child that meets a limit or an unforeseen error ends, and the items behind have another. The seconds are
+            those of one item, the memory that of a child
 
     Outcomes come as they are ready, in no particular order. Raises DomainError for limits that are none.
     """
     require_limits(seconds, megabytes)
-    waiting = list(enumerate(items))[::-1]
+    waiting = [list(range(len(items)))[k : k + share] for k in range(0, len(items), share)][::-1]
     running: list[Child] = []
     try:
         while waiting or running:
             while waiting and len(running) < max(1, jobs):
-                place, item = waiting.pop()
-                running.append(start_child(place, function, item, Limits(seconds, megabytes, os.getpid())))
+                running.append(start_child(waiting.pop(), function, items, Limits(seconds, megabytes, os.getpid())))
             for child in wait_for_children(running, seconds):
-                running.remove(child)
                 yield collect_outcome(child, seconds)
+                if child.receiver.closed:
+                    running.remove(child)
+                    waiting += [child.places] if child.places else []
     finally:
         for child in running:
             stop_child(child)
@@ -143,13 +152,14 @@ def require_limits(seconds: float, megabytes: int) -> None:
         raise DomainError(f"expected megabytes above 0 and at most {MOST_MEGABYTES}; got {megabytes}; correct it")
 
 
-def start_child(place: int, function: Callable[[Any], Any], item: Any, limits: Limits) -> Child:
+def start_child(places: list[int], function: Callable[[Any], Any], items: Sequence[Any], limits: Limits) -> Child:
     context = multiprocessing.get_context("fork")
     receiver, sender = context.Pipe(duplex=False)
-    process = context.Process(target=work_in_child, args=(sender, function, item, limits), daemon=True)
+    mine = [items[place] for place in places]
+    process = context.Process(target=work_in_child, args=(sender, function, mine, limits), daemon=True)
     process.start()
     sender.close()
-    return Child(place, process, receiver, time.monotonic())
+    return Child(places, process, receiver, time.monotonic())
 
 
 def die_with_parent(parent: int) -> None:
@@ -163,16 +173,19 @@ def die_with_parent(parent: int) -> None:
         os._exit(1)
 
 
-def work_in_child(sender: Connection, function: Callable[[Any], Any], item: Any, limits: Limits) -> None:
+def work_in_child(sender: Connection, function: Callable[[Any], Any], items: Sequence[Any], limits: Limits) -> None:
     """Runs in the child. Ctrl-C reaches the whole group; here the parent answers it, and kills its children."""
     die_with_parent(limits.parent)
+    gc.freeze()  # what came from the parent is neither looked through nor copied
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.dup2(2, 1)  # a C library that gives up writes to standard output, where the parent's document is to stand alone
-    limits.apply()
+    limits.apply(len(items))
     try:
-        sender.send(("result", function(item)))
-    except NavsymError as error:
-        sender.send(("error", strip_causes(error)))
+        for item in items:
+            try:
+                sender.send(("result", function(item)))
+            except NavsymError as error:
+                sender.send(("error", strip_causes(error)))
     except MemoryError:
         sender.send(("stopped", f"more than {limits.megabytes} MB of memory"))
     except RecursionError:
@@ -207,28 +220,33 @@ def wait_for_children(running: Sequence[Child], seconds: float) -> list[Child]:
 def seconds_left(child: Child, seconds: float) -> float:
     """Seconds that a child may still go on, at the least: of processor time, and of the clock, of which it has more."""
     gone = time.monotonic() - child.started
+    return min(seconds - (processor_time(child, child.used + gone) - child.used), PATIENCE * seconds - gone)
+
+
+def processor_time(child: Child, otherwise: float) -> float:
+    """Seconds of processor time that a child has used; ``otherwise`` where this cannot be asked."""
     try:
-        used = time.clock_gettime((~child.process.pid << 3) | 2)  # Linux: the clock of another process
+        return time.clock_gettime((~child.process.pid << 3) | 2)  # Linux: the clock of another process
     except OSError:
-        used = gone
-    return min(seconds - used, PATIENCE * seconds - gone)
+        return otherwise
 
 
 def collect_outcome(child: Child, seconds: float) -> Outcome:
-    spent = time.monotonic() - child.started
+    """The outcome of the item at work; the child goes on with the next one, or is stopped."""
+    place, spent = child.places.pop(0), time.monotonic() - child.started
+    kind, value = "stopped", f"more than {seconds:g} s"
     try:
-        if not child.receiver.poll(0):
-            return Outcome(child.place, Exhausted(f"more than {seconds:g} s"), spent)
-        kind, value = child.receiver.recv()
+        if child.receiver.poll(0):
+            kind, value = child.receiver.recv()
     except EOFError:
         child.process.join(1)
-        code = child.process.exitcode
-        return Outcome(child.place, Exhausted(f"the child ended without a result (exit {code})"), spent)
-    finally:
+        value = f"the child ended without a result (exit {child.process.exitcode})"
+    child.started, child.used = child.started + spent, processor_time(child, child.used + spent)
+    if kind == "stopped" or not child.places:
         stop_child(child)
     if kind == "result":
-        return Outcome(child.place, value, spent)
-    return Outcome(child.place, Failed(value) if kind == "error" else Exhausted(value), spent)
+        return Outcome(place, value, spent)
+    return Outcome(place, Failed(value) if kind == "error" else Exhausted(value), spent)
 
 
 def stop_child(child: Child) -> None:

@@ -137,7 +137,7 @@ def simplex(G: Array, p: Array, basis: Ints, limit: int) -> tuple[Ints, Array, A
     inverse, regular = invert_matrix(basis_rows(G, basis))
     if not regular:
         return basis, weights, x, -1
-    signs = np.where(times_rows(inverse, p) >= 0.0, 1.0, -1.0)
+    signs = np.full(m, 2.0) * (times_rows(inverse, p) >= 0.0) - 1.0
     age = 0
     for count in range(limit):
         weights, x = times_rows(inverse, p), rows_times(inverse, signs)

@@ -38,8 +38,9 @@ from navsym.models.derivation import Derivation
 from navsym.models.model import Model, contents_of
 from navsym.models.modelfile import BasisFile
 from navsym.prove.claimfile import claims_from, decide_claim, read_claims, statement_of
-from navsym.prove.ladder import decide_within, leave_open
+from navsym.prove.ladder import leave_open
 from navsym.prove.wording import expression_text
+from navsym.verification.decide import decide_or_grant
 from navsym.verification.papers import file_of_source, is_model, load_papers, split_id
 
 SECONDS = 90.0
@@ -143,7 +144,7 @@ def material_of_claim(text: str, allow_confirmed: bool) -> Material:
 
 
 def material_from_paper(module: str, number: str, allow_confirmed: bool) -> Material:
-    """A claim of a paper, decided now; raises RefusedError, with the claim that corrects it, when it is refuted."""
+    """A claim of a paper with its verdict; raises RefusedError, with the claim that corrects it, when it is refuted."""
     (paper,) = load_papers([module])
     by_number = {claim.number: claim for claim in paper.claims}
     if number not in by_number:
@@ -155,7 +156,7 @@ def material_from_paper(module: str, number: str, allow_confirmed: bool) -> Mate
     return material(
         claim.id,
         statement,
-        decide_within(statement, SECONDS),
+        decide_or_grant(statement, SECONDS),
         title=claim.title,
         paper=", ".join([*card.authors, card.title, str(card.year or "")]).strip(", "),
         equation=f"equation ({equation})" if equation else f"statement {number}",

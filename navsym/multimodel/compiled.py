@@ -36,7 +36,7 @@ def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> Estimates:
         (models.F, models.Q, H, r, U, rotated),
         (models.mode_transition, logs(models.mode_transition)),
         (logs(models.probabilities), models.means, models.covariances),
-        z,
+        np.array(z, order="C"),
         out,
     )
     if stopped:
@@ -60,8 +60,10 @@ def widest_branching(rule: Scheme, models: Bank, steps: int) -> int:
 
 
 def scalar_models(models: Bank) -> tuple[Array, Array, Array, bool]:
-    """H (T, m, p, n), variances (T, m, p), rotations (T, m, p, p) that make R diagonal, and whether they turn."""
+    """H (T, m, p, n), variances (T, m, p), rotations (T, m, p, p) that make R diagonal, and whether they turn.
+
+    All are copies of one layout that may be written to: loops are compiled again for every other type.
+    """
     H, r, rotation = independent_scalars(models.H, models.R)
-    eye = np.broadcast_to(np.eye(models.channels), (1, *models.R.shape[1:]))
-    turned = np.ascontiguousarray(eye if rotation is None else rotation)
-    return np.array(H), np.ascontiguousarray(r), turned, rotation is not None
+    turn = np.broadcast_to(np.eye(models.channels), (1, *models.R.shape[1:])) if rotation is None else rotation
+    return np.array(H, order="C"), np.array(r, order="C"), np.array(turn, order="C"), rotation is not None

@@ -1,4 +1,4 @@
-"""Deciding the claims of papers: each in a limited child process, with the certificates that are kept."""
+"""Deciding the claims of papers: in limited child processes, with the certificates that are kept."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import sympy as sp
 
 from navsym.claims import OPEN, Claim, Equation, Paper, Record, Statement, Verdict
 from navsym.core.errors import DomainError
-from navsym.core.sandbox import Exhausted, Failed, require_limits, run_many
+from navsym.core.sandbox import DEFAULT_MEGABYTES, Exhausted, Failed, require_limits, run_limited, run_many
 from navsym.prove.grant import write_statements
 from navsym.prove.ladder import decide
 from navsym.verification.certificates import Certificates, grant_entry, verdict_of
@@ -22,6 +22,8 @@ from navsym.verification.sides import hash_statement, sides
 SECONDS = 90.0
 #: Of these, for the search for proofs.
 SEARCH = 60.0
+#: Most claims that one child decides one after another: those of a section share what they derive.
+TOGETHER = 16
 SHARE = 3  # of the seconds of a claim, one in so many for a kept certificate: the search has the rest
 
 
@@ -143,7 +145,9 @@ def decide_papers(
         return record_of(*pair, kept, known.get(pair[1].id), seconds)
 
     warm_up()
-    for outcome in run_many(work, claims, jobs or os.cpu_count() or 1, seconds):
+    jobs = jobs or os.cpu_count() or 1
+    share = max(1, min(TOGETHER, len(claims) // (4 * jobs)))
+    for outcome in run_many(work, claims, jobs, seconds, share=share):
         paper, claim = claims[outcome.place]
         value = outcome.value
         if isinstance(value, (Exhausted, Failed)):
@@ -173,17 +177,35 @@ def record_of(
     statement = claim.derive()
     texts = write_statements(statement)
     key = hash_statement(statement, texts)
-    verdict = None
     if stored is not None and stored.statement == key:
         verdict = verdict_of(stored)
-    elif kept is not None and texts is not None:
-        entries = (grant_entry(texts, entry, seconds / SHARE) for entry in kept.list_entries(key))
-        verdict = next(filter(None, entries), None)
+    else:
+        verdict = None if kept is None else grant_kept(key, texts, kept, seconds / SHARE)
     is_known = verdict is not None
     if verdict is None:
         verdict = decide(statement, seconds=SEARCH)
         verdict = claim.complete(verdict) if claim.complete else verdict
     return replace(make_record(paper, claim, statement, verdict), statement=key), is_known
+
+
+def grant_kept(
+    key: str, texts: list[dict[str, Any]] | None, kept: Certificates, seconds: float = SECONDS / SHARE
+) -> Verdict | None:
+    """The verdict of a certificate that is kept for a statement and that the checker grants to its texts; else None."""
+    entries = () if texts is None else kept.list_entries(key)
+    return next(filter(None, (grant_entry(texts or [], entry, seconds) for entry in entries)), None)
+
+
+def decide_or_grant(statement: Statement, seconds: float = SECONDS, megabytes: int = DEFAULT_MEGABYTES) -> Verdict:
+    """The verdict of a certificate that is kept for a statement and granted again, else decided; in a limited child."""
+
+    def work() -> Verdict:
+        texts = write_statements(statement)
+        kept = grant_kept(hash_statement(statement, texts), texts, Certificates(False, lambda sentence: None))
+        return kept or decide(statement, seconds / 2)
+
+    outcome = run_limited(work, (), seconds, megabytes)
+    return open_verdict(outcome) if isinstance(outcome, Exhausted) else outcome
 
 
 def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict: Verdict) -> Record:

@@ -37,6 +37,39 @@ def test_every_item_has_its_outcome_whatever_became_of_the_others():
     assert found[1] == Exhausted("more than 1 s")
 
 
+def meet(fate):
+    """Come back with the number of this process, or do not."""
+    if fate == "late":
+        spin(60)
+    if fate == "dead":
+        os._exit(3)
+    if fate == "wrong":
+        raise ValueError("nobody expected this")
+    return refuse(fate) if fate == "refused" else os.getpid()
+
+
+def test_items_of_one_child_have_their_own_outcomes_whatever_became_of_those_before():
+    fates = ["fine", "refused", "fine", "late", "fine", "dead", "fine", "wrong", "fine"]
+    outcomes = list(run_many(meet, fates, 1, seconds=1, share=9))
+    assert [outcome.place for outcome in outcomes] == [*range(9)]
+    first, refused, second, late, third, dead, fourth, wrong, last = (outcome.value for outcome in outcomes)
+    assert first == second and len({second, third, fourth, last, os.getpid()}) == 5
+    assert isinstance(refused, Failed) and late == Exhausted("more than 1 s")
+    assert dead == Exhausted("the child ended without a result (exit 3)")
+    assert wrong == Exhausted("ValueError: nobody expected this")
+
+
+def test_the_seconds_are_those_of_one_item_and_not_of_its_child(monkeypatch):
+    monkeypatch.setattr(sandbox, "PATIENCE", 100)
+    assert [outcome.value for outcome in run_many(spin, [0.1] * 8, 1, seconds=0.5, share=8)] == [0.1] * 8
+
+
+@pytest.mark.parametrize("share", [1, 2, 3, 7, 50])
+def test_every_item_has_one_outcome_however_many_a_child_has(share):
+    outcomes = {outcome.place: outcome.value for outcome in run_many(str, range(7), 2, share=share)}
+    assert outcomes == {place: str(place) for place in range(7)}
+
+
 def test_what_sleeps_is_ended_by_the_clock(monkeypatch):
     monkeypatch.setattr(sandbox, "PATIENCE", 2)
     began = time.monotonic()

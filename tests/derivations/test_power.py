@@ -19,7 +19,7 @@ def spoiled_status(case):
 def test_every_spoiled_claim_falls(name, part):
     cases = part_of([(claim, statement) for claim, statement in claims(name) if claim.expect != "REFUTED"], part)
     held = []
-    for outcome in run_many(spoiled_status, cases, jobs=1, seconds=60):
+    for outcome in run_many(spoiled_status, cases, jobs=1, seconds=60, share=16):
         claim, _ = cases[outcome.place]
         assert not isinstance(outcome.value, Exhausted), (claim.id, outcome.value)
         if outcome.value in ("PROVED", "CERTIFIED", "CONFIRMED"):

@@ -1,7 +1,9 @@
 """Monte-Carlo batches: many series of measurements through one bank."""
 
+import os
 import warnings
 from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -31,7 +33,7 @@ def run_batch(models: Bank, measurements: Any, method: str = "imm", *, depth: in
 
     Raises ShapeError, NotFiniteError, and the errors of :func:`navsym.multimodel.filters.run_filter`.
     """
-    z = np.ascontiguousarray(measurements, dtype=float)
+    z = np.array(measurements, dtype=float, order="C")
     if z.ndim != 3 or z.shape[2] != models.channels or 0 in z.shape:
         raise ShapeError(f"measurements: expected (runs, steps, {models.channels}); got {z.shape}; match H")
     if not np.isfinite(z).all():
@@ -77,13 +79,15 @@ def empty(z: Array, models: Bank) -> Batch:
 
 
 def in_lanes(models: Bank, z: Array, branching: int, out: Batch) -> bool:
-    """Fill ``out`` by the compiled loops; False when a run had to stop."""
-    from navsym.multimodel.kernels.batch import run_all
+    """Fill ``out`` by the compiled loops, eight runs at a time on all cores; False when a run had to stop."""
+    from navsym_papers.multistructure.experiment.lanes import run_eight
 
     H, r, U, rotated = scalar_models(models)
     bank = (models.F, models.Q, H, r, U, rotated, models.mode_transition)
     start = (logs(models.probabilities), models.means, models.covariances)
-    return bool(run_all(branching, bank, start, z, tuple(out)))
+    with ThreadPoolExecutor(os.cpu_count()) as pool:  # the loops hold no lock of the interpreter
+        fine = pool.map(lambda first: run_eight(first, branching, bank, start, z, out), range(0, len(z), 8))
+        return all(list(fine))
 
 
 def put(out: Batch, found: Sequence[Estimates], rows: Iterable[int]) -> None:

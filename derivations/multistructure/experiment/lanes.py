@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
 from navsym.core.lanes import load_lanes, spread_lanes, store_lanes
@@ -287,13 +286,3 @@ def run_eight(first, branching, models, start, z, out):  # type: ignore[no-untyp
         if branching == 0:
             restart_eight(m, n, now_mean, now, x, P)
     return True
-
-
-@njit(error_model="numpy", nogil=True, parallel=True)
-def run_all(branching, models, start, z, out):  # type: ignore[no-untyped-def]
-    """All runs, eight at a time, on all cores; False when any of them had to stop."""
-    groups = (z.shape[0] + 7) // 8
-    fine = np.ones(groups, dtype=np.bool_)
-    for g in numba.prange(groups):
-        fine[g] = run_eight(g * 8, branching, models, start, z, out)
-    return fine.all()
