@@ -92,6 +92,7 @@ class Child:
     receiver: Connection
     started: float
     used: float = 0.0
+    alone: bool = True  # no item was decided before the one at work
 
 
 def run_limited(
@@ -135,10 +136,15 @@ def run_many(
             while waiting and len(running) < max(1, jobs):
                 running.append(start_child(waiting.pop(), function, items, Limits(seconds, megabytes, os.getpid())))
             for child in wait_for_children(running, seconds):
-                yield collect_outcome(child, seconds)
+                alone = child.alone
+                outcome = collect_outcome(child, seconds)
                 if child.receiver.closed:
                     running.remove(child)
                     waiting += [child.places] if child.places else []
+                if isinstance(outcome.value, Exhausted) and not alone:
+                    waiting.append([outcome.place])  # those before it may have used up the memory
+                else:
+                    yield outcome
     finally:
         for child in running:
             stop_child(child)
@@ -242,6 +248,7 @@ def collect_outcome(child: Child, seconds: float) -> Outcome:
         child.process.join(1)
         value = f"the child ended without a result (exit {child.process.exitcode})"
     child.started, child.used = child.started + spent, processor_time(child, child.used + spent)
+    child.alone = False
     if kind == "stopped" or not child.places:
         stop_child(child)
     if kind == "result":

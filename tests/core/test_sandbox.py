@@ -64,6 +64,19 @@ def test_the_seconds_are_those_of_one_item_and_not_of_its_child(monkeypatch):
     assert [outcome.value for outcome in run_many(spin, [0.1] * 8, 1, seconds=0.5, share=8)] == [0.1] * 8
 
 
+HELD = []
+
+
+def hold(megabytes):
+    HELD.append(bytearray(megabytes * 2**20))
+    return megabytes
+
+
+def test_what_has_too_little_memory_beside_those_before_it_is_decided_alone():
+    outcomes = list(run_many(hold, [200] * 5 + [900], 1, megabytes=700, share=6))
+    assert [outcome.value for outcome in outcomes] == [200] * 5 + [Exhausted("more than 700 MB of memory")]
+
+
 @pytest.mark.parametrize("share", [1, 2, 3, 7, 50])
 def test_every_item_has_one_outcome_however_many_a_child_has(share):
     outcomes = {outcome.place: outcome.value for outcome in run_many(str, range(7), 2, share=share)}
