@@ -81,10 +81,10 @@ def write_beside(statement: Equation | Bound) -> tuple[list[str], str | None, se
     if written is not None:
         limit = None if written.tolerance is None else write_numerals(written.tolerance)
         return [*map(write_numerals, written.exists)], limit, set(written.symbols)
-    exists, nonzero = (
-        [sp.sympify(part, strict=True) for part in parts] for parts in (statement.exists, getattr(statement, "nonzero", ()))
-    )
-    symbols = set().union(*(e.free_symbols for e in (*sides_of(statement), *exists, *nonzero)))
+    exists = [sp.sympify(part, strict=True) for part in statement.exists]
+    nonzero = [sp.sympify(part, strict=True) for part in getattr(statement, "nonzero", ())]
+    sides = (*list_entries(statement.printed), *list_entries(statement.derived))
+    symbols = set().union(*(e.free_symbols for e in (*sides, *exists, *nonzero)))
     limit = None if tolerance is None else to_text(sp.sympify(tolerance, strict=True))
     return [*map(to_text, exists), *(f"1/({to_text(d)})" for d in nonzero)], limit, symbols
 
@@ -162,11 +162,6 @@ def write_optimum(statement: Optimum) -> list[Document]:
         *(state(a, "<=", player.ONE, **{SHARE: ["0", "1", []]}) for a in (dual, player.negate(dual))),
         *(state(value, "=", side) for side in (total(x, P), sizes)),
     ]
-
-
-def sides_of(statement: Equation | Bound) -> list[sp.Expr]:
-    """The scalar expressions of both sides."""
-    return [*list_entries(statement.printed), *list_entries(statement.derived)]
 
 
 # The verdict

@@ -255,9 +255,8 @@ def integrate_bells(f: Any, x: Any) -> Any:
         bell = sp.exp(sp.cancel(-a * x**2 + b * x + c))
         top = sp.exp(sp.cancel(c + b**2 / (4 * a)))
         parts = [sp.sqrt(sp.pi) / (2 * sp.sqrt(a)) * top * sp.erf(sp.sqrt(a) * (x - b / (2 * a)))]
-        for n in range(
-            1, powers.degree() + 1
-        ):  # (x**(n - 1) bell)' = ((n - 1) x**(n - 2) - 2 a x**n + b x**(n - 1)) bell
+        # (x**(n - 1) bell)' = ((n - 1) x**(n - 2) - 2 a x**n + b x**(n - 1)) bell
+        for n in range(1, powers.degree() + 1):
             lower = (n - 1) * parts[n - 2] if n > 1 else 0
             parts.append((lower + b * parts[n - 1] - x ** (n - 1) * bell) / (2 * a))
         total += share * sum(powers.nth(n) * part for n, part in enumerate(parts))
@@ -360,10 +359,8 @@ def list_products(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
     for part in sp.fraction(sp.cancel(f)):
         rows = sp.factor_list(part, k)[1] if part.is_polynomial(k) else []
         sides.append([sp.Poly(factor, k).monic() for factor, power in rows for _ in range(power)])
-    share, form = (
-        sp.cancel(f * sp.prod(h.as_expr() for h in sides[1]) / sp.prod(g.as_expr() for g in sides[0])),
-        sp.S.One,
-    )
+    share = sp.cancel(f * sp.prod(h.as_expr() for h in sides[1]) / sp.prod(g.as_expr() for g in sides[0]))
+    form = sp.S.One
     for g in sides[0]:
         below = [(h, s) for h in sides[1] if (s := find_shift(g, h)) is not None]
         if not below:

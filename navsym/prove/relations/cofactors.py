@@ -122,9 +122,10 @@ def find_cofactors(
         monomials |= dict.fromkeys(fresh)
         solution = solve_modulo(wanted, columns, [*monomials])
         if solution is not None:
-            yield solution.pop((-1, ()), fmpq(0)), [
-                {m: c for (j, m), c in solution.items() if j == k} for k in range(len(relations))
-            ]
+            yield (
+                solution.pop((-1, ()), fmpq(0)),
+                [{m: c for (j, m), c in solution.items() if j == k} for k in range(len(relations))],
+            )
         if not fresh:
             return
 

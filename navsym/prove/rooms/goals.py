@@ -222,13 +222,13 @@ def is_outside(goal: Any, place: dict[str, Any]) -> bool:
 
 
 def vanishes(goal: Any) -> bool:
-    """Whether a term that is to be no zero is 0 where all symbols are 0 or all are 1, as far as their ranges allow it."""
+    """Whether a term that is to be no zero is 0 where all symbols are 0, or all are 1, or as near as ranges allow."""
     names = player.symbols_of(goal.term).union(*map(player.symbols_of, (*goal.given, *goal.exists)))
     for k in (0, 1) if goal.relation in (">", "!=") and not goal.zeros else ():
         place = {name: player.Jet(arb(simple_point(goal.box[name], k))) for name in names}
-        if ball_of(goal.term, place) == 0 and all(ball_of(t, place) >= 0 for t in goal.given):
-            if all(player.value_of(t, place).is_finite() for t in goal.exists):
-                return True
+        is_there = ball_of(goal.term, place) == 0 and all(ball_of(t, place) >= 0 for t in goal.given)
+        if is_there and all(player.value_of(t, place).is_finite() for t in goal.exists):
+            return True
     return False
 
 
