@@ -98,15 +98,15 @@ def list_bends(question: Any) -> list[Any]:
 
 def list_cuts(question: Any, goal: Any) -> Iterator[list[Any]]:
     """No cut; the zeros of what absolute values are taken of; 0 between two infinite ends."""
-    both = player.is_infinite(question.low) and player.is_infinite(question.high)
-    if both:
+    if player.is_infinite(question.low) and player.is_infinite(question.high):
         yield [player.ZERO]
         return
-    x = to_sympy(("symbol", question.variable))
+    x, range_of_x = to_sympy(("symbol", question.variable)), sp.S.Reals
+    if not player.symbols_of(question.low) | player.symbols_of(question.high):  # waves have finitely many zeros there
+        range_of_x = sp.Interval(*sorted((to_sympy(question.low), to_sympy(question.high)), key=float))
     zeros: set[Any] = set()
     for bend in list_bends(question):
-        inner = to_sympy(bend)
-        found = sp.solveset(inner, x, sp.S.Reals) if inner.is_polynomial(x) else sp.S.EmptySet
+        found = sp.solveset(to_sympy(bend), x, range_of_x)
         zeros |= set(found) if isinstance(found, sp.FiniteSet) else set()
     inside = [z for z in zeros if lies_between(z, question)]
     if inside:
