@@ -158,7 +158,7 @@ def solve_modulo(
         for m, c in table.items():
             entries[rows[m]][j] = to_residue(c)
     reduced, rank = nmod_mat(entries, PRIME).rref()
-    solution, pivot = {}, -1
+    solution, pivot = dict[tuple[int, Exponents], Any](), -1
     for i in range(rank):
         pivot = next(j for j in range(pivot + 1, len(keys) + 1) if reduced[i, j])
         if pivot == len(keys):

@@ -58,7 +58,7 @@ def real_factors(converter: Converter, polynomial: fmpq_mpoly) -> list[sp.Expr] 
     real = [(real_form(converter, factor), multiplicity) for factor, multiplicity in factor_exactly(reduced)[1]]
     if any(form is None for form, _ in real):
         return None
-    return [form**multiplicity for form, multiplicity in real if form != 1]
+    return [sp.Pow(form, multiplicity) for form, multiplicity in real if form != 1]
 
 
 def real_form(converter: Converter, factor: fmpq_mpoly) -> sp.Expr | None:
