@@ -99,6 +99,7 @@ def finite_sides(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tup
 
 
 def refute_by_sample(sample: Sample) -> Verdict:
+    """REFUTED by the point of a sample."""
     assert sample.counterexample is not None and sample.difference is not None
     return refute_at_point(sample.counterexample, sample.difference)
 

@@ -104,8 +104,7 @@ def find_cofactors(
 ) -> Iterator[tuple[fmpq, list[Polynomial]]]:
     """A number r and cofactors with r beside + sum c_k h_k = target: by division, then with more and more unknowns."""
     yield from divide(target, beside, relations)
-    wanted = read_terms(target)
-    tables = [read_terms(h) for h in relations]
+    wanted, *tables = map(read_terms, (target, *relations))
     columns: dict[tuple[int, Exponents], Polynomial] = {} if beside is None else {(-1, ()): read_terms(beside)}
     monomials = dict.fromkeys(m for table in (wanted, *columns.values()) for m in table)
     fresh: Iterable[Exponents] = [*monomials]
