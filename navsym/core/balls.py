@@ -308,6 +308,9 @@ def enclose(expression: sp.Expr | Tape, values: Mapping[sp.Symbol, arb] | None =
 
 def exact_ball(value: Any, bits: int = DEFAULT_BITS) -> arb:
     """A ball around an exact number: a Python or sympy number, or a constant expression."""
+    if isinstance(value, sp.Rational):
+        with precision(bits):
+            return arb(to_fmpq(value))
     return enclose(sp.sympify(value, strict=True), {}, bits)
 
 

@@ -99,6 +99,7 @@ def finite_sides(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tup
 
 
 def refute_by_sample(sample: Sample) -> Verdict:
+    """REFUTED by the point of a sample."""
     assert sample.counterexample is not None and sample.difference is not None
     return refute_at_point(sample.counterexample, sample.difference)
 
@@ -156,30 +157,23 @@ def assumptions_of(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> t
 def prove_equal(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sample) -> Verdict:
     if sample.points == 0:  # what exists nowhere is equal to everything
         return judge_sample(sample, scope_of(printed - derived, statement.box), "equality")
+    difference = printed - derived
+    method, evidence = "exact number", "printed - derived is exactly zero"
     try:
-        evidence = find_identity(printed, derived)
+        reduction = reduce_to_zero(difference)
+        if reduction.zero:
+            method, evidence = "normal form", f"printed - derived reduces to 0 in {reduction.ring}"
+        elif difference.free_symbols or not is_zero(difference):
+            return decide_unproved(printed, derived, statement, sample)
     except OutsideLanguageError:
-        evidence = None
-    if evidence is None:
         return decide_unproved(printed, derived, statement, sample)
-    reduction = add_sides(reduce_to_zero(printed - derived), printed, derived)
     return Verdict(
         PROVED,
-        method=evidence[0],
+        method=method,
         scope=scope_of(sp.Tuple(printed, derived), statement.box),
-        assumptions=remaining_assumptions(reduction, statement.box, statement.nonzero),
-        evidence=evidence[1],
+        assumptions=remaining_assumptions(add_sides(reduction, printed, derived), statement.box, statement.nonzero),
+        evidence=evidence,
     )
-
-
-def find_identity(printed: sp.Expr, derived: sp.Expr) -> tuple[str, str] | None:
-    """The method and its words where printed - derived is zero by exact algebra, or is a number that is zero."""
-    reduction = reduce_to_zero(printed - derived)
-    if reduction.zero:
-        return "normal form", f"printed - derived reduces to 0 in {reduction.ring}"
-    if not (printed - derived).free_symbols and is_zero(printed - derived):
-        return "exact number", "printed - derived is exactly zero"
-    return None
 
 
 def decide_unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sample) -> Verdict:

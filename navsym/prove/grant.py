@@ -55,7 +55,8 @@ def write_statements(statement: Statement) -> list[Document] | None:
         if isinstance(statement, Optimum):
             return write_optimum(statement)
         if isinstance(statement, (Equation, Bound)) and shape_of(statement.printed) == shape_of(statement.derived):
-            return [write_entry(statement, *sides) for sides in list_sides(statement)]
+            exists, limit, symbols = write_beside(statement)
+            return [write_entry(statement, *sides, exists, limit, symbols) for sides in list_sides(statement)]
     except (NavsymError, *REFUSALS):
         pass
     return [dict(text) for text in statement.meaning] or None if isinstance(statement, Property) else None
@@ -74,20 +75,24 @@ def list_sides(statement: Equation | Bound) -> list[tuple[str, str]]:
     return [(" + ".join(f"(({x}) - ({y}))**2" for x, y in pairs), "0")]
 
 
-def write_entry(statement: Equation | Bound, left: str, right: str) -> Document:
-    """One entry with its symbols, what has to exist, and its tolerance."""
+def write_beside(statement: Equation | Bound) -> tuple[list[str], str | None, set[sp.Symbol]]:
+    """What has to exist, the tolerance, and the symbols of a statement: the same for all its entries."""
     written, tolerance = statement.written, getattr(statement, "tolerance", None)
-    if written is None:
-        exists = [to_text(sp.sympify(part, strict=True)) for part in statement.exists]
-        exists += [f"1/({to_text(sp.sympify(d, strict=True))})" for d in getattr(statement, "nonzero", ())]
-        symbols = set().union(
-            *(sp.sympify(e, strict=True).free_symbols for e in (*sides_of(statement), *statement.exists))
-        )
-        symbols |= set().union(*(sp.sympify(e, strict=True).free_symbols for e in getattr(statement, "nonzero", ())))
-        limit = None if tolerance is None else to_text(sp.sympify(tolerance, strict=True))
-    else:
-        exists, symbols = [write_numerals(text) for text in written.exists], set(written.symbols)
+    if written is not None:
         limit = None if written.tolerance is None else write_numerals(written.tolerance)
+        return [*map(write_numerals, written.exists)], limit, set(written.symbols)
+    exists = [sp.sympify(part, strict=True) for part in statement.exists]
+    nonzero = [sp.sympify(part, strict=True) for part in getattr(statement, "nonzero", ())]
+    sides = (*list_entries(statement.printed), *list_entries(statement.derived))
+    symbols = set().union(*(e.free_symbols for e in (*sides, *exists, *nonzero)))
+    limit = None if tolerance is None else to_text(sp.sympify(tolerance, strict=True))
+    return [*map(to_text, exists), *(f"1/({to_text(d)})" for d in nonzero)], limit, symbols
+
+
+def write_entry(
+    statement: Equation | Bound, left: str, right: str, exists: list[str], limit: str | None, symbols: set[sp.Symbol]
+) -> Document:
+    """One entry with its symbols, what has to exist, and its tolerance."""
     names = checker.symbols_of(checker.parse(left)).union(
         *(checker.symbols_of(checker.parse(e)) for e in (right, *exists))
     )
@@ -97,7 +102,7 @@ def write_entry(statement: Equation | Bound, left: str, right: str) -> Document:
         "relation": "=" if isinstance(statement, Equation) else statement.relation,
         "right": right,
         "symbols": {symbol.name: write_range(limits) for symbol, limits in ranges.items()},
-        "exists": exists,
+        "exists": [*exists],
         "tolerance": limit,
     }
 
@@ -157,11 +162,6 @@ def write_optimum(statement: Optimum) -> list[Document]:
         *(state(a, "<=", player.ONE, **{SHARE: ["0", "1", []]}) for a in (dual, player.negate(dual))),
         *(state(value, "=", side) for side in (total(x, P), sizes)),
     ]
-
-
-def sides_of(statement: Equation | Bound) -> list[sp.Expr]:
-    """The scalar expressions of both sides."""
-    return [*list_entries(statement.printed), *list_entries(statement.derived)]
 
 
 # The verdict

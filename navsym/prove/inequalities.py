@@ -13,12 +13,20 @@ from navsym.claims.verdict import OPEN, REFUTED, Verdict
 from navsym.core.balls import UnsupportedError
 from navsym.core.errors import DomainError
 from navsym.prove.assumptions import add_sides, remaining_assumptions
-from navsym.prove.equations import decide_equation, find_beats, judge_look, judge_sample, list_entries, shape_of
+from navsym.prove.equations import (
+    decide_equation,
+    find_beats,
+    judge_look,
+    judge_sample,
+    list_entries,
+    refute_by_sample,
+    shape_of,
+)
 from navsym.prove.identities.normal_form import OutsideLanguageError, reduce_to_zero
 from navsym.prove.one_symbol import decide_by_roots
 from navsym.prove.sampling.points import Sample, search_counterexample
 from navsym.prove.sampling.second_look import Look, look_again
-from navsym.prove.wording import point_text, refute_at_point, scope_of
+from navsym.prove.wording import point_text, scope_of
 
 #: relation -> when a finite ball of printed - derived contradicts it.
 EXCLUDES: dict[str, Callable[[arb], bool]] = {
@@ -29,15 +37,6 @@ EXCLUDES: dict[str, Callable[[arb], bool]] = {
     "!=": lambda ball: bool(ball == 0),
 }
 
-
-#: relation -> what is low where printed - derived comes nearest to contradicting it.
-GOALS: dict[str, Callable[[sp.Expr], tuple[sp.Expr, ...]]] = {
-    "<": lambda d: (-d,),
-    "<=": lambda d: (-d,),
-    ">": lambda d: (d,),
-    ">=": lambda d: (d,),
-    "!=": lambda d: (d**2, d, -d),
-}
 
 #: Relations that equality breaks.
 STRICT = ("<", ">", "!=")
@@ -81,12 +80,11 @@ def decide_difference(
     difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr] = ()
 ) -> Verdict:
     """Verdict of ``difference relation 0``: broken by a point where the sides exist, decided by real roots, or OPEN."""
-    sample = search_counterexample(difference, lambda ball: contradicts(ball, relation), box, sides=sides)
+    sample = search_counterexample(difference, EXCLUDES[relation], box, sides=sides)
     if sample.points == 0:
         return judge_sample(sample, scope, f"printed {relation} derived")
     if sample.counterexample is not None:
-        assert sample.difference is not None
-        return refute_at_point(sample.counterexample, sample.difference)
+        return refute_by_sample(sample)
     decided = decide_by_roots(difference, relation, box, scope, sides)
     if decided is not None:
         return decided
@@ -97,14 +95,9 @@ def decide_unproved_relation(
     difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr], sample: Sample
 ) -> Verdict:
     """What has no proof of sign: broken by a second look, or sampled; never CONFIRMED across a change of sign."""
-    look = look_again(
-        difference,
-        lambda ball: contradicts(ball, relation),
-        box,
-        sides,
-        relation in STRICT,
-        GOALS[relation](difference),
-    )
+    low = -difference if "<" in relation else difference
+    goals = (difference**2, difference, -difference) if relation == "!=" else (low,)
+    look = look_again(difference, EXCLUDES[relation], box, sides, relation in STRICT, goals)
     doubt = doubt_of(look, relation)
     if not doubt and look.counterexample is None:
         doubt = find_beats(difference, box)
@@ -124,8 +117,3 @@ def doubt_of(look: Look, relation: str) -> str:
         near = {symbol.name: f"{float(value):.12g}" for symbol, value in look.touching.items()}
         return f"the sides come within 1e-60 of each other near {near}: equality there would break the relation"
     return ""
-
-
-def contradicts(ball: arb, relation: str) -> bool:
-    """True for a finite ball of ``printed - derived`` that excludes the relation."""
-    return EXCLUDES[relation](ball)

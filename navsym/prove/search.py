@@ -18,7 +18,7 @@ from flint import ctx
 from navsym.core.errors import NavsymError
 from navsym.prove.relations import cofactors
 from navsym.prove.rooms import equations, forms, quadrics, signs
-from navsym.prove.rooms.goals import Hole, Holes, Proof, Room, fails, player, sample_goal, subterms
+from navsym.prove.rooms.goals import Hole, Holes, Proof, Room, fails, player, sample_goal, subterms, vanishes
 
 Rounds = Sequence[tuple[int, int, int]]
 ROOMS: dict[str, Room] = {
@@ -34,10 +34,10 @@ def choose(names: str) -> tuple[Room, ...]:
 #: The rooms in the order of their cost: cheap ones, those that think longer, those of the last resort.
 EQUATIONS = (
     choose(
-        "algebra one_angle cofactors elimination modulus values values_of_constants inverse factors_of_roots "
-        "exponents equal_squares"
+        "algebra one_angle cofactors elimination modulus values values_of_constants known_signs gradient inverse "
+        "factors_of_roots exponents equal_squares"
     ),
-    choose("known_signs roots_of_symbols sums_of_hypotheses logarithms_of_products empty_case sides_of_zero gradient"),
+    choose("roots_of_symbols sums_of_hypotheses logarithms_of_products empty_case sides_of_zero"),
 )
 SIGNS = (
     choose(
@@ -130,7 +130,7 @@ class Search:
         sample = sample_goal(goal)
         if any(fails(goal.relation, value) for value in sample):
             sample = sample_goal(goal, is_strict=True)
-        if not any(fails(goal.relation, value) for value in sample):
+        if not any(fails(goal.relation, value) for value in sample) and not vanishes(goal):
             parts = sum(1 for _ in itertools.islice(subterms(goal.term), LONG + 1))
             self.tries -= parts // PARTS
             self.depth += 1

@@ -93,19 +93,17 @@ def test_a_symbol_that_a_hypothesis_gives_is_eliminated(term, zeros):
     assert find_proof(goal._replace(zeros=()), rounds=((8, 200, 1),)) is None
 
 
-GUDERMANN = pytest.param("2*atan(tanh(x/2)) = atan(sinh(x))", marks=pytest.mark.long)
-
-
-@pytest.mark.parametrize("text", [GUDERMANN, "atan(x) - asin(x/sqrt(1 + x**2)) = 0"])
+@pytest.mark.parametrize("text", ["2*atan(tanh(x/2)) = atan(sinh(x))", "atan(x) - asin(x/sqrt(1 + x**2)) = 0"])
 def test_equal_slopes_and_one_value_prove_an_equation(text):
-    verdict = decide(text, seconds=120)
+    verdict = decide(text)
     assert verdict.status == "PROVED"
     left, right = text.split(" = ")
     assert decide(f"{left} = {right} + 1/10**12").status == "REFUTED"
 
 
 def test_slopes_are_compared_at_every_symbol_and_at_a_point_of_the_box():
-    (proof, *_) = equations.by_gradient(goal_of("x*y - y*x", box={"x": ["2", "3", []]}), [])
+    (proof, *_) = equations.by_gradient(goal_of("log(x*y) - log(y*x)", box={"x": ["2", "3", []]}), [])
     assert proof["rule"] == "derivative" and set(proof["point"]) == {"x", "y"}
     assert 2 <= Fraction(proof["point"]["x"]) <= 3
-    assert not [*equations.by_gradient(goal_of("1 - 1"), [])]
+    assert not [*equations.by_gradient(goal_of("log(2) - log(2)"), [])]
+    assert not [*equations.by_gradient(goal_of("x*y - y*x"), [])]  # its slopes are no simpler

@@ -51,6 +51,28 @@ def test_a_search_in_vain_ends_by_its_counts_when_the_clock_stands_still(monkeyp
     assert 0 < len(played) <= sum(tries for _, tries, _ in search.SIGN_ROUNDS)
 
 
+ANY, FROM_ONE = [None, None, []], ["1", None, []]
+
+
+@pytest.mark.parametrize(
+    ("term", "given", "x", "tries"),
+    [
+        ("(a*x + b*y)**2 + (a*p + b*q)**2", (), ANY, 0),  # 0 where all are 0
+        ("x*(a - y)**2 + (p - q)**2", (), FROM_ONE, 0),  # 0 where all are 1, or 0 where they may be
+        ("x**2 + y**2 + 1", (), ANY, 1),
+        ("x**2 + y**2", ("x - 1",), ANY, 1),  # the hypothesis excludes the zero
+        ("x + y**2", (), FROM_ONE, 1),
+    ],
+)
+def test_a_sign_that_fails_at_a_simple_point_costs_no_rule(term, given, x, tries, monkeypatch):
+    played = []
+    plays = search.Search.plays
+    monkeypatch.setattr(search.Search, "plays", lambda self, *given: played.append(given) or plays(self, *given))
+    box = {name: player.read_range(x if name == "x" else ANY) for name in "abpqxy"}
+    proof = search.find_proof(player.Goal(player.parse(term), ">", box, (), tuple(map(player.parse, given))))
+    assert (proof is not None) == bool(played) == bool(tries)
+
+
 def test_balls_that_do_not_suffice_are_not_tried_again_and_many_of_them_only_where_tries_are_left(monkeypatch):
     goal = player.Goal(player.parse("x**2 - 2*x + 1 + exp(-40)"), ">=", {"x": player.read_range(["0", "2", []])})
     tried = []

@@ -98,15 +98,15 @@ def list_bends(question: Any) -> list[Any]:
 
 def list_cuts(question: Any, goal: Any) -> Iterator[list[Any]]:
     """No cut; the zeros of what absolute values are taken of; 0 between two infinite ends."""
-    both = player.is_infinite(question.low) and player.is_infinite(question.high)
-    if both:
+    if player.is_infinite(question.low) and player.is_infinite(question.high):
         yield [player.ZERO]
         return
-    x = to_sympy(("symbol", question.variable))
+    x, range_of_x = to_sympy(("symbol", question.variable)), sp.S.Reals
+    if not player.symbols_of(question.low) | player.symbols_of(question.high):  # waves have finitely many zeros there
+        range_of_x = sp.Interval(*sorted((to_sympy(question.low), to_sympy(question.high)), key=float))
     zeros: set[Any] = set()
     for bend in list_bends(question):
-        inner = to_sympy(bend)
-        found = sp.solveset(inner, x, sp.S.Reals) if inner.is_polynomial(x) else sp.S.EmptySet
+        found = sp.solveset(to_sympy(bend), x, range_of_x)
         zeros |= set(found) if isinstance(found, sp.FiniteSet) else set()
     inside = [z for z in zeros if lies_between(z, question)]
     if inside:
@@ -255,9 +255,8 @@ def integrate_bells(f: Any, x: Any) -> Any:
         bell = sp.exp(sp.cancel(-a * x**2 + b * x + c))
         top = sp.exp(sp.cancel(c + b**2 / (4 * a)))
         parts = [sp.sqrt(sp.pi) / (2 * sp.sqrt(a)) * top * sp.erf(sp.sqrt(a) * (x - b / (2 * a)))]
-        for n in range(
-            1, powers.degree() + 1
-        ):  # (x**(n - 1) bell)' = ((n - 1) x**(n - 2) - 2 a x**n + b x**(n - 1)) bell
+        # (x**(n - 1) bell)' = ((n - 1) x**(n - 2) - 2 a x**n + b x**(n - 1)) bell
+        for n in range(1, powers.degree() + 1):
             lower = (n - 1) * parts[n - 2] if n > 1 else 0
             parts.append((lower + b * parts[n - 1] - x ** (n - 1) * bell) / (2 * a))
         total += share * sum(powers.nth(n) * part for n, part in enumerate(parts))
@@ -360,10 +359,8 @@ def list_products(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
     for part in sp.fraction(sp.cancel(f)):
         rows = sp.factor_list(part, k)[1] if part.is_polynomial(k) else []
         sides.append([sp.Poly(factor, k).monic() for factor, power in rows for _ in range(power)])
-    share, form = (
-        sp.cancel(f * sp.prod(h.as_expr() for h in sides[1]) / sp.prod(g.as_expr() for g in sides[0])),
-        sp.S.One,
-    )
+    share = sp.cancel(f * sp.prod(h.as_expr() for h in sides[1]) / sp.prod(g.as_expr() for g in sides[0]))
+    form = sp.S.One
     for g in sides[0]:
         below = [(h, s) for h in sides[1] if (s := find_shift(g, h)) is not None]
         if not below:

@@ -16,6 +16,7 @@ sound; "not zero" is never used to refute (a point and a ball do that).
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 
 import sympy as sp
@@ -44,6 +45,7 @@ class Reduction:
     complete: bool
 
 
+@functools.lru_cache(maxsize=256)
 def reduce_to_zero(expression: sp.Expr) -> Reduction:
     """Decide whether an expression of the language vanishes identically.
 
@@ -66,31 +68,39 @@ def reduce_to_zero(expression: sp.Expr) -> Reduction:
     )
 
 
-def order_nodes(nodes: set[sp.Basic]) -> list[sp.Basic]:
-    """Nodes of a tree in an order that does not depend on the run."""
-    return sorted(nodes, key=sp.default_sort_key)
+WATCHED = (sp.Pow, sp.tan, sp.sec, sp.cot, sp.csc, sp.atan2, sp.asin, sp.acos, sp.log)
+
+
+@functools.lru_cache(maxsize=256)
+def order_nodes(expression: sp.Basic) -> list[sp.Basic]:
+    """Nodes of a tree that are not defined everywhere, in an order that does not depend on the run."""
+    return sorted(expression.atoms(*WATCHED), key=sp.default_sort_key)
+
+
+def list_nodes(expression: sp.Basic, *kinds: type) -> list[sp.Basic]:
+    """Those of some kinds."""
+    return [node for node in order_nodes(expression) if isinstance(node, kinds)]
 
 
 def divisors_inside(expression: sp.Expr) -> list[sp.Basic]:
     """Bases of negative powers anywhere in the expression, arguments of functions included."""
-    powers = order_nodes(expression.atoms(sp.Pow))
-    found = [power.base for power in powers if power.exp.is_Rational and power.exp < 0]
-    found += [sp.cos(node.args[0]) for node in order_nodes(expression.atoms(sp.tan, sp.sec))]
-    found += [sp.sin(node.args[0]) for node in order_nodes(expression.atoms(sp.cot, sp.csc))]
-    return found + [sum(a**2 for a in node.args) for node in order_nodes(expression.atoms(sp.atan2))]
+    found = [power.base for power in list_nodes(expression, sp.Pow) if power.exp.is_Rational and power.exp < 0]
+    found += [sp.cos(node.args[0]) for node in list_nodes(expression, sp.tan, sp.sec)]
+    found += [sp.sin(node.args[0]) for node in list_nodes(expression, sp.cot, sp.csc)]
+    return found + [sum(a**2 for a in node.args) for node in list_nodes(expression, sp.atan2)]
 
 
 def radicands_inside(expression: sp.Expr) -> list[sp.Basic]:
     """What has to be nonnegative for roots, inverse sines and inverse cosines to be real."""
-    powers = order_nodes(expression.atoms(sp.Pow))
+    powers = list_nodes(expression, sp.Pow)
     found = [p.base for p in powers if p.exp.is_Rational and not p.exp.is_Integer and not p.base.is_nonnegative]
-    return found + [1 - node.args[0] ** 2 for node in order_nodes(expression.atoms(sp.asin, sp.acos))]
+    return found + [1 - node.args[0] ** 2 for node in list_nodes(expression, sp.asin, sp.acos)]
 
 
 def logarithms_inside(expression: sp.Expr) -> list[sp.Basic]:
     """Arguments of logarithms and bases of general powers, which have to be positive."""
-    found = [node.args[0] for node in order_nodes(expression.atoms(sp.log))]
-    found += [p.base for p in order_nodes(expression.atoms(sp.Pow)) if not p.exp.is_Rational]
+    found = [node.args[0] for node in list_nodes(expression, sp.log)]
+    found += [p.base for p in list_nodes(expression, sp.Pow) if not p.exp.is_Rational]
     return [argument for argument in found if not argument.is_positive]
 
 

@@ -13,12 +13,10 @@ from typing import Any
 
 from flint import Ordering, arb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, nmod_mat
 
-from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, player, write_number, write_term
-from navsym.prove.rooms.signs import list_constants
+from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, fails, player, write_number, write_term
 
 PRIME = (1 << 61) - 1
 ROUNDS = 5
-MOST_RESTS = 3
 MOST_GIVEN = 5
 MOST_VALUES = 8  # the relations of a rotation give every entry by the others
 MOST_UNKNOWNS = 2500
@@ -43,13 +41,14 @@ def by_cofactors(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     roots = [k for k, part in enumerate(parts) if part[0] == "sqrt"]
     most = FEW_UNKNOWNS if any(m[k] % 2 for m in read_terms(top) for k in roots) else MOST_UNKNOWNS
     divisors = write_divisors(bottom, goal, generators, ring)
-    for rest in [fmpq(0)] if goal.relation in ("=", ">=") else list_constants(goal)[:MOST_RESTS] or [fmpq(1)]:
-        for found in find_cofactors(top - rest * bottom, own, most):
-            shares = [
-                write_share(c, down, divisors, parts) if c else "0"
-                for c, (_, down) in zip(found, quotients[1:], strict=False)
-            ]
-            yield {"rule": "modulo", "to": f"({rest})", "cofactors": shares, "defined": Holes(), "proof": Hole()}
+    for rest, found in find_cofactors(top, None if goal.relation == "=" else bottom, own, most):
+        if fails(goal.relation, arb(rest)):
+            continue
+        shares = [
+            write_share(c, down, divisors, parts) if c else "0"
+            for c, (_, down) in zip(found, quotients[1:], strict=False)
+        ]
+        yield {"rule": "modulo", "to": f"({rest})", "cofactors": shares, "defined": Holes(), "proof": Hole()}
 
 
 def by_elimination(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -101,14 +100,13 @@ def list_own_relations(parts: Sequence[Term], generators: Any, ring: Any) -> Ite
 
 
 def find_cofactors(
-    target: fmpq_mpoly, relations: Sequence[fmpq_mpoly], most: int = MOST_UNKNOWNS
-) -> Iterator[list[Polynomial]]:
-    """Cofactors of the relations with sum c_k h_k = target: by division, then with more and more unknowns."""
-    if (divided := divide(target, relations)) is not None:
-        yield divided
-    wanted = read_terms(target)
-    tables = [read_terms(h) for h in relations]
-    monomials, columns = dict.fromkeys(wanted), dict[tuple[int, Exponents], Polynomial]()
+    target: fmpq_mpoly, beside: fmpq_mpoly | None, relations: Sequence[fmpq_mpoly], most: int = MOST_UNKNOWNS
+) -> Iterator[tuple[fmpq, list[Polynomial]]]:
+    """A number r and cofactors with r beside + sum c_k h_k = target: by division, then with more and more unknowns."""
+    yield from divide(target, beside, relations)
+    wanted, *tables = map(read_terms, (target, *relations))
+    columns: dict[tuple[int, Exponents], Polynomial] = {} if beside is None else {(-1, ()): read_terms(beside)}
+    monomials = dict.fromkeys(m for table in (wanted, *columns.values()) for m in table)
     fresh: Iterable[Exponents] = [*monomials]
     for _ in range(ROUNDS):
         for m in fresh:
@@ -123,18 +121,25 @@ def find_cofactors(
         monomials |= dict.fromkeys(fresh)
         solution = solve_modulo(wanted, columns, [*monomials])
         if solution is not None:
-            yield [{m: c for (j, m), c in solution.items() if j == k} for k in range(len(relations))]
+            yield (
+                solution.pop((-1, ()), fmpq(0)),
+                [{m: c for (j, m), c in solution.items() if j == k} for k in range(len(relations))],
+            )
         if not fresh:
             return
 
 
-def divide(target: fmpq_mpoly, relations: Sequence[fmpq_mpoly]) -> list[Polynomial] | None:
-    """The quotients by one relation after the other; None where a rest is left."""
+def divide(
+    target: fmpq_mpoly, beside: fmpq_mpoly | None, relations: Sequence[fmpq_mpoly]
+) -> Iterator[tuple[fmpq, list[Polynomial]]]:
+    """The quotients by one relation after the other, where a multiple of ``beside`` is left."""
     cofactors, rest = [0 * target for _ in relations], target
     for k, relation in [*enumerate(relations)] * 2:
         quotient, rest = divmod(rest, relation)
         cofactors[k] += quotient
-    return [read_terms(c) for c in cofactors] if rest == 0 else None
+    share, rest = (0 * rest, rest) if beside is None else divmod(rest, beside)
+    if rest == 0 and share.is_constant():
+        yield share.leading_coefficient() if share else fmpq(0), [*map(read_terms, cofactors)]
 
 
 def read_terms(polynomial: fmpq_mpoly) -> Polynomial:
@@ -145,24 +150,33 @@ def read_terms(polynomial: fmpq_mpoly) -> Polynomial:
 def solve_modulo(
     wanted: Polynomial, columns: dict[tuple[int, Exponents], Polynomial], monomials: Sequence[Exponents]
 ) -> dict[tuple[int, Exponents], fmpq] | None:
-    """One solution of sum x_j column_j = wanted in small fractions; None where there is none."""
+    """One solution of sum x_j column_j = wanted in small fractions, of which the first may be long; or None."""
     rows, keys = {m: i for i, m in enumerate(monomials)}, [*columns]
     entries = [[0] * (len(keys) + 1) for _ in monomials]
     for j, table in enumerate((*columns.values(), wanted)):
         for m, c in table.items():
-            entries[rows[m]][j] = int(c.p) * pow(int(c.q), -1, PRIME) % PRIME
+            entries[rows[m]][j] = to_residue(c)
     reduced, rank = nmod_mat(entries, PRIME).rref()
-    solution = {}
+    solution, pivot = dict[tuple[int, Exponents], Any](), -1
     for i in range(rank):
-        pivot = next(j for j in range(len(keys) + 1) if int(reduced[i, j]))
+        pivot = next(j for j in range(pivot + 1, len(keys) + 1) if reduced[i, j])
         if pivot == len(keys):
             return None
         value = guess_fraction(int(reduced[i, len(keys)]))
-        if value is None:
+        if value is None and pivot:
             return None
         if value != 0:
             solution[keys[pivot]] = value
+    if solution and keys[0] in solution:  # exactly, from one row
+        m, divisor = next(iter(columns[keys[0]].items()))
+        rest = (solution[key] * columns[key].get(m, 0) for key in [*solution][1:])
+        solution[keys[0]] = (wanted.get(m, fmpq(0)) - sum(rest, fmpq(0))) / divisor
     return solution
+
+
+def to_residue(c: fmpq) -> int:
+    """The fraction modulo the prime."""
+    return int(c.p) * pow(int(c.q), -1, PRIME) % PRIME
 
 
 def guess_fraction(residue: int) -> fmpq | None:

@@ -237,7 +237,7 @@ def by_inverse(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 def by_equal_squares(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """Equal squares of two sides of one sign."""
     terms = player.list_terms(goal.term)
-    if len(terms) < 2 or not any(p[0] in ("sqrt", "abs", "^") for p in subterms(goal.term)):
+    if len(terms) < 2 or not any(map(is_root, subterms(goal.term))):
         return
     for left in terms[:4]:
         rest = tuple(player.negate(t) for t in terms if t is not left)
@@ -258,10 +258,13 @@ def by_sides_of_zero(goal: Any, sample: list[arb]) -> Iterator[Proof]:
             yield {"rule": "split", "symbol": names[0], "at": "0", "proofs": Holes()}
 
 
+SMOOTH = ("asin", "acos", "atan", "atan2", "log", "erf")
+
+
 def by_gradient(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """Derivatives that vanish, and one value."""
     names = sorted(player.symbols_of(goal.term))
-    if not names:
+    if not names or not any(part[0] in SMOOTH for part in subterms(goal.term)):
         return
     for k in range(3):
         point = {name: str(simple_point(goal.box[name], k)) for name in names}

@@ -221,6 +221,17 @@ def is_outside(goal: Any, place: dict[str, Any]) -> bool:
     return not all(player.value_of(t, place).is_finite() for t in parts)
 
 
+def vanishes(goal: Any) -> bool:
+    """Whether a term that is to be no zero is 0 where all symbols are 0, or all are 1, or as near as ranges allow."""
+    names = player.symbols_of(goal.term).union(*map(player.symbols_of, (*goal.given, *goal.exists)))
+    for k in (0, 1) if goal.relation in (">", "!=") and not goal.zeros else ():
+        place = {name: player.Jet(arb(simple_point(goal.box[name], k))) for name in names}
+        is_there = ball_of(goal.term, place) == 0 and all(ball_of(t, place) >= 0 for t in goal.given)
+        if is_there and all(player.value_of(t, place).is_finite() for t in goal.exists):
+            return True
+    return False
+
+
 def values_of(goal: Any, term: Term) -> list[arb]:
     """Balls of another term at the points of a goal."""
     return sample_goal(goal._replace(term=term))
@@ -251,6 +262,7 @@ def inner_point(limit: Any, k: int, i: int) -> arb:
     return low + far if low is not None else high - far if high is not None else far - arb(2) / 3
 
 
+@functools.lru_cache(maxsize=4096)
 def simple_point(limit: Any, k: int) -> fmpq:
     """A simple rational number in a range, if it is wide."""
     numbers = [fmpq(n, d) for d in (1, 2, 4, 10) for n in (0, 1, -1, 3, -3, 7)][k:]

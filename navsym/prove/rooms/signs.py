@@ -78,10 +78,8 @@ def by_identity(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """Zero, or a hypothesis."""
     if goal.relation == ">=" and all(value.contains(0) for value in sample):
         yield {"rule": "identity"}
-    if goal.relation == ">=":
-        weights = find_weights(goal)
-        if weights is not None:
-            yield {"rule": "given", "weights": weights}
+    if goal.relation == ">=" and (weights := find_weights(goal)) is not None:
+        yield {"rule": "given", "weights": weights}
 
 
 def find_weights(goal: Any) -> list[str] | None:

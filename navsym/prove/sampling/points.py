@@ -27,6 +27,7 @@ AWKWARD: tuple[sp.Expr, ...] = (
     sp.pi / 2, sp.Rational(7, 3), sp.Integer(10), sp.Rational(1, 100),
 )  # fmt: skip
 
+BITS = 128
 #: Candidates outside the range in a row, after which no more are tried.
 PATIENCE = 500
 
@@ -166,7 +167,7 @@ def draw_points(symbols: Sequence[sp.Symbol], box: Box, count: int, seed: int = 
         yield point  # type: ignore[misc]
 
 
-def value_at(program: Tape, point: Mapping[sp.Symbol, sp.Expr], bits: int = 128) -> arb:
+def value_at(program: Tape, point: Mapping[sp.Symbol, sp.Expr], bits: int = BITS) -> arb:
     """Ball of the expression at an exact point."""
     return enclose(program, {symbol: exact_ball(value, bits) for symbol, value in point.items()}, bits)
 
@@ -198,8 +199,9 @@ def search_counterexample(
     program, others = tape(difference), [tape(side) for side in sides]
     tried, largest = 0, None
     for point in draw_points(symbols, box, count, seed):
-        ball = value_at(program, point)
-        if not ball.is_finite() or not all(value_at(other, point).is_finite() for other in others):
+        place = {symbol: exact_ball(value, BITS) for symbol, value in point.items()}
+        ball = enclose(program, place, BITS)
+        if not ball.is_finite() or not all(enclose(other, place, BITS).is_finite() for other in others):
             continue
         tried += 1
         if excludes(ball):

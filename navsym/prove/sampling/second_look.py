@@ -444,15 +444,9 @@ def snap_places(places: Sequence[Guess], held: Point, limits: dict[sp.Symbol, Ra
 
 def nearby_ends(place: Guess, limits: dict[sp.Symbol, Range]) -> Point:
     """The coordinates that lie almost at an end of their range, moved to that end."""
-    found: Point = {}
-    for symbol, value in place.items():
-        limit = limits[symbol]
-        for end in (limit.lower, limit.upper):
-            if end is None or not limit.contains(end):
-                continue
-            if abs(exact_ball(end) - to_fmpq(value)) < NEARBY:
-                found[symbol] = end
-    return found
+    ends = ((symbol, end) for symbol in place for end in (limits[symbol].lower, limits[symbol].upper))
+    inside = ((symbol, end) for symbol, end in ends if end is not None and limits[symbol].contains(end))
+    return {symbol: end for symbol, end in inside if abs(exact_ball(end) - to_fmpq(place[symbol])) < NEARBY}
 
 
 def list_snappings() -> Iterator[Callable[[Fraction], sp.Expr]]:

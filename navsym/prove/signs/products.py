@@ -37,22 +37,17 @@ def as_product(expression: sp.Expr) -> sp.Expr | None:
         return None
     product = sp.Mul(*top) / sp.Mul(*bottom)
     # The phases left out of the factors multiply to a rational constant.
-    constant = constant_ratio(expression, product)
-    if constant is None:
-        return None
-    product = constant * product
+    product *= constant_ratio(expression, product)
     return product if vanishes_identically(expression - product) else None
 
 
-def constant_ratio(expression: sp.Expr, product: sp.Expr) -> sp.Rational | None:
-    """Guess the constant from one point; the guess is proved afterwards."""
+def constant_ratio(expression: sp.Expr, product: sp.Expr) -> sp.Rational:
+    """Guess the constant from one point, or 1; the guess is proved afterwards."""
     symbols = sorted(expression.free_symbols, key=str)
     point = {symbol: sp.Rational(7 + 4 * k, 10 + 3 * k) for k, symbol in enumerate(symbols)}
     value, base = complex(expression.subs(point).evalf(30)), complex(product.subs(point).evalf(30))
-    if base == 0:
-        return None
-    ratio = Fraction((value / base).real).limit_denominator(4096)
-    return to_rational(ratio) if ratio else None
+    ratio = Fraction((value / base).real).limit_denominator(4096) if base else 0
+    return to_rational(ratio or Fraction(1))
 
 
 def real_factors(converter: Converter, polynomial: fmpq_mpoly) -> list[sp.Expr] | None:
@@ -60,15 +55,10 @@ def real_factors(converter: Converter, polynomial: fmpq_mpoly) -> list[sp.Expr] 
     reduced = converter.reduce_unity(polynomial)
     if reduced.is_zero():
         return None
-    _, factors = factor_exactly(reduced)
-    result: list[sp.Expr] = []
-    for factor, multiplicity in factors:
-        real = real_form(converter, factor)
-        if real is None:
-            return None
-        if real != 1:
-            result.append(real**multiplicity)
-    return result
+    real = [(real_form(converter, factor), multiplicity) for factor, multiplicity in factor_exactly(reduced)[1]]
+    if any(form is None for form, _ in real):
+        return None
+    return [sp.Pow(form, multiplicity) for form, multiplicity in real if form != 1]
 
 
 def real_form(converter: Converter, factor: fmpq_mpoly) -> sp.Expr | None:
@@ -105,11 +95,8 @@ def is_symmetric(
     converter: Converter, terms: Mapping[Exponents, Fraction], centre: Mapping[int, Fraction], parity: int
 ) -> bool:
     """Reflection of all angles about the middle power keeps (or negates) the coefficients."""
-    for exponents, coefficient in terms.items():
-        mirrored = tuple(int(2 * centre[place] - e) if place in centre else e for place, e in enumerate(exponents))
-        if terms.get(mirrored) != parity * coefficient:
-            return False
-    return True
+    mirrored = (tuple(int(2 * centre[p] - e) if p in centre else e for p, e in enumerate(powers)) for powers in terms)
+    return all(terms.get(m) == parity * coefficient for m, coefficient in zip(mirrored, terms.values(), strict=True))
 
 
 def rebuild_product(
@@ -119,8 +106,7 @@ def rebuild_product(
     total = sp.Integer(0)
     for exponents, coefficient in terms.items():
         angle = sum((angle_of(converter, p, exponents[p] - centre[p]) for p in centre), sp.Integer(0))
-        amplitude = to_rational(coefficient)
-        total += amplitude * real_generators(converter, exponents) * function(angle)
+        total += to_rational(coefficient) * real_generators(converter, exponents) * function(angle)
     return total
 
 
@@ -132,8 +118,7 @@ def angle_of(converter: Converter, place: int, power: Fraction) -> sp.Expr:
 
 def monomial_expression(monomial: Monomial) -> sp.Expr:
     """The monomial as a product of powers."""
-    factors = [sp.Pow(base, to_rational(e)) for base, e in monomial]
-    return sp.Mul(*factors)
+    return sp.Mul(*(sp.Pow(base, to_rational(e)) for base, e in monomial))
 
 
 def real_generators(converter: Converter, exponents: Exponents) -> sp.Expr:

@@ -165,6 +165,16 @@ def test_cuts_are_found_at_absolute_values():
 
 
 @pytest.mark.parametrize(
+    ("integrand", "ends", "value"),
+    [("sin(x)", "0, 2*pi", "4"), ("cos(x) - 1/2", "0, pi", "sqrt(3) + pi/6"), ("log(x)", "1/2, 2", "3*log(2)/2 - 1/2"),
+     ("exp(x) - 2", "0, 1", "exp(1) + 4*log(2) - 5"), ("sin(x)", "2*pi, 0", "-4")],
+)  # fmt: skip
+def test_absolute_values_of_waves_and_logarithms_are_integrated_from_zero_to_zero(integrand, ends, value):
+    assert nav.prove(f"integral(abs({integrand}), x, {ends}) = {value}").status == PROVED
+    assert nav.prove(f"integral(abs({integrand}), x, {ends}) = {value} + 1/10**9").status == REFUTED
+
+
+@pytest.mark.parametrize(
     ("text", "latex"),
     [
         ("integral(exp(-x), x, 0, oo)", r"\int_{0}^{\infty} "),
