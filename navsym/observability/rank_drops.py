@@ -301,7 +301,7 @@ class View:
             )
         partial = [(conditions_on(leaf.system, ring), leaf) for leaf in known if leaf.nonzero]
         return listed + [
-            self.make_drop(zeros, nonzero=tuple(map(ring.condition, leaf.nonzero)), rank=leaf.rank)
+            self.make_drop(zeros, nonzero=tuple(map(ring.condition, leaf.nonzero)), rank=leaf.rank, leaves=(leaf,))
             for zeros, leaf in partial
             if zeros
         ]
