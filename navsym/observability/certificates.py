@@ -141,7 +141,9 @@ def propose(said: Statement, columns: Matrix) -> Iterator[dict[str, Any]]:
     H, named = said.model.H.extract(list(said.places), list(range(n))), [ring.expression(f) for f in zeros]
     null = sp.Matrix(len(columns), n, [ring.expression(x) for column in columns for x in column])
     known = sp.Mul(*(ring.condition(f) for f in said.nonzero))
-    t, slope = new_symbol(said.model), rate_of(said.model, known)
+    slope = rate_of(said.model, known)
+    longest = max(len(str(s)) for s in (*ring.symbols, said.model.time, *said.model.rates))
+    t = sp.Symbol("t" * (longest + 1), real=True)
     if said.nonzero:
         shares = [[*row, sp.Integer(0)] for row in shares]
         shares.insert(len(zeros), [*([sp.Integer(0)] * len(zeros)), -t * slope])
@@ -170,15 +172,6 @@ def propose(said: Statement, columns: Matrix) -> Iterator[dict[str, Any]]:
             "shares": matrix_texts(factors),
             "bits": 256 + BITS * n,
         }
-
-
-def new_symbol(model: LinearModel) -> sp.Symbol:
-    """A symbol whose name no other one of a model has."""
-    symbols = {*model.F.free_symbols, *model.H.free_symbols, *model.rates, *model.states}
-    name, taken = "t", {str(s) for s in (*symbols, *(x for r in model.rates.values() for x in r.free_symbols))}
-    while name in taken or name == str(model.time):
-        name += "_"
-    return sp.Symbol(name, real=True)
 
 
 def rate_of(model: LinearModel, value: sp.Expr) -> sp.Expr:
