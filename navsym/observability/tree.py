@@ -77,53 +77,34 @@ Advance = Callable[[list[Poly]], list[Poly]]
 
 @dataclass(slots=True, eq=False)
 class Node:
-    """A set of points, and what is known of the rows there: system = 0, and no unit of the ring vanishes.
-
-    waiting : rows of measurements that are not known to lie in the span of the basis
-    closed  : places of rows of the basis whose derivatives lie in its span
-    """
+    """A set of points, and what is known of the rows there: system = 0, and no unit of the ring vanishes."""
 
     system: System
     ring: Ring
     basis: UnitBasis
     waiting: Matrix
-    closed: frozenset[int] = frozenset()
 
     def tidy(self, row: list[Poly]) -> list[Poly]:
         """A row on the points of the node, without its parts along the basis, times a unit."""
         need_short(row)
         row = self.basis.reduced(need_short(substitute_row(row, self.system, self.ring)))
-        return need_short([0 * entry if lies_in_ideal(entry, self.system) else entry for entry in row])
+        return [0 * entry if lies_in_ideal(entry, self.system) else entry for entry in row]
 
     def grow(self, advance: Advance | None, wanted: int) -> list[Poly]:
-        """Take rows while they have a unit as pivot; entries to split on where none has, none at a leaf.
-
-        Derivatives come after the measurements, and from the basis as it stands then: a pose that is known moves on
-        without the places that it is known from. A row that is too long counts where no other one is left.
-        """
-        while len(self.basis.rows) < wanted:
-            rows = dict(enumerate(self.waiting))
-            if not rows and advance is not None:
-                rows = {k: advance(row) for k, row in enumerate(self.basis.rows) if k not in self.closed}
-            stuck, known = list[Poly](), set[int]()
-            for k in sorted(rows, key=lambda k: row_weight(rows[k])):
-                try:
-                    row = self.tidy(rows[k])
-                except TooLargeError:
-                    continue
-                if all(entry == 0 for entry in row) or self.basis.take(row):
-                    known.add(k)
-                else:
-                    stuck += [entry for entry in row if entry != 0]
-            if self.waiting:
-                self.waiting = [row for k, row in enumerate(self.waiting) if k not in known]
-            else:
-                self.closed |= known
-            if not known:
-                if rows and not stuck:
-                    raise TooLargeError("expected rows that can be written; got too many terms; fix some parameters")
-                return stuck
-        return []
+        """Take rows while they have a unit as pivot; entries to split on where none has, none at a leaf."""
+        stuck: Matrix = []
+        while self.waiting and len(self.basis.rows) < wanted:
+            self.waiting.sort(key=row_weight)
+            row = need_short(self.tidy(self.waiting.pop(0)))
+            if all(entry == 0 for entry in row):
+                continue
+            if not self.basis.take(row):
+                stuck.append(row)
+                continue
+            self.waiting = [*self.waiting, *stuck, *([advance(row)] if advance is not None else [])]
+            stuck = []
+        self.waiting = [*stuck, *self.waiting]
+        return [] if len(self.basis.rows) >= wanted else [entry for row in stuck for entry in row if entry != 0]
 
     def split_on(self, entries: Sequence[Poly]) -> list[Poly]:
         """Irreducible factors of the entry that is simplest without its units."""
@@ -446,7 +427,7 @@ def restricted(node: Node, system: System) -> Node | None:
     for row, column in zip(node.basis.rows, node.basis.columns, strict=True):
         basis.rows.append(substitute_row(row, system, node.ring))
         basis.columns.append(column)
-    return replace(node, system=system, ring=ring, basis=basis)
+    return Node(system, ring, basis, [list(row) for row in node.waiting])
 
 
 # Closures
