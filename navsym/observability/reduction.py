@@ -122,9 +122,9 @@ def two_squares(f: Poly, ring: Ring) -> tuple[int, Poly, Poly, Poly] | None:
     """
     if len(f) > SQUARE_TERMS:
         return None
-    for place in (k for k, degree in enumerate(f.degrees()) if degree == 2):
+    second = {k: f.derivative(k).derivative(k) for k, degree in enumerate(f.degrees()) if degree == 2}
+    for place, twice in sorted(second.items(), key=lambda item: not ring.is_unit(item[1])):
         slope = f.derivative(place)
-        twice = slope.derivative(place)
         content, factors = factor_exactly(slope**2 - 2 * twice * f)
         if content < 0 and all(power % 2 == 0 or is_sum_of_squares(base) for base, power in factors):
             rest = prod((base for base, _ in factors), start=ring.constant(1))

@@ -44,6 +44,17 @@ def test_sums_of_squares_vanish_over_the_reals_only_term_by_term():
     assert conditions(model) == {}
 
 
+@pytest.mark.parametrize("f", [(a - b * c) ** 2 + c**2 * (b**2 + 1), (a * b - c) ** 2 + (a + c) ** 2, (a - b) ** 2 - c])
+def test_two_squares_vanish_together_and_nowhere_else(f):
+    found = observe_jointly(LinearModel(sp.Matrix([[0, f], [0, 0]]), None, [[1, 0]]))
+    drops, complete = drops_and_completeness(found)
+    joint = [d for d in drops if d.subspace == "joint"]
+    assert complete["joint"] and {len(d.zeros) for d in joint} == ({1} if f.coeff(c) == -1 else {2})
+    for values in itertools.product(range(-3, 4), repeat=3):
+        at = dict(zip((a, b, c), values, strict=True))
+        assert (f.subs(at) == 0) == any(all(z.subs(at) == 0 for z in d.zeros) for d in joint), at
+
+
 def test_every_listed_locus_is_a_drop_and_nothing_drops_elsewhere():
     F = sp.Matrix([[0, 1, 0, 0], [-(w**2), 0, a, 0], [0, 0, 0, 1], [0, 0, -1, 0]])
     H = sp.Matrix([[1, 0, 0, b], [0, 0, c, 0]])
