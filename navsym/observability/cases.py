@@ -31,8 +31,6 @@ MINORS = 3
 SOLUTION = 120
 #: Products of terms for one entry on the way; beyond that a minor is not formed, and the list not called complete.
 PRODUCTS = 60_000
-#: The same for determinants of staircases, and terms of all of them: nobody reads a longer condition.
-LAST_PRODUCTS, LAST_TERMS = 16_000_000, 40_000
 
 
 @dataclass(slots=True)
@@ -183,12 +181,7 @@ def minors_on(rows: Matrix, wanted: int, system: System, ring: Ring) -> tuple[li
 
 
 def minor_on(
-    rows: Sequence[list[Poly]],
-    wanted: int,
-    system: System,
-    columns: Sequence[int],
-    ring: Ring,
-    products: int = PRODUCTS,
+    rows: Sequence[list[Poly]], wanted: int, system: System, columns: Sequence[int], ring: Ring
 ) -> tuple[Poly, bool, int]:
     """(last pivot, whether it is a minor of the wanted size, its column) of an elimination on a system.
 
@@ -202,19 +195,13 @@ def minor_on(
         if place is None:
             return last, False, used
         i, used = place
-        need_affordable(work[step:], work[i][used], products)
+        if len(work[i][used]) * max(len(entry) for row in work[step:] for entry in row) > PRODUCTS:
+            raise TooLargeError(f"expected entries of at most {PRODUCTS} products; got more; fix some parameters")
         work[step], work[i] = work[i], work[step]
         clear_column(work, step, used, last)
         last = work[step][used]
         free.remove(used)
     return last, True, used
-
-
-def need_affordable(rows: Matrix, pivot: Poly, products: int) -> None:
-    """Refuse an elimination step whose products are too long."""
-    longest = max(len(entry) for row in rows for entry in row)
-    if len(pivot) * longest > products:
-        raise TooLargeError(f"expected entries of at most {products} products; got more; fix some parameters")
 
 
 def pivot_on(work: Matrix, step: int, free: Sequence[int], system: System) -> tuple[int, int] | None:

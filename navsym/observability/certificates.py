@@ -37,7 +37,10 @@ TURNS = (sp.Integer(0), sp.pi, sp.pi / 2, -sp.pi / 2)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Statement:
-    """What a certificate says: the rows of H in these places show ``rank`` dimensions where the system vanishes."""
+    """What a certificate says: the rows of H in these places show ``rank`` dimensions where the system vanishes.
+
+    Where something must not vanish, its reciprocal t is one more constant of the system: t f - 1 = 0 (Rabinowitsch).
+    """
 
     model: LinearModel
     motion: Motion
@@ -46,6 +49,7 @@ class Statement:
     places: Sequence[int]
     system: System
     rank: int
+    nonzero: System
 
     @property
     def ring(self) -> Ring:
@@ -75,12 +79,17 @@ class Certifier:
         motion, listed = motion_of(model)
         return cls(model, motion, [row for row, _ in listed], [bottom for _, bottom in listed])
 
-    def certify(self, rank: int, columns: Matrix, system: System, places: Sequence[int]) -> dict[str, Any] | None:
+    def certify(
+        self, rank: int, columns: Matrix, system: System, places: Sequence[int], nonzero: System | None = None
+    ) -> dict[str, Any] | None:
         """That the measurements in some places show ``rank`` dimensions where the system vanishes.
 
         columns : n - rank columns that none of them sees there
+        nonzero : what does not vanish there
         """
-        said = Statement(self.model, self.motion, self.rows, self.bottoms, places, system, rank)
+        units = nonzero or []
+        motion = replace(self.motion, ring=self.motion.ring.with_units(units)) if units else self.motion
+        said = Statement(self.model, motion, self.rows, self.bottoms, places, system, rank, units)
         if sum(len(x) for column in columns for x in column) > COLUMN_TERMS:
             return None
         try:
@@ -99,9 +108,9 @@ class Certifier:
         """A drop that lasts, with the rank that is left on it."""
         names = self.model.measurements
         places = range(len(names)) if drop.subspace == "joint" else [names.index(drop.subspace)]
-        found = [self.certify(leaf.rank, leaf.unseen, leaf.system, places) for leaf in drop.leaves]
+        found = [self.certify(leaf.rank, leaf.unseen, leaf.system, places, leaf.nonzero) for leaf in drop.leaves]
         parts = [item for item in found if item is not None]
-        if not parts or len(parts) < len(found) or drop.nonzero:
+        if not parts or len(parts) < len(found):
             return None
         return parts[0] if len(parts) == 1 else {"kind": "all", "of": parts}
 
@@ -131,9 +140,22 @@ def propose(said: Statement, columns: Matrix) -> Iterator[dict[str, Any]]:
         return
     H, named = said.model.H.extract(list(said.places), list(range(n))), [ring.expression(f) for f in zeros]
     null = sp.Matrix(len(columns), n, [ring.expression(x) for column in columns for x in column])
-    factors = sp.Matrix(len(shares), len(zeros), [x for row in shares for x in row])
+    known = sp.Mul(*(ring.condition(f) for f in said.nonzero))
+    slope = rate_of(said.model, known)
+    longest = max(len(str(s)) for s in (*ring.symbols, said.model.time, *said.model.rates))
+    t = sp.Symbol("t" * (longest + 1), real=True)
+    if said.nonzero:
+        shares = [[*row, sp.Integer(0)] for row in shares]
+        shares.insert(len(zeros), [*([sp.Integer(0)] * len(zeros)), -t * slope])
+        named.append(t * known - 1)
+    factors = sp.Matrix(len(shares), len(named), [x for row in shares for x in row])
     symbols, rates = symbols_and_rates(said.model, [said.model.F, H, null, factors, sp.Matrix(named)])
+    rates |= {t: -(t**2) * slope} if said.nonzero and slope != 0 else {}
     for point in points_on(zeros, said, symbols):
+        value = known.subs(point)
+        if value == 0:
+            continue
+        point[t] = 1 / value
         yield {
             "kind": "observability",
             "statement": {
@@ -150,6 +172,12 @@ def propose(said: Statement, columns: Matrix) -> Iterator[dict[str, Any]]:
             "shares": matrix_texts(factors),
             "bits": 256 + BITS * n,
         }
+
+
+def rate_of(model: LinearModel, value: sp.Expr) -> sp.Expr:
+    """Derivative along the motion."""
+    given = {model.time: sp.Integer(1), **model.rates}
+    return sp.expand(sp.Add(*(sp.diff(value, s) * rate for s, rate in given.items())))
 
 
 def symbols_and_rates(model: LinearModel, matrices: Sequence[sp.MatrixBase]) -> tuple[list[sp.Symbol], dict[Any, Any]]:

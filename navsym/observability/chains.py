@@ -12,19 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 
 import sympy as sp
 from flint import nmod_mat
 
 from navsym.core.errors import DomainError, EmptyError, TooLargeError, UnobservableError
-from navsym.core.rational_functions import (
-    Quotient,
-    cancel_fraction,
-    clear_denominators,
-    factor_exactly,
-    multiply_coefficients,
-)
+from navsym.core.rational_functions import Quotient, cancel_fraction, clear_denominators
 from navsym.models.linear import LinearModel
 from navsym.observability.directions import find_unobservable, independent_columns, is_closed
 from navsym.observability.linear import (
@@ -34,25 +27,11 @@ from navsym.observability.linear import (
     independent_places,
     linear_relation,
     null_vectors,
-    residue,
     residue_rank,
     scalar_product,
 )
 from navsym.observability.motion import Motion, motion_of, residue_chains
 from navsym.observability.ring import Poly, Ring
-
-# The relation that ends a chain, from the characteristic polynomial.
-#
-# a_{m+1} = theta_1 a_1 + ... + theta_m a_m says that p^m - theta_m p^(m-1) - ... annihilates the chain. It divides
-# the characteristic polynomial of the matrix, which is monic with coefficients in Z[parameters]; by Gauss' lemma so
-# are its monic factors. For m = n it is the characteristic polynomial itself (Cayley and Hamilton); for m < n the
-# factor is picked at an integer point and then checked on every component.
-
-
-#: So many combinations of factors are tried.
-CHOICES = 4096
-#: A characteristic polynomial with more terms is not factored.
-TERMS = 4000
 
 
 def characteristic_coefficients(matrix: Matrix, ring: Ring) -> list[Poly]:
@@ -70,79 +49,6 @@ def characteristic_coefficients(matrix: Matrix, ring: Ring) -> list[Poly]:
             for i in range(size + 2)
         ]
     return found
-
-
-def chain_relation(vectors: Matrix, m: int, matrix: Matrix, ring: Ring, point: Sequence[int]) -> list[Poly] | None:
-    """theta_1 ... theta_m of a chain whose first m vectors are independent; None when it was not found.
-
-    vectors : a_1 ... a_{m+1};  point : integers at which a_1 ... a_m are independent modulo the prime
-    """
-    whole = characteristic_coefficients(matrix, ring)
-    if m == len(matrix):
-        return [-c for c in whole[:0:-1]]
-    if sum(map(len, whole)) > TERMS:
-        return None
-    wanted = residue_relation(vectors, m, point)
-    for factor in monic_factors(whole, m, ring):
-        theta = [-c for c in factor[:0:-1]]
-        if [residue(t, point) for t in theta] == wanted and annihilates(theta, vectors, ring):
-            return theta
-    return None
-
-
-def residue_relation(vectors: Matrix, m: int, point: Sequence[int]) -> list[int] | None:
-    """theta modulo the prime at the point; None when the point is unlucky."""
-    rows = at_point(vectors, point)
-    width = len(rows[0])
-    augmented = nmod_mat(width, m + 1, [rows[r][c] for c in range(width) for r in range(m + 1)], PRIME)
-    reduced, rank = augmented.rref()
-    if rank != m:
-        return None
-    return [int(reduced[k, m]) for k in range(m)]
-
-
-def annihilates(theta: Sequence[Poly], vectors: Matrix, ring: Ring) -> bool:
-    """True when a_{m+1} = sum theta_j a_j, component by component."""
-    zero = ring.constant(0)
-    size = len(theta)
-    return all(
-        scalar_product(theta, [vectors[j][k] for j in range(size)], zero) == vectors[size][k]
-        for k in range(len(vectors[0]))
-    )
-
-
-def monic_factors(coefficients: Sequence[Poly], degree: int, ring: Ring) -> list[list[Poly]]:
-    """Monic divisors of the given degree of a monic polynomial in p, each as coefficients, the 1 first."""
-    wider, p = Ring.over([*ring.symbols, sp.Dummy("p")]).context, len(ring.symbols)
-    total: Poly = sum(
-        (
-            wider.from_dict({(*powers, place): int(c) for powers, c in coefficient.to_dict().items()})
-            for place, coefficient in enumerate(reversed(coefficients))
-        ),
-        wider.constant(0),
-    )
-    parts = [(monic_by_power(f, p, ring), int(power)) for f, power in factor_exactly(total)[1]]
-    found = []
-    for count, powers in enumerate(product(*(range(power + 1) for _, power in parts))):
-        if count > CHOICES:
-            break
-        if sum(k * (len(f) - 1) for k, (f, _) in zip(powers, parts, strict=True)) == degree:
-            value = [ring.constant(1)]
-            for k, (f, _) in zip(powers, parts, strict=True):
-                for _ in range(k):
-                    value = multiply_coefficients(value, f)
-            found.append(value)
-    return found
-
-
-def monic_by_power(f: Poly, place: int, ring: Ring) -> list[Poly]:
-    """Coefficients of a monic polynomial by the powers of one generator, the leading 1 first."""
-    degree = int(f.degrees()[place])
-    parts: list[dict[tuple[int, ...], int]] = [{} for _ in range(degree + 1)]
-    for powers, c in f.to_dict().items():
-        parts[degree - int(powers[place])][tuple(map(int, powers[:place]))] = int(c)
-    found = [ring.context.from_dict(part) for part in parts]
-    return [-c for c in found] if found[0] == -1 else found
 
 
 #: Largest number of states; exact symbolic answers grow fast.
@@ -274,7 +180,7 @@ def numerators(rows: Sequence[sp.Matrix], ring: Ring) -> tuple[Matrix, Poly]:
 def chain_of(name: str, row: list[Poly], bottom: Poly, motion: Motion) -> Chain:
     """Vectors up to the first dependent one; its relation proves that the chain ends there."""
     vectors, ring = [row], motion.ring
-    dimension, point = generic_rank([row], motion)
+    dimension, _ = generic_rank([row], motion)
     clock = motion.clock
     if motion.derivative(clock) != 0 or motion.derivative(bottom) != 0:
         clock = bottom = ring.constant(1)
@@ -285,7 +191,7 @@ def chain_of(name: str, row: list[Poly], bottom: Poly, motion: Motion) -> Chain:
             vectors.append(motion.advance(vectors[-1]))
         if motion.rates and (motion.roots or sum(len(x) for v in vectors for x in v) > LONGEST):
             return Chain(name, vectors[:dimension], bottom, clock, None, dimension)
-        coefficients = chain_coefficients(vectors, dimension, motion, point)
+        coefficients = chain_coefficients(vectors, dimension, motion)
         if coefficients is not None:
             break
         dimension += 1  # the points were unlucky: the relation, not they, decides
@@ -296,13 +202,13 @@ def chain_of(name: str, row: list[Poly], bottom: Poly, motion: Motion) -> Chain:
     return Chain(name, vectors[:m], bottom, clock, companion, m)
 
 
-def chain_coefficients(vectors: Matrix, m: int, motion: Motion, point: Sequence[int]) -> list[Quotient] | None:
-    """theta_1 ... theta_m without the clock: from the characteristic polynomial where nothing moves, or solved for."""
-    if not motion.rates:
-        theta = chain_relation(vectors, m, motion.matrix, motion.ring, point)
-        if theta is not None:
-            return [Quotient(part, motion.ring.constant(1)) for part in theta]
-    return linear_relation(vectors[:m], vectors[m], motion.ring)
+def chain_coefficients(vectors: Matrix, m: int, motion: Motion) -> list[Quotient] | None:
+    """theta_1 ... theta_m without the clock: solved for, or by Cayley and Hamilton where a constant chain spans all."""
+    ring = motion.ring
+    if motion.rates or m < motion.size:
+        return linear_relation(vectors[:m], vectors[m], ring)
+    whole = characteristic_coefficients(motion.matrix, ring)
+    return [Quotient(-c, ring.constant(1)) for c in whole[:0:-1]]
 
 
 def generic_rank(rows: Matrix, motion: Motion) -> tuple[int, tuple[int, ...]]:

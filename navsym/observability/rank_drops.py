@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -19,7 +19,7 @@ from flint import fmpz, fmpz_mat
 
 from navsym.claims.statement import Box
 from navsym.core.errors import TooLargeError
-from navsym.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_cases, minor_on
+from navsym.observability.cases import drops_by_cases
 from navsym.observability.chains import Chain, Chains, JointObservability
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
@@ -151,8 +151,8 @@ def newton(bound: int) -> fmpz_mat:
     return fmpz_mat(bound + 1, bound + 1, [c for row in zip(*columns, strict=True) for c in row])
 
 
-#: So many staircases at most, when the joint locus is written down by its definition.
-MOST_STAIRCASES = 40
+#: So many staircases at most, when the joint locus is written down by its definition, and terms of all of them.
+MOST_STAIRCASES, LAST_TERMS = 40, 40_000
 #: Drops inside drops inside drops are looked for so deep; more directions have too many terms to be read.
 NESTED, DIRECTION_TERMS = 3, 60
 
@@ -301,7 +301,7 @@ class View:
             )
         partial = [(conditions_on(leaf.system, ring), leaf) for leaf in known if leaf.nonzero]
         return listed + [
-            self.make_drop(zeros, nonzero=tuple(map(ring.condition, leaf.nonzero)), rank=leaf.rank)
+            self.make_drop(zeros, nonzero=tuple(map(ring.condition, leaf.nonzero)), rank=leaf.rank, leaves=(leaf,))
             for zeros, leaf in partial
             if zeros
         ]
@@ -391,7 +391,7 @@ def locus_of(chains: Chains, part: tuple[Chain, ...], rank: int) -> Locus:
     systems, whole = written_drops(part, rank, motion)
     if whole and not motion.rates:
         return Locus(irredundant(systems))
-    listed = None if motion.rates else drops_by_staircases(chains, part, rank, determinant_by_values)
+    listed = None if motion.rates else drops_by_staircases(chains, part, rank)
     if listed is not None:
         return Locus(irredundant(listed))
     found = search_drops([chain.vectors[0] for chain in part], rank, ring, motion)
@@ -399,13 +399,6 @@ def locus_of(chains: Chains, part: tuple[Chain, ...], rank: int) -> Locus:
     if motion.rates:
         passing = [system for system in systems if not is_covered(system, lasting)]
         return Locus(lasting, passing, leaves, left, whole and not left)
-    listed = (
-        drops_by_staircases(chains, part, rank, determinant_by_elimination)
-        if left or any(leaf.nonzero for leaf in leaves)
-        else None
-    )
-    if listed is not None:
-        return Locus(irredundant(listed))
     return Locus(irredundant([*lasting, *systems]), [], leaves, left, not left)
 
 
@@ -418,30 +411,7 @@ def written_drops(part: tuple[Chain, ...], rank: int, motion: Motion) -> tuple[l
     return drops_by_cases(rest.rows, rank - rest.regular, motion.ring)
 
 
-#: The determinant of the first vectors of some chains, so many of each; None when it is too long to form.
-Determinant = Callable[[Chains, tuple[Chain, ...], tuple[int, ...]], Poly | None]
-
-
-def determinant_by_values(chains: Chains, part: tuple[Chain, ...], step: tuple[int, ...]) -> Poly | None:
-    """By interpolation from values at integer points."""
-    starts = [(chain.vectors[0], count) for chain, count in zip(part, step, strict=True)]
-    return chain_determinant(starts, chains.matrix, chains.ring)
-
-
-def determinant_by_elimination(chains: Chains, part: tuple[Chain, ...], step: tuple[int, ...]) -> Poly | None:
-    """By fraction-free elimination."""
-    rows = [v for chain, count in zip(part, step, strict=True) for v in chains.first(chain, count)]
-    zero = chains.ring.constant(0)
-    try:
-        minor, full, _ = minor_on(rows, len(rows), [], list(range(len(rows))), chains.ring, LAST_PRODUCTS)
-    except TooLargeError:
-        return None
-    return minor if full else zero
-
-
-def drops_by_staircases(
-    chains: Chains, part: tuple[Chain, ...], rank: int, determinant_of: Determinant
-) -> list[System] | None:
+def drops_by_staircases(chains: Chains, part: tuple[Chain, ...], rank: int) -> list[System] | None:
     """The drop locus of some chains by its definition, or None when it is too long to write down.
 
     At any point take vectors of the first chain while they are independent, then of the second, and so on: what a
@@ -452,13 +422,12 @@ def drops_by_staircases(
     steps = list(compositions(rank, [chain.dimension for chain in part]))
     if rank < len(chains.matrix) or len(steps) > MOST_STAIRCASES:
         return None
-    starts = [chain.vectors[0] for chain in part]
-    points = (points_needed(list(zip(starts, step, strict=True)), chains.matrix) for step in steps)
-    if determinant_of is determinant_by_values and sum(points) > POINTS:
+    listed = [[(chain.vectors[0], count) for chain, count in zip(part, step, strict=True)] for step in steps]
+    if sum(points_needed(starts, chains.matrix) for starts in listed) > POINTS:
         return None
     minors: list[Poly] = []
-    for step in steps:
-        minor = determinant_of(chains, part, step)
+    for starts in listed:
+        minor = chain_determinant(starts, chains.matrix, chains.ring)
         if minor is None:
             return None
         if chains.ring.is_unit(minor):

@@ -12,14 +12,14 @@ import itertools
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import gcd
+from math import gcd, prod
 from typing import Any
 
 import sympy as sp
 from flint import fmpz_mpoly_vec
 
 from navsym.core.errors import TooLargeError
-from navsym.core.rational_functions import polynomial_sum
+from navsym.core.rational_functions import factor_exactly, polynomial_sum
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
 from navsym.observability.ring import Poly, Ring, gcd_all, irreducible_factors, is_divisor
@@ -38,6 +38,8 @@ LIMITS = (24, 120, 1000)
 BRANCHES = 40
 #: Terms of a polynomial whose sign is asked for.
 DEFINITE_TERMS = 20
+#: Terms of a polynomial that is looked at for a sum of two squares.
+SQUARE_TERMS = 40
 #: Points at which a sign is looked at before it is asked for.
 TRIALS = 200
 #: Terms of the rows of one step, of a moving and of a constant model.
@@ -62,7 +64,7 @@ def hypersurfaces(common: Poly, ring: Ring) -> list[list[Poly]]:
     """Real zeros of one polynomial, factor by factor; a sum of squares breaks up further."""
     found: list[list[Poly]] = []
     for f in (f for f in irreducible_factors(common) if not is_definite(f) and not ring.is_unit(f)):
-        for system in real_systems([f], ring):
+        for system in alternatives(f, ring):
             found += [system] if system == [f] else split_system(system, ring)
     return found
 
@@ -94,6 +96,10 @@ def alternatives(f: Poly, ring: Ring) -> list[list[Poly]]:
     factors = irreducible_factors(f)
     if len(factors) != 1 or factors[0] != f:
         return [[g] for g in factors if not ring.is_unit(g)]
+    squares = two_squares(f, ring)
+    if squares is not None and ring.is_unit(squares[1]):
+        place, twice, b, rest = squares
+        return [[twice * ring.context.gen(place) + b, rest]]
     return real_systems([f], ring)
 
 
@@ -107,6 +113,28 @@ def real_systems(system: list[Poly], ring: Ring) -> list[list[Poly]]:
     if any(not any(powers) for powers in terms):
         return []  # a positive constant beside squares
     return [[ring.context.from_dict({tuple(min(p, 1) for p in powers): 1}) for powers in terms]]
+
+
+def two_squares(f: Poly, ring: Ring) -> tuple[int, Poly, Poly, Poly] | None:
+    """(y, 2 a, b, r) of f = a y^2 + b y + c where b^2 - 4 a c <= 0 vanishes only with r; None for another polynomial.
+
+    With f also (2 a y + b)^2 + (4 a c - b^2) = 4 a f vanishes, so that both squares do: r = 0 and 2 a y + b = 0.
+    """
+    if len(f) > SQUARE_TERMS:
+        return None
+    second = {k: f.derivative(k).derivative(k) for k, degree in enumerate(f.degrees()) if degree == 2}
+    for place, twice in sorted(second.items(), key=lambda item: not ring.is_unit(item[1])):
+        slope = f.derivative(place)
+        content, factors = factor_exactly(slope**2 - 2 * twice * f)
+        if content < 0 and all(power % 2 == 0 or is_sum_of_squares(base) for base, power in factors):
+            rest = prod((base for base, _ in factors), start=ring.constant(1))
+            return place, twice, slope - twice * ring.context.gen(place), rest
+    return None
+
+
+def is_sum_of_squares(f: Poly) -> bool:
+    """True for monomials of even powers with positive factors."""
+    return all(int(c) > 0 and not any(int(p) % 2 for p in powers) for powers, c in f.to_dict().items())
 
 
 def reduce_generators(system: list[Poly], ring: Ring) -> list[Poly] | None:

@@ -40,6 +40,7 @@ from navsym.observability.reduction import (
     reduce_generators,
     row_weight,
     small_points,
+    two_squares,
 )
 from navsym.observability.ring import Poly, Ring, irreducible_factors
 
@@ -275,6 +276,11 @@ def solve_further(system: System, ring: Ring, motion: Motion | None) -> Parts | 
         parts = alternatives(f, ring)
         if parts != [[f]]:
             return [([*system[:k], *part, *system[k + 1 :]], ring) for part in parts]
+        if (squares := two_squares(f, ring)) is not None:
+            own, twice, b, root = squares
+            y, others = ring.context.gen(own), [g for g in system if g is not f]
+            at_zero = [twice, b, 2 * f - 2 * b * y - twice * y**2]
+            return [([*others, twice * y + b, root], ring.with_units([twice])), ([*others, *at_zero], ring)]
     unsolved = [f for f in system if solved_variable(f, system, ring) is None]
     for f in unsolved:
         place = next((k for k, c in linear_places(f) if ring.is_unit(c)), None)

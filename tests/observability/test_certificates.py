@@ -5,10 +5,12 @@ from __future__ import annotations
 import copy
 
 import pytest
+import sympy as sp
 
 import navsym as nav
 from navsym import checker
-from navsym.observability.certificates import is_granted, list_nested
+from navsym.models.linear import LinearModel
+from navsym.observability.certificates import Certifier, is_granted, list_nested
 
 REAL = "real"
 
@@ -88,3 +90,15 @@ def test_what_is_too_long_stands_as_unchecked():
 
     model = navigation_errors()
     assert Certifier.of(model).certify(12, [[Certifier.of(model).motion.clock ** 9] * 15] * 3, [], range(3)) is None
+
+
+def test_what_must_not_vanish_may_move():
+    """x' = m y shows y at the points with m != 0, and nothing is granted of the points with m = 0 by its reciprocal."""
+    m, k = sp.symbols("m k", real=True)
+    certifier = Certifier.of(LinearModel(sp.Matrix([[0, m], [0, 0]]), None, sp.Matrix([[1, 0]]), rates={m: k}))
+    moving = certifier.motion.ring.context.gen(certifier.motion.ring.places[m])
+    item = certifier.certify(2, [], [], [0], [moving])
+    assert item is not None and item["statement"]["rates"].keys() == {"m", "tt"}
+    (zero,) = item["statement"]["zeros"]
+    assert sp.sympify(zero) == sp.Symbol("m") * sp.Symbol("tt") - 1
+    assert certifier.certify(2, [], [moving], [0], [moving]) is None

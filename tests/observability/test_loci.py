@@ -10,13 +10,7 @@ import sympy as sp
 
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
-from navsym.observability.rank_drops import (
-    all_loci,
-    compositions,
-    determinant_by_elimination,
-    determinant_by_values,
-    drops_by_staircases,
-)
+from navsym.observability.rank_drops import all_loci, compositions, drops_by_staircases
 from tests.observability.twins import drops_and_completeness, drops_by_minors, rank_drops, staircases
 
 a, b, c, w = sp.symbols("a b c w", real=True)
@@ -48,6 +42,17 @@ def test_sums_of_squares_vanish_over_the_reals_only_term_by_term():
     assert conditions(model)["joint"] == {frozenset({a, b})}
     model = LinearModel([[0, a**2 + 1], [0, 0]], None, [[1, 0]])
     assert conditions(model) == {}
+
+
+@pytest.mark.parametrize("f", [(a - b * c) ** 2 + c**2 * (b**2 + 1), (a * b - c) ** 2 + (a + c) ** 2, (a - b) ** 2 - c])
+def test_two_squares_vanish_together_and_nowhere_else(f):
+    found = observe_jointly(LinearModel(sp.Matrix([[0, f], [0, 0]]), None, [[1, 0]]))
+    drops, complete = drops_and_completeness(found)
+    joint = [d for d in drops if d.subspace == "joint"]
+    assert complete["joint"] and {len(d.zeros) for d in joint} == ({1} if f.coeff(c) == -1 else {2})
+    for values in itertools.product(range(-3, 4), repeat=3):
+        at = dict(zip((a, b, c), values, strict=True))
+        assert (f.subs(at) == 0) == any(all(z.subs(at) == 0 for z in d.zeros) for d in joint), at
 
 
 def test_every_listed_locus_is_a_drop_and_nothing_drops_elsewhere():
@@ -170,15 +175,14 @@ def test_staircases_list_the_drops_of_a_scrambled_system():
     core = sp.Matrix([[a, c, 0], [0, b, 0], [0, 0, b]])
     model = LinearModel(turn.inv() * core * turn, None, sp.Matrix([[1, 0, 0], [0, b, 1]]) * turn)
     found = observe_jointly(model)
-    for determinant_of in (determinant_by_values, determinant_by_elimination):
-        listed = drops_by_staircases(found.chains, found.chains.chains, found.joint_dimension, determinant_of)
-        assert found.joint_dimension == 3 and listed is not None
-        for values in itertools.product(range(-2, 3), repeat=3):
-            at = dict(zip((a, b, c), values, strict=True))
-            rank = sp.Matrix.vstack(*[(model.H * model.F**j).subs(at) for j in range(3)]).rank()
-            ring = found.chains.ring
-            point = [int(at[symbol]) for symbol in ring.symbols]
-            assert (rank < 3) == any(all(f(*point) == 0 for f in system) for system in listed), at
+    listed = drops_by_staircases(found.chains, found.chains.chains, found.joint_dimension)
+    assert found.joint_dimension == 3 and listed is not None
+    for values in itertools.product(range(-2, 3), repeat=3):
+        at = dict(zip((a, b, c), values, strict=True))
+        rank = sp.Matrix.vstack(*[(model.H * model.F**j).subs(at) for j in range(3)]).rank()
+        ring = found.chains.ring
+        point = [int(at[symbol]) for symbol in ring.symbols]
+        assert (rank < 3) == any(all(f(*point) == 0 for f in system) for system in listed), at
 
 
 def test_a_list_that_is_too_long_to_prove_says_so():

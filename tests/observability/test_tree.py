@@ -12,7 +12,10 @@ import sympy as sp
 from flint import fmpq, fmpq_mat
 
 import navsym as nav
+from navsym import checker
 from navsym.models.linear import LinearModel
+from navsym.observability import tree
+from navsym.observability.certificates import Certifier
 from navsym.observability.chains import chains_of, observe_jointly
 from navsym.observability.linear import PRIME, residue_rank
 from navsym.observability.motion import residue_chains
@@ -190,8 +193,10 @@ def value_modulo(expression, point):
     return sum(int(c) * math.prod(map(pow, values, powers, [PRIME] * len(values))) for powers, c in terms) % PRIME
 
 
-def test_what_a_drop_excepts_leaves_its_rank_at_all_other_points():
-    joint = observe_jointly(model_of("INS: straight: position, known lever arm"))
+def test_what_a_drop_excepts_leaves_its_rank_at_all_other_points_and_is_granted(monkeypatch):
+    monkeypatch.setattr(tree, "SATURATION", (1, 1, 1))  # no closure is found
+    model = model_of("INS: straight: position, known lever arm")
+    joint, certifier = observe_jointly(model), Certifier.of(model)
     chains, source = joint.chains, random.Random(3)
     found = find_joint_drops(joint, [sp.Symbol("g", real=True)], 150)
     drops = [drop for drop in found.drops if drop.nonzero]
@@ -202,3 +207,10 @@ def test_what_a_drop_excepts_leaves_its_rank_at_all_other_points():
         assert all(value_modulo(factor, point) for factor in drop.nonzero)
         rows = residue_chains([chain.vectors[0] for chain in chains.chains], chains.motion, [*point.values()])
         assert residue_rank(rows) == drop.rank < joint.joint_dimension
+    granted = [item for item in map(certifier.certify_drop, drops) if item is not None]
+    assert granted and all("statement" in item for item in granted)
+    for item in granted:
+        *zeros, last = item["statement"]["zeros"]
+        assert zeros and last.endswith("- 1") and checker.check(item) == "observability"
+        with pytest.raises(checker.Refused):  # the reciprocal is of what does not vanish
+            checker.check(item | {"point": {**item["point"], max(item["point"], key=len): "0"}})
