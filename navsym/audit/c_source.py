@@ -28,6 +28,7 @@ DECLARING = (
     "field_declaration"
 ).split()
 ROUNDS = 6  # in which names are told from types; a cast that is left is refused
+DYNAMIC = re.compile(r"(?:Eigen::)?(?:Matrix|Vector)X[fd]")  # whose size is that of its value
 #: Of Eigen, whose coefficients are x, y, z, w; other libraries have other orders.
 QUATERNION = re.compile(r"Quaternion[fd]|(Eigen::)Quaternion([fd]|<\w+>)")
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
@@ -318,7 +319,9 @@ class Reader(SourceReader):
                 continue
             is_link: bool | str = shared and sizes is None and inner.type != "function_declarator"
             is_link = (is_link and ("const" in words and "const")) or is_link
-            done.append(self.part("declare", child, name, number_of(kind), shape, start, is_link))
+            is_dynamic = DYNAMIC.fullmatch(kind) is not None and start is not None and not is_link
+            number = "matrix" if is_dynamic else number_of(kind)
+            done.append(self.part("declare", child, name, number, shape, start, is_link))
         return tuple(done)
 
     def quaternion(self, node: Any, kind: str, start: Part) -> Part:

@@ -501,10 +501,11 @@ class Evaluator:
         if name not in self.frame and is_known(name, self.unit.language):
             return call_known(name, [self.value(a) for a in arguments], self.unit, part.line)
         may_be_entry = name in self.frame or name in self.globals or self.unit.language in ("cpp", "matlab")
-        if may_be_entry and arguments and (name in self.frame or all(self.is_constant(a) for a in arguments)):
+        is_declared = name in self.frame or self.unit.is_array(name)
+        if may_be_entry and arguments and is_declared:
             base = Part("name", part.line, (name,), part.span)
             return self.entries(Part("index", part.line, (base, arguments), part.span))
-        if not arguments and wants_value and self.unit.language in ("c", "cpp"):
+        if not arguments and wants_value and self.unit.is_array(f"{name}()"):
             return self.read(self.variable(f"{name}()"), (), part.line)
         raise Unreadable(part.line, f"the function {name}, which this file does not define")
 
@@ -645,9 +646,9 @@ class Evaluator:
             raise Unreadable(part.line, f"{name} of what has no known size; declare it under [code.symbols]")
         if base.kind == "name" and self.unit.language in ("c", "cpp"):
             accessor = f"{base.parts[0]}.{name}"
-            if not arguments:
+            if not arguments and self.unit.is_array(f"{accessor}()"):
                 return self.whole_value(self.variable(f"{accessor}()"), part.line)
-            if all(self.is_constant(a) for a in arguments):
+            if arguments and self.unit.is_array(accessor):
                 index = Part("index", part.line, (Part("name", part.line, (accessor,)), arguments))
                 return self.entries(index)
         raise Unreadable(part.line, f"the method {name}")

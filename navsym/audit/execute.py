@@ -345,7 +345,10 @@ class Machine(Evaluator):
             if number == "other":
                 raise Unreadable(statement.line, "a structure made of a list")
             sizes = result.shape  # auto
-        if number == "auto":
+        elif number == "matrix" and isinstance(result, Scalar):
+            raise Unreadable(statement.line, f"{name}, a matrix of unknown size")
+        is_lazy = number != "matrix"
+        if number in ("auto", "matrix"):
             is_quaternion = isinstance(result, Quaternion)
             number = "quaternion" if is_quaternion else result.number if isinstance(result, Scalar) else "real"
         variable = Variable(name, number, sizes)
@@ -353,7 +356,7 @@ class Machine(Evaluator):
         if result is not None:
             self.note_unread(result, statement)
             self.write(variable, self.fill(result, sizes), statement)
-        if shape is None and sizes and value is not None and value.kind in ("op", "minus", "method", "index"):
+        if is_lazy and shape is None and sizes and value is not None and value.kind in ("op", "minus", "method", "index"):
             share(variable, self.arrays_in(value))  # auto of Eigen: computed when it is used
 
     def may_change(self, owner: str) -> bool:

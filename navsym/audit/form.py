@@ -110,6 +110,11 @@ class Unit:
     variables: set[str] = field(default_factory=set)
     overlaid: set[str] = field(default_factory=set)
     imported: dict[str, str] = field(default_factory=dict)
+    declared: set[str] = field(default_factory=set)
+
+    def is_array(self, name: str) -> bool:
+        """True for a name before parentheses that a mapping declares, or that the file writes to: no function."""
+        return name in self.declared or name in self.members
 
     def locate(self, line: int) -> tuple[str, int]:
         """The file of a line, and its number there."""

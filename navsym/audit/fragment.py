@@ -68,7 +68,7 @@ def argument_of(statement: Part) -> Argument:
     if statement.kind == "for":
         return Argument(statement.parts[0], "int", ())
     name, number, shape, value, is_pointer = statement.parts
-    if is_pointer:
-        return Argument(name, "other", ())
+    if is_pointer or number == "matrix":
+        return Argument(name, "other", () if is_pointer else shape)
     is_number = number == "real" and shape is None and (value is None or value.kind == "number")
     return Argument(name, number, shape if shape is not None or not is_number else ())

@@ -74,7 +74,7 @@ class Reader(SourceReader):
             elif node.type in ("function_definition", "class_definition"):
                 bound = [text_of(field_of(node, "name"))]
             elif node.type == "parameters":
-                bound = [text_of(inner) for inner in descend(node) if inner.type == "identifier"]
+                bound = [*map(name_parameter, named(node))]
             elif node.type == "aliased_import" and text_of(field_of(node, "name")) not in NUMERIC:
                 bound = [text_of(field_of(node, "alias"))]
             self.rebound |= {*bound} & {"np", "numpy", "math"}
@@ -107,10 +107,7 @@ class Reader(SourceReader):
     def read_function(self, node: Any, decorator: Any = None) -> None:
         """A function; one whose decorator may change it is not read."""
         name = text_of(field_of(node, "name"))
-        arguments = []
-        for child in named(field_of(node, "parameters")):
-            label = child if child.type == "identifier" else field_of(child, "name") or next(iter(named(child)), child)
-            arguments.append(Argument(text_of(label), shared=True))
+        arguments = [Argument(name_parameter(child), shared=True) for child in named(field_of(node, "parameters"))]
         body = tuple(s for child in named(field_of(node, "body")) for s in self.statement(child))
         if decorator is not None:
             body = (self.part("jump", decorator, "a decorator that may change the function", ()),)
@@ -279,6 +276,11 @@ class Reader(SourceReader):
         if function.type == "identifier":
             return self.part("call", node, self.unit.imported.get(name, name), tuple(arguments))
         return self.refuse(node, "a call of an expression")
+
+
+def name_parameter(node: Any) -> str:
+    """The name of a parameter, without its type and its default."""
+    return text_of(node if node.type == "identifier" else field_of(node, "name") or next(iter(named(node)), node))
 
 
 def is_top(node: Any) -> bool:

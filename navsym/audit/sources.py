@@ -15,9 +15,9 @@ from flint import ctx, fmpq
 
 from navsym.audit.evaluate import Reading
 from navsym.audit.execute import read_function
-from navsym.audit.form import Argument, Function, Part, Unit, names_in, spell_entry
+from navsym.audit.form import Argument, Function, Part, Unit, called_in, names_in, spell_entry, walk
 from navsym.audit.fragment import take_lines
-from navsym.audit.names import Names
+from navsym.audit.names import Names, squeeze
 from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import (
     Array,
@@ -156,6 +156,9 @@ def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | 
     unit = Unit(where, language, rules, data, defined=defined)
     reader = module.Reader(unit)
     reader.read_file(reader.parse(data))
+    for part in walk(*(f.body for several in unit.functions.values() for f in several)):
+        if part.kind == "assign":
+            unit.declared |= names_in(part.parts[0]) | called_in(part.parts[0])
     return unit
 
 
@@ -212,6 +215,7 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
         function = replace(function, arguments=tuple(a for a in function.arguments if a.name not in fixed))
     place = join_place(where, "symbols")
     symbols = as_table(table.get("symbols", {}), place)
+    unit.declared |= {squeeze(spelling).partition("[")[0] for spelling in symbols}
     shapes, symmetric = read_symbols(symbols, names, place)
     starts = {
         spell_entry(unit, spelling, p): ONE if len({*p}) == 1 and declaration["start"] == "identity" else ZERO
