@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write, names_in, spell_entry, walk
-from navsym.audit.functions import CONSTANTS, METHODS, call_known, extreme_of, is_known, is_method
+from navsym.audit.functions import CONSTANTS, METHODS, NAMED_CALLS, call_known, extreme_of, is_known, is_method
 from navsym.audit.values import (
     CUT,
     LIMITS,
@@ -251,8 +251,7 @@ class Evaluator:
             is_array = bool(variable.shape) or (variable.shape is None and any(variable.cells))
             return variable, [(0,) * max(len(variable.shape or ()), 1) if is_array else ()], ()
         if part.kind == "method" and part.parts[0].kind == "name" and part.parts[2] and self.unit.language == "cpp":
-            member = Part("name", part.line, (f"{part.parts[0].parts[0]}.{part.parts[1]}",), part.span)  # s.v(0)
-            part = Part("index", part.line, (member, part.parts[2]), part.span)
+            part = Part("call", part.line, (f"{part.parts[0].parts[0]}.{part.parts[1]}", part.parts[2]), part.span)
         if part.kind == "method" and part.parts[0].kind == "name" and self.variable_shape(part.parts[0].parts[0]):
             part = self.component(part) if not part.parts[2] else part  # v.x()
         if part.kind not in ("index", "call") and not (part.kind == "method" and part.parts[1] == "block"):
@@ -264,13 +263,19 @@ class Evaluator:
             indices = [*part.parts[1], *indices]
             part = part.parts[0]
         if part.kind == "call":
-            indices, name = [*part.parts[1], *indices], part.parts[0]
-        elif part.kind == "name":
-            name = part.parts[0]
-        else:
+            indices = [*part.parts[1], *indices]
+            self.require_entries(part.parts[0], part.line)
+        elif part.kind != "name":
             raise Unreadable(part.line, "an index of an expression")
-        variable = self.variable(name)
+        elif "()" in part.parts[0]:
+            self.require_entries(part.parts[0], part.line)
+        variable = self.variable(part.parts[0])
         return variable, *self.resolve(variable, indices, part.line)
+
+    def require_entries(self, name: str, line: int) -> None:
+        """Refuse the call of a function that is not known: two calls may give two values, as of a clock."""
+        if name not in self.frame and not self.unit.is_array(name):
+            raise Unreadable(line, f"the function {name}, which this file does not define")
 
     def resolve(self, variable: Variable, indices: list[Part], line: int) -> tuple[list[Index], Index]:
         """The places that indices and slices mean, and their shape."""
@@ -376,6 +381,8 @@ class Evaluator:
             return self.entries(self.component(member))
         if name not in self.frame and name not in self.file_names and name in CONSTANTS:
             return Scalar(CONSTANTS[name])
+        if "()" in name or name in NAMED_CALLS.get(self.unit.language, ()):
+            self.require_entries(name, part.line)
         variable = self.variable(name)
         if variable.number == "other" and not variable.shape and variable.all_unread is None:
             raise Unreadable(part.line, f"{name} as a whole, of a type that is no number")
@@ -440,7 +447,8 @@ class Evaluator:
         try:
             variable, places, shape = self.targets(part)
         except Unreadable:
-            base = self.value(part.parts[0]) if part.parts[0].kind in ("call", "method", "op", "index") else None
+            is_inner = part.kind == "index" and part.parts[0].kind in ("call", "method", "op", "index")
+            base = self.value(part.parts[0]) if is_inner else None
             if not isinstance(base, Array):
                 raise
             number = "list" if isinstance(base, List) else "real"
@@ -500,14 +508,10 @@ class Evaluator:
             return self.join_arrays(JOINS[name], arguments[0])
         if name not in self.frame and is_known(name, self.unit.language):
             return call_known(name, [self.value(a) for a in arguments], self.unit, part.line)
-        may_be_entry = name in self.frame or name in self.globals or self.unit.language in ("cpp", "matlab")
-        is_declared = name in self.frame or self.unit.is_array(name)
-        if may_be_entry and arguments and is_declared:
-            base = Part("name", part.line, (name,), part.span)
-            return self.entries(Part("index", part.line, (base, arguments), part.span))
-        if not arguments and wants_value and self.unit.is_array(f"{name}()"):
-            return self.read(self.variable(f"{name}()"), (), part.line)
-        raise Unreadable(part.line, f"the function {name}, which this file does not define")
+        if arguments:
+            return self.entries(part)
+        self.require_entries(f"{name}()", part.line)
+        return self.read(self.variable(f"{name}()"), (), part.line)
 
     def join_arrays(self, name: str, part: Part) -> Value:
         """``np.hstack([a, b])`` and its like; a vector is a row of a matrix, and is joined with vectors to one."""
@@ -544,13 +548,6 @@ class Evaluator:
             is_first = self.choose(Condition(text, part.line, True, ">=", a.tree, b.tree))
         result = a if is_first == (sign == ">=") else b
         return as_real(result) if "fm" in part.parts[0] and self.unit.language in ("c", "cpp") else result
-
-    def is_constant(self, part: Part) -> bool:
-        """True for an index that is a whole number."""
-        try:
-            return part.kind == "slice" or constant_of(self.value(part)) is not None
-        except Unreadable:
-            return False
 
     def inline(self, part: Part, wants_value: bool) -> Value:
         """The body of a function of the file, on its arguments."""
@@ -645,12 +642,7 @@ class Evaluator:
         ):  # never an accessor: without its size nobody knows what it gives
             raise Unreadable(part.line, f"{name} of what has no known size; declare it under [code.symbols]")
         if base.kind == "name" and self.unit.language in ("c", "cpp"):
-            accessor = f"{base.parts[0]}.{name}"
-            if not arguments and self.unit.is_array(f"{accessor}()"):
-                return self.whole_value(self.variable(f"{accessor}()"), part.line)
-            if arguments and self.unit.is_array(accessor):
-                index = Part("index", part.line, (Part("name", part.line, (accessor,)), arguments))
-                return self.entries(index)
+            return self.call(Part("call", part.line, (f"{base.parts[0]}.{name}", arguments), part.span), True)
         raise Unreadable(part.line, f"the method {name}")
 
     def member_of_array(self, part: Part) -> Part | None:

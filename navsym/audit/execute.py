@@ -356,7 +356,13 @@ class Machine(Evaluator):
         if result is not None:
             self.note_unread(result, statement)
             self.write(variable, self.fill(result, sizes), statement)
-        if is_lazy and shape is None and sizes and value is not None and value.kind in ("op", "minus", "method", "index"):
+        if (
+            is_lazy
+            and shape is None
+            and sizes
+            and value is not None
+            and value.kind in ("op", "minus", "method", "index")
+        ):
             share(variable, self.arrays_in(value))  # auto of Eigen: computed when it is used
 
     def may_change(self, owner: str) -> bool:

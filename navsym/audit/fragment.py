@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
+from navsym.audit.form import Argument, Function, Part, Unit, called_in, names_in, walk
 from navsym.core.errors import DomainError
 
 Body = tuple[Part, ...]
@@ -37,7 +37,7 @@ def take_lines(unit: Unit, function: Function, first: int, last: int, where: str
     for name, statement in declared.items():
         if statement not in links:
             arguments[name] = argument_of(statement)
-    used = names_in(*near, *links)
+    used = names_in(*near, *links) | called_in(*near, *links)
     kept = tuple(replace(a, shared=True) for a in arguments.values() if a.name in used)
     return Function(function.name, near[0].line, kept, (*links, *near))
 

@@ -64,6 +64,8 @@ PURE = {
     "matlab": frozenset("isinf isnan isempty any all numel length size strcmp strcmpi nargin ischar isfield".split()),
     "rust": frozenset(),
 }
+#: Functions that MATLAB calls without parentheses.
+NAMED_CALLS = {"matlab": frozenset("rand randn randi tic toc now clock cputime input".split())}
 PREFIX = re.compile(r"(std::|::|math\.|np\.|numpy\.|matrix::|Eigen::)")
 
 

@@ -158,7 +158,7 @@ def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | 
     reader.read_file(reader.parse(data))
     for part in walk(*(f.body for several in unit.functions.values() for f in several)):
         if part.kind == "assign":
-            unit.declared |= names_in(part.parts[0]) | called_in(part.parts[0])
+            unit.declared |= {n.replace("->", ".") for n in names_in(part.parts[0]) | called_in(part.parts[0])}
     return unit
 
 
@@ -215,7 +215,7 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
         function = replace(function, arguments=tuple(a for a in function.arguments if a.name not in fixed))
     place = join_place(where, "symbols")
     symbols = as_table(table.get("symbols", {}), place)
-    unit.declared |= {squeeze(spelling).partition("[")[0] for spelling in symbols}
+    unit.declared |= {squeeze(spelling).partition("[")[0].replace("->", ".") for spelling in symbols}
     shapes, symmetric = read_symbols(symbols, names, place)
     starts = {
         spell_entry(unit, spelling, p): ONE if len({*p}) == 1 and declaration["start"] == "identity" else ZERO
