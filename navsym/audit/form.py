@@ -113,7 +113,7 @@ class Unit:
     declared: set[str] = field(default_factory=set)
 
     def is_array(self, name: str) -> bool:
-        """True for a name before parentheses that holds entries; others are functions, each call of which may differ."""
+        """True for a name before parentheses that holds entries; of others two calls may give two values."""
         return name.replace("->", ".") in self.declared or name in self.members
 
     def locate(self, line: int) -> tuple[str, int]:
