@@ -634,7 +634,7 @@ class Evaluator:
         base, name, arguments = part.parts
         is_array = base.kind != "name" or name == "T" or bool(self.variable_shape(base.parts[0]))
         if is_method(name, len(arguments), self.unit.language) and is_array:
-            return METHODS[name, len(arguments)](self.value(base), [self.value(a) for a in arguments], self.unit)
+            return METHODS[name, len(arguments)](self.unit, self.value(base), *map(self.value, arguments))
         if base.kind == "name" and self.variable_shape(base.parts[0]):
             return self.entries(self.component(part))
         if is_method(

@@ -19,7 +19,7 @@ ARRAY = re.compile(r"\[(.+);(\d+)\]")
 QUATERNION = re.compile(r"(?:\w+::)*(Unit)?Quaternion(?:<\w+>)?")
 #: Methods of numbers that are functions in the other languages.
 NUMBERS = dict.fromkeys("sin cos tan asin acos atan sinh cosh tanh exp sqrt atan2 hypot".split(), "") | {
-    "ln": "log", "abs": "fabs", "powf": "pow", "powi": "pow", "max": "fmax", "min": "fmin"
+    "ln": "log", "exp_m1": "expm1", "ln_1p": "log1p", "abs": "fabs", "powf": "pow", "powi": "pow", "max": "fmax", "min": "fmin"
 }  # fmt: skip
 #: Methods that give what they are called on.
 SAME = ("clone", "as_ref", "to_owned", "into_inner", "into", "quaternion", "as_vector", "copied", "eval", "coords")
