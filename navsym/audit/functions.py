@@ -69,7 +69,7 @@ PURE = {
 }
 #: Functions that MATLAB calls without parentheses.
 NAMED_CALLS = {"matlab": frozenset("rand randn randi tic toc now clock cputime input".split())}
-PREFIX = re.compile(r"(std::|::|math\.|np\.|numpy\.|matrix::|Eigen::)")
+PREFIX = re.compile(r"\A(std::|::|math\.|np\.|numpy\.|matrix::|Eigen::)")
 #: The larger or the smaller of two numbers.
 EXTREMES = {
     "c": r"fm(ax|in)f?", "cpp": r"(std::|::|matrix::|Eigen::)?fm(ax|in)f?|std::m(ax|in)", "matlab": r"m(ax|in)",
