@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from typing import Any, ClassVar
 
 from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write, names_in, spell_entry, walk
 from navsym.audit.functions import CONSTANTS, METHODS, NAMED_CALLS, call_known, extreme_of, is_known, is_method
@@ -111,7 +112,7 @@ class Failing(Exception):
 
 @dataclass(slots=True, eq=False)
 class Evaluator:
-    """The state of one run, and what expressions mean in it; :class:`Machine` runs the statements.
+    """The state of one run, and what expressions mean in it; :class:`Machine` has the statements and conditions.
 
     choices : the ways taken at undecided conditions; None leaves unread what depends on one
     is_bold : True where a condition that is not read has two ways as well
@@ -121,6 +122,12 @@ class Evaluator:
     shadows : what a block's own names have hidden, one table for each block
     outputs : what the last function of MATLAB that was read returned
     """
+
+    block: ClassVar[Any]
+    decide: ClassVar[Any]
+    decide_known: ClassVar[Any]
+    choose: ClassVar[Any]
+    write: ClassVar[Any]
 
     reading: Reading
     inputs: Inputs
@@ -147,26 +154,6 @@ class Evaluator:
     def unit(self) -> Unit:
         """The source."""
         return self.reading.unit
-
-    def block(self, body: tuple[Part, ...]) -> None:
-        """Run statements."""
-        raise NotImplementedError
-
-    def decide(self, test: Part) -> bool:
-        """Whether a condition holds."""
-        raise NotImplementedError
-
-    def decide_known(self, test: Part) -> bool:
-        """Whether a condition holds that can be read."""
-        raise NotImplementedError
-
-    def choose(self, condition: Condition) -> bool:
-        """The way of this run at an undecided condition."""
-        raise NotImplementedError
-
-    def write(self, variable: Variable, value: Value, statement: Part) -> None:
-        """Assign a whole variable."""
-        raise NotImplementedError
 
     # -- names and places --
 
@@ -206,10 +193,6 @@ class Evaluator:
         owner, before = self.aliases.get(inner.parts[0], (self.canonical(inner.parts[0]), ""))
         return (owner, before if sign in ("", "->") and before else sign)
 
-    def spell(self, name: str, place: Index) -> str:
-        """An entry as the source writes it."""
-        return spell_entry(self.unit, name, place)
-
     def read(self, variable: Variable, place: Index, line: int) -> Cell:
         """One cell."""
         if place in variable.cells and variable.all_unread is None:
@@ -217,12 +200,12 @@ class Evaluator:
         if variable.all_unread is not None:
             return variable.all_unread
         if variable.is_input:
-            cell = Scalar(self.inputs(self.spell(variable.name, place)), promote(variable.number), 0)
+            cell = Scalar(self.inputs(spell_entry(self.unit, variable.name, place)), promote(variable.number), 0)
             if variable.shape is None:  # a number or an array from now on
                 variable.shape = () if not place else None
                 variable.cells[place] = cell
             return cell
-        return Unread(line, f"{self.spell(variable.name, place)} has no value there")
+        return Unread(line, f"{spell_entry(self.unit, variable.name, place)} has no value there")
 
     def whole(self, part: Part) -> int:
         """A constant whole number."""
@@ -230,13 +213,6 @@ class Evaluator:
         if exact is None or exact.denominator != 1:
             raise Unreadable(part.line, "an index or size that is no constant")
         return int(exact)
-
-    def place(self, part: Part) -> tuple[Variable, Index]:
-        """Variable and place of one entry."""
-        variable, places, _ = self.targets(part)
-        if len(places) != 1:
-            raise Unreadable(part.line, "a block where an entry is needed")
-        return variable, places[0]
 
     def targets(self, part: Part) -> tuple[Variable, list[Index], Index]:
         """Variable, places and shape of an entry or a block."""
@@ -483,8 +459,10 @@ class Evaluator:
         if value is not None and value.kind == "name":
             return self.variable(value.parts[0])
         if value is not None and value.kind in ("index", "call", "method"):
-            base, place = self.place(value)
-            name = self.spell(base.name, place)
+            base, (place, *others), _ = self.targets(value)
+            if others:
+                raise Unreadable(value.line, "a block where an entry is needed")
+            name = spell_entry(self.unit, base.name, place)
             base.cells.setdefault(place, self.read(base, place, value.line))
             view = Variable(name, base.number, ())
             view.cells = CellView(base, place)

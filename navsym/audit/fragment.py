@@ -21,7 +21,8 @@ def take_lines(unit: Unit, function: Function, first: int, last: int, where: str
         near = [s for s in body if s.line <= last and last_line(unit, s) >= first]
         if near and all(first <= s.line and last_line(unit, s) <= last for s in near):
             break
-        inner = [b for s in near if len(near) == 1 for b in bodies_of(s) if covers(unit, b, first, last)]
+        blocks = [part for s in near if len(near) == 1 for part in s.parts if isinstance(part, tuple)]
+        inner = [b for b in blocks if isinstance((*b, 0)[0], Part) and covers(unit, b, first, last)]
         if len(inner) != 1:
             got = "half of one" if near else "none"
             message = f"expected whole statements of one block of {function.name} in lines {first} to {last}; got {got}"
@@ -46,11 +47,6 @@ def last_line(unit: Unit, statement: Part) -> int:
     """The line in which a statement ends; ``elif`` ends before its ``else``."""
     end = max(part.span[1] for part in walk(statement))
     return 1 + unit.source.count(b"\n", 0, max(end - 1, 0))
-
-
-def bodies_of(statement: Part) -> list[Body]:
-    """The blocks inside a statement."""
-    return [part for part in statement.parts if isinstance(part, tuple) and any(isinstance(p, Part) for p in part)]
 
 
 def covers(unit: Unit, body: Body, first: int, last: int) -> bool:

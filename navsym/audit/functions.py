@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Any
 
 from navsym.audit.form import Unit
 from navsym.audit.values import (
@@ -20,7 +20,6 @@ from navsym.audit.values import (
     add,
     as_real,
     constant_of,
-    count_cells,
     cross_product,
     determinant,
     divide,
@@ -33,7 +32,6 @@ from navsym.audit.values import (
     minus,
     multiply,
     raise_to,
-    root,
     rotate,
     square_sum,
     total,
@@ -154,6 +152,10 @@ def filled(shape: tuple[int, ...], number: int) -> Array:
     return make_array(shape, lambda *_: Scalar(build_number(number)))
 
 
+def identity_of(unit: Unit, *values: Value) -> Array:
+    return identity_array(*(sizes_of(unit, *values) * 2)[:2])
+
+
 def sizes_of(unit: Unit, *values: Value) -> tuple[int, ...]:
     """The shape that arguments give: numbers, or a tuple of them."""
     cells = [c for v in values for c in (v.cells if isinstance(v, Array) else (v,))]
@@ -188,7 +190,7 @@ def make_outer(unit: Unit, a: Value, b: Value) -> Value:
 def norm_of(unit: Unit, value: Value) -> Value:
     if isinstance(value, Array) and len(value.shape) == 2 and 1 not in value.shape:
         raise Unreadable(0, "the norm of a matrix")
-    return map_cells(root, square_sum(value))
+    return map_cells(lambda x: build_call("sqrt", x), square_sum(value))
 
 
 def multiply_arrays(unit: Unit, a: Value, b: Value) -> Value:
@@ -203,7 +205,7 @@ def dot_of(unit: Unit, a: Value, b: Value) -> Value:
         return matrix_product(a, b)
     if not (isinstance(a, Array) and isinstance(b, Array)):
         raise Unreadable(0, "a dot product of what are no vectors")
-    if count_cells(a.shape) != count_cells(b.shape) or any(len(v.shape) == 2 and 1 not in v.shape for v in (a, b)):
+    if math.prod(a.shape) != math.prod(b.shape) or any(len(v.shape) == 2 and 1 not in v.shape for v in (a, b)):
         raise Unreadable(0, "a dot product of different sizes, or of matrices")
     flat = (len(a.cells),)
     return matrix_product(Array(flat, a.cells), Array(flat, b.cells))
@@ -211,7 +213,7 @@ def dot_of(unit: Unit, a: Value, b: Value) -> Value:
 
 def normalize(unit: Unit, value: Value) -> Value:
     """A vector over its length."""
-    return map_cells(divide, value, map_cells(root, square_sum(value)))
+    return map_cells(divide, value, map_cells(lambda x: build_call("sqrt", x), square_sum(value)))
 
 
 def diagonal_of(unit: Unit, value: Value) -> Array:
@@ -241,7 +243,7 @@ def make_matrix(unit: Unit, *values: Value) -> Value:
     """The entries row by row, behind the sizes."""
     *sizes, entries = values
     shape = sizes_of(unit, *sizes)
-    if not isinstance(entries, Array) or len(entries.shape) != 1 or count_cells(shape) != len(entries.cells):
+    if not isinstance(entries, Array) or len(entries.shape) != 1 or math.prod(shape) != len(entries.cells):
         raise Unreadable(0, "entries that do not fit the sizes")
     return Array(shape, entries.cells)
 
@@ -293,13 +295,13 @@ def transposed(unit: Unit, value: Value) -> Value:
 NUMBERS: dict[tuple[str, int], Known] = {
     **{(name, 1): plain(meaning) for name, meaning in PLAIN.items()}, ("abs", 1): absolute,
     ("pow", 2): cellwise(raise_to), ("atan2", 2): plain("atan2"),
-    ("hypot", 2): cellwise(lambda x, y: root(add(raise_to(x, TWICE), raise_to(y, TWICE)))),
+    ("hypot", 2): cellwise(lambda x, y: build_call("sqrt", add(raise_to(x, TWICE), raise_to(y, TWICE)))),
     ("expm1", 1): cellwise(lambda x: add(build_call("exp", x), minus(ONE))),
     ("log1p", 1): cellwise(lambda x: build_call("log", add(ONE, x))),
 }  # fmt: skip
 #: Functions of arrays.
 ARRAYS: dict[tuple[str, int], Known] = {
-    **dict.fromkeys((("eye", 1), ("eye", 2), ("identity", 1)), lambda u, *v: identity_array(*(sizes_of(u, *v) * 2)[:2])),
+    **dict.fromkeys((("eye", 1), ("eye", 2), ("identity", 1)), identity_of),
     **dict.fromkeys((("zeros", 1), ("zeros", 2)), lambda unit, *values: filled(sizes_of(unit, *values), 0)),
     **dict.fromkeys((("ones", 1), ("ones", 2)), lambda unit, *values: filled(sizes_of(unit, *values), 1)),
     **dict.fromkeys((("array", 1), ("asarray", 1), ("copy", 1)), same), ("transpose", 1): transposed,
@@ -311,7 +313,8 @@ ARRAYS: dict[tuple[str, int], Known] = {
 }  # fmt: skip
 #: Functions that only numpy has, and degrees.
 OF_NUMPY: dict[tuple[str, int], Known] = {
-    **{(name, 1): plain(meaning) for name, meaning in NUMPY.items()}, ("square", 1): cellwise(lambda x: raise_to(x, TWICE)),
+    **{(name, 1): plain(meaning) for name, meaning in NUMPY.items()},
+    ("square", 1): cellwise(lambda x: raise_to(x, TWICE)),
     ("power", 2): NUMBERS["pow", 2], ("arctan2", 2): plain("atan2"),
 }  # fmt: skip
 OF_ANGLES: dict[tuple[str, int], Known] = {(name, 1): turn(factor) for name, factor in ANGLES.items()}

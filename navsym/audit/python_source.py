@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -117,23 +116,14 @@ class Reader(SourceReader):
 
     # -- statements --
 
-    def read_statement(self, node: Any) -> Iterable[Part] | None:
+    def read_statement(self, node: Any) -> tuple[Part, ...] | None:
         match node.type:
-            case "expression_statement":
-                return tuple(s for child in named(node) for s in self.effect(child))
-            case "return_statement":
-                values = named(node)
-                return (self.part("return", node, self.expression(values[0]) if values else None),)
             case "if_statement":
-                clauses = [*node.children_by_field_name("alternative")]
-                return (self.chain(node, clauses, lambda n: field_of(n, "consequence") or field_of(n, "body")),)
+                return (self.chain(node, node.children_by_field_name("alternative")),)
             case "for_statement":
                 return (self.loop(node),)
-            case "while_statement" if field_of(node, "alternative") is None:
-                test = self.expression(field_of(node, "condition"))
-                return (self.part("loop", node, (), test, (), self.block(field_of(node, "body")), False),)
-            case "raise_statement":
-                return (self.part("fail", node, "an error is raised"),)
+            case "while_statement" if field_of(node, "alternative") is not None:
+                return (self.unread(node, "a loop with an else"),)
             case "pass_statement" | "assert_statement" | "import_statement" | "import_from_statement":
                 return ()
             case "global_statement":
