@@ -51,9 +51,13 @@ def test_two_calls_of_an_unknown_function_are_not_one_value(tmp_path, end, expre
 
 @pytest.mark.parametrize(
     ("end", "expression", "symbols"),
-    [("cpp", "s.v(0) - s.v(0)", '"s.v" = { vector = 3 }'), ("cpp", "s.q().w - s.q().w", '"s.q().w" = "real"'),
-     ("cpp", "cov(0, 1) - cov(0, 1)", "cov = { matrix = [2, 2] }"), ("m", "cov(1, 2) - cov(1, 2)", "cov = { matrix = [2, 2] }")],
-)  # fmt: skip
+    [
+        ("cpp", "s.v(0) - s.v(0)", '"s.v" = { vector = 3 }'),
+        ("cpp", "s.q().w - s.q().w", '"s.q().w" = "real"'),
+        ("cpp", "cov(0, 1) - cov(0, 1)", "cov = { matrix = [2, 2] }"),
+        ("m", "cov(1, 2) - cov(1, 2)", "cov = { matrix = [2, 2] }"),
+    ],
+)
 def test_what_a_mapping_declares_is_one_value(tmp_path, end, expression, symbols):
     assert ask(tmp_path, end, expression, symbols)[0] == nav.PROVED
     assert ask(tmp_path, end, expression, "")[0] == nav.OPEN
