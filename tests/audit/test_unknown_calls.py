@@ -65,3 +65,27 @@ def test_what_a_mapping_declares_is_one_value(tmp_path, end, expression, symbols
 
 def test_an_entry_that_the_file_writes_is_no_call(tmp_path):
     assert ask(tmp_path, "cpp", "cov(0, 1) - cov(0, 1); cov(0, 1) = x")[0] == nav.PROVED
+
+
+#: File -> a text, its output, what that is, and a text in which it is not known.
+MEANINGS = {
+    "cpp": (
+        "double f(const Vector2d &v) {{ Eigen::MatrixXd m = {}; double y = m(0) * m(1); return y; }}\n",
+        ("v", "v[0]*v[1]", "w"),
+    ),
+    "py": (
+        "import numpy as np\n\n\ndef g({}):\n    return 2 * a\n\n\ndef f(x):\n    y = np.sin(x)\n    return y\n",
+        ("a=np.pi", "sin(x)", "a, np"),
+    ),
+}
+
+
+@pytest.mark.parametrize("end", MEANINGS)
+def test_a_matrix_of_open_size_has_that_of_its_value_and_a_default_binds_no_module(tmp_path, end):
+    text, (known, meaning, unknown) = MEANINGS[end]
+    for inside, right, status in ((known, meaning, nav.PROVED), (unknown, "0", nav.OPEN)):
+        (tmp_path / f"code.{end}").write_text(text.format(inside))
+        spec = f'[[code]]\nname = "m"\nfile = "code.{end}"\nfunction = "f"\n'
+        spec += f'[[question]]\nname = "y"\nkind = "equal"\nleft = "m:y"\nright = "{right}"\n'
+        (tmp_path / "spec.toml").write_text(spec)
+        assert nav.audit(tmp_path / "spec.toml")["y"].status == status
