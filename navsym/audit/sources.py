@@ -156,9 +156,12 @@ def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | 
     unit = Unit(where, language, rules, data, defined=defined)
     reader = module.Reader(unit)
     reader.read_file(reader.parse(data))
-    for part in walk(*(f.body for several in unit.functions.values() for f in several)):
-        if part.kind == "assign":
-            unit.declared |= {n.replace("->", ".") for n in names_in(part.parts[0]) | called_in(part.parts[0])}
+    bodies = (f.body for several in unit.functions.values() for f in several) if language == "cpp" else ()
+    for part in walk(*bodies):
+        if part.kind == "assign":  # to an entry of a member, M(0, 1) = x or s.v(0) = x
+            target, (base, *name) = part.parts[0], part.parts[0].parts
+            of_member = {f"{base.parts[0]}.{name[0]}"} if target.kind == "method" and base.kind == "name" else set()
+            unit.declared |= {n.replace("->", ".") for n in called_in(target) | of_member}
     return unit
 
 

@@ -63,8 +63,13 @@ def test_what_a_mapping_declares_is_one_value(tmp_path, end, expression, symbols
     assert ask(tmp_path, end, expression, "")[0] == nav.OPEN
 
 
-def test_an_entry_that_the_file_writes_is_no_call(tmp_path):
-    assert ask(tmp_path, "cpp", "cov(0, 1) - cov(0, 1); cov(0, 1) = x")[0] == nav.PROVED
+@pytest.mark.parametrize(
+    ("other", "status"),
+    [("cov(0, 1) = 2;", nav.PROVED), ("double cov = 2; cov = 3;", nav.OPEN), ("s.v(0) = 2;", nav.OPEN)],
+)
+def test_an_entry_that_the_class_writes_is_no_call_and_a_local_name_is_none(tmp_path, other, status):
+    end = f"return y; }} void C::g(void) {{ {other} "
+    assert ask(tmp_path, "cpp", f"cov(0, 1) - cov(0, 1); {end}")[0] == status
 
 
 #: File -> a text, its output, what that is, and a text in which it is not known.
