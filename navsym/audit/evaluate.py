@@ -251,7 +251,8 @@ class Evaluator:
     def require_entries(self, name: str, line: int) -> None:
         """Refuse the call of a function that is not known: two calls may give two values, as of a clock."""
         may_be = self.unit.language in ("cpp", "matlab") or (self.unit.language == "c" and "()" in name)
-        if name not in self.frame and not (may_be and self.unit.is_array(name)):
+        is_lost = name in self.globals and self.globals[name].all_unread is not None  # it has a better reason
+        if name not in self.frame and not is_lost and not (may_be and self.unit.is_array(name)):
             raise Unreadable(line, f"the function {name}, which this file does not define")
 
     def resolve(self, variable: Variable, indices: list[Part], line: int) -> tuple[list[Index], Index]:
