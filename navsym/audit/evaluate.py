@@ -491,7 +491,7 @@ class Evaluator:
         if arguments:
             return self.entries(part)
         self.require_entries(f"{name}()", part.line)
-        return self.read(self.variable(f"{name}()"), (), part.line)
+        return self.whole_value(self.variable(f"{name}()"), part.line)
 
     def join_arrays(self, name: str, part: Part) -> Value:
         """``np.hstack([a, b])`` and its like; a vector is a row of a matrix, and is joined with vectors to one."""
