@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -28,6 +27,7 @@ DECLARING = (
     "field_declaration"
 ).split()
 ROUNDS = 6  # in which names are told from types; a cast that is left is refused
+DYNAMIC = re.compile(r"(?:Eigen::)?(?:Matrix|Vector)X[fd]")  # whose size is that of its value
 #: Of Eigen, whose coefficients are x, y, z, w; other libraries have other orders.
 QUATERNION = re.compile(r"Quaternion[fd]|(Eigen::)Quaternion([fd]|<\w+>)")
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
@@ -208,25 +208,18 @@ class Reader(SourceReader):
         is_body = node is None or node.type in ("compound_statement", "else_clause")
         return tuple(s for child in (named(node) if is_body else [node]) for s in self.statement(child))
 
-    def read_statement(self, node: Any) -> Iterable[Part] | None:
+    def read_statement(self, node: Any) -> tuple[Part, ...] | None:
         match node.type:
             case "compound_statement":
                 return (self.part("block", node, self.block(node)),)
             case "declaration":
                 return self.declaration(node)
-            case "expression_statement":
-                return tuple(s for child in named(node) for s in self.effect(child))
             case "if_statement":
                 return (self.branch(node),)
             case "for_statement" | "while_statement" | "do_statement":
                 return (self.loop(node),)
             case "switch_statement":
                 return (self.switch(node),)
-            case "return_statement":
-                values = named(node)
-                return (self.part("return", node, self.expression(values[0]) if values else None),)
-            case "throw_statement":
-                return (self.part("fail", node, "an error is thrown"),)
             case "preproc_ifdef" if (kept := self.kept_way(node)) is not None:
                 return tuple(s for child in kept for s in self.statement(child))
             case "preproc_else":
@@ -318,7 +311,9 @@ class Reader(SourceReader):
                 continue
             is_link: bool | str = shared and sizes is None and inner.type != "function_declarator"
             is_link = (is_link and ("const" in words and "const")) or is_link
-            done.append(self.part("declare", child, name, number_of(kind), shape, start, is_link))
+            is_dynamic = DYNAMIC.fullmatch(kind) is not None and start is not None and not is_link
+            number = "matrix" if is_dynamic else number_of(kind)
+            done.append(self.part("declare", child, name, number, shape, start, is_link))
         return tuple(done)
 
     def quaternion(self, node: Any, kind: str, start: Part) -> Part:
@@ -360,9 +355,7 @@ class Reader(SourceReader):
                 return (self.part("assign", node, target, text_of(field_of(node, "operator"))[0], one),)
             case "comma_expression" | "binary_expression" if (filled := self.comma_list(node)) is not None:
                 return (filled,)
-            case "comma_expression":
-                return tuple(s for child in named(node) for s in self.effect(child))
-            case "parenthesized_expression":
+            case "comma_expression" | "parenthesized_expression":
                 return tuple(s for child in named(node) for s in self.effect(child))
             case "call_expression":
                 return (self.part("do", node, self.expression(node)),)

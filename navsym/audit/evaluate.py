@@ -7,9 +7,10 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from typing import Any, ClassVar
 
 from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write, names_in, spell_entry, walk
-from navsym.audit.functions import CONSTANTS, METHODS, call_known, extreme_of, is_known, is_method
+from navsym.audit.functions import CONSTANTS, METHODS, NAMED_CALLS, call_known, extreme_of, is_known, is_method
 from navsym.audit.values import (
     CUT,
     LIMITS,
@@ -111,7 +112,7 @@ class Failing(Exception):
 
 @dataclass(slots=True, eq=False)
 class Evaluator:
-    """The state of one run, and what expressions mean in it; :class:`Machine` runs the statements.
+    """The state of one run, and what expressions mean in it; :class:`Machine` has the statements and conditions.
 
     choices : the ways taken at undecided conditions; None leaves unread what depends on one
     is_bold : True where a condition that is not read has two ways as well
@@ -121,6 +122,12 @@ class Evaluator:
     shadows : what a block's own names have hidden, one table for each block
     outputs : what the last function of MATLAB that was read returned
     """
+
+    block: ClassVar[Any]
+    decide: ClassVar[Any]
+    decide_known: ClassVar[Any]
+    choose: ClassVar[Any]
+    write: ClassVar[Any]
 
     reading: Reading
     inputs: Inputs
@@ -147,26 +154,6 @@ class Evaluator:
     def unit(self) -> Unit:
         """The source."""
         return self.reading.unit
-
-    def block(self, body: tuple[Part, ...]) -> None:
-        """Run statements."""
-        raise NotImplementedError
-
-    def decide(self, test: Part) -> bool:
-        """Whether a condition holds."""
-        raise NotImplementedError
-
-    def decide_known(self, test: Part) -> bool:
-        """Whether a condition holds that can be read."""
-        raise NotImplementedError
-
-    def choose(self, condition: Condition) -> bool:
-        """The way of this run at an undecided condition."""
-        raise NotImplementedError
-
-    def write(self, variable: Variable, value: Value, statement: Part) -> None:
-        """Assign a whole variable."""
-        raise NotImplementedError
 
     # -- names and places --
 
@@ -206,10 +193,6 @@ class Evaluator:
         owner, before = self.aliases.get(inner.parts[0], (self.canonical(inner.parts[0]), ""))
         return (owner, before if sign in ("", "->") and before else sign)
 
-    def spell(self, name: str, place: Index) -> str:
-        """An entry as the source writes it."""
-        return spell_entry(self.unit, name, place)
-
     def read(self, variable: Variable, place: Index, line: int) -> Cell:
         """One cell."""
         if place in variable.cells and variable.all_unread is None:
@@ -217,12 +200,12 @@ class Evaluator:
         if variable.all_unread is not None:
             return variable.all_unread
         if variable.is_input:
-            cell = Scalar(self.inputs(self.spell(variable.name, place)), promote(variable.number), 0)
+            cell = Scalar(self.inputs(spell_entry(self.unit, variable.name, place)), promote(variable.number), 0)
             if variable.shape is None:  # a number or an array from now on
                 variable.shape = () if not place else None
                 variable.cells[place] = cell
             return cell
-        return Unread(line, f"{self.spell(variable.name, place)} has no value there")
+        return Unread(line, f"{spell_entry(self.unit, variable.name, place)} has no value there")
 
     def whole(self, part: Part) -> int:
         """A constant whole number."""
@@ -230,13 +213,6 @@ class Evaluator:
         if exact is None or exact.denominator != 1:
             raise Unreadable(part.line, "an index or size that is no constant")
         return int(exact)
-
-    def place(self, part: Part) -> tuple[Variable, Index]:
-        """Variable and place of one entry."""
-        variable, places, _ = self.targets(part)
-        if len(places) != 1:
-            raise Unreadable(part.line, "a block where an entry is needed")
-        return variable, places[0]
 
     def targets(self, part: Part) -> tuple[Variable, list[Index], Index]:
         """Variable, places and shape of an entry or a block."""
@@ -251,8 +227,7 @@ class Evaluator:
             is_array = bool(variable.shape) or (variable.shape is None and any(variable.cells))
             return variable, [(0,) * max(len(variable.shape or ()), 1) if is_array else ()], ()
         if part.kind == "method" and part.parts[0].kind == "name" and part.parts[2] and self.unit.language == "cpp":
-            member = Part("name", part.line, (f"{part.parts[0].parts[0]}.{part.parts[1]}",), part.span)  # s.v(0)
-            part = Part("index", part.line, (member, part.parts[2]), part.span)
+            part = Part("call", part.line, (f"{part.parts[0].parts[0]}.{part.parts[1]}", part.parts[2]), part.span)
         if part.kind == "method" and part.parts[0].kind == "name" and self.variable_shape(part.parts[0].parts[0]):
             part = self.component(part) if not part.parts[2] else part  # v.x()
         if part.kind not in ("index", "call") and not (part.kind == "method" and part.parts[1] == "block"):
@@ -264,13 +239,21 @@ class Evaluator:
             indices = [*part.parts[1], *indices]
             part = part.parts[0]
         if part.kind == "call":
-            indices, name = [*part.parts[1], *indices], part.parts[0]
-        elif part.kind == "name":
-            name = part.parts[0]
-        else:
+            indices = [*part.parts[1], *indices]
+            self.require_entries(part.parts[0], part.line)
+        elif part.kind != "name":
             raise Unreadable(part.line, "an index of an expression")
-        variable = self.variable(name)
+        elif "()" in part.parts[0]:
+            self.require_entries(part.parts[0], part.line)
+        variable = self.variable(part.parts[0])
         return variable, *self.resolve(variable, indices, part.line)
+
+    def require_entries(self, name: str, line: int) -> None:
+        """Refuse the call of a function that is not known: two calls may give two values, as of a clock."""
+        may_be = self.unit.language in ("cpp", "matlab") or (self.unit.language == "c" and "()" in name)
+        is_lost = name in self.globals and self.globals[name].all_unread is not None  # it has a better reason
+        if name not in self.frame and not is_lost and not (may_be and self.unit.is_array(name)):
+            raise Unreadable(line, f"the function {name}, which this file does not define")
 
     def resolve(self, variable: Variable, indices: list[Part], line: int) -> tuple[list[Index], Index]:
         """The places that indices and slices mean, and their shape."""
@@ -376,6 +359,8 @@ class Evaluator:
             return self.entries(self.component(member))
         if name not in self.frame and name not in self.file_names and name in CONSTANTS:
             return Scalar(CONSTANTS[name])
+        if "()" in name or name in NAMED_CALLS.get(self.unit.language, ()):
+            self.require_entries(name, part.line)
         variable = self.variable(name)
         if variable.number == "other" and not variable.shape and variable.all_unread is None:
             raise Unreadable(part.line, f"{name} as a whole, of a type that is no number")
@@ -440,7 +425,8 @@ class Evaluator:
         try:
             variable, places, shape = self.targets(part)
         except Unreadable:
-            base = self.value(part.parts[0]) if part.parts[0].kind in ("call", "method", "op", "index") else None
+            is_inner = part.kind == "index" and part.parts[0].kind in ("call", "method", "op", "index")
+            base = self.value(part.parts[0]) if is_inner else None
             if not isinstance(base, Array):
                 raise
             number = "list" if isinstance(base, List) else "real"
@@ -475,8 +461,10 @@ class Evaluator:
         if value is not None and value.kind == "name":
             return self.variable(value.parts[0])
         if value is not None and value.kind in ("index", "call", "method"):
-            base, place = self.place(value)
-            name = self.spell(base.name, place)
+            base, (place, *others), _ = self.targets(value)
+            if others:
+                raise Unreadable(value.line, "a block where an entry is needed")
+            name = spell_entry(self.unit, base.name, place)
             base.cells.setdefault(place, self.read(base, place, value.line))
             view = Variable(name, base.number, ())
             view.cells = CellView(base, place)
@@ -500,13 +488,10 @@ class Evaluator:
             return self.join_arrays(JOINS[name], arguments[0])
         if name not in self.frame and is_known(name, self.unit.language):
             return call_known(name, [self.value(a) for a in arguments], self.unit, part.line)
-        may_be_entry = name in self.frame or name in self.globals or self.unit.language in ("cpp", "matlab")
-        if may_be_entry and arguments and (name in self.frame or all(self.is_constant(a) for a in arguments)):
-            base = Part("name", part.line, (name,), part.span)
-            return self.entries(Part("index", part.line, (base, arguments), part.span))
-        if not arguments and wants_value and self.unit.language in ("c", "cpp"):
-            return self.read(self.variable(f"{name}()"), (), part.line)
-        raise Unreadable(part.line, f"the function {name}, which this file does not define")
+        if arguments:
+            return self.entries(part)
+        self.require_entries(f"{name}()", part.line)
+        return self.whole_value(self.variable(f"{name}()"), part.line)
 
     def join_arrays(self, name: str, part: Part) -> Value:
         """``np.hstack([a, b])`` and its like; a vector is a row of a matrix, and is joined with vectors to one."""
@@ -543,13 +528,6 @@ class Evaluator:
             is_first = self.choose(Condition(text, part.line, True, ">=", a.tree, b.tree))
         result = a if is_first == (sign == ">=") else b
         return as_real(result) if "fm" in part.parts[0] and self.unit.language in ("c", "cpp") else result
-
-    def is_constant(self, part: Part) -> bool:
-        """True for an index that is a whole number."""
-        try:
-            return part.kind == "slice" or constant_of(self.value(part)) is not None
-        except Unreadable:
-            return False
 
     def inline(self, part: Part, wants_value: bool) -> Value:
         """The body of a function of the file, on its arguments."""
@@ -636,7 +614,7 @@ class Evaluator:
         base, name, arguments = part.parts
         is_array = base.kind != "name" or name == "T" or bool(self.variable_shape(base.parts[0]))
         if is_method(name, len(arguments), self.unit.language) and is_array:
-            return METHODS[name, len(arguments)](self.value(base), [self.value(a) for a in arguments], self.unit)
+            return METHODS[name, len(arguments)](self.unit, self.value(base), *map(self.value, arguments))
         if base.kind == "name" and self.variable_shape(base.parts[0]):
             return self.entries(self.component(part))
         if is_method(
@@ -644,12 +622,7 @@ class Evaluator:
         ):  # never an accessor: without its size nobody knows what it gives
             raise Unreadable(part.line, f"{name} of what has no known size; declare it under [code.symbols]")
         if base.kind == "name" and self.unit.language in ("c", "cpp"):
-            accessor = f"{base.parts[0]}.{name}"
-            if not arguments:
-                return self.whole_value(self.variable(f"{accessor}()"), part.line)
-            if all(self.is_constant(a) for a in arguments):
-                index = Part("index", part.line, (Part("name", part.line, (accessor,)), arguments))
-                return self.entries(index)
+            return self.call(Part("call", part.line, (f"{base.parts[0]}.{name}", arguments), part.span), True)
         raise Unreadable(part.line, f"the method {name}")
 
     def member_of_array(self, part: Part) -> Part | None:

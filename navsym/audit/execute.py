@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -28,7 +29,6 @@ from navsym.audit.values import (
     combine,
     constant_of,
     convert,
-    count_cells,
     does_fit,
     join,
     lose,
@@ -196,7 +196,8 @@ class Machine(Evaluator):
             elif part.kind == "address":
                 targets |= names_in(part)
             elif part.kind in ("call", "method") and not self.is_plain(part):
-                targets |= {name for name in names_in(part) if not self.is_safe(name)}
+                is_c = self.unit.language == "c"  # which gives a called function a copy of a number
+                targets |= {name for name in names_in(part) if not (is_c and self.variable_shape(name) == ())}
             may_leave = part.kind == "refused" and part.parts[3:] == (True,)
             if part.kind in ("jump", "fail") or may_leave or (part.kind == "call" and self.may_jump(part)):
                 self.stop(unread)
@@ -235,10 +236,6 @@ class Machine(Evaluator):
         for variable in (*self.frame.values(), *self.globals.values()):
             if variable.name != name and head_of(variable.name) == name:
                 variable.all_unread = unread
-
-    def is_safe(self, name: str) -> bool:
-        """True for a number of C, of which a called function gets a copy."""
-        return self.unit.language == "c" and self.variable_shape(name) == ()
 
     def may_jump(self, part: Part) -> bool:
         """True for what is a macro, or looks like one: it may hold a return."""
@@ -345,7 +342,10 @@ class Machine(Evaluator):
             if number == "other":
                 raise Unreadable(statement.line, "a structure made of a list")
             sizes = result.shape  # auto
-        if number == "auto":
+        elif number == "matrix" and isinstance(result, Scalar):
+            raise Unreadable(statement.line, f"{name}, a matrix of unknown size")
+        is_lazy = number != "matrix"
+        if number in ("auto", "matrix"):
             is_quaternion = isinstance(result, Quaternion)
             number = "quaternion" if is_quaternion else result.number if isinstance(result, Scalar) else "real"
         variable = Variable(name, number, sizes)
@@ -353,7 +353,13 @@ class Machine(Evaluator):
         if result is not None:
             self.note_unread(result, statement)
             self.write(variable, self.fill(result, sizes), statement)
-        if shape is None and sizes and value is not None and value.kind in ("op", "minus", "method", "index"):
+        if (
+            is_lazy
+            and shape is None
+            and sizes
+            and value is not None
+            and value.kind in ("op", "minus", "method", "index")
+        ):
             share(variable, self.arrays_in(value))  # auto of Eigen: computed when it is used
 
     def may_change(self, owner: str) -> bool:
@@ -408,7 +414,7 @@ class Machine(Evaluator):
             self.write(variable, result, statement)
             return
         variable, places, shape = self.targets(target)
-        if isinstance(result, Array) and count_cells(result.shape) != len(places):
+        if isinstance(result, Array) and math.prod(result.shape) != len(places):
             raise Unreadable(statement.line, "an assignment between shapes that do not fit")
         cells = result.cells if isinstance(result, Array) else (result,) * len(places)
         for place, cell in zip(places, cells, strict=True):
@@ -482,7 +488,7 @@ class Machine(Evaluator):
         variable.all_unread = None
         if isinstance(value, Array):
             is_other = variable.shape not in (None, value.shape)
-            if is_other and count_cells(variable.shape or ()) != len(value.cells):
+            if is_other and math.prod(variable.shape or ()) != len(value.cells):
                 raise Unreadable(statement.line, "an assignment between shapes that do not fit")
             variable.shape = variable.shape or value.shape
             for place, cell in zip(places_of(variable.shape), value.cells, strict=True):
@@ -504,10 +510,10 @@ class Machine(Evaluator):
         if not isinstance(variable.cells, CellView):  # which has no cells of its own
             lose_views(variable, Unread(statement.line, "a view of an array that has changed; write a copy"))
 
-    def run_block(self, body: tuple[Part, ...], statement: Part) -> None:
+    def run_block(self, body: Body, statement: Part) -> None:
         self.block(body)
 
-    def run_if(self, test: Part, then: tuple[Part, ...], other: tuple[Part, ...], statement: Part) -> None:
+    def run_if(self, test: Part, then: Body, other: Body, statement: Part) -> None:
         self.block(then if self.decide(test) else other)
 
     def run_for(self, name: str, start: Part, stop: Part, step: Part, body: Any, statement: Part) -> None:
@@ -549,26 +555,18 @@ class Machine(Evaluator):
     def run_return(self, value: Part | None, statement: Part) -> None:
         if value is None:
             raise Returning(None)
-        if self.unit.language == "python" and value.kind == "list":
-            raise Returning(self.returned_tuple(value))
+        is_tuple = self.unit.language == "python" and value.kind == "list"
         try:
             raise Returning(self.value(value))
         except Unreadable as refusal:
             if any(self.has_effect(p) or (p.kind == "method" and not self.is_plain(p)) for p in walk(value)):
                 raise
+            if is_tuple:
+                raise Returning(Unread(value.line, "several arrays returned; ask for them by their names")) from None
             unread = Unread(refusal.line or statement.line, refusal.why)  # the end is known, the value is not
             self.reading.refused.setdefault(unread.line, unread.why)
             self.reading.refused_spans.add(statement.span)
             raise Returning(unread) from None
-
-    def returned_tuple(self, value: Part) -> Value:
-        """A tuple: numbers as an array; arrays by their names only."""
-        try:
-            return self.value(value)
-        except Unreadable:
-            if any(self.has_effect(p) or (p.kind == "method" and not self.is_plain(p)) for p in walk(value)):
-                raise
-            return Unread(value.line, "several arrays returned; ask for them by their names")
 
     def run_do(self, call: Part, statement: Part) -> None:
         """A call for its effect."""

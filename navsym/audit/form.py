@@ -110,6 +110,11 @@ class Unit:
     variables: set[str] = field(default_factory=set)
     overlaid: set[str] = field(default_factory=set)
     imported: dict[str, str] = field(default_factory=dict)
+    declared: set[str] = field(default_factory=set)
+
+    def is_array(self, name: str) -> bool:
+        """True for a name before parentheses that holds entries; of others two calls may give two values."""
+        return name.replace("->", ".") in self.declared or name in self.members
 
     def locate(self, line: int) -> tuple[str, int]:
         """The file of a line, and its number there."""
@@ -156,9 +161,9 @@ def may_write(function: Function, name: str) -> bool:
     return False
 
 
-def called_in(part: Part) -> set[str]:
+def called_in(*parts: Any) -> set[str]:
     """The names before parentheses: ``v`` of ``v(0)``."""
-    return {inner.parts[0] for inner in walk(part) if inner.kind == "call"}
+    return {inner.parts[0] for inner in walk(*parts) if inner.kind == "call"}
 
 
 def head_of(name: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from navsym.audit.form import Argument, Function, Part, Unit, names_in, walk
+from navsym.audit.form import Argument, Function, Part, Unit, called_in, names_in, walk
 from navsym.core.errors import DomainError
 
 Body = tuple[Part, ...]
@@ -21,7 +21,8 @@ def take_lines(unit: Unit, function: Function, first: int, last: int, where: str
         near = [s for s in body if s.line <= last and last_line(unit, s) >= first]
         if near and all(first <= s.line and last_line(unit, s) <= last for s in near):
             break
-        inner = [b for s in near if len(near) == 1 for b in bodies_of(s) if covers(unit, b, first, last)]
+        blocks = [part for s in near if len(near) == 1 for part in s.parts if isinstance(part, tuple)]
+        inner = [b for b in blocks if isinstance((*b, 0)[0], Part) and covers(unit, b, first, last)]
         if len(inner) != 1:
             got = "half of one" if near else "none"
             message = f"expected whole statements of one block of {function.name} in lines {first} to {last}; got {got}"
@@ -37,7 +38,7 @@ def take_lines(unit: Unit, function: Function, first: int, last: int, where: str
     for name, statement in declared.items():
         if statement not in links:
             arguments[name] = argument_of(statement)
-    used = names_in(*near, *links)
+    used = names_in(*near, *links) | called_in(*near, *links)
     kept = tuple(replace(a, shared=True) for a in arguments.values() if a.name in used)
     return Function(function.name, near[0].line, kept, (*links, *near))
 
@@ -46,11 +47,6 @@ def last_line(unit: Unit, statement: Part) -> int:
     """The line in which a statement ends; ``elif`` ends before its ``else``."""
     end = max(part.span[1] for part in walk(statement))
     return 1 + unit.source.count(b"\n", 0, max(end - 1, 0))
-
-
-def bodies_of(statement: Part) -> list[Body]:
-    """The blocks inside a statement."""
-    return [part for part in statement.parts if isinstance(part, tuple) and any(isinstance(p, Part) for p in part)]
 
 
 def covers(unit: Unit, body: Body, first: int, last: int) -> bool:
@@ -68,7 +64,7 @@ def argument_of(statement: Part) -> Argument:
     if statement.kind == "for":
         return Argument(statement.parts[0], "int", ())
     name, number, shape, value, is_pointer = statement.parts
-    if is_pointer:
-        return Argument(name, "other", ())
+    if is_pointer or number == "matrix":
+        return Argument(name, "other", () if is_pointer else shape)
     is_number = number == "real" and shape is None and (value is None or value.kind == "number")
     return Argument(name, number, shape if shape is not None or not is_number else ())

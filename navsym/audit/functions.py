@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -19,7 +20,6 @@ from navsym.audit.values import (
     add,
     as_real,
     constant_of,
-    count_cells,
     cross_product,
     determinant,
     divide,
@@ -32,7 +32,6 @@ from navsym.audit.values import (
     minus,
     multiply,
     raise_to,
-    root,
     rotate,
     square_sum,
     total,
@@ -43,8 +42,10 @@ from navsym.language.tree import ONE, PI, ZERO, Tree, build_call, build_inverse,
 #: Functions of one number, by their names without prefix and suffix.
 PLAIN = {
     **{name: name for name in "sin cos tan exp log sqrt asin acos atan sinh cosh tanh".split()},
-    **{"fabs": "abs", "abs": "abs", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "absolute": "abs"},
+    **{"fabs": "abs", "abs": "abs"},
 }
+#: The same of numpy.
+NUMPY = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "absolute": "abs"}
 #: Degrees to radians and back.
 ANGLES = {"deg2rad": Fraction(1, 180), "radians": Fraction(1, 180), "rad2deg": Fraction(180), "degrees": Fraction(180)}
 CONSTANTS: dict[str, Tree] = dict.fromkeys(("M_PI", "math.pi", "np.pi", "numpy.pi", "pi", "M_PI_F", "PI"), PI)
@@ -64,58 +65,41 @@ PURE = {
     "matlab": frozenset("isinf isnan isempty any all numel length size strcmp strcmpi nargin ischar isfield".split()),
     "rust": frozenset(),
 }
-PREFIX = re.compile(r"(std::|::|math\.|np\.|numpy\.|matrix::|Eigen::)")
+#: Functions that MATLAB calls without parentheses.
+NAMED_CALLS = {"matlab": frozenset("rand randn randi tic toc now clock cputime input".split())}
+PREFIX = re.compile(r"\A(std::|::|math\.|np\.|numpy\.|matrix::|Eigen::)")
+#: The larger or the smaller of two numbers.
+EXTREMES = {
+    "c": r"fm(ax|in)f?", "cpp": r"(std::|::|matrix::|Eigen::)?fm(ax|in)f?|std::m(ax|in)", "matlab": r"m(ax|in)",
+    "python": r"((math|np|numpy)\.)?m(ax|in)imum|m(ax|in)", "rust": r"fm(ax|in)",
+}  # fmt: skip
+Known = Callable[..., Value]
+MAKE = re.compile(r"(?:^|::)Mat(?:rix)?(?:(\d)[fd]?|<\w+,(\d+),(\d+)>|X[fd]?)::(Zero|Identity)$")
 
 
 def bare_name(name: str) -> str:
     """A name of a function without namespace, module and the suffix f of C."""
     bare = PREFIX.sub("", name, count=1)
-    is_float = bare.endswith("f") and bare[:-1] in (*PLAIN, "pow", "atan2", "hypot")
-    return bare[:-1] if is_float else bare
+    return bare[:-1] if bare.endswith("f") and bare[:-1] in SCALAR else bare
 
 
 def is_known(name: str, language: str) -> bool:
     """True for a function that has a meaning of its own in the language."""
-    bare = bare_name(name)
-    if language == "python":
-        known = (
-            bare in PLAIN
-            or bare in TWO
-            or bare in {known for known, _ in ARRAYS}
-            or bare in ("arctan2", "power", "square", *ANGLES)
-        )
-        return known and (PREFIX.match(name) is not None or name == "abs")
-    if language in ("rust", "cpp") and (
-        name in {known for known, _ in NALGEBRA} or (language == "rust" and bare in ("zeros", "eye"))
-    ):
-        return True
-    if bare in TWO or (bare in PLAIN and not bare.startswith("arc") and bare != "absolute"):
-        return True
-    if language == "matlab":
-        return bare in {known for known, _ in ARRAYS} or bare in ("deg2rad", "rad2deg")
-    return language == "cpp" and (bare == "cross" or MAKE.search(name) is not None)
+    if language == "python" and PREFIX.match(name) is None and name != "abs":
+        return False
+    return bare_name(name) in NAMES[language] or (language == "cpp" and MAKE.search(name) is not None)
 
 
 def does_take(name: str, count: int, language: str) -> bool:
     """True for a known function that only reads so many arguments; one more of numpy is where it writes."""
     bare = bare_name(name)
-    most = 1 if bare in (*PLAIN, *ANGLES, "square") else max((n for known, n in ARRAYS if known == bare), default=2)
+    most = max((n for known, n in KNOWN if known == bare), default=2)
     return is_known(name, language) and (language != "python" or count <= most)
 
 
 def extreme_of(name: str, language: str) -> str:
     """``>=`` for a name of the larger of two numbers, ``<=`` for one of the smaller; else nothing."""
-    known = {"c": ("fmax", "fmin"), "cpp": ("fmax", "fmin"), "matlab": ("max", "min"), "python": ("maximum", "minimum")}
-    bare = PREFIX.sub("", name, count=1)
-    known["rust"] = known["c"]
-    bare = bare.removesuffix("f") if language in ("c", "cpp") else bare
-    if name in ("std::max", "std::min") or (name in ("max", "min") and language == "python"):
-        return ">=" if name.endswith("max") else "<="
-    return dict(zip(known.get(language, ()), (">=", "<="), strict=False)).get(bare, "")
-
-
-TWO = ("pow", "atan2", "hypot")
-MAKE = re.compile(r"(?:^|::)Mat(?:rix)?(?:(\d)[fd]?|<\w+,(\d+),(\d+)>|X[fd]?)::(Zero|Identity)$")
+    return "" if not re.fullmatch(EXTREMES[language], name) else ">=" if "max" in name else "<="
 
 
 def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Value:
@@ -124,29 +108,10 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
     if unread is not None:
         return unread
     values = [Array(value.shape, value.cells) if isinstance(value, List) else value for value in values]
-    bare = bare_name(name)
-    if bare in PLAIN and len(values) == 1:
-        if bare == "abs" and unit.language in ("c",):
-            raise Unreadable(line, "abs, which cuts to an integer in C; fabs does not")
-        return as_real(map_cells(lambda x: build_call(PLAIN[bare], x), values[0]))
-    if bare in ANGLES and len(values) == 1:
-        factor = ANGLES[bare]
-        turn = multiply(build_number(factor), PI if factor < 1 else build_inverse(PI))
-        return as_real(map_cells(lambda x: multiply(turn, x), values[0]))
-    if bare in ("pow", "power") and len(values) == 2:
-        return as_real(map_cells(raise_to, *values))
-    if bare in ("atan2", "arctan2") and len(values) == 2:
-        return as_real(map_cells(lambda y, x: build_call("atan2", y, x), *values))
-    if bare == "hypot" and len(values) == 2:
-        return map_cells(lambda x, y: root(add(raise_to(x, TWICE), raise_to(y, TWICE))), *values)
-    if bare == "square" and len(values) == 1:
-        return map_cells(lambda x: raise_to(x, TWICE), values[0])
-    if unit.language in ("rust", "cpp") and (name, len(values)) in NALGEBRA:
-        return NALGEBRA[name, len(values)](values, unit)
-    if (bare, len(values)) in ARRAYS:
-        return ARRAYS[bare, len(values)](values, unit)
+    if (known := KNOWN.get((bare_name(name), len(values)))) is not None:
+        return known(unit, *values)
     if found := MAKE.search(name):
-        sides = sizes_of(values, unit) or tuple(
+        sides = sizes_of(unit, *values) or tuple(
             int(side) for side in (found[1] or found[2], found[1] or found[3]) if side
         )
         if len(sides) == 2:
@@ -154,12 +119,44 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
     raise Unreadable(line, f"the function {name} with {len(values)} arguments")
 
 
+# Each takes the source, and the values to which it is applied; a method is applied to what stands before it.
+
+
+def cellwise(step: Callable[..., Tree]) -> Known:
+    """A function of numbers, of arrays cell by cell."""
+    return lambda unit, *values: as_real(map_cells(step, *values))
+
+
+def plain(name: str) -> Known:
+    """A function that the language of statements has."""
+    return cellwise(lambda *trees: build_call(name, *trees))
+
+
+def turn(factor: Fraction) -> Known:
+    """An angle in another unit."""
+    return cellwise(lambda x: multiply(multiply(build_number(factor), PI if factor < 1 else build_inverse(PI)), x))
+
+
+def absolute(unit: Unit, value: Value) -> Value:
+    if unit.language == "c":
+        raise Unreadable(0, "abs, which cuts to an integer in C; fabs does not")
+    return plain("abs")(unit, value)
+
+
+def same(unit: Unit, value: Value) -> Value:
+    return value
+
+
 def filled(shape: tuple[int, ...], number: int) -> Array:
     """An array of one number."""
     return make_array(shape, lambda *_: Scalar(build_number(number)))
 
 
-def sizes_of(values: Sequence[Value], unit: Unit) -> tuple[int, ...]:
+def identity_of(unit: Unit, *values: Value) -> Array:
+    return identity_array(*(sizes_of(unit, *values) * 2)[:2])
+
+
+def sizes_of(unit: Unit, *values: Value) -> tuple[int, ...]:
     """The shape that arguments give: numbers, or a tuple of them."""
     cells = [c for v in values for c in (v.cells if isinstance(v, Array) else (v,))]
     numbers = [constant_of(cell) for cell in cells]
@@ -169,197 +166,187 @@ def sizes_of(values: Sequence[Value], unit: Unit) -> tuple[int, ...]:
     return sizes * 2 if unit.language == "matlab" and len(sizes) == 1 else sizes
 
 
-def make_diagonal(values: Sequence[Value], unit: Unit) -> Value:
-    (value,) = values
-    if not isinstance(value, Array) or len(value.shape) != 1:
-        raise Unreadable(0, "diag of what is no vector")
-    whole = all(isinstance(cell, Scalar) and cell.number == "int" for cell in value.cells)
+def require(value: Value, dimension: int, what: str) -> Array:
+    """An array of so many sizes."""
+    if not isinstance(value, Array) or len(value.shape) != dimension:
+        raise Unreadable(0, f"{what} of what is no {'vector' if dimension == 1 else 'matrix'}")
+    return value
+
+
+def make_diagonal(unit: Unit, value: Value) -> Value:
+    cells = require(value, 1, "diag").cells
+    whole = all(isinstance(cell, Scalar) and cell.number == "int" for cell in cells)
     zero = Scalar(build_number(0), "int" if whole else "real")
-    return make_array(value.shape * 2, lambda i, j: value.cells[i] if i == j else zero)
+    return make_array((len(cells),) * 2, lambda i, j: cells[i] if i == j else zero)
 
 
-def make_outer(values: Sequence[Value], unit: Unit) -> Value:
-    a, b = values
+def make_outer(unit: Unit, a: Value, b: Value) -> Value:
     if not (isinstance(a, Array) and isinstance(b, Array)):
         raise Unreadable(0, "outer of what are no vectors")
     cells = [map_cells(multiply, x, y) for x in a.cells for y in b.cells]
     return Array((len(a.cells), len(b.cells)), tuple(cells))  # type: ignore[arg-type]
 
 
-def norm_of(values: Sequence[Value], unit: Unit) -> Value:
-    (value,) = values
+def norm_of(unit: Unit, value: Value) -> Value:
     if isinstance(value, Array) and len(value.shape) == 2 and 1 not in value.shape:
         raise Unreadable(0, "the norm of a matrix")
-    return map_cells(root, square_sum(value))
+    return map_cells(lambda x: build_call("sqrt", x), square_sum(value))
 
 
-def multiply_arrays(values: Sequence[Value], unit: Unit) -> Value:
-    if not all(isinstance(value, Array) for value in values):
+def multiply_arrays(unit: Unit, a: Value, b: Value) -> Value:
+    if not (isinstance(a, Array) and isinstance(b, Array)):
         raise Unreadable(0, "a product of matrices with a number")
-    return matrix_product(values[0], values[1])
+    return matrix_product(a, b)
 
 
-def dot_of(values: Sequence[Value], unit: Unit) -> Value:
+def dot_of(unit: Unit, a: Value, b: Value) -> Value:
     """The product of two vectors; of numpy's matrices, their product."""
-    a, b = values
     if unit.language == "python":
         return matrix_product(a, b)
     if not (isinstance(a, Array) and isinstance(b, Array)):
         raise Unreadable(0, "a dot product of what are no vectors")
-    if count_cells(a.shape) != count_cells(b.shape) or any(len(v.shape) == 2 and 1 not in v.shape for v in (a, b)):
+    if math.prod(a.shape) != math.prod(b.shape) or any(len(v.shape) == 2 and 1 not in v.shape for v in (a, b)):
         raise Unreadable(0, "a dot product of different sizes, or of matrices")
     flat = (len(a.cells),)
     return matrix_product(Array(flat, a.cells), Array(flat, b.cells))
 
 
-Known = Callable[[Sequence[Value], Unit], Value]
-#: Functions of arrays by name and number of arguments: with others they mean something else.
-ARRAYS: dict[tuple[str, int], Known] = {
-    **dict.fromkeys((("eye", 1), ("eye", 2), ("identity", 1)), lambda v, u: identity_array(*(sizes_of(v, u) * 2)[:2])),
-    **dict.fromkeys((("zeros", 1), ("zeros", 2)), lambda values, unit: filled(sizes_of(values, unit), 0)),
-    **dict.fromkeys((("ones", 1), ("ones", 2)), lambda values, unit: filled(sizes_of(values, unit), 1)),
-    **dict.fromkeys((("array", 1), ("asarray", 1), ("copy", 1)), lambda values, unit: values[0]),
-    **dict.fromkeys((("norm", 1), ("linalg.norm", 1)), norm_of), ("diag", 1): make_diagonal, ("outer", 2): make_outer,
-    ("cross", 2): lambda values, unit: cross_product(values[0], values[1]), ("dot", 2): dot_of,
-    **dict.fromkeys((("inv", 1), ("linalg.inv", 1)), lambda values, unit: invert(values[0])),
-    ("linalg.solve", 2): lambda values, unit: matrix_product(invert(values[0]), values[1]),
-    **dict.fromkeys((("det", 1), ("linalg.det", 1)), lambda values, unit: determine(values[0], (), unit)),
-    ("trace", 1): lambda values, unit: trace_of(values[0], (), unit),
-    ("sum", 1): lambda values, unit: sum_of(values[0], (), unit),
-    ("matmul", 2): multiply_arrays,
-    ("transpose", 1): lambda values, unit: transpose(values[0], unit.rules.matrix),
-}  # fmt: skip
-
-
-def make_matrix(values: Sequence[Value], unit: Unit) -> Value:
-    """The entries row by row, behind the sizes."""
-    *sizes, entries = values
-    shape = sizes_of(sizes, unit)
-    if not isinstance(entries, Array) or len(entries.shape) != 1 or count_cells(shape) != len(entries.cells):
-        raise Unreadable(0, "entries that do not fit the sizes")
-    return Array(shape, entries.cells)
-
-
-def make_quaternion(values: Sequence[Value], unit: Unit) -> Value:
-    """From w, i, j and k."""
-    if len(values) != 4 or not all(isinstance(value, Scalar) for value in values):
-        raise Unreadable(0, "a quaternion of other than four numbers")
-    return Quaternion((4,), (*values[1:], values[0]))  # type: ignore[arg-type]
-
-
-def make_of_parts(values: Sequence[Value], unit: Unit) -> Value:
-    """From w and the vector."""
-    w, vector = values
-    if not isinstance(vector, Array) or vector.shape != (3,) or not isinstance(w, Scalar):
-        raise Unreadable(0, "a quaternion of other than a number and three")
-    return Quaternion((4,), (*vector.cells, w))
-
-
-def require_quaternion(values: Sequence[Value], unit: Unit) -> Value:
-    (value,) = values
-    if not isinstance(value, Quaternion):
-        raise Unreadable(0, "a quaternion made of something else")
-    return value
-
-
-#: Constructors of nalgebra and Eigen; the reader of Rust writes the sizes of a type before the entries.
-NALGEBRA: dict[tuple[str, int], Known] = {
-    ("Matrix::new", 2): make_matrix, ("Matrix::new", 3): make_matrix, ("Quaternion::new", 4): make_quaternion,
-    ("Quaternion::from_parts", 2): make_of_parts, ("Quaternion::new_unchecked", 1): require_quaternion,
-    **dict.fromkeys(
-        (("Quaternion::from_quaternion", 1), ("Quaternion::new_normalize", 1)),
-        lambda values, unit: normalize(require_quaternion(values, unit), (), unit),
-    ),
-    ("Quaternion::identity", 0): lambda values, unit: Quaternion((4,), (*[Scalar(ZERO)] * 3, Scalar(ONE))),
-}  # fmt: skip
-
-Method = Callable[[Value, Sequence[Value], Unit], Value]
-
-
-def normalize(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+def normalize(unit: Unit, value: Value) -> Value:
     """A vector over its length."""
-    length = map_cells(root, square_sum(value))
-    return map_cells(divide, value, length)
+    return map_cells(divide, value, map_cells(lambda x: build_call("sqrt", x), square_sum(value)))
 
 
-def diagonal_of(value: Value, _: Sequence[Value], unit: Unit) -> Array:
-    """The diagonal of a matrix."""
-    if not isinstance(value, Array) or len(value.shape) != 2:
-        raise Unreadable(0, "the diagonal of what is no matrix")
-    return Array((min(value.shape),), tuple(value.at(i, i) for i in range(min(value.shape))))
+def diagonal_of(unit: Unit, value: Value) -> Array:
+    matrix = require(value, 2, "the diagonal")
+    return Array((min(matrix.shape),), tuple(matrix.at(i, i) for i in range(min(matrix.shape))))
 
 
-def trace_of(value: Value, _: Sequence[Value], unit: Unit) -> Value:
-    """The sum of the diagonal."""
-    return map_cell(lambda *trees: total(list(trees)), *diagonal_of(value, (), unit).cells)
+def trace_of(unit: Unit, value: Value) -> Value:
+    return map_cell(lambda *trees: total(list(trees)), *diagonal_of(unit, value).cells)
 
 
-def determine(value: Value, _: Sequence[Value], unit: Unit) -> Value:
-    """The determinant."""
+def determine(unit: Unit, value: Value) -> Value:
     n = value.shape[0] if isinstance(value, Array) else 0
     if not isinstance(value, Array) or value.shape != (n, n) or n > LARGEST_INVERSE:
         raise Unreadable(0, "the determinant of what is no small square matrix")
     return map_cell(lambda *trees: determinant([list(trees[k * n : k * n + n]) for k in range(n)]), *value.cells)
 
 
-def sum_of(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+def sum_of(unit: Unit, value: Value) -> Value:
     """The sum of all entries; of a matrix MATLAB sums the columns."""
     if not isinstance(value, Array) or (unit.language == "matlab" and len(value.shape) == 2 and 1 not in value.shape):
         raise Unreadable(0, "the sum of what is no vector")
     return map_cell(lambda *trees: total(list(trees)), *value.cells)
 
 
-def conjugate(value: Value, _: Sequence[Value], unit: Unit) -> Value:
-    """A quaternion with its vector turned round."""
+def make_matrix(unit: Unit, *values: Value) -> Value:
+    """The entries row by row, behind the sizes."""
+    *sizes, entries = values
+    shape = sizes_of(unit, *sizes)
+    if not isinstance(entries, Array) or len(entries.shape) != 1 or math.prod(shape) != len(entries.cells):
+        raise Unreadable(0, "entries that do not fit the sizes")
+    return Array(shape, entries.cells)
+
+
+def make_quaternion(unit: Unit, w: Value, *others: Value) -> Value:
+    """From w, i, j and k, or from w and the vector."""
+    cells = others[0].cells if len(others) == 1 and isinstance(others[0], Array) else others
+    if len(cells) != 3 or not all(isinstance(cell, Scalar) for cell in (w, *cells)):
+        raise Unreadable(0, "a quaternion of other than four numbers")
+    return Quaternion((4,), (*cells, w))  # type: ignore[arg-type]
+
+
+def require_quaternion(unit: Unit, value: Value) -> Quaternion:
     if not isinstance(value, Quaternion):
-        raise Unreadable(0, "the conjugate of what is no quaternion")
-    return Quaternion((4,), (*(map_cell(minus, cell) for cell in value.cells[:3]), value.cells[3]))
+        raise Unreadable(0, "an array where a quaternion is needed")
+    return value
 
 
-def invert_any(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+def conjugate(unit: Unit, value: Value) -> Value:
+    """A quaternion with its vector turned round."""
+    *vector, w = require_quaternion(unit, value).cells
+    return Quaternion((4,), (*(map_cell(minus, cell) for cell in vector), w))
+
+
+def invert_any(unit: Unit, value: Value) -> Value:
     """The inverse of a matrix; of a quaternion of Eigen its conjugate over its square."""
     if isinstance(value, Quaternion) and unit.language == "cpp":
-        return map_cells(divide, conjugate(value, (), unit), square_sum(value))
+        return map_cells(divide, conjugate(unit, value), square_sum(value))
     return invert(value)
 
 
-def rotation_of(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+def rotation_of(unit: Unit, value: Value) -> Value:
     """The matrix of a quaternion, whose columns are the turned axes; as it stands also where its length is not one."""
-    if not isinstance(value, Quaternion):
-        raise Unreadable(0, "the rotation of what is no quaternion")
-    axes = identity_array(3, 3)
-    return transpose(Array((3, 3), tuple(c for i in range(3) for c in rotate(value, axes.row(i)).cells)), True)
+    quaternion, axes = require_quaternion(unit, value), identity_array(3, 3)
+    cells = (c for i in range(3) for c in rotate(quaternion, axes.row(i)).cells)
+    return transpose(Array((3, 3), tuple(cells)), True)
 
 
-def coefficients_of(count: int) -> Method:
+def coefficients_of(count: int) -> Known:
     """The first coefficients of a quaternion, as a vector."""
-
-    def take(value: Value, _: Sequence[Value], unit: Unit) -> Value:
-        if not isinstance(value, Quaternion):
-            raise Unreadable(0, "the coefficients of what is no quaternion")
-        return Array((count,), value.cells[:count])
-
-    return take
+    return lambda unit, value: Array((count,), require_quaternion(unit, value).cells[:count])
 
 
-def transposed(value: Value, _: Sequence[Value], unit: Unit) -> Value:
+def transposed(unit: Unit, value: Value) -> Value:
     return transpose(value, unit.rules.matrix)
 
 
+#: Functions of numbers by name and number of arguments: with others they mean something else.
+NUMBERS: dict[tuple[str, int], Known] = {
+    **{(name, 1): plain(meaning) for name, meaning in PLAIN.items()}, ("abs", 1): absolute,
+    ("pow", 2): cellwise(raise_to), ("atan2", 2): plain("atan2"),
+    ("hypot", 2): cellwise(lambda x, y: build_call("sqrt", add(raise_to(x, TWICE), raise_to(y, TWICE)))),
+    ("expm1", 1): cellwise(lambda x: add(build_call("exp", x), minus(ONE))),
+    ("log1p", 1): cellwise(lambda x: build_call("log", add(ONE, x))),
+}  # fmt: skip
+#: Functions of arrays.
+ARRAYS: dict[tuple[str, int], Known] = {
+    **dict.fromkeys((("eye", 1), ("eye", 2), ("identity", 1)), identity_of),
+    **dict.fromkeys((("zeros", 1), ("zeros", 2)), lambda unit, *values: filled(sizes_of(unit, *values), 0)),
+    **dict.fromkeys((("ones", 1), ("ones", 2)), lambda unit, *values: filled(sizes_of(unit, *values), 1)),
+    **dict.fromkeys((("array", 1), ("asarray", 1), ("copy", 1)), same), ("transpose", 1): transposed,
+    **dict.fromkeys((("norm", 1), ("linalg.norm", 1)), norm_of), ("diag", 1): make_diagonal, ("outer", 2): make_outer,
+    ("cross", 2): lambda unit, a, b: cross_product(a, b), ("dot", 2): dot_of, ("matmul", 2): multiply_arrays,
+    **dict.fromkeys((("inv", 1), ("linalg.inv", 1)), lambda unit, value: invert(value)),
+    ("linalg.solve", 2): lambda unit, a, b: matrix_product(invert(a), b), ("trace", 1): trace_of, ("sum", 1): sum_of,
+    **dict.fromkeys((("det", 1), ("linalg.det", 1)), determine),
+}  # fmt: skip
+#: Functions that only numpy has, and degrees.
+OF_NUMPY: dict[tuple[str, int], Known] = {
+    **{(name, 1): plain(meaning) for name, meaning in NUMPY.items()},
+    ("square", 1): cellwise(lambda x: raise_to(x, TWICE)),
+    ("power", 2): NUMBERS["pow", 2], ("arctan2", 2): plain("atan2"),
+}  # fmt: skip
+OF_ANGLES: dict[tuple[str, int], Known] = {(name, 1): turn(factor) for name, factor in ANGLES.items()}
+#: Constructors of nalgebra and Eigen; the reader of Rust writes the sizes of a type before the entries.
+NALGEBRA: dict[tuple[str, int], Known] = {
+    ("Matrix::new", 2): make_matrix, ("Matrix::new", 3): make_matrix, ("Quaternion::new", 4): make_quaternion,
+    ("Quaternion::from_parts", 2): make_quaternion, ("Quaternion::new_unchecked", 1): require_quaternion,
+    **dict.fromkeys(
+        (("Quaternion::from_quaternion", 1), ("Quaternion::new_normalize", 1)),
+        lambda unit, value: normalize(unit, require_quaternion(unit, value)),
+    ),
+    ("Quaternion::identity", 0): lambda unit: Quaternion((4,), (*[Scalar(ZERO)] * 3, Scalar(ONE))),
+}  # fmt: skip
+KNOWN = NUMBERS | ARRAYS | OF_NUMPY | OF_ANGLES | NALGEBRA
+SCALAR = frozenset(name for name, _ in NUMBERS)
+#: The names that each language has.
+NAMES: dict[str, frozenset[str]] = {
+    language: SCALAR.union(others, *({name for name, _ in table} for table in tables))
+    for language, others, tables in (
+        ("c", (), ()), ("cpp", ("cross",), (NALGEBRA,)), ("rust", ("zeros", "eye"), (NALGEBRA,)),
+        ("matlab", ("deg2rad", "rad2deg"), (ARRAYS,)), ("python", (), (ARRAYS, OF_NUMPY, OF_ANGLES)),
+    )
+}  # fmt: skip
 #: Methods by name and number of arguments.
-METHODS: dict[tuple[str, int], Method] = {
-    **dict.fromkeys((("transpose", 0), ("T", 0)), transposed),
-    **dict.fromkeys((("copy", 0), ("eval", 0)), lambda value, _, unit: value),
-    **dict.fromkeys((("squaredNorm", 0), ("norm_squared", 0)), lambda value, _, unit: square_sum(value)),
-    **dict.fromkeys((("normalized", 0), ("normalize", 0), ("unit", 0)), normalize),
-    ("dot", 1): lambda value, others, unit: dot_of([value, *others], unit),
-    ("cross", 1): lambda value, others, unit: cross_product(value, others[0]),
-    ("norm", 0): lambda value, _, unit: norm_of([value], unit),
-    ("conjugate", 0): conjugate, ("inverse", 0): invert_any,
+METHODS: dict[tuple[str, int], Known] = {
+    **dict.fromkeys((("transpose", 0), ("T", 0)), transposed), **dict.fromkeys((("copy", 0), ("eval", 0)), same),
+    **dict.fromkeys((("squaredNorm", 0), ("norm_squared", 0)), lambda unit, value: square_sum(value)),
+    **dict.fromkeys((("normalized", 0), ("normalize", 0), ("unit", 0)), normalize), ("norm", 0): norm_of,
+    ("dot", 1): dot_of, ("cross", 1): ARRAYS["cross", 2], ("conjugate", 0): conjugate, ("inverse", 0): invert_any,
     ("toRotationMatrix", 0): rotation_of, ("coeffs", 0): coefficients_of(4), ("vec", 0): coefficients_of(3),
-    ("trace", 0): trace_of, ("sum", 0): sum_of, ("diagonal", 0): diagonal_of,
-    ("determinant", 0): determine, ("asDiagonal", 0): lambda value, _, unit: make_diagonal([value], unit),
-    ("cwiseProduct", 1): lambda value, others, unit: map_cells(multiply, value, others[0]),
+    ("trace", 0): trace_of, ("sum", 0): sum_of, ("diagonal", 0): diagonal_of, ("determinant", 0): determine,
+    ("asDiagonal", 0): make_diagonal, ("cwiseProduct", 1): lambda unit, a, b: map_cells(multiply, a, b),
 }  # fmt: skip
 #: What changes its own vector or matrix in C++, and what gives the changed one.
 IN_PLACE = {"normalize": "normalized", "transposeInPlace": "transpose"}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +12,7 @@ from navsym.audit.syntax import (
     SourceReader,
     descend,
     field_of,
+    find_body,
     line_of,
     named,
     read_decimal,
@@ -56,16 +56,13 @@ class Reader(SourceReader):
 
     # -- statements --
 
-    def read_statement(self, node: Any) -> Iterable[Part] | None:
+    def read_statement(self, node: Any) -> tuple[Part, ...] | None:
         match node.type:
             case "assignment":
                 return (self.assignment(node),)
             case "if_statement":
                 clauses = [c for c in named(node) if c.type in ("elseif_clause", "else_clause")]
-                return (self.chain(node, clauses, find_block),)
-            case "while_statement":
-                test = self.expression(field_of(node, "condition"))
-                return (self.part("loop", node, (), test, (), self.block(find_block(node)), False),)
+                return (self.chain(node, clauses),)
             case "switch_statement":
                 return self.switch(node)
             case "for_statement":
@@ -95,7 +92,7 @@ class Reader(SourceReader):
         """``switch`` over numbers as ``if``."""
         test, other = self.expression(field_of(node, "condition")), tuple[Part, ...]()
         for clause in reversed([c for c in named(node) if c.type.endswith("_clause")]):
-            label, body = field_of(clause, "condition"), self.block(find_block(clause))
+            label, body = field_of(clause, "condition"), self.block(find_body(clause))
             if label is None:
                 other = body
                 continue
@@ -118,7 +115,7 @@ class Reader(SourceReader):
         if step.kind not in ("number", "minus"):
             return self.unread(node, "a loop with a step that is no number")
         stop = self.part("op", node, "+" if step.kind == "number" else "-", ends[-1], one)
-        return self.part("for", node, text_of(parts[0]), ends[0], stop, step, self.block(find_block(node)))
+        return self.part("for", node, text_of(parts[0]), ends[0], stop, step, self.block(find_body(node)))
 
     # -- expressions --
 
@@ -178,11 +175,6 @@ class Reader(SourceReader):
             ends = [self.expression(child) for child in named(node)]
             return self.part("slice", node, *ends) if len(ends) == 2 else self.refuse(node, "a range with a step")
         return self.expression(node)
-
-
-def find_block(node: Any) -> Any:
-    """The body of a statement."""
-    return next((child for child in named(node) if child.type == "block"), None)
 
 
 def list_powers(node: Any, signs: list[str]) -> list[Any]:

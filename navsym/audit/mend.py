@@ -83,7 +83,9 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     rest = [place for place in rest if place not in beside]
     reading, tried = source.read(), set[tuple[Any, ...]]()
     price = 1 + len(reading.cases) * len(reading.met) // SHORT
-    probes = list_probes(scope)
+    box = {name: player.read_range(limits) for name, limits in scope.ranges.items()}
+    points = itertools.islice(draw_points(box, scope), 3)  # at which wrong ones are dropped before anything is proved
+    probes = [{name: int(v.p) / int(v.q) for name, v in point.items()} for point in points]
     for mend in itertools.chain(
         budget.known,
         change_all(near, [*SMALL_EDITS, edit_names]),
@@ -259,17 +261,17 @@ def list_places(source: Source, own: Part | None, expected: Tree) -> list[Place]
 
 def read_in(statement: Part) -> set[str]:
     """The names that a statement reads; ``+=`` reads what it writes."""
-    is_new = statement.kind in ("assign", "declare") and not (statement.kind == "assign" and statement.parts[1])
+    is_new = statement.kind == "declare" or (statement.kind == "assign" and not statement.parts[1])
     read = whole_side(statement) if is_new else statement
-    return set() if read is None else names_in(read) | called_in(read)
+    return names_in(read) | called_in(read)
 
 
 def written_in(statement: Part) -> set[str]:
     """The names that a statement writes."""
     if statement.kind in ("declare", "for"):
         return {statement.parts[0]}
-    target = statement.parts[0] if statement.kind == "assign" else None
-    return set() if target is None else names_in(target) | called_in(target)
+    targets = statement.parts[:1] if statement.kind == "assign" else ()
+    return names_in(*targets) | called_in(*targets)
 
 
 def list_orphans(function: Function) -> set[str]:
@@ -338,13 +340,6 @@ def is_right(mend: Mend, entry: Entry, source: Source, scope: Scope, probes: lis
         if a is None or b is None or abs(a - b) > TOLERANCE * (1 + abs(a) + abs(b)):
             return False
     return decide_entry(cell.tree, expected.tree, scope).status == PROVED
-
-
-def list_probes(scope: Scope) -> list[dict[str, float]]:
-    """Points in doubles at which wrong candidates are dropped before anything is proved."""
-    box = {name: player.read_range(limits) for name, limits in scope.ranges.items()}
-    points = itertools.islice(draw_points(box, scope), 3)
-    return [{name: int(v.p) / int(v.q) for name, v in point.items()} for point in points]
 
 
 FLOATS: dict[str, Any] = {

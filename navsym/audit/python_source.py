@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -74,7 +73,7 @@ class Reader(SourceReader):
             elif node.type in ("function_definition", "class_definition"):
                 bound = [text_of(field_of(node, "name"))]
             elif node.type == "parameters":
-                bound = [text_of(inner) for inner in descend(node) if inner.type == "identifier"]
+                bound = [*map(name_parameter, named(node))]
             elif node.type == "aliased_import" and text_of(field_of(node, "name")) not in NUMERIC:
                 bound = [text_of(field_of(node, "alias"))]
             self.rebound |= {*bound} & {"np", "numpy", "math"}
@@ -107,10 +106,7 @@ class Reader(SourceReader):
     def read_function(self, node: Any, decorator: Any = None) -> None:
         """A function; one whose decorator may change it is not read."""
         name = text_of(field_of(node, "name"))
-        arguments = []
-        for child in named(field_of(node, "parameters")):
-            label = child if child.type == "identifier" else field_of(child, "name") or next(iter(named(child)), child)
-            arguments.append(Argument(text_of(label), shared=True))
+        arguments = [Argument(name_parameter(child), shared=True) for child in named(field_of(node, "parameters"))]
         body = tuple(s for child in named(field_of(node, "body")) for s in self.statement(child))
         if decorator is not None:
             body = (self.part("jump", decorator, "a decorator that may change the function", ()),)
@@ -120,23 +116,14 @@ class Reader(SourceReader):
 
     # -- statements --
 
-    def read_statement(self, node: Any) -> Iterable[Part] | None:
+    def read_statement(self, node: Any) -> tuple[Part, ...] | None:
         match node.type:
-            case "expression_statement":
-                return tuple(s for child in named(node) for s in self.effect(child))
-            case "return_statement":
-                values = named(node)
-                return (self.part("return", node, self.expression(values[0]) if values else None),)
             case "if_statement":
-                clauses = [*node.children_by_field_name("alternative")]
-                return (self.chain(node, clauses, lambda n: field_of(n, "consequence") or field_of(n, "body")),)
+                return (self.chain(node, node.children_by_field_name("alternative")),)
             case "for_statement":
                 return (self.loop(node),)
-            case "while_statement" if field_of(node, "alternative") is None:
-                test = self.expression(field_of(node, "condition"))
-                return (self.part("loop", node, (), test, (), self.block(field_of(node, "body")), False),)
-            case "raise_statement":
-                return (self.part("fail", node, "an error is raised"),)
+            case "while_statement" if field_of(node, "alternative") is not None:
+                return (self.unread(node, "a loop with an else"),)
             case "pass_statement" | "assert_statement" | "import_statement" | "import_from_statement":
                 return ()
             case "global_statement":
@@ -279,6 +266,11 @@ class Reader(SourceReader):
         if function.type == "identifier":
             return self.part("call", node, self.unit.imported.get(name, name), tuple(arguments))
         return self.refuse(node, "a call of an expression")
+
+
+def name_parameter(node: Any) -> str:
+    """The name of a parameter, without its type and its default."""
+    return text_of(node if node.type == "identifier" else field_of(node, "name") or next(iter(named(node)), node))
 
 
 def is_top(node: Any) -> bool:

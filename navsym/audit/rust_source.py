@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,11 +18,15 @@ ARRAY = re.compile(r"\[(.+);(\d+)\]")
 QUATERNION = re.compile(r"(?:\w+::)*(Unit)?Quaternion(?:<\w+>)?")
 #: Methods of numbers that are functions in the other languages.
 NUMBERS = dict.fromkeys("sin cos tan asin acos atan sinh cosh tanh exp sqrt atan2 hypot".split(), "") | {
-    "ln": "log", "abs": "fabs", "powf": "pow", "powi": "pow", "max": "fmax", "min": "fmin"
+    "ln": "log", "exp_m1": "expm1", "ln_1p": "log1p",
+    "abs": "fabs", "powf": "pow", "powi": "pow", "max": "fmax", "min": "fmin"
 }  # fmt: skip
 #: Methods that give what they are called on.
 SAME = ("clone", "as_ref", "to_owned", "into_inner", "into", "quaternion", "as_vector", "copied", "eval", "coords")
 QUIET = "println eprintln debug_assert debug_assert_eq assert assert_eq trace debug info warn".split()
+
+
+SIGNS = ("", "+=", "-=", "*=", "/=", "%=")
 
 
 def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
@@ -117,23 +120,17 @@ class Reader(SourceReader):
             return next(iter(self.effect(node)), self.part("return", node, None))
         return self.part("return", node, None if node.type == "unit_expression" else self.expression(node))
 
-    def read_statement(self, node: Any) -> Iterable[Part] | None:
-        match node.type:
-            case "expression_statement":
-                return tuple(s for child in named(node) for s in self.effect(child))
-            case "let_declaration":
-                return self.declaration(node)
-            case "attribute_item" | "empty_statement" | "use_declaration":
-                return ()
-        return self.effect(node)
+    def read_statement(self, node: Any) -> tuple[Part, ...] | None:
+        if node.type == "let_declaration":
+            return self.declaration(node)
+        if node.type in ("attribute_item", "empty_statement", "use_declaration"):
+            return ()
+        return None if node.type == "expression_statement" else self.effect(node)
 
     def effect(self, node: Any) -> tuple[Part, ...]:
         """What an expression that stands alone does."""
         match node.type:
-            case "assignment_expression":
-                left, right = (self.expression(field_of(node, side)) for side in ("left", "right"))
-                return (self.part("assign", node, left, "", right),)
-            case "compound_assignment_expr" if text_of(field_of(node, "operator")) in ("+=", "-=", "*=", "/=", "%="):
+            case "assignment_expression" | "compound_assignment_expr" if text_of(field_of(node, "operator")) in SIGNS:
                 left, right = (self.expression(field_of(node, side)) for side in ("left", "right"))
                 return (self.part("assign", node, left, text_of(field_of(node, "operator"))[:-1], right),)
             case "if_expression":
@@ -141,8 +138,7 @@ class Reader(SourceReader):
             case "for_expression":
                 return (self.loop(node),)
             case "while_expression" if field_of(node, "condition").type not in ("let_condition", "let_chain"):
-                test = self.expression(field_of(node, "condition"))
-                return (self.part("loop", node, (), test, (), self.block(field_of(node, "body")), False),)
+                return self.read_common(node)
             case "block":
                 return (self.part("block", node, self.block(node)),)
             case "return_expression":
@@ -153,7 +149,7 @@ class Reader(SourceReader):
                 return ()
             case "macro_invocation" if text_of(field_of(node, "macro")) in ("panic", "unreachable", "todo"):
                 return (self.part("fail", node, "a panic"),)
-        return (self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})"),)
+        return (self.outside(node),)
 
     def declaration(self, node: Any) -> tuple[Part, ...]:
         """``let``; with ``else`` only for a vector that is normalized where it has a length."""

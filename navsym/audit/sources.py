@@ -15,9 +15,9 @@ from flint import ctx, fmpq
 
 from navsym.audit.evaluate import Reading
 from navsym.audit.execute import read_function
-from navsym.audit.form import Argument, Function, Part, Unit, names_in, spell_entry
+from navsym.audit.form import Argument, Function, Part, Unit, called_in, names_in, spell_entry, walk
 from navsym.audit.fragment import take_lines
-from navsym.audit.names import Names
+from navsym.audit.names import Names, squeeze
 from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import (
     Array,
@@ -156,6 +156,12 @@ def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | 
     unit = Unit(where, language, rules, data, defined=defined)
     reader = module.Reader(unit)
     reader.read_file(reader.parse(data))
+    bodies = (f.body for several in unit.functions.values() for f in several) if language == "cpp" else ()
+    for part in walk(*bodies):
+        if part.kind == "assign":  # to an entry of a member, M(0, 1) = x or s.v(0) = x
+            target, (base, *name) = part.parts[0], part.parts[0].parts
+            of_member = {f"{base.parts[0]}.{name[0]}"} if target.kind == "method" and base.kind == "name" else set()
+            unit.declared |= {n.replace("->", ".") for n in called_in(target) | of_member}
     return unit
 
 
@@ -212,6 +218,7 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
         function = replace(function, arguments=tuple(a for a in function.arguments if a.name not in fixed))
     place = join_place(where, "symbols")
     symbols = as_table(table.get("symbols", {}), place)
+    unit.declared |= {squeeze(spelling).partition("[")[0].replace("->", ".") for spelling in symbols}
     shapes, symmetric = read_symbols(symbols, names, place)
     starts = {
         spell_entry(unit, spelling, p): ONE if len({*p}) == 1 and declaration["start"] == "identity" else ZERO

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
@@ -84,6 +84,15 @@ def field_of(node: Any, name: str) -> Any:
     return None if node is None else node.child_by_field_name(name)
 
 
+def find_body(node: Any) -> Any:
+    """The body of a statement."""
+    return (
+        field_of(node, "consequence")
+        or field_of(node, "body")
+        or next((child for child in named(node) if child.type == "block"), None)
+    )
+
+
 def sign_of(node: Any) -> str:
     """The operator between two operands, or before one."""
     return next((text_of(child) for child in node.children if not child.is_named), "")
@@ -156,8 +165,9 @@ class SourceReader:
     """Walks the syntax tree of one language; ``shift`` moves the spans of a text that was read alone.
 
     A language has ``read_file``, ``read_statement``, ``read_expression``, which give None for what is outside of it,
-    and ``find_value``, the expression in the tree of HEAD, a text and TAIL. A node with an error in it is refused as a
-    whole, unless it is a statement of a kind in OPEN, whose own statements are looked at.
+    ``effect``, what an expression writes that stands alone, and ``find_value``, the expression in the tree of HEAD, a
+    text and TAIL. A node with an error in it is refused as a whole, unless it is a statement of a kind in OPEN, whose
+    own statements are looked at.
     """
 
     HEAD: ClassVar[str] = "a_ = "
@@ -165,21 +175,13 @@ class SourceReader:
     OPEN: ClassVar[tuple[str, ...]] = ("if_statement", "for_statement")
     OPERATORS: ClassVar[dict[str, tuple[str, ...]]] = OPERATORS
 
+    read_statement: ClassVar[Any]
+    read_expression: ClassVar[Any]
+    find_value: ClassVar[Any]
+    effect: ClassVar[Any]
+
     unit: Unit
     shift: int = 0
-
-    def read_statement(self, node: Any) -> Iterable[Part] | None:
-        """What a statement does, as several of the one form."""
-        raise NotImplementedError
-
-    def read_expression(self, node: Any) -> Part | None:
-        """An expression without errors."""
-        raise NotImplementedError
-
-    @staticmethod
-    def find_value(node: Any) -> Any:
-        """The expression in the one node that a text makes."""
-        raise NotImplementedError
 
     @classmethod
     def read_text(cls, text: str, unit: Unit) -> Part:
@@ -198,10 +200,27 @@ class SourceReader:
         """A statement; a wrong one is not read, and neither is one outside the language of audit."""
         if node.has_error and node.type not in self.OPEN:
             return (self.unread(node, "a syntax error, or a macro that hides one"),)
-        several = self.read_statement(node)
-        kind = node.type.replace("_", " ")
-        outside = f"a statement outside the language of audit ({kind})"
-        return (self.unread(node, outside),) if several is None else tuple(several)
+        several: tuple[Part, ...] | None = self.read_statement(node)
+        return self.read_common(node) if several is None else several
+
+    def read_common(self, node: Any) -> tuple[Part, ...]:
+        """What most languages have, by its kinds in their grammars."""
+        match node.type:
+            case "expression_statement":
+                return tuple(s for child in named(node) for s in self.effect(child))
+            case "return_statement":
+                values = named(node)
+                return (self.part("return", node, self.expression(values[0]) if values else None),)
+            case "while_statement" | "while_expression":
+                test = self.expression(field_of(node, "condition"))
+                return (self.part("loop", node, (), test, (), self.block(find_body(node)), False),)
+            case "raise_statement" | "throw_statement":
+                return (self.part("fail", node, "an error is raised"),)
+        return (self.outside(node),)
+
+    def outside(self, node: Any) -> Part:
+        """A statement that is not read."""
+        return self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})")
 
     def block(self, node: Any) -> tuple[Part, ...]:
         """The statements of a body."""
@@ -260,12 +279,16 @@ class SourceReader:
             return self.refuse(node, f"the number {text_of(node)[:20]}")
         return self.part("number", node, value, "real" if is_real else "int")
 
-    def chain(self, node: Any, clauses: list[Any], body: Callable[[Any], Any]) -> Part:
+    def chain(self, node: Any, clauses: list[Any]) -> Part:
         """``if`` with the clauses behind it, the first as its other way."""
-        test, then, other = self.expression(field_of(node, "condition")), self.block(body(node)), tuple[Part, ...]()
+        test, then, other = (
+            self.expression(field_of(node, "condition")),
+            self.block(find_body(node)),
+            tuple[Part, ...](),
+        )
         if clauses:
             is_if = field_of(clauses[0], "condition") is not None
-            other = (self.chain(clauses[0], clauses[1:], body),) if is_if else self.block(body(clauses[0]))
+            other = (self.chain(clauses[0], clauses[1:]),) if is_if else self.block(find_body(clauses[0]))
         return self.part("if", node, test, then, other)
 
     def sizes(self, node: Any, shape: tuple[int, ...] | None) -> tuple[Part, ...] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -14,7 +15,6 @@ from navsym.language.tree import (
     ONE,
     ZERO,
     Tree,
-    build_call,
     build_inverse,
     build_number,
     build_power,
@@ -195,11 +195,6 @@ def raise_to(a: Tree, b: Tree) -> Tree:
     return a if b is ONE else build_power(a, b)
 
 
-def root(a: Tree) -> Tree:
-    """The square root."""
-    return build_call("sqrt", a)
-
-
 def total(trees: list[Tree]) -> Tree:
     """The sum of trees."""
     result = ZERO
@@ -219,7 +214,7 @@ def map_cells(step: Callable[..., Tree], *values: Value) -> Value:
     if not shapes:
         return map_cell(step, *values)  # type: ignore[arg-type]
     (shape,) = shapes
-    rows = [v.cells if isinstance(v, Array) else (v,) * count_cells(shape) for v in values]
+    rows = [v.cells if isinstance(v, Array) else (v,) * math.prod(shape) for v in values]
     kind = Quaternion if any(isinstance(value, Quaternion) for value in values) else Array
     return kind(shape, tuple(map_cell(step, *cells) for cells in zip(*rows, strict=True)))
 
@@ -235,17 +230,9 @@ def map_cell(step: Callable[..., Tree], *cells: Cell) -> Cell:
     return Scalar(step(*trees), "real" if not kinds <= {"int", "unsigned"} else max(kinds, default="int"))
 
 
-def count_cells(shape: Index) -> int:
-    """How many cells a shape has."""
-    number = 1
-    for size in shape:
-        number *= size
-    return number
-
-
 def make_array(shape: Index, cell: Callable[..., Cell]) -> Array:
     """An array by places."""
-    if count_cells(shape) > LARGEST or any(size < 0 for size in shape):
+    if math.prod(shape) > LARGEST or any(size < 0 for size in shape):
         raise Unreadable(0, f"an array of more than {LARGEST} cells")
     return Array(shape, tuple(cell(*place) for place in places_of(shape)))
 

@@ -80,8 +80,8 @@ def compare(function: dict[str, Any], language: str, folder: Path) -> str:
     spec = f'[[code]]\nname = "c"\nfile = "{path}"\nfunction = "{function["name"]}"\nlines = {[*lines]}\n'
     spec += "[code.constants]\n" + "".join(
         f'"{digits}" = "{meaning}"\n'
-        for digits in sorted({*re.findall(r"\d+\.\d{9,}", inside)})
-        if (meaning := find_meaning(digits, " ".join(formulas)))
+        for digits in sorted({*re.findall(r"\d+\.\d{9,}(?:e-?\d+)?", inside)})
+        if (meaning := find_meaning(digits, formulas, bool(function["inputs"])))
     )
     spec += HELPERS.get(language, "") + "[code.symbols]\n"
     spec += "".join(f'"{spelled[i["symbol"]]}" = {range_of(i)}\n' for i in function["inputs"] if i["symbol"] in spelled)
@@ -99,8 +99,13 @@ def compare(function: dict[str, Any], language: str, folder: Path) -> str:
     return "PROVED" if bad is None else f"{bad.status} ({bad.entries[0].why[:50]})"
 
 
-def find_meaning(digits: str, formulas: str) -> str | None:
-    """The constant of the formulas for which a decimal stands, as a rational multiple of pi or a root."""
+def find_meaning(digits: str, formulas: list[str], has_inputs: bool) -> str | None:
+    """The constant of the formulas for which a decimal stands, as a rational multiple of pi or a root.
+
+    A formula of numbers alone is one decimal in the code; audit compares both to the last digit.
+    """
+    if not has_inputs and len(formulas) == 1:
+        return formulas[0]
     atoms = {
         "pi": math.pi,
         "pi**2": math.pi**2,
@@ -109,7 +114,7 @@ def find_meaning(digits: str, formulas: str) -> str | None:
         "1/pi**2": math.pi**-2,
         "1": 1,
     }
-    atoms |= {text: math.sqrt(int(text[5:-1])) for text in re.findall(r"sqrt\(\d+\)", formulas)}
+    atoms |= {text: math.sqrt(int(text[5:-1])) for text in re.findall(r"sqrt\(\d+\)", " ".join(formulas))}
     atoms |= {f"{a}*{b}": atoms[a] * atoms[b] for a in [*atoms] for b in [*atoms] if a < b and "pi" in a + b}
     for atom, value in atoms.items():
         factor = Fraction(float(digits) / value).limit_denominator(20_000)
@@ -122,10 +127,10 @@ def spell_inputs(function: dict[str, Any], language: str) -> dict[str, str]:
     """How the code calls each symbol: its name, or an entry of an array."""
     spelled, inputs, base = {}, function["inputs"], 1 if language == "octave" else 0
     for argument in function["arguments"]:
-        low, high = argument["inputs"]
-        for k in range(low, high):
-            entry = f"({k - low + base})" if language == "octave" else f"[{k - low}]"
-            spelled[inputs[k]["symbol"]] = argument["name"] + entry * (high - low > 1)
+        first, size = argument["inputs"]
+        for k in range(size):
+            entry = f"({k + base})" if language == "octave" else f"[{k}]"
+            spelled[inputs[first + k]["symbol"]] = argument["name"] + entry * (size > 1)
     return spelled
 
 

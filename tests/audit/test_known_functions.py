@@ -13,7 +13,7 @@ from navsym.audit.values import Array, Scalar
 from tests.attacks.campaigns.code import Subject, compute, draw_points, is_same, read_code
 
 SHAPES = (("v", (3,)), ("M", (3, 3)))
-NUMBERS = "sin cos tan exp log sqrt asin acos atan sinh cosh tanh abs"
+NUMBERS = "sin cos tan exp log sqrt asin acos atan sinh cosh tanh abs expm1 log1p"
 NUMPY = (
     f"{NUMBERS} arcsin arccos arctan absolute arctan2 power square hypot deg2rad radians rad2deg degrees array asarray"
 )
