@@ -11,6 +11,7 @@ ESTIMATE, TRUTH = "estimate - truth", "truth - estimate"
 KEPT, DROPPED = "kept", "dropped"
 NORTH, WANDER = "north", "wander"
 HAMILTON, FORWARD, BACKWARD = "Hamilton", "body to frame", "frame to body"
+SENSORS = ("gyro", "accelerometer")
 MEASURED_LESS, PREDICTED_LESS = "measurement - prediction", "prediction - measurement"
 
 #: Words that the fields of a card may have; None where a field says nothing.
@@ -23,6 +24,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "angle": ("phi", "psi"),
     "rotation_sign": ("+", "-"),
     "bias_sign": (ESTIMATE, TRUTH),
+    "scale_sign": (ESTIMATE, TRUTH),
     "earth": ("none", "sphere", "ellipsoid"),
     "earth_rate": (KEPT, DROPPED),
     "transport_rate": (KEPT, DROPPED),
@@ -51,7 +53,8 @@ class Card:
     attitude_error   : ``frame``: C_est = (E +- [p x]) C; ``body``: C_est = C (E +- [p x]); C leads from body to frame
     angle            : ``phi``: beside the true local level; ``psi``: beside the local level at the estimated position
     rotation_sign    : the sign of [p x] above
-    bias_sign        : sign of the errors of both sensors' biases; a sensor shows truth plus bias
+    bias_sign        : sign of the errors of both sensors' biases; a sensor shows (1 + scale) truth + bias
+    scale_sign       : the same of their scale factors; None without them
     earth            : shape; ``none`` is flat, with constant gravity
     earth_rate, transport_rate, centrifugal, height_variation : terms that are kept or dropped
     radius_variation : dRN/dL and dRE/dL: kept, dropped, or kept in the equations of the position only
@@ -75,6 +78,7 @@ class Card:
     angle: str | None = None
     rotation_sign: str | None = "+"
     bias_sign: str | None = ESTIMATE
+    scale_sign: str | None = None
     earth: str = "none"
     earth_rate: str | None = None
     transport_rate: str | None = None
@@ -117,16 +121,9 @@ class Card:
 
     def signs(self) -> dict[str, int]:
         """Role -> +1 where the state is estimate minus truth (for an attitude: the sign of its rotation), else -1."""
-        error = 1 if self.error == ESTIMATE else -1
-        bias = 1 if self.bias_sign == ESTIMATE else -1
-        attitude = 1 if self.rotation_sign == "+" else -1
-        return {
-            "velocity": error,
-            "position": error,
-            "attitude": attitude,
-            "gyro_bias": bias,
-            "accelerometer_bias": bias,
-        }
+        error, bias, scale = (-1 if w == TRUTH else 1 for w in (self.error, self.bias_sign, self.scale_sign))
+        sensors = {f"{name}_{kind}": x for kind, x in (("bias", bias), ("scale", scale)) for name in SENSORS}
+        return {"velocity": error, "position": error, "attitude": 1 if self.rotation_sign == "+" else -1, **sensors}
 
 
 def list_structures(
@@ -234,6 +231,7 @@ HEADINGS: Mapping[str, str] = {
     "rotation_sign": "sign of its rotation",
     "angle": "angle",
     "bias_sign": "error of the biases",
+    "scale_sign": "error of the scale factors",
     "vector_error": "vector errors",
     "position_error": "position error",
     "innovation": "innovation",

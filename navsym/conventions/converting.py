@@ -15,8 +15,8 @@ from navsym.claims.verdict import PROVED
 from navsym.conventions.card import CHOICES, Card
 from navsym.conventions.frames import Passage, carry_motion, change_frame, restore_terms
 from navsym.conventions.generating import require_names, write_blocks
-from navsym.conventions.measuring import NOISE_MARK, unit_error
-from navsym.conventions.mechanisation import ROLES, Mechanisation
+from navsym.conventions.measuring import NOISE_MARK
+from navsym.conventions.mechanisation import ROLES, Mechanisation, unit_error
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
 from navsym.conventions.reading import Problem, matrix_of
@@ -30,8 +30,8 @@ from navsym.language.printer import print_tree
 
 #: What a conversion changes exactly: the definition of the errors, and where they are resolved.
 CONVERTED = (
-    "error", "attitude_error", "angle", "rotation_sign", "bias_sign", "position_error", "vector_error", "axes",
-    "azimuth", "frame",
+    "error", "attitude_error", "angle", "rotation_sign", "bias_sign", "scale_sign", "position_error", "vector_error",
+    "axes", "azimuth", "frame",
 )  # fmt: skip
 LONG = 400  # letters of a statement that are too many for the checker
 Texts = tuple[tuple[str, ...], ...]

@@ -14,7 +14,7 @@ from typing import Any
 
 from navsym.conventions.card import CHOICES, NORTH, Card
 from navsym.conventions.measuring import CORRECTED, MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
-from navsym.conventions.mechanisation import BIASES, Mechanisation
+from navsym.conventions.mechanisation import CONSTANTS, Mechanisation
 from navsym.conventions.reading import Problem, matrix_of, read_known, read_problem
 from navsym.conventions.search import SIGNS, Block, list_cards, list_problem_structures, list_signs, plain_card, sign_of
 from navsym.conventions.symbols import HIDDEN, Formulas
@@ -125,7 +125,7 @@ def write_blocks(
 ) -> None:
     """Write the blocks of a mechanisation into matrices by their names; H unless ``shown`` is False."""
     sides = list(problem.roles)
-    blocks = [(row, column) for row in sides for column in sides if not {row, column} <= {*BIASES}]
+    blocks = [(row, column) for row in sides for column in sides if not {row, column} <= {*CONSTANTS}]
     blocks += [(MEASURED_MARK + kind, column) for kind in problem.measured for column in sides if shown]
     blocks += [(row, NOISE_MARK + noise) for row in sides for noise in problem.noises]
     both = [role for role in CORRECTED if role in sides and problem.reset]

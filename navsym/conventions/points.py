@@ -215,7 +215,7 @@ class Sampler:
         motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.settle("radius_slope")[0]
         world = World(
             *motion,
-            *(gravity, pull, radius, gradient_names(RN, RE, h, third, (RN * RE).sqrt()), None),
+            *(gravity, pull, radius, gradient_names(RN, RE, h, third, (RN * RE).sqrt()), None, None),
             self.settle("lever_arm") if "lever_arm" in given else (0, 0, 0),
             self.vector("known_vector"),
             tuple(self.problem.measured),

@@ -34,7 +34,7 @@ NUMERAL = re.compile(r"-?\d+(/\d+)?")
 
 GENERATORS = (
     *(f"c{i}{j}" for i in range(3) for j in range(3)),
-    *(f"{name}{k}" for name in ("f", "w", "v", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp") for k in range(3)),
+    *(f"{name}{k}" for name in ("f", "b", "w", "v", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp") for k in range(3)),
     *"sin cos east ahead turned straight wander_sin wander_cos".split(),
     *"h RN RE third mean slope rate gravity pull radius".split(),
 )
@@ -86,6 +86,7 @@ class Formulas:
         C = [[self.symbol(f"c{i}{j}", self.text("rotation", 3 * i + j)) for j in range(3)] for i in range(3)]
         in_frame = "specific_force" in given and (card.attitude_error == "frame" or "specific_force_body" not in given)
         f = self.vector("f", "specific_force" if in_frame else "specific_force_body")
+        body = self.vector("b", "specific_force_body") if in_frame and "specific_force_body" in given else None
         if in_frame:
             f = [C[0][k] * f[0] + C[1][k] * f[1] + C[2][k] * f[2] for k in range(3)]
         latitude = self.text("latitude") or HIDDEN + "latitude"
@@ -119,6 +120,7 @@ class Formulas:
             *motion,
             *(gravity, pull, radius, gradient_names(RN, RE, h, third, mean)),
             self.vector("t", "transport_rate") if "transport_rate" in given else None,
+            body,
             self.vector("l", "lever_arm") if "lever_arm" in given else (0, 0, 0),
             self.vector("m", "known_vector") if self.problem.measured else (0, 0, 0),
             tuple(self.problem.measured),

@@ -13,7 +13,7 @@ import pytest
 import navsym as nav
 from navsym.conventions.card import CHOICES, Card
 from navsym.conventions.measuring import MEASURED, full_column
-from navsym.conventions.mechanisation import BIASES, ROLES, Mechanisation
+from navsym.conventions.mechanisation import CONSTANTS, ROLES, Mechanisation
 from navsym.conventions.points import BITS
 from navsym.core.balls import precision
 from navsym.core.errors import NavsymError
@@ -169,7 +169,7 @@ def test_noise_of_a_sensor_drives_the_error_as_its_output_does():
                 for i in range(9):
                     value = signs[ROLES[i // 3]] * number(column[ROLES[i // 3]][i % 3])
                     assert abs(value - (ends[0] - ends[1])[i] / (2 * STEP**2)) < 1e-9, (sensor, i)
-        assert full_column(flow, f"noise {BIASES[0]}", 1)[BIASES[0]] == [0, 1, 0]
+        assert full_column(flow, f"noise {CONSTANTS[0]}", 1)[CONSTANTS[0]] == [0, 1, 0]
 
 
 # -- finding with H, G and reset -----------------------------------------------------------------------
