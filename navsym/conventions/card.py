@@ -36,6 +36,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "position_error": ("metres", "geodetic"),
     "vector_error": ("difference", "rotated", "body"),
     "innovation": (MEASURED_LESS, PREDICTED_LESS),
+    "arm_rate": (KEPT, "value", DROPPED),
     "quaternion_algebra": (HAMILTON, "JPL"),
     "quaternion_direction": (FORWARD, BACKWARD),
     "quaternion_order": ("scalar first", "scalar last"),
@@ -65,6 +66,7 @@ class Card:
     vector_error     : ``difference``; ``rotated``: the truth is turned by the attitude error first (right invariant);
                        ``body``: the difference is resolved in the body (left invariant)
     innovation       : what H multiplies the error to; None without H
+    arm_rate         : the Earth's rate in the turning of a lever arm: kept, its value without its change, or dropped
     quaternion_algebra, quaternion_direction, quaternion_order : i j = k (Hamilton) or i j = -k (JPL), what the
                        quaternion turns vectors to, and where its scalar stands; None without a quaternion
     dropped          : blocks of zeros where the full equations have small terms
@@ -90,6 +92,7 @@ class Card:
     position_error: str | None = None
     vector_error: str = "difference"
     innovation: str | None = None
+    arm_rate: str | None = None
     quaternion_algebra: str | None = None
     quaternion_direction: str | None = None
     quaternion_order: str | None = None
@@ -134,6 +137,7 @@ def list_structures(
     placed: bool = False,
     azimuth: str = NORTH,
     quaternion: bool = False,
+    arm: bool = False,
 ) -> Iterator[Card]:
     """Every card without its signs, for a model of these roles.
 
@@ -142,7 +146,7 @@ def list_structures(
     height : False where radii contain the height
     placed : True where latitude and longitude are given, so that gravity may follow the normal
     azimuth : of local levels
-    quaternion : True where the attitude is given by one
+    quaternion : True where the attitude is given by one; arm : True where the velocity of a lever arm's end is measured
     """
     names = [name for name in CHOICES if name.startswith("quaternion")] if quaternion else []
     readings: list[dict[str, Any]] = [
@@ -158,7 +162,8 @@ def list_structures(
             else list_cartesian(frame, roles, radii * placed, height)
         )
         for side, vector, card, words in product(sides, vectors, cards, readings):
-            yield replace(card, attitude_error=side, vector_error=vector, **words)
+            for rate in CHOICES["arm_rate"] if arm and card.earth_rate == KEPT else (None,):
+                yield replace(card, attitude_error=side, vector_error=vector, arm_rate=rate, **words)
 
 
 def list_cartesian(frame: str, roles: frozenset[str], radii: int = 0, height: bool = True) -> Iterator[Card]:
@@ -235,6 +240,7 @@ HEADINGS: Mapping[str, str] = {
     "vector_error": "vector errors",
     "position_error": "position error",
     "innovation": "innovation",
+    "arm_rate": "Earth rate of lever arms",
     "quaternion_algebra": "algebra of the quaternion",
     "quaternion_direction": "which turns vectors from",
     "quaternion_order": "its order",

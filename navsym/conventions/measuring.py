@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from navsym.conventions.card import SENSORS
+from navsym.conventions.card import DROPPED, SENSORS
 from navsym.conventions.mechanisation import CONSTANTS, ROLES, Mechanisation, State, flat_card, unit_error
 from navsym.conventions.nilpotent import (
     NOTHING,
@@ -87,7 +87,8 @@ def position_along(flow: Mechanisation, estimate: State, x: State) -> Nilpotent:
 
 def spin(flow: Mechanisation, x: State) -> Vector:
     """Velocity of the end of the lever arm beside its origin and the Earth, in the body."""
-    turning = apply(transpose(x.attitude), flow.earth_rate(x))
+    at = flow.truth() if flow.card.arm_rate == "value" else x
+    turning = apply(transpose(at.attitude), flow.earth_rate(at)) if flow.card.arm_rate != DROPPED else [NOTHING] * 3
     return cross(add_vectors(flow.sensed(x, "gyro"), negate(turning)), constant(flow.world.arm))
 
 

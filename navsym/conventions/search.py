@@ -82,7 +82,7 @@ def narrow_card(card: Card, role: str) -> Card:
     if role == "position" or turned:
         return plain
     if role in CONSTANTS or role.startswith(NOISE_MARK):
-        plain = replace(plain, angle=None, earth_rate=None, transport_rate=None)
+        plain = replace(plain, angle=None, earth_rate=None, transport_rate=None, arm_rate=None)
     if role == "attitude" and card.vector_error != "rotated":
         plain = replace(plain, angle=None)
     if level or card.gravity_gradient not in ("central", "normal"):  # these settle gravity itself
@@ -252,7 +252,8 @@ def list_problem_structures(problem: Problem, frames: tuple[str, ...] = CHOICES[
     placed = {"latitude", "longitude"} <= set(given)
     azimuth = WANDER if "wander_angle" in given and problem.known.get("azimuth") != NORTH else NORTH
     sizes = len(given.get("radii", ())), frames, "height" in given, placed, azimuth, "quaternion" in given
-    return list_structures(frozenset(problem.roles), *sizes)
+    arm = "lever_arm" in given and {"velocity", "body_velocity"} & set(problem.measured)
+    return list_structures(frozenset(problem.roles), *sizes, bool(arm))
 
 
 def list_cards(problem: Problem) -> Iterator[Card]:
@@ -351,7 +352,7 @@ def keep_simplest(cards: Sequence[Card]) -> list[Card]:
     """Of cards with the same conventions those that drop least: fewest blocks, then fewest terms."""
 
     def convention(card: Card) -> Card:
-        return change(card, {**dict.fromkeys(TERMS), "dropped": ()})
+        return change(card, {**dict.fromkeys((*TERMS, "arm_rate")), "dropped": ()})
 
     def cost(card: Card) -> tuple[int, int]:
         return len(card.dropped), sum(getattr(card, name) == DROPPED for name in TERMS)

@@ -262,3 +262,24 @@ def test_a_rotation_may_be_given_by_angles():
     answer = nav.conventions(document)
     assert answer.complete
     assert [(c.attitude_error, c.rotation_sign, c.bias_sign) for c in answer.cards] == [("body", "+", PLUS)]
+
+
+def test_scale_factors_have_a_sign_of_their_own_and_move_to_other_errors():
+    document = models.kf_gins(scaled=True)
+    found = nav.conventions(document)
+    assert found.complete and {(c.error, c.bias_sign, c.scale_sign) for c in found.cards} == {
+        (PLUS, MINUS, MINUS), (MINUS, PLUS, PLUS)
+    }  # fmt: skip
+    for a in (0, 3):
+        for row in document["model"]["F"][3 + a : 6 + a]:
+            row[15:21] = [x if x == "0" else f"-({x})" for x in row[15:21]]
+        if a == 0:  # one of the two sensors only: no sign of the scale factors makes both blocks right
+            (conflict,) = nav.conventions(document).conflicts
+            assert conflict.block[1] in ("gyro_scale", "accelerometer_scale") and conflict.status == "PROVED"
+    assert {(c.bias_sign, c.scale_sign) for c in nav.conventions(document).cards} == {(MINUS, PLUS), (PLUS, MINUS)}
+
+
+@pytest.mark.long
+def test_scale_factors_are_converted():
+    conversion = nav.conventions(models.kf_gins(scaled=True)).convert(attitude_error="body", scale_sign=PLUS)
+    assert conversion.proved and conversion.F[6][15] == "w1"
