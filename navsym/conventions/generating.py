@@ -140,13 +140,14 @@ def write_blocks(
                 matrix[place][other] = ("1" if text == "0" else f"1 + {text}") if unit else text
 
 
+def list_missing(M: Sequence[Sequence[str]]) -> dict[str, str]:
+    """The quantities without a name in the entries of a matrix, each with its word."""
+    names = sorted({*re.findall(HIDDEN + r"(\w+)", " ".join(cell for row in M for cell in row))})
+    return {name: next((word for key, word in UNNAMED.items() if name.startswith(key)), name) for name in names}
+
+
 def require_names(where: str, *matrices: Sequence[Sequence[str]]) -> None:
     """Refuse a model that needs a quantity that the file does not name."""
-    cells = " ".join(cell for M in matrices for row in M for cell in row)
-    missing = sorted({*re.findall(HIDDEN + r"(\w+)", cells)})
-    if missing:
-        names = sorted(
-            {next((word for key, word in UNNAMED.items() if name.startswith(key)), name) for name in missing}
-        )
-        message = f"expected quantities with {' and '.join(names)}; got none; add them to [quantities]"
+    if missing := sorted({word for M in matrices for word in list_missing(M).values()}):
+        message = f"expected quantities with {' and '.join(missing)}; got none; add them to [quantities]"
         raise EmptyError(message, where=f"{where}: quantities")

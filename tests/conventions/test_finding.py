@@ -283,3 +283,27 @@ def test_scale_factors_have_a_sign_of_their_own_and_move_to_other_errors():
 def test_scale_factors_are_converted():
     conversion = nav.conventions(models.kf_gins(scaled=True)).convert(attitude_error="body", scale_sign=PLUS)
     assert conversion.proved and conversion.F[6][15] == "w1"
+
+
+def test_mended_rows_have_names_of_the_file_where_that_can_be():
+    words = {
+        "frame": "local-level", "axes": "NWU", "error": MINUS, "rotation_sign": "+", "angle": "psi",
+        "earth": "ellipsoid", "vector_error": "rotated", "position_error": "geodetic", "radius_variation": "dropped", "earth_rate": "kept",
+        "height_variation": "dropped", "gravity_gradient": "none", "attitude_error": "frame", "transport_rate": "kept",
+    }  # fmt: skip
+    empty = models.document("pva", {}, models.NED, words, **models.declared(models.NED))
+    document = {**empty, "card": words, "known": words}
+    del document["model"], document["known"]
+    F = [list(row) for row in nav.conventions(document).model()["F"]]
+    F[0][0], F[1][0] = F[1][0], F[0][0]
+    (conflict,) = nav.conventions(
+        {**empty, "model": {**empty["model"], "F": F}, "known": {"frame": "local-level"}}
+    ).conflicts
+    assert "unnamed" not in conflict.change and conflict.status == "PROVED"
+
+
+def test_a_quantity_without_a_name_is_named_beside_the_mended_rows():
+    document = models.sola_local()
+    del document["quantities"]["angular_rate"]
+    (conflict,) = nav.conventions(document).conflicts
+    assert "unnamed_w0 is angular_rate, which [quantities] lacks" in conflict.change
