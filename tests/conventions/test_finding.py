@@ -288,8 +288,9 @@ def test_scale_factors_are_converted():
 def test_mended_rows_have_names_of_the_file_where_that_can_be():
     words = {
         "frame": "local-level", "axes": "NWU", "error": MINUS, "rotation_sign": "+", "angle": "psi",
-        "earth": "ellipsoid", "vector_error": "rotated", "position_error": "geodetic", "radius_variation": "dropped", "earth_rate": "kept",
-        "height_variation": "dropped", "gravity_gradient": "none", "attitude_error": "frame", "transport_rate": "kept",
+        "earth": "ellipsoid", "vector_error": "rotated", "position_error": "geodetic", "radius_variation": "dropped",
+        "earth_rate": "kept", "height_variation": "dropped", "gravity_gradient": "none", "attitude_error": "frame",
+        "transport_rate": "kept",
     }  # fmt: skip
     empty = models.document("pva", {}, models.NED, words, **models.declared(models.NED))
     document = {**empty, "card": words, "known": words}
