@@ -8,7 +8,7 @@ Then F_to T = T F + T', H_to T = H and G_to = T G.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from navsym.claims.verdict import PROVED
@@ -20,7 +20,7 @@ from navsym.conventions.mechanisation import ROLES, Mechanisation, unit_error
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
 from navsym.conventions.reading import Problem, matrix_of
-from navsym.conventions.search import TERMS, Comparison, change, list_cards, plain_card
+from navsym.conventions.search import TERMS, Comparison, list_cards, plain_card
 from navsym.conventions.symbols import Formulas
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
@@ -111,7 +111,7 @@ def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> t
             raise DomainError(f"expected one of {known}; got {got}; correct it", where=f"convert: {name}")
     terms = {name: word for name, word in changes.items() if name in TERMS}
     given, frame = problem.quantities, changes.get("frame", source.frame)
-    whole = change(source, {**terms, "dropped": ()})
+    whole = replace(source, **terms, dropped=())
     moved = whole
     if frame != source.frame or changes.get("azimuth", source.azimuth) != source.azimuth:
         sizes = len(given.get("radii", ())), "height" in given, "earth_rate" in given
@@ -130,7 +130,8 @@ def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> t
         if matrix_of(block) in ("G", "H"):
             got = f"zeros in {' by '.join(block)}"
             raise DomainError(f"expected H and G without dropped blocks; got {got}; write them out", where="convert")
-    target = change(moved, {name: word for name, word in changes.items() if name not in TERMS})
+    words: dict[str, Any] = {name: word for name, word in changes.items() if name not in TERMS}
+    target = replace(moved, **words)
     if "position" in problem.measured and target.position_error != source.position_error:
         message = "expected a measured position in the units of the error; got another unit; convert without it"
         raise DomainError(message, where="convert: position_error")

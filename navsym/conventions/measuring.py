@@ -58,9 +58,7 @@ def measure(flow: Mechanisation, kind: str, estimate: State, x: State) -> Vector
     if kind == "height":
         return [position_along(flow, estimate, x)]
     if kind == "attitude":
-        outer = multiply(estimate.attitude, transpose(x.attitude))
-        half = Nilpotent(1 / (2 * flow.one()))
-        return [half * (outer[(k + 2) % 3][(k + 1) % 3] - outer[(k + 1) % 3][(k + 2) % 3]) for k in range(3)]
+        return flow.unskew(multiply(estimate.attitude, transpose(x.attitude)))
     shown = SHOWN[kind]
     return add_vectors(shown(flow, estimate), negate(shown(flow, x)))
 
@@ -142,8 +140,7 @@ def reset_column(flow: Mechanisation, role: str, component: int) -> dict[str, li
     correction = {name: [Nilpotent(0, 0, x) for x in given[name]] for name in given}
     both = {name: add_vectors(error[name], correction[name]) for name in given}
     C, in_frame = truth.attitude, flow.card.attitude_error == "frame"
-    half = Nilpotent(1 / (2 * flow.one()))
-    square = [[half * x for x in row] for row in multiply(skew(both["attitude"]), skew(both["attitude"]))]
+    square = [[flow.half() * x for x in row] for row in multiply(skew(both["attitude"]), skew(both["attitude"]))]
     small = add(add(identity(), skew(both["attitude"])), square)
     back = subtract(identity(), skew(correction["attitude"]))
     before = multiply(small, C) if in_frame else multiply(C, small)

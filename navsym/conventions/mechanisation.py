@@ -338,14 +338,12 @@ class Mechanisation:
         inverse = transpose(attitude)
         outer = multiply(estimate.attitude, inverse)
         small = outer if card.attitude_error == "frame" else multiply(inverse, estimate.attitude)
-        half = Nilpotent(1 / (2 * self.one()))
-        angle = [half * (small[(k + 2) % 3][(k + 1) % 3] - small[(k + 1) % 3][(k + 2) % 3]) for k in range(3)]
         if not self.is_geodetic:
             moved = self.unshift(estimate.position, x.position, outer, inverse)
         elif card.position_error == "metres":
             moved = apply(self.turn(x), [part * unit for part, unit in zip(moved, self.metres(x), strict=True)])
         return {
-            "attitude": angle,
+            "attitude": self.unskew(small),
             "velocity": self.unshift(estimate.velocity, velocity, outer, inverse),
             "position": moved,
             **{name: add_vectors(value, negate(x.constants[name])) for name, value in estimate.constants.items()},
@@ -358,9 +356,13 @@ class Mechanisation:
         error = add_vectors(estimate, negate(vector))
         return apply(inverse, error) if self.card.vector_error == "body" else error
 
-    def one(self) -> Any:
-        """One as a coefficient."""
-        return self.world.cos / self.world.cos
+    def half(self) -> Nilpotent:
+        """A half as a coefficient."""
+        return Nilpotent(1 / (2 * (self.world.cos / self.world.cos)))
+
+    def unskew(self, A: Grid) -> Vector:
+        """p of the skew part [p x] of a matrix."""
+        return [self.half() * (A[(k + 2) % 3][(k + 1) % 3] - A[(k + 1) % 3][(k + 2) % 3]) for k in range(3)]
 
     # The linearisation
 

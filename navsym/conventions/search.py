@@ -6,7 +6,7 @@ zero excludes the card. What no point excludes is a candidate; the prover decide
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import islice, product
@@ -233,7 +233,7 @@ def list_blocks(problem: Problem) -> list[Block]:
     return sorted(blocks, key=lambda block: main.index(block) if block in main else len(main) + ("position" in block))
 
 
-def list_signs(problem: Problem) -> Iterator[dict[str, str | None]]:
+def list_signs(problem: Problem) -> Iterator[dict[str, Any]]:
     """The signs that a card may have; those of states that the model does not have say nothing."""
     errors = (ESTIMATE, TRUTH) if {"velocity", "position"} & set(problem.roles) else (ESTIMATE,)
     attitudes: tuple[str | None, ...] = ("+", "-") if "attitude" in problem.roles else (None,)
@@ -259,7 +259,7 @@ def list_problem_structures(problem: Problem, frames: tuple[str, ...] = CHOICES[
 def list_cards(problem: Problem) -> Iterator[Card]:
     """Every card with its signs."""
     signs = list(list_signs(problem))
-    return (change(structure, words) for structure in list_problem_structures(problem) for words in signs)
+    return (replace(structure, **words) for structure in list_problem_structures(problem) for words in signs)
 
 
 def examine(problem: Problem, comparison: Comparison, most: int = 0) -> Iterator[Outcome]:
@@ -283,7 +283,7 @@ def examine(problem: Problem, comparison: Comparison, most: int = 0) -> Iterator
             yield Outcome(structure, tuple(hopeless), count=len(signs))
         else:
             yield from (
-                judge(change(structure, words), structure, comparison, blocks, results, most) for words in signs
+                judge(replace(structure, **words), structure, comparison, blocks, results, most) for words in signs
             )
 
 
@@ -330,11 +330,6 @@ def has_evidence(card: Card, comparison: Comparison, blocks: Sequence[Block]) ->
     return False
 
 
-def change(card: Card, words: Mapping[str, Any]) -> Card:
-    """The card with other words in some fields."""
-    return replace(card, **words)
-
-
 def is_same(x: Any, y: Any) -> bool:
     """True where two balls overlap."""
     difference = x - y
@@ -352,7 +347,8 @@ def keep_simplest(cards: Sequence[Card]) -> list[Card]:
     """Of cards with the same conventions those that drop least: fewest blocks, then fewest terms."""
 
     def convention(card: Card) -> Card:
-        return change(card, {**dict.fromkeys((*TERMS, "arm_rate")), "dropped": ()})
+        nothing: dict[str, Any] = dict.fromkeys((*TERMS, "arm_rate"))
+        return replace(card, **nothing, dropped=())
 
     def cost(card: Card) -> tuple[int, int]:
         return len(card.dropped), sum(getattr(card, name) == DROPPED for name in TERMS)

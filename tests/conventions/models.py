@@ -11,10 +11,8 @@ C: Grid = [[f"c{i}{j}" for j in (1, 2, 3)] for i in (1, 2, 3)]
 E: Grid = [["1" if i == j else "0" for j in range(3)] for i in range(3)]
 O: Grid = [["0"] * 3 for _ in range(3)]
 
-SHORT = {
-    "p": "position", "v": "velocity", "a": "attitude", "g": "gyro_bias", "b": "accelerometer_bias", "k": "gyro_scale",
-    "s": "accelerometer_scale",
-}  # fmt: skip
+SHORT = {"p": "position", "v": "velocity", "a": "attitude", "g": "gyro_bias", "b": "accelerometer_bias"}
+SCALES = {"k": "gyro_scale", "s": "accelerometer_scale"}
 
 
 def diag(u: list[str]) -> Grid:
@@ -68,7 +66,7 @@ def document(
     return {
         "model": {"states": [name for role in order for name in states[role]], "F": F},
         "parameters": parameters,
-        "roles": {SHORT[role]: states[role] for role in order},
+        "roles": {(SHORT | SCALES)[role]: states[role] for role in order},
         "quantities": dict(quantities),
         "known": dict(known or {}),
     }
