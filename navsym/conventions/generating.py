@@ -108,9 +108,8 @@ def choose_card(problem: Problem, words: Mapping[str, str], where: str) -> Card:
             message = f"expected {name}, one of {', '.join(found)}; got none; add it to the card"
             raise EmptyError(message, where=join_place(where, name))
         if not right and near and name in words:
-            message = (
-                f"expected {name} {' or '.join(found)} beside the other words; got {quote(words[name])}; correct it"
-            )
+            wanted = f"no {name}" if found == ["None"] else f"{name} {' or '.join(found)}"
+            message = f"expected {wanted} beside the other words; got {quote(words[name])}; correct it"
             raise DomainError(message, where=join_place(where, name))
     raise DomainError("expected words of one card; got words that exclude each other; correct them", where=where)
 
