@@ -30,6 +30,8 @@ from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
 
+FEW = 30  # nearest cards of which one is looked for whose mends have names in the file
+
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
@@ -202,7 +204,7 @@ def find_conventions(problem: Problem) -> Conventions:
         require_possible(findings.excluded)
         outcomes = sorted(find_nearest(problem, comparison), key=rank_outcome)
         if outcomes:
-            best = next((outcome for outcome in outcomes if has_names(outcome, prover)), outcomes[0])
+            best = next((outcome for outcome in outcomes[:FEW] if has_names(outcome, prover)), outcomes[0])
             nearest, mismatches = best.card, best.mismatches
             conflicts = tuple(state_conflict(best, m, comparison, prover) for m in mismatches)
             sets = dict.fromkeys(tuple(m.block for m in outcome.mismatches) for outcome in [best, *outcomes])
