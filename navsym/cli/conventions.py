@@ -107,7 +107,8 @@ def conflicts_text(data: Mapping[str, Any]) -> str:
 def conversion_text(data: Mapping[str, Any]) -> str:
     """The model in other errors: its matrices, and what is proved."""
     found = data["conversion"]
-    matrices = {"T: x_to = T x": "T", "F of the new errors": "F", "neglected": "neglected", "H": "H", "G": "G"}
+    matrices = {"T: x_to = T x": "T", "F of the new errors": "F", "neglected": "neglected"}
+    matrices |= {name: name for name in ("H", "G", "reset")}
     blocks = [
         "\n".join([heading, *aligned(found[name])])
         for heading, name in matrices.items()

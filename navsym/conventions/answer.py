@@ -9,6 +9,7 @@ from typing import Any
 from navsym.claims.verdict import PROVED
 from navsym.conventions.card import Card
 from navsym.conventions.converting import Conversion, convert, print_matrix
+from navsym.conventions.generating import list_missing
 from navsym.conventions.measuring import RESET_MARK
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
@@ -24,9 +25,12 @@ from navsym.conventions.search import (
     list_blocks,
     plain_card,
 )
+from navsym.conventions.symbols import HIDDEN
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
+
+FEW = 30  # nearest cards of which one is looked for whose mends have names in the file
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,9 +204,10 @@ def find_conventions(problem: Problem) -> Conventions:
         require_possible(findings.excluded)
         outcomes = sorted(find_nearest(problem, comparison), key=rank_outcome)
         if outcomes:
-            nearest = outcomes[0].card
-            conflicts = tuple(state_conflict(outcomes[0], m, comparison, prover) for m in outcomes[0].mismatches)
-            sets = dict.fromkeys(tuple(m.block for m in outcome.mismatches) for outcome in outcomes)
+            best = next((outcome for outcome in outcomes[:FEW] if has_names(outcome, prover)), outcomes[0])
+            nearest, mismatches = best.card, best.mismatches
+            conflicts = tuple(state_conflict(best, m, comparison, prover) for m in mismatches)
+            sets = dict.fromkeys(tuple(m.block for m in outcome.mismatches) for outcome in [best, *outcomes])
             alternatives = tuple(sets)[1:]
     examined = len(findings.candidates) + sum(outcome.count for outcome in findings.excluded)
     excluded = tuple(find_neighbours(cards, findings.excluded, comparison))
@@ -234,6 +239,12 @@ def rank_outcome(outcome: Outcome) -> tuple[Any, ...]:
     card = outcome.card
     plain = card.vector_error != "difference", card.error != "estimate - truth"
     return biased, gyros, entries, len(card.dropped), *plain
+
+
+def has_names(outcome: Outcome, prover: Prover) -> bool:
+    """True where the file names all quantities in the blocks of the card that must change."""
+    blocks = (prover.block_texts(plain_card(outcome.card), mismatch.block, 1) for mismatch in outcome.mismatches)
+    return not any(list_missing(block) for block in blocks)
 
 
 def state_conflict(outcome: Outcome, mismatch: Mismatch, comparison: Comparison, prover: Prover) -> Conflict:
@@ -284,7 +295,10 @@ def describe_change(
             break
     rows = [[diagonal * (i == j) + x for j, x in enumerate(row)] for i, row in enumerate(expected)]
     rows = [[rows[i][j] for j in order[1]] for i in order[0]]
-    return f"{words} [{', '.join('[' + ', '.join(row) + ']' for row in rows)}]".replace("1 + 0", "1")
+    missing = "".join(
+        f"; {HIDDEN}{name} is {word}, which [quantities] lacks" for name, word in list_missing(rows).items()
+    )
+    return f"{words} [{', '.join('[' + ', '.join(row) + ']' for row in rows)}]".replace("1 + 0", "1") + missing
 
 
 def find_neighbours(cards: Sequence[Card], outcomes: Sequence[Outcome], comparison: Comparison) -> list[Exclusion]:

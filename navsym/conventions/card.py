@@ -11,6 +11,7 @@ ESTIMATE, TRUTH = "estimate - truth", "truth - estimate"
 KEPT, DROPPED = "kept", "dropped"
 NORTH, WANDER = "north", "wander"
 HAMILTON, FORWARD, BACKWARD = "Hamilton", "body to frame", "frame to body"
+SENSORS = ("gyro", "accelerometer")
 MEASURED_LESS, PREDICTED_LESS = "measurement - prediction", "prediction - measurement"
 
 #: Words that the fields of a card may have; None where a field says nothing.
@@ -23,6 +24,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "angle": ("phi", "psi"),
     "rotation_sign": ("+", "-"),
     "bias_sign": (ESTIMATE, TRUTH),
+    "scale_sign": (ESTIMATE, TRUTH),
     "earth": ("none", "sphere", "ellipsoid"),
     "earth_rate": (KEPT, DROPPED),
     "transport_rate": (KEPT, DROPPED),
@@ -34,6 +36,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "position_error": ("metres", "geodetic"),
     "vector_error": ("difference", "rotated", "body"),
     "innovation": (MEASURED_LESS, PREDICTED_LESS),
+    "arm_rate": (KEPT, "value", DROPPED),
     "quaternion_algebra": (HAMILTON, "JPL"),
     "quaternion_direction": (FORWARD, BACKWARD),
     "quaternion_order": ("scalar first", "scalar last"),
@@ -51,7 +54,8 @@ class Card:
     attitude_error   : ``frame``: C_est = (E +- [p x]) C; ``body``: C_est = C (E +- [p x]); C leads from body to frame
     angle            : ``phi``: beside the true local level; ``psi``: beside the local level at the estimated position
     rotation_sign    : the sign of [p x] above
-    bias_sign        : sign of the errors of both sensors' biases; a sensor shows truth plus bias
+    bias_sign        : sign of the errors of both sensors' biases; a sensor shows (1 + scale) truth + bias
+    scale_sign       : the same of their scale factors; None without them
     earth            : shape; ``none`` is flat, with constant gravity
     earth_rate, transport_rate, centrifugal, height_variation : terms that are kept or dropped
     radius_variation : dRN/dL and dRE/dL: kept, dropped, or kept in the equations of the position only
@@ -62,6 +66,7 @@ class Card:
     vector_error     : ``difference``; ``rotated``: the truth is turned by the attitude error first (right invariant);
                        ``body``: the difference is resolved in the body (left invariant)
     innovation       : what H multiplies the error to; None without H
+    arm_rate         : the Earth's rate in the turning of a lever arm: kept, its value without its change, or dropped
     quaternion_algebra, quaternion_direction, quaternion_order : i j = k (Hamilton) or i j = -k (JPL), what the
                        quaternion turns vectors to, and where its scalar stands; None without a quaternion
     dropped          : blocks of zeros where the full equations have small terms
@@ -75,6 +80,7 @@ class Card:
     angle: str | None = None
     rotation_sign: str | None = "+"
     bias_sign: str | None = ESTIMATE
+    scale_sign: str | None = None
     earth: str = "none"
     earth_rate: str | None = None
     transport_rate: str | None = None
@@ -86,6 +92,7 @@ class Card:
     position_error: str | None = None
     vector_error: str = "difference"
     innovation: str | None = None
+    arm_rate: str | None = None
     quaternion_algebra: str | None = None
     quaternion_direction: str | None = None
     quaternion_order: str | None = None
@@ -117,16 +124,9 @@ class Card:
 
     def signs(self) -> dict[str, int]:
         """Role -> +1 where the state is estimate minus truth (for an attitude: the sign of its rotation), else -1."""
-        error = 1 if self.error == ESTIMATE else -1
-        bias = 1 if self.bias_sign == ESTIMATE else -1
-        attitude = 1 if self.rotation_sign == "+" else -1
-        return {
-            "velocity": error,
-            "position": error,
-            "attitude": attitude,
-            "gyro_bias": bias,
-            "accelerometer_bias": bias,
-        }
+        error, bias, scale = (-1 if w == TRUTH else 1 for w in (self.error, self.bias_sign, self.scale_sign))
+        sensors = {f"{name}_{kind}": x for kind, x in (("bias", bias), ("scale", scale)) for name in SENSORS}
+        return {"velocity": error, "position": error, "attitude": 1 if self.rotation_sign == "+" else -1, **sensors}
 
 
 def list_structures(
@@ -137,6 +137,7 @@ def list_structures(
     placed: bool = False,
     azimuth: str = NORTH,
     quaternion: bool = False,
+    arm: bool = False,
 ) -> Iterator[Card]:
     """Every card without its signs, for a model of these roles.
 
@@ -145,7 +146,7 @@ def list_structures(
     height : False where radii contain the height
     placed : True where latitude and longitude are given, so that gravity may follow the normal
     azimuth : of local levels
-    quaternion : True where the attitude is given by one
+    quaternion : True where the attitude is given by one; arm : True where the velocity of a lever arm's end is measured
     """
     names = [name for name in CHOICES if name.startswith("quaternion")] if quaternion else []
     readings: list[dict[str, Any]] = [
@@ -161,7 +162,8 @@ def list_structures(
             else list_cartesian(frame, roles, radii * placed, height)
         )
         for side, vector, card, words in product(sides, vectors, cards, readings):
-            yield replace(card, attitude_error=side, vector_error=vector, **words)
+            for rate in CHOICES["arm_rate"] if arm and card.earth_rate == KEPT else (None,):
+                yield replace(card, attitude_error=side, vector_error=vector, arm_rate=rate, **words)
 
 
 def list_cartesian(frame: str, roles: frozenset[str], radii: int = 0, height: bool = True) -> Iterator[Card]:
@@ -234,9 +236,11 @@ HEADINGS: Mapping[str, str] = {
     "rotation_sign": "sign of its rotation",
     "angle": "angle",
     "bias_sign": "error of the biases",
+    "scale_sign": "error of the scale factors",
     "vector_error": "vector errors",
     "position_error": "position error",
     "innovation": "innovation",
+    "arm_rate": "Earth rate of lever arms",
     "quaternion_algebra": "algebra of the quaternion",
     "quaternion_direction": "which turns vectors from",
     "quaternion_order": "its order",

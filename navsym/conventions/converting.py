@@ -8,19 +8,19 @@ Then F_to T = T F + T', H_to T = H and G_to = T G.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from navsym.claims.verdict import PROVED
 from navsym.conventions.card import CHOICES, Card
 from navsym.conventions.frames import Passage, carry_motion, change_frame, restore_terms
 from navsym.conventions.generating import require_names, write_blocks
-from navsym.conventions.measuring import NOISE_MARK, unit_error
-from navsym.conventions.mechanisation import ROLES, Mechanisation
+from navsym.conventions.measuring import NOISE_MARK
+from navsym.conventions.mechanisation import ROLES, Mechanisation, unit_error
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
 from navsym.conventions.reading import Problem, matrix_of
-from navsym.conventions.search import TERMS, Comparison, change, list_cards, plain_card
+from navsym.conventions.search import TERMS, Comparison, list_cards, plain_card
 from navsym.conventions.symbols import Formulas
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
@@ -30,8 +30,8 @@ from navsym.language.printer import print_tree
 
 #: What a conversion changes exactly: the definition of the errors, and where they are resolved.
 CONVERTED = (
-    "error", "attitude_error", "angle", "rotation_sign", "bias_sign", "position_error", "vector_error", "axes",
-    "azimuth", "frame",
+    "error", "attitude_error", "angle", "rotation_sign", "bias_sign", "scale_sign", "position_error", "vector_error",
+    "axes", "azimuth", "frame",
 )  # fmt: skip
 LONG = 400  # letters of a statement that are too many for the checker
 Texts = tuple[tuple[str, ...], ...]
@@ -111,7 +111,7 @@ def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> t
             raise DomainError(f"expected one of {known}; got {got}; correct it", where=f"convert: {name}")
     terms = {name: word for name, word in changes.items() if name in TERMS}
     given, frame = problem.quantities, changes.get("frame", source.frame)
-    whole = change(source, {**terms, "dropped": ()})
+    whole = replace(source, **terms, dropped=())
     moved = whole
     if frame != source.frame or changes.get("azimuth", source.azimuth) != source.azimuth:
         sizes = len(given.get("radii", ())), "height" in given, "earth_rate" in given
@@ -130,7 +130,8 @@ def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> t
         if matrix_of(block) in ("G", "H"):
             got = f"zeros in {' by '.join(block)}"
             raise DomainError(f"expected H and G without dropped blocks; got {got}; write them out", where="convert")
-    target = change(moved, {name: word for name, word in changes.items() if name not in TERMS})
+    words: dict[str, Any] = {name: word for name, word in changes.items() if name not in TERMS}
+    target = replace(moved, **words)
     if "position" in problem.measured and target.position_error != source.position_error:
         message = "expected a measured position in the units of the error; got another unit; convert without it"
         raise DomainError(message, where="convert: position_error")

@@ -234,7 +234,7 @@ def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool,
     refuse(alone, "position among the roles: errors of position drive those of velocity in another frame")
     refuse(card.frame == LEVEL and card.earth == "none", "a curved Earth: a flat one has no centre to go to")
     hub = replace(card, frame="earth", axes=None, azimuth=None, angle=None, transport_rate=None, height_variation=None)
-    hub = replace(hub, radius_variation=None, position_error=card.position_error and "metres")
+    hub = replace(hub, radius_variation=None, position_error=card.position_error and "metres", arm_rate=None)
     if card.frame == LEVEL:
         normal = "normal" if card.position_error else "none"
         hub = replace(hub, gravity_gradient=normal, centrifugal=DROPPED)

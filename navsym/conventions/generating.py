@@ -14,7 +14,7 @@ from typing import Any
 
 from navsym.conventions.card import CHOICES, NORTH, Card
 from navsym.conventions.measuring import CORRECTED, MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
-from navsym.conventions.mechanisation import BIASES, Mechanisation
+from navsym.conventions.mechanisation import CONSTANTS, Mechanisation
 from navsym.conventions.reading import Problem, matrix_of, read_known, read_problem
 from navsym.conventions.search import SIGNS, Block, list_cards, list_problem_structures, list_signs, plain_card, sign_of
 from navsym.conventions.symbols import HIDDEN, Formulas
@@ -108,9 +108,8 @@ def choose_card(problem: Problem, words: Mapping[str, str], where: str) -> Card:
             message = f"expected {name}, one of {', '.join(found)}; got none; add it to the card"
             raise EmptyError(message, where=join_place(where, name))
         if not right and near and name in words:
-            message = (
-                f"expected {name} {' or '.join(found)} beside the other words; got {quote(words[name])}; correct it"
-            )
+            wanted = f"no {name}" if found == ["None"] else f"{name} {' or '.join(found)}"
+            message = f"expected {wanted} beside the other words; got {quote(words[name])}; correct it"
             raise DomainError(message, where=join_place(where, name))
     raise DomainError("expected words of one card; got words that exclude each other; correct them", where=where)
 
@@ -125,7 +124,7 @@ def write_blocks(
 ) -> None:
     """Write the blocks of a mechanisation into matrices by their names; H unless ``shown`` is False."""
     sides = list(problem.roles)
-    blocks = [(row, column) for row in sides for column in sides if not {row, column} <= {*BIASES}]
+    blocks = [(row, column) for row in sides for column in sides if not {row, column} <= {*CONSTANTS}]
     blocks += [(MEASURED_MARK + kind, column) for kind in problem.measured for column in sides if shown]
     blocks += [(row, NOISE_MARK + noise) for row in sides for noise in problem.noises]
     both = [role for role in CORRECTED if role in sides and problem.reset]
@@ -140,13 +139,14 @@ def write_blocks(
                 matrix[place][other] = ("1" if text == "0" else f"1 + {text}") if unit else text
 
 
+def list_missing(M: Sequence[Sequence[str]]) -> dict[str, str]:
+    """The quantities without a name in the entries of a matrix, each with its word."""
+    names = sorted({*re.findall(HIDDEN + r"(\w+)", " ".join(cell for row in M for cell in row))})
+    return {name: next((word for key, word in UNNAMED.items() if name.startswith(key)), name) for name in names}
+
+
 def require_names(where: str, *matrices: Sequence[Sequence[str]]) -> None:
     """Refuse a model that needs a quantity that the file does not name."""
-    cells = " ".join(cell for M in matrices for row in M for cell in row)
-    missing = sorted({*re.findall(HIDDEN + r"(\w+)", cells)})
-    if missing:
-        names = sorted(
-            {next((word for key, word in UNNAMED.items() if name.startswith(key)), name) for name in missing}
-        )
-        message = f"expected quantities with {' and '.join(names)}; got none; add them to [quantities]"
+    if missing := sorted({word for M in matrices for word in list_missing(M).values()}):
+        message = f"expected quantities with {' and '.join(missing)}; got none; add them to [quantities]"
         raise EmptyError(message, where=f"{where}: quantities")

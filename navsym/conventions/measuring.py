@@ -14,7 +14,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from navsym.conventions.mechanisation import BIASES, ROLES, Mechanisation, State, flat_card
+from navsym.conventions.card import DROPPED, SENSORS
+from navsym.conventions.mechanisation import CONSTANTS, ROLES, Mechanisation, State, flat_card, unit_error
 from navsym.conventions.nilpotent import (
     NOTHING,
     Grid,
@@ -43,8 +44,8 @@ MEASURED: Mapping[str, int] = {
     "vector": 3,
     "height": 1,
 }
-#: Noises: of the sensors' outputs, and the drives of their biases.
-NOISES = ("gyro", "accelerometer", *BIASES)
+#: Noises: of the sensors' outputs, and the drives of their biases and scales.
+NOISES = (*SENSORS, *CONSTANTS)
 #: Roles that a reset may couple.
 CORRECTED = ("attitude", "velocity", "position")
 MEASURED_MARK, NOISE_MARK, RESET_MARK = "measured ", "noise ", "reset "
@@ -57,9 +58,7 @@ def measure(flow: Mechanisation, kind: str, estimate: State, x: State) -> Vector
     if kind == "height":
         return [position_along(flow, estimate, x)]
     if kind == "attitude":
-        outer = multiply(estimate.attitude, transpose(x.attitude))
-        half = Nilpotent(1 / (2 * flow.one()))
-        return [half * (outer[(k + 2) % 3][(k + 1) % 3] - outer[(k + 1) % 3][(k + 2) % 3]) for k in range(3)]
+        return flow.unskew(multiply(estimate.attitude, transpose(x.attitude)))
     shown = SHOWN[kind]
     return add_vectors(shown(flow, estimate), negate(shown(flow, x)))
 
@@ -86,9 +85,9 @@ def position_along(flow: Mechanisation, estimate: State, x: State) -> Nilpotent:
 
 def spin(flow: Mechanisation, x: State) -> Vector:
     """Velocity of the end of the lever arm beside its origin and the Earth, in the body."""
-    w = add_vectors(constant(flow.world.w), negate(x.gyro_bias))
-    turning = apply(transpose(x.attitude), flow.earth_rate(x))
-    return cross(add_vectors(w, negate(turning)), constant(flow.world.arm))
+    at = flow.truth() if flow.card.arm_rate == "value" else x
+    turning = apply(transpose(at.attitude), flow.earth_rate(at)) if flow.card.arm_rate != DROPPED else [NOTHING] * 3
+    return cross(add_vectors(flow.sensed(x, "gyro"), negate(turning)), constant(flow.world.arm))
 
 
 def show_velocity(flow: Mechanisation, x: State) -> Vector:
@@ -121,16 +120,9 @@ def measured_column(flow: Mechanisation, role: str, component: int, kinds: tuple
     return {MEASURED_MARK + kind: [part.error for part in measure(flow, kind, estimate, truth)] for kind in kinds}
 
 
-def unit_error(role: str, component: int) -> dict[str, Vector]:
-    """An error eps in one state."""
-    error = {name: [NOTHING] * 3 for name in ROLES}
-    error[role] = [Nilpotent(0, 1 if k == component else 0) for k in range(3)]
-    return error
-
-
 def noise_column(flow: Mechanisation, noise: str, component: int) -> dict[str, list[Any]]:
-    """A column of G: the error of a bias with the other sign, or the drive of a bias."""
-    if noise in BIASES:
+    """A column of G: the error of a bias with the other sign, or the drive of a constant."""
+    if noise in CONSTANTS:
         return {name: [int(name == noise and k == component) for k in range(3)] for name in ROLES}
     column = flow.column(f"{noise}_bias", component)
     return {name: [-x if type(x) is int else x * -1 for x in parts] for name, parts in column.items()}
@@ -140,15 +132,15 @@ def reset_column(flow: Mechanisation, role: str, component: int) -> dict[str, li
     """A column of the reset Jacobian less the unit matrix, with every sign plus: linear in the correction.
 
     The estimate has the error eps e_j plus the correction tau c, which is taken out by the definition of the error.
-    What is left changes with eps by 1, and with eps tau by what is returned. The Earth has no part in it.
+    What is left changes with eps by 1, and with eps tau by what is returned. The Earth has no part in it; the
+    difference of latitude, longitude and height is neither turned nor resolved in the body.
     """
-    flow = Mechanisation(flat_card(flow.card), flow.world)
+    on_earth, flow = flow.is_geodetic, Mechanisation(flat_card(flow.card), flow.world)
     truth, error, given = flow.truth(), unit_error(role, component), flow.world.corrections
     correction = {name: [Nilpotent(0, 0, x) for x in given[name]] for name in given}
     both = {name: add_vectors(error[name], correction[name]) for name in given}
     C, in_frame = truth.attitude, flow.card.attitude_error == "frame"
-    half = Nilpotent(1 / (2 * flow.one()))
-    square = [[half * x for x in row] for row in multiply(skew(both["attitude"]), skew(both["attitude"]))]
+    square = [[flow.half() * x for x in row] for row in multiply(skew(both["attitude"]), skew(both["attitude"]))]
     small = add(add(identity(), skew(both["attitude"])), square)
     back = subtract(identity(), skew(correction["attitude"]))
     before = multiply(small, C) if in_frame else multiply(C, small)
@@ -157,7 +149,8 @@ def reset_column(flow: Mechanisation, role: str, component: int) -> dict[str, li
         take_out(flow, flow.shift(vector, both[name], C, before), correction[name], before, after)
         for name, vector in (("velocity", truth.velocity), ("position", truth.position))
     )
-    left = flow.compare(State(after, velocity, position, truth.gyro_bias, truth.accelerometer_bias), truth)
+    left = flow.compare(State(after, velocity, position, truth.constants), truth)
+    left["position"] = [NOTHING] * 3 if on_earth else left["position"]
     return {RESET_MARK + name: [part.mixed for part in left[name]] for name in ROLES}
 
 

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from navsym.conventions.card import DROPPED, KEPT, WANDER, Card
+from navsym.conventions.card import DROPPED, KEPT, SENSORS, WANDER, Card
 from navsym.conventions.nilpotent import (
     NOTHING,
     ONE,
@@ -44,8 +44,9 @@ AXES: Mapping[str | None, tuple[tuple[int, int, int], ...]] = {
     "NWU": ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
 }
 
-BIASES = ("gyro_bias", "accelerometer_bias")
-ROLES = ("position", "velocity", "attitude", *BIASES)
+#: Constants of the sensors, which show (1 + scale) truth + bias.
+CONSTANTS = tuple(f"{sensor}_{kind}" for kind in ("bias", "scale") for sensor in SENSORS)
+ROLES = ("position", "velocity", "attitude", *CONSTANTS)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,7 +62,8 @@ class World:
     gravity          : in the frame, or along the down axis of a local level
     pull             : mu/|r|^3
     gradient_radii   : words of a card -> R of its gradient
-    transport        : the transport rate in the frame where it has names of its own
+    transport        : the transport rate in the frame where it has names of its own; body_force : f where f is C' times
+                       the force in the frame and has names of its own
     arm, seen        : lever arm in the body, known vector in the frame
     measured         : what the rows of H show; corrections : role -> correction of the reset, if there is one
     meridian, angle  : sine and cosine of the longitude, and of the angle of the Earth beside inertial space
@@ -84,6 +86,7 @@ class World:
     radius: Any
     gradient_radii: Mapping[str, Any]
     transport: Sequence[Any] | None = None
+    body_force: Sequence[Any] | None = None
     arm: Sequence[Any] = (0, 0, 0)
     seen: Sequence[Any] = (0, 0, 0)
     measured: tuple[str, ...] = ()
@@ -95,7 +98,7 @@ class World:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class State:
-    """Attitude, velocity, biases, position; on the Earth its small change in latitude, longitude and height.
+    """Attitude, velocity, constants of the sensors, position; on the Earth its small change in latitude and so on.
 
     azimuth : small change of the wander angle, from north to east
     """
@@ -103,17 +106,15 @@ class State:
     attitude: Grid
     velocity: Vector
     position: Vector
-    gyro_bias: Vector
-    accelerometer_bias: Vector
+    constants: Mapping[str, Vector]
     azimuth: Nilpotent = NOTHING
 
     def advance(self, rate: State) -> State:
         """The state after the infinitesimal time tau."""
         attitude = combine(Nilpotent.advance, self.attitude, rate.attitude)
-        names = ("velocity", "position", "gyro_bias", "accelerometer_bias")
-        now, after = ([getattr(x, name) for name in names] for x in (self, rate))
-        velocity, position, gyro, accelerometer = combine(Nilpotent.advance, now, after)
-        return State(attitude, velocity, position, gyro, accelerometer, self.azimuth.advance(rate.azimuth))
+        now, after = ([x.velocity, x.position] for x in (self, rate))
+        velocity, position = combine(Nilpotent.advance, now, after)
+        return State(attitude, velocity, position, self.constants, self.azimuth.advance(rate.azimuth))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -135,24 +136,29 @@ class Mechanisation:
         return [[part if type(part) is Nilpotent else Nilpotent(part) for part in row] for row in rows]
 
     def truth(self) -> State:
-        """The true state; its biases are taken from the sensors' output and are zero."""
-        zero = [NOTHING] * 3
-        position = zero if self.is_geodetic else constant(self.world.r)
-        return State([constant(row) for row in self.world.C], constant(self.world.v), position, zero, zero)
+        """The true state; its biases and scales are taken from the sensors' output and are zero."""
+        position = [NOTHING] * 3 if self.is_geodetic else constant(self.world.r)
+        attitude = [constant(row) for row in self.world.C]
+        return State(attitude, constant(self.world.v), position, dict.fromkeys(CONSTANTS, [NOTHING] * 3))
+
+    def sensed(self, x: State, sensor: str) -> Vector:
+        """What a sensor shows less its bias and its scale by the state x."""
+        world = self.world
+        shown, scaled = (world.w, world.w) if sensor == "gyro" else (world.f, world.body_force or world.f)
+        bias, scale = x.constants[f"{sensor}_bias"], x.constants[f"{sensor}_scale"]
+        return [f - b - k * s for f, b, k, s in zip(constant(shown), bias, scale, constant(scaled), strict=True)]
 
     # The flow
 
     def rate(self, x: State) -> State:
-        """dx/dt of the mechanisation that is fed with the sensors' output less the biases of x."""
-        w = add_vectors(constant(self.world.w), negate(x.gyro_bias))
-        force = apply(x.attitude, add_vectors(constant(self.world.f), negate(x.accelerometer_bias)))
+        """dx/dt of the mechanisation that is fed with the sensors' output less the biases and scales of x."""
+        w, force = self.sensed(x, "gyro"), apply(x.attitude, self.sensed(x, "accelerometer"))
         earth, transport = self.earth_rate(x), self.transport_rate(x)
         attitude = subtract(multiply(x.attitude, skew(w)), multiply(skew(add_vectors(earth, transport)), x.attitude))
         coriolis = cross(add_vectors(earth, earth, transport), x.velocity)
         velocity = add_vectors(force, self.gravity(x), negate(coriolis))
-        zero = [NOTHING] * 3
         position = self.position_rate(x)
-        return State(attitude, velocity, position, zero, zero, self.azimuth_rate(x, position))
+        return State(attitude, velocity, position, x.constants, self.azimuth_rate(x, position))
 
     def azimuth_rate(self, x: State, position: Vector) -> Nilpotent:
         """Rate of the wander angle: the axes do not turn beside the Earth about the vertical."""
@@ -311,8 +317,7 @@ class Mechanisation:
             turned,
             self.shift(velocity, error["velocity"], attitude, turned),
             add_vectors(x.position, moved) if self.is_geodetic else self.shift(x.position, moved, attitude, turned),
-            add_vectors(x.gyro_bias, error["gyro_bias"]),
-            add_vectors(x.accelerometer_bias, error["accelerometer_bias"]),
+            {name: add_vectors(value, error[name]) for name, value in x.constants.items()},
             azimuth,
         )
 
@@ -333,18 +338,15 @@ class Mechanisation:
         inverse = transpose(attitude)
         outer = multiply(estimate.attitude, inverse)
         small = outer if card.attitude_error == "frame" else multiply(inverse, estimate.attitude)
-        half = Nilpotent(1 / (2 * self.one()))
-        angle = [half * (small[(k + 2) % 3][(k + 1) % 3] - small[(k + 1) % 3][(k + 2) % 3]) for k in range(3)]
         if not self.is_geodetic:
             moved = self.unshift(estimate.position, x.position, outer, inverse)
         elif card.position_error == "metres":
             moved = apply(self.turn(x), [part * unit for part, unit in zip(moved, self.metres(x), strict=True)])
         return {
-            "attitude": angle,
+            "attitude": self.unskew(small),
             "velocity": self.unshift(estimate.velocity, velocity, outer, inverse),
             "position": moved,
-            "gyro_bias": add_vectors(estimate.gyro_bias, negate(x.gyro_bias)),
-            "accelerometer_bias": add_vectors(estimate.accelerometer_bias, negate(x.accelerometer_bias)),
+            **{name: add_vectors(value, negate(x.constants[name])) for name, value in estimate.constants.items()},
         }
 
     def unshift(self, estimate: Vector, vector: Vector, outer: Grid, inverse: Grid) -> Vector:
@@ -354,9 +356,13 @@ class Mechanisation:
         error = add_vectors(estimate, negate(vector))
         return apply(inverse, error) if self.card.vector_error == "body" else error
 
-    def one(self) -> Any:
-        """One as a coefficient."""
-        return self.world.cos / self.world.cos
+    def half(self) -> Nilpotent:
+        """A half as a coefficient."""
+        return Nilpotent(1 / (2 * (self.world.cos / self.world.cos)))
+
+    def unskew(self, A: Grid) -> Vector:
+        """p of the skew part [p x] of a matrix."""
+        return [self.half() * (A[(k + 2) % 3][(k + 1) % 3] - A[(k + 1) % 3][(k + 2) % 3]) for k in range(3)]
 
     # The linearisation
 
@@ -365,12 +371,15 @@ class Mechanisation:
 
         role, component : the state whose error is eps
         """
-        error = {name: [NOTHING] * 3 for name in ROLES}
-        error[role] = [Nilpotent(0, 1 if k == component else 0) for k in range(3)]
         truth = self.truth()
-        estimate = self.estimate(truth, error)
+        estimate = self.estimate(truth, unit_error(role, component))
         after = self.compare(estimate.advance(self.rate(estimate)), truth.advance(self.rate(truth)))
         return {name: [part.mixed for part in vector] for name, vector in after.items()}
+
+
+def unit_error(role: str, component: int) -> dict[str, Vector]:
+    """An error eps in one state."""
+    return {name: [Nilpotent(0, int(name == role and k == component)) for k in range(3)] for name in ROLES}
 
 
 def axes_rows(card: Card, sine: Any, cosine: Any) -> list[list[Any]]:

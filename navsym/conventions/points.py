@@ -13,10 +13,10 @@ from typing import Any
 
 from flint import arb, fmpq
 
-from navsym.conventions.card import WANDER, Card
+from navsym.conventions.card import KEPT, Card
 from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED
-from navsym.conventions.mechanisation import World, add_centrifugal, axes_rows
+from navsym.conventions.mechanisation import Mechanisation, World, add_centrifugal, axes_rows
 from navsym.conventions.reading import Problem
 from navsym.core.balls import OPERATIONS, exact_ball, general_power, integer_power, rational_power
 from navsym.core.errors import DomainError
@@ -183,11 +183,6 @@ class Sampler:
         """A vector in the axes from north, east, down."""
         return [sum((a * x for a, x in zip(row, ned, strict=True)), arb(0)) for row in self.rows]
 
-    def along(self, name: str, ned: Sequence[Any], scalar: Any) -> list[Any]:
-        """A quantity of a local level, given by its size or by components in the axes."""
-        size = len(self.problem.quantities.get(name, ()))
-        return self.settle(name, self.turned(ned)) if size == 3 else [scalar]
-
     def draw(self) -> Point:
         """The point."""
         card, given = self.card, self.problem.quantities
@@ -215,7 +210,7 @@ class Sampler:
         motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.settle("radius_slope")[0]
         world = World(
             *motion,
-            *(gravity, pull, radius, gradient_names(RN, RE, h, third, (RN * RE).sqrt()), None),
+            *(gravity, pull, radius, gradient_names(RN, RE, h, third, (RN * RE).sqrt()), None, None),
             self.settle("lever_arm") if "lever_arm" in given else (0, 0, 0),
             self.vector("known_vector"),
             tuple(self.problem.measured),
@@ -299,11 +294,8 @@ class Sampler:
 
     def transport(self, world: World) -> list[Any]:
         """The transport rate in the axes, in the names that it has."""
-        north, east = (sum((self.rows[k][j] * world.v[k] for k in range(3)), arb(0)) for j in range(2))
-        meridian, across = world.RN + world.h, world.RE + world.h
-        down = arb(0) if self.card.azimuth == WANDER else -east * world.sin / (across * world.cos)
-        wanted = self.turned([east / across, -north / meridian, down])
-        return self.settle("transport_rate", wanted)
+        flow = Mechanisation(replace(self.card, transport_rate=KEPT), world)
+        return self.settle("transport_rate", [arb(x.value) for x in flow.transport_rate(flow.truth())])
 
 
 def turn_right(u: Sequence[Any], v: Sequence[Any]) -> list[Any]:

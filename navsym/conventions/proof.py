@@ -15,7 +15,7 @@ from typing import Any
 from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
 from navsym.conventions.card import DROPPED, KEPT, Card
 from navsym.conventions.measuring import MEASURED_MARK, RESET_MARK
-from navsym.conventions.mechanisation import BIASES, Mechanisation
+from navsym.conventions.mechanisation import CONSTANTS, Mechanisation
 from navsym.conventions.points import BITS, Sampler, evaluate
 from navsym.conventions.reading import Problem
 from navsym.conventions.search import Block, narrow_card
@@ -72,7 +72,7 @@ class Prover:
 
     def is_right(self, card: Card, block: Block, sign: int) -> bool:
         """True where the prover grants that the blocks are equal."""
-        if block[0] in BIASES and block[1] in BIASES:
+        if block[0] in CONSTANTS and block[1] in CONSTANTS:
             return True
         pairs = zip(chain(*self.written(block)), chain(*self.block_texts(card, block, sign)), strict=True)
         return all(self.compare(card, *pair).status == PROVED for pair in pairs if pair != ("0", "0"))

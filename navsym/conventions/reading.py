@@ -9,23 +9,16 @@ from typing import Any
 from navsym.conventions.card import BACKWARD, CHOICES, Card
 from navsym.conventions.measuring import MEASURED, MEASURED_MARK, NOISE_MARK, NOISES, RESET_MARK
 from navsym.conventions.mechanisation import ROLES
-from navsym.core.errors import (
-    DomainError,
-    DuplicateError,
-    EmptyError,
-    ExpressionSyntaxError,
-    ShapeError,
-    UnknownSymbolError,
-)
+from navsym.core.errors import DomainError, DuplicateError, EmptyError, ShapeError, UnknownSymbolError
 from navsym.language.declarations import Parameter, read_parameters
 from navsym.language.expression import read_tree
 from navsym.language.names import Table, check_name, join_place, quote, suggest_nearest
 from navsym.language.schema import (
+    as_formula,
     as_list,
     as_table,
     as_text,
     as_title,
-    describe_value,
     expect_keys,
     require_distinct,
     require_key,
@@ -216,12 +209,7 @@ def read_places(
 
 def read_cell(value: Any, names: Mapping[str, Any], where: str) -> Tree:
     """An entry as it is written."""
-    if isinstance(value, int) and not isinstance(value, bool):
-        value = str(value)
-    if not isinstance(value, str):
-        message = f'expected an expression in quotes; got {describe_value(value)}; write it as "1/2"'
-        raise ExpressionSyntaxError(message, where=where)
-    return read_tree(str(value), names.keys(), where=where)
+    return read_tree(as_formula(value, where), names.keys(), where=where)
 
 
 def read_grid(value: Any, names: Mapping[str, Any], where: str, height: int | None, width: int | None) -> Grid:

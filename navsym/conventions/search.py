@@ -6,7 +6,7 @@ zero excludes the card. What no point excludes is a candidate; the prover decide
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import islice, product
@@ -24,7 +24,7 @@ from navsym.conventions.card import (
     list_structures,
 )
 from navsym.conventions.measuring import MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
-from navsym.conventions.mechanisation import BIASES, ROLES, Mechanisation, flat_card
+from navsym.conventions.mechanisation import CONSTANTS, ROLES, Mechanisation, flat_card
 from navsym.conventions.points import BITS, ImpossibleError, Point, draw_point, evaluate
 from navsym.conventions.reading import Problem
 from navsym.core.balls import precision
@@ -32,7 +32,7 @@ from navsym.language.tree import list_names
 
 Block = tuple[str, str]
 
-SIGNS = ("error", "rotation_sign", "bias_sign", "innovation")
+SIGNS = ("error", "rotation_sign", "bias_sign", "scale_sign", "innovation")
 POINTS = 3
 
 
@@ -70,7 +70,7 @@ def key_of_points(card: Card) -> Card:
 
 def plain_card(card: Card) -> Card:
     """The card with every sign plus, whose blocks the signs of others scale."""
-    return replace(card, error=ESTIMATE, rotation_sign="+", bias_sign=ESTIMATE, dropped=())
+    return replace(card, error=ESTIMATE, rotation_sign="+", bias_sign=ESTIMATE, scale_sign=None, dropped=())
 
 
 @cache
@@ -81,8 +81,8 @@ def narrow_card(card: Card, role: str) -> Card:
     turned = role == "attitude" and card.vector_error == "rotated" and not level  # the position turns with the attitude
     if role == "position" or turned:
         return plain
-    if role in BIASES or role.startswith(NOISE_MARK):
-        plain = replace(plain, angle=None, earth_rate=None, transport_rate=None)
+    if role in CONSTANTS or role.startswith(NOISE_MARK):
+        plain = replace(plain, angle=None, earth_rate=None, transport_rate=None, arm_rate=None)
     if role == "attitude" and card.vector_error != "rotated":
         plain = replace(plain, angle=None)
     if level or card.gravity_gradient not in ("central", "normal"):  # these settle gravity itself
@@ -124,7 +124,7 @@ class Comparison:
 
     def sign(self, card: Card, block: Block, sign: int) -> Mismatch | None:
         """The first point that tells the user's block from ``sign`` times the card's, with all entries that differ."""
-        if block[0] in BIASES and block[1] in BIASES:
+        if block[0] in CONSTANTS and block[1] in CONSTANTS:
             return self.bias_block(block, key_of_points(card))
         return self.signs(narrow_card(card, block[1]), key_of_points(card), block, sign)
 
@@ -144,7 +144,7 @@ class Comparison:
         return None
 
     def bias_block(self, block: Block, key: Card) -> Mismatch | None:
-        """What no bias may do: depend on another one or on the motion, or grow where its constants have known signs."""
+        """What no bias or scale may do: depend on others or on motion, or grow where its constants have known signs."""
         moving = {name for trees in self.problem.quantities.values() for name in list_names(*trees)}
         values = self.point(key, 0).values
         wrong = []
@@ -233,14 +233,17 @@ def list_blocks(problem: Problem) -> list[Block]:
     return sorted(blocks, key=lambda block: main.index(block) if block in main else len(main) + ("position" in block))
 
 
-def list_signs(problem: Problem) -> Iterator[dict[str, str | None]]:
+def list_signs(problem: Problem) -> Iterator[dict[str, Any]]:
     """The signs that a card may have; those of states that the model does not have say nothing."""
     errors = (ESTIMATE, TRUTH) if {"velocity", "position"} & set(problem.roles) else (ESTIMATE,)
     attitudes: tuple[str | None, ...] = ("+", "-") if "attitude" in problem.roles else (None,)
-    biases: tuple[str | None, ...] = (ESTIMATE, TRUTH) if set(BIASES) & set(problem.roles) else (None,)
+    biases, scales = (
+        (ESTIMATE, TRUTH) if any(role.endswith(kind) for role in problem.roles) else (None,)
+        for kind in ("bias", "scale")
+    )
     shown: tuple[str | None, ...] = CHOICES["innovation"] if problem.measured else (None,)
-    for error, attitude, bias, innovation in product(errors, attitudes, biases, shown):
-        yield {"error": error, "rotation_sign": attitude, "bias_sign": bias, "innovation": innovation}
+    for words in product(errors, attitudes, biases, scales, shown):
+        yield dict(zip(SIGNS, words, strict=True))
 
 
 def list_problem_structures(problem: Problem, frames: tuple[str, ...] = CHOICES["frame"]) -> Iterator[Card]:
@@ -249,13 +252,14 @@ def list_problem_structures(problem: Problem, frames: tuple[str, ...] = CHOICES[
     placed = {"latitude", "longitude"} <= set(given)
     azimuth = WANDER if "wander_angle" in given and problem.known.get("azimuth") != NORTH else NORTH
     sizes = len(given.get("radii", ())), frames, "height" in given, placed, azimuth, "quaternion" in given
-    return list_structures(frozenset(problem.roles), *sizes)
+    arm = "lever_arm" in given and {"velocity", "body_velocity"} & set(problem.measured)
+    return list_structures(frozenset(problem.roles), *sizes, bool(arm))
 
 
 def list_cards(problem: Problem) -> Iterator[Card]:
     """Every card with its signs."""
     signs = list(list_signs(problem))
-    return (change(structure, words) for structure in list_problem_structures(problem) for words in signs)
+    return (replace(structure, **words) for structure in list_problem_structures(problem) for words in signs)
 
 
 def examine(problem: Problem, comparison: Comparison, most: int = 0) -> Iterator[Outcome]:
@@ -279,7 +283,7 @@ def examine(problem: Problem, comparison: Comparison, most: int = 0) -> Iterator
             yield Outcome(structure, tuple(hopeless), count=len(signs))
         else:
             yield from (
-                judge(change(structure, words), structure, comparison, blocks, results, most) for words in signs
+                judge(replace(structure, **words), structure, comparison, blocks, results, most) for words in signs
             )
 
 
@@ -326,11 +330,6 @@ def has_evidence(card: Card, comparison: Comparison, blocks: Sequence[Block]) ->
     return False
 
 
-def change(card: Card, words: Mapping[str, Any]) -> Card:
-    """The card with other words in some fields."""
-    return replace(card, **words)
-
-
 def is_same(x: Any, y: Any) -> bool:
     """True where two balls overlap."""
     difference = x - y
@@ -348,7 +347,8 @@ def keep_simplest(cards: Sequence[Card]) -> list[Card]:
     """Of cards with the same conventions those that drop least: fewest blocks, then fewest terms."""
 
     def convention(card: Card) -> Card:
-        return change(card, {**dict.fromkeys(TERMS), "dropped": ()})
+        nothing: dict[str, Any] = dict.fromkeys((*TERMS, "arm_rate"))
+        return replace(card, **nothing, dropped=())
 
     def cost(card: Card) -> tuple[int, int]:
         return len(card.dropped), sum(getattr(card, name) == DROPPED for name in TERMS)

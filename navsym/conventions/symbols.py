@@ -7,13 +7,14 @@ cofactors, and sin**2 + cos**2 = 1 bring each entry to a normal form.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cache
+from itertools import product
 from math import prod
 from typing import Any
 
-from flint import fmpq_mpoly_ctx
+from flint import Ordering, fmpq_mpoly_ctx, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
 from navsym.conventions.card import WANDER, Card
 from navsym.conventions.frames import locate
@@ -34,7 +35,7 @@ NUMERAL = re.compile(r"-?\d+(/\d+)?")
 
 GENERATORS = (
     *(f"c{i}{j}" for i in range(3) for j in range(3)),
-    *(f"{name}{k}" for name in ("f", "w", "v", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp") for k in range(3)),
+    *(f"{name}{k}" for name in ("f", "b", "w", "v", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp") for k in range(3)),
     *"sin cos east ahead turned straight wander_sin wander_cos".split(),
     *"h RN RE third mean slope rate gravity pull radius".split(),
 )
@@ -86,6 +87,7 @@ class Formulas:
         C = [[self.symbol(f"c{i}{j}", self.text("rotation", 3 * i + j)) for j in range(3)] for i in range(3)]
         in_frame = "specific_force" in given and (card.attitude_error == "frame" or "specific_force_body" not in given)
         f = self.vector("f", "specific_force" if in_frame else "specific_force_body")
+        body = self.vector("b", "specific_force_body") if in_frame and "specific_force_body" in given else None
         if in_frame:
             f = [C[0][k] * f[0] + C[1][k] * f[1] + C[2][k] * f[2] for k in range(3)]
         latitude = self.text("latitude") or HIDDEN + "latitude"
@@ -119,6 +121,7 @@ class Formulas:
             *motion,
             *(gravity, pull, radius, gradient_names(RN, RE, h, third, mean)),
             self.vector("t", "transport_rate") if "transport_rate" in given else None,
+            body,
             self.vector("l", "lever_arm") if "lever_arm" in given else (0, 0, 0),
             self.vector("m", "known_vector") if self.problem.measured else (0, 0, 0),
             tuple(self.problem.measured),
@@ -274,49 +277,26 @@ Terms = dict[tuple[int, ...], Fraction]
 
 
 @cache
-def rotation_rules() -> dict[tuple[int, int], dict[tuple[int, ...], Fraction]]:
+def rotation_rules() -> dict[Any, Terms]:
     """A Groebner basis of the relations of a rotation: pair of entries -> what its product is.
 
-    The relations C C' = E, C' C = E and cofactors = C span all that a basis of degree two needs; elimination in degree
-    reverse lexicographic order makes it one. Every rule follows from the relations, so the reduction is sound.
+    C C' = E, C' C = E and cofactors = C. Every rule follows from the relations, so the reduction is sound.
     """
-    pairs = sorted(((i, j) for j in range(9) for i in range(j + 1)), key=lambda pair: (pair[1], pair[0]))
-    columns: list[tuple[int, ...]] = [*pairs, *((k,) for k in range(9)), ()]
-    rows = [list(row) for row in relation_rows(columns)]
-    rules: dict[tuple[int, int], dict[tuple[int, ...], Fraction]] = {}
-    done: list[tuple[int, list[Fraction]]] = []
-    for at in range(len(pairs)):
-        pivot = next((row for row in rows if row[at]), None)
-        if pivot is None:
-            continue
-        rows.remove(pivot)
-        pivot = [x / pivot[at] for x in pivot]
-        rows = [[x - row[at] * y for x, y in zip(row, pivot, strict=True)] for row in rows]
-        done = [(k, [x - row[at] * y for x, y in zip(row, pivot, strict=True)]) for k, row in done]
-        done.append((at, pivot))
-    for at, row in done:
-        rules[pairs[at]] = {columns[k]: -x for k, x in enumerate(row) if x and k != at}
+    context = fmpz_mpoly_ctx.get(GENERATORS[:9], Ordering.degrevlex)
+    C = [[context.gen(3 * i + j) for j in range(3)] for i in range(3)]
+    pairs = [(i, j, rows) for rows in (C, [*zip(*C, strict=True)]) for i in range(3) for j in range(i, 3)]
+    relations = [sum(x * y for x, y in zip(rows[i], rows[j], strict=True)) - int(i == j) for i, j, rows in pairs]
+    relations += [
+        C[i - 2][j - 2] * C[i - 1][j - 1] - C[i - 2][j - 1] * C[i - 1][j - 2] - C[i][j]
+        for i, j in product(range(3), repeat=2)
+    ]
+    rules: dict[Any, Terms] = {}
+    generators: Any = fmpz_mpoly_vec(relations, context)
+    for poly in generators.buchberger_naive().autoreduction(groebner=True):
+        terms = [(tuple(k for k in range(9) for _ in range(powers[k])), int(c)) for powers, c in poly.to_dict().items()]
+        (first, factor), *rest = terms
+        rules[first] = {monomial: Fraction(-c, factor) for monomial, c in rest}
     return rules
-
-
-def relation_rows(columns: Sequence[tuple[int, ...]]) -> Iterator[list[Fraction]]:
-    """The relations of a rotation over the monomials of degree at most two."""
-
-    def row(terms: Mapping[tuple[int, ...], int]) -> list[Fraction]:
-        return [Fraction(terms.get(column, 0)) for column in columns]
-
-    def pair(a: int, b: int) -> tuple[int, int]:
-        return (a, b) if a <= b else (b, a)
-
-    for i in range(3):
-        for j in range(i, 3):
-            for at in (lambda k, m: 3 * k + m, lambda k, m: 3 * m + k):
-                yield row({**{pair(at(i, m), at(j, m)): 1 for m in range(3)}, (): -int(i == j)})
-    for i in range(3):
-        for j in range(3):
-            a, b, c, d = (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3
-            plus, minus = pair(3 * a + c, 3 * b + d), pair(3 * a + d, 3 * b + c)
-            yield row({plus: 1, minus: -1, (3 * i + j,): -1})
 
 
 CIRCLES = (("sin", "cos"), ("east", "ahead"), ("turned", "straight"), ("wander_sin", "wander_cos"))

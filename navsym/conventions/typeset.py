@@ -10,7 +10,10 @@ from navsym.conventions.card import ESTIMATE, HEADINGS, Card
 from navsym.conventions.reading import Problem
 
 #: Role -> its letter; what errors are errors of.
-LETTERS = {"position": "r", "velocity": "v", "gyro_bias": "b_g", "accelerometer_bias": "b_a"}
+LETTERS = dict(
+    position="r", velocity="v", gyro_bias="b_g", accelerometer_bias="b_a", gyro_scale="k_g", accelerometer_scale="k_a"
+)
+DEFINED = ("attitude", "position", "velocity", "gyro_bias", "accelerometer_bias")
 
 
 def letter(role: str, card: Card) -> str:
@@ -23,8 +26,9 @@ def define_error(role: str, card: Card) -> str:
     if role == "attitude":
         small = rf"\left(E {card.rotation_sign} [{letter(role, card)} \times]\right)"
         return rf"\hat C = {small} C" if card.attitude_error == "frame" else rf"\hat C = C {small}"
-    x, error = LETTERS[role], card.bias_sign if role.endswith("bias") else card.error
-    plain = role.endswith("bias") or (role == "position" and card.frame == "local-level" and card.earth != "none")
+    kind = role.rpartition("_")[2]
+    x, error = LETTERS[role], {"bias": card.bias_sign, "scale": card.scale_sign}.get(kind, card.error)
+    plain = kind in ("bias", "scale") or (role == "position" and card.frame == "local-level" and card.earth != "none")
     turned = "" if plain else card.vector_error
     true = rf"\hat C C^T {x}" if turned == "rotated" else x
     left, right = (rf"\hat {x}", true) if error == ESTIMATE else (true, rf"\hat {x}")
@@ -32,7 +36,7 @@ def define_error(role: str, card: Card) -> str:
     return f"{letter(role, card)} = {difference}"
 
 
-def card_latex(card: Card, roles: Sequence[str] = ("attitude", *LETTERS)) -> str:
+def card_latex(card: Card, roles: Sequence[str] = ()) -> str:
     r"""A card: a line for each definition, and one of words.
 
     >>> print(card_latex(Card("inertial"), ["attitude", "velocity"]))
@@ -42,9 +46,9 @@ def card_latex(card: Card, roles: Sequence[str] = ("attitude", *LETTERS)) -> str
     \text{frame: inertial; Earth: none; gravity gradient: none}
     \end{gathered}
     """
-    defined = ("error", "rotation_sign", "attitude_error", "bias_sign", "vector_error")
+    defined = ("error", "rotation_sign", "attitude_error", "bias_sign", "scale_sign", "vector_error")
     words = [f"{HEADINGS[name]}: {word}" for name, word in card.words().items() if name not in defined]
-    return stack([*(define_error(role, card) for role in roles), rf"\text{{{'; '.join(words)}}}"])
+    return stack([*(define_error(role, card) for role in roles or DEFINED), rf"\text{{{'; '.join(words)}}}"])
 
 
 def stack(lines: Sequence[str]) -> str:

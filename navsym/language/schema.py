@@ -99,13 +99,15 @@ def read_entry(value: Any, symbols: Mapping[str, Expr], where: str) -> Expr:
 
 def read_entry_noting(value: Any, symbols: Mapping[str, Expr], where: str) -> Parsed:
     """Like :func:`read_entry`, together with the divisors of the text."""
-    if isinstance(value, int) and not isinstance(value, bool):
-        value = str(value)
-    if not isinstance(value, str):
-        raise ExpressionSyntaxError(
-            f'expected an expression in quotes; got {describe_value(value)}; write it as "1/2"', where=where
-        )
-    return parse_noting(str(value), symbols, where=where)
+    return parse_noting(as_formula(value, where), symbols, where=where)
+
+
+def as_formula(value: Any, where: str) -> str:
+    """The quoted text of a formula, or the digits of a whole number."""
+    if isinstance(value, bool) or not isinstance(value, int | str):
+        message = f'expected an expression in quotes; got {describe_value(value)}; write it as "1/2"'
+        raise ExpressionSyntaxError(message, where=where)
+    return str(value)
 
 
 def read_vector(value: Any, symbols: Mapping[str, Expr], where: str, size: int, why: str) -> tuple[Expr, ...]:

@@ -215,6 +215,11 @@ class Writer:
                 own[key] = self.square(model[key], join_place(where, key))
         if isinstance(model.get("G"), list):
             own["G"] = self.noises(model["G"], join_place(where, "G"))
+        if isinstance(model.get("H"), list):
+            place = join_place(where, "H")
+            own["H"] = [
+                row for i, line in enumerate(model["H"]) for row in self.measured(line, "h", join_place(place, i))
+            ]
         if "dynamics" in model:
             own["dynamics"] = self.column(model["dynamics"], join_place(where, "dynamics"))
         if "relations" in model:

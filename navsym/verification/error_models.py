@@ -54,7 +54,7 @@ def conventions(
 
     model      : path of a conventions file, its document, or a :class:`navsym.Model`. With blocks ``[[code]]``, as in
                  an audit, the matrices are read from source code: ``F = "filter:F"``
-    roles      : role (position, velocity, attitude, gyro_bias, accelerometer_bias) -> names of its three states
+    roles      : role (position, velocity, attitude, bias or scale of gyro or accelerometer) -> its three states
     quantities : quantity (specific_force, rotation, latitude, velocity, radii, ...) -> names or expressions
     known      : parts of the card that are certain, such as ``{"frame": "inertial"}``
     card       : a card, its words, or the path of a file with the table [card], as the table of a model's file. Without

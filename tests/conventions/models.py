@@ -12,6 +12,12 @@ E: Grid = [["1" if i == j else "0" for j in range(3)] for i in range(3)]
 O: Grid = [["0"] * 3 for _ in range(3)]
 
 SHORT = {"p": "position", "v": "velocity", "a": "attitude", "g": "gyro_bias", "b": "accelerometer_bias"}
+SCALES = {"k": "gyro_scale", "s": "accelerometer_scale"}
+
+
+def diag(u: list[str]) -> Grid:
+    """A diagonal matrix."""
+    return [[u[i] if i == j else "0" for j in range(3)] for i in range(3)]
 
 
 def neg(A: Grid) -> Grid:
@@ -60,7 +66,7 @@ def document(
     return {
         "model": {"states": [name for role in order for name in states[role]], "F": F},
         "parameters": parameters,
-        "roles": {SHORT[role]: states[role] for role in order},
+        "roles": {(SHORT | SCALES)[role]: states[role] for role in order},
         "quantities": dict(quantities),
         "known": dict(known or {}),
     }
@@ -101,8 +107,11 @@ def declared(quantities: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in POSITIVE.items() if name in names}
 
 
-def kf_gins() -> dict[str, Any]:
-    """Wuhan University, KF-GINS: phi angle, north-east-down, position error in metres, constant biases."""
+def kf_gins(scaled: bool = False) -> dict[str, Any]:
+    """Wuhan University, KF-GINS: phi angle, north-east-down, position error in metres, constant biases.
+
+    scaled : with its scale factors, which decay as its biases do; all 21 states
+    """
     m, n = "(RN + h)", "(RE + h)"
     pp = [[f"-vD/{m}", "0", f"vN/{m}"], [f"vE*tan(L)/{n}", f"-(vD + vN*tan(L))/{n}", f"vE/{n}"], ["0", "0", "0"]]
     vp = [
@@ -134,6 +143,11 @@ def kf_gins() -> dict[str, Any]:
         "aa": aa,
         "ag": neg(C),
     }
+    if scaled:
+        decays = {key: diag(["-1/T"] * 3) for key in ("gg", "bb", "kk", "ss")}
+        blocks |= decays | {"ak": neg(mul(C, diag(W_B))), "vs": mul(C, diag(F_B))}
+        quantities = NED | {"specific_force_body": F_B, "angular_rate": W_B}
+        return document("pvagbks", blocks, quantities, T="positive", **declared(quantities))
     return document("pvagb", blocks, NED, **declared(NED))
 
 

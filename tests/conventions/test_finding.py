@@ -262,3 +262,49 @@ def test_a_rotation_may_be_given_by_angles():
     answer = nav.conventions(document)
     assert answer.complete
     assert [(c.attitude_error, c.rotation_sign, c.bias_sign) for c in answer.cards] == [("body", "+", PLUS)]
+
+
+def test_scale_factors_have_a_sign_of_their_own_and_move_to_other_errors():
+    document = models.kf_gins(scaled=True)
+    found = nav.conventions(document)
+    assert found.complete and {(c.error, c.bias_sign, c.scale_sign) for c in found.cards} == {
+        (PLUS, MINUS, MINUS), (MINUS, PLUS, PLUS)
+    }  # fmt: skip
+    for a in (0, 3):
+        for row in document["model"]["F"][3 + a : 6 + a]:
+            row[15:21] = [x if x == "0" else f"-({x})" for x in row[15:21]]
+        if a == 0:  # one of the two sensors only: no sign of the scale factors makes both blocks right
+            (conflict,) = nav.conventions(document).conflicts
+            assert conflict.block[1] in ("gyro_scale", "accelerometer_scale") and conflict.status == "PROVED"
+    assert {(c.bias_sign, c.scale_sign) for c in nav.conventions(document).cards} == {(MINUS, PLUS), (PLUS, MINUS)}
+
+
+@pytest.mark.long
+def test_scale_factors_are_converted():
+    conversion = nav.conventions(models.kf_gins(scaled=True)).convert(attitude_error="body", scale_sign=PLUS)
+    assert conversion.proved and conversion.F[6][15] == "w1"
+
+
+def test_mended_rows_have_names_of_the_file_where_that_can_be():
+    words = {
+        "frame": "local-level", "axes": "NWU", "error": MINUS, "rotation_sign": "+", "angle": "psi",
+        "earth": "ellipsoid", "vector_error": "rotated", "position_error": "geodetic", "radius_variation": "dropped",
+        "earth_rate": "kept", "height_variation": "dropped", "gravity_gradient": "none", "attitude_error": "frame",
+        "transport_rate": "kept",
+    }  # fmt: skip
+    empty = models.document("pva", {}, models.NED, words, **models.declared(models.NED))
+    document = {**empty, "card": words, "known": words}
+    del document["model"], document["known"]
+    F = [list(row) for row in nav.conventions(document).model()["F"]]
+    F[0][0], F[1][0] = F[1][0], F[0][0]
+    (conflict,) = nav.conventions(
+        {**empty, "model": {**empty["model"], "F": F}, "known": {"frame": "local-level"}}
+    ).conflicts
+    assert "unnamed" not in conflict.change and conflict.status == "PROVED"
+
+
+def test_a_quantity_without_a_name_is_named_beside_the_mended_rows():
+    document = models.sola_local()
+    del document["quantities"]["angular_rate"]
+    (conflict,) = nav.conventions(document).conflicts
+    assert "unnamed_w0 is angular_rate, which [quantities] lacks" in conflict.change

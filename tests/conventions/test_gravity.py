@@ -19,7 +19,7 @@ from navsym.language.expression import read_tree
 from tests.conventions import reference
 from tests.conventions.test_generator import STRUCTURES, ball, full_problem
 
-STATES = {role: [f"{role[:2]}{role[-1]}{k}" for k in (1, 2, 3)] for role in ROLES}
+STATES = {role: [f"{role[:2]}{role[-1]}{k}" for k in (1, 2, 3)] for role in ROLES[:5]}
 WORDS = {
     "error": "estimate - truth", "rotation_sign": "+", "bias_sign": "truth - estimate", "attitude_error": "frame",
     "vector_error": "difference", "position_error": "metres",
@@ -105,7 +105,7 @@ def test_gravity_of_one_number_along_the_normal_is_linearised_as_such(words, qua
     card = replace(found.cards[0], **{name: words[name] for name in alike})
     flight = PlumbLine(card, 5)
     expected, states = reference.error_dynamics(flight), [*found.problem.states]
-    places = [states.index(name) for role in ROLES for name in STATES[role]]
+    places = [states.index(name) for role in ROLES[:5] for name in STATES[role]]
     with precision(BITS):
         values = flight.values()
         for i, j in product(range(9), range(15)):

@@ -13,7 +13,7 @@ import pytest
 import navsym as nav
 from navsym.conventions.card import CHOICES, Card
 from navsym.conventions.measuring import MEASURED, full_column
-from navsym.conventions.mechanisation import BIASES, ROLES, Mechanisation
+from navsym.conventions.mechanisation import CONSTANTS, ROLES, Mechanisation
 from navsym.conventions.points import BITS
 from navsym.core.balls import precision
 from navsym.core.errors import NavsymError
@@ -150,26 +150,40 @@ def test_the_reset_is_the_derivative_of_what_a_correction_leaves(side, vector):
             assert max(abs(x - y) for x, y in zip(got, expected, strict=True)) < 1e-9, (j, got, expected)
 
 
-def test_noise_of_a_sensor_drives_the_error_as_its_output_does():
+@pytest.mark.parametrize("vector", CHOICES["vector_error"][1:])
+def test_a_reset_over_a_curved_earth_leaves_the_position_alone(vector):
+    """Latitude, longitude and height are not turned with the attitude: no correction couples their errors to others."""
+    cards = [card for card in EXACT if card.frame == "local-level" and card.earth != "none"]
+    card = next(card for card in cards if card.vector_error == vector)
+    with precision(BITS):
+        flow = Mechanisation(card, world(Flight(card, 5)))
+        columns = [full_column(flow, role, k) for role in ("attitude", "velocity", "position") for k in range(3)]
+    assert all(part == 0 for column in columns for part in column["reset position"])
+    assert any(part != 0 for column in columns for part in column["reset velocity"])
+
+
+@pytest.mark.parametrize("kind", ["noise", "scale"])
+def test_noise_and_scale_of_a_sensor_drive_the_error_as_its_output_does(kind):
     card = random_card(random.Random(4), EXACT)
     flight = Flight(card, 6)
     x, signs = flight.truth(), card.signs()
     with precision(BITS):
         flow = Mechanisation(card, world(flight))
-        for sensor in ("gyro", "accelerometer"):
+        for sensor, truth in (("gyro", flight.w), ("accelerometer", flight.f)):
             for k in range(3):
+                name, size = (f"noise {sensor}", -1) if kind == "noise" else (f"{sensor}_scale", truth[k])
                 ends = []
                 for side in (1, -1):
-                    y = {name: value.copy() for name, value in x.items()}
-                    y[f"{sensor}_bias"][k] = -side * STEP  # the output with noise less the bias that is known
+                    y = {role: value.copy() for role, value in x.items()}
+                    y[f"{sensor}_bias"][k] = side * STEP * size  # what is taken from the output, without or with noise
                     rate, true = flight.derivative(y), flight.derivative(x)
                     moved = [{n: s[n] + STEP * r[n] if n in r else s[n] for n in s} for s, r in ((x, true), (x, rate))]
                     ends.append(reference.stack(flight.error(*moved)))
-                column = full_column(flow, f"noise {sensor}", k)
+                column = full_column(flow, name, k)
                 for i in range(9):
                     value = signs[ROLES[i // 3]] * number(column[ROLES[i // 3]][i % 3])
-                    assert abs(value - (ends[0] - ends[1])[i] / (2 * STEP**2)) < 1e-9, (sensor, i)
-        assert full_column(flow, f"noise {BIASES[0]}", 1)[BIASES[0]] == [0, 1, 0]
+                    assert abs(value - (ends[0] - ends[1])[i] / (2 * STEP**2)) < 1e-9, (name, i)
+        assert full_column(flow, f"noise {CONSTANTS[0]}", 1)[CONSTANTS[0]] == [0, 1, 0]
 
 
 # -- finding with H, G and reset -----------------------------------------------------------------------
@@ -260,3 +274,33 @@ def test_rows_of_measurement_blocks_go_by_their_names():
     document["measurement"] = [{"name": f"z{k}", "h": row, "sigma": "1"} for k, row in enumerate(rows)]
     document["measured"] = {"position": ["z0", "z1", "z2"], "vector": ["z3", "z4", "z5"]}
     assert [card.innovation for card in nav.conventions(document).cards] == ["measurement - prediction"]
+
+
+def groves_with_an_antenna(turning: str) -> dict[str, Any]:
+    """The Earth's frame of Groves, 2nd edition, with (14.111) to (14.113): an antenna on a lever arm."""
+    document, arm, rate = models.groves_earth(), ["l1", "l2", "l3"], models.W_B
+    document["quantities"] |= {"lever_arm": arm, "angular_rate": rate}
+    document["parameters"] |= dict.fromkeys([*arm, *rate], "real")
+    rotated = [" + ".join(f"c{i}{k}*l{k}" for k in (1, 2, 3)) for i in (1, 2, 3)]
+    spin = ["w2*l3 - w3*l2", "w3*l1 - w1*l3", "w1*l2 - w2*l1"]
+    moved = [" + ".join(f"c{i}{k}*({spin[k - 1]})" for k in (1, 2, 3)) for i in (1, 2, 3)]
+    carried = [f"-W*({rotated[1]})", f"W*({rotated[0]})", "0"]
+    terms = {"value": models.skew([f"{x} - ({y})" for x, y in zip(moved, carried, strict=True)])}
+    terms["dropped"] = models.skew(moved)
+    product = models.mul(models.skew(["0", "0", "W"]), models.skew(rotated))
+    terms["kept"] = [
+        [f"{x} - ({y})" for x, y in zip(*rows, strict=True)] for rows in zip(terms["dropped"], product, strict=True)
+    ]
+    less, gyro = models.neg(models.E), models.mul(models.C, models.skew(arm))
+    blocks = {(0, 0): models.skew(rotated), (0, 6): less, (3, 0): terms[turning], (3, 3): less, (3, 12): gyro}
+    document["model"]["H"] = grid(6, 15, blocks)
+    return document | {"measured": {"position": [1, 2, 3], "velocity": [4, 5, 6]}, "known": {"frame": "earth"}}
+
+
+@pytest.mark.parametrize("turning", CHOICES["arm_rate"])
+def test_the_rate_of_the_earth_in_a_lever_arm_is_kept_or_its_value_or_dropped(turning):
+    found = nav.conventions(groves_with_an_antenna(turning))
+    assert found.complete and {card.arm_rate for card in found.cards} == {turning}
+    assert {(card.error, card.innovation) for card in found.cards} == {
+        ("estimate - truth", "measurement - prediction"), ("truth - estimate", "prediction - measurement"),
+    }  # fmt: skip

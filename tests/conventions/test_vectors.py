@@ -157,6 +157,9 @@ def test_measurements_noises_and_resets_in_vectors_are_read():
     document["measurement"][0]["h"] = ["C.T", "skew(C.T @ v)", "skew(l)", "0"]
     answer = nav.conventions(document)
     assert answer.complete and len(answer.cards) == 1
+    document["model"]["H"] = [document.pop("measurement")[0]["h"]]
+    document["measured"] = {"body_velocity": [1, 2, 3]}
+    assert nav.conventions(document).cards == answer.cards
 
 
 def test_equations_of_the_errors_are_linearised():

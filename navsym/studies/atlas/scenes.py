@@ -14,8 +14,7 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from navsym.conventions.card import DROPPED, KEPT, Card
-from navsym.conventions.measuring import unit_error
-from navsym.conventions.mechanisation import ROLES, Mechanisation, State, World
+from navsym.conventions.mechanisation import ROLES, Mechanisation, State, World, unit_error
 from navsym.conventions.nilpotent import (
     NOTHING,
     Nilpotent,
@@ -182,6 +181,9 @@ def make_scene(card: Card, manoeuvre: Manoeuvre, points: int = 0, arm: Sequence[
 
 #: Errors of the extra states by block.
 Errors = Mapping[str, Vector]
+#: Roles whose states a cell has: no scale factors.
+STATES = ROLES[:5]
+
 Prediction = Callable[[Scene, State, Errors], Vector]
 
 
@@ -298,7 +300,7 @@ def size_of(block: str) -> int:
 
 def list_columns(aiding: Aiding) -> list[tuple[str, int]]:
     """Block and component of every state."""
-    blocks = [(role, j) for role in ROLES for j in range(3)]
+    blocks = [(role, j) for role in STATES for j in range(3)]
     return blocks + [(block, j) for block in aiding.extras for j in range(size_of(block))]
 
 
@@ -317,7 +319,7 @@ def error_model(scene: Scene, aiding: Aiding) -> LinearModel:
     for place, (block, j) in enumerate(columns):
         unit = [Nilpotent(0, 1 if i == j else 0) for i in range(size_of(block))]
         estimate, errors = truth, {**blocks, block: unit}
-        if block in ROLES:
+        if block in STATES:
             estimate = scene.flow.estimate(truth, unit_error(block, j))
             moved = scene.flow.column(block, j)
         else:  # a landmark stands still, and the axes in which its error is resolved turn
