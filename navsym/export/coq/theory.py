@@ -19,7 +19,7 @@ from navsym.checker import Case, Question, Range, Term, Value
 from navsym.core.errors import DomainError
 from navsym.export.coq.calculus import Writer, list_all, list_slopes, name_questions, put_integral, put_slopes, strip
 from navsym.export.coq.condition import write_condition
-from navsym.export.coq.scripts import prove_bound, prove_equality, prove_modulo, refute
+from navsym.export.coq.scripts import Follower, prove_modulo, refute
 from navsym.export.coq.terms import RELATIONS, Unwritten, defined, ranges, rename, subterms, write_term
 
 #: How numbers are compared: by polynomials alone, or by balls of few digits, then of many.
@@ -134,7 +134,7 @@ def say(x: Value, relation: str, y: Value, tolerance: Term | None) -> Said:
     """What a statement says of its sides, entry by entry; two bounds for an equality within a tolerance."""
     pairs = [*zip(checker.list_entries(x), checker.list_entries(y), strict=True)]
     if tolerance is not None:
-        return [(checker.subtract(*side), "<=", tolerance) for a, b in pairs for side in ((a, b), (b, a))]
+        return [(checker.subtract(*side), "<=", tolerance) for a, b in pairs for side in ((b, a), (a, b))]
     if relation == "!=" and len(pairs) > 1:
         return [(term, own, checker.ZERO) for term, own, _ in checker.state_goals(x, relation, y, None)]
     return [(a, relation, b) for a, b in pairs]
@@ -178,10 +178,11 @@ def write_case(part: Mapping[str, Any], stated: Stated, proofs: Iterator[Any]) -
     for k, ((x, relation, y), goal) in enumerate(zip(wanted, case.goals, strict=True)):
         lines += ["split."] * (k + 1 < len(wanted))
         proof: Mapping[str, Any] = next(proofs, {})
-        script = prove_bound(symbols)
         if relation == "=" and proof.get("rule") == "modulo":
             script = ["apply by_zero.", *prove_modulo(proof, case.zeros, goal.term, names)]
-        elif relation == "=":
-            script = ["reflexivity."] if strip(x) == strip(y) else prove_equality((goal.term,), names)
+        elif relation == "=" and strip(x) == strip(y):
+            script = ["reflexivity."]
+        else:
+            script = Follower(box, names).prove(proof, strip(goal.term), goal.relation)
         lines += ["{", *script, "}"] if len(wanted) > 1 else script
     return "\n".join([f"{whole}.", "Proof.", *lines, "Qed.", ""])
