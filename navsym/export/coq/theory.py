@@ -2,8 +2,8 @@
 
 The theorem says what the checker grants: for all values of the symbols in their ranges at which every term is defined,
 the relation holds; or, for a counterexample, that this is not so. It is written from the statement's own text by the
-checker's parser. The script does not follow the certificate's proof: identities are cleared by ``field`` modulo
-``s^2 = 1 - c^2`` and ``r r = e``, and inequalities are left to ``interval``. Coq decides whether it proves the theorem.
+checker's parser. The script follows the certificate's proof in other forms and in signs of factors: identities are cleared
+by ``field`` modulo ``s^2 = 1 - c^2`` and ``r r = e``, and bounds are left to ``interval``. Coq decides whether it proves it.
 """
 
 from __future__ import annotations
