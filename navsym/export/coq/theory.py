@@ -2,8 +2,8 @@
 
 The theorem says what the checker grants: for all values of the symbols in their ranges at which every term is defined,
 the relation holds; or, for a counterexample, that this is not so. It is written from the statement's own text by the
-checker's parser. The script follows the certificate's proof in other forms and in signs of factors: identities are cleared
-by ``field`` modulo ``s^2 = 1 - c^2`` and ``r r = e``, and bounds are left to ``interval``. Coq decides whether it proves it.
+checker's parser. The script follows other forms and signs of factors of the certificate's proof: identities are cleared
+by ``field`` modulo ``s^2 = 1 - c^2`` and ``r r = e``, bounds are left to ``interval``. Coq decides if it proves it.
 """
 
 from __future__ import annotations
@@ -26,6 +26,8 @@ from navsym.export.coq.terms import RELATIONS, Unwritten, defined, ranges, renam
 PLAIN = "Ltac few_digits := lra.\nLtac many_digits := lra.\n"
 #: Files with lemmas and tactics, in the order in which they rest on one another.
 LEMMAS = ("tactics.v", "calculus.v", "condition.v")
+#: Letters of a theory: larger ones take Coq many minutes.
+MOST_LETTERS = 200_000
 Said = list[tuple[Term, str, Term]]
 BALLS = "Ltac few_digits := interval with (i_prec 90).\nLtac many_digits := interval with (i_prec 700).\n"
 
@@ -61,7 +63,7 @@ def write_theory(certificate: Mapping[str, Any]) -> str:
             raise DomainError(f"expected what Coq has words for; got {reason}; rest on the checker") from None
     names = ", ".join(re.findall(r"^Theorem (\w+)", "\n".join(theorems), re.M))
     balls, calculus = "Interval" in libraries, "calculus.v" in libraries
-    return "\n".join(
+    text = "\n".join(
         [
             "Require Import Reals Lra.",
             *(["From Coquelicot Require Import Coquelicot."] if calculus else []),
@@ -73,6 +75,9 @@ def write_theory(certificate: Mapping[str, Any]) -> str:
             f"Definition all := ({names}).\nPrint Assumptions all.\n",
         ]
     )
+    if len(text) > MOST_LETTERS:
+        raise DomainError(f"expected a theory of at most {MOST_LETTERS} letters; got {len(text)}; rest on the checker")
+    return text
 
 
 class Stated(NamedTuple):
