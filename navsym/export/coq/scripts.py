@@ -346,7 +346,7 @@ class Follower:
             signed.append(("^", base, factor[2]) if power else whole)
         if signed != factors and relation != "!=":
             lines += self.change(term, ("*", *signed), ["field; nonzero."])
-        return [*lines, "first [ positive | nonzero ]."]
+        return [*lines, "first [ solve [ positive ] | solve [ nonzero ] ]."]
 
 
 def refute(place: Mapping[str, str], lines: Iterable[str]) -> list[str]:

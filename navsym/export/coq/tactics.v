@@ -82,9 +82,9 @@ Ltac positive :=
   | |- 0 <= ?a / ?b => apply (Rmult_le_pos a (/ b)); positive
   | |- 0 < ?a / ?b => apply (Rmult_lt_0_compat a (/ b)); positive
   | |- 0 <= / _ => apply Rlt_le; positive
-  | |- 0 < / _ => apply Rinv_0_lt_compat; first [ solve [ positive ] | apply above; [ positive | nonzero ] ]
+  | |- 0 < / _ => apply Rinv_0_lt_compat; first [ solve [ positive ] | apply above; [ positive | solve [ nonzero ] ] ]
   | |- 0 <= _ ^ 2 => apply pow2_ge_0
-  | |- 0 < _ ^ 2 => apply square_positive; nonzero
+  | |- 0 < _ ^ 2 => first [ apply square_positive; solve [ nonzero ] | apply pow_lt; positive ]
   | |- 0 <= _ ^ _ => apply pow_le; positive
   | |- 0 < _ ^ _ => apply pow_lt; positive
   end | reach ].
