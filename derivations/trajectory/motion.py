@@ -9,6 +9,7 @@ from navsym.claims import CERTIFIED, PROVED, Bound, Equation, Finding, Property,
 from navsym.models import earth as motion
 from navsym.trajectory.conditioning import condition_number
 from navsym_papers.trajectory import model
+from navsym_papers.trajectory.scaling import write_rows
 from navsym_papers.trajectory.table import TWO_NUMBERS, say_comparison, say_ends
 
 rho, tau, t = sp.symbols("rho tau t", positive=True)
@@ -116,13 +117,24 @@ measurement_row = claim(
 )
 
 
-def nilpotency_index(n: int) -> int:
-    """Smallest q with A^q = 0, by exact powers; rho is a free symbol."""
-    A = model.dynamics(n, rho)
-    power, q = sp.eye(n), 0
-    while power != sp.zeros(n, n):
-        power, q = power * A, q + 1
-    return q
+def powers_of(n: int) -> list[sp.Matrix]:
+    """A, A^2, ... up to the first that is 0, by exact powers; rho is a free symbol."""
+    powers = [model.dynamics(n, rho)]
+    while powers[-1] != sp.zeros(n, n):
+        powers.append(powers[-1] * powers[0])
+    return powers
+
+
+#: rho != 0, as both claims below assume.
+RHO = {"rho": [None, None, ["nonzero"]]}
+
+
+def say_powers(n: int) -> tuple[dict, ...]:
+    """That each power times A is the next, that the last is 0, and that an entry of the one before is not."""
+    powers = powers_of(n)
+    texts = [write_rows(power.tolist()) for power in powers]
+    products = (state(f"{texts[0]} @ {x}", "=", y, RHO) for x, y in pairwise(texts))
+    return *products, state(str(powers[-2][0, n - 1]), "!=", "0", RHO)
 
 
 nilpotency = claim(
@@ -130,12 +142,12 @@ nilpotency = claim(
     "A is nilpotent of index n.",
     lambda: fact(
         tuple(n for n in ORDERS),
-        tuple(map(nilpotency_index, ORDERS)),
+        tuple(len(powers_of(n)) for n in ORDERS),
         "exact powers",
         PROVED,
         scope="n = 2..12; for every n the power k moves the diagonal k places up",
         assumptions=("rho != 0",),
-        unsaid="a claim of eleven matrices and their powers",
+        meaning=tuple(text for n in ORDERS for text in say_powers(n)),
     ),
 )
 
@@ -144,17 +156,21 @@ nilpotency = claim(
 def nonzero_elements():
     """A has n - 1 elements that are not zero."""
 
-    def count(n: int) -> int:
-        return sum(x != 0 for x in model.dynamics(n, rho))
+    def say(n: int) -> list[dict]:
+        rows = model.dynamics(n, rho).tolist()
+        zeros = [[x for x in row if x == 0] for row in rows]
+        found = (str(x) for row in rows for x in row if x != 0)
+        parts = [state(text, "!=", "0", RHO if text == "rho" else None) for text in found]
+        return parts + [state(write_rows(row), "=", write_rows([0] * len(row))) for row in zeros]
 
     return fact(
         tuple(n - 1 for n in ORDERS),
-        tuple(map(count, ORDERS)),
+        tuple(sum(x != 0 for x in model.dynamics(n, rho)) for n in ORDERS),
         "count",
         PROVED,
         scope="n = 2..12",
         assumptions=("rho != 0",),
-        unsaid="a count of entries",
+        meaning=tuple(text for n in ORDERS for text in say(n)),
     )
 
 

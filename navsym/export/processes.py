@@ -12,7 +12,7 @@ SECONDS = 120
 QUIET = {"PYTHONDONTWRITEBYTECODE": "1", "ASAN_OPTIONS": "detect_leaks=0"}
 
 
-def run(command: list[str], folder: Path) -> tuple[int, str]:
+def run(command: list[str], folder: Path, seconds: float | None = None) -> tuple[int, str]:
     """Exit status and output of one command without a shell or input, limited in time."""
     try:
         process = subprocess.Popen(
@@ -30,10 +30,10 @@ def run(command: list[str], folder: Path) -> tuple[int, str]:
         return -1, error.strerror or "cannot be started"
     with process:
         try:
-            text, trouble = process.communicate(timeout=SECONDS)
+            text, trouble = process.communicate(timeout=seconds or SECONDS)
         except subprocess.TimeoutExpired:
             end_all(process)
-            return -1, f"stopped after {SECONDS} s"
+            return -1, f"stopped after {seconds or SECONDS} s"
         except BaseException:
             end_all(process)
             raise

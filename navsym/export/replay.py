@@ -37,6 +37,8 @@ SOURCES = tuple(
     for name in "text tree ball value algebra calculus goal cones rules language statement condition observability gap "
     "bounds sized words checker".split()
 )
+#: Seconds for one certificate: no answer is to depend on them, so they are many times what one takes.
+PATIENCE = 600
 COMPILE = "ocamlfind ocamlopt -w +a-4-9-40-41-42-44-45-70 -package zarith -linkpkg".split()
 
 
@@ -156,7 +158,7 @@ def ask(kernel: str, version: str, text: str) -> Replay:
     began = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, name).write_text(text, "utf-8")
-        status, said = processes.run([*command, name], Path(folder))
+        status, said = processes.run([*command, name], Path(folder), PATIENCE)
     seconds = round(time.perf_counter() - began, 2)
     if status != 0:
         answer = "UNWRITTEN" if (kernel, status) == ("ocaml", 2) else "FAILED"

@@ -59,7 +59,7 @@ class Slope(tuple[Any, ...]):
         return [
             f"transitivity (Derive (fun {word} : R => {write_term(strip(self.of), inner)}) {place}).",
             f"{{ apply Derive_ext_loc, (filter_imp (fun {word} : R => {near})).",
-            *(f"{{ intros {word}0 near; destruct_all.", *put_slopes(within, other), "reflexivity. }"),
+            *(f"{{ intros {word}0 ?; destruct_all.", *put_slopes(within, other), "reflexivity. }"),
             *(f"apply filter_and; [ near_{NEAR[r]} (fun {word} : R => {text}) |]." for text, r in said),
             "now apply filter_forall. }",
             last,

@@ -10,7 +10,7 @@ from typing import Any
 from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from navsym import checker
-from navsym.checker import Term
+from navsym.checker import Range, Term
 from navsym.export.coq.terms import Unwritten, subterms, write_term
 
 #: Fractions of pi whose sine and cosine are rules of the library, by the denominator.
@@ -265,13 +265,88 @@ def split_root(q: fmpq) -> tuple[fmpq, list[int]]:
 # -- Inequalities and counterexamples ----------------------------------
 
 
-def prove_bound(names: Mapping[str, str]) -> list[str]:
-    """A bound on a box by bisection and Taylor models."""
-    cut = "".join(f", i_bisect {name}" for name in names.values())
+def prove_bound(box: Mapping[str, Range], names: Mapping[str, str], by_balls: bool) -> list[str]:
+    """A bound on a box by bisection and Taylor models; a symbol with one value is that value."""
+    wide = [names[name] for name, limit in box.items() if limit.low is None or limit.low != limit.high]
+    cut = "".join(f", i_bisect {name}" for name in wide)
     tries = [f"i_prec {BITS}, i_depth {DEPTH}{cut}"]
-    tries += [f"i_prec {BITS}, i_depth {DEPTH}, i_taylor {name}{cut}" for name in names.values()][:2]
-    balls = " | ".join(f"timeout {PATIENCE} by_difference ltac:(interval with ({options}))" for options in tries)
-    return [f"first [ lra | timeout 3 nra | by_distances | {balls} | timeout {PATIENCE} nra | by_signs | by_roots ]."]
+    tries += [f"i_prec {BITS}, i_depth {DEPTH}, i_taylor {name}{cut}" for name in wide][:2]
+    balls = [f"timeout {PATIENCE} by_difference ltac:(interval with ({options}))" for options in tries]
+    ways = ["solve [ positive ]", "timeout 3 nra", "by_distances"]
+    ways = ["lra", *(balls + ways if by_balls else ways + balls), f"timeout {PATIENCE} nra", "by_signs", "by_roots"]
+    return ["put_values.", f"first [ {' | '.join(ways)} ]."]
+
+
+@dataclass(frozen=True)
+class Follower:
+    """Scripts along a certificate's proof: other forms and factors are as it has them; the rest is left to Coq."""
+
+    box: Mapping[str, Range]
+    names: Mapping[str, str]
+
+    def prove(self, proof: Mapping[str, Any], term: Term, relation: str) -> list[str]:
+        """The goal of a theorem, which says the relation of the term to 0 in some form."""
+        if relation == "=" or proof.get("rule") not in ("equal", "product", "rewrite", "side", "sum"):
+            return self.go(proof, term, relation)
+        said = self.say(term, relation)
+        return [f"enough (G : {said}) by (first [ lra | intro; apply G; lra ]).", *self.go(proof, term, relation)]
+
+    def say(self, term: Term, relation: str) -> str:
+        """The relation of a term to 0, as the lemmas have it."""
+        text = write_term(term, self.names)
+        return f"{text} <> 0" if relation == "!=" else f"0 {'<' if relation == '>' else '<='} {text}"
+
+    def change(self, old: Term, new: Term, proof: Iterable[str]) -> list[str]:
+        """Lines that put a term in the place of one that is equal to it."""
+        equal = f"assert (E : {write_term(old, self.names)} = {write_term(new, self.names)})."
+        return [equal, "{", *proof, "}", "rewrite E; clear E."]
+
+    def go(self, proof: Mapping[str, Any], term: Term, relation: str) -> list[str]:
+        """The goal in the lemmas' form, or an equation."""
+        rule = proof.get("rule")
+        if rule == "rewrite" and proof["equal"]["rule"] == "solve":
+            old, new = checker.parse(proof["from"]), checker.parse(proof["to"])
+            if old[0] in ("abs", "sqrt"):
+                square = ["{", *prove_equality((new, old[1]), self.names), "}"]
+                lines = [f"apply {old[0]}_by_square.", *square, *self.go(proof["equal"]["proofs"][1], new, ">=")]
+                rest = self.go(proof["proof"], checker.replace(term, old, new), relation)
+                return [*self.change(old, new, lines), *rest]
+        if relation == "=":
+            return prove_equality((term,), self.names)
+        if rule == "equal":
+            new = checker.parse(proof["to"])
+            lines = self.change(term, new, prove_equality((term, new), self.names))
+            return [*lines, *self.go(proof["proof"], new, relation)]
+        if rule == "side":
+            one = term if proof["sign"] == 1 else checker.negate(term)
+            return [f"enough ({self.say(one, '>')}) by lra.", *self.go(proof["proof"], one, ">")]
+        if rule == "sum":
+            lines = []
+            for k, (part, premise) in enumerate(zip(checker.list_terms(term), proof["proofs"], strict=True)):
+                sign = ">" if relation == ">" and k == proof["strict"] else ">="
+                lines += [f"assert ({self.say(part, sign)}).", "{", *self.go(premise, part, sign), "}"]
+            return [*lines, "lra."]
+        if rule == "product":
+            return self.split(proof["factors"], checker.list_factors(term), term, relation)
+        if rule == "cones":
+            raise Unwritten("a bound by cones")
+        return prove_bound(self.box, self.names, rule == "balls")
+
+    def split(self, entries: Iterable[Any], factors: list[Term], term: Term, relation: str) -> list[str]:
+        """A product of factors that are positive, or negative ones with their signs."""
+        lines, signed = [], list[Term]()
+        for factor, entry in zip(factors, entries, strict=True):
+            power = factor[0] == "^"
+            sign, premise = entry or (1, None)
+            base = factor[1] if power else factor
+            base = base if sign == 1 else checker.negate(base)
+            if premise is not None:
+                lines += [f"assert ({self.say(base, relation)}).", "{", *self.go(premise, base, relation), "}"]
+            whole = ("number", abs(factor[1])) if factor[0] == "number" else base
+            signed.append(("^", base, factor[2]) if power else whole)
+        if signed != factors and relation != "!=":
+            lines += self.change(term, ("*", *signed), ["field; nonzero."])
+        return [*lines, "first [ solve [ positive ] | solve [ nonzero ] ]."]
 
 
 def refute(place: Mapping[str, str], lines: Iterable[str]) -> list[str]:

@@ -57,9 +57,47 @@ Proof.
   apply Rmult_eq_reg_r with (sqrt 2); [| lra]. replace (1 / sqrt 2 * sqrt 2) with 1 by (field; lra). lra.
 Qed.
 
+(* Products, quotients and powers of what is positive; sines and cosines on half a turn. *)
+Lemma square_positive : forall x, x <> 0 -> 0 < x ^ 2.
+Proof. intros x H. assert (P := Rsqr_pos_lt x H). unfold Rsqr in P. simpl. lra. Qed.
+Lemma above : forall x, 0 <= x -> x <> 0 -> 0 < x.
+Proof. intros x [P | E] N; [ exact P | now rewrite E in N ]. Qed.
+Lemma opposite_sine : forall x, (- 1) * sin x = sin (- x).
+Proof. intro x. rewrite sin_neg. ring. Qed.
+Lemma abs_by_square : forall v u, v ^ 2 = u ^ 2 -> 0 <= v -> Rabs u = v.
+Proof. intros v u S P. rewrite <- (Rabs_pos_eq v P). apply Rsqr_eq_abs_0. unfold Rsqr. simpl in S. lra. Qed.
+Lemma sqrt_by_square : forall v u, v ^ 2 = u -> 0 <= v -> sqrt u = v.
+Proof. intros v u S P. rewrite <- S. now apply sqrt_pow2. Qed.
+Ltac reach := first [ assumption | lra | assert (A := PI2_3_2); assert (B := PI_4); first [ lra | few_digits | timeout 5 nra ] ].
+Ltac positive :=
+  first [ assumption | lazymatch goal with
+  | |- 0 <= (- 1) * sin _ => rewrite opposite_sine; apply sin_ge_0; reach
+  | |- 0 < (- 1) * sin _ => rewrite opposite_sine; apply sin_gt_0; reach
+  | |- 0 <= sin _ => apply sin_ge_0; reach
+  | |- 0 < sin _ => apply sin_gt_0; reach
+  | |- 0 <= cos _ => apply cos_ge_0; reach
+  | |- 0 < cos _ => apply cos_gt_0; reach
+  | |- 0 <= _ * _ => apply Rmult_le_pos; positive
+  | |- 0 < _ * _ => apply Rmult_lt_0_compat; positive
+  | |- 0 <= ?a / ?b => apply (Rmult_le_pos a (/ b)); positive
+  | |- 0 < ?a / ?b => apply (Rmult_lt_0_compat a (/ b)); positive
+  | |- 0 <= / _ => apply Rlt_le; positive
+  | |- 0 < / _ => apply Rinv_0_lt_compat; first [ solve [ positive ] | apply above; [ positive | solve [ nonzero ] ] ]
+  | |- 0 <= _ ^ 2 => apply pow2_ge_0
+  | |- 0 < _ ^ 2 => first [ apply square_positive; solve [ nonzero ] | apply pow_lt; positive ]
+  | |- 0 <= _ ^ _ => apply pow_le; positive
+  | |- 0 < _ ^ _ => apply pow_lt; positive
+  end | reach ].
+
+(* A symbol between a value and itself is that value. *)
+Ltac put_values :=
+  repeat match goal with A : ?a <= ?x, B : ?x <= ?a |- _ =>
+    is_var x; assert (x = a) by exact (Rle_antisym _ _ B A); subst x end.
+
 (* An inequality by that of the difference with 0. *)
 Ltac by_difference prove :=
   match goal with
+  | |- _ <> _ => apply Rminus_not_eq; first [ apply Rgt_not_eq; prove | apply Rlt_not_eq; prove ]
   | |- _ <= _ => apply Rminus_le; prove
   | |- _ < _ => apply Rminus_lt; prove
   | |- _ >= _ => apply Rle_ge, Rminus_le; prove
@@ -90,9 +128,7 @@ Ltac by_signs := unfold Rabs; repeat match goal with |- context [Rcase_abs ?x] =
 Ltac numbers :=
   match goal with
   | |- exists k, _ = IZR k => eexists; reflexivity
-  | |- _ <> _ =>
-      first [ intro; lra | apply Rminus_not_eq; first [ apply Rgt_not_eq; few_digits | apply Rlt_not_eq; few_digits ] ]
-  | |- _ => first [ lra | by_difference ltac:(few_digits) | by_difference ltac:(many_digits) ]
+  | |- _ => first [ lra | intro; lra | by_difference ltac:(few_digits) | by_difference ltac:(many_digits) ]
   end.
 
 (* The conditions of H hold; then H itself is false. *)

@@ -2,8 +2,8 @@
 
 The theorem says what the checker grants: for all values of the symbols in their ranges at which every term is defined,
 the relation holds; or, for a counterexample, that this is not so. It is written from the statement's own text by the
-checker's parser. The script does not follow the certificate's proof: identities are cleared by ``field`` modulo
-``s^2 = 1 - c^2`` and ``r r = e``, and inequalities are left to ``interval``. Coq decides whether it proves the theorem.
+checker's parser. The script follows other forms and signs of factors of the certificate's proof: identities are cleared
+by ``field`` modulo ``s^2 = 1 - c^2`` and ``r r = e``, bounds are left to ``interval``. Coq decides if it proves it.
 """
 
 from __future__ import annotations
@@ -19,13 +19,15 @@ from navsym.checker import Case, Question, Range, Term, Value
 from navsym.core.errors import DomainError
 from navsym.export.coq.calculus import Writer, list_all, list_slopes, name_questions, put_integral, put_slopes, strip
 from navsym.export.coq.condition import write_condition
-from navsym.export.coq.scripts import prove_bound, prove_equality, prove_modulo, refute
+from navsym.export.coq.scripts import Follower, prove_modulo, refute
 from navsym.export.coq.terms import RELATIONS, Unwritten, defined, ranges, rename, subterms, write_term
 
 #: How numbers are compared: by polynomials alone, or by balls of few digits, then of many.
 PLAIN = "Ltac few_digits := lra.\nLtac many_digits := lra.\n"
 #: Files with lemmas and tactics, in the order in which they rest on one another.
 LEMMAS = ("tactics.v", "calculus.v", "condition.v")
+#: Letters of a theory: larger ones take Coq many minutes.
+MOST_LETTERS = 200_000
 Said = list[tuple[Term, str, Term]]
 BALLS = "Ltac few_digits := interval with (i_prec 90).\nLtac many_digits := interval with (i_prec 700).\n"
 
@@ -61,7 +63,7 @@ def write_theory(certificate: Mapping[str, Any]) -> str:
             raise DomainError(f"expected what Coq has words for; got {reason}; rest on the checker") from None
     names = ", ".join(re.findall(r"^Theorem (\w+)", "\n".join(theorems), re.M))
     balls, calculus = "Interval" in libraries, "calculus.v" in libraries
-    return "\n".join(
+    text = "\n".join(
         [
             "Require Import Reals Lra.",
             *(["From Coquelicot Require Import Coquelicot."] if calculus else []),
@@ -73,6 +75,9 @@ def write_theory(certificate: Mapping[str, Any]) -> str:
             f"Definition all := ({names}).\nPrint Assumptions all.\n",
         ]
     )
+    if len(text) > MOST_LETTERS:
+        raise DomainError(f"expected a theory of at most {MOST_LETTERS} letters; got {len(text)}; rest on the checker")
+    return text
 
 
 class Stated(NamedTuple):
@@ -134,7 +139,7 @@ def say(x: Value, relation: str, y: Value, tolerance: Term | None) -> Said:
     """What a statement says of its sides, entry by entry; two bounds for an equality within a tolerance."""
     pairs = [*zip(checker.list_entries(x), checker.list_entries(y), strict=True)]
     if tolerance is not None:
-        return [(checker.subtract(*side), "<=", tolerance) for a, b in pairs for side in ((a, b), (b, a))]
+        return [(checker.subtract(*side), "<=", tolerance) for a, b in pairs for side in ((b, a), (a, b))]
     if relation == "!=" and len(pairs) > 1:
         return [(term, own, checker.ZERO) for term, own, _ in checker.state_goals(x, relation, y, None)]
     return [(a, relation, b) for a, b in pairs]
@@ -178,10 +183,11 @@ def write_case(part: Mapping[str, Any], stated: Stated, proofs: Iterator[Any]) -
     for k, ((x, relation, y), goal) in enumerate(zip(wanted, case.goals, strict=True)):
         lines += ["split."] * (k + 1 < len(wanted))
         proof: Mapping[str, Any] = next(proofs, {})
-        script = prove_bound(symbols)
         if relation == "=" and proof.get("rule") == "modulo":
             script = ["apply by_zero.", *prove_modulo(proof, case.zeros, goal.term, names)]
-        elif relation == "=":
-            script = ["reflexivity."] if strip(x) == strip(y) else prove_equality((goal.term,), names)
+        elif relation == "=" and strip(x) == strip(y):
+            script = ["reflexivity."]
+        else:
+            script = Follower(box, names).prove(proof, strip(goal.term), goal.relation)
         lines += ["{", *script, "}"] if len(wanted) > 1 else script
     return "\n".join([f"{whole}.", "Proof.", *lines, "Qed.", ""])
