@@ -192,9 +192,10 @@ class Converter:
                 return signs[block[0]] * own[block[0]] * self.comparison.block_sign(self.source, block)
             return self.comparison.block_sign(self.target, block)
 
-        write_blocks(problem, way.target, self.formulas, sign, matrices, shown=not moves)
-        if moves and matrices["H"]:
+        if moves:
             matrices["H"] = multiply_texts(matrices["H"], inverse)
+        kept = {name: M for name, M in matrices.items() if M and (name != "H" or not moves)}
+        write_blocks(problem, way.target, self.formulas, sign, kept)
         return list(matrices.values())
 
     def neglected(self) -> list[list[str]]:

@@ -24,6 +24,7 @@ from navsym.language.schema import as_table
 
 #: How the names of quantities that the file lacks begin -> what to give.
 UNNAMED = {
+    **{"ca": "attitude_correction", "cv": "velocity_correction", "cp": "position_correction", "wander": "wander_angle"},
     **{"c": "rotation", "f": "specific_force", "w": "angular_rate", "v": "velocity", "r0": "position"},
     **{"r1": "position", "r2": "position", "g": "gravity", "R": "radii", "slope": "radius_slope", "rate": "earth_rate"},
     "pull": "gravitational_parameter",
@@ -120,18 +121,19 @@ def write_blocks(
     formulas: Formulas,
     sign: Callable[[Block], int],
     matrices: Mapping[str, list[list[str]]],
-    shown: bool = True,
 ) -> None:
-    """Write the blocks of a mechanisation into matrices by their names; H unless ``shown`` is False."""
+    """Write the blocks of a mechanisation into those of F, H, G and the reset that are given."""
     sides = list(problem.roles)
     blocks = [(row, column) for row in sides for column in sides if not {row, column} <= {*CONSTANTS}]
-    blocks += [(MEASURED_MARK + kind, column) for kind in problem.measured for column in sides if shown]
+    blocks += [(MEASURED_MARK + kind, column) for kind in problem.measured for column in sides]
     blocks += [(row, NOISE_MARK + noise) for row in sides for noise in problem.noises]
     both = [role for role in CORRECTED if role in sides and problem.reset]
     blocks += [(RESET_MARK + row, column) for row in both for column in both]
     columns = cache(lambda column: [full_column(flow, column, k) for k in range(3)])
     for row, column in blocks:
-        matrix, factor = matrices[matrix_of((row, column))], sign((row, column))
+        if (name := matrix_of((row, column))) not in matrices:
+            continue
+        matrix, factor = matrices[name], sign((row, column))
         for i, place in enumerate(problem.places(row)):
             for j, other in enumerate(problem.places(column)):
                 text = formulas.write(columns(column)[j][row][i], factor)

@@ -16,7 +16,7 @@ from typing import Any
 
 from flint import Ordering, fmpq_mpoly_ctx, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
-from navsym.conventions.card import WANDER, Card
+from navsym.conventions.card import Card
 from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED, full_column
 from navsym.conventions.mechanisation import AXES, Mechanisation, World, add_centrifugal, axes_rows
@@ -95,10 +95,8 @@ class Formulas:
         h: Any = self.symbol("h", self.text("height")) if "height" in given else 0
         RN, RE, third = self.radii()
         circles = self.circle("longitude", "east", "ahead"), self.circle("earth_angle", "turned", "straight")
-        wander: Any = (0, 1)
-        if card.azimuth == WANDER:
-            angle = self.text("wander_angle") or HIDDEN + "wander_angle"
-            wander = self.symbol("wander_sin", f"sin({angle})"), self.symbol("wander_cos", f"cos({angle})")
+        angle = self.text("wander_angle") or HIDDEN + "wander_angle"  # of this card, or of one that it goes to
+        wander = self.symbol("wander_sin", f"sin({angle})"), self.symbol("wander_cos", f"cos({angle})")
         r = self.vector("r", "position")
         if {"latitude", "longitude", "radii"} <= set(given) and card.frame != "local-level":
             u = locate(sine, cosine, circles[0], h, RN, RE)

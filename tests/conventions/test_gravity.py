@@ -8,6 +8,7 @@ from typing import Any
 
 import mpmath as mp
 import pytest
+import sympy as sp
 
 import navsym as nav
 from navsym.conventions.measuring import full_column
@@ -155,6 +156,41 @@ def test_a_named_wander_angle_serves_axes_to_the_north_for_conversions(azimuth):
     there = nav.conventions(document).convert(azimuth=other)
     assert (there.source.azimuth, there.target.azimuth) == (azimuth, other)
     assert there.proved and not there.neglected_entries() and nav.check(there).accepted
+    assert attitude_rows(there) == rows_of_wander(-1 if azimuth == "wander" else 1)
+
+
+def attitude_rows(conversion):
+    """The block of T from attitude to attitude."""
+    places = [conversion.problem.states.index(name) for name in STATES["attitude"]]
+    return sp.Matrix(3, 3, [sp.sympify(conversion.T[i][j]) for i in places for j in places])
+
+
+def rows_of_wander(sense=1):
+    """Axes to the north are turned about down by the angle, from north to east."""
+    z = sense * sp.Symbol("longitude")
+    return sp.Matrix([[sp.cos(z), sp.sin(z), 0], [-sp.sin(z), sp.cos(z), 0], [0, 0, 1]])
+
+
+@pytest.mark.parametrize(
+    "target", [{"axes": "NED"}, pytest.param({"axes": "NED", "angle": "psi"}, marks=pytest.mark.long)]
+)
+def test_axes_that_wander_are_reached_from_the_frame_of_the_earth_by_their_angle(target):
+    words = {**NORMAL, "earth": "sphere", "gravity_radius": "R + h", "centrifugal": "kept"}
+    document = document_of(words, radii="R", earth_rate="W", longitude="x1", wander_angle="longitude")
+    document["roles"] = {name: STATES[name] for name in ROLES[:3]}
+    document["card"].pop("bias_sign")
+    document["quantities"]["attitude_correction"] = ["x1", "x2", "x3"]  # a reset that has to be written, too
+    found = nav.conventions(document)
+    north, wander = (found.convert(frame="local-level", azimuth=a, **target) for a in ("north", "wander"))
+    assert north.proved and wander.proved
+    turned = attitude_rows(wander) - rows_of_wander() * attitude_rows(north)
+    assert turned.expand() == sp.zeros(3, 3)
+
+
+def test_axes_that_wander_by_an_angle_without_a_name_are_not_reached():
+    document = document_of(LEVEL, radii="R", earth_rate="W")
+    with pytest.raises(nav.NavsymError, match="quantities with wander_angle"):
+        nav.conventions(document).convert(azimuth="wander")
 
 
 def test_a_conversion_starts_from_the_card_of_the_file_and_counts_its_steps():
