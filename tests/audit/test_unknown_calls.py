@@ -94,3 +94,17 @@ def test_a_matrix_of_open_size_has_that_of_its_value_and_a_default_binds_no_modu
         spec += f'[[question]]\nname = "y"\nkind = "equal"\nleft = "m:y"\nright = "{right}"\n'
         (tmp_path / "spec.toml").write_text(spec)
         assert nav.audit(tmp_path / "spec.toml")["y"].status == status
+
+
+def test_a_declared_accessor_of_a_vector_is_the_whole_vector(tmp_path):
+    bodies = {"twice": "2.0f*s.v()", "sum": "s.v() + s.v()"}
+    written = (f"Vector3f {name}(S s) {{ Vector3f y = {value}; return y; }}" for name, value in bodies.items())
+    (tmp_path / "code.cpp").write_text("\n".join(written))
+    spec = "".join(
+        f'[[code]]\nname = "{name}"\nfile = "code.cpp"\nfunction = "{name}"\n'
+        '[code.symbols]\n"s.v()" = { vector = 3 }\n'
+        for name in bodies
+    )
+    spec += '[[question]]\nname = "same"\nkind = "equal"\nleft = "twice:y"\nright = "sum:y"\n'
+    (tmp_path / "spec.toml").write_text(spec)
+    assert [entry.status for entry in nav.audit(tmp_path / "spec.toml")["same"].entries] == [nav.PROVED] * 3
