@@ -16,7 +16,7 @@ from flint import arb
 from navsym.claims import Bound, Box, Equation, Optimum
 from navsym.core.balls import UnsupportedError
 from navsym.prove.equations import list_entries
-from navsym.prove.inequalities import contradicts
+from navsym.prove.inequalities import EXCLUDES
 from navsym.prove.sampling.points import Point, draw_points
 from tests.attacks.campaigns.edited_values import Values, values_at
 from tests.attacks.campaigns.edits import Edit, apply_edit, list_edits, rearrange, widen
@@ -141,7 +141,7 @@ def is_excluded(statement: Equation | Bound, printed: arb, derived: arb) -> bool
     if not (printed.is_finite() and derived.is_finite()):
         return False
     if isinstance(statement, Bound):
-        return contradicts(printed - derived, statement.relation)
+        return EXCLUDES[statement.relation](printed - derived)
     if statement.tolerance is None:
         return not (printed - derived).contains(0)
     tolerance = sp.sympify(statement.tolerance, strict=True)
