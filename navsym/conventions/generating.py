@@ -106,7 +106,8 @@ def choose_card(problem: Problem, words: Mapping[str, str], where: str) -> Card:
         near = [card for card in cards if all(getattr(card, k) == w for k, w in words.items() if k != name)]
         found = list(dict.fromkeys(str(getattr(card, name)) for card in right or near))
         if right and len(found) > 1 and name not in words:
-            message = f"expected {name}, one of {', '.join(found)}; got none; add it to the card"
+            known = ", ".join(word for word in found if word != "None")
+            message = f"expected {name}, one of {known}; got none; add it to the card"
             raise EmptyError(message, where=join_place(where, name))
         if not right and near and name in words:
             wanted = f"no {name}" if found == ["None"] else f"{name} {' or '.join(found)}"
