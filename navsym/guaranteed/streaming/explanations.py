@@ -112,8 +112,9 @@ class Search:
                 break
             states.append(other.dual.mid())
             middle = (sum(states[1:], states[0]) / len(states)).mid()
-            part = arb(((outside - 1) / (outside - cloud.gauge(middle, rows))).upper()).max(arb(0))
-            if part < NEAR:
+            inside = cloud.gauge(middle, rows)
+            part = arb(((outside - 1) / (outside - inside)).upper()).max(arb(0))
+            if inside < 1 and part < NEAR:  # without room inside nothing is known to be a state
                 return (self.target * (end + (middle - end) * part))[0, 0]  # type: ignore[no-any-return]
         return arb("-inf")
 

@@ -11,7 +11,7 @@ import numpy as np
 from flint import arb, arb_mat, fmpq
 
 from navsym.core.balls import precision
-from navsym.core.errors import DomainError, DuplicateError, NavsymError, ShapeError, UnknownSymbolError
+from navsym.core.errors import DomainError, DuplicateError, ShapeError, TooLargeError, UnknownSymbolError
 from navsym.core.exact import decimal, to_fmpq
 from navsym.core.numbers import Number
 from navsym.guaranteed.streaming.estimate import Estimate, Exclusion, Plan
@@ -35,6 +35,8 @@ from navsym.models.model import Model, as_model
 
 BOUNDS = ("bounded", "variance")
 MOST_OUTLIERS = 4
+#: Times are not larger: turns through larger angles have no digits left at the working precision.
+LATEST = 10**21
 
 Taken = list[tuple[int, fmpq, fmpq | None]]
 
@@ -136,19 +138,19 @@ class Guard:
 
     # One epoch
 
-    def step(self, z: Any = None, t: Any = None, *, sigma: Mapping[str, Any] | None = None) -> Estimate:
+    def step(self, z: Any = None, t: Any = None, *, sigma: Any = None) -> Estimate:
         """Take the measurements of an epoch and return the estimate at its time.
 
         z     : name -> number, a list with one entry per measurement, or one number where the model has one
                 measurement; None is no measurement
         t     : time of the epoch, later than the last; the last time plus ``step`` where it is left out
-        sigma : name -> noise bound in this epoch, in place of the model's
+        sigma : noise bounds in this epoch in place of the model's, given as z is
 
         Raises NavsymError for what is no finite number, for times that do not rise, and InconsistentError for data
         that no state explains where errors are bounded; the guard is then as before.
         """
         at = self.next_time(t)
-        taken = self.read_values(z, sigma, at)
+        taken = self.read_values(z, sigma)
         before, mark = vars(self).copy(), self.memory.mark()
         with precision(BITS):
             try:
@@ -156,7 +158,7 @@ class Guard:
                 self.note_pattern(at, taken)
                 self.change_kinds()
                 answer = self.answer(at, len(taken))
-            except NavsymError:
+            except BaseException:
                 self.__dict__.update(before)
                 self.memory.take_back(mark)
                 raise
@@ -173,25 +175,23 @@ class Guard:
                 raise DomainError("expected a time; got none; give t, or a step to Guard", where="Guard.step: t")
             return fmpq(0) if before is None else before + self.pace
         at = read_exact(t, "Guard.step: t")
+        if abs(at) > LATEST:
+            message = f"expected times of at most 1e21 in size; got {to_float(at):.3g}; take another unit of time"
+            raise TooLargeError(message, where="Guard.step: t")
         if before is not None and at <= before:
             got = f"{to_float(at):.12g} after {to_float(before):.12g}"
             kind = DuplicateError if at == before else DomainError
             raise kind(f"expected times that rise; got {got}; sort them and join equal ones", where="Guard.step: t")
         return at
 
-    def read_values(self, z: Any, sigma: Mapping[str, Any] | None, at: fmpq) -> Taken:
+    def read_values(self, z: Any, sigma: Any) -> Taken:
         """(measurement, value, own noise bound) of what was measured."""
-        names = self.flow.names
-        given = dict(z) if isinstance(z, Mapping) else self.name_values(z)
-        for name in (*given, *(sigma or {})):
-            if name not in names:
-                message = f"expected a measurement of the model; got {quote(name)}; name one of {', '.join(names)}"
-                raise UnknownSymbolError(message, where="Guard.step: z")
+        given, bounds = self.name_values(z, "z"), self.name_values(sigma, "sigma")
         taken: Taken = []
-        for j, name in enumerate(names):
+        for j, name in enumerate(self.flow.names):
             if given.get(name) is None:
                 continue
-            own = (sigma or {}).get(name)
+            own = bounds.get(name)
             bound = None if own is None else read_exact(own, f"Guard.step: sigma of {name}")
             if bound is not None and not bound > 0:
                 message = f"expected a positive noise bound; got {quote(own)}; correct it"
@@ -199,13 +199,20 @@ class Guard:
             taken.append((j, read_exact(given[name], f"Guard.step: {name}"), bound))
         return taken
 
-    def name_values(self, z: Any) -> dict[str, Any]:
-        """Values in the order of the model by their names."""
-        values = [] if z is None else list(z) if isinstance(z, list | tuple | np.ndarray) else [z]
-        names = self.flow.names
-        if z is not None and len(values) != len(names):
+    def name_values(self, given: Any, what: str) -> dict[str, Any]:
+        """Values by their names, or in the order of the model."""
+        names, where = self.flow.names, f"Guard.step: {what}"
+        if isinstance(given, Mapping):
+            for name in given:
+                if name not in names:
+                    got = f"got {quote(name)}; name one of {', '.join(names)}"
+                    raise UnknownSymbolError(f"expected a measurement of the model; {got}", where=where)
+            return dict(given)
+        given = given.tolist() if isinstance(given, np.ndarray) else given
+        values = [] if given is None else list(given) if isinstance(given, list | tuple) else [given]
+        if given is not None and len(values) != len(names):
             message = f"expected {len(names)} values, one per measurement; got {len(values)}; put None for none"
-            raise ShapeError(message, where="Guard.step: z")
+            raise ShapeError(message, where=where)
         return dict(zip(names, values, strict=False))
 
     def choose_kinds(self) -> None:
@@ -394,9 +401,10 @@ class Guard:
         found, memory = None, self.memory
         if len(memory) >= self.flow.size:
             start = self.basis if self.basis and min(self.basis) >= memory.first else memory.cloud().start() or []
-            self.basis, self.signs = list(start), []
             found = explain_data(memory, self.outliers, start, []) if start else None
+            self.basis, self.signs = list(start), []
         if found is None or found.low is None or found.high is None:
+            self.basis = []  # another start is taken when there is more to choose from
             return Estimate(to_float(at), self.target, None, "outliers")
         times = [to_float(t) for t in memory.times[memory.oldest :]]
         (low, low_inner), (high_inner, high) = found.low, found.high

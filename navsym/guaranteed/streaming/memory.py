@@ -120,13 +120,14 @@ class Memory:
             self.shifted = np.concatenate([self.shifted, np.zeros_like(self.shifted)])
         h = self.flow.row(row.j, row.t)
         vector = self.flow.cut(h if self.carry is None else h * self.carry)
-        scaled = [middle(e / row.sigma) for e in vector.entries()]
-        if not np.isfinite(scaled).all():
-            message = "expected regressors within the range of doubles; got an overflow; give a memory (--memory)"
+        scaled, shifted = [middle(e / row.sigma) for e in vector.entries()], middle(arb(row.z) / row.sigma)
+        if not np.isfinite([*scaled, shifted]).all():
+            what, how = ("regressors", "give a memory (--memory)") if np.isfinite(shifted) else ("z/sigma", "scale z")
+            message = f"expected {what} within the range of doubles; got an overflow; {how}"
             raise TooLargeError(message, where="Guard")
         self.scaled[n] = scaled
         self.wide = max(self.wide, *(float((e / row.sigma).rad()) for e in vector.entries()))
-        self.shifted[n] = middle(arb(row.z) / row.sigma)
+        self.shifted[n] = shifted
         self.rows.append(row)
         self.vectors.append(vector)
         self.sigmas.append(row.sigma)

@@ -16,6 +16,8 @@ from navsym.language.names import quote
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d{1,3})?|[+-]?\d+/\d*[1-9]\d*", re.ASCII)
 WORDS = frozenset("nan inf +inf -inf infinity +infinity -infinity".split())
 LONGEST = 60
+#: No number is larger, so that doubles near it are finite.
+LARGEST = 10**300
 
 
 def read_exact(value: Any, where: str) -> fmpq:
@@ -23,6 +25,15 @@ def read_exact(value: Any, where: str) -> fmpq:
 
     Raises ExpressionSyntaxError, NotFiniteError, TooLargeError or DomainError, all with ``where``.
     """
+    found = read_number(value, where)
+    if abs(found) > LARGEST:
+        got = quote(value) if isinstance(value, str | float) else "a larger one"
+        raise TooLargeError(f"expected a number of at most 1e300 in size; got {got}; scale the units", where=where)
+    return found
+
+
+def read_number(value: Any, where: str) -> fmpq:
+    """The same for a number of any size."""
     if isinstance(value, str):
         return read_decimal(value.strip(), where)
     if isinstance(value, bool) or not isinstance(value, Real):

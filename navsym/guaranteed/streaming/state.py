@@ -147,7 +147,8 @@ def read_row(guard: Guard, at: fmpq, entry: Any, where: str) -> Row:
 
 def take_hint(guard: Guard, hint: Any) -> None:
     """The last support and a state near the data: where the search begins."""
-    basis, signs = [need_count(i) for i in hint["basis"]], [int(s) for s in hint["signs"]]
+    basis = [i if i in range(-MOST_ROWS, 0) else need_count(i) for i in hint["basis"]]  # rows may have left the memory
+    signs = [int(s) for s in hint["signs"]]
     fits = len(basis) in (0, guard.flow.size) and len(set(basis)) == len(basis)
     if not fits or any(i >= len(guard.memory) for i in basis) or not set(signs) <= {1, -1}:
         raise ValueError("hint")
