@@ -20,7 +20,7 @@ from flint import arb, arb_mat, fmpq, fmpq_mat
 from navsym.claims.display import write_card, write_table
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
-from navsym.core.errors import DomainError, EmptyError, NotEstimableError, ShapeError
+from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NotEstimableError, ShapeError
 from navsym.core.exact import decimal, from_decimal, to_fmpq, upper_end
 from navsym.core.numbers import Number
 from navsym.guaranteed.search.cones import Cone
@@ -174,11 +174,13 @@ class BlockEstimator(Answer):
 
     def estimate(self, measurements: Sequence[Any]) -> float:
         """``sum w_i . z_i`` for measurements block by block."""
-        total = fmpq(0)
-        for w, z in zip(self.weights, measurements, strict=True):
-            values = [read_exact(e, "estimate") for e in as_list(z, "estimate")]
-            total += sum((a * b for a, b in zip(w, values, strict=True)), fmpq(0))
-        return to_float(total)
+        rows = [as_list(z, "estimate") for z in as_list(measurements, "estimate")]
+        sizes, given = ([len(part) for part in parts] for parts in (self.weights, rows))
+        if given != sizes:
+            message = f"expected measurements block by block, {sizes} of them; got {given}; complete them"
+            raise ShapeError(message, where="estimate")
+        pairs = ((w, z) for part, row in zip(self.weights, rows, strict=True) for w, z in zip(part, row, strict=True))
+        return to_float(sum((w * read_exact(z, "estimate") for w, z in pairs), fmpq(0)))
 
     def worst_case(self) -> list[list[float]]:
         """Noise block by block that attains the value, up to its digits: the measurements ``H_i x`` of the dual.
@@ -315,6 +317,9 @@ def state_problem(
 
     What an inequality leaves is a weight of its own, which must not be negative: ``sum c_i . w_i + w = d``.
     """
+    if not isinstance(blocks, list | tuple) or not all(isinstance(block, Block) for block in blocks):
+        message = f"expected a list of blocks; got {quote(blocks)}; write [nav.Block(...), ...]"
+        raise ExpressionSyntaxError(message, where="solve_blocks: blocks")
     P = [read_exact(p, "solve_blocks: target") for p in as_list(target, "solve_blocks: target")]
     if not blocks or not P:
         raise EmptyError("expected blocks and a target; got none; give at least one of each", where="solve_blocks")

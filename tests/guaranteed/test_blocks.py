@@ -611,3 +611,17 @@ def test_gaps_stay_closed_for_many_random_streams_with_blocks_and_gross_errors()
             counted += 1
             assert Fraction(found.radius.upper) - Fraction(found.radius.lower) <= Fraction(found.radius.upper) / 10**12
     assert counted > 20
+
+
+@pytest.mark.parametrize("blocks", ["abc", nav.Block([["1"]]), [["1"]], None, 5])
+def test_what_is_no_list_of_blocks_is_refused(blocks):
+    with pytest.raises(nav.NavsymError, match="expected a list of blocks"):
+        nav.solve_blocks(blocks, ["1"])
+
+
+@pytest.mark.parametrize("given", [[["1"]], [["1", "2", "3"]], [["1"], ["2"]], [], 5, [5]])
+def test_measurements_that_do_not_fit_the_blocks_are_refused(given):
+    found = nav.solve_blocks([nav.Block([["1", "0"], ["0", "1"]])], ["1", "1"])
+    assert found.estimate([["1", "2"]]) == 3.0
+    with pytest.raises(nav.NavsymError):
+        found.estimate(given)
