@@ -240,7 +240,8 @@ def processor_time(child: Child, otherwise: float) -> float:
 def collect_outcome(child: Child, seconds: float) -> Outcome:
     """The outcome of the item at work; the child goes on with the next one, or is stopped."""
     place, spent = child.places.pop(0), time.monotonic() - child.started
-    kind, value = "stopped", f"more than {seconds:g} s"
+    kind: str = "stopped"
+    value: Any = f"more than {seconds:g} s"
     try:
         if child.receiver.poll(0):
             kind, value = child.receiver.recv()

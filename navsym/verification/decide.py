@@ -177,10 +177,11 @@ def record_of(
     statement = claim.derive()
     texts = write_statements(statement)
     key = hash_statement(statement, texts)
+    verdict: Verdict | None = None
     if stored is not None and stored.statement == key:
         verdict = verdict_of(stored)
-    else:
-        verdict = None if kept is None else grant_kept(key, texts, kept, seconds / SHARE)
+    elif kept is not None:
+        verdict = grant_kept(key, texts, kept, seconds / SHARE)
     is_known = verdict is not None
     if verdict is None:
         verdict = decide(statement, seconds=SEARCH)
