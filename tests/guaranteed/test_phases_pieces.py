@@ -10,6 +10,7 @@ import pytest
 import sympy as sp
 from flint import fmpq
 
+import navsym as nav
 from navsym import checker
 from navsym.core.errors import DomainError
 from navsym.core.exact import from_decimal
@@ -199,3 +200,19 @@ def test_many_frequencies_are_all_looked_at():
     rows = [f"sin({k}*p*u)" for k in range(1, 7)] + [f"sin({k}*u/5)" for k in range(31, 36)]
     found, unknown = reasons(rows, lower="6", upper="7")
     assert unknown == [] and set(found) == {"31/5", "32/5", "33/5", "34/5", "7"}
+
+
+@pytest.mark.long
+def test_a_guess_whose_divisor_vanishes_is_passed_over():
+    model = nav.Model(
+        states="y1 y2 y3",
+        F=[["0", "-1", "0"], ["0", "0", "1"], ["0", "-1", "0"]],
+        H=["y1", "y2"],
+        sigma=["1", "1/2"],
+        interval="T",
+        targets={"m": "y1 + y2 - y3"},
+        T=("1", "3"),
+    )
+    found = nav.phases(model, T=("1", "3"))
+    assert not found.uncovered and found.check()
+    assert [b.at for b in found.boundaries] == [sp.pi / 2]

@@ -17,7 +17,7 @@ import sympy as sp
 
 from navsym.claims import OPEN, Equation, Optimum, Verdict
 from navsym.claims.statement import Box
-from navsym.core.balls import enclose
+from navsym.core.balls import UnsupportedError, enclose
 from navsym.core.exact import to_fraction, to_rational
 from navsym.core.sandbox import Exhausted, run_limited
 from navsym.guaranteed.certificate.fixed import dual_attempts
@@ -417,7 +417,10 @@ def decide_form(
         )
         for row, sigma, ends in zip(family.rows, family.sigma, family.panels, strict=True)
     ]
-    done = run_limited(decide_jointly, (statements, guess.panels), seconds, DEFAULT_MEGABYTES)
+    try:
+        done = run_limited(decide_jointly, (statements, guess.panels), seconds, DEFAULT_MEGABYTES)
+    except UnsupportedError as error:  # a guess with a divisor that vanishes for all values is no closed form
+        return Verdict(OPEN, "none", evidence=error.message)
     return Verdict(OPEN, "none", evidence="stopped") if isinstance(done, Exhausted) else done
 
 
