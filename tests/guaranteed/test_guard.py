@@ -754,3 +754,33 @@ def test_a_radius_of_zero_is_not_enclosed_from_above():
     guard.step({"z1": -11, "z2": "-59/2"}, t="3/2")
     last = guard.step({"z1": -19, "z2": "-39/2"}, t="5/2")
     assert last.value == -12.75 and float(last.radius.lower) <= 0 <= float(last.radius.upper) < 1e-50
+
+
+@pytest.mark.parametrize(
+    ("H", "target", "epochs"),
+    [
+        (["x", "x"], "x", [[0, 10]]),  # two sensors of one thing
+        (["x", "x"], "v", [[0, 10]]),  # beside a target that is not shown yet
+        (["x", "v"], "x", [[None, 0], [None, 10]]),  # a velocity that does not move, without a position
+        ([["1", "0"], ["0", "0"]], "x", [[0, 5]]),  # what shows nothing but its noise
+        (["x", "x", "v"], "x", [[None, None, 0], [0, 2.5, None]]),
+    ],
+)
+def test_contradictions_are_noticed_before_the_state_is_determined(H, target, epochs):
+    def build():
+        return nav.Guard(nav.Model(**MOVING | {"targets": {"q": target}}, H=H, sigma=["1"] * len(H)))
+
+    guard, twin = build(), build()
+    for k, z in enumerate(epochs[:-1]):
+        assert guard.step(z, t=k) == twin.step(z, t=k)
+    with pytest.raises(InconsistentError):
+        guard.step(epochs[-1], t=len(epochs) - 1)
+    assert guard.save() == twin.save()
+    for k in range(len(epochs), len(epochs) + 3):  # it goes on with what is right
+        assert guard.step([0] * len(H), t=k) == twin.step([0] * len(H), t=k)
+
+
+def test_what_is_no_contradiction_before_the_state_is_determined_is_taken():
+    guard = nav.Guard(nav.Model(**MOVING, H=["x", "x", "v"], sigma=["1", "1", "1"]))
+    for k, z in enumerate([0, 100]):
+        assert abs(guard.step([z, z + 2, None], t=k).value - (z + 1)) <= 1.0  # the one state is z + 1

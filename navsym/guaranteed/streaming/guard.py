@@ -29,7 +29,7 @@ from navsym.guaranteed.streaming.explanations import Combination, contradiction,
 from navsym.guaranteed.streaming.flow import BITS, Flow
 from navsym.guaranteed.streaming.memory import MOST_ROWS, Memory
 from navsym.guaranteed.streaming.numbers import middle, read_exact, to_float, write_rational
-from navsym.guaranteed.streaming.scarce import solve_scarce
+from navsym.guaranteed.streaming.scarce import find_contradiction, solve_scarce
 from navsym.language.names import quote
 from navsym.models.model import Model, as_model
 
@@ -246,13 +246,15 @@ class Guard:
 
     def answer(self, at: fmpq, fresh: int) -> Estimate:
         """The estimate from what is in memory."""
+        if self.outliers and self.showing:
+            return self.answer_with_outliers(at)
+        self.plan = (self.repeat(at, fresh) or self.optimise(at, fresh)) if self.showing else None
+        if self.radius_kind == "bounded" and self.plan:
+            self.need_consistent(fresh)
+        elif self.radius_kind == "bounded":
+            self.need_scarcely_consistent(at)
         if not self.showing:
             return Estimate(to_float(at), self.target, None, self.radius_kind)
-        if self.outliers:
-            return self.answer_with_outliers(at)
-        self.plan = self.repeat(at, fresh) or self.optimise(at, fresh)
-        if self.bound == "bounded" and self.plan is not None:
-            self.need_consistent(fresh)
         plan = self.plan or self.solve_scarcely(at)
         if plan is None:
             return Estimate(to_float(at), self.target, None, self.radius_kind)
@@ -395,6 +397,13 @@ class Guard:
                 raise contradiction(memory, np.repeat(np.arange(len(counts)), counts), rows, 0)
             ends.append(np.array([middle(e) for e in found.dual.entries()]))
         self.state = (ends[0] + ends[1]) / 2.0
+
+    def need_scarcely_consistent(self, at: fmpq) -> None:
+        """The same where the measurements do not determine the state."""
+        memory = self.memory
+        if rows := find_contradiction(self.flow, memory.rows[memory.first :], at):
+            counts = memory.counts[memory.oldest :]
+            raise contradiction(memory, np.repeat(np.arange(len(counts)), counts), [i + memory.first for i in rows], 0)
 
     def answer_with_outliers(self, at: fmpq) -> Estimate:
         """Middle and half width of the target over all explanations."""

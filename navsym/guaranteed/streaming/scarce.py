@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from flint import arb_mat, fmpq
+from flint import arb, arb_mat, fmpq
 
 from navsym.guaranteed.search.exchange import independent_rows
 from navsym.guaranteed.streaming.estimate import Plan
 from navsym.guaranteed.streaming.exchange import Cloud, bounds_of, exchange
 from navsym.guaranteed.streaming.flow import Flow, in_row_space, pivot_columns
 from navsym.guaranteed.streaming.memory import Row, list_cones
-from navsym.guaranteed.streaming.numbers import to_float
+from navsym.guaranteed.streaming.numbers import middle
 
 #: With more rows than this, rational ranks cost more than they are worth.
 MOST = 400
@@ -50,10 +50,7 @@ def solve_reduced(
 ) -> Plan | None:
     """The optimum in the unknowns at the pivots of the rows."""
     columns = pivot_columns(table)
-    vectors = [arb_mat([[row[k] for k in columns]]) for row in table]
-    sigma = [rows[i].sigma for i in places]
-    scaled = [[to_float(row[k]) / float(s.mid()) for k in columns] for row, s in zip(table, sigma, strict=True)]
-    cloud = Cloud(vectors, sigma, np.array(scaled), cones=list_cones(flow, [rows[i] for i in places]))
+    cloud = reduced_cloud(flow, [rows[i] for i in places], table, columns)
     start = cloud.start()
     found = start and exchange(cloud, arb_mat([[functional[k] for k in columns]]), start)
     if not found:
@@ -62,6 +59,36 @@ def solve_reduced(
     weights, whole = cloud.spread(found), len(places) == len(rows)
     basis = [places[i] for i in weights]
     return Plan(flow, now, list(rows), columns, basis, found.signs, [*weights.values()], lower, upper, whole)
+
+
+def reduced_cloud(
+    flow: Flow, rows: Sequence[Row], table: Sequence[Sequence[fmpq]], columns: Sequence[int], *, data: bool = False
+) -> Cloud:
+    """Rows with their regressors at the pivots, and the measurements where they matter."""
+    vectors = [arb_mat([[row[k] for k in columns]]) for row in table]
+    sigma, offset = [row.sigma for row in rows], [arb(row.z) for row in rows] if data else []
+    scaled = [[middle(e / s) for e in v.entries()] for v, s in zip(vectors, sigma, strict=True)]
+    shifted = np.array([middle(z / s) for z, s in zip(offset, sigma, strict=True)]) if data else None
+    return Cloud(vectors, sigma, np.array(scaled), offset, shifted, cones=list_cones(flow, rows))
+
+
+def find_contradiction(flow: Flow, rows: Sequence[Row], now: fmpq) -> list[int]:
+    """Places of rows that no state explains together, of those that are rational; none where that is not proved."""
+    exact = [flow.exact_row(row.j, row.t, now) for row in rows] if len(rows) <= MOST else []
+    places = [i for i, row in enumerate(exact) if row is not None]
+    for i in places:
+        if not any(exact[i]) and abs(arb(rows[i].z)) > rows[i].sigma:  # type: ignore[arg-type]
+            return [i]  # it shows nothing but its noise
+    table = [exact[i] for i in places]
+    columns = pivot_columns(table) if table else []  # type: ignore[arg-type]
+    if not columns:
+        return []
+    cloud = reduced_cloud(flow, [rows[i] for i in places], table, columns, data=True)  # type: ignore[arg-type]
+    start = cloud.start()
+    found = start and exchange(cloud, arb_mat([[1] * len(columns)]), start)
+    if not found or found.ray is None:
+        return []
+    return [places[i] for i, w in cloud.spread(found).items() if not w.contains(0)]
 
 
 def are_independent(flow: Flow, rows: Sequence[Row], now: fmpq) -> bool:
