@@ -1,4 +1,4 @@
-"""nav.Guard at its edges: numbers without doubles, states saved at any time, contradictions before all is determined."""
+"""nav.Guard at its edges: numbers without doubles, saved states, contradictions before the state is determined."""
 
 from __future__ import annotations
 
