@@ -34,10 +34,10 @@ def choose(names: str) -> tuple[Room, ...]:
 #: The rooms in the order of their cost: cheap ones, those that think longer, those of the last resort.
 EQUATIONS = (
     choose(
-        "algebra one_angle cofactors elimination modulus values values_of_constants known_signs inverse "
-        "factors_of_roots exponents equal_squares gradient"
+        "algebra one_angle cofactors elimination modulus values values_of_constants inverse factors_of_roots "
+        "exponents equal_squares known_signs"
     ),
-    choose("roots_of_symbols sums_of_hypotheses logarithms_of_products empty_case sides_of_zero"),
+    choose("roots_of_symbols sums_of_hypotheses logarithms_of_products empty_case sides_of_zero gradient"),
 )
 SIGNS = (
     choose(
