@@ -8,7 +8,7 @@ import inspect
 import math
 import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 from typing import Any
@@ -19,7 +19,7 @@ from navsym.claims.display import write_card
 from navsym.core.answers import Answer, named
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError, EmptyError, ShapeError, UnknownSymbolError
-from navsym.export.accuracy.rounding import DOUBLE, followed, up, with_library
+from navsym.export.accuracy.rounding import DOUBLE, followed, up
 from navsym.export.differences import exact_range
 from navsym.export.expression_graph import Graph
 from navsym.export.tracing import UntraceableError, trace, write_trace
@@ -34,7 +34,7 @@ BOXES = 600
 ULPS = 4  # of a library function: the widest of what C libraries and numpy state
 ROUND = 120  # boxes after which the bound has to have fallen
 CLOSE = 1.05  # a bound this near to what was seen, or to that of the round before, is not divided further
-ARITHMETIC = with_library(DOUBLE, ULPS)
+ARITHMETIC = replace(DOUBLE, library=ULPS)
 ROUNDED = f"each operation rounded once, library functions within {ULPS} ulps"
 
 Box = tuple[tuple[float, float], ...]

@@ -131,7 +131,10 @@ def diff(old: Any, new: Any, *, box: Mapping[str, Any] | None = None, **ranges: 
     >>> changed[0].status, dict(changed[0].worst)
     ('DIFFERENT', {'x': '-1'})
     """
-    sides = [write_side(value, name) for value, name in ((old, "old"), (new, "new"))]
+    sides = [
+        os.fspath(value) if isinstance(value, os.PathLike) else write_value(value, f"diff: {name}")
+        for value, name in ((old, "old"), (new, "new"))
+    ]
     kinds = [kind_of_text(text) for text in sides]
     if kinds[0] != kinds[1]:
         message = f"expected two things of one kind; got {kinds[0]} and {kinds[1]}; compare each with its own kind"
@@ -140,11 +143,6 @@ def diff(old: Any, new: Any, *, box: Mapping[str, Any] | None = None, **ranges: 
         return compare_ledgers(*map(read_ledger, sides))
     known = {name: exact_range(name, ends) for name, ends in {**(box or {}), **ranges}.items()}
     return compare_formulas(formulas_of(sides[0], known), formulas_of(sides[1], known))
-
-
-def write_side(value: Any, where: str) -> str:
-    """A formula as text; a path as it is."""
-    return os.fspath(value) if isinstance(value, os.PathLike) else write_value(value, f"diff: {where}")
 
 
 def kind_of_text(text: str) -> str:

@@ -17,7 +17,7 @@ import sympy as sp
 from navsym.claims import CONFIRMED, REFUTED, Bound, Equation, Optimum, Statement, Verdict
 from navsym.core.errors import DomainError, NavsymError, ShapeError
 from navsym.export.accuracy.overflow import watched
-from navsym.export.accuracy.rounding import ARITHMETICS, Arithmetic, literals_of, with_library
+from navsym.export.accuracy.rounding import ARITHMETICS, Arithmetic, literals_of
 from navsym.export.accuracy.uniform import CELLS, uniform_bound
 from navsym.export.choice import best_form, best_graph, tie_to_formula
 from navsym.export.expression_graph import Graph
@@ -145,7 +145,9 @@ def function_of(
     parts, switch_symbol = in_order(parts)
     needed = needed_symbols(parts) | ({switch_symbol} if switch_symbol is not None else set())
     symbols = with_whole_arrays(sorted(needed, key=str), layout)
-    box = joined_box(parts, switch_symbol)
+    box = parts[0].box
+    if switch_symbol is not None:
+        box = {switch_symbol: (box[switch_symbol][0], parts[-1].box[switch_symbol][1])}
     outputs, padded = common_outputs(parts)
     inputs = inputs_of(symbols, box, real, layout, [o.name for o in outputs])
     outputs = tuple(replace(o, unit=layout.units.get(o.name, o.unit)) for o in outputs)
@@ -213,7 +215,7 @@ def piece_of(
 
 def rebounded(function: ExportedFunction, library: int) -> ExportedFunction:
     """The same code with the bounds for a library that is accurate to so many ulp."""
-    arithmetic = with_library(function.arithmetic, library)
+    arithmetic = replace(function.arithmetic, library=library)
     pieces = tuple(
         replace(p, bound=uniform_bound(p.graph, p.box, arithmetic, p.literals, cells=cells_for(p.graph)))
         for p in function.pieces
@@ -262,21 +264,10 @@ def in_order(parts: Sequence[Material]) -> tuple[list[Material], sp.Symbol | Non
     (symbol,) = symbols
     ordered = sorted(parts, key=lambda part: inside(part.box[symbol][0], 1))
     for before, after in pairwise(ordered):
-        if not same_number(before.box[symbol][1], after.box[symbol][0]):
+        step = sp.sympify(before.box[symbol][1], strict=True) - sp.sympify(after.box[symbol][0], strict=True)
+        if not vanishes_identically(step):
             raise DomainError(f"expected regimes that adjoin; got a gap before {after.claim}; add the missing one")
     return ordered, symbol
-
-
-def same_number(a: Any, b: Any) -> bool:
-    """Equality of exact numbers, by the normal form."""
-    return vanishes_identically(sp.sympify(a, strict=True) - sp.sympify(b, strict=True))
-
-
-def joined_box(parts: Sequence[Material], switch: sp.Symbol | None) -> Mapping[Any, Any]:
-    """The box of one claim, or the range of the parameter over all regimes."""
-    if switch is None:
-        return parts[0].box
-    return {switch: (parts[0].box[switch][0], parts[-1].box[switch][1])}
 
 
 def limit_of(part: Material, switch: sp.Symbol | None, last: bool, real: str) -> float | None:

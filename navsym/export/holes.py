@@ -188,7 +188,7 @@ def total(whole: sp.Expr, ranges: Ranges) -> sp.Expr:
         if not in_range(x, sp.S.Zero, ranges):
             continue
         inner = [term for term in whole.args if x in term.free_symbols]
-        if len(inner) == len(whole.args) == 1 or not any(transcendental(term, x) for term in inner):
+        if all(term.is_rational_function(x) or term.has(filled) for term in inner):
             continue
         numbers = [term for term in whole.args if term.is_number]
         for chosen in ([*inner, *numbers], inner) if numbers else (inner,):
@@ -197,11 +197,6 @@ def total(whole: sp.Expr, ranges: Ranges) -> sp.Expr:
                 rest = sp.Add(*(term for term in whole.args if term not in chosen))
                 return joined + total(rest, ranges)
     return whole
-
-
-def transcendental(term: sp.Expr, x: sp.Symbol) -> bool:
-    """True for a term with a function or a root of x."""
-    return not term.is_rational_function(x) and not term.has(filled)
 
 
 def joined_terms(whole: sp.Expr, x: sp.Symbol, ranges: Ranges) -> sp.Expr | None:

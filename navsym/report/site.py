@@ -76,7 +76,8 @@ def report(
     >>> "index.html" in site.files, site.ledger.counts["REFUTED"]
     (True, 1)
     """
-    folder, chosen = report_folder() if out is None else Path(out), load_papers(papers)
+    workspace, chosen = find_workspace(), load_papers(papers)
+    folder = Path("report" if workspace is None else workspace.root / "report") if out is None else Path(out)
     cards = {module.name: module.paper for module in chosen}
     ledger = source if isinstance(source, Ledger) else None
     if source is not None and not isinstance(source, Ledger):
@@ -90,7 +91,7 @@ def report(
     if changed := list_changed(ledger.papers, chosen):
         remark(f"the text of {', '.join(changed)} has changed since its verdicts were written: decided now")
         ledger = run(*changed).merge(ledger)
-    whole = not papers and find_workspace() is None
+    whole = not papers and workspace is None
     return write_pages(folder, Ledger(ledger.claims, ledger.papers, ledger.unsaved, cards), progress, book=whole)
 
 
@@ -102,12 +103,6 @@ def read_models() -> dict[str, Any]:
     names = [] if workspace is None else workspace.list_files("models")
     files = {name: workspace.root / name for name in names} if workspace else {}
     return {name: conventions(path) for name, path in files.items() if "roles" in read_toml(path)}
-
-
-def report_folder() -> Path:
-    """The folder ``report``, of the workspace where there is one."""
-    workspace = find_workspace()
-    return Path("report") if workspace is None else workspace.root / "report"
 
 
 def make_folder(out: Path) -> None:

@@ -186,19 +186,14 @@ def polynomial_graph(polynomial: Sequence[fmpq], power: int) -> Graph:
         total = None if total is None else builder.put("mul", y, total)
         if coefficient != 0 or total is None:
             size = builder.put("const", value=sp.Rational(abs(int(coefficient.p)), int(coefficient.q)))
-            sign = "sub" if coefficient < 0 else "add"
-            total = with_term(builder, total, size, sign)
+            if total is None:
+                total = builder.put("neg", size) if coefficient < 0 else size
+            else:
+                total = builder.put("sub" if coefficient < 0 else "add", total, size)
     assert total is not None, "a polynomial has a first coefficient"
     if power:
         total = builder.put("mul", builder.whole_power(t, power), total)
     return pruned(Graph((T,), tuple(builder.nodes), (total,)))
-
-
-def with_term(builder: Builder, total: int | None, size: int, sign: str) -> int:
-    """The node of total + size or total - size; of the term alone where there is no total yet."""
-    if total is None:
-        return builder.put("neg", size) if sign == "sub" else size
-    return builder.put(sign, total, size)
 
 
 def plain_graph(part: Part) -> Graph:
@@ -230,18 +225,17 @@ def filled_bounds(part: Part, a: Bounded, arithmetic: Arithmetic) -> Bounded:
     if not (a.value.is_finite() and a.absolute.is_finite()):
         return NOTHING
     wide = zones(known, a.value + arb(0, a.absolute))
-    value = exact_value(known, zones(known, a.value), arithmetic)
+    exact = zones(known, a.value)
+    values = [outside_bounds(known, t, arithmetic).value for t in exact.outside]
+    value = reduce(arb.union, [*map(known.value, exact.inside), *values])
     own = [inside_rounding(known, t, arithmetic) for t in wide.inside]
     own += [(f.absolute, f.relative) for f in (outside_bounds(known, t, arithmetic) for t in wide.outside)]
     absolute, relative = (reduce(arb.max, side) for side in zip(*own, strict=True))
     if a.absolute == 0:
         return tightened(value, absolute, relative, INFINITE)
-    carried = (
-        reduce(
-            arb.max, [*(slope_inside(known, t) for t in wide.inside), *(slope_outside(known, t) for t in wide.outside)]
-        )
-        * a.absolute
-    )
+    slopes = [slope_inside(known, t) for t in wide.inside]
+    slopes += [sane(known.quotient.run({T: arb_series([t, arb(1)], 2)})[1]) for t in wide.outside]
+    carried = reduce(arb.max, slopes) * a.absolute
     passed = ratio(sane(carried), value)
     if not wide.outside:
         passed = passed.min(relative_inside(known, a))
@@ -271,13 +265,6 @@ def zones(known: Continuation, t: arb) -> Zones:
     outside = [switch.max(low).union(high)] if high >= switch else []
     outside += [low.union((-switch).min(high))] if low <= -switch else []
     return Zones((inside,), tuple(outside))
-
-
-def exact_value(known: Continuation, where: Zones, arithmetic: Arithmetic) -> arb:
-    """A ball of the part's exact value on the zones, b(t)/t^k."""
-    values = [known.value(t) for t in where.inside]
-    values += [outside_bounds(known, t, arithmetic).value for t in where.outside]
-    return reduce(arb.union, values)
 
 
 # -- below the switch ---------------------------------------
@@ -312,8 +299,3 @@ def outside_bounds(known: Continuation, t: arb, arithmetic: Arithmetic) -> Bound
     """The plain form, called with exactly t."""
     strict = replace(arithmetic, top=ARITHMETICS[arithmetic.name].top)  # an overflow in here has no status of its own
     return followed(known.above, [t], strict, known.literals)[known.above.roots[0]]
-
-
-def slope_outside(known: Continuation, t: arb) -> arb:
-    """A bound of the derivative of b(t)/t^k."""
-    return sane(known.quotient.run({T: arb_series([t, arb(1)], 2)})[1])

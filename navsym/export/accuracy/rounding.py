@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -356,11 +356,6 @@ def relative_through(op: str, a: Bounded, wide: arb) -> arb:
     return INFINITE
 
 
-def with_library(arithmetic: Arithmetic, ulps: int) -> Arithmetic:
-    """The same arithmetic with a library of another accuracy."""
-    return replace(arithmetic, library=ulps)
-
-
 # -- the numbers in the code ---------------------------------------
 
 
@@ -378,11 +373,7 @@ def literal(value: sp.Expr, arithmetic: Arithmetic) -> float:
     with np.errstate(over="ignore"):
         nearest = float(np.float32(nearest)) if arithmetic.name == "float" else nearest
     if not math.isfinite(nearest):
-        size = f"expected constants within the range of {arithmetic.name}; got one of size 2^{size_of(value)}"
-        raise DomainError(f"{size}; rescale the formula")
+        exponent = int(sp.floor(sp.log(abs(value), 2).evalf(20)))
+        message = f"expected constants within the range of {arithmetic.name}; got one of size 2^{exponent}"
+        raise DomainError(f"{message}; rescale the formula")
     return nearest
-
-
-def size_of(value: sp.Expr) -> int:
-    """The exponent of a number, for people."""
-    return int(sp.floor(sp.log(abs(value), 2).evalf(20)))

@@ -17,7 +17,7 @@ from flint import arb
 
 from navsym.core.balls import Tape, enclose, precision, tape
 from navsym.export.accuracy.continuation import analyse, continuation
-from navsym.export.accuracy.rounding import BITS, INFINITE, Arithmetic, Bounded, with_library
+from navsym.export.accuracy.rounding import BITS, INFINITE, Arithmetic, Bounded
 from navsym.export.expression_graph import Node
 from navsym.export.parts import ExportedFunction, Input, Piece
 
@@ -47,7 +47,7 @@ def vectors(function: ExportedFunction, count: int = 48, *, library: int = 1, wi
     library : accuracy of the target's sin, cos, exp, … in ulps
     widen   : factor on the rounding error, for code whose order of operations is not ours
     """
-    arithmetic = with_library(function.arithmetic, library)
+    arithmetic = replace(function.arithmetic, library=library)
     found: list[Vector] = []
     for point in points(function, 3 * count):
         vector = vector_at(function, point, arithmetic, widen)

@@ -1,6 +1,6 @@
 """Parts with a hole at zero as functions of their own in code (:mod:`navsym.export.accuracy.continuation`).
 
-Every language writes them from the same two branches (:func:`helper_parts`): the operations whose bounds were proved.
+Every language writes them from the same two branches (:func:`print_helper`): the operations whose bounds were proved.
 """
 
 from __future__ import annotations
@@ -61,11 +61,27 @@ def helpers_used(*functions: ExportedFunction) -> list[Helper]:
     return sorted(used, key=lambda helper: helper.name)
 
 
-def helper_parts(helper: Helper, s: Spelling, x: str = "x") -> tuple[str, str, str]:
-    """(switch, polynomial below it, formula above it) in this language; ``x`` is the formula's argument."""
-    known = helper.known
-    below = nested(known.below, helper, s, "x", "y" if squared_node(helper) is not None else "")
-    return s.number(known.switch), bare(below), bare(nested(known.above, helper, s, x))
+@dataclass(frozen=True, slots=True)
+class PrintedHelper:
+    """A part with a hole in a language: polynomial below the switch, formula above it.
+
+    squared : the polynomial is written in y, the square of x
+    """
+
+    name: str
+    about: str
+    switch: str
+    below: str
+    above: str
+    squared: bool
+
+
+def print_helper(helper: Helper, s: Spelling, x: str) -> PrintedHelper:
+    """A part in this language; ``x`` is the argument of the formula above the switch."""
+    known, squared = helper.known, squared_node(helper) is not None
+    below = bare(nested(known.below, helper, s, "x", "y" * squared))
+    above = bare(nested(known.above, helper, s, x))
+    return PrintedHelper(helper.name, helper_about(helper, s), s.number(known.switch), below, above, squared)
 
 
 def nested(graph: Graph, helper: Helper, s: Spelling, x: str, y: str = "") -> str:

@@ -45,7 +45,10 @@ def compiled(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector
         for name, text in c_files(functions, tests, license_).items():
             if not name.startswith("test_"):
                 (Path(folder) / name).write_text(text, encoding="utf-8")
-        (Path(folder) / "calls.c").write_text(calls_source(functions), encoding="utf-8")
+        # Calls without arguments over one array of numbers: inputs first, results behind them.
+        w, widest = writer(functions[0].arithmetic.name), max(len(f.inputs) + f.size for f in functions)
+        calls = w.render("wasm/calls.c", functions=functions, widest=widest)
+        (Path(folder) / "calls.c").write_text(calls, encoding="utf-8")
         sources = ["calls.c", *(f"{f.name}.c" for f in functions)]
         exports = ["demo_numbers", *(f"demo_{f.name}" for f in functions)]
         words = [*FLAGS, *sources, *(f"-Wl,--export={name}" for name in exports), "-o", "module.wasm", "-lm"]
@@ -53,12 +56,6 @@ def compiled(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector
         if status != 0:
             raise MissingEngineError(f"expected a working ziglang; got {said.strip()[-160:]!r}; install it again")
         return (Path(folder) / "module.wasm").read_bytes()
-
-
-def calls_source(functions: Sequence[ExportedFunction]) -> str:
-    """Calls without arguments over one array of numbers: inputs first, results behind them."""
-    w = writer(functions[0].arithmetic.name)
-    return w.render("wasm/calls.c", functions=functions, widest=max(len(f.inputs) + f.size for f in functions))
 
 
 # -- what the page knows ---------------------------------------

@@ -17,7 +17,7 @@ from typing import Any
 import jinja2
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import Helper, helper_about, helper_parts, helpers_used, squared_node
+from navsym.export.languages.helpers import PrintedHelper, helpers_used, print_helper
 from navsym.export.languages.printing import Spelling, assignments
 from navsym.export.languages.summary import field_text, state_record, summary, unit_of
 from navsym.export.parts import ExportedFunction
@@ -59,15 +59,8 @@ def in_rows(numbers: Sequence[str], between: str) -> str:
 
 def accessors(function: ExportedFunction, result: str, state: str | None = None) -> list[str]:
     """Where every result is: behind ``result``, or behind ``state`` in the field that it replaces."""
-    places = [
-        (
-            o,
-            f"{result}{o.name}"
-            if state is None or o.name not in function.replaced
-            else f"{state}{function.replaced[o.name]}",
-        )
-        for o in function.outputs
-    ]
+    fields = {} if state is None else {name: f"{state}{field}" for name, field in function.replaced.items()}
+    places = [(o, fields.get(o.name, f"{result}{o.name}")) for o in function.outputs]
     return [f"{place}[{k}]" if o.shape else place for o, place in places for k in range(o.size)]
 
 
@@ -79,21 +72,6 @@ class PrintedPiece:
     limit: float | None
     lets: list[tuple[str, str]]
     results: list[str]
-
-
-@dataclass(frozen=True, slots=True)
-class PrintedHelper:
-    """A part with a hole in a language: polynomial below the switch, formula above it.
-
-    squared : the polynomial is written in y, the square of x
-    """
-
-    name: str
-    about: str
-    switch: str
-    below: str
-    above: str
-    squared: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,12 +135,7 @@ class Writer:
 
     def helpers(self, functions: Sequence[ExportedFunction], argument: str = "x") -> list[PrintedHelper]:
         """The parts with a hole that the functions need; ``argument`` is what the formula above the switch is of."""
-        return [self.helper(helper, argument) for helper in helpers_used(*functions)]
-
-    def helper(self, helper: Helper, argument: str) -> PrintedHelper:
-        """One part with a hole."""
-        squared, about = squared_node(helper) is not None, helper_about(helper, self.spelling)
-        return PrintedHelper(helper.name, about, *helper_parts(helper, self.spelling, argument), squared)
+        return [print_helper(helper, self.spelling, argument) for helper in helpers_used(*functions)]
 
     def columns(self, function: ExportedFunction, tests: Sequence[Vector], wide: Spelling) -> dict[str, list[str]]:
         """Inputs, status, lower, upper and nearest numbers of all vectors, one after the other; doubles as ``wide``."""

@@ -304,11 +304,6 @@ def list_columns(aiding: Aiding) -> list[tuple[str, int]]:
     return blocks + [(block, j) for block in aiding.extras for j in range(size_of(block))]
 
 
-def state_names(aiding: Aiding) -> tuple[str, ...]:
-    """Names of the states: position_1, ..., landmark_1_3."""
-    return tuple(f"{block.replace(' ', '_')}_{j + 1}" for block, j in list_columns(aiding))
-
-
 def error_model(scene: Scene, aiding: Aiding) -> LinearModel:
     """F and H of the errors along a manoeuvre, with the rates of all that moves."""
     columns = list_columns(aiding)
@@ -330,4 +325,5 @@ def error_model(scene: Scene, aiding: Aiding) -> LinearModel:
         H.append([part.error for predict in aiding.predictions for part in predict(scene, estimate, errors)])
     names = [f"z{i + 1}" for i in range(len(H[0]))]
     H = tidy(sp.Matrix(H).T)
-    return LinearModel(tidy(F), None, H, state_names(aiding), tuple(names), rates=scene.rates)
+    states = tuple(f"{block.replace(' ', '_')}_{j + 1}" for block, j in columns)
+    return LinearModel(tidy(F), None, H, states, tuple(names), rates=scene.rates)

@@ -13,13 +13,13 @@ import itertools
 import random
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from navsym.core.errors import MissingEngineError
-from navsym.export.accuracy.rounding import Arithmetic, with_library
+from navsym.export.accuracy.rounding import Arithmetic
 from navsym.export.accuracy.vectors import LARGEST, cast, edge_values, piece_at, points, sample, vector_at
 from navsym.export.languages.c import files as c_files
 from navsym.export.languages.targets import TARGETS, WARNINGS
@@ -58,7 +58,7 @@ class Swept:
 
 def sweep(function: ExportedFunction, call: Call, count: int, *, library: int = 1, widen: int = 1) -> Swept:
     """Compare ``count`` points of a function; ``call`` maps (inputs, n) to (statuses, (results, n))."""
-    arithmetic = with_library(function.arithmetic, library)
+    arithmetic = replace(function.arithmetic, library=library)
     total = Swept(0, 0, 0, 0, 0.0)
     waiting = many_points(function, count)
     while total.points < count and (block := list(itertools.islice(waiting, min(BLOCK, count)))):
