@@ -95,12 +95,11 @@ def as_positive(name: str, value: Any, shape: Shape, why: str) -> Array:
     return array
 
 
-def as_covariance(name: str, value: Any, n: int | None, *, definite: bool = False) -> Array:
+def as_covariance(name: str, value: Any, n: int | None) -> Array:
     """A covariance matrix (n, n): symmetric and positive semidefinite, made exactly symmetric.
 
     Asymmetry (1e-12) and negative eigenvalues (1e-9) of the size of rounding pass, in units in which the variances
     are 1; a negative variance does not, nor a covariance with a state whose variance is zero.
-    With ``definite`` the smallest eigenvalue must be positive, so that an inverse exists.
 
     Raises ShapeError, NotFiniteError, EmptyError, DomainError.
     """
@@ -124,11 +123,10 @@ def as_covariance(name: str, value: Any, n: int | None, *, definite: bool = Fals
         pair = f"[{i}, {j}] = {array[i, j]} against [{j}, {i}] = {array[j, i]}"
         raise DomainError(f"{name}: expected a symmetric covariance; got {pair}; symmetrise it")
     least = float(np.linalg.eigvalsh(0.5 * unit + 0.5 * unit.T)[0])
-    if least < -SLACK or (definite and least <= 0.0):
-        kind = "definite" if definite else "semidefinite"
+    if least < -SLACK:
         raise DomainError(
-            f"{name}: expected a positive {kind} covariance; got the eigenvalue {least:.6g}, variances taken for 1; "
-            "mend its entries"
+            f"{name}: expected a positive semidefinite covariance; got the eigenvalue {least:.6g}, variances taken for "
+            "1; mend its entries"
         )
     return freeze(0.5 * array + 0.5 * array.T)
 

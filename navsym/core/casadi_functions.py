@@ -40,22 +40,17 @@ CONSTANTS = {sp.pi: np.pi, sp.E: np.e}
 LESS_ONE = {sp.cos: lambda x: -2 * ca.sin(x / 2) ** 2, sp.cosh: lambda x: 2 * ca.sinh(x / 2) ** 2, sp.exp: ca.expm1}
 
 
-def casadi_function(
-    name: str, arguments: Sequence[Argument], expression: Any, named: Sequence[tuple[sp.Symbol, sp.Expr]] = ()
-) -> ca.Function:
+def casadi_function(name: str, arguments: Sequence[Argument], expression: Any) -> ca.Function:
     """A casadi function of the given arguments.
 
     name       : an identifier; it also names the function in code that casadi generates
     arguments  : symbols, or sequences of symbols for vector arguments, in the order of the inputs
     expression : a scalar or a matrix; its shape is the shape of the output
-    named      : values in order, which later ones and the expression may call by their symbols
 
     Raises UnknownSymbolError (a symbol that is no argument), DomainError (a function that has no
     counterpart, a name that is no identifier), NotFiniteError (a number beyond double precision).
     """
     inputs, memo = declare_inputs(arguments)
-    for symbol, value in named:
-        memo[symbol] = translate(value, memo)
     return ca.Function(check_identifier(name), inputs, [translate_output(expression, memo)])
 
 

@@ -18,6 +18,7 @@ from typing import Any
 from navsym.core.answers import Answer, named
 from navsym.core.choice import one_of
 from navsym.core.errors import MissingEngineError, NavsymError
+from navsym.core.store import default_path
 
 
 class ChecksumError(NavsymError):
@@ -156,20 +157,11 @@ def local_copy(known: Dataset) -> Path | None:
 
     Raises ChecksumError when a file stands there that is not the recorded one.
     """
-    for folder in (os.environ.get("NAVSYM_DATA"), cache_folder()):
+    for folder in (os.environ.get("NAVSYM_DATA"), default_path().parent):
         if folder and (path := Path(folder) / known.path).is_file():
             require_checksum(path, known)
             return path
     return None
-
-
-def cache_folder() -> Path:
-    """Where fetched files are kept: the cache folder of the system, or ``NAVSYM_CACHE``."""
-    if chosen := os.environ.get("NAVSYM_CACHE"):
-        return Path(chosen)
-    import pooch
-
-    return Path(pooch.os_cache("navsym"))
 
 
 def require_checksum(path: Path, known: Dataset) -> None:
@@ -192,7 +184,7 @@ def fetch(name: str) -> Path:
         return path
     import pooch
 
-    target = cache_folder() / known.path
+    target = default_path().parent / known.path
     try:
         return Path(pooch.retrieve(known.address, f"sha256:{known.sha256}", target.name, target.parent))
     except (OSError, ValueError) as error:

@@ -328,6 +328,3 @@ def direction_of(angle: sp.Expr) -> tuple[sp.Rational, sp.Expr]:
     if direction.could_extract_minus_sign():
         coefficient, direction = -coefficient, -direction
     return (coefficient, direction) if coefficient.is_Rational else (sp.S.One, angle)
-
-
-__all__ = ["Graph", "Node", "build"]

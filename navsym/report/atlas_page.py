@@ -3,21 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from navsym.report.page import slug
 from navsym.studies.atlas.kept import Cell, atlas
 from navsym.studies.atlas.published import PUBLISHED
 
-
-@dataclass(frozen=True, slots=True)
-class Sheet:
-    """The cells of one model: aidings across, manoeuvres down; None where there is no cell."""
-
-    model: str
-    aidings: tuple[str, ...]
-    rows: Mapping[str, tuple[Cell | None, ...]]
+#: The name of a model, its aidings across, and its manoeuvres down with their cells; None where there is no cell.
+Sheet = tuple[str, tuple[str, ...], Mapping[str, tuple[Cell | None, ...]]]
 
 
 def list_sheets() -> list[Sheet]:
@@ -31,7 +24,7 @@ def list_sheets() -> list[Sheet]:
             manoeuvre: tuple(atlas.entries.get(f"{model}: {manoeuvre}: {aiding}") for aiding in aidings)
             for manoeuvre in dict.fromkeys(parts[1] for parts in own)
         }
-        sheets.append(Sheet(model, aidings, rows))
+        sheets.append((model, aidings, rows))
     return sheets
 
 

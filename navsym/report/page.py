@@ -94,27 +94,15 @@ class ClaimView:
     """A record with everything that its card shows."""
 
     record: Record
-    anchor: str
-    mark: str
     printed: Formula
     derived: Formula
     story: tuple[tuple[Step, Formula | None], ...]
     plot: Markup
     point: tuple[Formula, ...]
-    correction: ClaimLink | None
-    corrects: ClaimLink | None
+    correction: Record | None
+    corrects: Record | None
     certificates: tuple[str, ...]
     backing: str
-
-
-@dataclass(frozen=True, slots=True)
-class ClaimLink:
-    """Another claim of the same page: where it stands, what it says and what that is worth."""
-
-    number: str
-    anchor: str
-    printed: Formula
-    status: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,7 +168,9 @@ def pages(
         yield f"{paper.file}.html", env.get_template("paper.html").render(shared, paper=paper)
         yield f"{paper.file}.erratum.html", env.get_template("erratum.html").render(shared, paper=paper)
         yield f"{paper.file}.erratum.tex", env.get_template("erratum.tex").render(paper=paper)
-    places = {claim.record.id: f"{paper.file}.html#{claim.anchor}" for paper in papers for claim in paper.claims}
+    places = {
+        claim.record.id: f"{paper.file}.html#{anchor_of(claim.record)}" for paper in papers for claim in paper.claims
+    }
     yield "trust.html", env.get_template("trust.html").render(shared, trust=trust_of(ledger), places=places)
     if book:
         from navsym.report.atlas_page import atlas_pages
@@ -211,7 +201,7 @@ def environment() -> jinja2.Environment:
         lstrip_blocks=True,
     )
     env.filters |= {"tex": latex_escape, "slug": slug, "sentence": sentence_html, "sentence_tex": sentence_latex}
-    env.filters |= {"ended": ended, "in_words": scope_words}
+    env.filters |= {"ended": ended, "in_words": scope_words, "anchor": anchor_of, "printed": printed_side}
     env.filters["ends"] = lambda difference: ball_words((difference.lower, difference.upper))
     script = (TEMPLATES / "filter.js").read_text(encoding="utf-8").strip()
     env.globals["style"] = Markup((TEMPLATES / "style.css").read_text(encoding="utf-8"))
@@ -291,15 +281,13 @@ def claim_view(record: Record, correction: Record | None, corrected: Record | No
     story = tuple((step, formula(step.formula) if step.formula else None) for step in steps(record))
     return ClaimView(
         record=record,
-        anchor=anchor_of(record),
-        mark=MARKS[record.status],
         printed=side(record.printed),
         derived=side(record.derived),
         story=story,
         plot=Markup(refutation_svg(record) if record.status == "REFUTED" else ""),
         point=coordinates(record.counterexample),
-        correction=link(correction),
-        corrects=link(corrected),
+        correction=correction,
+        corrects=corrected,
         certificates=tuple(name for name, _ in certificates_by_file(record)),
         backing=backing_words(record),
     )
@@ -308,10 +296,3 @@ def claim_view(record: Record, correction: Record | None, corrected: Record | No
 def side(text: str) -> Formula:
     """A side set in type; what is only said to hold or not comes in words."""
     return Formula(truth_words(text), None, None, words=True) if only_truth(text) else formula(text)
-
-
-def link(record: Record | None) -> ClaimLink | None:
-    """A link to a claim, None without one."""
-    if record is None:
-        return None
-    return ClaimLink(record.number, anchor_of(record), printed_side(record), record.status)

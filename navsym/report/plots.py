@@ -68,7 +68,7 @@ def panels(ratios: Sequence[float], height: float, width: float = 7.0) -> tuple[
     return made, found
 
 
-def phase_diagram(regimes: Rows, *, parameter: str, unit: str, quantity: str, logarithmic: bool = False) -> Figure:
+def phase_diagram(regimes: Rows, *, parameter: str, unit: str, quantity: str) -> Figure:
     """The optimum over a parameter, and below it the instants that reach it; boundaries of regimes as lines.
 
     regimes : each with ``at`` (n,) values of the parameter, ``value`` (n,), ``label`` and perhaps
@@ -83,7 +83,7 @@ def phase_diagram(regimes: Rows, *, parameter: str, unit: str, quantity: str, lo
             drawn[1].plot(regime["at"], instant, **style)
         for axes in drawn if place else ():
             axes.axvline(regime["at"][0], color="0.6", linewidth=0.8)
-    drawn[0].set(xlabel=f"{parameter}, {unit}", ylabel=quantity, yscale="log" if logarithmic else "linear")
+    drawn[0].set(xlabel=f"{parameter}, {unit}", ylabel=quantity)
     drawn[0].legend(loc="best", frameon=False, labelspacing=0.9)
     if placed:
         drawn[0].xaxis.label.set_visible(False)
@@ -91,19 +91,11 @@ def phase_diagram(regimes: Rows, *, parameter: str, unit: str, quantity: str, lo
     return made
 
 
-def mode_ribbon(times: Array, probabilities: Array, names: Sequence[str], *, truth: Array | None = None) -> Figure:
-    """Mode probabilities as a ribbon that is always one high; the true mode as a strip above it.
-
-    probabilities : (n, k), rows sum to one
-    truth         : (n,) numbers of the true modes, or None
-    """
+def mode_ribbon(times: Array, probabilities: Array, names: Sequence[str]) -> Figure:
+    """Mode probabilities (n, k) as a ribbon that is always one high."""
     made, axes = figure(height=3.0)
     axes.stackplot(times, probabilities.T, colors=COLOURS[: probabilities.shape[1]], labels=names, step="mid")
-    if truth is not None:
-        step = float(times[1] - times[0]) if len(times) > 1 else 1.0
-        axes.bar(times, 0.06, width=step, bottom=1.03, color=[COLOURS[mode] for mode in truth], linewidth=0)
-        axes.annotate("truth", (1.01, 1.06), xycoords=("axes fraction", "data"), va="center", fontsize=9)
-    axes.set(xlabel="time, s", ylabel="probability of the mode", ylim=(0, 1.1 if truth is not None else 1))
+    axes.set(xlabel="time, s", ylabel="probability of the mode", ylim=(0, 1))
     axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
     return made
 

@@ -17,20 +17,10 @@ from navsym.verification.ledger import Ledger, Record
 
 
 @dataclass(frozen=True, slots=True)
-class KindRow:
-    """Certificates of one kind: how many, and their sizes in bytes."""
-
-    kind: str
-    count: int
-    median: int
-    largest: int
-
-
-@dataclass(frozen=True, slots=True)
 class Trust:
     """What stands on the page.
 
-    rows      : kinds of certificates, the most frequent first
+    rows      : kinds of certificates, the most frequent first: how many, median and largest size in bytes
     rules     : rules of proofs, and the number of verdicts that use them
     unchecked : verdicts that rest on the code that computes them
     sampled   : verdicts that are neither proved nor refuted
@@ -38,7 +28,7 @@ class Trust:
     judged    : what the second checker and Coq have said of all certificates
     """
 
-    rows: tuple[KindRow, ...]
+    rows: tuple[tuple[str, int, int, int], ...]
     rules: tuple[tuple[str, int], ...]
     unchecked: tuple[Record, ...]
     sampled: tuple[Record, ...]
@@ -55,9 +45,9 @@ def trust_of(ledger: Ledger) -> Trust:
         kinds[str(part.get("kind"))].append(len(json.dumps(part, ensure_ascii=False).encode()))
     for certificate in certificates:
         rules.update({*list_rules(certificate)})
-    rows = [KindRow(kind, len(sizes), round(median(sizes)), max(sizes)) for kind, sizes in kinds.items()]
+    rows = [(kind, len(sizes), round(median(sizes)), max(sizes)) for kind, sizes in kinds.items()]
     return Trust(
-        rows=tuple(sorted(rows, key=lambda row: (-row.count, row.kind))),
+        rows=tuple(sorted(rows, key=lambda row: (-row[1], row[0]))),
         rules=tuple(sorted(rules.items(), key=lambda item: (-item[1], item[0]))),
         unchecked=ledger.unchecked,
         sampled=tuple(record for record in ledger.claims if record.status in ("CONFIRMED", "OPEN")),

@@ -24,7 +24,7 @@ from navsym.language.schema import as_title, require_distinct
 from navsym.language.tomlfile import read_toml
 from navsym.prove.claimfile import NOTES
 from navsym.prove.grant import REFUSALS, grant
-from navsym.verification.sources import place_of_line
+from navsym.verification.sources import claim_of_notes, place_of_line
 
 if TYPE_CHECKING:
     from navsym.audit.answer import AuditedQuestion
@@ -47,18 +47,9 @@ def claim_of_question(name: str, path: Path, block: Mapping[str, Any], where: st
     """The claim that the code is as a question expects it."""
     number = as_title(block.get("name", block.get("kind")), join_place(where, "name"))
     notes = {key: read(block[key], join_place(where, key)) for key, read in NOTES.items() if key in block}
-    return Claim(
-        name,
-        number,
-        notes.get("title", f"The code answers the question {number} ({block.get('kind')})."),
-        partial(property_of_question, path, number),
-        Status(notes.get("expect", "PROVED")),
-        notes.get("corrects"),
-        "paper" if notes.get("expect") == "REFUTED" else None,
-        notes.get("reason", ""),
-        place_of_line(name, path, rf"\s*name\s*=\s*{re.escape(json.dumps(number))}"),
-        either="expect" not in notes,
-    )
+    title = f"The code answers the question {number} ({block.get('kind')})."
+    place = place_of_line(name, path, rf"\s*name\s*=\s*{re.escape(json.dumps(number))}")
+    return claim_of_notes(name, number, title, partial(property_of_question, path, number), notes, place)
 
 
 def files_of_source(path: Path) -> list[Path]:

@@ -11,7 +11,7 @@ import sympy as sp
 
 from navsym.claims import OPEN, Claim, Equation, Paper, Record, Statement, Verdict
 from navsym.core.errors import DomainError
-from navsym.core.sandbox import DEFAULT_MEGABYTES, Exhausted, Failed, require_limits, run_limited, run_many
+from navsym.core.sandbox import Exhausted, Failed, require_limits, run_limited, run_many
 from navsym.prove.grant import write_statements
 from navsym.prove.ladder import decide
 from navsym.verification.certificates import Certificates, grant_entry, verdict_of
@@ -197,7 +197,7 @@ def grant_kept(
     return next(filter(None, (grant_entry(texts or [], entry, seconds) for entry in entries)), None)
 
 
-def decide_or_grant(statement: Statement, seconds: float = SECONDS, megabytes: int = DEFAULT_MEGABYTES) -> Verdict:
+def decide_or_grant(statement: Statement, seconds: float = SECONDS) -> Verdict:
     """The verdict of a certificate that is kept for a statement and granted again, else decided; in a limited child."""
 
     def work() -> Verdict:
@@ -205,7 +205,7 @@ def decide_or_grant(statement: Statement, seconds: float = SECONDS, megabytes: i
         kept = grant_kept(hash_statement(statement, texts), texts, Certificates(False, lambda sentence: None))
         return kept or decide(statement, seconds / 2)
 
-    outcome = run_limited(work, (), seconds, megabytes)
+    outcome = run_limited(work, (), seconds)
     return open_verdict(outcome) if isinstance(outcome, Exhausted) else outcome
 
 

@@ -60,11 +60,11 @@ class Ledger(Answers[Record]):
     cards: Mapping[str, Paper] = field(default_factory=dict)
 
     @classmethod
-    def from_json(cls, document: Mapping[str, Any], cards: Mapping[str, Paper] | None = None) -> Ledger:
+    def from_json(cls, document: Mapping[str, Any]) -> Ledger:
         """The ledger of a document of ``navsym verify --json``, or of ``verdicts.json``."""
         claims = tuple(Record.from_json(record) for record in document["claims"])
         papers = msgspec.convert(document["papers"], tuple[PaperSummary, ...])
-        return cls(claims, papers, tuple(document.get("unsaved", ())), cards or {})
+        return cls(claims, papers, tuple(document.get("unsaved", ())))
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym verify``."""

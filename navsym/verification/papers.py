@@ -103,14 +103,13 @@ def load_source(name: str, listed: Mapping[str, Path | None]) -> PaperModule:
         return paper_module(import_paper(name))
 
     from navsym.verification.audits import files_of_source
-    from navsym.verification.sources import claims_of_file, file_card, own_module
+    from navsym.verification.sources import claims_of_file, own_module
 
     if path.suffix == ".py":
         return paper_module(own_module(path))
-    claims = claims_of_file(name, path)
-    return PaperModule(
-        name, file_card(name), claims, key_of(*(file.read_bytes().hex() for file in files_of_source(path)))
-    )
+    card = Paper(name, f"Formulas of {name}", (), None, name, "", ())  # it numbers no equations: none is missing
+    digest = key_of(*(file.read_bytes().hex() for file in files_of_source(path)))
+    return PaperModule(name, card, claims_of_file(name, path), digest)
 
 
 def summarise_paper(module: PaperModule) -> PaperSummary:

@@ -12,7 +12,7 @@ from importlib.abc import SourceLoader
 from pathlib import Path
 from types import ModuleType
 
-from navsym.claims import CERTIFIED, OPEN, PROVED, Claim, Finding, Paper, Property, Statement, Status, Verdict
+from navsym.claims import CERTIFIED, OPEN, PROVED, REFUTED, Claim, Finding, Paper, Property, Statement, Status, Verdict
 from navsym.conventions.card import HEADINGS
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, NotEstimableError
 from navsym.language.declarations import Parameter
@@ -26,11 +26,6 @@ from navsym.prove.wording import expression_text
 LARGEST = 5_000_000  # bytes of a derivation module
 DIGITS = 12  # of the values of targets
 OWN = "navsym_workspace"  # before the name of an imported module
-
-
-def file_card(name: str, language: str = "") -> Paper:
-    """The card of a file: it numbers no equations, so none can be missing."""
-    return Paper(name, f"Formulas of {name}", (), None, name, language, ())
 
 
 def claims_of_file(name: str, path: Path) -> tuple[Claim, ...]:
@@ -56,27 +51,28 @@ def claims_of_file(name: str, path: Path) -> tuple[Claim, ...]:
 
 def claim_of_block(name: str, path: Path, claim: FileClaim | TextClaim) -> Claim:
     """A claim of a claim file; without ``expect`` it is declared to hold."""
-    notes, formula = claim.notes, claim.formula
-    label = re.escape(json.dumps(claim.id))
-    builder: Callable[[], Statement]
-    completed: Callable[[Verdict], Verdict] | None = None
+    place = place_of_line(name, path, rf"\s*id\s*=\s*{re.escape(json.dumps(claim.id))}")
+    title = str(claim.formula)
     if isinstance(claim, FileClaim):
-        builder, completed = partial(statement_of, claim), partial(complete_verdict, claim)
-    else:
-        builder = partial(property_of_claim, claim)
-    return Claim(
-        name,
-        claim.id,
-        notes.get("title", str(formula)),
-        builder,
-        Status(notes.get("expect", "PROVED")),
-        notes.get("corrects"),
-        "paper" if notes.get("expect") == "REFUTED" else None,
-        notes.get("reason", ""),
-        place_of_line(name, path, rf"\s*id\s*=\s*{label}"),
-        completed,
-        "expect" not in notes,
-    )
+        derive, completed = partial(statement_of, claim), partial(complete_verdict, claim)
+        return claim_of_notes(name, claim.id, title, derive, claim.notes, place, completed)
+    return claim_of_notes(name, claim.id, title, partial(property_of_claim, claim), claim.notes, place)
+
+
+def claim_of_notes(
+    name: str,
+    number: str,
+    title: str,
+    derive: Callable[[], Statement],
+    notes: Mapping[str, str],
+    place: str,
+    completed: Callable[[Verdict], Verdict] | None = None,
+) -> Claim:
+    """The claim of a block in a file, with the title, the verdict and the reason that its notes declare."""
+    title, expect = notes.get("title", title), Status(notes.get("expect", "PROVED"))
+    slip, reason = "paper" if expect == REFUTED else None, notes.get("reason", "")
+    is_free = "expect" not in notes
+    return Claim(name, number, title, derive, expect, notes.get("corrects"), slip, reason, place, completed, is_free)
 
 
 def place_of_line(name: str, path: Path, pattern: str) -> str:

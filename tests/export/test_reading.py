@@ -9,7 +9,7 @@ import sympy as sp
 
 from navsym.claims import Equation
 from navsym.export.functions import function_of, material
-from navsym.export.languages.c import header, program_header, source
+from navsym.export.languages.c import header, source, writer
 from navsym.export.languages.names import LOCAL, local_names
 from navsym.export.languages.summary import accepted, domain_lines, sizes
 from navsym.prove.ladder import decide
@@ -36,9 +36,10 @@ def test_names_of_values_differ_from_each_other_and_from_all_that_is_taken() -> 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_every_argument_result_and_field_of_a_program_has_a_unit(name: str) -> None:
     start, step = programs.functions(name)
-    for text in (header(start, LICENSE), header(step, LICENSE), program_header(step, LICENSE)):
+    program = writer(step.arithmetic.name).render("program.h", license=LICENSE, f=step)
+    for text in (header(start, LICENSE), header(step, LICENSE), program):
         assert "unit not stated" not in text
-    fields = re.findall(r"^    double (\w+)(?:\[\d+\])?; /\* .+ \[.+\] \*/$", program_header(step, LICENSE), re.M)
+    fields = re.findall(r"^    double (\w+)(?:\[\d+\])?; /\* .+ \[.+\] \*/$", program, re.M)
     assert fields == [o.name for o in start.outputs]
 
 

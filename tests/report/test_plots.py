@@ -21,7 +21,7 @@ PICTURES = {
         unit="s",
         quantity="deviation, m/s",
     ),
-    "modes": lambda: plots.mode_ribbon(t, P, ("calm", "rough"), truth=(t > 0.5).astype(int)),
+    "modes": lambda: plots.mode_ribbon(t, P, ("calm", "rough")),
     "errors": lambda: drawings.error_ribbon(t, 0.1 * np.sin(9 * t), 0.1 + 0 * t, quantity="velocity error", unit="m/s"),
     "surface": lambda: drawings.criterion_surface(
         100 * BUMPS, BUMPS[:21, :21] ** 2, cell=90.0, track=np.array([[0.0, 0.0], [3000.0, 3000.0]]), step=50.0

@@ -33,7 +33,7 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
         found[f"{f.name}.h"] = header(f, license_)
         found[f"{f.name}.c"] = source(f, license_)
         if f.state:
-            found[f"{f.state.program}.h"] = program_header(f, license_)
+            found[f"{f.state.program}.h"] = w.render("program.h", license=license_, f=f)
     columns = [(f, w.columns(f, tests[f.name], spelling("double"))) for f in functions]
     found["test_vectors.h"] = w.render("test_vectors.h", vectors=columns, **given)
     unit, epsilon = ("2^-52", 2.0**-52) if w.real == "double" else ("2^-23", 2.0**-23)
@@ -56,11 +56,6 @@ def header(function: ExportedFunction, license_: str) -> str:
         safe=safe_comment,
         shape_text=shape_text,
     )
-
-
-def program_header(function: ExportedFunction, license_: str) -> str:
-    """``PROGRAM.h``: the state, ``PROGRAM_init`` and ``PROGRAM_step``; nothing static mutable."""
-    return writer(function.arithmetic.name).render("program.h", license=license_, f=function)
 
 
 def source(function: ExportedFunction, license_: str) -> str:
