@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -76,11 +75,8 @@ def export(
         progress(done, total, part if isinstance(part, str) else "")
     steps = iter(range(len(items) + 1, total + 1))
     words = tuple(command) or (f"navsym.export({', '.join(f.name for f in functions) or 'guard'})",)
-    order = Order(targets, license, vectors, words)
-    write = partial(export_guard, guard) if guard else partial(write_export, functions)
-    return write(
-        order, Path(out), force=force, execute=run, progress=lambda language: progress(next(steps), total, language)
-    )
+    order = Order(targets, license, vectors, words, force, run, lambda language: progress(next(steps), total, language))
+    return export_guard(guard, order, Path(out)) if guard else write_export(functions, order, Path(out))
 
 
 def require_export_options(real: Any, license_: Any, vectors: Any, units: Any) -> None:

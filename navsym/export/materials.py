@@ -20,6 +20,7 @@ from navsym.claims import CERTIFIED, OPEN, PROVED, Claim, Equation, Record, Verd
 from navsym.conventions.converting import Conversion
 from navsym.core.errors import DomainError, NavsymError
 from navsym.core.sandbox import Exhausted, run_limited
+from navsym.export.accuracy.continuation import horner
 from navsym.export.algorithms.models import functions_of_model, matrix_function, plain_name, require_ranges
 from navsym.export.functions import RefusedError, formula_lines, function_of, material
 from navsym.export.languages.names import function_name
@@ -64,10 +65,10 @@ def functions_from(
     if isinstance(item, Entry):
         item = f"book:{item.id}"
     if isinstance(item, str):
-        return functions_of_words(item, real, allow_confirmed, units)
+        return [f for part in READY.get(item, (item,)) for f in functions_of_claim(part, real, allow_confirmed, units)]
     claim = getattr(item, "claim", item)
     if isinstance(claim, (Claim, Record)):
-        return functions_of_words(claim.id, real, allow_confirmed, units)
+        return functions_of_claim(claim.id, real, allow_confirmed, units)
     if isinstance(item, Verdict):
         part = material_of_verdict(item, allow_confirmed)
         return [function_of([part], real=real, name=function_name(part.claim), layout=Layout(units=units))]
@@ -89,15 +90,7 @@ def functions_from(
 # Claims by their ids
 
 
-def functions_of_words(text: str, real: str, allow_confirmed: bool, units: Mapping[str, str]) -> list[ExportedFunction]:
-    """The functions of one word of the command line, ready-made names included."""
-    parts = READY.get(text, (text,))
-    return [f for part in parts for f in functions_of_claim(part, real, allow_confirmed, units)]
-
-
-def functions_of_claim(
-    text: str, real: str = "double", allow_confirmed: bool = False, units: Mapping[str, str] | None = None
-) -> list[ExportedFunction]:
+def functions_of_claim(text: str, real: str, allow_confirmed: bool, units: Mapping[str, str]) -> list[ExportedFunction]:
     """The functions of one claim or of regimes ``A+B+C``; ``name=A+B`` gives a name; a ready-made program has two."""
     if is_program(text):
         return algorithm(text, lambda claim: material_of_claim(claim, allow_confirmed), real)
@@ -105,18 +98,18 @@ def functions_of_claim(
         if "code" in read_toml(path):
             got, remedy = "an error model that is read from code", "write F as formulas in a model file"
             raise DomainError(f"expected formulas; got {got}; {remedy}", where=path.name)
-        return functions_of_system(Model.load(path), real, units or {})
+        return functions_of_system(Model.load(path), real, units)
     name, _, claims = text.rpartition("=") if "=" in text else ("", "", text)
     module, _, target = split_id(claims)
     if module.endswith(".toml") and is_model(file := file_of_source(module)):
-        return functions_of_target(file, target, real, units or {})
+        return functions_of_target(file, target, real, units)
     if module.endswith(".toml") and "question" in read_toml(file := file_of_source(module)):
         asked = audit_specification(file, target or None).questions
         if not asked:
             raise unknown_claim(target, [q["name"] for q in read_toml(file)["question"]], file.name)
-        return [function_of_question(question, file.stem, real, units or {}) for question in asked]
+        return [function_of_question(question, file.stem, real, units) for question in asked]
     parts = [material_of_claim(part, allow_confirmed) for part in split_regimes(claims)]
-    known = {**units_of_paper(claims.partition(":")[0]), **(units or {})}
+    known = {**units_of_paper(claims.partition(":")[0]), **units}
     return [function_of(parts, real=real, name=function_name(name) if name else None, layout=Layout(units=known))]
 
 
@@ -363,22 +356,15 @@ def material_of_piece(found: Phases, regime: Regime, piece: TablePiece) -> Mater
     """The same of one piece of a table, as polynomials in the share of the piece that the parameter has passed."""
     family = found.family
     share = sp.Symbol("share" if found.parameter != "share" else "part", real=True)
-
-    def horner(coefficients: Sequence[sp.Expr]) -> sp.Expr:
-        total = sp.S.Zero
-        for c in reversed(coefficients):
-            total = c + share * total
-        return total
-
     power, rows, values = family.parameter**piece.shift, [], []
     for k, place, weight in piece.contacts:
         start, stop = family.panels[k]
-        size = horner(weight) / power
+        size = horner(weight, share) / power
         rows.append(
-            (family.measurements[k], family.time(start + (stop - start) * horner(place)), size / family.sigma[k])
+            (family.measurements[k], family.time(start + (stop - start) * horner(place, share)), size / family.sigma[k])
         )
         values.append([c if weight[0] > 0 else -c for c in weight])
-    value = horner([sum(column) for column in itertools.zip_longest(*values, fillvalue=sp.S.Zero)]) / power
+    value = horner([sum(column) for column in itertools.zip_longest(*values, fillvalue=sp.S.Zero)], share) / power
     error, late = (expression_text(e) for e in (piece.error, piece.time_error))
     scope = f"value and sum of sigma |error of a weight| within {error}, times within {late}, beside rounding"
     said = "interpolation about the certified optimum", scope, ()

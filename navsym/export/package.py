@@ -32,12 +32,19 @@ LICENSE = "Apache-2.0"
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """What is wanted: languages, licence, number of vectors, and the command for the manifest."""
+    """What is wanted: languages, licence, number of vectors, and the command for the manifest.
+
+    force    : replace files that are there; execute : compile and run the code
+    progress : called with the name of each language that was written and run
+    """
 
     targets: tuple[Target, ...]
     license: str = LICENSE
     count: int = COUNT
     command: tuple[str, ...] = ()
+    force: bool = False
+    execute: bool = True
+    progress: Callable[[str], None] = lambda language: None
 
 
 def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, str]:
@@ -199,51 +206,33 @@ class Exported(Answer):
         return f"<export of {', '.join(f['name'] for f in self.functions)} to {self.out}: {said}>"
 
 
-def write_export(
-    functions: Sequence[ExportedFunction],
-    order: Order,
-    out: Path,
-    *,
-    force: bool = False,
-    execute: bool = True,
-    progress: Callable[[str], None] = lambda language: None,
-) -> Exported:
+def write_export(functions: Sequence[ExportedFunction], order: Order, out: Path) -> Exported:
     """Make an export, run it, and write it when it held.
-
-    progress : called with the name of each language that was written and run.
 
     Raises FailedError when a language's vectors fail, FolderError when nothing may be written.
     """
     files = files_of(functions, order)
-    outcomes = write_verified(files, order.targets, out, force=force, execute=execute, progress=progress)
+    outcomes = write_verified(files, order, out)
     return Exported(out, tuple(summary_record(f) for f in functions), outcomes, tuple(files))
 
 
-def write_verified(
-    files: Mapping[str, str],
-    targets: Sequence[Target],
-    out: Path,
-    *,
-    force: bool = False,
-    execute: bool = True,
-    progress: Callable[[str], None] = lambda language: None,
-) -> tuple[Outcome, ...]:
+def write_verified(files: Mapping[str, str], order: Order, out: Path) -> tuple[Outcome, ...]:
     """Run the vectors of every language in a trial folder, and write the files to their own when they held."""
-    require_free(out, files, force=force)
+    require_free(out, files, force=order.force)
     with tempfile.TemporaryDirectory(prefix="navsym-export-") as trial:
         write_folder(Path(trial), files, force=True)
         outcomes = []
-        for target in targets:
-            asked = run_target(Path(trial) / target.name, target) if execute else None
+        for target in order.targets:
+            asked = run_target(Path(trial) / target.name, target) if order.execute else None
             outcomes.append(asked or Outcome(target.name, "not executed", "not asked for", {}))
-            progress(target.name)
+            order.progress(target.name)
     failed = [outcome for outcome in outcomes if outcome.status == "failed"]
     if failed:
         raise FailedError(
             f"expected {failed[0].language} code inside its enclosures; got {failed[0].why}; "
             "nothing was written; leave this language out, and report the claim"
         )
-    write_folder(out, files, force=force)
+    write_folder(out, files, force=order.force)
     return tuple(outcomes)
 
 

@@ -6,7 +6,7 @@ import json
 import math
 import random
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -287,16 +287,14 @@ def columns_of(rows: Sequence[dict[str, Any]]) -> dict[str, list[Any]]:
     }
 
 
-def export_guard(
-    guard: Guard, order: Order, out: Path, *, force: bool, execute: bool, progress: Callable[[str], None]
-) -> Exported:
+def export_guard(guard: Guard, order: Order, out: Path) -> Exported:
     """The rule of a guard as code, compiled and replayed; raises RefusedError for a guard that has no such rule."""
     others = [target.name for target in order.targets if target.name not in LANGUAGES]
     if others:
         message = f"expected languages among {', '.join(LANGUAGES)} for a guard; got {others[0]}; leave it out"
         raise DomainError(message, where="export: to")
     files, record = files_of_rule(Rule(guard), order)
-    outcomes = write_verified(files, order.targets, out, force=force, execute=execute, progress=progress)
+    outcomes = write_verified(files, order, out)
     return Exported(out, (record,), outcomes, tuple(files))
 
 

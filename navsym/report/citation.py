@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from navsym import __version__
@@ -13,7 +13,7 @@ from navsym.claims import Paper, Record, Status
 from navsym.core.answers import Answer, named
 from navsym.report.formula.sides import only_truth
 from navsym.report.names import latex_escape
-from navsym.verification.decide import look_up_claims
+from navsym.verification.decide import decide_papers
 from navsym.verification.ledger import stored_records
 from navsym.verification.papers import find_claim
 
@@ -59,9 +59,9 @@ def cite(claim: str, *, fresh: bool = False) -> Citation:
     ...
     """
     module, wanted = find_claim(claim)
-    better = next((other for other in module.claims if other.corrects_id == wanted.id), None)
-    both = (wanted,) if better is None else (wanted, better)
-    record, *correction = look_up_claims(module, both, {} if fresh else stored_records())
+    better = module.correction_of(wanted.id)
+    both = replace(module, claims=(wanted,) if better is None else (wanted, better))
+    record, *correction = decide_papers([both], stored={} if fresh else stored_records())
     return Citation(wanted.id, record.status, bibtex(module.paper, record, __version__, *correction))
 
 

@@ -27,7 +27,7 @@ from navsym.language.names import RESERVED
 from navsym.prove.wording import decimal_ends
 from navsym.report.formula.sides import only_truth
 from navsym.verification.decide import SECONDS, decide_claim_of, require_workers, sides
-from navsym.verification.papers import correction_of, find_claim
+from navsym.verification.papers import find_claim
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +102,7 @@ def explain(claim: str, *, seconds: float = SECONDS) -> Explanation:
     require_workers(None, seconds)
     module, wanted = find_claim(claim)
     _, record = decide_claim_of(wanted.id, seconds)
-    better = correction_of(wanted.id)
+    better = module.correction_of(wanted.id)
     correction = None if better is None else Correction(better.id, better.title, formula_of(better))
     return Explanation(record, module.paper.title, place_of(wanted), tuple(steps(record)), correction)
 

@@ -96,14 +96,6 @@ def decide_claim_of(wanted: str, seconds: float = SECONDS) -> tuple[Paper, Recor
     return module.paper, decide_papers([one], jobs=1, seconds=seconds).claims[0]
 
 
-def look_up_claims(module: PaperModule, claims: Sequence[Claim], stored: Mapping[str, Record]) -> tuple[Record, ...]:
-    """Records of claims of one paper: the stored verdict where it is of the same statement, else decided now.
-
-    stored : records of the ledger by claim id
-    """
-    return decide_papers([replace(module, claims=tuple(claims))], stored=stored).claims
-
-
 def show(claim: str, *, seconds: float = SECONDS) -> tuple[Record, ...]:
     """Both sides of a claim and its verdict, decided now; of an equation in several parts, one record for each.
 

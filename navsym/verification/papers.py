@@ -27,6 +27,10 @@ class PaperModule:
     claims: tuple[Claim, ...]
     source: str = ""
 
+    def correction_of(self, wanted: str) -> Claim | None:
+        """The claim that corrects the one of an id, or None."""
+        return next((claim for claim in self.claims if claim.corrects_id == wanted), None)
+
 
 @dataclass(frozen=True, slots=True)
 class PaperSummary:
@@ -168,9 +172,3 @@ def claim_ids(wanted: str) -> list[str]:
     if number in numbers or number not in equations:
         return [wanted]
     return [f"{module}:{n}" for n in numbers if equation_of(n, equations) == number] or [wanted]
-
-
-def correction_of(wanted: str) -> Claim | None:
-    """The claim that corrects this one, or None."""
-    (paper,) = load_papers([split_id(wanted)[0]])
-    return next((claim for claim in paper.claims if claim.corrects_id == wanted), None)

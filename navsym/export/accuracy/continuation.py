@@ -131,9 +131,9 @@ def cells(low: arb, high: arb) -> list[arb]:
     return [a.union(b) for a, b in itertools.pairwise(ends)]
 
 
-def horner(polynomial: Sequence[fmpq], t: arb) -> arb:
-    """The polynomial at a ball, lowest coefficient first."""
-    total = arb(0)
+def horner(polynomial: Sequence[Any], t: Any) -> Any:
+    """The polynomial at a ball, or at whatever can be multiplied; lowest coefficient first."""
+    total = 0 * t
     for coefficient in reversed(polynomial):
         total = total * t + coefficient
     return total

@@ -17,7 +17,7 @@ from typing import Any
 import sympy as sp
 
 from navsym.core.casadi_functions import Memo, by_distance, column_function, declare_inputs, translate
-from navsym.export.accuracy.continuation import continuation
+from navsym.export.accuracy.continuation import continuation, horner
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.atoms import expm1, filled
 from navsym.export.holes import Part, T, part_of
@@ -66,13 +66,12 @@ def in_casadi(form: sp.Expr, memo: Memo) -> Any:
 
 def without_hole(part: Part, t: Any) -> Any:
     """The polynomial of the part below its switch, its plain form above it."""
-    proved, total = continuation(part, "double"), 0 * t
-    for c in reversed(proved.polynomial):
-        total = total * t + int(c.p) / int(c.q)
+    proved = continuation(part, "double")
+    below = t**proved.power * horner([int(c.p) / int(c.q) for c in proved.polynomial], t)
     above = translate(part.plain, {T: t})
     for _ in range(part.divided):
         above = above / t
-    return by_distance(t, proved.switch, t**proved.power * total, above)
+    return by_distance(t, proved.switch, below, above)
 
 
 def generated(function: Any, name: str) -> str:
