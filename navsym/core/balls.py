@@ -196,10 +196,6 @@ def general_power(base: Any, exponent: Any) -> Any:
     return (base.log() * exponent).exp() if constant_term(base) > 0 else undefined_like(base)
 
 
-def logarithm(x: Any) -> Any:
-    return x.log() if constant_term(x) > 0 else undefined_like(x)
-
-
 def absolute_value(x: Any) -> Any:
     if isinstance(x, arb):
         return cut_below_zero(abs(x))
@@ -218,14 +214,6 @@ def sign_function(x: Any) -> Any:
     if head == 0:
         return arb(0)
     return arb(0, 1) if head.is_finite() and isinstance(x, arb) else undefined_like(x)
-
-
-def inverse_sine(x: Any) -> Any:
-    return x.asin() if is_within_unit(x) else undefined_like(x)
-
-
-def inverse_cosine(x: Any) -> Any:
-    return x.acos() if is_within_unit(x) else undefined_like(x)
 
 
 def is_within_unit(x: Any) -> bool:
@@ -280,11 +268,11 @@ OPERATIONS: dict[str, Callable[[Any, list[Any], Any], Any]] = {
     "cot": unary(lambda x: x.cos() * reciprocal(x.sin())),
     "sec": unary(lambda x: reciprocal(x.cos())),
     "csc": unary(lambda x: reciprocal(x.sin())),
-    "log": unary(logarithm),
+    "log": unary(lambda x: x.log() if constant_term(x) > 0 else undefined_like(x)),
     "abs": unary(absolute_value),
     "sign": unary(sign_function),
-    "asin": unary(inverse_sine),
-    "acos": unary(inverse_cosine),
+    "asin": unary(lambda x: x.asin() if is_within_unit(x) else undefined_like(x)),
+    "acos": unary(lambda x: x.acos() if is_within_unit(x) else undefined_like(x)),
     "atan2": lambda constant, arguments, values: two_argument_arctangent(*arguments),
     "max": lambda constant, arguments, values: extreme_of("max", arguments),
     "min": lambda constant, arguments, values: extreme_of("min", arguments),

@@ -88,13 +88,11 @@ def input_of(symbol: sp.Symbol, name: str, box: Mapping[Any, Any], real: str) ->
     limits = range_of(symbol, box)
     low = -np.inf if limits.lower is None else inside(limits.lower, 1, real)
     high = np.inf if limits.upper is None else inside(limits.upper, -1, real)
-    opened = bool(limits.open_lower) and limits.lower is not None
     test_high = high if np.isfinite(high) else max(LARGE, 2 * abs(low)) if np.isfinite(low) else LARGE
     test_low = low if np.isfinite(low) else -max(LARGE, 2 * abs(high)) if np.isfinite(high) else -LARGE
-    if opened and low == 0.0:
+    if limits.open_lower and low == 0.0:
         test_low = low = SMALLEST[real]
-        opened = False
-    return Input(symbol, name, float(low), float(high), opened, float(test_low), float(test_high), around(limits))
+    return Input(symbol, name, float(low), float(high), float(test_low), float(test_high), around(limits))
 
 
 def around(limits: Range) -> str:

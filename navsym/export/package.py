@@ -25,6 +25,7 @@ from navsym.export.languages.targets import Target
 from navsym.export.parts import ExportedFunction, Piece
 from navsym.export.roundtrip import MANIFEST, Outcome, run_target, sealed
 from navsym.prove.certificates import identity_certificate
+from navsym.verification.certificates import list_parts
 
 COUNT = 48
 LICENSE = "Apache-2.0"
@@ -95,19 +96,12 @@ def certificate_texts(function: ExportedFunction) -> dict[str, str]:
     found = {}
     for place, piece in enumerate(function.pieces):
         stem = f"certificates/{function.name}" + (f".{place}" if len(function.pieces) > 1 else "")
-        for kind, parts in (("claim", singly(piece.source.certificate)), ("graph", ties_of(piece))):
+        claimed = [dict(part) for part in list_parts(piece.source.certificate or {}) if part]
+        for kind, parts in (("claim", claimed), ("graph", ties_of(piece))):
             for number, part in enumerate(parts):
                 tail = f".{number}" if len(parts) > 1 else ""
                 found[f"{stem}.{kind}{tail}.json"] = json.dumps(part, indent=2) + "\n"
     return found
-
-
-def singly(certificate: Mapping[str, Any] | None) -> list[dict[str, Any]]:
-    """A certificate of several parts as its parts."""
-    if certificate is None:
-        return []
-    parts = certificate["of"] if certificate.get("kind") == "all" else [certificate]
-    return [dict(part) for part in parts if part]
 
 
 def ties_of(piece: Piece) -> list[dict[str, Any]]:

@@ -45,7 +45,6 @@ class Input:
     name: str
     low: float
     high: float
-    open_low: bool
     test_low: float
     test_high: float
     around: str

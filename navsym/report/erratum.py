@@ -85,20 +85,9 @@ class Erratum:
         """True for a claim file, whose corrections are decided and not derived."""
         return self.paper.module.endswith(".toml")
 
-    @property
-    def of_paper(self) -> tuple[Entry, ...]:
-        """Slips of the paper itself."""
-        return tuple(entry for entry in self.entries if entry.slip == "paper")
-
-    @property
-    def of_scan(self) -> tuple[Entry, ...]:
-        """Slips of the scan that was read."""
-        return tuple(entry for entry in self.entries if entry.slip == "scan")
-
-    @property
-    def of_either(self) -> tuple[Entry, ...]:
-        """Slips of which the copy cannot tell whether they are the authors' or its own."""
-        return tuple(entry for entry in self.entries if entry.slip == "undecidable")
+    def of(self, slip: str) -> tuple[Entry, ...]:
+        """Slips of the paper itself, of the scan that was read, or "undecidable" between the two."""
+        return tuple(entry for entry in self.entries if entry.slip == slip)
 
 
 def erratum_of(paper: Paper, records: Sequence[Record], words: Words | None = None) -> Erratum:

@@ -28,8 +28,9 @@ from navsym.report.formula.latex import sentence_html, sentence_latex
 from navsym.report.formula.sides import Formula, coordinates, formula, only_truth
 from navsym.report.names import latex_escape
 from navsym.report.plots import refutation_svg
-from navsym.report.trust import backing_words, list_parts, trust_of
+from navsym.report.trust import backing_words, trust_of
 from navsym.report.wording import Words
+from navsym.verification.certificates import list_parts
 from navsym.verification.ledger import Ledger, is_only_in_the_copy, records_about, sort_records
 
 # Names of the files of a report, and the certificates that it keeps as files.
@@ -184,10 +185,9 @@ def pages(
 
         yield file, conventions_page(answer)
     papers.sort(key=lambda paper: not paper.erratum.entries)  # those with something to correct come first
-    yield (
-        "index.html",
-        env.get_template("index.html").render(shared, papers=papers, total=total(papers), book=book, models=found),
-    )
+    total = {status: sum(paper.counts[status] for paper in papers) for status in MARKS}
+    shown = env.get_template("index.html").render(shared, papers=papers, total=total, book=book, models=found)
+    yield "index.html", shown
 
 
 def environment() -> jinja2.Environment:
@@ -215,11 +215,6 @@ def visible(value: Any) -> Any:
     if not isinstance(value, str) or isinstance(value, Markup) or value.isprintable():
         return value
     return "".join(c if c.isprintable() or c in "\n\t" else repr(c)[1:-1] for c in value)
-
-
-def total(papers: Sequence[PaperView]) -> dict[str, int]:
-    """Numbers of verdicts of all papers together, by status."""
-    return {status: sum(paper.counts[status] for paper in papers) for status in MARKS}
 
 
 # -- one paper -------------------------------------------------------------------------------

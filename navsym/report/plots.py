@@ -249,13 +249,9 @@ def curve_of_regime(regime: Regime) -> Mapping[str, Any] | None:
     at = np.linspace(low, high, POINTS + 1)[1:-1]
     drawn = [regime.value, *(p.at for p in regime.support if p.at is not None)]
     curves = [program_values(e, regime.family.parameter, at) for e in drawn]
-    return {"at": at, "value": curves[0], "label": text_of_value(regime), "instants": np.array(curves[1:])}
-
-
-def text_of_value(regime: Regime) -> str:
-    """The formula of a regime where it is short, else its range."""
     text = regime.document()["value"]
-    return text if len(text) <= 30 else " to ".join(regime.ends)
+    label = text if len(text) <= 30 else " to ".join(regime.ends)
+    return {"at": at, "value": curves[0], "label": label, "instants": np.array(curves[1:])}
 
 
 def plot_filter(found: Estimates) -> Figure:

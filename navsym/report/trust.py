@@ -12,7 +12,7 @@ from typing import Any
 
 from navsym import checker
 from navsym.prove.grant import UNCHECKED
-from navsym.verification.certificates import JUDGES, read_outcomes
+from navsym.verification.certificates import JUDGES, list_parts, read_outcomes
 from navsym.verification.ledger import Ledger, Record
 
 
@@ -54,11 +54,6 @@ def trust_of(ledger: Ledger) -> Trust:
         lines=len(Path(checker.__file__).read_text(encoding="utf-8").splitlines()),
         judged=tuple(outcome_words(judge, parts) for judge in JUDGES),
     )
-
-
-def list_parts(certificate: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
-    """The certificates of the entries of a claim, or the one of all of it."""
-    return certificate["of"] if certificate.get("kind") == "all" else [certificate]
 
 
 def list_rules(value: Any) -> Iterator[str]:

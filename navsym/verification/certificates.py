@@ -177,6 +177,11 @@ class Certificates:
             self.remark(f"not kept: {len(self.lost)} verdicts: {names}")
 
 
+def list_parts(certificate: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
+    """The certificates of the entries of a claim, or the one of all of it."""
+    return certificate["of"] if certificate.get("kind") == "all" else [certificate]
+
+
 def store_key(statement: str) -> str:
     """The key in the user's store for the hash of a statement."""
     return key_of("certificate", statement)

@@ -15,10 +15,9 @@ import sympy as sp
 from flint import arb
 
 from navsym.core.balls import precision
-from navsym.export.accuracy.continuation import analyse
 from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, down, up
 from navsym.export.accuracy.underflow import Margins
-from navsym.export.accuracy.uniform import Box, starting_cells
+from navsym.export.accuracy.uniform import on_cell, starting_cells
 from navsym.export.expression_graph import Graph, Node
 
 #: Places of the arguments whose infinity (or, for extremes, NaN) a result may hide. Every other operation hands it on,
@@ -121,13 +120,6 @@ def with_guards(graph: Graph, large: Sequence[int], small: Sequence[int], margin
 def made(graph: Graph) -> set[int]:
     """The nodes that are results of operations."""
     return {k for k, node in enumerate(graph.nodes) if node.op not in ("input", "const")}
-
-
-def on_cell(graph: Graph, cell: Box, arithmetic: Arithmetic, literals: Sequence[Any]) -> list[Bounded]:
-    """Values and bounds of all nodes on one cell; in code a node without a bound would be infinite, or undefined."""
-    with precision(BITS):
-        balls = [arb(low).union(arb(high)) if low != high else arb(low) for low, high in cell]
-    return analyse(graph, balls, arithmetic, literals)
 
 
 def finite(found: Bounded, arithmetic: Arithmetic) -> bool:

@@ -11,7 +11,7 @@ from flint import arb
 
 from navsym.core.balls import precision
 from navsym.export.accuracy.continuation import analyse
-from navsym.export.accuracy.rounding import BITS, Arithmetic, up
+from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, up
 from navsym.export.expression_graph import Graph
 
 CELLS = 160
@@ -100,9 +100,7 @@ def split(box: Box) -> list[Box]:
 
 def measured(graph: Graph, box: Box, arithmetic: Arithmetic, literals: Sequence[Any]) -> Uniform:
     """Bounds of one cell, with floats as ends."""
-    with precision(BITS):
-        balls = [arb(low).union(arb(high)) if low != high else arb(low) for low, high in box]
-    found = analyse(graph, balls, replace(arithmetic, top=NEVER), literals)
+    found = on_cell(graph, box, replace(arithmetic, top=NEVER), literals)
     results = [found[root] for root in graph.roots]
     with precision(BITS):
         unit, largest = arithmetic.unit(), arb(2) ** arithmetic.top
@@ -112,6 +110,13 @@ def measured(graph: Graph, box: Box, arithmetic: Arithmetic, literals: Sequence[
             tuple(upper_float(r.absolute) for r in results),
             all(bool(up(node.value) + node.absolute < largest) for node in found),
         )
+
+
+def on_cell(graph: Graph, cell: Box, arithmetic: Arithmetic, literals: Sequence[Any]) -> list[Bounded]:
+    """Values and bounds of all nodes on one cell; in code a node without a bound would be infinite, or undefined."""
+    with precision(BITS):
+        balls = [arb(low).union(arb(high)) if low != high else arb(low) for low, high in cell]
+    return analyse(graph, balls, arithmetic, literals)
 
 
 def upper_float(x: arb) -> float:

@@ -11,6 +11,7 @@ import math
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from flint import arb
@@ -104,16 +105,10 @@ def fill_holes(piece: Piece, exact: Sequence[arb], found: Sequence[Bounded]) -> 
     return [r.value if proved and not x.is_finite() else x for x, r in zip(exact, found, strict=True)]
 
 
-_TAPES: dict[int, tuple[Piece, list[Tape], list[Tape]]] = {}
-
-
+@cache
 def tapes(piece: Piece) -> tuple[list[Tape], list[Tape]]:
     """Flattened named values and formulas of a piece, made once."""
-    known = _TAPES.get(id(piece))
-    if known is None or known[0] is not piece:
-        lets, formulas = [tape(f) for _, f, _ in piece.lets], [tape(f) for f in piece.formulas]
-        known = _TAPES[id(piece)] = (piece, lets, formulas)
-    return known[1], known[2]
+    return [tape(f) for _, f, _ in piece.lets], [tape(f) for f in piece.formulas]
 
 
 def analysed(piece: Piece, balls: Sequence[arb], arithmetic: Arithmetic) -> list[Bounded]:

@@ -109,16 +109,6 @@ class Scene:
         return self.flow.card.vector_error == "body"
 
 
-def turn_about(axis: int, angle: sp.Expr | int) -> sp.Matrix:
-    """Rotation by an angle about a coordinate axis."""
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    matrix = sp.eye(3)
-    matrix[i, i] = matrix[j, j] = sp.cos(angle)
-    matrix[j, i] = sp.sin(angle)
-    matrix[i, j] = -sp.sin(angle)
-    return matrix
-
-
 def tidy(value: sp.Matrix) -> sp.Matrix:
     """Entries as polynomials in sines and cosines, with sin**2 = 1 - cos**2 used."""
     known = {sp.sin(angle) ** 2: 1 - sp.cos(angle) ** 2 for angle in (heading, roll)}
@@ -137,7 +127,7 @@ def make_scene(card: Card, manoeuvre: Manoeuvre, points: int = 0, arm: Sequence[
     arm    : lever arm of what sees them; none for the body's origin
     """
     rates = dict(manoeuvre.rates)
-    C = turn_about(2, manoeuvre.heading) * turn_about(0, manoeuvre.roll)
+    C = sp.rot_ccw_axis3(manoeuvre.heading) * sp.rot_ccw_axis1(manoeuvre.roll)
     velocity = sp.Matrix(manoeuvre.velocity)
     spin = C.T * derivative(C, rates)
     turn = tidy(sp.Matrix([spin[2, 1], spin[0, 2], spin[1, 0]]))
