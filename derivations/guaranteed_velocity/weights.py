@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from navsym.claims import Bound, Equation, claim
+from navsym.claims import Bound, Claim, Equation, claim
 from navsym_papers.guaranteed_velocity.model import (
     INSTANTS,
     STATED,
@@ -133,41 +133,35 @@ def estimate_of_tilt(first: sp.Expr) -> sp.Expr:
 
 PRINTED_FIRST = 1 / (2 * sp.sin(T / 2) ** 2)
 TRUE_FIRST = 1 / (2 * sp.sin(T / 2))
-TILT_REASON = "sin^2(T/2) stands for sin(T/2): Phi_21 of (4.12) is right, and the estimate as printed is biased"
 PRINTED_DRIFT = (-z0 + 2 * sp.cos(T / 2) * zm + (1 - 2 * sp.cos(T / 2)) * zT) / (4 * SINE)
 
 
-velocity_estimate = claim(
-    "4.14.y1", "The estimate of y1 is the last measurement.", lambda: Equation(zT, derived_estimate(0), STATED)
-)
-tilt_estimate = claim(
-    "4.14.y2",
-    "The estimate of y2, as printed.",
-    lambda: Equation(estimate_of_tilt(PRINTED_FIRST), derived_estimate(1), STATED),
-    slip="paper",
-    reason=TILT_REASON,
-)
-tilt_estimate_corrected = claim(
-    "4.14.y2*",
-    "The estimate of y2 with the first coefficient -1/(2 sin(T/2)).",
-    lambda: Equation(estimate_of_tilt(TRUE_FIRST), derived_estimate(1), STATED),
-)
+def estimates(equation: str, velocity: int, tilt: int) -> tuple[Claim, Claim, Claim]:
+    """The estimates of velocity and tilt of one channel, the second as printed and as it should read."""
+    return (
+        claim(
+            f"{equation}.y{velocity}",
+            f"The estimate of y{velocity} is the last measurement.",
+            lambda: Equation(zT, derived_estimate(0), STATED),
+        ),
+        claim(
+            f"{equation}.y{tilt}",
+            f"The estimate of y{tilt}, as printed.",
+            lambda: Equation(estimate_of_tilt(PRINTED_FIRST), derived_estimate(1), STATED),
+            slip="paper",
+            reason="sin^2(T/2) stands for sin(T/2): Phi_21 of (4.12) is right, and the estimate as printed is biased",
+        ),
+        claim(
+            f"{equation}.y{tilt}*",
+            f"The estimate of y{tilt} with the first coefficient -1/(2 sin(T/2)).",
+            lambda: Equation(estimate_of_tilt(TRUE_FIRST), derived_estimate(1), STATED),
+        ),
+    )
+
+
+lateral_estimates = estimates("4.14", 1, 2)
 drift_estimate = claim("4.14.y3", "The estimate of y3.", lambda: Equation(PRINTED_DRIFT, derived_estimate(2), STATED))
-longitudinal_velocity_estimate = claim(
-    "4.16.y4", "The estimate of y4 is the last measurement.", lambda: Equation(zT, derived_estimate(0), STATED)
-)
-longitudinal_tilt_estimate = claim(
-    "4.16.y5",
-    "The estimate of y5, as printed.",
-    lambda: Equation(estimate_of_tilt(PRINTED_FIRST), derived_estimate(1), STATED),
-    slip="paper",
-    reason=TILT_REASON,
-)
-longitudinal_tilt_estimate_corrected = claim(
-    "4.16.y5*",
-    "The estimate of y5 with the first coefficient -1/(2 sin(T/2)).",
-    lambda: Equation(estimate_of_tilt(TRUE_FIRST), derived_estimate(1), STATED),
-)
+longitudinal_estimates = estimates("4.16", 4, 5)
 longitudinal_drift_estimate = claim(
     "4.16.y6",
     "The estimate of y6 with the brackets as they stand.",

@@ -212,53 +212,34 @@ def scaled(size, variable):
     return 2 * variable / squares**2
 
 
-derivative_x_as_printed = claim(
-    "12",
-    "The derivative of t_G by beta_x is the quadratic form itself.",
-    lambda: Equation(
-        quadratic_form([double_sum(1, PRINTED[name]) for name in ("Ax2*", "Ax1", "Ax0*")]),
-        derivative(slopes(1), beta_x),
-    ),
-    slip="paper",
-    reason="the derivative is the quadratic form times 2 beta_y / D^2; only the equation '= 0' survives without the "
-    "factor, and it also vanishes at beta_y = 0; by hand: slopes (1, 0), (0, 1) at beta = (1, 1): the derivative is "
-    "-1/2, the form -1",
-)
+def derivatives(number, names, variable, other, sign):
+    """The derivative of t_G by one angle as the quadratic form of three sums: as printed, and with its factor."""
 
+    def form(size):
+        return quadratic_form([double_sum(size, PRINTED[name]) for name in names])
 
-@claim("12*")
-def derivative_x():
-    """The derivative of t_G by beta_x is the quadratic form times 2 beta_y / D^2, D the sum of squares."""
-    forms = [quadratic_form([double_sum(s, PRINTED[name]) for name in ("Ax2*", "Ax1", "Ax0*")]) for s in PAIRS]
-    return Equation(
-        [scaled(s, beta_y) * form for s, form in zip(PAIRS, forms, strict=True)],
-        [derivative(slopes(s), beta_x) for s in PAIRS],
+    return (
+        claim(
+            number,
+            f"The derivative of t_G by {variable} is the quadratic form itself.",
+            lambda: Equation(form(1), derivative(slopes(1), variable)),
+            slip="paper",
+            reason=f"the derivative is the quadratic form times 2 {other} / D^2; only the equation '= 0' survives "
+            f"without the factor, and it also vanishes at {other} = 0; by hand: slopes (1, 0), (0, 1) at beta = (1, "
+            f"1): the derivative is {sign}1/2, the form {sign}1",
+        ),
+        claim(
+            f"{number}*",
+            f"The derivative of t_G by {variable} is the quadratic form times 2 {other} / D^2, D the sum of squares.",
+            lambda: Equation(
+                [scaled(s, other) * form(s) for s in PAIRS], [derivative(slopes(s), variable) for s in PAIRS]
+            ),
+        ),
     )
 
 
-derivative_y_as_printed = claim(
-    "13",
-    "The derivative of t_G by beta_y is the quadratic form itself.",
-    lambda: Equation(
-        quadratic_form([double_sum(1, PRINTED[name]) for name in ("Ay2", "Ay1", "Ay0*")]), derivative(slopes(1), beta_y)
-    ),
-    slip="paper",
-    reason="the derivative is the quadratic form times 2 beta_x / D^2; only the equation '= 0' survives without the "
-    "factor, and it also vanishes at beta_x = 0; by hand: slopes (1, 0), (0, 1) at beta = (1, 1): the derivative is "
-    "1/2, the form 1",
-)
-
-
-@claim("13*")
-def derivative_y():
-    """The derivative of t_G by beta_y is the quadratic form times 2 beta_x / D^2, D the sum of squares."""
-    forms = [quadratic_form([double_sum(s, PRINTED[name]) for name in ("Ay2", "Ay1", "Ay0*")]) for s in PAIRS]
-    return Equation(
-        [scaled(s, beta_x) * form for s, form in zip(PAIRS, forms, strict=True)],
-        [derivative(slopes(s), beta_y) for s in PAIRS],
-    )
-
-
+derivatives_by_x = derivatives("12", ("Ax2*", "Ax1", "Ax0*"), beta_x, beta_y, "-")
+derivatives_by_y = derivatives("13", ("Ay2", "Ay1", "Ay0*"), beta_y, beta_x, "")
 opposite_sums = claim(
     "13.sign",
     "A_x2 = -A_y2 and A_x1 = -A_y1.",

@@ -57,42 +57,32 @@ def stretched(runs):
     return [(scale * e, scale * f) for e, f in runs]
 
 
-@claim(
+def scales(measure, count):
+    """That a measure of so many runs is as much larger as the unit is smaller."""
+    runs = errors(count)
+    return Equation(scale * measure(runs, count), measure(stretched(runs), count))
+
+
+unit_as_printed = claim(
     "sigma.unit",
+    "The accuracy measure is a length: in a unit 1/lambda it is lambda times as large.",
+    lambda: scales(printed_measure, 3),
     slip="paper",
     reason="under the outer root stand lengths, not their squares: the measure is a root of metres, though table 1 "
     "gives metres; the inner root should not be there; by hand: errors of 100 m each make it about 10",
 )
-def unit_as_printed():
-    """The accuracy measure is a length: in a unit 1/lambda it is lambda times as large."""
-    runs = errors(3)
-    return Equation(scale * printed_measure(runs, 3), printed_measure(stretched(runs), 3))
-
-
-@claim("sigma.unit*")
-def unit():
-    """The root of the mean square error is a length."""
-    runs = errors(3)
-    return Equation(scale * mean_square_measure(runs, 3), mean_square_measure(stretched(runs), 3))
-
-
-@claim(
+unit = claim("sigma.unit*", "The root of the mean square error is a length.", lambda: scales(mean_square_measure, 3))
+velocity_unit_as_printed = claim(
     "sigmaV.unit",
+    "The velocity measure is a velocity: it scales with the unit of velocity.",
+    lambda: scales(printed_measure, 2),
     slip="paper",
     reason="the same inner root in the velocity measure: a root of m/s where the table has m/s; by hand: errors of "
     "0.25 m/s each make it about 0.5",
 )
-def velocity_unit_as_printed():
-    """The velocity measure is a velocity: it scales with the unit of velocity."""
-    runs = errors(2)
-    return Equation(scale * printed_measure(runs, 2), printed_measure(stretched(runs), 2))
-
-
-@claim("sigmaV.unit*")
-def velocity_unit():
-    """The root of the mean square velocity error is a velocity."""
-    runs = errors(2)
-    return Equation(scale * mean_square_measure(runs, 2), mean_square_measure(stretched(runs), 2))
+velocity_unit = claim(
+    "sigmaV.unit*", "The root of the mean square velocity error is a velocity.", lambda: scales(mean_square_measure, 2)
+)
 
 
 @claim("sigma.count", slip="paper", reason="the sum i = 0…n has n + 1 terms for n experiments")

@@ -58,7 +58,7 @@ REGIMES = tuple(one for one in beyond.REGIMES if one.number in ("range.y3", "ran
 #: Name -> what is decided, once for both types of numbers.
 MAKERS = {
     "Phi33": lambda: [of_claim(weights.WEIGHTS[8])],
-    "tilt": lambda: [of_claim(weights.tilt_estimate_corrected)],
+    "tilt": lambda: [of_claim(weights.lateral_estimates[2])],
     "velocity_correction_y3": lambda: [of_claim(claim) for claim in REGIMES],
     **{f.__name__: lambda f=f: [of_statement(f.__name__, f())] for f in (versine, lag, rotation, holes)},
 }
