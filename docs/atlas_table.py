@@ -61,10 +61,10 @@ def page() -> Iterator[str]:
         granted=sum(cell.checked for cell in cells),
         ranks=sum(len(cell.drops) + 1 for cell in cells),
     )
-    for sheet in list_sheets():
-        head = f"## {sheet.model}\n\n| manoeuvre | {' | '.join(sheet.aidings)} |\n|"
-        yield head + " --- |" * (len(sheet.aidings) + 1)
-        for manoeuvre, row in sheet.rows.items():
+    for model, aidings, rows in list_sheets():
+        head = f"## {model}\n\n| manoeuvre | {' | '.join(aidings)} |\n|"
+        yield head + " --- |" * (len(aidings) + 1)
+        for manoeuvre, row in rows.items():
             yield f"| {manoeuvre} | {' | '.join(map(mark, row))} |"
         yield ""
     yield "## Published statements\n\nEach is held by a test on the cells.\n"
