@@ -16,7 +16,7 @@ Sheet = tuple[str, tuple[str, ...], Mapping[str, tuple[Cell | None, ...]]]
 def list_sheets() -> list[Sheet]:
     """A sheet for each model, in the order of the atlas."""
     split = {name: name.split(": ") for name in atlas}
-    sheets = []
+    sheets: list[Sheet] = []
     for model in dict.fromkeys(parts[0] for parts in split.values()):
         own = [parts for parts in split.values() if parts[0] == model]
         aidings = tuple(dict.fromkeys(parts[2] for parts in own))

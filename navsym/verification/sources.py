@@ -12,7 +12,7 @@ from importlib.abc import SourceLoader
 from pathlib import Path
 from types import ModuleType
 
-from navsym.claims import CERTIFIED, OPEN, PROVED, REFUTED, Claim, Finding, Paper, Property, Statement, Status, Verdict
+from navsym.claims import CERTIFIED, OPEN, PROVED, Claim, Finding, Paper, Property, Statement, Status, Verdict
 from navsym.conventions.card import HEADINGS
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, NotEstimableError
 from navsym.language.declarations import Parameter
@@ -69,10 +69,19 @@ def claim_of_notes(
     completed: Callable[[Verdict], Verdict] | None = None,
 ) -> Claim:
     """The claim of a block in a file, with the title, the verdict and the reason that its notes declare."""
-    title, expect = notes.get("title", title), Status(notes.get("expect", "PROVED"))
-    slip, reason = "paper" if expect == REFUTED else None, notes.get("reason", "")
-    is_free = "expect" not in notes
-    return Claim(name, number, title, derive, expect, notes.get("corrects"), slip, reason, place, completed, is_free)
+    return Claim(
+        name,
+        number,
+        notes.get("title", title),
+        derive,
+        Status(notes.get("expect", "PROVED")),
+        notes.get("corrects"),
+        "paper" if notes.get("expect") == "REFUTED" else None,
+        notes.get("reason", ""),
+        place,
+        completed,
+        "expect" not in notes,
+    )
 
 
 def place_of_line(name: str, path: Path, pattern: str) -> str:

@@ -80,11 +80,13 @@ def answers(path: str) -> bool:
     return done.returncode == 0
 
 
+def read_row(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row of the table with its lists as tuples."""
+    return {key: tuple(value) if isinstance(value, list) else value for key, value in row.items()}
+
+
 TABLE: Mapping[str, Mapping[str, Any]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
-TARGETS = {
-    name: Target(name, **{key: tuple(value) if isinstance(value, list) else value for key, value in row.items()})
-    for name, row in TABLE.items()
-}
+TARGETS = {name: Target(name, **read_row(row)) for name, row in TABLE.items()}
 ALIASES = {"js": "javascript", "numpy": "python", "c++": "cpp", "matlab": "octave"}
 
 
