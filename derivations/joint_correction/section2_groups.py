@@ -82,17 +82,6 @@ def row(
     return claim(number, title, lambda: Equation(kept(printed), kept(derived())), **more)
 
 
-def misprinted(
-    variable: str, printed: sp.Expr, corrected: sp.Expr, derived: Callable[[], sp.Expr], slip: str, reason: str
-) -> tuple[Claim, Claim]:
-    """The rate of a variable, as printed and as it should read: ``2.8.x6`` and ``2.8.x6*``."""
-    name = f"{variable[4]}_{variable[5]}"
-    return (
-        row(variable, f"Derivative of {name}, as printed.", printed, derived, slip=slip, reason=reason),
-        row(f"{variable}*", f"Derivative of {name} up to terms of order mu^2 rho.", corrected, derived),
-    )
-
-
 # (2.6) and (2.7): what the variables are
 
 VELOCITY_MEANING = (
@@ -147,24 +136,33 @@ rows_x = tuple(
     )
     for k, printed in enumerate(VELOCITY_ROWS)
 )
-row_x6 = misprinted(
+row_x6_printed = row(
     "2.8.x6",
+    "Derivative of x_6, as printed.",
     mu**2 * w1 * earth_drift + mu * (u1 * v3 - u3 * v1),
-    mu**2 * w1 * earth_drift - mu * (u1 * v3 - u3 * v1),
     lambda: velocity().rates[5],
-    "paper",
-    "sign of the last bracket: x_6 contains -u_1 beta_3 and u_3 beta_1, whose drifts give -u_1 nu_3 + u_3 "
+    slip="paper",
+    reason="sign of the last bracket: x_6 contains -u_1 beta_3 and u_3 beta_1, whose drifts give -u_1 nu_3 + u_3 "
     "nu_1; the row of x_3 turned by 90 degrees gives the same; by hand: u_1 = nu_3 = 1, all others 0: beta_3 grows "
     "at 1 and x_6 = -mu beta_3 at -mu, the print has mu",
 )
-outputs_c = tuple(
-    row(
-        f"2.8.sigma{k + 1}",
-        f"sigma_{k + 1}^c in the variables of the group, without noise.",
-        printed,
-        lambda k=k: velocity().outputs[k],
-    )
-    for k, printed in enumerate((x2 + x3 + mu * u3 * x4, x5 + x6 - mu * u3 * x1))
+row_x6 = row(
+    "2.8.x6*",
+    "Derivative of x_6 up to terms of order mu^2 rho.",
+    mu**2 * w1 * earth_drift - mu * (u1 * v3 - u3 * v1),
+    lambda: velocity().rates[5],
+)
+output_c1 = row(
+    "2.8.sigma1",
+    "sigma_1^c in the variables of the group, without noise.",
+    x2 + x3 + mu * u3 * x4,
+    lambda: velocity().outputs[0],
+)
+output_c2 = row(
+    "2.8.sigma2",
+    "sigma_2^c in the variables of the group, without noise.",
+    x5 + x6 - mu * u3 * x1,
+    lambda: velocity().outputs[1],
 )
 
 # (2.9): the position group
@@ -192,30 +190,39 @@ DOT = (
     "mu; by hand: constant omega, beta_3 = 1, all others 0: y_2 and y_6 stand still, the print has mu omega_2 and "
     "-mu omega_1"
 )
-row_y2 = misprinted(
+row_y2_printed = row(
     "2.9.y2",
+    "Derivative of y_2, as printed.",
     -y3 + mu**2 * (w1 * y5 - w2 * y1) * w2 + mu * w2 * b3,
+    lambda: position().rates[1],
+    slip="scan",
+    reason=DOT,
+)
+row_y2 = row(
+    "2.9.y2*",
+    "Derivative of y_2 up to terms of order mu^2 rho.",
     -y3 + mu**2 * (w1 * y5 - w2 * y1) * w2 + mu * dw2 * b3,
     lambda: position().rates[1],
-    "scan",
-    DOT,
 )
-row_y6 = misprinted(
+row_y6_printed = row(
     "2.9.y6",
+    "Derivative of y_6, as printed.",
     -y7 + mu**2 * (w2 * y1 - w1 * y5) * w1 - mu * w1 * b3,
+    lambda: position().rates[5],
+    slip="scan",
+    reason=DOT,
+)
+row_y6 = row(
+    "2.9.y6*",
+    "Derivative of y_6 up to terms of order mu^2 rho.",
     -y7 + mu**2 * (w2 * y1 - w1 * y5) * w1 - mu * dw1 * b3,
     lambda: position().rates[5],
-    "scan",
-    DOT,
 )
-outputs_m = tuple(
-    row(
-        f"2.9.sigma{k + 1}",
-        f"sigma_{k + 1}^M in the variables of the group, without noise.",
-        printed,
-        lambda k=k: position().outputs[k],
-    )
-    for k, printed in enumerate((y1, y5))
+output_m1 = row(
+    "2.9.sigma1", "sigma_1^M in the variables of the group, without noise.", y1, lambda: position().outputs[0]
+)
+output_m2 = row(
+    "2.9.sigma2", "sigma_2^M in the variables of the group, without noise.", y5, lambda: position().outputs[1]
 )
 
 
