@@ -27,7 +27,8 @@ UNNAMED = {
     **{"ca": "attitude_correction", "cv": "velocity_correction", "cp": "position_correction", "wander": "wander_angle"},
     **{"c": "rotation", "f": "specific_force", "w": "angular_rate", "v": "velocity", "r0": "position"},
     **{"r1": "position", "r2": "position", "g": "gravity", "R": "radii", "slope": "radius_slope", "rate": "earth_rate"},
-    "pull": "gravitational_parameter", "m": "known_vector",
+    "pull": "gravitational_parameter",
+    "m": "known_vector",
 }
 
 

@@ -2,8 +2,8 @@
 
 A matrix leads from one frame to another: ``C`` with ``rotation = "b to n"`` takes vectors of b to vectors of n,
 ``skew(v)`` stays in the frame of v, ``A.T`` leads back. A vector is a matrix whose columns have no frame. A name
-without a frame is an unknown. Only formulas with a vector of a declared frame, or with matrices of several, are looked
-at: a rotation alone also acts on numbers.
+without a frame is an unknown. Only formulas with a vector of a declared frame are looked at, or of matrices that all
+have frames, of several: a rotation alone also acts on numbers.
 """
 
 from __future__ import annotations
@@ -139,8 +139,9 @@ def infer_frames(
         slopes
     )
     used = [shapes[name] for name in names if name in shapes]
-    framed = {shape.frame: shape.kind for shape in used if shape.frame}
-    if ("vector" not in framed.values() and len(framed) < 2) or any(shape.sizes for shape in used):
+    declared = {shape.frame for shape in used if shape.frame}
+    several = len(declared) > 1 and all(shape.frame for shape in used if shape.size)
+    if not (several or any(x.frame and x.kind == "vector" for x in used)) or any(shape.sizes for shape in used):
         return {}
     unification = Unification(shapes, where)
     for name, rate in slopes.items():

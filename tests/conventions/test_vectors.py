@@ -240,7 +240,10 @@ REFUSED = [
     ({"known": {"quaternion_order": "scalar first"}}, "quaternion_order"),
     ({"known": {"innovation": "measurement - prediction"}}, "innovation"),
     ({"card": {"frame": "earth"}}, "expected 'earth', as the card says; got 'inertial'"),
-    ({"parameters": {"f": {"vector": 3}, "C": {"rotation": "b to n"}}, "quantities": {"rotation": ["C", "C"]}}, "three rows"),
+    (
+        {"parameters": {"f": {"vector": 3}, "C": {"rotation": "b to n"}}, "quantities": {"rotation": ["C", "C"]}},
+        "three rows",
+    ),
     ({"model": {**SMALL["model"], "G": [["0", "0"], ["C", "0"]]}, "noises": {"gyro": [1, 2, 3]}}, "with a size"),
     *(
         ({"model": {**SMALL["model"], "states": [name, "p[3]"]}}, r"model.states\[0\]: expected a name")
