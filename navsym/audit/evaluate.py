@@ -272,7 +272,8 @@ class Evaluator:
         if sizes == () and self.unit.language == "matlab" and all(self.whole(index) == 1 for index in indices):
             return [()], ()  # of a number
         if sizes is not None and len(indices) != len(sizes):
-            raise Unreadable(line, f"{len(indices)} indices of an array of {len(sizes)}")
+            number = "an index of one number; what it is computed from may lack its size in [code.symbols]"
+            raise Unreadable(line, f"{len(indices)} indices of an array of {len(sizes)}" if sizes else number)
         spots = [self.index_range(index, sizes[k] if sizes else None, line) for k, index in enumerate(indices)]
         shape = tuple(size for _, sides in spots for size in sides)
         if self.unit.language == "matlab" and len(spots) == 2 and shape and not spots[0][1]:

@@ -61,7 +61,7 @@ class Card:
     radius_variation : dRN/dL and dRE/dL: kept, dropped, or kept in the equations of the position only
     gravity_gradient : ``central``: of -mu r/|r|^3; ``radial``: -2 g r'/(|r| R); ``vertical``: -2 g/R along down;
                        ``normal``: the same in another frame, where gravity also turns with the normal of the Earth
-    gravity_radius   : R of the vertical gradient, in words
+    gravity_radius   : R of the vertical gradient, in words; of the radial one where there are two radii
     position_error   : ``metres`` along the axes, or ``geodetic`` (latitude, longitude, height)
     vector_error     : ``difference``; ``rotated``: the truth is turned by the attitude error first (right invariant);
                        ``body``: the difference is resolved in the body (left invariant)
@@ -159,21 +159,23 @@ def list_structures(
         cards = list(
             list_level(frame, azimuth, roles, radii, height)
             if level
-            else list_cartesian(frame, roles, radii * placed, height)
+            else list_cartesian(frame, roles, radii, height, placed)
         )
         for side, vector, card, words in product(sides, vectors, cards, readings):
             for rate in CHOICES["arm_rate"] if arm and card.earth_rate == KEPT else (None,):
                 yield replace(card, attitude_error=side, vector_error=vector, arm_rate=rate, **words)
 
 
-def list_cartesian(frame: str, roles: frozenset[str], radii: int = 0, height: bool = True) -> Iterator[Card]:
+def list_cartesian(frame: str, roles: frozenset[str], radii: int, height: bool, placed: bool) -> Iterator[Card]:
     """Cards of the inertial frame and of the frame that turns with the Earth."""
     metres = "metres" if "position" in roles else None
     gradients: list[tuple[str, str, str | None]] = [("none", "none", None)]
     if metres:
-        gradients += [("central", "sphere", None), ("radial", "ellipsoid", None)]
         shape = "sphere" if radii == 1 else "ellipsoid"
-        gradients += [("normal", shape, name) for name in list_radii(shape, radii, height)] if radii else []
+        names = list_radii(shape, radii, height)
+        gradients += [("central", "sphere", None)]
+        gradients += [("radial", "ellipsoid", name) for name in (names[1:] if radii == 2 else (None,))]
+        gradients += [("normal", shape, name) for name in names] if radii and placed else []
     rates: tuple[str | None, ...] = (KEPT, DROPPED) if frame == "earth" else (None,)
     for (gradient, shape, radius), rate in product(gradients, rates):
         centrifugal: tuple[str | None, ...] = (KEPT, DROPPED) if rate == KEPT and metres else (None,)

@@ -214,7 +214,8 @@ def restore_terms(card: Card, frame: str, radii: int) -> Card:
         card = replace(card, centrifugal=card.centrifugal and DROPPED)
         central = card.gravity_gradient == "central" and radii == 1
         if card.position_error and not central and card.gravity_gradient != "normal":
-            shape, name = ("sphere", "R") if radii == 1 else ("ellipsoid", "third radius" if radii == 3 else "RE")
+            own = card.gravity_radius or ("third radius" if radii == 3 else "RE")
+            shape, name = ("sphere", "R") if radii == 1 else ("ellipsoid", own)
             radius = None if card.gravity_gradient == "none" else name
             return replace(card, earth=shape, gravity_gradient="normal", gravity_radius=radius)
     if (card.frame, frame) == ("earth", "inertial") and card.centrifugal == DROPPED:

@@ -28,6 +28,7 @@ UNNAMED = {
     **{"c": "rotation", "f": "specific_force", "w": "angular_rate", "v": "velocity", "r0": "position"},
     **{"r1": "position", "r2": "position", "g": "gravity", "R": "radii", "slope": "radius_slope", "rate": "earth_rate"},
     "pull": "gravitational_parameter",
+    "m": "known_vector",
 }
 
 
@@ -40,8 +41,14 @@ def fill_model(document: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     words = read_known(as_table(document["card"], place), place)
     rest = {name: value for name, value in document.items() if name != "card"}
     model = as_table(document.get("model", {}), join_place(where, "model"))
+    spot = join_place(where, "known")
+    known = as_table(document.get("known", {}), spot)
+    for name, word in known.items():
+        if words.get(name, word) != word:
+            message = f"expected {quote(words[name])}, as the card says; got {quote(word)}; correct one of them"
+            raise DomainError(message, where=join_place(spot, name))
     if "F" in model:
-        return {**rest, "known": {**as_table(document.get("known", {}), join_place(where, "known")), **words}}
+        return {**rest, "known": {**known, **words}}
     if words.get("azimuth") == NORTH and "wander_angle" in as_table(rest.get("quantities", {}), where):
         rest["known"] = {"azimuth": NORTH}  # the angle is for conversions
     problem = read_problem({**rest, "model": empty_model(rest, model)}, where)

@@ -234,7 +234,8 @@ class Mechanisation:
         if kind == "central":
             pull, three = Nilpotent(world.pull), Nilpotent(3)
             return [pull * (three * x * along / square - y) for x, y in zip(r, moved, strict=True)]
-        distance, radius = (Nilpotent(x) for x in (world.radius, world.gradient_radii["radial"]))
+        name = self.card.gravity_radius or "radial"
+        distance, radius = Nilpotent(world.radius), Nilpotent(world.gradient_radii[name])
         factor = Nilpotent(-2) * along / (distance * radius)
         return [factor * g for g in constant(world.gravity)]
 

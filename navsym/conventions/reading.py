@@ -134,11 +134,10 @@ def matrix_of(block: tuple[str, str]) -> str:
 def read_problem(document: Table, where: str = "") -> Problem:
     """The problem of a document; raises a NavsymError whose ``where`` names the key."""
     expect_keys(document, (*TABLES, *BESIDE), where)
-    place = join_place(where, "parameters")
-    declared = as_table(document.get("parameters", {}), place)
-    parameters = read_parameters(declared, place)
-    place = join_place(where, "model")
+    place, spot = (join_place(where, name) for name in ("model", "parameters"))
     model = as_table(require_key(document, "model", where), place)
+    declared = as_table(document.get("parameters", {}), spot)
+    parameters = read_parameters(declared, spot)
     expect_keys(model, ("name", "states", "F", "H", "G", "reset"), place)
     spot = join_place(place, "states")
     items = as_list(require_key(model, "states", place), spot, "a list of names")

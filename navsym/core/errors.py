@@ -21,7 +21,9 @@ def printable(text: str) -> str:
 
 
 class NavsymError(Exception):
-    """Base of all errors that are the user's to mend.
+    """Base of all errors that are the user's to mend: catch it and ask for its kind.
+
+    Classes that docstrings name, such as NotEstimableError of the kind ``not-estimable``, are below it.
 
     kind     : one of the words listed in the README under "Errors", such as ``"shape"``
     where    : ``"file: key"``, ``"file: line 3, column 7"`` or ``"prove: left"``; empty where there is no place

@@ -2,8 +2,8 @@
 
 A matrix leads from one frame to another: ``C`` with ``rotation = "b to n"`` takes vectors of b to vectors of n,
 ``skew(v)`` stays in the frame of v, ``A.T`` leads back. A vector is a matrix whose columns have no frame. A name
-without a frame is an unknown. Only formulas with a vector of a declared frame are looked at: a rotation alone also
-acts on numbers.
+without a frame is an unknown. Only formulas with a vector of a declared frame are looked at, or of matrices that all
+have frames, of several: a rotation alone also acts on numbers.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ def infer_frames(
     trees, shapes, rates : as for :func:`navsym.language.dimensions.infer_units`; a rate stays in the frame
 
     Returns name -> frame, ``b to n`` for a matrix. Raises DomainError that names two parts in different frames;
-    says nothing where no vector has a frame.
+    says nothing where no vector has a frame and all matrices lead alike.
 
     >>> from navsym.language.shapes import read_shape
     >>> from navsym.language.vectors import read_hypothesis
@@ -139,7 +139,9 @@ def infer_frames(
         slopes
     )
     used = [shapes[name] for name in names if name in shapes]
-    if not any(shape.frame and shape.kind == "vector" for shape in used) or any(shape.sizes for shape in used):
+    declared = {shape.frame for shape in used if shape.frame}
+    several = len(declared) > 1 and all(shape.frame for shape in used if shape.size)
+    if not (several or any(x.frame and x.kind == "vector" for x in used)) or any(shape.sizes for shape in used):
         return {}
     unification = Unification(shapes, where)
     for name, rate in slopes.items():

@@ -94,7 +94,7 @@ class Writer:
         self.measured_names: dict[Any, list[str]] = {}
         quantities = document.get("quantities")
         texts = [quantities.get(key) for key in ("rotation", "quaternion")] if isinstance(quantities, Mapping) else []
-        self.bound = {*re.findall(r"[A-Za-z]\w*", " ".join(text for text in texts if isinstance(text, str)))}
+        self.bound = {*re.findall(r"[A-Za-z]\w*", str(texts))}
         self.arrays: dict[str, tuple[tuple[str, ...], ...]] = {}
         self.scalars: set[str] = {"t"}
         place = join_place(where, "parameters")
@@ -136,6 +136,9 @@ class Writer:
         for i, text in enumerate(states):
             found = STATE.fullmatch(text) if isinstance(text, str) else None
             if found is None:
+                if isinstance(text, str) and "[" in text:
+                    message = f"expected a name, or one with its size such as v[3]; got {quote(text)}; correct it"
+                    raise ShapeError(message, where=join_place(place, i))
                 yield text, (text,)
                 continue
             name, size = found[1], int(found[2])
@@ -273,7 +276,10 @@ class Writer:
         cells = [[self.evaluate(x, join_place(here, i)) for x in line] for i, line in enumerate(lines)]
         if len({*map(len, cells)}) > 1:
             raise ShapeError("expected rows of one length; got several; correct the matrix", where=here)
-        widths = [max(len(x[0]) if isinstance(x, list) else 1 for x in column) for column in zip(*cells, strict=True)]
+        columns = [*zip(*cells, strict=True)]
+        if len(rows) < sum(len(entries) for _, entries in self.sizes) and ("0",) * len(rows) in columns:
+            raise ShapeError("expected a block with a size in each column; got zeros; write zeros(3, 3)", where=here)
+        widths = [max(len(x[0]) if isinstance(x, list) else 1 for x in column) for column in columns]
         done = []
         for i, (line, (_, entries)) in enumerate(zip(lines, self.sizes, strict=True)):
             place, height = join_place(here, i), len(entries)

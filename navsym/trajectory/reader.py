@@ -343,7 +343,7 @@ def columns_of(header: Sequence[str], log: Log, line: str) -> dict[str, int]:
         found[name] = places[0]
     log.units = tuple(unit_of(name, header[place], where) for name, place in found.items())
     for place, unit in zip(found.values(), log.units, strict=True):
-        if unit.factor != 1:
+        if unit.factor != 1 or unit.radian:
             log.repairs.append(f"{line}: {plain[place]} converted from {unit.name}, the unit in its head")
     return found
 

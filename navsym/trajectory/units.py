@@ -87,6 +87,8 @@ def unit_of(column: str, head: str, where: str) -> Unit:
     """
     units = [read_unit(column, part) for part in ",".join(BRACKETS.findall(head)).split(",")]
     named = [unit for unit in units if unit is None or unit.name]
+    if not named and any(not text.strip() for text in BRACKETS.findall(head)):
+        named = [None]  # brackets that name nothing
     if not named:
         return usual_unit(column)
     if named.count(named[0]) < len(named) or named[0] is None:

@@ -114,6 +114,16 @@ def test_gravity_of_one_number_along_the_normal_is_linearised_as_such(words, qua
             assert abs(mp.mpf(value.str(40, radius=False)) - expected[i, j]) < 1e-9, (i, j)
 
 
+def test_a_radial_gradient_beside_two_radii_says_by_which():
+    words = {"frame": "earth", "earth_rate": "kept", "centrifugal": "dropped", "gravity_gradient": "radial"}
+    place = {"earth_rate": "W", "position": ["x1", "x2", "x3"]}
+    with pytest.raises(nav.NavsymError, match=r"gravity_radius, one of sqrt\(RN\*RE\) \+ h"):
+        nav.conventions(document_of(words, radii=["RN", "RE"], **place))
+    alone, two = document_of(words, radii="RE + h", **place), document_of(words, radii=["RN", "RE"], **place)
+    two["model"], two["card"] = nav.conventions(alone).model(), {"frame": "earth"}
+    assert {card.gravity_radius for card in nav.conventions(two).cards} == {"RE + h"}
+
+
 def test_vectors_that_turn_with_the_attitude_bring_gravity_into_its_column():
     problem = full_problem()
     cards = [card for card in STRUCTURES if card.vector_error == "rotated" and card.frame != "local-level"]

@@ -239,6 +239,16 @@ REFUSED = [
     ({"known": {"frame": "inertial", "axes": "NED"}}, "expected axes|expected frame"),
     ({"known": {"quaternion_order": "scalar first"}}, "quaternion_order"),
     ({"known": {"innovation": "measurement - prediction"}}, "innovation"),
+    ({"card": {"frame": "earth"}}, "expected 'earth', as the card says; got 'inertial'"),
+    (
+        {"parameters": {"f": {"vector": 3}, "C": {"rotation": "b to n"}}, "quantities": {"rotation": ["C", "C"]}},
+        "three rows",
+    ),
+    ({"model": {**SMALL["model"], "G": [["0", "0"], ["C", "0"]]}, "noises": {"gyro": [1, 2, 3]}}, "with a size"),
+    *(
+        ({"model": {**SMALL["model"], "states": [name, "p[3]"]}}, r"model.states\[0\]: expected a name")
+        for name in ("dv[-3]", "dv[3.5]", "dv[x]", "dv[]", "dv[3")
+    ),
 ]
 
 
@@ -246,6 +256,11 @@ REFUSED = [
 def test_what_contradicts_itself_is_refused_with_its_reason(change, words):
     with pytest.raises(nav.NavsymError, match=words):
         nav.conventions({**SMALL, **change})
+
+
+def test_a_missing_model_beside_vectors_is_named_as_such():
+    with pytest.raises(nav.NavsymError, match="model: expected the key model"):
+        nav.conventions({name: table for name, table in SMALL.items() if name != "model"})
 
 
 @pytest.mark.parametrize("body", ["C.T @ f", "[C[1, 1]*f[1] + C[2, 1]*f[2] + C[3, 1]*f[3], 0, 0]"])

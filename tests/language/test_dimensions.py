@@ -190,6 +190,16 @@ def test_vectors_that_are_turned_are_left_alone(right):
     frames(right, v=N, f=B, C=C)
 
 
+@pytest.mark.parametrize("wrong", ["C @ D = K", "D.T @ C.T = K", "C = D", "C + D = C", "C = D @ D"])
+def test_rotations_in_an_order_that_joins_two_frames_are_an_error(wrong):
+    turned = {"C": C, "D": {"rotation": "n to e"}, "K": {"rotation": "b to e"}}
+    frames("D @ C = K", **turned)
+    frames("C.T @ D.T = K.T", **turned)
+    with pytest.raises(DomainError, match="frame") as error:
+        frames(wrong, **turned)
+    assert " and " in error.value.got
+
+
 def test_frames_are_inferred_through_rotations():
     found = frames("w = C @ f + cross(g, w)", w={"vector": 3}, f=B, C=C, g={"vector": 3})
     assert found == {"w": "n", "C": "b to n", "f": "b", "g": "n"}

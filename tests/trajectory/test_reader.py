@@ -91,6 +91,7 @@ BAD = [
     ("t (lightyear),lat,lon,height\n0,45,10,100\n", DomainError, "column t in a unit of time .s, ms", "line 1"),
     ("t (m),lat,lon,height\n0,45,10,100\n", DomainError, "column t in a unit of time", "line 1"),
     ("t,lat (deg) (rad),lon,height\n0,45,10,100\n", DomainError, "column lat in a unit of angle", "line 1"),
+    ("t,lat (),lon,height\n0,45,10,100\n", DomainError, "column lat in a unit of angle", "line 1"),
     ("t,lat,lon (dms),height\n0,45,10,100\n", DomainError, "column lon in a unit of angle", "line 1"),
     ("t,lat (0 deg),lon,height\n0,45,10,100\n", DomainError, "column lat in a unit of angle", "line 1"),
     ("t (h),lat,lon,height\n1e307,45,10,100\n", NotFiniteError, "time: expected a finite", "line 2"),
@@ -217,7 +218,12 @@ def test_a_track_in_other_units_has_the_same_velocity(tmp_path):
     expected, found = nav.track("examples/drive.csv"), nav.track(write(tmp_path, f"{heads}\n{lines}\n"))
     assert_allclose(found.velocity, expected.velocity, atol=1e-6)
     assert_allclose(found.acceleration, expected.acceleration, atol=1e-6)
-    assert [line.split(" from ")[1].split(",")[0] for line in found.repairs] == ["ms", "1e-7 deg", "US survey feet"]
+    assert [line.split(" from ")[1].split(",")[0] for line in found.repairs] == [
+        "ms",
+        "1e-7 deg",
+        "rad",
+        "US survey feet",
+    ]
 
 
 def test_repair_names_the_feet_that_it_converts(tmp_path):
