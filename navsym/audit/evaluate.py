@@ -37,11 +37,13 @@ from navsym.audit.values import (
     places_of,
     promote,
     require_fit,
+    require_no_wrap,
     total,
 )
 from navsym.language.tree import Tree, build_call, build_number
 
 CASES = 32
+TRUTHS = ("compare", "both", "either", "not")
 JOINS = {f"{module}.{name}": name for module in ("np", "numpy") for name in "hstack vstack concatenate block".split()}
 KINDS: dict[str, type[Array]] = {"quaternion": Quaternion, "list": List}
 INLINED = 12
@@ -241,6 +243,8 @@ class Evaluator:
         if part.kind == "call":
             indices = [*part.parts[1], *indices]
             self.require_entries(part.parts[0], part.line)
+            if self.unit.language == "cpp" and self.variable(part.parts[0]).number == "quaternion":
+                raise Unreadable(part.line, "an entry of a quaternion by its number, which libraries count differently")
         elif part.kind != "name":
             raise Unreadable(part.line, "an index of an expression")
         elif "()" in part.parts[0]:
@@ -327,7 +331,8 @@ class Evaluator:
                 sign, a, b = part.parts
                 return combine(self.unit, sign, self.value(a), self.value(b), part.line)
             if kind == "minus":
-                return require_fit(self.unit, map_cells(minus, self.value(part.parts[0])), part.line)
+                negative = require_no_wrap(map_cells(minus, self.value(part.parts[0])), part.line)
+                return require_fit(self.unit, negative, part.line)
             if kind in ("index", "first"):
                 return self.entries(part)
             if kind == "call":
@@ -339,6 +344,8 @@ class Evaluator:
                     return self.rows(part)
                 whole = self.stack([self.value(item) for item in part.parts[0]], part.line)
                 return List(whole.shape, whole.cells) if self.unit.language == "python" else whole
+            if kind == "not" and self.unit.language == "rust" and part.parts[0].kind not in TRUTHS:
+                raise Unreadable(part.line, "! of what may be an integer")
             if kind == "compare" or (kind in ("both", "either", "not") and self.unit.rules.integer):
                 return Scalar(build_number(int(self.decide_known(part))), "int")
             if kind == "choose":

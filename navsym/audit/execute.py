@@ -437,6 +437,8 @@ class Machine(Evaluator):
     def fill_by_commas(self, target: Part, value: Part) -> Value:
         """``M << A, b, c`` of Eigen: blocks side by side until a row is full, and then below."""
         *_, shape = self.targets(target)
+        if not shape:
+            raise Unreadable(value.line, "<< into what has no known size")
         if names_in(target) & {*names_in(value), *(p.parts[0] for p in walk(value) if p.kind == "call")}:
             raise Unreadable(value.line, "a matrix that is filled with its own entries")
         rows: list[list[Value]] = [[]]
@@ -521,9 +523,12 @@ class Machine(Evaluator):
         first, end, by = (self.whole(part) for part in (start, stop, step))
         if by == 0 or len(range(first, end, by)) > STEPS:
             raise Unreadable(statement.line, "a loop without an end")
-        for i in range(first, end, by):
-            self.frame[name] = Variable(name, "int", (), {(): Scalar(build_number(i), "int", statement.line)})
-            self.block(body)
+        with self.scope():
+            if self.unit.language == "rust":  # where the counter is a name of its own
+                self.shadows[-1][name] = self.frame.get(name)
+            for i in range(first, end, by):
+                self.frame[name] = Variable(name, "int", (), {(): Scalar(build_number(i), "int", statement.line)})
+                self.block(body)
 
     def run_loop(self, first: Body, test: Part, step: Body, body: Body, is_late: bool, statement: Part) -> None:
         """``for`` of C and ``while``: the condition is known from whole numbers each time."""
@@ -578,7 +583,18 @@ class Machine(Evaluator):
             if name in IN_PLACE and self.unit.language == "cpp" and not arguments:
                 self.run_assign(base, "", Part("method", call.line, (base, IN_PLACE[name], ()), call.span), statement)
                 return
-        elif call.kind == "call" and (call.parts[0] in HARMLESS or call.parts[0] in self.unit.ignored):
+            if self.unit.language == "cpp" and self.is_plain(call):
+                unread = Unread(
+                    statement.line, f"{name} without a use of its value: it may change what it is called on"
+                )
+                for known in names_in(base):
+                    lose(self.variable(known), unread)
+                raise Unreadable(unread.line, unread.why)
+        elif call.kind == "call" and (
+            call.parts[0] in (*HARMLESS, *PURE[self.unit.language]) or call.parts[0] in self.unit.ignored
+        ):
+            if any(self.has_effect(part) for part in walk(call.parts[1])):
+                raise Unreadable(statement.line, f"an argument of {call.parts[0]} that may write")
             return
         elif call.kind == "call" and call.parts[0] == "memcpy" and len(call.parts[1]) == 3:
             target, source, size = call.parts[1]
@@ -588,7 +604,10 @@ class Machine(Evaluator):
                 raise Unreadable(statement.line, "memcpy of other than sizeof an array that is declared here")
             self.run_assign(target, "", source, statement)
             return
-        elif call.kind == "call" and call.parts[0] == "memset":
+        elif call.kind == "call" and call.parts[0] == "memset" and len(call.parts[1]) == 3:
+            name, size = (self.unit.text(part).replace(" ", "").lstrip("&") for part in call.parts[1][::2])
+            if size != f"sizeof({name})" or (name in self.frame and not any(name in t for t in self.shadows)):
+                raise Unreadable(statement.line, "memset of other than sizeof an array that is declared here")
             self.reset(call.parts[1][0], "memset", call.parts[1][1:2], statement)
             return
         self.value(call, wants_value=False)

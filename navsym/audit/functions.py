@@ -65,8 +65,13 @@ PURE = {
     "matlab": frozenset("isinf isnan isempty any all numel length size strcmp strcmpi nargin ischar isfield".split()),
     "rust": frozenset(),
 }
-#: Functions that MATLAB calls without parentheses.
-NAMED_CALLS = {"matlab": frozenset("rand randn randi tic toc now clock cputime input".split())}
+#: Names that are no real numbers: functions that MATLAB calls without parentheses, what is infinite or not a number.
+NAMED_CALLS = {
+    "c": frozenset("NAN INFINITY HUGE_VAL HUGE_VALF".split()), "cpp": frozenset("NAN INFINITY HUGE_VAL".split()),
+    "matlab": frozenset("rand randn randi tic toc now clock cputime input NaN nan NA Inf inf i j".split()),
+    "python": frozenset(f"{m}.{name}" for m in ("np", "numpy", "math") for name in "nan NaN inf Inf".split()),
+    "rust": frozenset(f"{f}::{name}" for f in ("f32", "f64") for name in "NAN INFINITY NEG_INFINITY".split()),
+}  # fmt: skip
 PREFIX = re.compile(r"\A(std::|::|math\.|np\.|numpy\.|matrix::|Eigen::)")
 #: The larger or the smaller of two numbers.
 EXTREMES = {
@@ -282,6 +287,13 @@ def rotation_of(unit: Unit, value: Value) -> Value:
     return transpose(Array((3, 3), tuple(cells)), True)
 
 
+def as_another(unit: Unit, value: Value) -> Value:
+    """A number or a vector in another type; a matrix of nalgebra takes nested arrays as its columns."""
+    if isinstance(value, Array) and len(value.shape) != 1:
+        raise Unreadable(0, "a matrix made of another, which nalgebra may read by columns")
+    return value
+
+
 def coefficients_of(count: int) -> Known:
     """The first coefficients of a quaternion, as a vector."""
     return lambda unit, value: Array((count,), require_quaternion(unit, value).cells[:count])
@@ -326,6 +338,7 @@ NALGEBRA: dict[tuple[str, int], Known] = {
         (("Quaternion::from_quaternion", 1), ("Quaternion::new_normalize", 1)),
         lambda unit, value: normalize(unit, require_quaternion(unit, value)),
     ),
+    ("Convert::into", 1): as_another,
     ("Quaternion::identity", 0): lambda unit: Quaternion((4,), (*[Scalar(ZERO)] * 3, Scalar(ONE))),
 }  # fmt: skip
 KNOWN = NUMBERS | ARRAYS | OF_NUMPY | OF_ANGLES | NALGEBRA
