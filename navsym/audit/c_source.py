@@ -118,7 +118,7 @@ class Reader(SourceReader):
         """A member of a structure, or a variable of the file; one name with two types is left open."""
         kind = number_of(self.type_of(node))
         kind = kind if kind in LIMITS else "real"
-        for child in node.children_by_field_name("declarator") if is_outside(node) else ():
+        for child in node.children_by_field_name("declarator") if is_outside(node) or "field" in node.type else ():
             name, members = self.declared(field_of(child, "declarator") or child)[0], self.unit.members
             members[name] = (kind if members.get(name, (kind,))[0] == kind else "other", None)
 
@@ -453,6 +453,8 @@ class Reader(SourceReader):
         arguments = tuple(map(self.expression, named(field_of(node, "arguments"))))
         if function.type == "field_expression":
             base, method = self.expression(field_of(function, "argument")), text_of(field_of(function, "field"))
+            if base.kind == "name" and base.parts[0] == "this":
+                return self.part("call", node, method, arguments)
             if method == "noalias" and not arguments:  # says how Eigen computes, not what
                 return base
             if (found := re.fullmatch(r"(?:template)?at<(\d+)>", re.sub(r"\s", "", method))) and not arguments:

@@ -359,7 +359,9 @@ class Evaluator:
 
     def named_value(self, part: Part) -> Value:
         """The value of a name: of a variable, a macro or a constant such as pi."""
-        name = part.parts[0]
+        name = self.canonical(part.parts[0])
+        if name not in self.frame and self.is_property(name):
+            return self.inline(Part("call", part.line, (name.removeprefix("self."), ()), part.span), True)
         if name not in self.frame and name in self.unit.macros:
             return self.macro(name, part.line)
         if (member := self.member_of_array(part)) is not None:
@@ -372,6 +374,10 @@ class Evaluator:
         if variable.number == "other" and not variable.shape and variable.all_unread is None:
             raise Unreadable(part.line, f"{name} as a whole, of a type that is no number")
         return self.whole_value(variable, part.line)
+
+    def is_property(self, name: str) -> bool:
+        """True for a member of Python that is a function of the file."""
+        return self.unit.language == "python" and name.removeprefix("self.") in self.unit.functions and "." in name
 
     def macro(self, name: str, line: int) -> Value:
         """An object-like macro in its place."""
@@ -549,6 +555,8 @@ class Evaluator:
         frame = {a.name: self.bind(a, given, function) for a, given in zip(function.arguments, arguments, strict=True)}
         for output in function.outputs:
             frame.setdefault(output, Variable(output))
+        heads = {"self", *frame}
+        frame |= {known: variable for known, variable in self.frame.items() if known != head_of(known) in heads}
         outer, shadows, aliases = self.frame, self.shadows, self.aliases
         self.frame, self.shadows, self.aliases, returned = frame, [], {}, None
         self.calls.append(name)
@@ -559,6 +567,8 @@ class Evaluator:
         finally:
             self.frame, self.shadows, self.aliases = outer, shadows, aliases
             self.calls.pop()
+        if self.unit.language == "python":  # the members of an object are the caller's, too
+            outer |= {known: variable for known, variable in frame.items() if known != head_of(known) in heads}
         if function.outputs and returned is None:
             self.outputs = [self.whole_value(frame[output], part.line) for output in function.outputs]
             returned = self.outputs[0]
@@ -572,6 +582,7 @@ class Evaluator:
         for argument, given in zip(function.arguments, arguments, strict=True):
             inner = given.parts[0] if given.kind == "address" else given
             is_same = inner.kind == "name" and inner is given and inner.parts[0] == argument.name
+            is_same = is_same and argument.name not in self.aliases
             if argument.name in heads and not is_same:
                 raise Unreadable(line, f"a structure that {function.name} knows by another name")
 

@@ -207,6 +207,8 @@ class Machine(Evaluator):
                 targets.update(part.parts[1])
             if part.kind == "call" and self.is_closure(part.parts[0]):
                 targets |= {*self.frame}
+        if "this" in targets:
+            self.lose(unread)
         for name in {*targets, *(self.canonical(name + ".").rstrip(".->") for name in targets)}:
             if name in self.frame or name not in self.file_names:
                 lose(self.variable(name), unread)
@@ -342,6 +344,8 @@ class Machine(Evaluator):
             if number == "other":
                 raise Unreadable(statement.line, "a structure made of a list")
             sizes = result.shape  # auto
+        elif isinstance(result, Array) and len(sizes) == 2 and not self.does_fill(value, result, sizes):
+            raise Unreadable(statement.line, f"{name}, a matrix made of a row of numbers, which may be its columns")
         elif number == "matrix" and isinstance(result, Scalar):
             raise Unreadable(statement.line, f"{name}, a matrix of unknown size")
         is_lazy = number != "matrix"
@@ -378,6 +382,11 @@ class Machine(Evaluator):
         unread = next((cell for cell in cells if isinstance(cell, Unread)), None)
         if unread is not None:
             self.reading.valueless[statement.span] = unread.why
+
+    def does_fill(self, value: Part | None, result: Array, sizes: Index) -> bool:
+        """True for a matrix, or for all its numbers in a list, as they stand."""
+        is_whole = sizes in (self.fill(result, sizes).shape, result.shape[1:])  # type: ignore[union-attr]
+        return is_whole or (len(result.shape) == 1 and value is not None and value.kind == "list")
 
     def fill(self, value: Value, shape: Index) -> Value:
         """An initial value in its shape: the rest of a C initializer is zero."""
@@ -453,7 +462,10 @@ class Machine(Evaluator):
 
         In Python two names share one array, and a slice is a view: a later write leaves the other one unread.
         """
-        is_python = self.unit.language == "python"
+        is_python, name = self.unit.language == "python", self.canonical(name)
+        if self.is_property(name):
+            raise Unreadable(statement.line, f"{name}, which a function of the file may set")
+        self.rename_object(name, value, statement)
         if is_python and value.kind == "name" and isinstance(result, Array):
             self.frame[name] = self.variable(value.parts[0])
             return
@@ -469,6 +481,19 @@ class Machine(Evaluator):
             share(variable, [*bases, variable])  # two of its rows may be one
         elif cells and self.is_view(value):
             share(variable, bases)
+
+    def rename_object(self, name: str, value: Part, statement: Part) -> None:
+        """Members belong to what a name stood for before; of Python's objects two names may be of one."""
+        unread = Unread(statement.line, f"a member of another {name}")
+        for other in [other for other, (owner, _) in self.aliases.items() if owner == name]:
+            self.aliases[other] = (f"{name}@{statement.line}", ".")
+            self.lost_heads[f"{name}@{statement.line}"] = unread
+        self.aliases.pop(name, None)
+        is_copy = self.unit.language == "matlab" and value.kind == "name"  # perhaps of a structure
+        if is_copy or any(known.startswith(f"{name}.") for known in (*self.frame, *self.globals)):
+            self.lose_members(name, unread)
+        if self.unit.language == "python" and value.kind == "name":
+            self.aliases[name] = (self.canonical(value.parts[0]), ".")
 
     def is_view(self, value: Part) -> bool:
         """True for an expression of Python whose value may share cells with an array in it."""

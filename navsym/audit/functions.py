@@ -132,6 +132,12 @@ def cellwise(step: Callable[..., Tree]) -> Known:
     return lambda unit, *values: as_real(map_cells(step, *values))
 
 
+def whole_or_real(step: Callable[..., Tree]) -> Known:
+    """The same of functions that give integers for integers in numpy."""
+    real = cellwise(step)
+    return lambda unit, *values: map_cells(step, *values) if unit.language == "python" else real(unit, *values)
+
+
 def plain(name: str) -> Known:
     """A function that the language of statements has."""
     return cellwise(lambda *trees: build_call(name, *trees))
@@ -145,7 +151,7 @@ def turn(factor: Fraction) -> Known:
 def absolute(unit: Unit, value: Value) -> Value:
     if unit.language == "c":
         raise Unreadable(0, "abs, which cuts to an integer in C; fabs does not")
-    return plain("abs")(unit, value)
+    return whole_or_real(lambda x: build_call("abs", x))(unit, value)
 
 
 def same(unit: Unit, value: Value) -> Value:
@@ -325,9 +331,9 @@ ARRAYS: dict[tuple[str, int], Known] = {
 }  # fmt: skip
 #: Functions that only numpy has, and degrees.
 OF_NUMPY: dict[tuple[str, int], Known] = {
-    **{(name, 1): plain(meaning) for name, meaning in NUMPY.items()},
-    ("square", 1): cellwise(lambda x: raise_to(x, TWICE)),
-    ("power", 2): NUMBERS["pow", 2], ("arctan2", 2): plain("atan2"),
+    **{(name, 1): plain(meaning) for name, meaning in NUMPY.items()}, ("absolute", 1): absolute,
+    ("square", 1): whole_or_real(lambda x: raise_to(x, TWICE)),
+    ("power", 2): whole_or_real(raise_to), ("arctan2", 2): plain("atan2"),
 }  # fmt: skip
 OF_ANGLES: dict[tuple[str, int], Known] = {(name, 1): turn(factor) for name, factor in ANGLES.items()}
 #: Constructors of nalgebra and Eigen; the reader of Rust writes the sizes of a type before the entries.

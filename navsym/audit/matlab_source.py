@@ -25,6 +25,8 @@ RULES = Rules(first=1, matrix=True, entry=("{}({})", "{}({},{})"))
 POWERS = ("^", ".^")
 #: Commands that write no name.
 QUIET = ("format", "hold", "close", "clc", "more", "warning", "figure", "disp", "drawnow")
+#: Functions that may write any name.
+RUNNING = ("eval", "evalin", "evalc", "assignin", "load", "clear", "run")
 SIGNS = {**{sign: sign for sign in (".*", "./", ".^")}, "^": "**"}
 OTHERS: dict[str, tuple[str, ...]] = {"~=": ("compare", "!="), "&": ("both",), "|": ("either",)}
 
@@ -77,6 +79,8 @@ class Reader(SourceReader):
                 return (self.part("jump", node, f"the command {text_of(node).split()[0]}", ()),)
             case "function_call" if text_of(field_of(node, "name")) == "error":
                 return (self.part("fail", node, "an error is raised"),)
+            case "function_call" if text_of(field_of(node, "name")) in RUNNING:
+                return (self.part("jump", node, "a text that is run, or names from a file", ()),)
             case "function_call":
                 return (self.part("do", node, self.expression(node)),)
         return None
