@@ -318,9 +318,9 @@ class Reader(SourceReader):
                     done.append(self.unread(child, "a declaration with parentheses of a type without known sizes"))
                     continue
             start = None if start is None else self.quaternion(child, kind, start)
-            is_pointer = any(n.type in POINTER for n in descend(inner))
+            is_pointer = any(n.type in (*POINTER, "reference_declarator") for n in descend(inner))
             if is_pointer and sizes is not None:  # an array of pointers, or a pointer to an array
-                done.append(self.unread(child, "pointers and sizes in one declaration"))
+                done.append(self.unread(child, "pointers or references and sizes in one declaration"))
                 continue
             is_link: bool | str = shared and sizes is None and inner.type != "function_declarator"
             is_link = (is_link and ("const" in words and "const")) or is_link
@@ -353,6 +353,8 @@ class Reader(SourceReader):
                 if sign not in ("", "+", "-", "*", "/"):
                     return (self.unread(node, f"the assignment {sign}="),)
                 right = field_of(node, "right")
+                if any(inner.type == "primitive_type" for inner in descend(field_of(node, "left"))):
+                    return (self.unread(node, "a type where a name is assigned, as of a reference to an array"),)
                 if right.type == "assignment_expression":  # a = b = c
                     inner = self.effect(right)
                     value = self.expression(field_of(right, "left"))

@@ -357,14 +357,10 @@ class Machine(Evaluator):
         if result is not None:
             self.note_unread(result, statement)
             self.write(variable, self.fill(result, sizes), statement)
-        if (
-            is_lazy
-            and shape is None
-            and sizes
-            and value is not None
-            and value.kind in ("op", "minus", "method", "index")
-        ):
-            share(variable, self.arrays_in(value))  # auto of Eigen: computed when it is used
+        is_cpp = self.unit.language == "cpp"
+        lazy = ("op", "minus", "method", "index", *(("name",) if is_cpp else ()))
+        if is_lazy and shape is None and sizes and value is not None and value.kind in lazy:
+            share(variable, self.arrays_in(value))  # auto of Eigen, computed when it is used; of an array a pointer
 
     def may_change(self, owner: str) -> bool:
         """True for a structure that the function, or one that it calls, may write to."""
@@ -423,6 +419,9 @@ class Machine(Evaluator):
             self.write(variable, result, statement)
             return
         variable, places, shape = self.targets(target)
+        if variable.number == "list" and isinstance(result, Array) and value.kind != "list":
+            lose(variable, Unread(statement.line, "a row of a list that may stand in two places"))
+            raise Unreadable(statement.line, "a row of a list that may stand in two places")
         if isinstance(result, Array) and math.prod(result.shape) != len(places):
             raise Unreadable(statement.line, "an assignment between shapes that do not fit")
         cells = result.cells if isinstance(result, Array) else (result,) * len(places)
@@ -470,6 +469,8 @@ class Machine(Evaluator):
             self.frame[name] = self.variable(value.parts[0])
             return
         bases = self.arrays_in(value) if is_python else []
+        if is_python and value.kind == "call" and value.parts[0] in self.unit.functions:
+            bases += [v for known, v in self.frame.items() if "." in known and v.shape]  # a member that it returns
         number = "list" if isinstance(result, List) else "real"
         variable = Variable(name, number, result.shape if isinstance(result, Array) else ())
         cells = result.cells if isinstance(result, Array) else ()
