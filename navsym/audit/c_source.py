@@ -534,13 +534,15 @@ def find_type(node: Any) -> Any:
 def list_types(root: Any) -> dict[str, str]:
     """What names of types stand for that a source defines; nothing is known of one with two meanings."""
     types: dict[str, str] = {}
+    templates = (node for node in descend(root) if node.type.endswith("type_parameter_declaration"))
+    open_types = {text_of(inner) for node in templates for inner in named(node)}
     for node in descend(root):
         if node.type in ("type_definition", "alias_declaration"):
             name = field_of(node, "declarator") or field_of(node, "name")
             is_plain = name.type == "type_identifier"
             meaning = text_of(field_of(node, "type")) if is_plain else "pointer"
             name = next((n for n in descend(name) if n.type == "type_identifier"), name)
-            if not re.search(rf"\b{text_of(name)}\b", meaning):
+            if meaning not in open_types and not re.search(rf"\b{text_of(name)}\b", meaning):
                 types[text_of(name)] = meaning if types.get(text_of(name), meaning) == meaning else "several types"
     return types
 
