@@ -36,6 +36,8 @@ POINTER = ("pointer_declarator", "abstract_pointer_declarator")
 def shape_of_type(text: str) -> tuple[int, ...] | None:
     """The sizes of a vector or matrix type; None for others."""
     text = text.replace(" ", "").replace("const", "")
+    if re.search(r"<(u?int|unsigned|signed|long(?!double)|short|char|bool|size_t)", text):
+        return None
     if QUATERNION.fullmatch(text):
         return (4,)
     if found := VECTOR.fullmatch(text):
@@ -71,6 +73,7 @@ class Reader(SourceReader):
         known = self.unit.variables
         known |= list_variables(root)
         unions = (inner for node in descend(root) if node.type == "union_specifier" for inner in descend(node))
+        self.unit.types |= list_types(root)
         self.unit.overlaid |= {text_of(inner) for inner in unions if inner.type == "field_identifier"}
         for _ in range(ROUNDS):
             found = [n for n in map(find_type, descend(root)) if n is not None and text_of(n) in known]
@@ -113,9 +116,9 @@ class Reader(SourceReader):
 
     def read_field(self, node: Any) -> None:
         """A member of a structure, or a variable of the file; one name with two types is left open."""
-        kind = number_of(text_of(field_of(node, "type")))
+        kind = number_of(self.type_of(node))
         kind = kind if kind in LIMITS else "real"
-        for child in node.children_by_field_name("declarator") if is_outside(node) else ():
+        for child in node.children_by_field_name("declarator") if is_outside(node) or "field" in node.type else ():
             name, members = self.declared(field_of(child, "declarator") or child)[0], self.unit.members
             members[name] = (kind if members.get(name, (kind,))[0] == kind else "other", None)
 
@@ -173,16 +176,23 @@ class Reader(SourceReader):
         }
         arguments = tuple(self.argument(p) for p in parameters if text_of(p) != "void")
         is_plain = field_of(node, "declarator").type == "function_declarator" and field_of(node, "type") is not None
-        number = number_of(text_of(field_of(node, "type"))) if is_plain else "auto"
+        number = number_of(self.type_of(node)) if is_plain else "auto"
         function = Function(name, line_of(node), arguments, self.block(body), number=number)
         self.unit.functions.setdefault(name, []).append(function)
 
     def argument(self, node: Any) -> Argument:
         """A parameter with its sizes; pointers, references and arrays are shared with the caller."""
-        kind = text_of(field_of(node, "type")) if field_of(node, "type") else ""
+        kind = self.type_of(node)
         name, sizes, shared = self.declared(field_of(node, "declarator"))
         shape = sizes or self.sizes(node, shape_of_type(kind))
         return Argument(name, number_of(kind), shape, shared)
+
+    def type_of(self, node: Any) -> str:
+        """The type of a declaration, with names of types that the file defines replaced."""
+        text, types = text_of(field_of(node, "type")), self.unit.types
+        for _ in range(ROUNDS):
+            text = re.sub(r"(?<![\w:])\w+", lambda found: types.get(found[0], found[0]), text)
+        return text
 
     def declared(self, node: Any) -> tuple[str, tuple[Part, ...] | None, bool]:
         """Name, sizes and whether it is shared, of a declarator."""
@@ -284,7 +294,7 @@ class Reader(SourceReader):
         words = {text_of(child) for child in named(node) if child.type in ("storage_class_specifier", "type_qualifier")}
         if words & {"static", "thread_local", "extern", "volatile"} and not words & {"const", "constexpr"}:
             return (self.unread(node, "a variable that keeps its value between calls, or is changed elsewhere"),)
-        kind = text_of(field_of(node, "type")) if field_of(node, "type") else ""
+        kind = self.type_of(node)
         done = []
         for child in node.children_by_field_name("declarator"):
             value = field_of(child, "value") if child.type == "init_declarator" else None
@@ -298,6 +308,9 @@ class Reader(SourceReader):
                 start = self.expression(named(value)[0])  # Vector3f v{a + b}
             else:
                 start = None if value is None else self.expression(value)
+            if inner.type == "structured_binding_declarator":
+                done.append(self.unread(child, "several names declared at once"))
+                continue
             if inner.type == "function_declarator":  # Vector3f v(a, b, c), which the grammar takes for a function
                 items = tuple(map(self.taken_for_parameter, named(field_of(inner, "parameters"))))
                 name, start = text_of(field_of(inner, "declarator")), self.part("list", inner, items)
@@ -305,9 +318,9 @@ class Reader(SourceReader):
                     done.append(self.unread(child, "a declaration with parentheses of a type without known sizes"))
                     continue
             start = None if start is None else self.quaternion(child, kind, start)
-            is_pointer = any(n.type in POINTER for n in descend(inner))
+            is_pointer = any(n.type in (*POINTER, "reference_declarator") for n in descend(inner))
             if is_pointer and sizes is not None:  # an array of pointers, or a pointer to an array
-                done.append(self.unread(child, "pointers and sizes in one declaration"))
+                done.append(self.unread(child, "pointers or references and sizes in one declaration"))
                 continue
             is_link: bool | str = shared and sizes is None and inner.type != "function_declarator"
             is_link = (is_link and ("const" in words and "const")) or is_link
@@ -340,6 +353,8 @@ class Reader(SourceReader):
                 if sign not in ("", "+", "-", "*", "/"):
                     return (self.unread(node, f"the assignment {sign}="),)
                 right = field_of(node, "right")
+                if any(inner.type == "primitive_type" for inner in descend(field_of(node, "left"))):
+                    return (self.unread(node, "a type where a name is assigned, as of a reference to an array"),)
                 if right.type == "assignment_expression":  # a = b = c
                     inner = self.effect(right)
                     value = self.expression(field_of(right, "left"))
@@ -375,6 +390,9 @@ class Reader(SourceReader):
         match node.type:
             case "number_literal" if node.start_byte in self.hidden:
                 return self.part("name", node, self.hidden[node.start_byte])
+            case "qualified_identifier" if text_of(node).startswith("::"):
+                name = text_of(node).removeprefix("::")
+                return self.part("name", node, name) if name not in self.locals else self.refuse(node, "a hidden name")
             case "number_literal":
                 return self.number(node)
             case "subscript_expression":
@@ -400,7 +418,7 @@ class Reader(SourceReader):
                 fields = (field_of(node, name) for name in ("condition", "consequence", "alternative"))
                 return self.part("choose", node, *map(self.expression, fields))
             case "cast_expression":
-                number = number_of(text_of(field_of(node, "type")))
+                number = number_of(self.type_of(node))
                 if number not in (*LIMITS, "real"):
                     return self.refuse(node, "a cast to a type that is not known, or a name alone in parentheses")
                 return self.part("cast", node, number, self.expression(field_of(node, "value")))
@@ -437,6 +455,8 @@ class Reader(SourceReader):
         arguments = tuple(map(self.expression, named(field_of(node, "arguments"))))
         if function.type == "field_expression":
             base, method = self.expression(field_of(function, "argument")), text_of(field_of(function, "field"))
+            if base.kind == "name" and base.parts[0] == "this":
+                return self.part("call", node, method, arguments)
             if method == "noalias" and not arguments:  # says how Eigen computes, not what
                 return base
             if (found := re.fullmatch(r"(?:template)?at<(\d+)>", re.sub(r"\s", "", method))) and not arguments:
@@ -509,6 +529,22 @@ def find_type(node: Any) -> Any:
     """The name of the type in a cast; None where there is none."""
     kind = field_of(field_of(node, "type"), "type") if node.type == "cast_expression" else None
     return kind if kind is not None and kind.type == "type_identifier" else None
+
+
+def list_types(root: Any) -> dict[str, str]:
+    """What names of types stand for that a source defines; nothing is known of one with two meanings."""
+    types: dict[str, str] = {}
+    templates = (node for node in descend(root) if node.type.endswith("type_parameter_declaration"))
+    open_types = {text_of(inner) for node in templates for inner in named(node)}
+    for node in descend(root):
+        if node.type in ("type_definition", "alias_declaration"):
+            name = field_of(node, "declarator") or field_of(node, "name")
+            is_plain = name.type == "type_identifier"
+            meaning = text_of(field_of(node, "type")) if is_plain else "pointer"
+            name = next((n for n in descend(name) if n.type == "type_identifier"), name)
+            if meaning not in open_types and not re.search(rf"\b{text_of(name)}\b", meaning):
+                types[text_of(name)] = meaning if types.get(text_of(name), meaning) == meaning else "several types"
+    return types
 
 
 def list_variables(root: Any) -> set[str]:

@@ -37,11 +37,13 @@ from navsym.audit.values import (
     places_of,
     promote,
     require_fit,
+    require_no_wrap,
     total,
 )
 from navsym.language.tree import Tree, build_call, build_number
 
 CASES = 32
+TRUTHS = ("compare", "both", "either", "not")
 JOINS = {f"{module}.{name}": name for module in ("np", "numpy") for name in "hstack vstack concatenate block".split()}
 KINDS: dict[str, type[Array]] = {"quaternion": Quaternion, "list": List}
 INLINED = 12
@@ -241,6 +243,8 @@ class Evaluator:
         if part.kind == "call":
             indices = [*part.parts[1], *indices]
             self.require_entries(part.parts[0], part.line)
+            if self.unit.language == "cpp" and self.variable(part.parts[0]).number == "quaternion":
+                raise Unreadable(part.line, "an entry of a quaternion by its number, which libraries count differently")
         elif part.kind != "name":
             raise Unreadable(part.line, "an index of an expression")
         elif "()" in part.parts[0]:
@@ -328,7 +332,8 @@ class Evaluator:
                 sign, a, b = part.parts
                 return combine(self.unit, sign, self.value(a), self.value(b), part.line)
             if kind == "minus":
-                return require_fit(self.unit, map_cells(minus, self.value(part.parts[0])), part.line)
+                negative = require_no_wrap(map_cells(minus, self.value(part.parts[0])), part.line)
+                return require_fit(self.unit, negative, part.line)
             if kind in ("index", "first"):
                 return self.entries(part)
             if kind == "call":
@@ -340,6 +345,8 @@ class Evaluator:
                     return self.rows(part)
                 whole = self.stack([self.value(item) for item in part.parts[0]], part.line)
                 return List(whole.shape, whole.cells) if self.unit.language == "python" else whole
+            if kind == "not" and self.unit.language == "rust" and part.parts[0].kind not in TRUTHS:
+                raise Unreadable(part.line, "! of what may be an integer")
             if kind == "compare" or (kind in ("both", "either", "not") and self.unit.rules.integer):
                 return Scalar(build_number(int(self.decide_known(part))), "int")
             if kind == "choose":
@@ -353,7 +360,9 @@ class Evaluator:
 
     def named_value(self, part: Part) -> Value:
         """The value of a name: of a variable, a macro or a constant such as pi."""
-        name = part.parts[0]
+        name = self.canonical(part.parts[0])
+        if name not in self.frame and self.is_property(name):
+            return self.inline(Part("call", part.line, (name.removeprefix("self."), ()), part.span), True)
         if name not in self.frame and name in self.unit.macros:
             return self.macro(name, part.line)
         if (member := self.member_of_array(part)) is not None:
@@ -366,6 +375,10 @@ class Evaluator:
         if variable.number == "other" and not variable.shape and variable.all_unread is None:
             raise Unreadable(part.line, f"{name} as a whole, of a type that is no number")
         return self.whole_value(variable, part.line)
+
+    def is_property(self, name: str) -> bool:
+        """True for a member of Python that is a function of the file."""
+        return self.unit.language == "python" and name.removeprefix("self.") in self.unit.functions and "." in name
 
     def macro(self, name: str, line: int) -> Value:
         """An object-like macro in its place."""
@@ -543,6 +556,8 @@ class Evaluator:
         frame = {a.name: self.bind(a, given, function) for a, given in zip(function.arguments, arguments, strict=True)}
         for output in function.outputs:
             frame.setdefault(output, Variable(output))
+        heads = {"self", *frame}
+        frame |= {known: variable for known, variable in self.frame.items() if known != head_of(known) in heads}
         outer, shadows, aliases = self.frame, self.shadows, self.aliases
         self.frame, self.shadows, self.aliases, returned = frame, [], {}, None
         self.calls.append(name)
@@ -553,6 +568,8 @@ class Evaluator:
         finally:
             self.frame, self.shadows, self.aliases = outer, shadows, aliases
             self.calls.pop()
+        if self.unit.language == "python":  # the members of an object are the caller's, too
+            outer |= {known: variable for known, variable in frame.items() if known != head_of(known) in heads}
         if function.outputs and returned is None:
             self.outputs = [self.whole_value(frame[output], part.line) for output in function.outputs]
             returned = self.outputs[0]
@@ -566,6 +583,7 @@ class Evaluator:
         for argument, given in zip(function.arguments, arguments, strict=True):
             inner = given.parts[0] if given.kind == "address" else given
             is_same = inner.kind == "name" and inner is given and inner.parts[0] == argument.name
+            is_same = is_same and argument.name not in self.aliases
             if argument.name in heads and not is_same:
                 raise Unreadable(line, f"a structure that {function.name} knows by another name")
 

@@ -7,10 +7,10 @@ import functools
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
-from navsym.audit.evaluate import CASES, Case, CellView, Condition, Evaluator, Failing, Inputs, Reading, Returning
+from navsym.audit.conditions import Decider, is_integer
+from navsym.audit.evaluate import CASES, Case, CellView, Failing, Inputs, Reading, Returning
 from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_return_view, names_in, walk
 from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, VIEWS, bare_name, does_take, is_method
 from navsym.audit.values import (
@@ -34,14 +34,12 @@ from navsym.audit.values import (
     lose,
     lose_views,
     make_array,
-    map_cell,
     places_of,
     promote,
-    require_fit,
     share,
 )
 from navsym.core.errors import TooLargeError
-from navsym.language.tree import NUMBER, build_number
+from navsym.language.tree import build_number
 
 Body = tuple[Part, ...]
 STEPS = 250_000
@@ -101,7 +99,7 @@ def list_cases(
 
 
 @dataclass(slots=True, eq=False)
-class Machine(Evaluator):
+class Machine(Decider):
     """One run. Undecided conditions take the ways of ``choices``, and then the first of both.
 
     choices : None leaves unread what depends on an undecided condition
@@ -207,6 +205,8 @@ class Machine(Evaluator):
                 targets.update(part.parts[1])
             if part.kind == "call" and self.is_closure(part.parts[0]):
                 targets |= {*self.frame}
+        if "this" in targets:
+            self.lose(unread)
         for name in {*targets, *(self.canonical(name + ".").rstrip(".->") for name in targets)}:
             if name in self.frame or name not in self.file_names:
                 lose(self.variable(name), unread)
@@ -342,6 +342,8 @@ class Machine(Evaluator):
             if number == "other":
                 raise Unreadable(statement.line, "a structure made of a list")
             sizes = result.shape  # auto
+        elif isinstance(result, Array) and len(sizes) == 2 and not self.does_fill(value, result, sizes):
+            raise Unreadable(statement.line, f"{name}, a matrix made of a row of numbers, which may be its columns")
         elif number == "matrix" and isinstance(result, Scalar):
             raise Unreadable(statement.line, f"{name}, a matrix of unknown size")
         is_lazy = number != "matrix"
@@ -353,14 +355,10 @@ class Machine(Evaluator):
         if result is not None:
             self.note_unread(result, statement)
             self.write(variable, self.fill(result, sizes), statement)
-        if (
-            is_lazy
-            and shape is None
-            and sizes
-            and value is not None
-            and value.kind in ("op", "minus", "method", "index")
-        ):
-            share(variable, self.arrays_in(value))  # auto of Eigen: computed when it is used
+        is_cpp = self.unit.language == "cpp"
+        lazy = ("op", "minus", "method", "index", *(("name",) if is_cpp else ()))
+        if is_lazy and shape is None and sizes and value is not None and value.kind in lazy:
+            share(variable, self.arrays_in(value))  # auto of Eigen, computed when it is used; of an array a pointer
 
     def may_change(self, owner: str) -> bool:
         """True for a structure that the function, or one that it calls, may write to."""
@@ -378,6 +376,11 @@ class Machine(Evaluator):
         unread = next((cell for cell in cells if isinstance(cell, Unread)), None)
         if unread is not None:
             self.reading.valueless[statement.span] = unread.why
+
+    def does_fill(self, value: Part | None, result: Array, sizes: Index) -> bool:
+        """True for a matrix, or for all its numbers in a list, as they stand."""
+        is_whole = sizes in (self.fill(result, sizes).shape, result.shape[1:])  # type: ignore[union-attr]
+        return is_whole or (len(result.shape) == 1 and value is not None and value.kind == "list")
 
     def fill(self, value: Value, shape: Index) -> Value:
         """An initial value in its shape: the rest of a C initializer is zero."""
@@ -414,6 +417,9 @@ class Machine(Evaluator):
             self.write(variable, result, statement)
             return
         variable, places, shape = self.targets(target)
+        if variable.number == "list" and isinstance(result, Array) and value.kind != "list":
+            lose(variable, Unread(statement.line, "a row of a list that may stand in two places"))
+            raise Unreadable(statement.line, "a row of a list that may stand in two places")
         if isinstance(result, Array) and math.prod(result.shape) != len(places):
             raise Unreadable(statement.line, "an assignment between shapes that do not fit")
         cells = result.cells if isinstance(result, Array) else (result,) * len(places)
@@ -437,6 +443,8 @@ class Machine(Evaluator):
     def fill_by_commas(self, target: Part, value: Part) -> Value:
         """``M << A, b, c`` of Eigen: blocks side by side until a row is full, and then below."""
         *_, shape = self.targets(target)
+        if not shape:
+            raise Unreadable(value.line, "<< into what has no known size")
         if names_in(target) & {*names_in(value), *(p.parts[0] for p in walk(value) if p.kind == "call")}:
             raise Unreadable(value.line, "a matrix that is filled with its own entries")
         rows: list[list[Value]] = [[]]
@@ -451,11 +459,16 @@ class Machine(Evaluator):
 
         In Python two names share one array, and a slice is a view: a later write leaves the other one unread.
         """
-        is_python = self.unit.language == "python"
+        is_python, name = self.unit.language == "python", self.canonical(name)
+        if self.is_property(name):
+            raise Unreadable(statement.line, f"{name}, which a function of the file may set")
+        self.rename_object(name, value, statement)
         if is_python and value.kind == "name" and isinstance(result, Array):
             self.frame[name] = self.variable(value.parts[0])
             return
         bases = self.arrays_in(value) if is_python else []
+        if is_python and value.kind == "call" and value.parts[0] in self.unit.functions:
+            bases += [v for known, v in self.frame.items() if "." in known and v.shape]  # a member that it returns
         number = "list" if isinstance(result, List) else "real"
         variable = Variable(name, number, result.shape if isinstance(result, Array) else ())
         cells = result.cells if isinstance(result, Array) else ()
@@ -467,6 +480,19 @@ class Machine(Evaluator):
             share(variable, [*bases, variable])  # two of its rows may be one
         elif cells and self.is_view(value):
             share(variable, bases)
+
+    def rename_object(self, name: str, value: Part, statement: Part) -> None:
+        """Members belong to what a name stood for before; of Python's objects two names may be of one."""
+        unread = Unread(statement.line, f"a member of another {name}")
+        for other in [other for other, (owner, _) in self.aliases.items() if owner == name]:
+            self.aliases[other] = (f"{name}@{statement.line}", ".")
+            self.lost_heads[f"{name}@{statement.line}"] = unread
+        self.aliases.pop(name, None)
+        is_copy = self.unit.language == "matlab" and value.kind == "name"  # perhaps of a structure
+        if is_copy or any(known.startswith(f"{name}.") for known in (*self.frame, *self.globals)):
+            self.lose_members(name, unread)
+        if self.unit.language == "python" and value.kind == "name":
+            self.aliases[name] = (self.canonical(value.parts[0]), ".")
 
     def is_view(self, value: Part) -> bool:
         """True for an expression of Python whose value may share cells with an array in it."""
@@ -521,9 +547,12 @@ class Machine(Evaluator):
         first, end, by = (self.whole(part) for part in (start, stop, step))
         if by == 0 or len(range(first, end, by)) > STEPS:
             raise Unreadable(statement.line, "a loop without an end")
-        for i in range(first, end, by):
-            self.frame[name] = Variable(name, "int", (), {(): Scalar(build_number(i), "int", statement.line)})
-            self.block(body)
+        with self.scope():
+            if self.unit.language == "rust":  # where the counter is a name of its own
+                self.shadows[-1][name] = self.frame.get(name)
+            for i in range(first, end, by):
+                self.frame[name] = Variable(name, "int", (), {(): Scalar(build_number(i), "int", statement.line)})
+                self.block(body)
 
     def run_loop(self, first: Body, test: Part, step: Body, body: Body, is_late: bool, statement: Part) -> None:
         """``for`` of C and ``while``: the condition is known from whole numbers each time."""
@@ -578,7 +607,18 @@ class Machine(Evaluator):
             if name in IN_PLACE and self.unit.language == "cpp" and not arguments:
                 self.run_assign(base, "", Part("method", call.line, (base, IN_PLACE[name], ()), call.span), statement)
                 return
-        elif call.kind == "call" and (call.parts[0] in HARMLESS or call.parts[0] in self.unit.ignored):
+            if self.unit.language == "cpp" and name in ("transpose", "inverse", "conjugate"):  # of some libraries
+                unread = Unread(
+                    statement.line, f"{name} without a use of its value: it may change what it is called on"
+                )
+                for known in names_in(base):
+                    lose(self.variable(known), unread)
+                raise Unreadable(unread.line, unread.why)
+        elif call.kind == "call" and (
+            call.parts[0] in (*HARMLESS, *PURE[self.unit.language]) or call.parts[0] in self.unit.ignored
+        ):
+            if any(self.has_effect(part) for part in walk(call.parts[1])):
+                raise Unreadable(statement.line, f"an argument of {call.parts[0]} that may write")
             return
         elif call.kind == "call" and call.parts[0] == "memcpy" and len(call.parts[1]) == 3:
             target, source, size = call.parts[1]
@@ -588,7 +628,10 @@ class Machine(Evaluator):
                 raise Unreadable(statement.line, "memcpy of other than sizeof an array that is declared here")
             self.run_assign(target, "", source, statement)
             return
-        elif call.kind == "call" and call.parts[0] == "memset":
+        elif call.kind == "call" and call.parts[0] == "memset" and len(call.parts[1]) == 3:
+            name, size = (self.unit.text(part).replace(" ", "").lstrip("&") for part in call.parts[1][::2])
+            if size != f"sizeof({name})" or (name in self.frame and not any(name in t for t in self.shadows)):
+                raise Unreadable(statement.line, "memset of other than sizeof an array that is declared here")
             self.reset(call.parts[1][0], "memset", call.parts[1][1:2], statement)
             return
         self.value(call, wants_value=False)
@@ -611,86 +654,3 @@ class Machine(Evaluator):
             on_diagonal = is_identity and len({*place, 0} if len(place) == 1 else {*place}) == 1
             self.write_cell(variable, place, one if on_diagonal else number, statement)  # type: ignore[arg-type]
         variable.all_unread = None
-
-    # -- conditions --
-
-    def decide(self, test: Part) -> bool:
-        """Whether a condition holds in this case; one that is not read has two ways, of which nothing is known."""
-        try:
-            return self.decide_known(test)
-        except Unreadable as refusal:
-            if self.choices is None or not self.is_bold:
-                raise
-            self.refuse(test, Unread(refusal.line or test.line, refusal.why))
-            return self.choose(Condition(self.unit.text(test), test.line, True, f"?{len(self.conditions)}"))
-
-    def decide_known(self, test: Part) -> bool:
-        """Whether a condition holds that can be read."""
-        if test.kind == "both":
-            return self.decide(test.parts[0]) and self.decide(test.parts[1])
-        if test.kind == "either":
-            return self.decide(test.parts[0]) or self.decide(test.parts[1])
-        if test.kind == "not":
-            return not self.decide(test.parts[0])
-        sign, left, right = "", None, None
-        if test.kind == "compare":
-            sign = test.parts[0]
-            if is_finiteness(test):
-                return True  # numbers are real numbers here
-            a, b = self.value(test.parts[1]), self.value(test.parts[2])
-            if not (isinstance(a, Scalar) and isinstance(b, Scalar)):
-                raise Unreadable(test.line, "a condition on what is not read")
-            require_fit(self.unit, map_cell(lambda x, _: x, a, b), test.line)  # -1 < 1U does not hold
-            require_fit(self.unit, map_cell(lambda x, _: x, b, a), test.line)
-            left, right = a.tree, b.tree
-            if left.head == right.head == NUMBER:
-                return COMPARE[sign](left.args[0], right.args[0])
-        elif test.kind not in ("refused", "list"):
-            value = self.value(test)
-            exact = constant_of(value)
-            if exact is not None:
-                return exact != 0
-            if not isinstance(value, Scalar):
-                raise Unreadable(test.line, "a condition on what is not read")
-            sign, left, right = "!=", value.tree, build_number(0)
-        else:
-            raise Unreadable(test.line, "a condition outside the language of audit")
-        return self.choose(Condition(self.unit.text(test), test.line, True, sign, left, right))
-
-    def choose(self, condition: Condition) -> bool:
-        """The way of this run at an undecided condition."""
-        for known in self.conditions:
-            if (known.sign, known.left, known.right) == (condition.sign, condition.left, condition.right):
-                return known.holds
-        if self.choices is None:
-            raise Unreadable(condition.line, f"one of more than {CASES} cases")
-        place = len(self.conditions)
-        holds = self.choices[place] if place < len(self.choices) else True
-        if place >= len(self.choices):
-            self.other_ways.append([*(known.holds for known in self.conditions), False])
-        self.conditions.append(
-            Condition(condition.text, condition.line, holds, condition.sign, condition.left, condition.right)
-        )
-        return holds
-
-
-def is_finiteness(test: Part) -> bool:
-    """True for ``fabs(x) <= DBL_MAX``."""
-    sign, left, right = test.parts
-    is_bound = right.kind == "name" and right.parts[0] in ("DBL_MAX", "FLT_MAX")
-    return sign == "<=" and is_bound and left.kind == "call" and left.parts[0] in ("fabs", "fabsf")
-
-
-def is_integer(cell: Cell) -> bool:
-    """True for a cell that holds an integer of the source."""
-    return isinstance(cell, Scalar) and cell.number in LIMITS
-
-
-COMPARE: Mapping[str, Callable[[Fraction, Fraction], bool]] = {
-    "<": lambda a, b: a < b,
-    "<=": lambda a, b: a <= b,
-    ">": lambda a, b: a > b,
-    ">=": lambda a, b: a >= b,
-    "==": lambda a, b: a == b,
-    "!=": lambda a, b: a != b,
-}

@@ -92,6 +92,7 @@ class Unit:
     decimals  : decimal of the source -> the number for which it stands, as a mapping declares
     variables : names of C that are values, and no types
     overlaid : names of members of unions, which share their place with others
+    types     : name of a type that the file defines -> what it stands for, in C
     imported  : what names of numpy and math are called in Python
     """
 
@@ -111,6 +112,7 @@ class Unit:
     overlaid: set[str] = field(default_factory=set)
     imported: dict[str, str] = field(default_factory=dict)
     declared: set[str] = field(default_factory=set)
+    types: dict[str, str] = field(default_factory=dict)
 
     def is_array(self, name: str) -> bool:
         """True for a name before parentheses that holds entries; of others two calls may give two values."""

@@ -65,8 +65,13 @@ PURE = {
     "matlab": frozenset("isinf isnan isempty any all numel length size strcmp strcmpi nargin ischar isfield".split()),
     "rust": frozenset(),
 }
-#: Functions that MATLAB calls without parentheses.
-NAMED_CALLS = {"matlab": frozenset("rand randn randi tic toc now clock cputime input".split())}
+#: Names that are no real numbers: functions that MATLAB calls without parentheses, what is infinite or not a number.
+NAMED_CALLS = {
+    "c": frozenset("NAN INFINITY HUGE_VAL HUGE_VALF".split()), "cpp": frozenset("NAN INFINITY HUGE_VAL".split()),
+    "matlab": frozenset("rand randn randi tic toc now clock cputime input NaN nan NA Inf inf i j".split()),
+    "python": frozenset(f"{m}.{name}" for m in ("np", "numpy", "math") for name in "nan NaN inf Inf".split()),
+    "rust": frozenset(f"{f}::{name}" for f in ("f32", "f64") for name in "NAN INFINITY NEG_INFINITY".split()),
+}  # fmt: skip
 PREFIX = re.compile(r"\A(std::|::|math\.|np\.|numpy\.|matrix::|Eigen::)")
 #: The larger or the smaller of two numbers.
 EXTREMES = {
@@ -127,6 +132,12 @@ def cellwise(step: Callable[..., Tree]) -> Known:
     return lambda unit, *values: as_real(map_cells(step, *values))
 
 
+def whole_or_real(step: Callable[..., Tree]) -> Known:
+    """The same of functions that give integers for integers in numpy."""
+    real = cellwise(step)
+    return lambda unit, *values: map_cells(step, *values) if unit.language == "python" else real(unit, *values)
+
+
 def plain(name: str) -> Known:
     """A function that the language of statements has."""
     return cellwise(lambda *trees: build_call(name, *trees))
@@ -140,7 +151,7 @@ def turn(factor: Fraction) -> Known:
 def absolute(unit: Unit, value: Value) -> Value:
     if unit.language == "c":
         raise Unreadable(0, "abs, which cuts to an integer in C; fabs does not")
-    return plain("abs")(unit, value)
+    return whole_or_real(lambda x: build_call("abs", x))(unit, value)
 
 
 def same(unit: Unit, value: Value) -> Value:
@@ -282,6 +293,13 @@ def rotation_of(unit: Unit, value: Value) -> Value:
     return transpose(Array((3, 3), tuple(cells)), True)
 
 
+def as_another(unit: Unit, value: Value) -> Value:
+    """A number or a vector in another type; a matrix of nalgebra takes nested arrays as its columns."""
+    if isinstance(value, Array) and len(value.shape) != 1:
+        raise Unreadable(0, "a matrix made of another, which nalgebra may read by columns")
+    return value
+
+
 def coefficients_of(count: int) -> Known:
     """The first coefficients of a quaternion, as a vector."""
     return lambda unit, value: Array((count,), require_quaternion(unit, value).cells[:count])
@@ -313,9 +331,9 @@ ARRAYS: dict[tuple[str, int], Known] = {
 }  # fmt: skip
 #: Functions that only numpy has, and degrees.
 OF_NUMPY: dict[tuple[str, int], Known] = {
-    **{(name, 1): plain(meaning) for name, meaning in NUMPY.items()},
-    ("square", 1): cellwise(lambda x: raise_to(x, TWICE)),
-    ("power", 2): NUMBERS["pow", 2], ("arctan2", 2): plain("atan2"),
+    **{(name, 1): plain(meaning) for name, meaning in NUMPY.items()}, ("absolute", 1): absolute,
+    ("square", 1): whole_or_real(lambda x: raise_to(x, TWICE)),
+    ("power", 2): whole_or_real(raise_to), ("arctan2", 2): plain("atan2"),
 }  # fmt: skip
 OF_ANGLES: dict[tuple[str, int], Known] = {(name, 1): turn(factor) for name, factor in ANGLES.items()}
 #: Constructors of nalgebra and Eigen; the reader of Rust writes the sizes of a type before the entries.
@@ -326,6 +344,7 @@ NALGEBRA: dict[tuple[str, int], Known] = {
         (("Quaternion::from_quaternion", 1), ("Quaternion::new_normalize", 1)),
         lambda unit, value: normalize(unit, require_quaternion(unit, value)),
     ),
+    ("Convert::into", 1): as_another,
     ("Quaternion::identity", 0): lambda unit: Quaternion((4,), (*[Scalar(ZERO)] * 3, Scalar(ONE))),
 }  # fmt: skip
 KNOWN = NUMBERS | ARRAYS | OF_NUMPY | OF_ANGLES | NALGEBRA

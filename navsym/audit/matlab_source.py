@@ -9,6 +9,7 @@ from typing import Any
 from navsym.audit.form import Argument, Function, Part, Rules
 from navsym.audit.syntax import (
     OPERATORS,
+    UNARY,
     SourceReader,
     descend,
     field_of,
@@ -24,6 +25,8 @@ RULES = Rules(first=1, matrix=True, entry=("{}({})", "{}({},{})"))
 POWERS = ("^", ".^")
 #: Commands that write no name.
 QUIET = ("format", "hold", "close", "clc", "more", "warning", "figure", "disp", "drawnow")
+#: Functions that may write any name.
+RUNNING = ("eval", "evalin", "evalc", "assignin", "load", "clear", "run")
 SIGNS = {**{sign: sign for sign in (".*", "./", ".^")}, "^": "**"}
 OTHERS: dict[str, tuple[str, ...]] = {"~=": ("compare", "!="), "&": ("both",), "|": ("either",)}
 
@@ -32,6 +35,7 @@ OTHERS: dict[str, tuple[str, ...]] = {"~=": ("compare", "!="), "&": ("both",), "
 class Reader(SourceReader):
     """Walks the syntax tree of MATLAB."""
 
+    UNARY = UNARY | {"~": "not"}
     OPERATORS = OPERATORS | {sign: ("op", meaning) for sign, meaning in SIGNS.items()} | OTHERS
 
     @staticmethod
@@ -48,10 +52,10 @@ class Reader(SourceReader):
         name = text_of(field_of(node, "name"))
         children = {child.type: child for child in named(node)}
         output, given, body = (children.get(kind) for kind in ("function_output", "function_arguments", "block"))
-        outputs = [text_of(n) for n in descend(output) if n.type == "identifier"] if output is not None else []
+        outputs = [n for n in descend(output) if n.type == "identifier"] if output is not None else []
         arguments = [Argument(text_of(n)) for n in named(given)] if given is not None else []
-        function = Function(name, line_of(node), tuple(arguments), self.block(body), tuple(sorted(outputs, key=lambda n:
-            text_of(output).index(n))))  # fmt: skip
+        in_order = tuple(text_of(n) for n in sorted(outputs, key=lambda n: n.start_byte))
+        function = Function(name, line_of(node), tuple(arguments), self.block(body), in_order)
         self.unit.functions.setdefault(name, []).append(function)
 
     # -- statements --
@@ -75,6 +79,8 @@ class Reader(SourceReader):
                 return (self.part("jump", node, f"the command {text_of(node).split()[0]}", ()),)
             case "function_call" if text_of(field_of(node, "name")) == "error":
                 return (self.part("fail", node, "an error is raised"),)
+            case "function_call" if text_of(field_of(node, "name")) in RUNNING:
+                return (self.part("jump", node, "a text that is run, or names from a file", ()),)
             case "function_call":
                 return (self.part("do", node, self.expression(node)),)
         return None
@@ -86,6 +92,8 @@ class Reader(SourceReader):
             return self.part("several", node, targets, self.expression(right))
         if left.type not in ("identifier", "function_call", "field_expression"):
             return self.unread(node, "several names assigned at once")
+        if left.type == "function_call" and right.type == "matrix" and not named(right):
+            return self.unread(node, "entries that are removed")
         return self.part("assign", node, self.expression(left), "", self.expression(right))
 
     def switch(self, node: Any) -> tuple[Part, ...]:

@@ -74,11 +74,14 @@ class Reader(SourceReader):
                 bound = [text_of(field_of(node, "name"))]
             elif node.type == "parameters":
                 bound = [*map(name_parameter, named(node))]
+            elif node.type == "import_from_statement":
+                names = node.children_by_field_name("name")
+                bound = [text_of(name) for name in names if name.type == "dotted_name" and text_of(name) != "numpy"]
             elif node.type == "aliased_import" and text_of(field_of(node, "name")) not in NUMERIC:
                 bound = [text_of(field_of(node, "alias"))]
             self.rebound |= {*bound} & {"np", "numpy", "math"}
 
-    def read_body(self, nodes: list[Any]) -> None:
+    def read_body(self, nodes: list[Any], is_class: bool = False) -> None:
         """Functions and methods, and names of the module that are assigned once, to numbers."""
         assigned: dict[str, list[Part]] = {}
         for node in nodes:
@@ -88,7 +91,7 @@ class Reader(SourceReader):
                 other = next((c for c in decorators if not PLAIN_DECORATORS.fullmatch(text_of(c))), None)
                 node = field_of(node, "definition")
             if node.type == "class_definition":
-                self.read_body(named(field_of(node, "body")))
+                self.read_body(named(field_of(node, "body")), is_class=True)
             elif node.type == "function_definition":
                 self.read_function(node, other)
             elif node.type == "expression_statement":
@@ -98,7 +101,7 @@ class Reader(SourceReader):
                     if statement.parts[0].kind == "name":
                         assigned.setdefault(statement.parts[0].parts[0], []).append(statement)
         for name, many in assigned.items():
-            if len(many) == 1 and not many[0].parts[1] and name not in self.changed:
+            if len(many) == 1 and not is_class and not many[0].parts[1] and name not in self.changed:
                 self.unit.constants += many
             for function in self.unit.functions.get(name, []):
                 self.unit.functions[name] = [replace(function, body=(self.part("jump", nodes[0], AGAIN, ()),))]
@@ -124,7 +127,10 @@ class Reader(SourceReader):
                 return (self.loop(node),)
             case "while_statement" if field_of(node, "alternative") is not None:
                 return (self.unread(node, "a loop with an else"),)
-            case "pass_statement" | "assert_statement" | "import_statement" | "import_from_statement":
+            case "assert_statement" if not any(inner.type == "named_expression" for inner in descend(node)):
+                calls = (inner for inner in descend(node) if inner.type == "call")
+                return tuple(self.part("do", call, self.expression(call)) for call in calls)
+            case "pass_statement" | "import_statement" | "import_from_statement":
                 return ()
             case "global_statement":
                 return (self.part("jump", node, "a global name", ()),)
@@ -169,22 +175,20 @@ class Reader(SourceReader):
             return (self.unread(node, "several names assigned twice at once"),)
         value = self.expression(right)
         first: tuple[Part, ...] = ()
-        if value.kind != "name" and (len(chain) > 1 or (len(targets) > 1 and value.kind == "call")):
+        written = {re.match(r"[\w.]*", text_of(target))[0] for target in targets}  # type: ignore[index]
+        if len(targets) > 1 and value.kind == "name" and written & names_in(value):
+            return (self.unread(node, "names assigned from each other at once"),)
+        if value.kind != "name" and (len(chain) > 1 or (len(targets) > 1 and value.kind in ("call", "op"))):
             once = self.part("name", right, f"several@{node.start_byte}")  # made once; no source can have this name
             first, value = (self.part("assign", node, once, "", value),), once
         if len(targets) == 1:
             return (*first, *(self.part("assign", node, self.expression(target), "", value) for target in chain))
-        is_computed = value.kind in ("op", "method", "minus")
-        if is_computed and {text_of(target) for target in targets} & names_in(value):
-            return (self.unread(node, "names assigned from each other at once"),)
-        if value.kind in ("name", "op"):  # a, b = x
+        if value.kind == "name":  # a, b = x
             items = [Part("index", value.line, (value, (self.part("number", node, k, "int"),)), value.span)
                      for k in range(len(targets))]  # fmt: skip
         elif value.kind == "list" and len(value.parts[0]) == len(targets):
-            items = list(value.parts[0])
-            names = {text_of(target) for target in targets}
-            if names & names_in(*items):
-                return (self.unread(node, "names assigned from each other at once"),)
+            items = [self.part("name", right, f"several@{node.start_byte}.{k}") for k in range(len(targets))]
+            first = tuple(self.part("assign", node, n, "", x) for n, x in zip(items, value.parts[0], strict=True))
         else:
             return (self.unread(node, "several names assigned at once"),)
         pairs = zip(targets, items, strict=True)

@@ -22,10 +22,12 @@ NUMBERS = dict.fromkeys("sin cos tan asin acos atan sinh cosh tanh exp sqrt atan
     "abs": "fabs", "powf": "pow", "powi": "pow", "max": "fmax", "min": "fmin"
 }  # fmt: skip
 #: Methods that give what they are called on.
-SAME = ("clone", "as_ref", "to_owned", "into_inner", "into", "quaternion", "as_vector", "copied", "eval", "coords")
+SAME = ("clone", "as_ref", "to_owned", "into_inner", "quaternion", "as_vector", "copied", "eval", "coords")
 QUIET = "println eprintln debug_assert debug_assert_eq assert assert_eq trace debug info warn".split()
 
 
+#: A text, and what may write in the arguments of a macro.
+STRING, WRITING = re.compile(r'"(\\.|[^"\\])*"'), re.compile(r"(?<![=!<>])=(?!=)|mut\b")
 SIGNS = ("", "+=", "-=", "*=", "/=", "%=")
 
 
@@ -64,6 +66,7 @@ class Reader(SourceReader):
         """Functions, constants and fields, also inside modules and implementations."""
         nodes = [*descend(root)]
         self.own = {text_of(field_of(node, "name")) for node in nodes if node.type == "function_item"}
+        self.unit.variables |= {text_of(field_of(node, "name")) for node in nodes if node.type == "const_item"}
         for node in nodes:
             if node.type == "function_item":
                 self.read_function(node)
@@ -145,7 +148,9 @@ class Reader(SourceReader):
                 return (self.ending(named(node)[0]) if named(node) else self.part("return", node, None),)
             case "call_expression":
                 return (self.part("do", node, self.expression(node)),)
-            case "macro_invocation" if text_of(field_of(node, "macro")) in QUIET:
+            case "macro_invocation" if text_of(field_of(node, "macro")) in QUIET and not WRITING.search(
+                STRING.sub("", text_of(node))
+            ):
                 return ()
             case "macro_invocation" if text_of(field_of(node, "macro")) in ("panic", "unreachable", "todo"):
                 return (self.part("fail", node, "a panic"),)
@@ -221,8 +226,9 @@ class Reader(SourceReader):
                 is_real = node.type == "float_literal" or text.endswith(("f32", "f64"))
                 return self.literal(node, bare.removesuffix("."), is_real)
             case "scoped_identifier":
-                last = text_of(field_of(node, "name"))
-                return self.part("name", node, "M_PI" if last == "PI" else "".join(text_of(node).split()))
+                name, last = "".join(text_of(node).split()), text_of(field_of(node, "name"))
+                is_own = last in self.unit.variables and not name.startswith(("std::", "core::"))
+                return self.part("name", node, last if is_own else "M_PI" if last == "PI" else name)
             case "reference_expression":
                 return self.expression(field_of(node, "value"))
             case "unary_expression":
@@ -274,7 +280,7 @@ class Reader(SourceReader):
         if QUATERNION.fullmatch(head):
             return self.part("call", node, f"Quaternion::{last}", arguments)
         if last in ("convert", "from", "from_f64", "new_unchecked") and len(arguments) == 1:
-            return arguments[0]
+            return self.part("call", node, "Convert::into", arguments)
         if last in ("zero", "one") and not arguments:
             return self.part("number", node, int(last == "one"), "auto")
         shape = type_of(head)[1]
@@ -298,6 +304,8 @@ class Reader(SourceReader):
             return self.refuse(node, f"the method {name} of this file on another value")
         if name in SAME and not arguments:
             return base
+        if name == "into" and not arguments:
+            return self.part("call", node, "Convert::into", (base,))
         if name in NUMBERS and len(arguments) < 2:
             return self.part("call", node, NUMBERS[name] or name, (base, *arguments))
         return self.part("method", node, base, name, arguments)

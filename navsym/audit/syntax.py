@@ -157,7 +157,7 @@ OPERATORS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("&&", "and"), ("both",)),
     **dict.fromkeys(("||", "or"), ("either",)),
 }
-UNARY = {"-": "minus", "!": "not", "not": "not", "~": "not"}
+UNARY = {"-": "minus", "!": "not", "not": "not"}
 
 
 @dataclass(slots=True, eq=False)
@@ -174,6 +174,7 @@ class SourceReader:
     TAIL: ClassVar[str] = ";"
     OPEN: ClassVar[tuple[str, ...]] = ("if_statement", "for_statement")
     OPERATORS: ClassVar[dict[str, tuple[str, ...]]] = OPERATORS
+    UNARY: ClassVar[dict[str, str]] = UNARY
 
     read_statement: ClassVar[Any]
     read_expression: ClassVar[Any]
@@ -269,8 +270,9 @@ class SourceReader:
         """One operand with an operator before it."""
         if sign == "+":
             return self.expression(operand)
-        known = self.part(UNARY[sign], node, self.expression(operand)) if sign in UNARY else None
-        return known or self.refuse(node, f"the operator {sign}")
+        if sign not in self.UNARY:
+            return self.refuse(node, f"the operator {sign}")
+        return self.part(self.UNARY[sign], node, self.expression(operand))
 
     def literal(self, node: Any, text: str, is_real: bool) -> Part:
         """A number in decimal digits."""

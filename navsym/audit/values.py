@@ -420,13 +420,23 @@ def convert(value: Value, number: str, line: int) -> Value:
 
 def combine(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
     """The arithmetic of a language."""
-    return require_fit(unit, operate(unit, sign, a, b, line), line)
+    result = operate(unit, sign, a, b, line)
+    return require_fit(unit, result if sign != "-" else require_no_wrap(result, line), line)
+
+
+def require_no_wrap(value: Value, line: int) -> Value:
+    """A difference, which may be below zero: of unsigned numbers it has another value there."""
+    if isinstance(value, Scalar) and value.number == "unsigned" and constant_of(value) is None:
+        raise Unreadable(line, "a difference of unsigned numbers, which may wrap round")
+    return value
 
 
 def operate(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
     """The same, whatever fits."""
     if isinstance(a, Unread) or isinstance(b, Unread):
         return a if isinstance(a, Unread) else b
+    if unit.language == "c" and (isinstance(a, Array) or isinstance(b, Array)):
+        raise Unreadable(line, "arithmetic with an array, which is a pointer in C")
     both, rules = isinstance(a, Array) and isinstance(b, Array), unit.rules
     if (isinstance(a, List) or isinstance(b, List)) and (joined := join_lists(sign, a, b)) is not None:
         return joined
@@ -451,10 +461,10 @@ def operate(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
         return map_cells({".*": multiply, "./": divide, ".^": raise_to}[sign], a, b)
     if sign != "**":
         return quotient(unit, sign, a, b, line)
-    if not isinstance(a, Array) or not rules.matrix:
+    if not rules.matrix or not (isinstance(a, Array) or isinstance(b, Array)):
         return map_cells(raise_to, a, b)
     times = constant_of(b)
-    if times is None or times.denominator != 1 or not 0 < times < 9 or a.shape != a.shape[:1] * 2:
+    if times is None or times.denominator != 1 or not 0 < times < 9 or a.shape != a.shape[:1] * 2:  # type: ignore[union-attr]
         raise Unreadable(line, "the power of a matrix")
     factors: list[Value] = [a] * int(times)
     return functools.reduce(matrix_product, factors)

@@ -150,7 +150,7 @@ def test_more_than_32_cases_leave_unread_what_the_branches_write(tmp_path):
         ("y = (a @ a) / 2", "1/2*(a[0]*a[0] + a[1]*a[1])"),
         ("M = np.array([[1.0, 2.0], [3.0, 4.0]])\n    N = M * M\n    y = N[1, 0] + 0", "9"),
         ("M = np.array([[1.0, 2.0], [3.0, 4.0]])\n    N = M @ M\n    y = N[1, 0] + 0", "15"),
-        ("u, v = v, u\n    y = u", "names assigned from each other at once"),
+        ("u, v = v, u\n    y = u", "v"),
         ("y = sum(a)", "the function sum, which this file does not define"),
         ("y = -a[-1]**2", "-a[1]**2"),
         ("y = a.mean()", "the method mean"),
