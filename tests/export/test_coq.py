@@ -287,6 +287,9 @@ def test_what_the_ledger_keeps_is_written_or_has_a_listed_reason():
 @pytest.mark.parametrize(
     "name",
     [
+        "guaranteed_velocity:range.y3",  # a cosine that reaches its bound at an end
+        "trajectory:limit.motion.3.older",  # a polynomial that touches its bound: squares of its factors
+        "trajectory:limit.motion.3.youngest",
         "guaranteed_velocity:4.11.nonzero-beyond",  # not 0, by its sign: a product of sines on half a turn
         "guaranteed_velocity:4.13.y3",  # absolute values by the signs of what they are of
         "multistructure:1.nonlinear",  # a second derivative at a point of nine symbols

@@ -273,7 +273,8 @@ def prove_bound(box: Mapping[str, Range], names: Mapping[str, str], by_balls: bo
     tries += [f"i_prec {BITS}, i_depth {DEPTH}, i_taylor {name}{cut}" for name in wide][:2]
     balls = [f"timeout {PATIENCE} by_difference ltac:(interval with ({options}))" for options in tries]
     ways = ["solve [ positive ]", "timeout 3 nra", "by_distances"]
-    ways = ["lra", *(balls + ways if by_balls else ways + balls), f"timeout {PATIENCE} nra", "by_signs", "by_roots"]
+    ways = ["lra", *(balls + ways if by_balls else ways + balls), f"timeout {PATIENCE} nra"]
+    ways += ["by_signs", "by_roots", "by_falling"]
     return ["put_values.", f"first [ {' | '.join(ways)} ]."]
 
 
@@ -286,6 +287,7 @@ class Follower:
 
     def prove(self, proof: Mapping[str, Any], term: Term, relation: str) -> list[str]:
         """The goal of a theorem, which says the relation of the term to 0 in some form."""
+        proof = factor_roots(proof, term)
         if relation == "=" or proof.get("rule") not in ("equal", "product", "rewrite", "side", "sum"):
             return self.go(proof, term, relation)
         said = self.say(term, relation)
@@ -303,6 +305,7 @@ class Follower:
 
     def go(self, proof: Mapping[str, Any], term: Term, relation: str) -> list[str]:
         """The goal in the lemmas' form, or an equation."""
+        proof = factor_roots(proof, term)
         rule = proof.get("rule")
         if rule == "rewrite" and proof["equal"]["rule"] == "solve":
             old, new = checker.parse(proof["from"]), checker.parse(proof["to"])
@@ -314,7 +317,7 @@ class Follower:
         if relation == "=":
             return prove_equality((term,), self.names)
         if rule == "equal":
-            new = checker.parse(proof["to"])
+            new = proof["to"] if isinstance(proof["to"], tuple) else checker.parse(proof["to"])
             lines = self.change(term, new, prove_equality((term, new), self.names))
             return [*lines, *self.go(proof["proof"], new, relation)]
         if rule == "side":
@@ -347,6 +350,28 @@ class Follower:
         if signed != factors and relation != "!=":
             lines += self.change(term, ("*", *signed), ["field; nonzero."])
         return [*lines, "first [ solve [ positive ] | solve [ nonzero ] ]."]
+
+
+def factor_roots(proof: Mapping[str, Any], term: Term) -> Mapping[str, Any]:
+    """A polynomial that the rule ``roots`` judges, as its factors: squares, and others with their sign inside."""
+    if proof.get("rule") != "roots":
+        return proof
+    top, bottom = checker.to_fraction(term)
+    if bottom.degree() > 0 or sum(e for _, e in top.factor()[1]) < 2:
+        return proof
+    low, high = (None if proof[end] is None else checker.read_number(proof[end]) for end in ("from", "to"))
+    place, symbol = checker.inner_number(low, high), ("symbol", *checker.symbols_of(term))
+    while top(place) == 0:
+        place = checker.inner_number(place, high)
+    factors, entries = [checker.number(top.factor()[0] / bottom[0])], list[Any]([None])
+    for factor, power in top.factor()[1]:
+        rows = enumerate(factor.coeffs())
+        base = checker.make_sum(*(("*", checker.number(q), ("^", symbol, checker.number(k))) for k, q in rows))
+        for _ in range(power // 2):
+            factors, entries = [*factors, ("^", base, checker.number(2))], [*entries, None]
+        if power % 2:
+            factors, entries = [*factors, base], [*entries, [1 if factor(place) > 0 else -1, {"rule": "balls"}]]
+    return {"rule": "equal", "to": ("*", *factors), "proof": {"rule": "product", "factors": entries}}
 
 
 def refute(place: Mapping[str, str], lines: Iterable[str]) -> list[str]:

@@ -123,6 +123,16 @@ Ltac by_distances :=
     end end; timeout 10 nra.
 (* An inequality with absolute values, by the signs of their arguments. *)
 Ltac by_signs := unfold Rabs; repeat match goal with |- context [Rcase_abs ?x] => destruct (Rcase_abs x) end; timeout 10 nra.
+(* A bound of a cosine that is reached at a third or two thirds of half a turn. *)
+Lemma cosine_falls : forall x y, 0 <= x -> x <= y -> y <= PI -> cos y <= cos x.
+Proof. intros x y A L B. apply cos_decr_1; lra. Qed.
+Ltac by_falling :=
+  assert (P := PI_RGT_0);
+  match goal with |- context [cos ?x] =>
+    let reached a value := first
+      [ let F := fresh in assert (F := cosine_falls x a ltac:(lra) ltac:(lra) ltac:(lra)); rewrite value in F; lra
+      | let F := fresh in assert (F := cosine_falls a x ltac:(lra) ltac:(lra) ltac:(lra)); rewrite value in F; lra ]
+    in first [ reached (PI / 3) cos_PI3 | reached (2 * (PI / 3)) cos_2PI3 ] end.
 
 (* A relation of numbers. *)
 Ltac numbers :=
