@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from fractions import Fraction
+
+#: Fewer shared digits than these are no picture of a number: 1.6999 … 1.7001 would be 1.
+FEW = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,8 +17,8 @@ class Number:
     lower, upper : decimal strings
 
     >>> root = Number("1.41421356", "1.41421357")
-    >>> root.digits, float(root), str(root)
-    (8, 1.414213565, '1.4142135')
+    >>> root.digits, float(root), str(root), str(Number("2.59999999", "2.60000001"))
+    (8, 1.414213565, '1.4142135', '2.6')
     """
 
     lower: str
@@ -36,19 +40,17 @@ class Number:
         return float((Fraction(self.lower) + Fraction(self.upper)) / 2)
 
     def __str__(self) -> str:
-        """The digits that both ends share; where they share none, the middle to as many digits as are certain."""
+        """The digits that both ends share; the middle where these are few, as beside 2.6 = 2.5999 … 2.6001."""
         if self.lower == self.upper:
             return self.lower
-        shared = 0
-        for a, b in zip(self.lower, self.upper, strict=False):
-            if a != b:
-                break
-            shared += 1
-        text, whole = self.lower[:shared], len(self.lower.partition(".")[0])
-        if shared > whole and text.strip("-0."):
+        text = os.path.commonprefix([self.lower, self.upper])
+        shared = len(text.strip("-").replace(".", "").lstrip("0"))
+        if "." in text[:-1] and shared >= max(FEW, self.digits - 1):
             return text.rstrip(".")
-        wide = self.digits < 3 or text.strip("-0.") != ""
-        return f"{self.lower} … {self.upper}" if wide else f"{float(self):.{min(self.digits, 15)}g}"
+        if self.digits < 3:
+            return f"{self.lower} … {self.upper}"
+        rounded = (f"{float(self):.{count}g}" for count in range(min(self.digits, 15), 18))
+        return next((number for number in rounded if Fraction(number) in self), f"{self.lower} … {self.upper}")
 
     def __contains__(self, value: object) -> bool:
         """True when an exact number lies between the ends: ``Fraction(1, 3) in number``."""

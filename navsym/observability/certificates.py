@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from math import prod
+from math import lcm, prod
 from typing import Any
 
 import sympy as sp
@@ -28,9 +28,12 @@ from navsym.observability.motion import Motion, motion_of
 from navsym.observability.rank_drops import RankDrop
 from navsym.observability.reduction import System
 from navsym.observability.ring import Poly, Ring
+from navsym.observability.tree import linear_places
 
 #: Points tried, terms of the columns and of all remainders, and bits for each state.
 POINTS, COLUMN_TERMS, TERMS, BITS = 6, 400, 6000, 96
+#: Rounds of divisions by all zeros.
+DIVISIONS = 12
 #: Values of angles that an equation names.
 TURNS = (sp.Integer(0), sp.pi, sp.pi / 2, -sp.pi / 2)
 
@@ -251,9 +254,9 @@ def as_combination(value: Poly, zeros: System, said: Statement) -> tuple[list[Po
     """(factors q, unit u) with u value = sum q_k zeros_k up to squares of roots; None where there are none."""
     ring = said.ring
     unit, parts = ring.constant(1), [ring.constant(0) for _ in zeros]
-    order = sorted(range(len(zeros)), key=lambda k: solved_variable(zeros[k], zeros, ring) is None)
-    for k in order:
-        f, place = zeros[k], solved_variable(zeros[k], zeros, ring)
+    places = [own_variable(f, zeros, ring) for f in zeros]
+    for k in sorted(range(len(zeros)), key=lambda k: places[k] is None):
+        f, place = zeros[k], places[k]
         scale = ring.constant(1)
         if k >= len(said.system):
             root = next(g for g, square in said.motion.roots.items() if ring.context.gen(g) ** 2 - square == f)
@@ -267,37 +270,70 @@ def as_combination(value: Poly, zeros: System, said: Statement) -> tuple[list[Po
         parts, unit = [part * scale for part in parts], unit * scale
         parts[k] = (value * scale - rest) / f
         value = rest
-    return None if said.motion.reduced(value) != 0 else (parts, unit)
+    return (parts, unit) if said.motion.reduced(value) == 0 else divide_on(value, zeros, parts, unit)
+
+
+def own_variable(f: Poly, system: System, ring: Ring) -> int | None:
+    """Place of a variable of degree one that stands in no other equation, with a unit as its factor if possible."""
+    place = solved_variable(f, system, ring)
+    alone = (k for k, _ in linear_places(f) if not any(g is not f and g.degrees()[k] for g in system))
+    return min(alone, key=lambda k: len(f.derivative(k)), default=None) if place is None else place
+
+
+def divide_on(value: Poly, zeros: System, parts: list[Poly], unit: Poly) -> tuple[list[Poly], Poly] | None:
+    """Go on by division by all zeros in turn: it ends with 0 where they are a Groebner basis; None where it does not.
+
+    A factor makes room for the leading coefficients.
+    """
+    scale, parts = lcm(*(abs(int(f.leading_coefficient())) for f in zeros)), list(parts)
+    for _ in range(DIVISIONS):
+        before = value
+        for k, f in enumerate(zeros):
+            quotient, value = divmod(value, f)
+            parts[k] += quotient
+        if value == 0:
+            return parts, unit
+        if value == before and scale == 1:
+            return None
+        value, unit, parts = value * scale, unit * scale, [part * scale for part in parts]
+    return None
 
 
 # Points
 
 
 def points_on(zeros: System, said: Statement, symbols: Sequence[sp.Symbol]) -> Iterator[dict[Any, sp.Expr]]:
-    """A few points where the zeros vanish: rational but for what the equations give, by roots or angles."""
+    """A few points where the zeros vanish: rational but for what the equations give, by roots or angles.
+
+    What an equation fixes stays: equations that follow from it hold by themselves.
+    """
     ring = said.ring
     angles = {s for f in zeros for s in ring.expression(f).atoms(sp.sin, sp.cos) for s in s.free_symbols}
-    order = sorted(zeros, key=lambda f: solved_variable(f, zeros, ring) is not None)
+    graph = [(ring.expression(f), own_variable(f, zeros, ring)) for f in zeros]
+    named = [(zero, [] if place is None else [ring.symbols[place]]) for zero, place in graph]
+    order = sorted(named, key=lambda item: len(item[1]))
     for k in range(POINTS):
         small = 7 if k % 2 else 1
         at = {s: sp.Rational(sp.prime(2 * i + k + 3), small * (7 * i + 2 * k + 9)) for i, s in enumerate(symbols)}
         at |= {s: TURNS[k % len(TURNS)] for s in angles if k < len(TURNS)}
-        for f in order:
-            place = solved_variable(f, zeros, ring)
-            solve_for(ring.expression(f), at, [ring.symbols[place]] if place is not None else symbols)
+        pinned: set[Any] = set()
+        for zero, own in order:
+            if zero.subs(at) != 0:
+                solve_for(zero, at, [s for s in own or symbols if s not in pinned])
+            pinned |= zero.free_symbols
         yield at
 
 
 def solve_for(zero: sp.Expr, at: dict[Any, sp.Expr], choices: Sequence[sp.Basic]) -> None:
-    """Change one value such that the expression, of the first or second degree in its symbol, vanishes."""
+    """Change one value such that the expression, of the first or else second degree in its symbol, vanishes."""
+    roots = []
     for x in choices:
         if x not in at or x not in zero.free_symbols or not zero.is_polynomial(x):
             continue
-        others = {s: value for s, value in at.items() if s != x}
-        c = sp.Poly(zero.subs(others), x).all_coeffs()
+        c = sp.Poly(zero.subs({s: value for s, value in at.items() if s != x}), x).all_coeffs()
         if len(c) == 2:
             at[x] = -c[1] / c[0]
             return
         if len(c) == 3 and (root := c[1] ** 2 - 4 * c[0] * c[2]).is_nonnegative:
-            at[x] = (sp.sqrt(root) - c[1]) / (2 * c[0])
-            return
+            roots.append((x, (sp.sqrt(root) - c[1]) / (2 * c[0])))
+    at.update(roots[:1])

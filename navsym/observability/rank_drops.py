@@ -23,7 +23,7 @@ from navsym.observability.cases import drops_by_cases
 from navsym.observability.chains import Chain, Chains, JointObservability
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
-from navsym.observability.reduction import System, components, irredundant, krylov_remainder
+from navsym.observability.reduction import Hashed, System, components, irredundant, krylov_remainder
 from navsym.observability.ring import Poly, Ring, irreducible_factors, is_odd
 from navsym.observability.tree import SPLIT_TERMS, Leaf, is_covered, leaf_on, lost_columns, search_drops
 from navsym.prove.assumptions import is_nonzero
@@ -155,6 +155,8 @@ def newton(bound: int) -> fmpz_mat:
 MOST_STAIRCASES, LAST_TERMS = 40, 40_000
 #: Drops inside drops inside drops are looked for so deep; more directions have too many terms to be read.
 NESTED, DIRECTION_TERMS = 3, 60
+#: Nodes looked at for the rank on one system.
+FEW = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -278,7 +280,7 @@ class View:
             zeros = conditions_on(system, ring)
             if not zeros:
                 continue
-            leaves = self.leaves_on(system) or tuple(leaf for leaf in known if leaf.system == system and leaf.dense)
+            leaves = self.leaves_on(system) or self.leaves_below(system, known)
             if not leaves:
                 listed.append(self.make_drop(zeros))
                 continue
@@ -313,6 +315,19 @@ class View:
         found = [leaf_on(part, self.rows, ring, self.motion) for part in ([] if long else parts)]
         leaves = tuple(leaf for leaf in found if leaf is not None)
         return leaves if len(leaves) == len(parts) and len({leaf.rank for leaf in leaves}) == 1 else ()
+
+    def leaves_below(self, system: System, known: Sequence[Leaf]) -> tuple[Leaf, ...]:
+        """The leaf whose closure is the system: one that is known, or one that the tree below the system shows."""
+
+        def whole(leaves: Sequence[Leaf]) -> tuple[Leaf, ...]:
+            return tuple(
+                leaf for leaf in leaves if leaf.dense and {*map(Hashed, leaf.system)} == {*map(Hashed, system)}
+            )
+
+        if whole(known) or self.generic is None:
+            return whole(known)
+        below = search_drops(self.rows, self.generic.rank, self.motion.ring, self.motion, system, FEW)
+        return whole(below.drops)
 
 
 def closed_systems(leaves: Sequence[Leaf]) -> list[System]:

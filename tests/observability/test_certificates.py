@@ -35,7 +35,13 @@ def on_a_cone():
     return nav.observe(nav.Model("a b", F=F, H=["a"], x=REAL, y=REAL, w=REAL))
 
 
-@pytest.mark.parametrize("answer_of", [couplings, turning, at_latitude, on_a_cone])
+def two_rows():
+    """Nothing moves, and two sensors with parallel rows show one number: three minors, no equation names a variable."""
+    H, names = [["a1", "a2", "a3"], ["b1", "b2", "b3"]], "a1 a2 a3 b1 b2 b3"
+    return nav.observe(nav.Model("x y z", F=[["0"] * 3] * 3, H=H, **dict.fromkeys(names.split(), REAL)))
+
+
+@pytest.mark.parametrize("answer_of", [couplings, turning, at_latitude, on_a_cone, two_rows])
 def test_every_rank_and_every_drop_that_lasts_is_granted(answer_of):
     answer = answer_of()
     lasting = [drop for drop in list_nested(answer.rank_drops) if drop.lasting]
@@ -53,7 +59,7 @@ def test_the_certificate_says_the_model_and_the_condition():
     assert (drop["statement"]["H"], drop["statement"]["rank"]) == ([["1", "0", "0"]], 2)
 
 
-@pytest.mark.parametrize("answer_of", [couplings, turning, at_latitude])
+@pytest.mark.parametrize("answer_of", [couplings, turning, at_latitude, two_rows])
 def test_no_other_rank_and_no_weaker_condition_is_granted(answer_of):
     parts = [part for item in answer_of().certificates() for part in item.get("of", [item])]
     for part in parts:
