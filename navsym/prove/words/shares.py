@@ -85,11 +85,13 @@ def find_above(document: Any) -> list[dict[str, Any]] | None:
     if known is None or any(c * player.SIGNS[relation][0] < 0 or not name for name, c in known.items()):
         return None
     found = [(abs(c), find_factors(algebra, name)) for name, c in known.items()]
-    return [{"coefficient": str(c), "matrices": texts} for c, texts in found] if all(t for _, t in found) else None
+    if not all(texts for _, texts in found):
+        return None
+    return [{"coefficient": str(c), "matrices": texts} for c, texts in found]
 
 
 def find_factors(algebra: Any, name: str) -> list[str]:
-    """The texts of one or two nonnegative matrices of whose product a symbol is the trace; none where it is not seen."""
+    """The texts of one or two nonnegative matrices of whose product a symbol is the trace; else none."""
     if not name.startswith("trace__"):
         return [f"eye({name})"] if name in algebra.dimensions else []
     ways = [(word[:k], word[k:]) for word in list_rotations(algebra, name) for k in range(len(word))]
