@@ -131,6 +131,39 @@ Term = tuple[Any, ...]
 TOKEN = re.compile(r" *([0-9]+(?:\.[0-9]+)?|[A-Za-z][A-Za-z0-9_]*|\*\*|[-+*/(),])")
 
 
+class Matrix:
+    """Rows of terms, all of one length."""
+
+    def __init__(self, rows: Iterable[Iterable[Term]]):
+        self.rows = [[*row] for row in rows]
+        require(self.rows and self.rows[0] and len({*map(len, self.rows)}) == 1, "expected rows of one length")
+        require(len(self.rows) <= 64 and len(self.rows[0]) <= 64, "too many entries")
+
+    def transpose(self) -> Matrix:
+        return Matrix(zip(*self.rows, strict=True))
+
+
+Value = Term | Matrix
+
+
+def shape_of(x: Value) -> tuple[int, int] | None:
+    return (len(x.rows), len(x.rows[0])) if isinstance(x, Matrix) else None
+
+
+def change_entries(change: Callable[..., Term], *values: Value) -> Value:
+    """A function of one or more values of one shape, entry by entry."""
+    require(len({*map(shape_of, values)}) == 1, "values of different shapes")
+    if not isinstance(values[0], Matrix):
+        return change(*values)
+    rows = zip(*(x.rows for x in values), strict=True)  # type: ignore[union-attr]
+    return Matrix([change(*entries) for entries in zip(*some, strict=True)] for some in rows)
+
+
+def to_number(x: Value) -> Term:
+    require(not isinstance(x, Matrix), "expected a number; got a matrix")
+    return x  # type: ignore[return-value]
+
+
 class Parser:
     """Recursive descent: sums of products of signed powers; ** binds its right side first, above a leading sign."""
 
@@ -143,39 +176,68 @@ class Parser:
         """The next word if it is one of these, else nothing."""
         return self.words.pop() if self.words[-1] in words else ""
 
-    def read_sum(self) -> Term:
+    def read_sum(self) -> Any:
         terms = [self.read_product()]
         while sign := self.take("+", "-"):
-            terms.append(self.read_product() if sign == "+" else negate(self.read_product()))
-        return ("+", *terms) if len(terms) > 1 else terms[0]
+            terms.append(self.read_product() if sign == "+" else self.negate(self.read_product()))
+        return self.add(*terms) if len(terms) > 1 else terms[0]
 
-    def read_product(self) -> Term:
+    def negate(self, x: Any) -> Any:
+        return change_entries(negate, x)
+
+    def add(self, *terms: Any) -> Any:
+        return change_entries(lambda *entries: ("+", *entries), *terms)
+
+    def power(self, base: Any, exponent: Any) -> Any:
+        return ("^", to_number(base), to_number(exponent))
+
+    def read_product(self) -> Any:
+        """Numbers with at most one matrix among them, from one @ to the next."""
         factors = [self.read_signed()]
-        while sign := self.take("*", "/"):
-            factors.append(self.read_signed() if sign == "*" else ("^", self.read_signed(), MINUS_ONE))
-        return ("*", *factors) if len(factors) > 1 else factors[0]
+        while mark := self.take("*", "/", "@"):
+            value = self.read_signed()
+            if mark == "@":
+                factors = [multiply_matrices(self.join(factors), value)]
+                continue
+            require(mark == "*" or not isinstance(value, Matrix), "a division by a matrix")
+            factors.append(value if mark == "*" else ("^", value, MINUS_ONE))
+        return self.join(factors)
 
-    def read_signed(self) -> Term:
+    @staticmethod
+    def join(factors: list[Value]) -> Value:
+        """The product of numbers and at most one matrix."""
+        if len(factors) == 1:
+            return factors[0]
+        places = [k for k, value in enumerate(factors) if isinstance(value, Matrix)]
+        require(len(places) < 2, "a product of matrices is written with @")
+        if not places:
+            return ("*", *factors)
+        before, after = factors[: places[0]], factors[places[0] + 1 :]
+        return change_entries(lambda entry: ("*", *before, entry, *after), factors[places[0]])
+
+    def read_signed(self) -> Any:
         if sign := self.take("+", "-"):
-            return self.read_signed() if sign == "+" else negate(self.read_signed())
-        base = self.read_atom()
-        return ("^", base, self.read_signed()) if self.take("**") else base
+            return self.read_signed() if sign == "+" else self.negate(self.read_signed())
+        base = self.read_entry()
+        return self.power(base, self.read_signed()) if self.take("**") else base
 
-    def read_atom(self) -> Term:
+    def read_arguments(self) -> list[Any]:
+        arguments = [self.read_sum()]
+        while self.take(","):
+            arguments.append(self.read_sum())
+        require(self.take(")"), "not an expression: no )")
+        return arguments
+
+    def read_entry(self) -> Any:
         word = self.words.pop()
         if word[:1].isdigit():
             return ("number", read_number(word))
         if word[:1].isalpha():
             if not self.take("("):
                 return ("pi",) if word == "pi" else ("symbol", word)
-            arguments = [self.read_sum()]
-            while self.take(","):
-                arguments.append(self.read_sum())
-            require(self.take(")"), "not an expression: no )")
-            return call(word, arguments)
+            return call(word, self.read_arguments())
         require(word == "(", "not an expression")
-        inside = self.read_sum()
-        require(self.take(")"), "not an expression: no )")
+        (inside,) = self.read_arguments()
         return inside
 
 
@@ -435,9 +497,8 @@ def apply_remainder(name: str, x: Jet, field: Any) -> Jet:
     c = [Jet(field(fmpq(AT_ZERO[f][j % 4], factorial(j)))) for j in range(k + TERMS)]
     if field is Exact:
         require(not has_branch(frozenset(x.parts[0])), f"{name} of a root or angle, which may be 0 throughout a part")
-        return (apply_function(f, x, field) - evaluate_polynomial([*c[:k], Jet(0)], x)) * raise_power(
-            x, fmpq(-k), field
-        )
+        rest = apply_function(f, x, field) - evaluate_polynomial([*c[:k], Jet(0)], x)
+        return rest * raise_power(x, fmpq(-k), field)
     require(abs(arb_series(x.enclose())[0]) <= 1, f"{name} beyond 1")
     return evaluate_polynomial([*c[k:], Jet(arb(0, 3) / factorial(k + TERMS))], x)
 
@@ -577,7 +638,7 @@ class Exact:
         """Whether the number is seen to vanish wherever all of it is defined; larger sums are multiplied out first."""
         sums = [atom for m in self.terms for atom, _ in m if atom[1] == "sum"]
         if not sums:
-            return self.is_zero_at_roots_of_unity()
+            return not self.divide_turns().terms
         return all(part.is_zero() for part in self.multiply_out(max(sums, key=lambda atom: atom[0])))
 
     def multiply_out(self, atom: Any) -> Iterable[Exact]:
@@ -587,12 +648,11 @@ class Exact:
         raised = [(q - q.floor(), prod([base] * int(q.floor() - low), start=Exact([(m, c)]))) for m, q, c in rows]
         return collect(raised).values()
 
-    def is_zero_at_roots_of_unity(self) -> bool:
-        """A rational polynomial vanishes at exp(i pi/n) if and only if the cyclotomic polynomial 2 n divides it."""
-        return not self.divide_turns().terms
-
     def divide_turns(self) -> Exact:
-        """The same number with polynomials in a root of unity as remainders of their division by its polynomial."""
+        """The same number with polynomials in a root of unity as remainders of their division by its polynomial.
+
+        A rational polynomial vanishes at exp(i pi/n) if and only if the cyclotomic polynomial 2 n divides it.
+        """
         rows = self.split_powers(TURN)
         n = int(fmpq_poly([q for _, q, _ in rows]).denom())
         require(n <= 5040, "roots of a high order")
@@ -1219,13 +1279,12 @@ def read_statement(item: Any, answers: Answers | None = None) -> tuple[list[Case
     ``answers`` say what integrals, sums, products and limits are; ``order`` is that of an equation up to small terms;
     ``random`` has the means and covariances of random numbers and vectors.
     """
-    more = " shapes given rates" if isinstance(item, dict) and "given" in item else ""
-    more += "".join(f" {key}" for key in ("order", "random") if isinstance(item, dict) and key in item)
-    left, relation, right, symbols, exists, tolerance, *rest = read_fields(
-        item, f"left relation right symbols exists tolerance{more}"
-    )
-    random = rest.pop() if "random" in more else {}
-    small = rest.pop() if "order" in more else None
+    keys = "left relation right symbols exists tolerance"
+    keys += " shapes given rates" if isinstance(item, dict) and "given" in item else ""
+    keys += "".join(f" {key}" for key in ("order", "random") if isinstance(item, dict) and key in item)
+    left, relation, right, symbols, exists, tolerance, *rest = read_fields(item, keys)
+    random = rest.pop() if "random" in keys else {}
+    small = rest.pop() if "order" in keys else None
     require(isinstance(symbols, dict), "expected ranges by symbol")
     box = {name: read_range(symbols[name]) for name in read_symbols([*symbols])}
     shapes, given, rates = rest or ({}, [], {})
@@ -1290,46 +1349,13 @@ def state_goals(x: Value, relation: str, y: Value, tolerance: Term | None) -> li
 # have a value, also an entry that is not used, but for the branch of a where that is not taken.
 
 
-class Matrix:
-    """Rows of terms, all of one length."""
-
-    def __init__(self, rows: Iterable[Iterable[Term]]):
-        self.rows = [[*row] for row in rows]
-        require(self.rows and self.rows[0] and len({*map(len, self.rows)}) == 1, "expected rows of one length")
-        require(len(self.rows) <= 64 and len(self.rows[0]) <= 64, "too many entries")
-
-    def transpose(self) -> Matrix:
-        return Matrix(zip(*self.rows, strict=True))
-
-
-Value = Term | Matrix
-
-
-def shape_of(x: Value) -> tuple[int, int] | None:
-    return (len(x.rows), len(x.rows[0])) if isinstance(x, Matrix) else None
-
-
 def list_entries(x: Value) -> list[Term]:
     return [entry for row in x.rows for entry in row] if isinstance(x, Matrix) else [x]
-
-
-def change_entries(change: Callable[..., Term], *values: Value) -> Value:
-    """A function of one or more values of one shape, entry by entry."""
-    require(len({*map(shape_of, values)}) == 1, "values of different shapes")
-    if not isinstance(values[0], Matrix):
-        return change(*values)
-    rows = zip(*(x.rows for x in values), strict=True)  # type: ignore[union-attr]
-    return Matrix([change(*entries) for entries in zip(*some, strict=True)] for some in rows)
 
 
 def to_column(x: Value, size: int | None = None) -> list[Term]:
     require(isinstance(x, Matrix) and len(x.rows[0]) == 1 and size in (None, len(x.rows)), "expected a vector")
     return [row[0] for row in x.rows]  # type: ignore[union-attr]
-
-
-def to_number(x: Value) -> Term:
-    require(not isinstance(x, Matrix), "expected a number; got a matrix")
-    return x  # type: ignore[return-value]
 
 
 def to_square(x: Value, most: int) -> list[list[Term]]:
@@ -1356,9 +1382,8 @@ def multiply_matrices(x: Value, y: Value) -> Value:
 def cross(x: Value, y: Value) -> Value:
     """u x v = (u2 v3 - u3 v2, u3 v1 - u1 v3, u1 v2 - u2 v1)."""
     (a, b, c), (d, e, f) = to_column(x, 3), to_column(y, 3)
-    return make_column(
-        *(subtract(("*", p, q), ("*", r, s)) for p, q, r, s in ((b, f, c, e), (c, d, a, f), (a, e, b, d)))
-    )
+    rows = ((b, f, c, e), (c, d, a, f), (a, e, b, d))
+    return make_column(*(subtract(("*", p, q), ("*", r, s)) for p, q, r, s in rows))
 
 
 def scalar_product(x: Value, y: Value) -> Term:
@@ -1471,6 +1496,7 @@ class Reader:
         self.fractions: dict[str, Term] = {}
         self.floors: dict[Term, None] = {}
         self.chances: dict[str, Chance] = {}
+        self.outside, self.bound = names, dict[str, str]()  # names of arrays; symbols of variables of questions
 
     def read(self, text: Any) -> Value:
         """The value of a text."""
@@ -1505,11 +1531,18 @@ class Reader:
 
     def choose(self, relation: str, term: Term) -> bool:
         """Whether a condition is taken to hold in this case; one that is met again has the same answer."""
+        require(not symbols_of(term) & set(self.bound), "cases of a bound variable")
         if relation == "!=":
             return not self.choose("=", term)
         self.conditions += 1
         if self.dead:
             return True
+        if not symbols_of(term) and (self.bound or self.names != self.outside):
+            value = value_of(term, {})
+            if value > 0 or value < 0:
+                return bool(value > 0) and relation != "="
+            require(value.is_finite() and is_identity(term), "a number whose sign is not known")
+            return relation != ">"
         known = self.recall(relation, term)
         if known is not None:
             self.need(term)
@@ -1528,14 +1561,13 @@ class Reader:
             same = is_identity(subtract(term, known))
             if not same and not is_identity(("+", term, known)):
                 continue
+            sharp = other == (">" if taken else ">=")
             if "=" in (other, relation):
                 if other == relation:
                     return taken
             elif same == taken:  # term > 0, or >= 0
-                sharp = other == (">" if taken else ">=")
                 return True if sharp or relation == ">=" else not self.choose("=", term)
             else:  # term < 0, or <= 0
-                sharp = other == (">" if taken else ">=")
                 return False if sharp or relation == ">" else self.choose("=", term)
         return None
 
@@ -1543,9 +1575,8 @@ class Reader:
         """The goals of this case on its box."""
         terms = tuple(dict.fromkeys((*(t for goal in goals for t in goal[2]), *self.exists)))
         box = box | dict.fromkeys(self.fractions, Range(ZERO, ONE, open_high=True))
-        require(
-            set().union(*map(symbols_of, (*terms, *self.zeros, *self.given))) <= set(box), "a symbol without a range"
-        )
+        names = set().union(*map(symbols_of, (*terms, *self.zeros, *self.given)))
+        require(names <= set(box), "a symbol without a range")
         own = tuple(t for t in terms if conditions(t))
         given, zeros = tuple(self.given), tuple(self.zeros)
         stated = [cut_box(Goal(term, relation, box, own, given, zeros)) for term, relation, _ in goals]
@@ -1566,11 +1597,13 @@ class Reader:
         What holds for all such f holds for that of x; equal numbers have one. Where n <= u < n + 1, f is u - n.
         """
         self.need(x)
-        whole = [t for t in self.list_parts(x) if is_integral(t, self.box, self.floors)]
+        box = self.box | {n: Range(None, None, integer=True) for n, k in self.bound.items() if k in ("sum", "product")}
+        whole = [t for t in self.list_parts(x) if is_integral(t, box, self.floors)]
         rest = [t for t in self.list_parts(x) if t not in whole]
         if self.dead or not rest:
             return x
         u = make_sum(*rest)
+        require(not symbols_of(u) & set(self.bound), "a floor of a bound variable")
         if not symbols_of(u):
             return make_sum(*whole, find_whole(u))
         ends = (substitute(u, {s: r[k] for s, r in self.box.items() if r[k]}) for k in (0, 1))  # type: ignore[misc]
@@ -1688,7 +1721,7 @@ class Reader:
     def list_rates(self) -> dict[str, Term | None]:
         """Rates by the symbols of the entries."""
         slopes: dict[str, Term | None] = {}
-        before = self.conditions
+        before, names, self.names = self.conditions, self.names, self.outside  # no variable of a question stands there
         for name, text in self.rates.items():
             entries = list_entries(self.names.get(name, ("symbol", name)))
             rate = None if text is None else self.read(text)
@@ -1697,6 +1730,7 @@ class Reader:
             pairs = [(entry[1], row) for entry, row in zip(entries, rows, strict=True)]
             require(all(slopes.get(own, row) == row for own, row in pairs), "two rates of one symbol")
             slopes |= dict(pairs)
+        self.names = names
         require(before == self.conditions, "a rate of cases")
         return slopes
 
@@ -1745,46 +1779,6 @@ class Formula(Parser):
         self.words, self.reader = ["", *reversed(MARKS.findall(text))], reader
         require(sum(map(len, self.words)) == len(text.replace(" ", "")), "unexpected characters")
 
-    def read_sum(self) -> Any:
-        """Terms of one shape."""
-        terms = [self.read_product()]
-        while sign := self.take("+", "-"):
-            value = self.read_product()
-            terms.append(change_entries(negate, value) if sign == "-" else value)
-        return change_entries(lambda *entries: ("+", *entries), *terms) if len(terms) > 1 else terms[0]
-
-    def read_product(self) -> Any:
-        """Numbers with at most one matrix among them, from one @ to the next."""
-        factors = [self.read_signed()]
-        while mark := self.take("*", "/", "@"):
-            value = self.read_signed()
-            if mark == "@":
-                factors = [multiply_matrices(self.join(factors), value)]
-                continue
-            require(mark == "*" or not isinstance(value, Matrix), "a division by a matrix")
-            factors.append(value if mark == "*" else ("^", value, MINUS_ONE))
-        return self.join(factors)
-
-    @staticmethod
-    def join(factors: list[Value]) -> Value:
-        """The product of numbers and at most one matrix."""
-        if len(factors) == 1:
-            return factors[0]
-        places = [k for k, value in enumerate(factors) if isinstance(value, Matrix)]
-        require(len(places) < 2, "a product of matrices is written with @")
-        if not places:
-            return ("*", *factors)
-        before, after = factors[: places[0]], factors[places[0] + 1 :]
-        return change_entries(lambda entry: ("*", *before, entry, *after), factors[places[0]])
-
-    def read_signed(self) -> Any:
-        """Signs before a power of a number."""
-        if sign := self.take("+", "-"):
-            value = self.read_signed()
-            return change_entries(negate, value) if sign == "-" else value
-        base = self.read_entry()
-        return ("^", to_number(base), to_number(self.read_signed())) if self.take("**") else base
-
     def read_entry(self) -> Any:
         """A value with .T or indices, which count from 1, behind it."""
         value = self.read_value()
@@ -1818,8 +1812,7 @@ class Formula(Parser):
             require(not word.startswith(FRACTION), "a name that is in use")
             return ("pi",) if word == "pi" else self.reader.names.get(word, ("symbol", word))
         require(word == "(", "not an expression")
-        inside = self.read_sum()
-        require(self.take(")"), "not an expression: no )")
+        (inside,) = self.read_arguments()
         return inside
 
     def read_rows(self) -> Matrix:
@@ -1851,17 +1844,16 @@ class Formula(Parser):
             return self.read_where()
         if name in QUESTIONS:
             return self.read_question(name)
-        before, arguments = self.reader.conditions, [self.read_sum()]
-        while self.take(","):
-            arguments.append(self.read_sum())
-        require(self.take(")"), "not an expression: no )")
+        reader, before, outside = self.reader, self.reader.conditions, self.reader.bound
+        reader.bound = outside | ({"": name} if name in ("diff", "dot_") else {})
+        arguments = self.read_arguments()
+        reader.bound = outside
         if name in ("min", "max"):
             return reduce(lambda x, y: self.pick(name, x, y), map(to_number, arguments))
         if name in ("diff", "dot_"):
             require(before == self.reader.conditions, "a derivative of cases")
             return self.differentiate(name, *arguments)
         if name in ("E", "cov"):
-            reader = self.reader
             return change_entries(reader.expect, *arguments) if name == "E" else reader.find_covariance(*arguments)
         if name == "expm":
             return self.ask_exponential(*arguments)
@@ -1875,47 +1867,71 @@ class Formula(Parser):
         return call(name, terms)
 
     def read_where(self) -> Any:
-        """where(condition, a, b): a where it holds, b elsewhere; what is not taken need not have a value."""
-        relation, difference = self.read_relation()
-        taken = self.reader.choose(relation, to_number(difference))
-        values = []
-        for branch in (True, False):
+        """where(condition, a, b): a where it holds, b elsewhere; what is not taken need not have a value.
+
+        Below an integral both need one, and the value is (a + b + (a - b) sign)/2.
+        """
+        reader, (relation, difference) = self.reader, self.read_relation()
+        u, values = to_number(difference), list[Value]()
+        taken = None if relation in (">", ">=") and self.has_sides(u) else reader.choose(relation, u)
+        known = [*reader.exists], len(reader.questions)
+        for branch in (False, True):
             require(self.take(","), "expected where(condition, a, b)")
-            self.reader.dead += branch != taken
+            reader.dead += taken is branch
             values.append(self.read_sum())
-            self.reader.dead -= branch != taken
+            reader.dead -= taken is branch
         require(self.take(")"), "not an expression: no )")
-        require(shape_of(values[0]) == shape_of(values[1]), "branches of different shapes")
-        return values[0] if taken else values[1]
+        x, y = values
+        require(shape_of(x) == shape_of(y), "branches of different shapes")
+        if taken is not None:
+            return x if taken else y
+        plain = all(self.has_sides(t) for v in values for e in list_entries(v) for _, t in conditions(e))
+        require(plain and known == ([*reader.exists], len(reader.questions)), "a branch that may have no value")
+        side = self.find_sign(u)
+        return change_entries(lambda a, b: ("*", number(HALF), ("+", a, b, ("*", subtract(a, b), side))), x, y)
+
+    def cut_body(self) -> tuple[list[str], str]:
+        """The words before the first comma, which are taken, and the name behind it."""
+        depth, k = 0, len(self.words) - 1
+        while k > 1 and (depth or self.words[k] != ","):
+            depth += (self.words[k] in ("(", "[")) - (self.words[k] in (")", "]"))
+            k -= 1
+        body, self.words = self.words[k + 1 :], self.words[:k]
+        return body, self.words.pop()
+
+    def read_body(self, body: list[str], kind: str, name: str, value: Term) -> tuple[Term, list[Term]]:
+        """A number with a value in the place of a name, and what has to have a value for it."""
+        reader, words = self.reader, self.words
+        names, bound, exists = reader.names, reader.bound, reader.exists
+        self.words, reader.exists, reader.names = ["", *body], {}, names | {name: value}
+        reader.bound = bound | ({value[1]: kind} if value[0] == "symbol" else {})
+        term, needs = to_number(self.read_sum()), [*reader.exists]
+        require(self.words == [""], f"expected a variable in {kind}")
+        self.words, reader.names, reader.bound, reader.exists = words, names, bound, exists
+        return term, needs
 
     def read_question(self, kind: str) -> Term:
         """integral(f, x, a, b), sum and product the same, limit(f, x, a): a symbol in its place, or all terms."""
-        reader = self.reader
-        before, first, outside = reader.conditions, len(reader.questions), reader.exists
-        reader.exists = {}
-        term, needs, reader.exists = to_number(self.read_sum()), [*reader.exists], outside
-        require(self.take(","), f"expected a variable in {kind}")
-        name, ends = self.words.pop(), []
-        taken = ("pi", "oo", *reader.names, *reader.rates, *reader.chances)
-        require(
-            matches("[A-Za-z][A-Za-z0-9_]*", name) and name not in taken, f"expected the name of a number in {kind}"
-        )
-        if kind in ("integral", "limit"):
-            reader.require_real(name)
+        reader, first, whole = self.reader, len(self.reader.questions), kind in ("sum", "product")
+        body, name = self.cut_body()
+        taken = matches("[A-Za-z][A-Za-z0-9_]*", name) and name not in ("pi", "oo", *reader.rates, *reader.chances)
+        require(taken and name not in reader.outside, f"expected the name of a number in {kind}")
+        variable, ends = f"{name}'{len(reader.bound)}", list[Term]()  # no text has this name
+        term, needs = (ZERO, []) if whole else self.read_body(body, kind, name, ("symbol", variable))
         while self.take(","):
             ends.append(to_number(self.read_sum()))
         require(self.take(")") and len(ends) == 2 - (kind == "limit"), f"expected the ends of {kind}, and )")
-        require(before == reader.conditions, f"{kind} of cases")
+        if whole and all(constant_of(end) is not None for end in ends):
+            return self.write_out(kind, name, body, ends)
+        if whole:
+            term, needs = self.read_body(body, kind, name, ("symbol", variable))
         require(not reader.fractions, f"{kind} beside a floor")
         if reader.dead:
             return ZERO
-        reader.need(*(t for t in needs if name not in symbols_of(t)))
-        needs = [t for t in needs if name in symbols_of(t)]
+        reader.need(*(t for t in needs if variable not in symbols_of(t)))
+        needs = [t for t in needs if variable in symbols_of(t)]
         own = f"{name}__{len(reader.questions) + 1}"
-        if kind in ("sum", "product") and all(constant_of(end) is not None for end in ends):
-            require(len(reader.questions) == first, f"{kind} of an open question")
-            return self.write_out(kind, name, term, needs, ends)
-        bound = {name: ("symbol", own)}
+        bound = {variable: ("symbol", own)}
         inner = [q.change(lambda t: substitute(t, bound)) for q in reader.questions[first:]]
         question = Question(
             kind, f"value {len(reader.questions) + 1}", own, substitute(term, bound), ends[0], ends[-1],
@@ -1938,23 +1954,33 @@ class Formula(Parser):
         reader.questions.append(Question("expm", value, own, ("matrix", *entries), ZERO, ONE, (), ()))
         return Matrix([("symbol", f"{value} {i} {j}") for j in range(len(rows))] for i in range(len(rows)))
 
-    def write_out(self, kind: str, name: str, term: Term, needs: list[Term], ends: list[Term]) -> Term:
+    def write_out(self, kind: str, name: str, body: list[str], ends: list[Term]) -> Term:
         """A sum or product with numbers as ends; one of no terms is 0 or 1."""
         low, high = map(constant_of, ends)
         require(low is not None and high is not None and low.q == high.q == 1, "expected whole ends")
         require(high - low < MOST_TERMS, "too many terms")  # type: ignore[operator]
-        values = [{name: number(k)} for k in range(int(low), int(high) + 1)]  # type: ignore[arg-type]
-        self.reader.need(*(substitute(t, value) for t in (term, *needs) for value in values))
-        terms = [substitute(term, value) for value in values]
-        unit = ZERO if kind == "sum" else ONE
+        unit, terms = ZERO if kind == "sum" else ONE, list[Term]()
+        for k in range(int(low), int(high) + 1):  # type: ignore[arg-type]
+            term, needs = self.read_body(body, kind, name, number(k))
+            self.reader.need(term, *needs)
+            terms.append(term)
         return ("+" if kind == "sum" else "*", unit, *terms) if terms else unit
 
+    def has_sides(self, x: Term) -> bool:
+        """Whether a number has the variable of an integral, which does not see where it is 0."""
+        return any(self.reader.bound.get(name) == "integral" for name in symbols_of(x))
+
     def pick(self, name: str, x: Term, y: Term) -> Term:
-        """The smaller or the larger of two numbers, which both need a value."""
+        """The smaller or the larger of two numbers, which both need a value: below a question (x + y +- |x - y|)/2."""
+        if self.reader.bound:
+            gap = ("abs", subtract(x, y))
+            return ("*", number(HALF), ("+", x, y, gap if name == "max" else negate(gap)))
         return x if self.reader.choose(">=", subtract(y, x)) == (name == "min") else y
 
     def find_sign(self, x: Term) -> Term:
-        """0, 1 or -1."""
+        """0, 1 or -1; below an integral x/|x|, which its pieces have to see defined."""
+        if self.has_sides(x):
+            return ("*", x, ("^", ("abs", x), MINUS_ONE))
         if self.reader.choose("=", x):
             return ZERO
         return ONE if self.reader.choose(">", x) else MINUS_ONE
@@ -2372,9 +2398,8 @@ def prove_dense(proof: Any, goal: Goal) -> None:
     require(holds("!=", value_of(seldom, here)), "the function may vanish throughout")
     for limit in goal.box.values():
         require(not limit.integer and not is_narrow(limit), "a side without inner points")
-    whole = goal._replace(
-        box={name: r._replace(open_low=False, open_high=False, nonzero=False) for name, r in goal.box.items()}
-    )
+    closed = {name: r._replace(open_low=False, open_high=False, nonzero=False) for name, r in goal.box.items()}
+    whole = goal._replace(box=closed)
     bare = whole._replace(term=ZERO, exists=(), given=(), zeros=())
     prove_defined(defined, bare, goal.term, *goal.exists, level=CONTINUOUS)
     prove(premise, goal._replace(exists=(*goal.exists, ("^", seldom, MINUS_ONE)), given=(), zeros=()))
@@ -2393,9 +2418,8 @@ def is_entire(term: Term) -> bool:
         q = constant_of(term[2])
         return q is not None and q.q == 1 and q > 0 and is_entire(term[1])
     parts = [part for part in term[1:] if isinstance(part, tuple)]
-    return term[0] in ("number", "pi", "symbol", "+", "*", "sin", "cos", "exp", "sinh", "cosh") and all(
-        map(is_entire, parts)
-    )
+    known = ("number", "pi", "symbol", "+", "*", "sin", "cos", "exp", "sinh", "cosh")
+    return term[0] in known and all(map(is_entire, parts))
 
 
 # Rules of equations
@@ -2513,11 +2537,7 @@ def prove_balls(proof: Any, goal: Goal) -> None:
         budget, names = set_work(bits, cells), set().union(*map(symbols_of, (goal.term, *goal.given)))
         ends = {name: (goal.box[name].low, goal.box[name].high) for name in sorted(names)}
         far = {name: Jet(arb(0, arb.pos_inf())) for name, pair in ends.items() if None in pair}
-        sides = {
-            name: [evaluate(end, {}, arb) for end in pair if end is not None]
-            for name, pair in ends.items()
-            if name not in far
-        }
+        sides = {n: [evaluate(end or ZERO, {}, arb) for end in pair] for n, pair in ends.items() if n not in far}
 
         def is_settled(cell: Cell) -> bool:
             def place(jets: dict[str, Jet]) -> dict[str, Jet]:
@@ -2525,9 +2545,8 @@ def prove_balls(proof: Any, goal: Goal) -> None:
 
             wide = place({name: Jet(arb(*cell[name])) for name in sides})
             try:
-                if any(evaluate(t, wide, clip).enclose() < 0 for t in goal.given):
-                    return True
-                if holds(goal.relation, evaluate(goal.term, wide, clip).enclose()):
+                empty = any(evaluate(t, wide, clip).enclose() < 0 for t in goal.given)
+                if empty or holds(goal.relation, evaluate(goal.term, wide, clip).enclose()):
                     return True
             except Nowhere:
                 return True
@@ -2722,9 +2741,8 @@ def prove_slope(proof: Any, goal: Goal) -> None:
     f' > 0, or f' != 0 at a point and s is the only symbol: inside f is analytic, and constant near no point. Continuity
     is shown on the range with this end, the derivative inside it.
     """
-    _, name, side, strict, continuous, smooth, slope, floor = read_fields(
-        proof, "rule symbol end strict continuous smooth slope floor"
-    )
+    _, name, side, strict, *rest = read_fields(proof, "rule symbol end strict continuous smooth slope floor")
+    continuous, smooth, slope, floor = rest
     require(name in goal.box and goal.relation in (">=", ">"), "expected a symbol")
     limit, upper = goal.box[name], read_flag(side)
     end, is_open = (limit.high, limit.open_high) if upper else (limit.low, limit.open_low)
@@ -2738,9 +2756,8 @@ def prove_slope(proof: Any, goal: Goal) -> None:
     change = differentiate(goal.term, name)
     inside = go_inside(whole, name, goal.term, continuous, smooth, conditions(change))
     if by_slope and point is not None:
-        require(
-            symbols_of(goal.term) == {name} and is_inside(point, inside.box[name]), "expected a point of one symbol"
-        )
+        known = symbols_of(goal.term) == {name} and is_inside(point, inside.box[name])
+        require(known, "expected a point of one symbol")
         require(holds("!=", value_of(replace(change, ("symbol", name), point), {})), "the slope may vanish throughout")
     is_steep = by_slope and point is None
     rise = inside._replace(term=negate(change) if upper else change, relation=">" if is_steep else ">=")
@@ -2844,11 +2861,9 @@ def make_cone(terms: dict[Any, fmpq], limits: list[Range], signs: Sequence[int])
 def check_cone(polynomial: fmpq_mpoly, alive: list[set[int]], split: Any, strict: bool) -> None:
     """A leaf, null, or [i, j, the proof where y_i >= y_j, the proof where y_j >= y_i]."""
     if split is None:
-        rows = [(powers, c) for powers, c in polynomial.to_dict().items()]
-        require(all(c >= 0 for _, c in rows), "a negative coefficient")
-        require(
-            not strict or not may_vanish([{k for k, e in enumerate(p) if e} for p, _ in rows], alive), "it may be 0"
-        )
+        require(all(c >= 0 for c in polynomial.to_dict().values()), "a negative coefficient")
+        supports = [{k for k, e in enumerate(powers) if e} for powers in polynomial.to_dict()]
+        require(not strict or not may_vanish(supports, alive), "it may be 0")
         return
     i, j, first, second = read_list(split, lambda item: item, 4)
     variables = polynomial.context().gens()
@@ -2905,10 +2920,7 @@ def prove_roots(proof: Any, goal: Goal) -> None:
         while (common := top.gcd(bottom)).degree() > 0:
             top = top / common
         top = strip(top, [fmpq(0)]) if limit.nonzero else top
-        left_out = [
-            end for end, same, o in zip(ends, exact, (limit.open_low, limit.open_high), strict=True) if same and o
-        ]
-        top = strip(top, left_out)
+        top = strip(top, [e for e, same, is_open in zip(ends, exact, limit[2:4], strict=True) if same and is_open])
         require(all(end is None or top(end) != 0 for end in ends), "a zero at an end")
         require(count_roots(top, *ends) == 0, "a zero inside")
 
@@ -3467,15 +3479,8 @@ class Algebra:
     What a value is and how it is computed is said by :class:`Words` and :class:`Sized`.
     """
 
-    make_letter: Callable[..., Any]
-    declare: Callable[..., None]
-    relate: Callable[[Any], None]
-    to_number: Callable[[Any], Term]
-    add_bodies: Callable[[Any, Any], Any]
-    scale_body: Callable[[Term, Any], Any]
-    multiply_bodies: Callable[[Any, Any], Any]
-    transpose_body: Callable[[Any], Any]
-    invert_body: Callable[[Any, Any], Any]
+    make_letter = declare = relate = to_number = add_bodies = scale_body = multiply_bodies = None  # type: Any
+    transpose_body = invert_body = make_body = trace = None  # type: Any
 
     def __init__(self, item: Any):
         self.statement = read_fields(item, "left relation right symbols matrices dimensions given")
@@ -3574,19 +3579,15 @@ class Algebra:
         require(isinstance(x, Typed) and x.rows == x.columns, "expected a square matrix")
         if x.known not in REGULAR:
             self.assumed[f"{text} invertible"] = None
-        return Typed(
-            x.rows, x.rows, self.invert_body(x.body, x.rows), "positive" if x.known == "positive" else "invertible"
-        )
+        known = "positive" if x.known == "positive" else "invertible"
+        return Typed(x.rows, x.rows, self.invert_body(x.body, x.rows), known)
 
     def read(self, text: Any) -> Any:
         """The value of a text."""
-        formula = self.start(text)
+        formula = WordFormula(text, self)
         value = formula.read_sum()
         require(formula.words == [""], "not an expression: more than one")
         return value
-
-    def start(self, text: Any) -> WordFormula:
-        return WordFormula(text, self)
 
     def subtract(self, x: Any, y: Any) -> Any:
         """A difference of two matrices of one shape, or of two numbers, which have to have a value."""
@@ -3598,7 +3599,7 @@ class Algebra:
         """The declarations and the hypotheses; S = X is as definite as X."""
         self.declare_all()
         for text in read_list(self.statement[6], str):
-            formula = self.start(text)
+            formula = WordFormula(text, self)
             name, x = formula.words[-1], formula.read_sum()
             require(formula.take("="), "expected a hypothesis with =")
             y = formula.read_sum()
@@ -3627,12 +3628,8 @@ class WordFormula(Formula):
         super().__init__(text, reader)
         self.every = [*self.words]
 
-    def read_sum(self) -> Any:
-        terms = [self.read_product()]
-        while sign := self.take("+", "-"):
-            value = self.read_product()
-            terms.append(self.negate(value) if sign == "-" else value)
-        return self.reader.add(*terms) if len(terms) > 1 else terms[0]
+    def add(self, *terms: Any) -> Any:
+        return self.reader.add(*terms)
 
     def negate(self, value: Any) -> Any:
         return self.reader.scale(MINUS_ONE, value) if isinstance(value, Typed) else negate(value)
@@ -3659,14 +3656,7 @@ class WordFormula(Formula):
             return ("*", *numbers) if len(numbers) > 1 else numbers[0]
         return self.reader.scale(multiply_terms(*numbers), matrices[0]) if numbers else matrices[0]
 
-    def read_signed(self) -> Any:
-        if sign := self.take("+", "-"):
-            value = self.read_signed()
-            return self.negate(value) if sign == "-" else value
-        base = self.read_entry()
-        if not self.take("**"):
-            return base
-        exponent = self.read_signed()
+    def power(self, base: Any, exponent: Any) -> Any:
         require(not isinstance(base, Typed) and not isinstance(exponent, Typed), "a power of a matrix")
         whole = is_whole(exponent) and constant_of(exponent) > 0  # type: ignore[operator]
         require(whole or not has_trace(base), "a root or inverse power of a trace; write a quotient")
@@ -3693,13 +3683,9 @@ class WordFormula(Formula):
             require(name == "eye" or self.take(","), "expected zeros(m, n)")
             columns = rows if name == "eye" else self.read_dimension()
             require(self.take(")"), "not an expression: no )")
-            return algebra.make(
-                rows, columns, algebra.make_body(name == "eye", rows, columns), "positive" * (name == "eye")
-            )
-        arguments = [self.read_sum()]
-        while self.take(","):
-            arguments.append(self.read_sum())
-        require(self.take(")"), "not an expression: no )")
+            body = algebra.make_body(name == "eye", rows, columns)
+            return algebra.make(rows, columns, body, "positive" * (name == "eye"))
+        arguments = self.read_arguments()
         require(len(arguments) == 1 + (name == "dot"), f"a wrong number of arguments of {name}")
         x = arguments[0]
         if name == "inv":
@@ -3885,17 +3871,14 @@ class Words(Algebra):
         if x.rows == x.columns and len(x.body) == 2 and x.body.get((), None) == negate(x.body[word]):
             for k in range(1, len(word)):
                 if self.side_of(word, k) == x.rows != 1 and x.body[word] in (ONE, MINUS_ONE):
-                    self.relate(
-                        self.subtract(Typed(x.rows, x.rows, {word[k:] + word[:k]: ONE}), self.make_unit(x.rows))
-                    )
+                    turned = Typed(x.rows, x.rows, {word[k:] + word[:k]: ONE})
+                    self.relate(self.subtract(turned, self.make_unit(x.rows)))
 
     def read_word(self, text: Any) -> Word:
         """A word as it is written in a certificate: ``H.T inv__R``."""
         require(isinstance(text, str), "expected a word")
         word = tuple((name.removesuffix(".T"), name.endswith(".T")) for name in text.split())
-        require(
-            all(name in self.sizes and not (turned and name in self.symmetric) for name, turned in word), "a letter"
-        )
+        require(all(name in self.sizes and not (t and name in self.symmetric) for name, t in word), "a letter")
         return word
 
     def expand(self, share: Any, x: Typed) -> Iterator[tuple[Word, Term]]:
@@ -4046,17 +4029,32 @@ HAS_PROPERTY: dict[str, Callable[[fmpq_mat], bool]] = {
 
 
 def check_words(item: Any) -> None:
-    """An equation holds for matrices of all sizes where all of it is defined; the witness is such a point.
+    """A relation holds for matrices of all sizes where all of it is defined; the witness is such a point.
 
-    The difference of its sides is equal to the sum of the shares, as sums of words; each share is 0.
+    The difference of its sides is equal to the sum of the shares, as sums of words; each share is 0. For >= and > there
+    are also c trace(X) and c trace(X Y) with c > 0: X and Y are nonnegative, and trace(X Y) is the trace of Z' X Z with
+    Z Z' = Y; it is > 0 where they are positive definite.
     """
-    _, statement, witness, shares = read_fields(item, "kind statement witness shares")
+    more = " above" if "above" in item else ""
+    _, statement, witness, shares, *rest = read_fields(item, f"kind statement witness shares{more}")
     require(Sized(statement, witness).evaluate(), "the statement may have no value at the witness")
     algebra = Words(statement)
     relation, x = algebra.state()
-    require(relation == "=", "a relation that sums of words do not prove")
+    (sign, own), strict = SIGNS[relation], False
+    require(own == "=" or (rest and own != "!="), "a relation that sums of words do not prove")
     x = x if isinstance(x, Typed) else Typed(1, 1, {(): x})
-    pairs = [(word, multiply_numbers(MINUS_ONE, c)) for word, c in x.body.items()]
+    pairs = [(word, multiply_numbers(number(-sign), c)) for word, c in x.body.items()]
+    before = set_union(map(conditions, algebra.terms)), [*algebra.assumed]
+    for entry in read_list(rest[0], lambda e: read_fields(e, "coefficient matrices")) if rest else []:
+        c, factors = read_number(entry[0]), read_list(entry[1], algebra.read)
+        known = [f.known if isinstance(f, Typed) else "" for f in factors]
+        is_above = own != "=" and c > 0 and {*known} <= {"positive", "nonnegative"}
+        require(is_above and len(known) in (1, 2), "expected one or two nonnegative matrices")
+        strict = strict or "nonnegative" not in known
+        product = reduce(algebra.multiply, factors)
+        pairs.append(((), multiply_numbers(number(c), algebra.trace(product.body, product.rows))))
+    require(before == (set_union(map(conditions, algebra.terms)), [*algebra.assumed]), "a part that may have no value")
+    require(strict or own != ">", "expected a positive matrix")
     for share in read_list(shares, lambda entry: entry):
         pairs.extend(algebra.expand(share, x))
     require(all(map(is_identity, algebra.gather(pairs).values())), "another sum of words")

@@ -212,8 +212,9 @@ INTEGRALS = [
     row("integral(x, x, 0, 2*oo)", "0", [integral(piece("x__1**2/2", (0, 1)))], "a sum or product with oo"),
     row("integral(1, x, 0, 1)", "1", [integral(piece("x__1"))], "a name that is in use", {"x__1": "1"}, x__1=LINE),
     row("integral(1, x, 0, 1)", "1", [integral(piece("x__1"))], "a name that is in use", {"oo": "1"}, oo=LINE),
-    row("integral(where(x > 0, 1, 2), x, 0, 1)", "1", [integral(piece("x__1"))], "integral of cases"),
-    row("integral(min(x, 2), x, 0, 1)", "1/2", [integral(piece("x__1**2/2"))] * 2, "integral of cases", proofs=[I, I]),
+    row("integral(where(x = 0, 1, 2), x, 0, 1)", "2", [integral(piece("2*x__1"))], "cases of a bound variable"),
+    row("integral(where(x > 0, log(a), 2), x, 0, 1)", "2", [integral(piece("2*x__1"))], "may have no value", a=LINE),
+    row("integral(min(x, 2), x, 0, 1)", "1", [integral(piece("x__1**2/2"))], "expected 1 entries"),
     # What is typed inside has to have a value; where it has none the statement says nothing.
     row("integral(log(a)*x, x, 0, 1)", "log(a)/2", [integral(piece("log(a)*x__1**2/2"))], "", {"a": "1"}, a=LINE),
     row("integral(0*log(a)*x, x, 0, 1)", "0", [integral(piece("0"))], "no value at the witness", {"a": "-1"}, a=LINE),

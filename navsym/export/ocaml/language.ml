@@ -469,7 +469,7 @@ and read_value context r =
           else begin
             let before = context.branches in
             let args = List.map (typed context) (read_list context r ")") in
-            if context.branches > before && List.mem name [ "diff"; "dot_" ] then refuse "a derivative of cases";
+            if context.branches > before && List.mem name [ "diff"; "dot_" ] then outside "a derivative of cases";
             call context name args
           end
       | _ when name = "pi" -> Scalar Pi
@@ -492,11 +492,13 @@ and read_terms context name r =
   take r ",";
   let k = match next r with Name k when k <> "pi" && k <> "oo" -> drop r; k | _ -> refuse "%s: expected a variable" name in
   if List.mem_assoc k context.shapes || List.mem_assoc k (Lazy.force context.rates) then refuse "%s: a variable that is in use" name;
+  let stands_in_rate (_, rate) = match rate with Some t -> Names.mem k (symbols t) | None -> false in
+  if List.exists stands_in_rate (rates_by_symbol context) then outside "%s: a variable that stands in a rate" name;
   let finish () = take r ","; scalar name (deeper r (read_sum context)) in
   let low = finish () in
   let high = finish () in
   take r ")";
-  if context.branches > branches then refuse "%s: cases inside" name;
+  if context.branches > branches then outside "%s: cases inside" name;
   let term value =
     let place = put [ (k, value) ] in
     List.iter (fun t -> say context (place t)) typed_inside;

@@ -355,6 +355,7 @@ let read_share state (goal : total) value =
   | _ -> assert false
 
 let check value =
+  (match value with Text.Object keys when List.mem_assoc "above" keys -> outside "words: an inequality" | _ -> ());
   match get_keys "words" [ "kind"; "statement"; "witness"; "shares" ] value with
   | [ _; statement; witness; shares ] ->
       let statement = Sized.read_statement statement in

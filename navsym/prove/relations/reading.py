@@ -21,6 +21,7 @@ from navsym.language.schema import Table, as_list, as_table, as_text, join_place
 from navsym.language.shapes import RANGES, Shape, read_shape
 from navsym.language.tree import Tree, fold_tree, list_names, list_parts
 from navsym.language.vectors import (
+    BINDERS,
     RELATIONS,
     Size,
     describe_size,
@@ -103,6 +104,7 @@ def read_text_claim(
     trees += stated
     free = set(order).union(*map(list_free_names, trees))
     require_expected(trees, shapes, where)
+    require_still(trees, sorted(n for n in free & shapes.keys() if shapes[n].rates or n in rates), where)
     used, slopes = collect_names([*texts, *exists], free, given, shapes, rates, sizes)
     require_rates(trees, slopes, where)
     require_meaning([*trees[: len(links)], *stated], used, shapes, rates, "tolerance" in block, where)
@@ -190,6 +192,13 @@ def require_expected(trees: Sequence[Tree], shapes: Mapping[str, Shape], where: 
 
     for name in sorted(frozenset().union(*(fold_tree(tree, collect) for tree in trees))):
         message = f"expected the random {name} inside E(...) or cov(...); got it outside; state what is expected of it"
+        raise DomainError(message, where=where)
+
+
+def require_still(trees: Sequence[Tree], moving: Sequence[str], where: str) -> None:
+    """Refuse an integral, sum or limit over the time on which other symbols depend."""
+    if moving and any(part.head in BINDERS and part.args[1].args == (TIME,) for part in list_parts(*trees)):
+        message = f"expected another variable than {TIME}, on which {moving[0]} depends; got {TIME}; call it tau"
         raise DomainError(message, where=where)
 
 

@@ -15,7 +15,7 @@ from navsym.prove.rooms.goals import player, to_sympy
 from navsym.prove.search import EASY, find_proof
 from navsym.prove.wording import decimal_ends, expression_text
 from navsym.prove.words.points import draw_sized_points, list_numbers, show_point
-from navsym.prove.words.shares import find_shares
+from navsym.prove.words.shares import find_above, find_shares
 
 FEW = 8  # points that are enough evidence before a proof is sought
 
@@ -38,16 +38,19 @@ def decide_words(documents: Sequence[Document], scope: str, seconds: float) -> V
                 break
         if not points:
             return Verdict(OPEN, "none", scope, evidence="no matrices are known at which all of it has a value")
-        shares = find_shares(document, end) if relation == "=" else None
+        above = None if relation == "=" else find_above(document)
+        shares = find_shares(document, end) if relation == "=" else None if above is None else []
         if shares is None:
             words = f"no sum of relations was found; it holds at {len(points)} exact points"
             return Verdict(OPEN, "words", scope, evidence=words)
         witness = min(points, key=lambda point: len(str(point)))
         certificates.append({"kind": "words", "statement": document, "witness": witness, "shares": shares})
+        certificates[-1] |= {} if above is None else {"above": above}
         assumed |= dict.fromkeys((*algebra.assumed, *list_conditions(algebra)))
-        count += len(shares)
+        count += len(shares) + len(above or [])
     whole = certificates[0] if len(certificates) == 1 else {"kind": "all", "of": certificates}
-    evidence = f"the difference is a sum of {count} multiples of relations between the letters"
+    what = "multiples of relations between the letters" if above is None else "traces of nonnegative matrices"
+    evidence = f"the difference is a sum of {count} {what}"
     verdict = Verdict(PROVED, "sums of words", scope, tuple(assumed), evidence, certificate=whole)
     try:
         grant(documents, whole)

@@ -77,6 +77,43 @@ def find_shares(document: Any, end: float) -> list[Share] | None:
     return None
 
 
+def find_above(document: Any) -> list[dict[str, Any]] | None:
+    """The difference of an inequality as a sum of c trace(X) or c trace(X Y) with c > 0, X and Y nonnegative."""
+    algebra = player.Words(document)
+    relation, x = algebra.state()
+    known = None if isinstance(x, player.Typed) else read_linear(x)
+    if known is None or any(c * player.SIGNS[relation][0] < 0 or not name for name, c in known.items()):
+        return None
+    found = [(abs(c), find_factors(algebra, name)) for name, c in known.items()]
+    if not all(texts for _, texts in found):
+        return None
+    return [{"coefficient": str(c), "matrices": texts} for c, texts in found]
+
+
+def find_factors(algebra: Any, name: str) -> list[str]:
+    """The texts of one or two nonnegative matrices of whose product a symbol is the trace; else none."""
+    if not name.startswith("trace__"):
+        return [f"eye({name})"] if name in algebra.dimensions else []
+    ways = [(word[:k], word[k:]) for word in list_rotations(algebra, name) for k in range(len(word))]
+    for parts in sorted(ways, key=lambda way: len(way[0])):
+        texts = [" @ ".join(spell_letter(algebra, *letter) for letter in part) for part in parts if part]
+        factors = [algebra.read(text) for text in texts]
+        if all(isinstance(f, player.Typed) and f.known in ("positive", "nonnegative") for f in factors):
+            return texts
+    return []
+
+
+def spell_letter(algebra: Any, name: str, turned: bool) -> str:
+    """A letter as texts have it: the inverse of a name or of a sum."""
+    if name.startswith("inv__"):
+        return f"inv({spell_letter(algebra, algebra.inverses[name], False)})" + ".T" * turned
+    body = next((body for body, own in algebra.arguments if own == name), None)
+    if body is None:
+        return name + ".T" * turned
+    words = (" @ ".join(spell_letter(algebra, *letter) for letter in word) for word in body)
+    return " + ".join(f"{write_term(c)}*({word})" for word, c in zip(words, body.values(), strict=True))
+
+
 def search_shares(algebra: Any, x: Any, scalars: Sequence[tuple[Term, Word]], end: float) -> list[Share] | None:
     """The same with rules that take some numbers out of words; their steps are none of the certificate."""
     letters = Letters(algebra, [symbol for symbol, _ in scalars])
