@@ -329,7 +329,8 @@ def function_of_phases(found: Phases, real: str, units: Mapping[str, str]) -> Ex
     parts: list[Material] = []
     for regime in found.regimes:
         start, end = regime.ends
-        lacking = "" if regime.status == (PROVED if regime.closed else CERTIFIED) else str(regime.status)
+        sure = regime.status == CERTIFIED or (regime.closed is not None and regime.status == PROVED)
+        lacking = "" if sure else str(regime.status)
         if regime.closed and any(e.is_Rational and e.q > LARGEST_DENOMINATOR for e in (regime.lower, regime.upper)):
             lacking = lacking or "an end without a closed form"
         if lacking:

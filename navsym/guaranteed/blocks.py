@@ -34,6 +34,8 @@ BITS, DIGITS, PLACES = 320, 24, 60
 FAR = 10**12
 #: The dual is drawn in by this part of itself before it is rounded, so that it stays admissible noise.
 SHRINK = 1 - fmpq(1, 10**50)
+#: Weights that cost less than this part of the largest are zero; bounds that differ by less have met.
+TINY, CLOSE = arb("1e-60"), arb("1e-20")
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -270,13 +272,52 @@ def find_optimum(parts: Sequence[Part], functional: fmpq_mat) -> tuple[list[list
     narrow = [part._replace(H=pick_columns(part.H, kept)) for part in parts]
     P = fmpq_mat(len(kept), 1, [functional[k, 0] for k in kept])
     x, proposed = propose_optimum(narrow, P)
-    weights, dual = balance_weights(narrow, P, proposed), admissible_dual(narrow, x)
+    weights = balance_weights(narrow, P, proposed)
     costs = [part.cost(w) for part, w in zip(narrow, weights, strict=True)]
-    worth = sum((e * p for e, p in zip(dual, P.entries(), strict=True)), fmpq(0))
+    whole_cost = sum(costs, arb(0))
+    dual, worth = bound_below(narrow, P, x)
+    if not whole_cost - worth < whole_cost * CLOSE:
+        dual, worth = max((dual, worth), bound_below(narrow, P, touch_noise(narrow, weights)), key=lambda d: d[1])
     whole = [fmpq(0)] * functional.nrows()
     for k, e in zip(kept, dual, strict=True):
         whole[k] = e
-    return weights, whole, costs, Number(decimal(worth, DIGITS, -1), upper_end(sum(costs, arb(0)), DIGITS))
+    return weights, whole, costs, Number(decimal(worth, DIGITS, -1), upper_end(whole_cost, DIGITS))
+
+
+def bound_below(parts: Sequence[Part], P: fmpq_mat, x: Sequence[fmpq]) -> tuple[list[fmpq], fmpq]:
+    """An admissible dual near a proposed one, and the bound that it shows."""
+    dual = admissible_dual(parts, x)
+    return dual, sum((e * p for e, p in zip(dual, P.entries(), strict=True)), fmpq(0))
+
+
+def touch_noise(
+    parts: Sequence[Part], weights: Sequence[Sequence[fmpq]], tight: frozenset[int] = frozenset()
+) -> list[fmpq]:
+    """A dual whose measurements are the noise that costs the weights most, and least, in squares, where these are zero.
+
+    It is the optimum where the weights are, and as few measurements as unknowns, or one block without weights, decide.
+    An inequality whose multiplier would have the wrong sign gets none: it is among ``tight``.
+    """
+    m = parts[0].H.ncols()
+    square, rows, sides = arb_mat(m, m), list[list[fmpq]](), list[arb]()
+    tight |= {i for i, w in enumerate(weights) if any(w)}
+    for i, (part, w) in enumerate(zip(parts, weights, strict=True)):
+        square += arb_mat(part.H.transpose()) * part.cone.square() * arb_mat(part.H)
+        if i in tight:
+            worst = [arb(0)] if part.norm == "nonpositive" else part.cone.worst(arb_mat([[arb(e)] for e in w]))
+            used = [k for k, e in enumerate(w) if part.norm != "linf" or e != 0]
+            rows, sides = rows + [part.H.tolist()[k] for k in used], sides + [worst[k] for k in used]
+    kept = pivots_of(fmpq_mat(rows).transpose()) if rows else []
+    table = [square.tolist()[i] + [arb(rows[k][i]) for k in kept] for i in range(m)]
+    table += [[*map(arb, rows[k]), *[arb(0)] * len(kept)] for k in kept]
+    try:
+        found = arb_mat(table).solve(arb_mat([[e] for e in [arb(0)] * m + [sides[k] for k in kept]]))
+    except ZeroDivisionError:
+        return [fmpq(0)] * m
+    x = arb_mat([[e.mid()] for e in found.entries()[:m]])
+    free = (i for i, part in enumerate(parts) if part.norm == "nonpositive" and i not in tight)
+    over = frozenset(i for i in free if (arb_mat(parts[i].H) * x)[0, 0] > 0)
+    return touch_noise(parts, weights, tight | over) if over else [to_fmpq(e) for e in x.entries()]
 
 
 def certify_optimum(parts: Sequence[Part], functional: fmpq_mat) -> dict[str, Any]:
@@ -297,16 +338,18 @@ def propose_optimum(parts: Sequence[Part], P: fmpq_mat) -> tuple[list[fmpq], lis
         (p.cone, range(a, b)) for p, (a, b) in zip(parts, spans, strict=True) if p.norm in ("l1", "l2") and b > a + 1
     ]
     cloud = Cloud(rows, sigma, scaled, cones=cones)
-    start = cloud.start() or []
     if parts[-1].norm == "nonpositive":  # a weight w costs sigma (|w| - w)
         free = [part.norm == "nonpositive" for part in parts for _ in range(part.H.nrows())]
         cloud.offset = [-s if one else arb(0) for s, one in zip(sigma, free, strict=True)]
         cloud.shifted = -np.array(free, dtype=float)
-    found = exchange(cloud, arb_mat(P.transpose()), start)
+    with np.errstate(all="ignore"):  # doubles only say where to look
+        found = exchange(cloud, arb_mat(P.transpose()), cloud.start() or [])
     if found is None or found.ray is not None:
         return [fmpq(0)] * P.nrows(), [[fmpq(0)] * (b - a) for a, b in spans]
-    weights = cloud.spread(found)
-    flat = [to_fmpq(weights.get(k, arb(0)).mid()) for k in range(len(rows))]
+    weights = [cloud.spread(found).get(k, arb(0)).mid() for k in range(len(rows))]
+    sizes = [(abs(w) * s).mid() for w, s in zip(weights, sigma, strict=True)]
+    seen = max(sizes) * TINY
+    flat = [to_fmpq(w) if size > seen else fmpq(0) for w, size in zip(weights, sizes, strict=True)]
     return [to_fmpq(e.mid()) for e in found.dual.entries()], [flat[a:b] for a, b in spans]
 
 
@@ -400,11 +443,17 @@ def balance_weights(parts: Sequence[Part], P: fmpq_mat, proposed: Sequence[Seque
     """The weights, rounded and made exactly unbiased on rows that carry the largest of them."""
     flat, rows = [decimal_of(e) for w in proposed for e in w], stack(parts).tolist()
     order = sorted(range(len(flat)), key=lambda k: -abs(flat[k]))
-    turned = fmpq_mat(len(order), P.nrows(), [e for k in order for e in rows[k]]).transpose()
-    picked = [order[k] for k in pivots_of(turned)]
+    used = [k for k in order if flat[k] != 0]
+    for some in (used, order):  # a weight that is zero stays so where it may
+        table = fmpq_mat([[rows[k][i] for k in some] + [P[i, 0]] for i in range(P.nrows())])
+        if (picked := pivots_of(table)) and picked[-1] < len(some):
+            break
     rest = P - stack(parts).transpose() * fmpq_mat(len(flat), 1, flat)
-    columns = fmpq_mat(len(picked), P.nrows(), [e for k in picked for e in rows[k]]).transpose()
-    for k, e in zip(picked, columns.solve(rest).entries(), strict=True):
+    picked = [some[k] for k in picked]
+    columns = fmpq_mat([rows[k] for k in picked])
+    kept = pivots_of(columns)
+    square = fmpq_mat([[rows[k][i] for k in picked] for i in kept])
+    for k, e in zip(picked, square.solve(fmpq_mat([[rest[i, 0]] for i in kept])).entries(), strict=True):
         flat[k] += e
     ends = [sum(part.H.nrows() for part in parts[:k]) for k in range(len(parts) + 1)]
     return [flat[a:b] for a, b in pairwise(ends)]

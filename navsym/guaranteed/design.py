@@ -12,7 +12,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import count, product
+from itertools import count, pairwise, product
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,7 +23,14 @@ from navsym.claims import CERTIFIED, OPEN, Status
 from navsym.claims.display import write_card, write_table
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
-from navsym.core.errors import DomainError, EmptyError, NotEstimableError, TooLargeError, UnknownSymbolError
+from navsym.core.errors import (
+    DomainError,
+    DuplicateError,
+    EmptyError,
+    NotEstimableError,
+    TooLargeError,
+    UnknownSymbolError,
+)
 from navsym.core.exact import decimal, from_decimal, lower_end, to_rational, upper_end
 from navsym.core.numbers import Number
 from navsym.guaranteed.baselines import LP_SOLVERS, Comparison, compare_on_grid
@@ -46,8 +53,8 @@ Needs = frozenset[str]
 
 MOST_ROWS, MOST_DUALS, MOST_CELLS = 400, 3000, 80_000
 MOST_DIGITS = 40
-#: A weight beside the rows costs so many times what the dual of a basis is worth.
-FAR = 10**6
+#: A weight beside the rows costs so many times what the dual of a basis is worth; more where no selection costs less.
+FAR = (10**6, 10**18, 10**36)
 #: Parts of the way at which a slope in time is taken, in seconds: its error is of this order.
 STEP = fmpq(1, 2**60)
 ORDERS = 3
@@ -187,7 +194,26 @@ def design(
             flow = Flow(contents, target, "design")
             rows, needs, prices = list_candidates(flow, times, instant, [*offers, *sums], prices)
             limit = read_exact(budget, "design: budget")
-            return Market(flow, rows, needs, prices, limit, digits).answer()
+            return search_far(flow, rows, needs, prices, limit, digits)
+
+
+def search_far(
+    flow: Flow, rows: list[Row], needs: list[Needs], prices: dict[str, fmpq], budget: fmpq, digits: int
+) -> Design:
+    """The best selection, first among those whose errors are not far above that of all rows."""
+    found = None
+    for far in FAR:
+        try:
+            market = Market(flow, rows, needs, prices, budget, digits, far)
+            found = market, market.search()
+        except (np.linalg.LinAlgError, ZeroDivisionError):
+            break
+        if market.best is not None:
+            break
+    if found is None:
+        message = "expected regressors of like size; got some that doubles do not tell apart; scale the unknowns"
+        raise TooLargeError(message, where="design")
+    return found[0].answer(found[1])
 
 
 def read_offers(
@@ -214,6 +240,9 @@ def read_offers(
             if own is not None and own <= 0:
                 raise DomainError(f"expected a positive noise bound; got {quote(grade[0])}; correct it", where=where)
             item = name if own is None else f"{name} {write_rational(own)}"
+            if item in prices:
+                message = f"expected different noise bounds; got {quote(grade[0])} twice; keep the cheaper grade"
+                raise DuplicateError(message, where=where)
             prices[item] = read_exact(grade[1], where)
             offers.append(Offer(names.index(name), frozenset({item}), own))
     return offers, prices
@@ -249,7 +278,11 @@ def list_candidates(
     if isinstance(times, str) or not isinstance(times, Iterable):
         message = "expected a list of times; got another value; write one"
         raise DomainError(message, where="design")
-    at = sorted({read_exact(t, "design: times") for t in times})
+    at = sorted(read_exact(t, "design: times") for t in times)
+    twice = next((a for a, b in pairwise(at) if a == b), None)
+    if twice is not None:
+        message = f"expected different times; got {write_rational(twice)} twice; drop one, or add a sensor for two"
+        raise DuplicateError(message, where="design: times")
     prices = {f"t = {write_rational(t)}": read_exact(instant, "design: instant") for t in at} | dict(sensors)
     negative = [name for name, price in prices.items() if price < 0]
     if negative or not at or not offers:
@@ -271,7 +304,14 @@ class Market:
     """The rows on offer, and the duals collected so far; unit vectors beside the rows make every selection solvable."""
 
     def __init__(
-        self, flow: Flow, rows: list[Row], needs: list[Needs], prices: dict[str, fmpq], budget: fmpq, digits: int
+        self,
+        flow: Flow,
+        rows: list[Row],
+        needs: list[Needs],
+        prices: dict[str, fmpq],
+        budget: fmpq,
+        digits: int,
+        far: int,
     ):
         #: The proved lower bound is below the value by this part of it.
         self.digits, self.margin = digits, fmpq(1, 10 ** (digits + 1))
@@ -283,7 +323,7 @@ class Market:
         self.target = flow.cut(flow.row_of_target)
         self.exact = [flow.exact_row(row.j, row.t, self.now) for row in rows]
         self.units = [[fmpq(int(i == k)) for i in range(self.m)] for k in range(self.m)]
-        self.cloud = self.make_cloud()
+        self.cloud = self.make_cloud(far)
         self.names = list(prices)
         self.bits = [sum(1 << self.names.index(name) for name in n) for n in needs]
         self.free = sum(1 << k for k, price in enumerate(prices.values()) if price == 0)
@@ -291,14 +331,14 @@ class Market:
         self.duals: dict[frozenset[int], arb_mat] = {}
         self.best: Optimum | None = None
         self.first = self.optimum(set(range(len(rows))))
-        self.least = FAR // 1000 * bounds_of(self.cloud, self.first)[1]
+        self.least = far // 1000 * bounds_of(self.cloud, self.first)[1]
         self.random = np.random.default_rng(0)
 
-    def make_cloud(self) -> Cloud:
+    def make_cloud(self, far: int) -> Cloud:
         """The rows and the unit vectors as the exchange takes them."""
         lines, bounds = self.table.tolist(), [row.sigma for row in self.rows]
         reach = np.linalg.pinv([[middle(e / s) for e in v] for v, s in zip(lines, bounds, strict=True)])
-        bounds += [arb(int(np.ceil(FAR * max(r, 1e-6)))) for r in np.abs(reach).sum(axis=1)]
+        bounds += [arb(far) * max(r, 1e-6) for r in np.abs(reach).sum(axis=1)]
         lines += [list(map(arb, line)) for line in self.units]
         balls = [[e / s for e in v] for v, s in zip(lines, bounds, strict=True)]
         wide = max(float(e.rad()) for v in balls for e in v)
@@ -435,9 +475,8 @@ class Market:
                 active[i] = False
         return solve_basis(self.cloud, self.target, list(basis), list(signs)) or found
 
-    def answer(self) -> Design:
-        """The best selection with its certificate."""
-        done = self.search()
+    def answer(self, done: bool) -> Design:
+        """The best selection with its certificate; ``done`` is what the search said."""
         pairs = self.weigh(self.best) if self.best else None
         if self.best is None or pairs is None:
             got = f"none with an error below {middle(self.least):.3g}" if done else "none in so many steps"

@@ -625,3 +625,50 @@ def test_measurements_that_do_not_fit_the_blocks_are_refused(given):
     assert found.estimate([["1", "2"]]) == 3.0
     with pytest.raises(nav.NavsymError):
         found.estimate(given)
+
+
+@pytest.mark.parametrize(
+    ("blocks", "target", "constraints", "value"),
+    [
+        (
+            [nav.Block([["1/2"]], "5", "linf"), nav.Block([["-2"], ["0"], ["2"]], [[3, 1, 0], [1, 3, -2], [0, -2, 5]])],
+            [-1],
+            [([[0], [1, -1, 0]], "<=", 0), ([[0], [-1, 0, 1]], "=", 0)],
+            10,
+        ),
+        (
+            [
+                nav.Block([["1", "0"]]),
+                nav.Block([["0", "0"]], ["5"]),
+                nav.Block([["0", "-1"], ["2", "3"]], ["1/4", "5"]),
+                nav.Block([["0", "0"]], ["1/4"], "linf"),
+            ],
+            [0, 1],
+            [([[0], [0], [0, -1], [-1]], "<=", -1), ([[0], [1], [-1, 0], [-1]], "<=", 0)],
+            Fraction(1, 2),
+        ),
+        (
+            [
+                nav.Block([[2, 1, 3, 0], [-1, 1, 0, 0]], 1, "l1"),
+                nav.Block([["1/2", -1, 1, 0]], 5, "linf"),
+                nav.Block([[3, 2, -1, 1], [2, 2, 3, 3], [2, 3, -1, 0]], "1/4"),
+            ],
+            [1, 1, 2, 0],
+            [],
+            Fraction(2, 3),
+        ),
+    ],
+)
+def test_weights_that_are_zero_at_the_optimum_leave_no_gap_and_break_no_constraint(blocks, target, constraints, value):
+    found = nav.solve_blocks(blocks, target, constraints=constraints)
+    lower, upper = Fraction(found.value.lower), Fraction(found.value.upper)
+    assert lower <= value <= upper and upper - lower <= value * Fraction(1, 10**20) and found.check()
+
+
+@pytest.mark.parametrize("digits", [16, 27])
+def test_rows_that_doubles_do_not_tell_apart_have_two_bounds_that_meet(digits):
+    small = Fraction(1, 10**digits)
+    found = nav.solve_blocks([nav.Block([[1, 1], [1, 1 + small]])], [1, 0])
+    lower, upper = Fraction(found.value.lower), Fraction(found.value.upper)
+    square = (1 + 1 / small) ** 2 + 1 / small**2  # the weights (1 + 1/small, -1/small) are the only ones
+    assert lower**2 <= square <= upper**2 and upper - lower <= upper / 10**20 and found.check()

@@ -208,6 +208,8 @@ def test_a_budget_that_shows_nothing_is_an_error_that_says_so():
         ({"times": ["now"]}, "syntax"),
         ({"times": 3}, "domain"),
         ({"times": "0, 1"}, "domain"),
+        ({"times": [0, "1/2", 0.5]}, "duplicate"),
+        ({"times": range(3), "sensors": {"z1": [("1/2", 1), ("0.5", 2)]}}, "duplicate"),
         ({"times": range(3), "sensors": ["z1"]}, "domain"),
         ({"times": range(900)}, "too-large"),
         ({"times": range(3), "digits": 41}, "domain"),
@@ -268,3 +270,18 @@ def test_the_command_designs_from_the_table_of_the_file(capsys):
     assert "needs t = 10, fix: cost 3" in shown and "least squares" in shown
     assert run([*command, "--json"]) == 0
     assert len(json.loads(capsys.readouterr().out)["compare"]["solvers"]) == 5
+
+
+@pytest.mark.parametrize("bound", ["10", "1e3", "1e6", "1e12"])
+def test_the_best_selection_may_be_far_above_the_error_of_all_rows(bound):
+    model = nav.Model(states="x v", F=[["0", "1"], ["0", "0"]], H=["x", "v"], sigma=["1", bound], targets={"q": "v"})
+    found = nav.design(model, times=range(3), budget=1)
+    assert Fraction(found.value.lower) <= Fraction(bound) <= Fraction(found.value.upper) and found.check()
+    assert str(found.status) == "CERTIFIED" and found.points[0].measurement == "z2"
+
+
+@pytest.mark.parametrize("span", ["1e-20", "1e-9", "1e12", "1e100"])
+def test_times_of_any_scale_have_their_design(span):
+    model = nav.Model(states="x v", F=[["0", "1"], ["0", "0"]], H=["x"], targets={"q": "v"})
+    found = nav.design(model, times=[0, span], budget=2)
+    assert Fraction(found.value.lower) <= 2 / Fraction(span) <= Fraction(found.value.upper) and found.check()

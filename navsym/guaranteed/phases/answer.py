@@ -14,7 +14,7 @@ from navsym.claims import Status
 from navsym.claims.display import display_latex, latex_of, write_card, write_table
 from navsym.core.answers import Answer
 from navsym.core.balls import enclose
-from navsym.core.errors import DomainError
+from navsym.core.errors import DomainError, EmptyError
 from navsym.core.exact import decimal, to_fmpq
 from navsym.guaranteed.phases.boundaries import Boundary
 from navsym.guaranteed.phases.closed_forms import ClosedForm
@@ -214,6 +214,13 @@ class Phases(Answer):
         ranges = [dict(c) for regime in self.regimes for c in regime.certificates]
         thin = [dict(s.certificate) for regime in self.regimes for s in regime.slivers]
         return ranges + thin + [dict(tie) for tie in self.ties]
+
+    def check(self) -> Any:
+        """Replay the certificates; raises EmptyError where all regimes are closed forms, which the search proves."""
+        if not self.certificates():
+            message = "expected certificates; got closed forms alone, which the search itself proves"
+            raise EmptyError(f"{message}; ask for phases with unique=True (--unique), which adds them", where="check")
+        return Answer.check(self)
 
     def __repr__(self) -> str:
         range_ = f"{self.parameter} from {end_text(self.lower)} to {end_text(self.upper)}"
@@ -431,9 +438,10 @@ class PhaseMap(Answer):
             "uncovered": list(self.uncovered),
         } | ({"given_up": list(self.given_up)} if self.given_up else {})
 
-    def certificates(self) -> list[Mapping[str, Any]]:
-        """None: closed forms are proved by the search, as those of regimes are."""
-        return []
+    def check(self) -> Any:
+        """Raises EmptyError: a map has closed forms, which the search itself proves."""
+        message = "expected certificates; got closed forms alone, which the search itself proves"
+        raise EmptyError(f"{message}; check one point: map.at(...).check()", where="check")
 
     def __repr__(self) -> str:
         ranges = zip(self.parameters, (self.first_ends, self.second_ends), strict=True)

@@ -414,7 +414,7 @@ def solve_interval(section: RegularInterval, follow: FollowOptions, steps: StepC
         guesses,
     )
     first = locate_changes(family, spans, [g[0] if g else None for g in guesses], limit.share(1 / 2))
-    changes, forms = agree_on_forms(family, spans, guesses, first, (lower, upper), limit.share(1 / 2))
+    changes, forms = agree_on_forms(family, spans, guesses, first, (lower, upper), limit.share(3 / 4))
     part = limit.share(1 / 4)
     merge_regimes(
         family,

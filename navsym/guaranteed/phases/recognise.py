@@ -40,16 +40,17 @@ def recognise_constant(x: sp.Rational) -> sp.Expr | None:
 
 
 def recognise_relation(x: sp.Rational) -> sp.Expr | None:
-    """``a + b pi``, a root of a quadratic polynomial, or a logarithm of either with short coefficients."""
+    """``a + b pi``, a root of a quadratic polynomial, or a logarithm or arctangent of one, with short coefficients."""
     with mpmath.workdps(50):
         at = mpmath.mpf(int(x.p)) / int(x.q)
         line = integer_relation([at, mpmath.mpf(1), mpmath.pi])
         if line is not None and line[0]:
             return -(line[1] + line[2] * sp.pi) / sp.Integer(line[0])
         found = recognise_quadratic(at)
-        if found is None and abs(at) < 20:
-            inner = recognise_quadratic(mpmath.exp(at))
-            found = None if inner is None else sp.log(inner)
+        inverses = [(mpmath.exp, sp.log, 20), (mpmath.tan, sp.atan, mpmath.pi / 2)]
+        for function, inverse, end in inverses:
+            inner = recognise_quadratic(function(at)) if found is None and abs(at) < end else None
+            found = found if inner is None else inverse(inner)
         return found
 
 

@@ -29,6 +29,13 @@ class Cone:
         """Of a positive definite size."""
         return self.size.inv()
 
+    def square(self) -> arb_mat:
+        """K of ``r' K r``, the square of the gauge, or where that is none the sum of squares of all parts."""
+        if self.norm == "l2":
+            return self.inverse
+        sizes = self.size.entries()
+        return arb_mat([[1 / s**2 if i == j else arb(0) for i in range(len(sizes))] for j, s in enumerate(sizes)])
+
     @cached_property
     def shape(self) -> np.ndarray:
         """The inverse of the size for errors in parts of their largest, in doubles."""

@@ -21,6 +21,8 @@ from navsym.language.names import quote
 
 #: Digits of radii and duals.
 DIGITS = 24
+#: Smaller radii are not told from zero.
+LEAST = arb("1e-1000")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,6 +101,8 @@ class Estimate(Answer):
     excluded : times of the epochs that every explanation of the data gives a gross error
     others   : other sets of times that explain the data, where there are several
     support  : number of measurements with a weight
+    since    : the oldest epoch that counts, where regressors of those before are too large for doubles, after a long
+               gap of a system that grows and decays; else None
 
     >>> import navsym as nav
     >>> guard = nav.Guard(nav.Model(states="b", F=[["0"]], H=["b"], sigma="1/2"))
@@ -117,6 +121,7 @@ class Estimate(Answer):
     high: arb | None = field(default=None)
     plan: Plan | None = field(default=None)
     exclusion: Exclusion | None = field(default=None)
+    since: float | None = None
 
     @cached_property
     def radius(self) -> Number | None:
@@ -156,12 +161,12 @@ class Estimate(Answer):
         On a panel regressor and bound are constant, so that the optimum over panels is that over measurements. Where
         measurements are bounded together the kind is ``cones``, and numbers that are not rational leave None. For
         "outliers" the kind is ``exclusion``: at most so many epochs with gross errors cannot explain the data without
-        those excluded. None while the target is not estimable, where nothing is excluded, and where exp(F t) has no
-        formula.
+        those excluded. None while the target is not estimable, where nothing is excluded, where exp(F t) has no
+        formula, and for radii below 1e-1000.
         """
         if self.exclusion is not None:
             return write_exclusion(self.exclusion)
-        if self.plan is None or not self.plan.whole:
+        if self.plan is None or not self.plan.whole or self.plan.upper < LEAST:
             return None
         return (write_cones if self.plan.flow.blocks else write_certificate)(self.plan)
 
@@ -171,7 +176,8 @@ class Estimate(Answer):
 
     def document(self, *, certificate: bool = True) -> dict[str, Any]:
         """The row of the epoch in the document of ``navsym guard``, with its certificate or with null in its place."""
-        rest = {"others": [list(times) for times in self.others]} if self.others else {}
+        rest: dict[str, Any] = {"others": [list(times) for times in self.others]} if self.others else {}
+        rest |= {} if self.since is None else {"since": self.since}
         return {
             "t": self.t,
             "estimate": self.value,
@@ -184,17 +190,17 @@ class Estimate(Answer):
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Estimate) and all(
             getattr(self, name) == getattr(other, name)
-            for name in "t target value kind support excluded others radius weights".split()
+            for name in "t target value kind support excluded others radius weights since".split()
         )
 
     def __hash__(self) -> int:
         return hash((self.t, self.target, self.value))
 
     def __repr__(self) -> str:
-        name = quote(self.target)[1:-1]
+        name, kind = quote(self.target)[1:-1], self.kind + ("" if self.since is None else f", since {self.since:g}")
         if self.value is None or self.high is None:
-            return f"Estimate({name} at {self.t:g}: not estimable yet, {self.kind})"
-        return f"Estimate({name} at {self.t:g}: {self.value!r} within {float(self.high.mid()):.6g}, {self.kind})"
+            return f"Estimate({name} at {self.t:g}: not estimable yet, {kind})"
+        return f"Estimate({name} at {self.t:g}: {self.value!r} within {float(self.high.mid()):.6g}, {kind})"
 
     def _repr_html_(self) -> str:
         rows = [(f"{t:g}", name, f"{w:.6g}") for t, name, w in self.weights]
@@ -202,11 +208,13 @@ class Estimate(Answer):
 
 
 def enclose_radius(low: arb, high: arb) -> Number:
-    """Decimals outside both ends, by less than 1e-23 of them.
+    """Decimals outside both ends, by less than 1e-23 of them; 0 and 1e-1000 where both are below.
 
     The ends move apart before they are rounded: a radius such as 1 or 2/3 then has the same digits however its balls
     were computed.
     """
+    if high < LEAST:
+        return Number("0", "1e-1000")
     margin = fmpq(1, 10**28)
     below, above = to_fmpq(low.lower()), to_fmpq(high.upper())
     lower = decimal(below - abs(below) * margin, DIGITS, -1)
@@ -214,8 +222,10 @@ def enclose_radius(low: arb, high: arb) -> Number:
 
 
 def write_exclusion(why: Exclusion) -> dict[str, Any] | None:
-    """The certificate of kind exclusion; None where a regressor has no formula."""
+    """The certificate of kind exclusion; None where a regressor has no formula, or rows do not determine the state."""
     flow, rows = why.flow, []
+    if any(len(places) != len(why.columns) + 1 for places in why.contradictions):
+        return None
     with precision(BITS):
         exact = [[flow.exact_row(row.j, row.t, why.now) for row in members] for members, *_ in why.rows]
         known = not any(None in numbers for numbers in exact)

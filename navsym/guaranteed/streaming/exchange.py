@@ -257,6 +257,8 @@ def cut_cones(cloud: Cloud, found: Optimum) -> bool:
 
     Doubles see most of it; balls look at all where they see none.
     """
+    if not cloud.cones:
+        return False
     before = len(cloud.atoms)
     cones = [(cone, places) for cone, places in cloud.cones if cloud.may_use(places[0])]
     parts = cloud.scaled @ to_doubles(found.dual.transpose()) - (0.0 if cloud.shifted is None else cloud.shifted)
@@ -354,11 +356,11 @@ def violated_row(cloud: Cloud, found: Optimum, *, bland: bool = False) -> tuple[
     """The row that breaks its bound most, as doubles order them, or the first; None where none is seen to."""
     x = np.array([float(e.mid()) for e in found.dual.entries()])
     radii = np.array([float(e.rad()) for e in found.dual.entries()]) * (1.0 + ROUNDING)
-    if not np.isfinite(x).all() or not np.isfinite(radii).all():
-        found.ratio = arb("inf")  # doubles see nothing here: no lower bound is known
-        return None
     found.ratio = arb(1)
-    suspects = cloud.suspects(x, radii)
+    if np.isfinite(x).all() and np.isfinite(radii).all():
+        suspects = cloud.suspects(x, radii)
+    else:  # doubles see nothing here
+        suspects = [i for i in range(cloud.first, len(cloud.vectors)) if cloud.may_use(i)]
     for i in sorted(suspects) if bland else suspects:
         if i in found.basis:
             continue
@@ -366,7 +368,8 @@ def violated_row(cloud: Cloud, found: Optimum, *, bland: bool = False) -> tuple[
         if value > bound or value < -bound:
             return i, 1 if value > 0 else -1
         if not (value <= bound and value >= -bound):
-            found.ratio = found.ratio.max(arb((abs(value) / bound).upper()))
+            size = arb((abs(value) / bound).upper())
+            found.ratio = found.ratio.max(size) if size.is_finite() else arb("inf")
     return None
 
 

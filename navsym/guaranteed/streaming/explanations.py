@@ -10,9 +10,9 @@ Combinations of measurements that are bounded together are rows of their epoch.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from flint import arb, arb_mat, fmpq
@@ -20,8 +20,10 @@ from flint import arb, arb_mat, fmpq
 from navsym.core.errors import InconsistentError
 from navsym.core.exact import to_fmpq
 from navsym.guaranteed.streaming.exchange import Cloud, Optimum, cost_of, exchange
+from navsym.guaranteed.streaming.flow import in_row_space, pivot_columns
 from navsym.guaranteed.streaming.memory import Memory
 from navsym.guaranteed.streaming.numbers import to_float
+from navsym.guaranteed.streaming.scarce import MOST, reduced_cloud
 
 Epochs = frozenset[int]
 #: A dual is drawn by less than this part of the way to states that keep all bounds.
@@ -40,20 +42,23 @@ class Combination(NamedTuple):
 class Search:
     """One direction of the target: the largest value of P d over all explanations.
 
+    memory   : what the rows and the target came from
     epoch    : (N,) the epoch of each row in memory
     upper    : bound of the target that no explanation exceeds
-    best     : the set of epochs with that bound, and its optimum
+    best     : the rows of the set of epochs with that bound, the target in their unknowns, and its optimum
     explained : sets of epochs that explain the data
-    refuted   : those that do not, with m independent rows and one more, which contradict each other
+    refuted   : those that do not, with independent rows and one more, which contradict each other
     open     : whether some set stays undecided, so that no bound is known
     """
 
+    memory: Memory
     cloud: Cloud
     target: arb_mat
     epoch: np.ndarray
     most: int
+    side: int
     upper: arb | None = None
-    best: tuple[Epochs, Optimum] | None = None
+    best: tuple[Cloud, arb_mat, Optimum] | None = None
     explained: set[Epochs] = field(default_factory=set)
     refuted: dict[Epochs, list[Combination]] = field(default_factory=dict)
     open: bool = False
@@ -66,10 +71,16 @@ class Search:
         """The tree below a set of epochs."""
         if self.open or excluded in self.refuted or excluded in self.explained:
             return
-        cloud, first = self.without(excluded), self.cloud.first
-        if cloud.cones or any(self.epoch[i - first] in excluded for i in start):
+        cloud, target, first = self.without(excluded), self.target, self.cloud.first
+        if cloud.cones or not start or any(self.epoch[i - first] in excluded for i in start):
             start, signs = cloud.start() or [], []
-        found = exchange(cloud, self.target, start, signs) if start else None
+        fresh, found = replace(cloud), exchange(cloud, target, start, signs) if start else None
+        if found is None and (scarce := self.reduce(excluded)) is not None:
+            cloud, target, shown = scarce
+            fresh, found = replace(cloud), exchange(cloud, target, cloud.start() or [])
+            start, signs = [], []
+            if found is not None and found.ray is None and not shown:
+                found = None  # states that keep all bounds take every value of the target
         if found is None:
             self.open = True
             return
@@ -78,18 +89,44 @@ class Search:
             self.refuted[excluded] = [combination_of(cloud, i) for i in (*found.basis, rows[-1])]
         else:
             rows = [i for i, w in zip(found.basis, found.weights.entries(), strict=True) if not w.is_zero()]
-            self.note(cloud, excluded, found)
+            self.note(fresh, target, cloud, excluded, found)
         if len(excluded) < self.most:
             for e in sorted({int(self.epoch[cloud.parts(i)[0][0] - first]) for i in rows}):
-                self.visit(excluded | {e}, found.basis, found.signs)
+                self.visit(excluded | {e}, *((found.basis, found.signs) if start else ([], [])))
 
-    def note(self, cloud: Cloud, excluded: Epochs, found: Optimum) -> None:
+    def reduce(self, excluded: Epochs) -> tuple[Cloud, arb_mat, bool] | None:
+        """Rows that do not determine the state, in the unknowns that they do determine; None where one is irrational.
+
+        Places are those in memory. Also the target in these unknowns and whether the rows show it; any other if not.
+        """
+        memory, flow, first = self.memory, self.memory.flow, self.cloud.first
+        rows, now = memory.rows[first:], memory.times[-1]
+        active = ~np.isin(self.epoch, list(excluded))
+        table = [flow.exact_row(row.j, row.t, now) for row in rows] if len(rows) <= MOST else [None]
+        functional = [flow.exact_target(k) for k in range(len(flow.functional))]
+        known = [line for line, use in zip(table, active, strict=False) if use]
+        if None in table or None in functional or not known:
+            return None
+        columns, shown = pivot_columns(known), in_row_space(functional, known)  # type: ignore[arg-type]
+        if not columns:
+            return None
+        cloud = reduced_cloud(flow, rows, table, columns, data=True)  # type: ignore[arg-type]
+        blank = [arb(0)] * first
+        cones = [(cone, [i + first for i in places]) for cone, places in cloud.cones]
+        vectors = [arb_mat(1, len(columns))] * first + [*cloud.vectors]
+        cloud = replace(
+            cloud, vectors=vectors, sigma=[*blank, *cloud.sigma], offset=[*blank, *cloud.offset], cones=cones
+        )
+        target = arb_mat([[functional[k] if shown else fmpq(1) for k in columns]])  # type: ignore[misc]
+        return replace(cloud, first=first, active=active), target * self.side, shown
+
+    def note(self, fresh: Cloud, target: arb_mat, cloud: Cloud, excluded: Epochs, found: Optimum) -> None:
         """The bound of a set that is not refuted."""
         self.explained.add(excluded)
         weights = dict(zip(found.basis, found.weights.entries(), strict=True))
         cost = arb(cost_of(cloud, weights).upper())
         if self.upper is None or cost > self.upper:
-            self.upper, self.best = cost, (excluded, found)
+            self.upper, self.best = cost, (fresh, target, found)
 
     def reached(self) -> arb:
         """A value that some explanation takes, near the bound; minus infinity where none is known.
@@ -99,14 +136,14 @@ class Search:
         """
         if self.best is None:
             return arb("-inf")
-        excluded, found = self.best
+        cloud, goal, found = self.best
         if found.ratio == 1:  # the dual keeps every bound for certain: it is a state
-            return (self.target * found.dual)[0, 0]  # type: ignore[no-any-return]
-        cloud, m = self.without(excluded), self.target.ncols()
+            return (goal * found.dual)[0, 0]  # type: ignore[no-any-return]
+        m = goal.ncols()
         rows = [i for i in range(cloud.first, len(cloud.vectors)) if cloud.may_use(i)]
         end, sides = found.dual.mid(), arb_mat([[int(i == k) for i in range(m)] for k in range(m)]).tolist()
         outside, states = cloud.gauge(end, rows), [end]
-        for target in (-self.target, *(arb_mat([row]) * sign for row in sides for sign in (1, -1))):
+        for target in (-goal, *(arb_mat([row]) * sign for row in sides for sign in (1, -1))):
             other = exchange(replace(cloud), target, cloud.start() or [])
             if other is None or other.ray is not None:
                 break
@@ -115,7 +152,7 @@ class Search:
             inside = cloud.gauge(middle, rows)
             part = arb(((outside - 1) / (outside - inside)).upper()).max(arb(0))
             if inside < 1 and part < NEAR:  # without room inside nothing is known to be a state
-                return (self.target * (end + (middle - end) * part))[0, 0]  # type: ignore[no-any-return]
+                return (goal * (end + (middle - end) * part))[0, 0]  # type: ignore[no-any-return]
         return arb("-inf")
 
 
@@ -159,11 +196,11 @@ def explain_data(memory: Memory, most: int, basis: Sequence[int], signs: Sequenc
     target = memory.target()
     searches = []
     for sign in (1, -1):
-        search = Search(memory.cloud(data=True), target * sign, epoch, most)
+        search = Search(memory, memory.cloud(data=True), target * sign, epoch, most, sign)
         search.visit(frozenset(), basis, [s * sign for s in signs])
         if not search.open and not search.explained:
             rows = [i for one in search.refuted[frozenset()] for i in one.places]
-            raise contradiction(memory, epoch, rows, most)
+            raise contradiction((memory.rows[i].t for i in rows), most)
         searches.append(search)
     up, down = searches
     if up.open or down.open:
@@ -175,12 +212,11 @@ def explain_data(memory: Memory, most: int, basis: Sequence[int], signs: Sequenc
     return Explanations(low, high, tuple(smallest), tuple({**up.refuted, **down.refuted}.values()))
 
 
-def contradiction(memory: Memory, epoch: Any, rows: Sequence[int], most: int) -> InconsistentError:
+def contradiction(times: Iterable[fmpq], most: int) -> InconsistentError:
     """The error for data that no state explains; it names the epochs of one contradiction."""
-    used = sorted({int(epoch[i - memory.first]) for i in rows})
-    times = ", ".join(f"{to_float(memory.times[memory.oldest + e]):.12g}" for e in used)
+    at = ", ".join(f"{t:.12g}" for t in sorted(set(map(to_float, times))))
     but = f" but {most}" if most else ""
     remedy = "raise sigma, or allow more gross errors" if most else "check them, raise sigma, or allow gross errors"
-    got = f"a contradiction at t = {times}"
+    got = f"a contradiction at t = {at}"
     message = f"expected data that some state explains in all epochs{but}; got {got}; {remedy} (outliers)"
-    return InconsistentError(message, where=f"t = {times}")
+    return InconsistentError(message, where=f"t = {at}")

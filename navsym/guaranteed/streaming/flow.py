@@ -94,6 +94,7 @@ class Flow:
         self.programs: list[list[Tape]] = [[tape(e) for e in row] for row in self.h]
         self.constant = [not any(e.has(self.time) for e in row) for row in self.h]
         self.steady: dict[int, arb_mat] = {}
+        self.terms: dict[int, list[fmpq_mat] | None] = {}
         self.bounds: dict[int, tuple[arb, str]] = {}
 
     @cached_property
@@ -173,11 +174,13 @@ class Flow:
     # Balls
 
     def transition(self, start: fmpq, end: fmpq) -> arb_mat | None:
-        """Phi(end, start) for start <= end as a matrix of balls; None for a model without dynamics."""
+        """Phi(end, start) as a matrix of balls; None for a model without dynamics."""
         if not self.F:
             return None
         if self.is_steady:
             return self.long_exponential(end - start)
+        if end < start:
+            return self.transition(end, start).inv()  # type: ignore[union-attr]
         total, at = None, start
         for k in range(len(self.F)):
             last = self.ends[k]
@@ -255,8 +258,8 @@ class Flow:
     def ball_row(self, j: int, t: fmpq, now: fmpq) -> list[arb]:
         """``h_j(t) Phi(t, now)`` for t <= now, all unknowns."""
         row = self.row(j, t)
-        back = None if t == now else self.transition(t, now)
-        return (row if back is None else row * back.inv()).entries()  # type: ignore[no-any-return]
+        back = None if t == now else self.transition(now, t)
+        return (row if back is None else row * back).entries()  # type: ignore[no-any-return]
 
     # Exact and as text
 
@@ -270,18 +273,23 @@ class Flow:
         return to_text(self.functional[k])
 
     @cached_property
-    def powers(self) -> list[fmpq_mat] | None:
-        """F**k / k! of a rational nilpotent system, from k = 0 on; None for every other."""
+    def system(self) -> fmpq_mat | None:
+        """F of all times where it is rational; zero without dynamics."""
         n = len(self.functional)
         if not self.F:
-            return [fmpq_mat([[int(i == j) for j in range(n)] for i in range(n)])]
+            return fmpq_mat(n, n)
         if not self.is_steady or not all(e.is_Rational for e in self.F[0].F):
             return None
-        F = fmpq_mat([[to_fmpq(e) for e in row] for row in self.F[0].F.tolist()])
-        powers = [fmpq_mat([[int(i == j) for j in range(n)] for i in range(n)])]
-        for k in range(1, n + 1):
-            powers.append(powers[-1] * F * fmpq(1, k))
-        return powers[:n] if all(e == 0 for e in powers[n].entries()) else None
+        return fmpq_mat([[to_fmpq(e) for e in row] for row in self.F[0].F.tolist()])
+
+    def series(self, h: fmpq_mat) -> list[fmpq_mat] | None:
+        """``h F**k / k!`` from k = 0 on, where these end: then ``h exp(F t)`` is a polynomial; else None."""
+        if self.system is None:
+            return None
+        terms = [h]
+        while any(terms[-1].entries()) and len(terms) <= h.ncols():
+            terms.append(terms[-1] * self.system * fmpq(1, len(terms)))
+        return None if any(terms[-1].entries()) else terms
 
     def exact_row(self, j: int, t: fmpq, now: fmpq) -> list[fmpq] | None:
         """``h_j(t) Phi(t, now)`` as rational numbers, all unknowns; None where it is not seen to be rational."""
@@ -291,14 +299,16 @@ class Flow:
             return None
         row = fmpq_mat([[to_fmpq(e) for e in h]])
         if t == now:
-            return row.entries()
-        if self.powers is None:
+            return row.entries()  # type: ignore[no-any-return]
+        if j not in self.terms:
+            self.terms[j] = self.series(row)
+        terms = self.terms[j] if self.constant[j] else self.series(row)
+        if terms is None:
             return None
-        total, power = row * self.powers[0], fmpq(1)
-        for matrix in self.powers[1:]:
-            power *= t - now
-            total += row * matrix * power
-        return total.entries()
+        total = fmpq_mat(1, row.ncols())
+        for term in reversed(terms):
+            total = total * (t - now) + term
+        return total.entries()  # type: ignore[no-any-return]
 
     @cached_property
     def closed_form(self) -> list[list[str]] | None:

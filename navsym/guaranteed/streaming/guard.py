@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -37,6 +37,8 @@ BOUNDS = ("bounded", "variance")
 MOST_OUTLIERS = 4
 #: Times are not larger: turns through larger angles have no digits left at the working precision.
 LATEST = 10**21
+#: The middle of values of the target is zero where it is less than this part of their width.
+ROUNDING = arb("1e-40")
 
 Taken = list[tuple[int, fmpq, fmpq | None]]
 
@@ -154,17 +156,17 @@ class Guard:
         before, mark = vars(self).copy(), self.memory.mark()
         with precision(BITS):
             try:
-                self.memory.add(at, taken)
+                self.move_hints(lambda: self.memory.add(at, taken))
                 self.note_pattern(at, taken)
                 self.change_kinds()
-                answer = self.answer(at, len(taken))
+                answer = replace(self.answer(at, len(taken)), since=self.memory.restart)
             except BaseException:
                 self.__dict__.update(before)
                 self.memory.take_back(mark)
                 raise
             self.epochs += 1
             if self.memory.is_due():
-                self.refer()
+                self.move_hints(self.memory.refer_within_doubles)
         return answer
 
     def next_time(self, t: Any) -> fmpq:
@@ -227,7 +229,7 @@ class Guard:
         before = self.flow.columns
         self.choose_kinds()
         if self.flow.columns != before:
-            self.memory.refer(self.memory.reference)
+            self.memory.refer_within_doubles()
             self.basis, self.signs, self.solved, self.plan, self.state = [], [], None, None, None
 
     def note_pattern(self, at: fmpq, taken: Taken) -> None:
@@ -237,29 +239,35 @@ class Guard:
         self.alike = self.alike + 1 if pattern == self.pattern else 1
         self.pattern = pattern
 
-    def refer(self) -> None:
-        """Refer the memory to a newer time; places of rows change with it."""
-        first = self.memory.first
-        self.memory.refer()
-        self.basis = [i - first for i in self.basis]
-        self.solved = self.state = None
+    def move_hints(self, change: Callable[[], None]) -> None:
+        """Change the memory; where it is referred to another time, places of rows change with it."""
+        memory = self.memory
+        reference, since, moved = memory.reference, memory.since, memory.moved
+        change()
+        if memory.reference != reference:
+            self.basis = [i - memory.moved + moved for i in self.basis]
+            self.solved = self.state = None
+        if memory.since != since:
+            self.alike = 0
 
     def answer(self, at: fmpq, fresh: int) -> Estimate:
         """The estimate from what is in memory."""
         if self.outliers and self.showing:
             return self.answer_with_outliers(at)
         self.plan = (self.repeat(at, fresh) or self.optimise(at, fresh)) if self.showing else None
-        if self.radius_kind == "bounded" and self.plan:
+        if self.bound == "bounded" and self.plan:
             self.need_consistent(fresh)
-        elif self.radius_kind == "bounded":
+        elif self.bound == "bounded":
             self.need_scarcely_consistent(at)
         if not self.showing:
             return Estimate(to_float(at), self.target, None, self.radius_kind)
         plan = self.plan or self.solve_scarcely(at)
         if plan is None:
             return Estimate(to_float(at), self.target, None, self.radius_kind)
-        value = middle(plan.value())
-        count = len(plan.support())
+        value, count = middle(plan.value()), len(plan.support())
+        if not np.isfinite([value, middle(plan.upper)]).all():
+            message = f"expected a target and a radius within the range of doubles; got {quote(self.target)} beyond it"
+            raise TooLargeError(f"{message}; measure earlier, or take another unit", where=f"t = {to_float(at):.12g}")
         return Estimate(
             to_float(at), self.target, value, self.radius_kind, count, low=plan.lower, high=plan.upper, plan=plan
         )
@@ -376,15 +384,20 @@ class Guard:
 
     # Data that contradict each other
 
+    def is_explained(self, new: int) -> bool:
+        """Whether doubles see that the state near the data keeps the bounds of all rows from a place on."""
+        memory = self.memory
+        if self.state is None:
+            return False
+        gap = memory.scaled[new : len(memory.rows)] @ self.state - memory.shifted[new : len(memory.rows)]
+        together = [(cone, np.array(at) - new) for cone, at in memory.cones if at[0] >= new]
+        return bool((np.abs(gap) <= 1.0).all()) and all(cone.estimate(gap[at]) <= 1.0 for cone, at in together)
+
     def need_consistent(self, fresh: int) -> None:
         """Raise InconsistentError where it is proved that no state keeps all bounds; look only where doubles doubt."""
         memory = self.memory
-        if self.state is not None:
-            new = len(memory.rows) - fresh
-            gap = memory.scaled[new : new + fresh] @ self.state - memory.shifted[new : new + fresh]
-            together = [(cone, np.array(at) - new) for cone, at in memory.cones if at[0] >= new]
-            if (np.abs(gap) <= 1.0).all() and all(cone.estimate(gap[at]) <= 1.0 for cone, at in together):
-                return
+        if self.is_explained(len(memory.rows) - fresh):
+            return
         ends, start = [], self.basis or memory.cloud().start() or []
         for sign in (1, -1):
             cloud = memory.cloud(data=True)
@@ -392,36 +405,36 @@ class Guard:
             if found is None:
                 return
             if found.ray is not None:
-                counts = memory.counts[memory.oldest :]
-                rows = [i for i, w in cloud.spread(found).items() if not w.contains(0)]
-                raise contradiction(memory, np.repeat(np.arange(len(counts)), counts), rows, 0)
+                rows = [memory.rows[i] for i, w in cloud.spread(found).items() if not w.contains(0)]
+                raise contradiction((row.t for row in rows), 0)
             ends.append(np.array([middle(e) for e in found.dual.entries()]))
-        self.state = (ends[0] + ends[1]) / 2.0
+        if np.isfinite(ends).all():
+            self.state = (ends[0] + ends[1]) / 2.0
 
     def need_scarcely_consistent(self, at: fmpq) -> None:
         """The same where the measurements do not determine the state."""
         memory = self.memory
-        if rows := find_contradiction(self.flow, memory.rows[memory.first :], at):
-            counts = memory.counts[memory.oldest :]
-            raise contradiction(memory, np.repeat(np.arange(len(counts)), counts), [i + memory.first for i in rows], 0)
+        if rows := find_contradiction(self.flow, memory.rows[memory.first :], at, self.outliers):
+            raise contradiction((row.t for row in rows), self.outliers)
 
     def answer_with_outliers(self, at: fmpq) -> Estimate:
         """Middle and half width of the target over all explanations."""
-        found, memory = None, self.memory
-        if len(memory) >= self.flow.size:
-            start = self.basis if self.basis and min(self.basis) >= memory.first else memory.cloud().start() or []
-            found = explain_data(memory, self.outliers, start, []) if start else None
-            self.basis, self.signs = list(start), []
-        if found is None or found.low is None or found.high is None:
+        memory = self.memory
+        self.basis = self.basis if self.basis and min(self.basis) >= memory.first else memory.cloud().start() or []
+        self.signs = []
+        found = explain_data(memory, self.outliers, self.basis, [])
+        if found.low is None or found.high is None:
             self.basis = []  # another start is taken when there is more to choose from
+            self.need_scarcely_consistent(at)
             return Estimate(to_float(at), self.target, None, "outliers")
         times = [to_float(t) for t in memory.times[memory.oldest :]]
         (low, low_inner), (high_inner, high) = found.low, found.high
+        centre = (low + high) / 2
         excluded = [memory.times[memory.oldest + e] for e in found.excluded]
         return Estimate(
             to_float(at),
             self.target,
-            middle((low + high) / 2),
+            0.0 if abs(centre) < (high - low) * ROUNDING else middle(centre),
             "outliers",
             excluded=tuple(map(to_float, excluded)),
             others=tuple(tuple(times[e] for e in s) for s in found.others),

@@ -14,7 +14,7 @@ from navsym.core.errors import TooLargeError
 from navsym.guaranteed.search.cones import Cone
 from navsym.guaranteed.streaming.exchange import Cloud
 from navsym.guaranteed.streaming.flow import Flow, Together
-from navsym.guaranteed.streaming.numbers import middle, write_rational
+from navsym.guaranteed.streaming.numbers import middle, to_float, write_rational
 
 MOST_ROWS = 200_000
 #: Steps whose transitions are one stride, see Flow.long_exponential.
@@ -75,6 +75,8 @@ class Memory:
         self.cones: list[tuple[Cone, list[int]]] = []
         self.first = self.oldest = 0
         self.gone = 0  # epochs that have left since the reference time was chosen
+        self.moved = 0  # rows that were dropped from the lists
+        self.since: fmpq | None = None  # the oldest epoch when doubles last left no room for those before
         self.scaled = np.zeros((64, flow.size))
         self.shifted = np.zeros(64)
         self.wide = 0.0
@@ -86,21 +88,60 @@ class Memory:
 
     def add(self, at: fmpq, taken: Sequence[tuple[int, fmpq, fmpq | None]]) -> None:
         """Put an epoch in; where the memory is full the oldest leaves. Call it at the working precision."""
+        if len(self) + len(taken) > MOST_ROWS:
+            message = f"expected at most {MOST_ROWS} measurements in memory; got more; give a memory (--memory)"
+            raise TooLargeError(message, where="Guard")
         if self.reference is None:
             self.reference = at
         elif self.flow.stride == 0:
             self.flow.stride = (at - self.times[-1]) * STRIDE
-        self.carry = self.flow.transition(self.reference, at)
+        rows = []
         for j, z, own in taken:
             sigma, text = (arb(own), write_rational(own)) if own is not None else self.flow.sigma(j, at)
-            self.seen[j] += 1
-            self.put(Row(at, j, z, sigma, text, own))
-        self.end_epoch(at, len(taken))
+            rows.append(Row(at, j, z, sigma, text, own))
+        self.seen.update(row.j for row in rows)
+        kept, n = vars(self).copy(), len(self.rows)
+        try:
+            self.fill([at], [len(rows)], rows)
+        except OverflowError:
+            self.restore(kept, n)
+            self.times, self.counts, self.rows = [*self.times, at], [*self.counts, len(rows)], [*self.rows, *rows]
+            if self.length is not None and len(self.times) - self.oldest > self.length:
+                self.forget()
+            self.refer_within_doubles()
         if self.length is not None and len(self.times) - self.oldest > self.length:
-            self.seen.subtract(row.j for row in self.rows[self.first : self.first + self.counts[self.oldest]])
-            self.first += self.counts[self.oldest]
-            self.oldest += 1
-            self.gone += 1
+            self.forget()
+
+    @property
+    def restart(self) -> float | None:
+        """The oldest epoch, where those before left for want of room in doubles."""
+        return to_float(self.since) if self.since is not None and self.times[self.oldest] == self.since else None
+
+    def forget(self) -> None:
+        """The oldest epoch leaves."""
+        self.seen.subtract(row.j for row in self.rows[self.first : self.first + self.counts[self.oldest]])
+        self.first += self.counts[self.oldest]
+        self.oldest += 1
+        self.gone += 1
+
+    def refer_within_doubles(self) -> None:
+        """Refer to the oldest epoch in memory, or to the newest where doubles overflow; the oldest leave where both do.
+
+        Half of the epochs leave at once, so that few tries are made. Raises TooLargeError where one epoch overflows.
+        """
+        while True:
+            for reference in (self.times[self.oldest], self.times[-1]):
+                kept, n = vars(self).copy(), len(self.rows)
+                try:
+                    return self.refer(reference)
+                except OverflowError:
+                    self.restore(kept, n)
+            if len(self.times) - self.oldest == 1:
+                message = "expected regressors within the range of doubles; got an overflow; scale the unknowns"
+                raise TooLargeError(message, where="Guard")
+            for _ in range((len(self.times) - self.oldest + 1) // 2):
+                self.forget()
+            self.since = self.times[self.oldest]
 
     def end_epoch(self, at: fmpq, count: int) -> None:
         """Note an epoch whose rows are in."""
@@ -112,19 +153,17 @@ class Memory:
     def put(self, row: Row) -> None:
         """A row at the end of all lists."""
         n = len(self.rows)
-        if len(self) >= MOST_ROWS:
-            message = f"expected at most {MOST_ROWS} measurements in memory; got more; give a memory (--memory)"
-            raise TooLargeError(message, where="Guard")
         if n == len(self.scaled):
             self.scaled = np.concatenate([self.scaled, np.zeros_like(self.scaled)])
             self.shifted = np.concatenate([self.shifted, np.zeros_like(self.shifted)])
         h = self.flow.row(row.j, row.t)
         vector = self.flow.cut(h if self.carry is None else h * self.carry)
         scaled, shifted = [middle(e / row.sigma) for e in vector.entries()], middle(arb(row.z) / row.sigma)
-        if not np.isfinite([*scaled, shifted]).all():
-            what, how = ("regressors", "give a memory (--memory)") if np.isfinite(shifted) else ("z/sigma", "scale z")
-            message = f"expected {what} within the range of doubles; got an overflow; {how}"
+        if not np.isfinite(shifted):
+            message = "expected z/sigma within the range of doubles; got an overflow; scale z"
             raise TooLargeError(message, where="Guard")
+        if not np.isfinite(scaled).all():
+            raise OverflowError("regressors")
         self.scaled[n] = scaled
         self.wide = max(self.wide, *(float((e / row.sigma).rad()) for e in vector.entries()))
         self.shifted[n] = shifted
@@ -136,13 +175,17 @@ class Memory:
     def take_back(self, before: tuple[Any, ...]) -> None:
         """The state that :meth:`mark` described."""
         kept, epochs, rows, (self.flow.stride, self.flow.columns, self.flow.size) = before
+        self.restore(kept, rows)
+        for entries in (self.times, self.counts):
+            del entries[epochs:]
+        self.seen = Counter(row.j for row in self.rows[self.first :])
+
+    def restore(self, kept: dict[str, Any], rows: int) -> None:
+        """The lists of before, without the rows that have joined them since."""
         self.__dict__.update(kept)
-        for entries, size in ((self.times, epochs), (self.counts, epochs)):
-            del entries[size:]
         for column in (self.rows, self.vectors, self.sigmas, self.data):
             del column[rows:]  # type: ignore[attr-defined]
         self.cones = [pair for pair in self.cones if pair[1][0] < rows]
-        self.seen = Counter(row.j for row in self.rows[self.first :])
 
     def mark(self) -> tuple[Any, ...]:
         """What :meth:`take_back` needs: the lists themselves, since other unknowns make new ones, and their lengths."""
@@ -153,16 +196,15 @@ class Memory:
         """Whether half of what is kept has left the memory."""
         return self.length is not None and self.gone >= max(self.length, STRIDE)
 
-    def refer(self, reference: fmpq | None = None) -> None:
-        """Drop what has left, and refer everything to a time: the oldest epoch in memory where none is given."""
+    def refer(self, reference: fmpq) -> None:
+        """Drop what has left, and refer everything to a time."""
         times, counts, rows = self.times[self.oldest :], self.counts[self.oldest :], self.rows[self.first :]
         self.times, self.counts, self.rows, self.vectors, self.sigmas, self.data = [], [], [], [], [], []
         self.cones = []
         self.widen()
-        self.first = self.oldest = 0
-        if reference is None:
-            self.gone = 0
-        self.reference = times[0] if reference is None else reference
+        self.moved += self.first
+        self.first = self.oldest = self.gone = 0
+        self.reference = reference
         self.fill(times, counts, rows)
 
     def widen(self) -> None:

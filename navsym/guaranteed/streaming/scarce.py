@@ -72,23 +72,35 @@ def reduced_cloud(
     return Cloud(vectors, sigma, np.array(scaled), offset, shifted, cones=list_cones(flow, rows))
 
 
-def find_contradiction(flow: Flow, rows: Sequence[Row], now: fmpq) -> list[int]:
-    """Places of rows that no state explains together, of those that are rational; none where that is not proved."""
+def find_contradiction(flow: Flow, rows: Sequence[Row], now: fmpq, most: int = 0) -> list[Row]:
+    """Rational rows that no state explains together; none where that is not proved, or without ``most`` epochs not so.
+
+    Whoever explains the data gives one of the epochs of a contradiction a gross error: each is left out in turn.
+    """
+    found = contradict(flow, rows, now)
+    for t in dict.fromkeys((row.t.p, row.t.q) for row in found) if most else ():
+        if not find_contradiction(flow, [row for row in rows if (row.t.p, row.t.q) != t], now, most - 1):
+            return []
+    return found
+
+
+def contradict(flow: Flow, rows: Sequence[Row], now: fmpq) -> list[Row]:
+    """The same without gross errors."""
     exact = [flow.exact_row(row.j, row.t, now) for row in rows] if len(rows) <= MOST else []
-    places = [i for i, row in enumerate(exact) if row is not None]
-    for i in places:
-        if not any(exact[i]) and abs(arb(rows[i].z)) > rows[i].sigma:  # type: ignore[arg-type]
-            return [i]  # it shows nothing but its noise
-    table = [exact[i] for i in places]
-    columns = pivot_columns(table) if table else []  # type: ignore[arg-type]
+    known = [(row, line) for row, line in zip(rows, exact, strict=False) if line is not None]
+    for row, line in known:
+        if not any(line) and abs(arb(row.z)) > row.sigma:
+            return [row]  # it shows nothing but its noise
+    table = [line for _, line in known]
+    columns = pivot_columns(table) if table else []
     if not columns:
         return []
-    cloud = reduced_cloud(flow, [rows[i] for i in places], table, columns, data=True)  # type: ignore[arg-type]
+    cloud = reduced_cloud(flow, [row for row, _ in known], table, columns, data=True)
     start = cloud.start()
     found = start and exchange(cloud, arb_mat([[1] * len(columns)]), start)
     if not found or found.ray is None:
         return []
-    return [places[i] for i, w in cloud.spread(found).items() if not w.contains(0)]
+    return [known[i][0] for i, w in cloud.spread(found).items() if not w.contains(0)]
 
 
 def are_independent(flow: Flow, rows: Sequence[Row], now: fmpq) -> bool:

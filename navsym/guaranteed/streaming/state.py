@@ -46,6 +46,7 @@ def write_state(guard: Guard, path: str | os.PathLike[str] | None) -> dict[str, 
         "reference": write_optional(memory.reference),
         "stride": write_rational(guard.flow.stride),
         "gone": memory.gone,
+        "since": write_optional(memory.since),
         "times": [write_rational(t) for t in memory.times[memory.oldest :]],
         "counts": list(memory.counts[memory.oldest :]),
         "rows": [[row.j, write_rational(row.z), write_optional(row.own)] for row in memory.rows[memory.first :]],
@@ -85,7 +86,7 @@ def read_state(source: str | os.PathLike[str] | Mapping[str, Any]) -> Guard:
         raise ExpressionSyntaxError(message, where=where)
     try:
         return fill_guard(document, where)
-    except (KeyError, TypeError, ValueError, IndexError, AttributeError, StopIteration) as error:
+    except (KeyError, TypeError, ValueError, OverflowError, IndexError, AttributeError, StopIteration) as error:
         got = f"one that cannot be used ({type(error).__name__})"
         message = f"expected a state as Guard.save writes it; got {got}; save it again"
         raise ExpressionSyntaxError(message, where=where) from None
@@ -114,7 +115,7 @@ def fill_guard(document: dict[str, Any], where: str) -> Guard:
     with precision(BITS):
         flow.stride = read_exact(document["stride"], f"{where}: stride")
         memory.reference = None if reference is None else read_exact(reference, f"{where}: reference")
-        if flow.stride < 0 or bool(times) != (memory.reference is not None and memory.reference <= times[0]):
+        if flow.stride < 0 or bool(times) != (memory.reference is not None):
             raise ValueError("reference")
         entries = iter(document["rows"])
         rows = [
@@ -127,6 +128,7 @@ def fill_guard(document: dict[str, Any], where: str) -> Guard:
         memory.widen()
         memory.fill(times, counts, rows)
     memory.gone, guard.epochs, guard.alike = (need_count(document[k]) for k in ("gone", "epochs", "alike"))
+    memory.since = read_optional(document.get("since"), where)
     step, own = document["pattern"]
     guard.pattern = (read_optional(step, where), [(need_count(j), read_optional(s, where)) for j, s in own])
     take_hint(guard, document["hint"])
@@ -157,6 +159,9 @@ def take_hint(guard: Guard, hint: Any) -> None:
         guard.state = np.array([float(x) for x in hint["state"]])
         if guard.state.shape != (guard.flow.size,):
             raise ValueError("hint")
+        with precision(BITS):
+            if not guard.is_explained(guard.memory.first):
+                guard.state = None
 
 
 def read_optional(value: Any, where: str) -> fmpq | None:

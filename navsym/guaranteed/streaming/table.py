@@ -61,6 +61,9 @@ def need_head(head: list[str], names: tuple[str, ...], place: str) -> None:
     if "t" not in head:
         message = f"expected a column t; got {', '.join(map(quote, head[:6]))}; name the columns in the first row"
         raise ShapeError(message, where=place)
+    if len(head) == 1:
+        message = f"expected a column for a measurement; got t alone; add one of {', '.join(names)}"
+        raise ShapeError(message, where=place)
     known = {"t", *names, *(SIGMA + name for name in names)}
     for name in head:
         if name not in known:
