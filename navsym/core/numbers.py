@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import takewhile
 
 #: Fewer shared digits than these are no picture of a number: 1.6999 … 1.7001 would be 1.
 FEW = 4
@@ -43,7 +43,8 @@ class Number:
         """The digits that both ends share; the middle where these are few, as beside 2.6 = 2.5999 … 2.6001."""
         if self.lower == self.upper:
             return self.lower
-        text = os.path.commonprefix([self.lower, self.upper])
+        pairs = takewhile(lambda pair: pair[0] == pair[1], zip(self.lower, self.upper, strict=False))
+        text = "".join(letter for letter, _ in pairs)
         shared = len(text.strip("-").replace(".", "").lstrip("0"))
         if "." in text[:-1] and shared >= max(FEW, self.digits - 1):
             return text.rstrip(".")
