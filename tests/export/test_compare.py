@@ -121,6 +121,28 @@ def test_a_wrong_formula_has_a_bound_as_large_as_its_error_and_the_point_that_sh
     assert float(swapped.bound) >= 3.99 and set(swapped.worst) == {"a", "b"}
 
 
+@pytest.mark.parametrize(
+    ("fault", "largest"),
+    [
+        (lambda x: 1e-9 * x, 3e-9),
+        (lambda x: -2e-12, 2e-12),
+        (lambda x: 1e-6 * x * (3 - x), 2.25e-6),
+    ],
+)
+@pytest.mark.parametrize(
+    ("function", "formula"),
+    [
+        (lambda x: math.sin(x) * math.exp(-x), "sin(x)*exp(-x)"),
+        (lambda x: 1 / (1 + x * x), "1/(1 + x**2)"),
+        (lambda x: math.sin(x) * math.cos(x), "sin(2*x)/2"),
+    ],
+)
+def test_the_bound_of_a_function_of_one_number_is_near_its_fault_however_small(function, formula, fault, largest):
+    answer = nav.compare(lambda x: function(x) + fault(x), formula, x=("0", "3"))
+    assert answer.how == "certified"
+    assert largest * (1 - 1e-6) <= float(answer.bound) <= 1.1 * largest
+
+
 def test_a_function_of_casadi_is_followed_by_its_own_list():
     x = ca.SX.sym("x")
     answer = nav.compare(ca.Function("f", [x], [x**2 * ca.sin(x) / (2 * x)]), "x*sin(x)/2", x=("1/10", "2"))
