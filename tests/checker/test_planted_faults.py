@@ -23,9 +23,13 @@ FAULTS = [
     # the parser
     ("", 'require(parser.words == [""], "not an expression: more than one")', "pass"),
     ("", 'require(sum(map(len, self.words)) == len(text) - spaces, "unexpected characters")', "pass"),
-    ("", 'self.read_product() if sign == "+" else negate', 'self.read_product() if sign == "-" else negate'),
-    ("", '("^", self.read_signed(), MINUS_ONE)', '("^", self.read_product(), MINUS_ONE)'),
-    ("", '("^", base, self.read_signed()) if', '("^", base, self.read_atom()) if'),
+    ("", 'self.read_product() if sign == "+" else self', 'self.read_product() if sign == "-" else self'),
+    (
+        "",
+        'value = self.read_signed()\n            if mark == "@":',
+        'value = self.read_product()\n            if mark == "@":',
+    ),
+    ("", "self.power(base, self.read_signed()) if", "self.power(base, self.read_entry()) if"),
     # balls
     ("balls", "if ball < low or", "if ball.lower() < low or"),
     ("balls", "arb.atan2(b, a)", "arb.atan2(a, b)"),
@@ -33,7 +37,7 @@ FAULTS = [
     ("balls", "for half in (middle - radius, middle + radius)", "for half in (middle + radius,)"),
     ("", "if field in (clip, strict) and q == 0", "if field is clip and q == 0"),
     ("corners", 'value > 0 if relation == ">" else value >= 0', 'value >= 0 if relation == ">" else value >= 0'),
-    ("balls", "if any(evaluate(t, wide, clip).enclose() < 0", "if any(evaluate(t, wide, clip).enclose() <= 0"),
+    ("balls", "any(evaluate(t, wide, clip).enclose() < 0", "any(evaluate(t, wide, clip).enclose() <= 0"),
     # the exact algebra
     ("identity", "if len(self.terms) == 1 and q.q == 1:", "if len(self.terms) == 1:"),
     ("identity", "return all(part.is_zero() for part", "return any(part.is_zero() for part"),
@@ -109,7 +113,7 @@ FAULTS = [
     ("", '{">": ">=", ">=": ">", "=": "!="}', '{">": ">", ">=": ">", "=": "!="}'),
     ("", "negate(minor(rows, i, j)) if (i + j) % 2 else minor", "negate(minor(rows, j, i)) if (i + j) % 2 else minor"),
     ("concave", 'negate(second), relation=">="', 'second, relation=">="'),
-    ("cones", 'require(all(c >= 0 for _, c in rows), "a negative coefficient")', "pass"),
+    ("cones", 'require(all(c >= 0 for c in polynomial.to_dict().values()), "a negative coefficient")', "pass"),
     ("cones", "for chosen in product(*alive)", "for chosen in product(*alive[:1])"),
     ("quadratic", 'subtract(("*", number(4), a, c), ("*", b, b))', '("*", number(4), a, c)'),
     ("roots", "if power % 2 else odd", "if power % 3 else odd"),
