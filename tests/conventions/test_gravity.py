@@ -139,6 +139,7 @@ def test_vectors_that_turn_with_the_attitude_bring_gravity_into_its_column():
 
 def test_entries_longer_than_a_formula_may_be_are_decided_too():
     words = {**WORDS, "frame": "inertial", "gravity_gradient": "radial", "vector_error": "body", "earth": "ellipsoid"}
+    words["gravity_radius"] = "RN"
     quantities = {"radii": ["RN", "RE"], "position": ["x1", "x2", "x3"], "longitude": "longitude"}
     found = nav.conventions(document_of(words, **quantities))
     assert found.complete and all(getattr(found.cards[0], name) == word for name, word in words.items())

@@ -123,11 +123,7 @@ def test_a_wrong_formula_has_a_bound_as_large_as_its_error_and_the_point_that_sh
 
 @pytest.mark.parametrize(
     ("fault", "largest"),
-    [
-        (lambda x: 1e-9 * x, 3e-9),
-        (lambda x: -2e-12, 2e-12),
-        (lambda x: 1e-6 * x * (3 - x), 2.25e-6),
-    ],
+    [(lambda x: 1e-9 * x, 3e-9), (lambda x: -2e-12, 2e-12), (lambda x: 1e-6 * x * (3 - x), 2.25e-6)],
 )
 @pytest.mark.parametrize(
     ("function", "formula"),
