@@ -284,7 +284,7 @@ def enclose_on(term: Any, names: Sequence[str], part: Box) -> arb:
     f(x) - f(m) is a sum of steps in one argument each: the arguments before it stand in the middle, those behind it
     anywhere. A step is s c1 with a ball c1 and s in [-1, 1].
     """
-    if len(names) == 1 and (value := enclose_by_series(term, *names, *part[0])).is_finite():
+    if len(names) == 1 and (value := enclose_by_series(term, names[0], *part[0])).is_finite():
         return value
     middles = {name: player.Jet((arb(low) + arb(high)) / 2) for name, (low, high) in zip(names, part, strict=True)}
     place = {name: player.Jet(arb(low).union(arb(high))) for name, (low, high) in zip(names, part, strict=True)}
