@@ -172,6 +172,13 @@ def test_what_the_reader_of_the_checker_computes_is_not_written(left, why):
         write_theory(item)
 
 
+def test_a_finite_sum_of_derivatives_is_written_term_by_term():
+    item = certificate("sum(diff(x**2, x)*k, k, 1, 2)", "=", "x", {"x": REAL})
+    item["statement"] |= {"shapes": {}, "given": [], "rates": {}}
+    slope = "(Derive (fun x : R => x ^ 2) x)"
+    assert f"forall (x : R), 0 + {slope} * 1 + {slope} * 2 = x." in write_theory(item)
+
+
 @needs_coq
 @pytest.mark.long
 def test_coq_proves_what_the_checker_accepts(tmp_path):
