@@ -645,8 +645,8 @@ class Exact:
         """Numbers without the sum S: this one is S**low times the sum of S**r times one of them, with 0 <= r < 1."""
         base, rows = Exact(atom[2]), self.split_powers(atom)
         low = min(q for _, q, _ in rows).floor()
-        raised = [(q - q.floor(), prod([base] * int(q.floor() - low), start=Exact([(m, c)]))) for m, q, c in rows]
-        return collect(raised).values()
+        shares = {q: Exact((m, c) for m, p, c in rows if p == q) for q in {q for _, q, _ in rows}}
+        return collect((q - q.floor(), prod([base] * int(q.floor() - low), start=x)) for q, x in shares.items()).values()
 
     def divide_turns(self) -> Exact:
         """The same number with polynomials in a root of unity as remainders of their division by its polynomial.
