@@ -646,7 +646,8 @@ class Exact:
         base, rows = Exact(atom[2]), self.split_powers(atom)
         low = min(q for _, q, _ in rows).floor()
         shares = {q: Exact((m, c) for m, p, c in rows if p == q) for q in {q for _, q, _ in rows}}
-        return collect((q - q.floor(), prod([base] * int(q.floor() - low), start=x)) for q, x in shares.items()).values()
+        powers = ((q - q.floor(), prod([base] * int(q.floor() - low), start=x)) for q, x in shares.items())
+        return collect(powers).values()
 
     def divide_turns(self) -> Exact:
         """The same number with polynomials in a root of unity as remainders of their division by its polynomial.

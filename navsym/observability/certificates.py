@@ -8,12 +8,16 @@ point, columns and factors are found; the checker alone grants them. What finds 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import product
 from math import lcm, prod
 from typing import Any
 
+import numpy as np
 import sympy as sp
+from sympy.polys.polyerrors import BasePolynomialError
 
 from navsym import checker
 from navsym.core.errors import NavsymError
@@ -32,8 +36,8 @@ from navsym.observability.tree import linear_places
 
 #: Points tried, terms of the columns and of all remainders, and bits for each state.
 POINTS, COLUMN_TERMS, TERMS, BITS = 6, 600, 8000, 96
-#: Rounds of divisions by all zeros.
-DIVISIONS = 12
+#: Rounds of divisions by all zeros, and steps of Newton's method.
+DIVISIONS, NEWTON = 12, 25
 #: Values of angles that an equation names.
 TURNS = (sp.Integer(0), sp.pi, sp.pi / 2, -sp.pi / 2)
 
@@ -303,37 +307,56 @@ def divide_on(value: Poly, zeros: System, parts: list[Poly], unit: Poly) -> tupl
 
 
 def points_on(zeros: System, said: Statement, symbols: Sequence[sp.Symbol]) -> Iterator[dict[Any, sp.Expr]]:
-    """A few points where the zeros vanish: rational but for what the equations give, by roots or angles.
-
-    What an equation fixes stays: equations that follow from it hold by themselves.
-    """
-    ring = said.ring
-    angles = {s for f in zeros for s in ring.expression(f).atoms(sp.sin, sp.cos) for s in s.free_symbols}
-    graph = [(ring.expression(f), own_variable(f, zeros, ring)) for f in zeros]
-    named = [(zero, [] if place is None else [ring.symbols[place]]) for zero, place in graph]
-    order = sorted(named, key=lambda item: len(item[1]))
+    """A few points where the zeros vanish: rational but for what the equations give, by roots or angles."""
+    texts = [said.ring.expression(f) for f in zeros]
+    angles = {s for text in texts for s in text.atoms(sp.sin, sp.cos) for s in s.free_symbols}
     for k in range(POINTS):
-        small = 7 if k % 2 else 1
-        at = {s: sp.Rational(sp.prime(2 * i + k + 3), small * (7 * i + 2 * k + 9)) for i, s in enumerate(symbols)}
+        size = 7 if k % 2 else 1
+        signed = [size if k == 0 or (i + k) % 3 else -size for i in range(len(symbols))]
+        at = {
+            s: sp.Rational(sp.prime(2 * i + k + 3), c * (7 * i + 2 * k + 9))
+            for i, (s, c) in enumerate(zip(symbols, signed, strict=True))
+        }
         at |= {s: TURNS[k % len(TURNS)] for s in angles if k < len(TURNS)}
-        pinned: set[Any] = set()
-        for zero, own in order:
-            if zero.subs(at) != 0:
-                solve_for(zero, at, [s for s in own or symbols if s not in pinned])
-            pinned |= zero.free_symbols
-        yield at
+        rest = [value for text in texts if (value := text.subs({s: at[s] for s in angles})) != 0]
+        if all(value.free_symbols for value in rest):
+            with suppress(BasePolynomialError, np.linalg.LinAlgError):
+                yield at | (solve_near(rest, at, k) if rest else {})
 
 
-def solve_for(zero: sp.Expr, at: dict[Any, sp.Expr], choices: Sequence[sp.Basic]) -> None:
-    """Change one value such that the expression, of the first or else second degree in its symbol, vanishes."""
-    roots = []
-    for x in choices:
-        if x not in at or x not in zero.free_symbols or not zero.is_polynomial(x):
-            continue
-        c = sp.Poly(zero.subs({s: value for s, value in at.items() if s != x}), x).all_coeffs()
+def solve_near(zeros: list[sp.Expr], at: Mapping[Any, sp.Expr], turn: int) -> dict[Any, sp.Expr]:
+    """Rational values near a point, or roots, at which polynomials vanish; none where they were not found.
+
+    Newton's steps find the way in floats, and how many variables depend there on the others; exact algebra solves for
+    these, those of low degree if possible.
+
+    turn : place of the symbol that comes first
+    """
+    names = sorted(set().union(*(zero.free_symbols for zero in zeros)), key=str)
+    names = names[turn % len(names) :] + names[: turn % len(names)]
+    system = [sp.Poly(zero, *names, domain="QQ") for zero in zeros]
+    slopes = [[f.diff(x) for x in names] for f in system]
+    near, degrees = np.array([float(at[x]) for x in names]), [max(f.degree(x) for f in system) for x in names]
+    easy = np.diag([100.0**-degree for degree in degrees])
+    for _ in range(NEWTON):
+        J = np.array([[value_near(g, near) for g in row] for row in slopes])
+        near = near - easy @ np.linalg.lstsq(J @ easy, [value_near(f, near) for f in system], rcond=1e-9)[0]
+    order = sorted(range(len(names)), key=degrees.__getitem__)
+    own: list[int] = []
+    for j in order:
+        own += [j] if np.linalg.matrix_rank(J[:, [*own, j]], tol=1e-6) > len(own) else []
+    found = {names[j]: sp.Rational(Fraction(near[j]).limit_denominator(500)) for j in order if j not in own}
+    basis = sp.groebner([zero.subs(found) for zero in zeros], *(names[j] for j in own), order="lex", domain="QQ")
+    for zero in reversed(basis.exprs):
+        left = [names[j] for j in own if names[j] in zero.free_symbols and names[j] not in found]
+        c = sp.Poly(zero.subs(found), left[0]).all_coeffs() if len(left) == 1 else []
         if len(c) == 2:
-            at[x] = -c[1] / c[0]
-            return
-        if len(c) == 3 and (root := c[1] ** 2 - 4 * c[0] * c[2]).is_nonnegative:
-            roots.append((x, (sp.sqrt(root) - c[1]) / (2 * c[0])))
-    at.update(roots[:1])
+            found[left[0]] = -c[1] / c[0]
+        elif len(c) == 3 and (root := c[1] ** 2 - 4 * c[0] * c[2]).is_nonnegative:
+            found[left[0]] = (sp.sqrt(root) - c[1]) / (2 * c[0])
+    return found
+
+
+def value_near(f: sp.Poly, point: Any) -> float:
+    """A polynomial at a point in floats."""
+    return float(sum(float(c) * np.prod(point ** np.array(powers)) for powers, c in f.terms()))

@@ -10,7 +10,7 @@ import sympy as sp
 import navsym as nav
 from navsym import checker
 from navsym.models.linear import LinearModel
-from navsym.observability.certificates import Certifier, is_granted, list_nested
+from navsym.observability.certificates import Certifier, is_granted, list_nested, solve_near
 
 REAL = "real"
 
@@ -108,3 +108,22 @@ def test_what_must_not_vanish_may_move():
     (zero,) = item["statement"]["zeros"]
     assert sp.sympify(zero) == sp.Symbol("m") * sp.Symbol("tt") - 1
     assert certifier.certify(2, [], [moving], [0], [moving]) is None
+
+
+@pytest.mark.parametrize("turn", range(3))
+@pytest.mark.parametrize(
+    "equations",
+    [
+        "f1*w3 + f1*n3 + f3*n1, f1*w2 + f1*n2 + f2*n1, f2*w2 + 2*f2*n2 + f3*w3 + 2*f3*n3, "
+        "f2*w3 + f2*n3 - f3*w2 - f3*n2, w2**2 + 3*w2*n2 + w3**2 + 3*w3*n3 + 2*n2**2 + 2*n3**2, "
+        "f1*f2*n2 + f1*f3*n3 - n1*f2**2 - n1*f3**2",
+        "f1*w2 - f2*w1, f2*w3 - f3*w2, f3*w1 - f1*w3, w1**2 + w2**2 + w3**2 - 1",
+        "f2, f3, w2*n2 + w3*n3 + n2**2 + n3**2, w1*n1 + 2*n1**2 + n2**2 + n3**2",
+    ],
+)
+def test_a_point_is_found_where_some_equations_follow_from_others_or_ask_for_other_signs(equations, turn):
+    zeros = [sp.sympify(text) for text in equations.split(",")]
+    names = sorted(set().union(*(zero.free_symbols for zero in zeros)), key=str)
+    found = solve_near(zeros, {x: sp.Rational(k + 2, 7) for k, x in enumerate(names)}, turn)
+    assert all(sp.expand(zero.subs(found)) == 0 for zero in zeros)
+    assert sum(value != 0 for value in found.values()) >= len(names) - 2
