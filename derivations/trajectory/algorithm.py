@@ -98,8 +98,8 @@ gain_printed = claim(
     lambda: Equation(list(printed_gain()), list(regression_gain()), example_box()),
     slip="paper",
     reason="P^- is the matrix of the state after the step, but H^- = H_p D^-1 of equation 5 reads the state before "
-    "it: the row has to be H D^-1, the same slip as in the second measurement equation of 4; by hand: n = 2, P^- = "
-    "E, R = 1: the gain is (1/2, 0), the print has (1/3, 1/3)",
+    "it: the row has to be H D^-1, the same slip as in the second measurement equation of 4; by hand: P^- = E, R = 1, "
+    "rows (1, 1) before and (1, 0) after the step: the gain is (1/2, 0), the print has (1/3, 1/3)",
 )
 
 
@@ -139,8 +139,8 @@ def matrix_after(gain: sp.Matrix) -> sp.Matrix:
 @claim(
     "algorithm.P",
     slip="paper",
-    reason="with the row H^- of equation 5 and its gain; by hand: n = 2, P^- = E, R = 1, K = (1/3, 1/3): the print has "
-    "2/3, -1/3, 2/3 where the errors have 5/9, -1/9, 11/9",
+    reason="with the row H^- of equation 5 and its gain; by hand, as in algorithm.K: the print has 2/3, -1/3, 2/3 where "
+    "the errors have 5/9, -1/9, 11/9",
 )
 def corrected_matrix_printed():
     """P = (E - K H^-) P^-, with the printed gain, is the matrix of the corrected error; n = 3."""
