@@ -86,7 +86,7 @@ constant_coefficient = claim(
     "u2 as printed.",
     lambda: Equation(U2_PRINTED, coefficients()[0], STATED),
     slip="undecidable",
-    reason="the minus is lost, and with it what the bars of (4.5) are for: S(0) = u2 and S(T/2) = 1/cos(T/2) - 1 + u2 are opposite only for u2 < 0",
+    reason="the minus is lost: S(0) = u2 and S(T/2) = 1/cos(T/2) - 1 + u2 are opposite only for u2 < 0",
 )
 constant_coefficient_corrected = claim(
     "4.3.u2*", "u2 = -sin^2(T/4)/cos(T/2).", lambda: Equation(-U2_PRINTED, coefficients()[0], STATED)

@@ -83,8 +83,8 @@ last_row_printed = claim(
     "Last row, dx_1/dt = 0, as printed.",
     lambda: Equation(sp.Integer(0), rate_of_state(ORDER)[0]),
     slip="undecidable",
-    reason="the index is that of the first row: the last row is that of x_n, whose initial value stands beside it; by hand: a "
-    "coordinate at rest whatever the speed",
+    reason="the index is that of the first row: the last row is that of x_n, whose initial value stands beside it; "
+    "by hand: a coordinate at rest whatever the speed",
 )
 last_row = claim("1.rown*", "Last row: dx_n/dt = 0.", lambda: Equation(sp.Integer(0), rate_of_state(ORDER)[-1]))
 matrix_form = claim(
