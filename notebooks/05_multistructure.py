@@ -319,8 +319,8 @@ explain("near*")
 # ## How long a mistake about the modes lasts
 # A fold, a truncated tree or a wrong covariance reaches the modes through the likelihoods. If each of them is known
 # within a factor exp(±c), one step errs by tanh(c/2) at most; and (10) with ρ^i forgets, for two modes: whatever is
-# measured, an error of the log-odds is multiplied by at most κ, so that it never exceeds 2c/(1 - κ). Drawn: κ = 0.8, c = 0.1, mistakes at random
-# and at their worst.
+# measured, an error of the log-odds is multiplied by at most κ, so that it never exceeds 2c/(1 - κ). Drawn: κ = 0.8,
+# c = 0.1, mistakes at random and at their worst.
 
 # %%
 for words in (":10.forgets", ":17.error"):
