@@ -222,7 +222,7 @@ def modulus(weight: sp.Expr) -> sp.Expr:
 
 @claim("3.remark1")
 def permuting_components():
-    """Exchanging two components of H and of P leaves the constraints and the objective as they are."""
+    """Exchanging two components of H and of P leaves the constraints as they are; the objective has neither."""
     Phi, P = generic("Phi", 3), generic("P", 3)
     columns = generic("H", 3, 3)
     defect = columns * Phi - P
