@@ -21,7 +21,7 @@ sys.path.insert(0, str(ROOT))
 from docs import drawings  # noqa: E402
 from navsym.claims import Record  # noqa: E402
 from navsym.report import plots  # noqa: E402
-from navsym.verification.ledger import is_only_in_the_copy, records_about, stored_records  # noqa: E402
+from navsym.verification.ledger import may_be_the_copy, records_about, stored_records  # noqa: E402
 
 CHANNEL = {
     "model": {
@@ -54,12 +54,12 @@ def verdicts() -> Figure:
 def worst(equation: str, equations: Sequence[str], records: Sequence[Record]) -> str:
     """The worst verdict on an equation; a definition where there is none.
 
-    What is refuted for the damage of a copy alone is not counted against the paper.
+    What may be damage of the copy alone is not counted against the paper.
     """
     found = records_about(equation, equations, records)
     if not found:
         return "definition"
-    return "only in the copy" if is_only_in_the_copy(found[0]) else str(found[0].status)
+    return "perhaps the copy" if may_be_the_copy(found[0]) else str(found[0].status)
 
 
 def phases() -> Figure:

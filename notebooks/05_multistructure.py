@@ -127,7 +127,7 @@ explain("17.suboptimal")
 
 # %% [markdown]
 # ## Folding: mean and covariance
-# (13) is right, its middle line is not: the spread of the partial estimates would count twice.
+# (13) is right once its sum runs over i; its middle line is not: the spread of the partial estimates would count twice.
 
 # %%
 explain("13.every")
@@ -207,8 +207,8 @@ assert by_name["k-pulsating", 4]["excess"]["mean"] < by_name["pulsating", None][
 assert exact["log_likelihood"]["mean"] >= by_name["pulsating", None]["log_likelihood"]["mean"]
 
 # %% [markdown]
-# Up to step K nothing is lost, and on average over the steps of an interval K = 2 beats K = 1; but not at every step.
-# In the model of the claims below the state keeps or turns its sign and is measured once, so that averages over
+# Up to step K nothing is lost. In the model of the claims below K = 2 beats K = 1 summed over steps 1 to 4, but not at
+# every step. There the state keeps or turns its sign and is measured once, so that averages over
 # all measurements are certified integrals over one number. And K = 3 can miss what K = 2 finds, because it folds where
 # the modes have just parted.
 
@@ -318,9 +318,9 @@ explain("near*")
 # %% [markdown]
 # ## How long a mistake about the modes lasts
 # A fold, a truncated tree or a wrong covariance reaches the modes through the likelihoods. If each of them is known
-# within a factor exp(±c), one step errs by tanh(c/2) at most; and (10) forgets: whatever is measured, an error of the
-# log-odds is multiplied by at most κ, so that it never exceeds 2c/(1 - κ). Drawn: κ = 0.8, c = 0.1, mistakes at random
-# and at their worst.
+# within a factor exp(±c), one step errs by tanh(c/2) at most; and (10) with ρ^i forgets, for two modes: whatever is
+# measured, an error of the log-odds is multiplied by at most κ, so that it never exceeds 2c/(1 - κ). Drawn: κ = 0.8,
+# c = 0.1, mistakes at random and at their worst.
 
 # %%
 for words in (":10.forgets", ":17.error"):

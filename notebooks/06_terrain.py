@@ -185,7 +185,8 @@ explain("mean.rotated")
 # %% [markdown]
 # ## Ground over which nothing can be told
 # The matrix of all searches is singular exactly where one error c + k v lies along the contour line under every
-# measurement: over a hill of revolution (a turn about its summit), a fan (a stretch), and **every quadratic ground**.
+# measurement: over a hill of revolution (a turn about its summit), a fan (a stretch), and **every quadratic ground**
+# that is flown over straight and evenly.
 # There the second stage of the sequential search answers zero, and nothing shows that it knows nothing.
 
 # %%

@@ -222,7 +222,7 @@ def modulus(weight: sp.Expr) -> sp.Expr:
 
 @claim("3.remark1")
 def permuting_components():
-    """Exchanging two components of H and of P leaves the constraints and the objective as they are."""
+    """Exchanging two components of H and of P leaves the constraints as they are; the objective has neither."""
     Phi, P = generic("Phi", 3), generic("P", 3)
     columns = generic("H", 3, 3)
     defect = columns * Phi - P
@@ -387,7 +387,7 @@ value_without_sigma = claim(
     "3.6",
     "sigma integral |Phi| = L^-1, as printed, for y3.",
     lambda: Equation(1 / least_deviation(), sigma * total_variation(), STATED),
-    slip="paper",
+    slip="undecidable",
     reason="the factor sigma is lost on the right: (4.13) has sigma1/L, and the units ask for it",
 )
 value_with_sigma = claim(

@@ -85,7 +85,7 @@ constant_coefficient = claim(
     "4.3.u2",
     "u2 as printed.",
     lambda: Equation(U2_PRINTED, coefficients()[0], STATED),
-    slip="paper",
+    slip="undecidable",
     reason="the minus is lost: S(0) = u2 and S(T/2) = 1/cos(T/2) - 1 + u2 are opposite only for u2 < 0",
 )
 constant_coefficient_corrected = claim(
@@ -113,7 +113,7 @@ printed_polynomial_deviates_least = claim(
     "4.4",
     "S0 with the printed u2, u3 deviates least from zero: optimal for y3, as printed.",
     lambda: least_deviation(U2_PRINTED),
-    slip="paper",
+    slip="undecidable",
     reason="with the printed u2 the polynomial leaves the band [-L1, L1]; the sign of u2 is the only cause",
 )
 corrected_polynomial_deviates_least = claim(
@@ -203,8 +203,8 @@ third_deviation = claim(
     "4.8.L3",
     "L3 = |u3|/L1, as printed.",
     lambda: Equation(coefficients()[1] / deviation(), optimal_deviation(1), STATED),
-    slip="paper",
-    reason="the formula is upside down: (3.4) gives 1/L_s = |u_s|/L1, and (4.9) was computed from that",
+    slip="undecidable",
+    reason="the exponent -1 of L_s is lost: (3.4) gives 1/L_s = |u_s|/L1, and (4.9) was computed from that",
 )
 third_deviation_corrected = claim(
     "4.8.L3*", "L3 = L1/|u3|.", lambda: Equation(deviation() / coefficients()[1], optimal_deviation(1), STATED)

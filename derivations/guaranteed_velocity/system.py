@@ -103,7 +103,7 @@ second_measured_component = claim(
     "1.4.z2",
     "The measurement of the second channel, z2 - w2 = y2, as printed.",
     lambda: Equation(sp.Symbol("y2", real=True), second_measurement()),
-    slip="paper",
+    slip="undecidable",
     reason="y2 is the tilt of the other channel: z2 measures y4 = pi_2, as (1.7) and (4.16), y4 = z2(T), have it",
 )
 second_measured_component_corrected = claim(

@@ -297,7 +297,7 @@ def joint_model() -> LinearModel:
 
     Raises ArithmeticError as :func:`velocity_group`.
     """
-    same = {Y[2]: X[0], Y[3]: X[1], Y[6]: X[3], Y[7]: X[4]}  # joint_correction:3.1
+    same = {Y[2]: X[0], Y[6]: X[3]}  # joint_correction:3.1; no rate of y_1, y_2, y_5, y_6 has y_4 or y_8
     velocity, position = velocity_group(), position_group()
     rates = [*velocity.rates, *(position.rates[k].subs(same) for k in (0, 1, 4, 5))]
     outputs = [*velocity.outputs, *position.outputs]

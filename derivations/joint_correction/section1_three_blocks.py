@@ -94,10 +94,7 @@ def u_and_w_determine_the_state():
 
 @claim("1.14.error")
 def error_dynamics():
-    """Errors of the algorithm.
-
-    (u, v) form the first stage, w is driven through G_w1 by the error of u only.
-    """
+    """Errors of the algorithm: u and v by themselves, w driven by the error of u alone (i = 2, m = 3, j = 2)."""
     printed, derived = [], []
     i, m, j = 2, 3, 2
     theta = sp.symbols("theta1:4", real=True)

@@ -146,8 +146,8 @@ y2_row = row(
 )
 DOT = (
     "the dot of the derivative is lost on the left side: as printed the row is no differential equation, although "
-    "the algorithm is one; rows y_1 and y_2 have theirs; by hand: K = 0 and y_6 = 1: the print says that y_5 is 1, "
-    "not that it grows by 1 in a unit of time"
+    "the algorithm is one; rows y_1 and y_2 have theirs; by hand, in the row of y_5, K = 0 and y_6 = 1: the print says "
+    "that y_5 is 1, not that it grows by 1 in a unit of time"
 )
 
 

@@ -5,10 +5,8 @@ back: kappa = mu u_3 couples the two velocity channels, c = mu^2 omega_1 omega_2
 channels.
 """
 
-from fractions import Fraction
-from itertools import pairwise
-
 import sympy as sp
+from flint import arb, ctx, fmpq, fmpq_poly
 
 from navsym.claims import CERTIFIED, PROVED, Equation, claim, fact
 from navsym_papers.joint_correction.inertial import EARTH, MU
@@ -175,36 +173,35 @@ def coupled_system_is_stable_inside():
     (3.coupled.crossing), so the number of poles on the right is constant on {lambda > 0, |kappa| < 1} and
     on {kappa > 1}; it is counted at one point of each. At kappa = 1 there is a pole on the axis.
     """
-    counts = tuple(
-        poles_on_the_right(sp.Integer(1), value) for value in (sp.Integer(0), sp.Rational(1, 2), sp.Integer(2))
-    )
+    values = sp.Integer(0), sp.Rational(1, 2), sp.Integer(2)
+    counts = tuple(poles_on_the_right(sp.Integer(1), value) for value in values)
+    rates = ", ".join(str(sp.Float(decay_rate(sp.Integer(1), value), 6)) for value in values)
     return fact(
         (0, 0, 2, True),
         (*counts, sp.resultant(3 * lam - lam**3, 1 - 3 * lam**2, lam) != 0),
-        "no crossing of the axis, Routh's table at one point of every region",
+        "no crossing of the axis, balls around the poles at one point of every region",
         PROVED,
         scope="all lambda_c > 0, all real kappa",
-        evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}; the parts have no common zero",
+        evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}, decay rates {rates}; "
+        "the parts have no common zero",
         unsaid="roots of a polynomial with free coefficients are counted by regions",
     )
 
 
+def poles(lambda_value: sp.Expr, kappa_value: sp.Expr) -> list[tuple[arb, int]]:
+    """Real parts of the poles of the coupled errors, with multiplicities: balls of 200 bits around the exact roots."""
+    block = coupled_velocity_block().subs({lam: lambda_value, kappa: kappa_value})
+    coefficients = [fmpq(int(c.p), int(c.q)) for c in sp.Poly(polynomial_of(block), p).all_coeffs()[::-1]]
+    with ctx.workprec(200):
+        return [(root.real, count) for root, count in fmpq_poly(coefficients).complex_roots()]
+
+
 def poles_on_the_right(lambda_value: sp.Expr, kappa_value: sp.Expr) -> int:
-    """Sign changes in the first column of Routh's table, in rational numbers."""
-    polynomial = (p + lambda_value) ** 6 + kappa_value**2 * link_polynomial(p).subs(lam, lambda_value) ** 2
-    values = [Fraction(int(c.p), int(c.q)) for c in sp.Poly(sp.expand(polynomial), p).all_coeffs()]
-    first, second = values[0::2], values[1::2]
-    column = []
-    while first:
-        column.append(first[0])
-        if not second:
-            break
-        if second[0] == 0:
-            raise ArithmeticError("Routh's table is singular here; choose another point")
-        padded = [*second, *[Fraction(0)] * (len(first) - len(second))]
-        following = [a - first[0] / second[0] * b for a, b in zip(first[1:], padded[1:], strict=True)]
-        first, second = second, following
-    return sum(1 for a, b in pairwise(column) if a * b < 0)
+    """How many poles of the coupled errors lie right of the imaginary axis; none may lie on it."""
+    found = poles(lambda_value, kappa_value)
+    if not all(real > 0 or real < 0 for real, _ in found):
+        raise ArithmeticError("a ball meets the imaginary axis here; choose another point")
+    return sum(count for real, count in found if real > 0)
 
 
 true_decay_rate = claim(
@@ -218,21 +215,9 @@ true_decay_rate = claim(
 
 
 def decay_rate(lambda_value: sp.Rational, kappa_value: sp.Rational) -> sp.Rational:
-    """Decay rate, minus the largest real part of the poles: 20 digits of a ball at 200 bits."""
-    from flint import ctx, fmpq, fmpq_poly
-
-    polynomial = sp.Poly(
-        sp.expand((p + lambda_value) ** 6 + kappa_value**2 * link_polynomial(p).subs(lam, lambda_value) ** 2), p
-    )
-    coefficients = [fmpq(int(c.p), int(c.q)) for c in polynomial.all_coeffs()[::-1]]
-    before, ctx.prec = ctx.prec, 200
-    try:
-        rates = [-root.real for root, _ in fmpq_poly(coefficients).complex_roots()]
-        least = min(rates, key=lambda ball: float(ball.mid()))
-        digits = Fraction(least.mid().str(20, radius=False))
-    finally:
-        ctx.prec = before
-    return sp.Rational(digits.numerator, digits.denominator)
+    """Decay rate, minus the largest real part of the poles: 20 digits of its ball."""
+    largest = max((real for real, _ in poles(lambda_value, kappa_value)), key=lambda ball: float(ball.mid()))
+    return -sp.Rational(largest.mid().str(20, radius=False))
 
 
 # To leading order, l = lambda_c; this is minus the link polynomial at p = -l, times i kappa.

@@ -48,7 +48,7 @@ PAPER = Paper(
         "unlike existing methods": "a comparison without a method named",
         "(8) to (21) for any number of modes and values": "claimed for the numbers that each title names",
         "below (4): W(k)": "its covariance is not printed",
-        "the scan lost dots over S1 and S2 in (3)": "damage that no formula below depends on",
+        "(3): the dots over S1 and S2": "part of two names: the printed definitions are partial derivatives, no rates",
         "below (21): the polygaussian filter with I N_c Gaussians": "its weights of pairs are not printed",
     },
 )

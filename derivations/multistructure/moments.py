@@ -127,7 +127,7 @@ def expected_product(first, second, i, symbols):
 
 @claim(
     "13.middle",
-    slip="paper",
+    slip="undecidable",
     reason="the first bracket must be x - X^i like the second, and X(k) the estimate: as printed the spread of the "
     "partial estimates is counted twice; by hand: g = (1/2, 1/2), X^i = (-1, 1), P^i = 0 have the variance 1, the "
     "print has 2",

@@ -44,7 +44,7 @@ PAPER = Paper(
         "table.quantisation table.acceleration* table.real_time table.sequential"
     ),
     beyond="joint.* centre sequential.* 14.centre acceleration offset*",
-    causes={"13.sign0": "13.Ay0"},
+    causes={"13.sign0": "13.Ay0", "9.sum": "9", "sigmaV.unit": "sigma.unit"},
     scopes={
         "1.height": "2 to 4 measurements",
         "2.cost": "half counts to 3",

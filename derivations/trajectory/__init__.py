@@ -30,6 +30,8 @@ PAPER = Paper(
     beyond="limit.* window.* table.curse* table.n2.closed table.n2.best 6.Nf.det* experiment.straight.*",
     causes={
         "algorithm.P": "algorithm.K",
+        "experiment.sigma_phi.2": "experiment.sigma_phi.100",
+        "experiment.sigma_phi.300": "experiment.sigma_phi.100",
         **{
             f"experiment.{name}": "experiment.gain" for name in ("sigma_phi.gain", "sigma_v.yaw.100", "sigma_a.yaw.100")
         },

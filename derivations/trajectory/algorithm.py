@@ -98,8 +98,8 @@ gain_printed = claim(
     lambda: Equation(list(printed_gain()), list(regression_gain()), example_box()),
     slip="paper",
     reason="P^- is the matrix of the state after the step, but H^- = H_p D^-1 of equation 5 reads the state before "
-    "it: the row has to be H D^-1, the same slip as in the second measurement equation of 4; by hand: n = 2, P^- = "
-    "E, R = 1: the gain is (1/2, 0), the print has (1/3, 1/3)",
+    "it: the row has to be H D^-1, the same slip as in the second measurement equation of 4; by hand: P^- = E, R = 1, "
+    "rows (1, 1) before and (1, 0) after the step: the gain is (1/2, 0), the print has (1/3, 1/3)",
 )
 
 
@@ -139,8 +139,8 @@ def matrix_after(gain: sp.Matrix) -> sp.Matrix:
 @claim(
     "algorithm.P",
     slip="paper",
-    reason="with the row H^- of equation 5 and its gain; by hand: n = 2, P^- = E, R = 1, K = (1/3, 1/3): the print has "
-    "2/3, -1/3, 2/3 where the errors have 5/9, -1/9, 11/9",
+    reason="with the row H^- of equation 5 and its gain; by hand, as in algorithm.K: the print has 2/3, -1/3, 2/3 "
+    "where the errors have 5/9, -1/9, 11/9",
 )
 def corrected_matrix_printed():
     """P = (E - K H^-) P^-, with the printed gain, is the matrix of the corrected error; n = 3."""
@@ -224,14 +224,17 @@ def terms(n: int, row: list[int], residual_after: bool) -> list[tuple[Fraction, 
     return values
 
 
-def counted(printed: int | tuple[int, ...], found: int | tuple[int, ...]) -> Property:
-    return fact(printed, found, "exact enumeration", PROVED, scope=FIELD_SCOPE, unsaid=COUNTED)
+def counted(printed: int | tuple[int, ...], *found: set[Fraction]) -> Property:
+    """How many different values each set has, with its ends as evidence."""
+    ends = "; ".join(f"{float(min(values)):.9g} to {float(max(values)):.9g}" for values in found)
+    count = tuple(map(len, found)) if len(found) > 1 else len(found[0])
+    return fact(printed, count, "exact enumeration", PROVED, scope=FIELD_SCOPE, evidence=ends, unsaid=COUNTED)
 
 
 field_values = claim(
     "algorithm.field",
     "For one centre and one start the 3^5 candidates give as many values of J (equal elements would merge some).",
-    lambda: counted(3**5, len(criteria(5, [1] * 5, residual_after=False))),
+    lambda: counted(3**5, criteria(5, [1] * 5, residual_after=False)),
 )
 
 
@@ -239,7 +242,7 @@ field_values = claim(
 first_term_of_the_criterion = claim(
     "algorithm.J.first",
     "With x*_k, as printed, the first term of J is one number for all candidates; with x*_(k+1) it takes 216 values.",
-    lambda: counted((1, 216), tuple(len({first for first, _ in terms(5, [1] * 5, after)}) for after in (False, True))),
+    lambda: counted((1, 216), *({first for first, _ in terms(5, [1] * 5, after)} for after in (False, True))),
 )
 
 

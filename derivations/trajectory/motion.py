@@ -69,10 +69,10 @@ first_row = claim(
 )
 second_row_printed = claim(
     "1.row2",
-    "Second row, dx_1/dt = x_2, as it came out of the scan.",
+    "Second row, dx_1/dt = x_2, as printed.",
     lambda: Equation(moved_state(ORDER, t)[1], rate_of_state(ORDER)[0]),
-    slip="scan",
-    reason="indices are lost: the second row cannot be a second equation for dx_1/dt; by hand: a latitude in "
+    slip="undecidable",
+    reason="both indices are those of the row above: dx_1/dt has its equation there; by hand: a latitude in "
     "radians does not change at metres per second",
 )
 second_row = claim(
@@ -80,11 +80,11 @@ second_row = claim(
 )
 last_row_printed = claim(
     "1.rown",
-    "Last row, dx_1/dt = 0, as it came out of the scan.",
+    "Last row, dx_1/dt = 0, as printed.",
     lambda: Equation(sp.Integer(0), rate_of_state(ORDER)[0]),
-    slip="scan",
-    reason="an index is lost: the last row is that of x_n, whose initial value stands beside it; by hand: a "
-    "coordinate at rest whatever the speed",
+    slip="undecidable",
+    reason="the index is that of the first row: the last row is that of x_n, whose initial value stands beside it; "
+    "by hand: a coordinate at rest whatever the speed",
 )
 last_row = claim("1.rown*", "Last row: dx_n/dt = 0.", lambda: Equation(sp.Integer(0), rate_of_state(ORDER)[-1]))
 matrix_form = claim(

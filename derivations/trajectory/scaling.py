@@ -181,9 +181,9 @@ def recurrence_holds(row_step: int) -> Property:
 
 recurrence_printed = claim(
     "6.Phif.recurrence",
-    "Phi_(i+i, j+1) = Phi_ij + Phi_(i+1)j, as it came out of the scan.",
+    "Phi_(i+i, j+1) = Phi_ij + Phi_(i+1)j, as printed.",
     lambda: recurrence_holds(0),
-    slip="scan",
+    slip="undecidable",
     reason="the first index is i + 1: with i + i, i = 2, j = 3 the rule asks Phi_4,4 = 2 + 1, but it is 1",
 )
 recurrence = claim(
@@ -213,7 +213,7 @@ recurrence_range_printed = claim(
     "6.Phif.range",
     "The recurrence for i >= j determines all 10 elements above the diagonal (n = 5).",
     lambda: fact(10, reached(lambda i, j: i >= j), "closure of the rules", PROVED, scope="n = 5", unsaid=FOLLOWED),
-    slip="paper",
+    slip="undecidable",
     reason="for i >= j the recurrence only says 0 = 0 + 0 and 1 = 1 + 0: six of the ten elements above the "
     "diagonal stay undetermined; the range has to be i <= j",
 )

@@ -76,7 +76,7 @@ def each_state_costs_nearly_a_digit():
 
 
 @claim("table.curse.first", expect=CERTIFIED)
-def the_first_stage_alone_grows_faster_than_any_power():
+def the_first_stage_alone_costs_ever_more():
     """After the first stage alone each further state costs more than the one before: factors from 10.3 to 104."""
     ratios = growth("Nf")
     rising = all(a[1] < b[0] for a, b in pairwise(ratios))

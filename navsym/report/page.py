@@ -31,7 +31,7 @@ from navsym.report.plots import refutation_svg
 from navsym.report.trust import backing_words, trust_of
 from navsym.report.wording import Words
 from navsym.verification.certificates import list_parts
-from navsym.verification.ledger import Ledger, is_only_in_the_copy, records_about, sort_records
+from navsym.verification.ledger import Ledger, may_be_the_copy, records_about, sort_records
 
 # Names of the files of a report, and the certificates that it keeps as files.
 
@@ -119,7 +119,7 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class PaperView:
-    """A paper with its matrix row, its claims and its erratum sheet; ``damaged`` is refuted only in the copy."""
+    """A paper with its matrix row, its claims and its erratum sheet; ``damaged`` may be refuted only in the copy."""
 
     card: Paper
     file: str
@@ -233,7 +233,7 @@ def paper_view(
         cells=tuple(equation_cell(card, equation, mine) for equation in card.equations),
         claims=tuple(claim_views(mine, progress)),
         counts={status: statuses.count(status) for status in MARKS},
-        damaged=sum(is_only_in_the_copy(record) for record in mine),
+        damaged=sum(may_be_the_copy(record) for record in mine),
         unnumbered=numbered.count(None),
         erratum=erratum_of(card, mine, words),
         unexpected=tuple(record.id for record in mine if not record.is_expected),
@@ -241,7 +241,7 @@ def paper_view(
 
 
 def equation_cell(card: Paper, equation: str, records: Sequence[Record]) -> Cell:
-    """The worst verdict on an equation; ``copy`` for damage of the copy, ``definition`` or ``missing`` without any."""
+    """The worst verdict on an equation; ``copy`` if perhaps its damage, ``definition`` or ``missing`` without any."""
     found = records_about(equation, card.equations, records)
     if not found:
         beside = any(equation_of(record.number, card.equations) == equation for record in records)
@@ -252,8 +252,8 @@ def equation_cell(card: Paper, equation: str, records: Sequence[Record]) -> Cell
     worst = found[0]
     many = f"{len(found)} claims, the worst " if len(found) > 1 else ""
     words = f"{many}{worst.status}: {worst.title}"
-    if is_only_in_the_copy(worst):
-        return Cell(equation, "copy", COPY_MARK, f"only in the copy that was read: {words}", anchor_of(worst))
+    if may_be_the_copy(worst):
+        return Cell(equation, "copy", COPY_MARK, f"perhaps only in the copy that was read: {words}", anchor_of(worst))
     return Cell(equation, worst.status.lower(), MARKS[worst.status], words, anchor_of(worst))
 
 

@@ -34,7 +34,7 @@ from navsym.report.names import latex_name
 from navsym.terrain.locate import Fix
 from navsym.trajectory.conditioning import Conditions
 from navsym.trajectory.motion import Track
-from navsym.verification.ledger import Ledger, is_only_in_the_copy, records_about
+from navsym.verification.ledger import Ledger, may_be_the_copy, records_about
 
 #: The palette of Okabe and Ito, told apart with every common colour blindness.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442", "#000000")
@@ -129,7 +129,7 @@ SQUARES = {
     "PROVED": ("#cfe8f6", "#00476e", "✓"),
     "CERTIFIED": ("#9fd3cb", "#003d33", "◎"),
     "REFUTED": ("#c8480b", "#ffffff", "✗"),
-    "only in the copy": ("#fbe0d0", "#8a2d00", "✗"),
+    "perhaps the copy": ("#fbe0d0", "#8a2d00", "✗"),
     "CONFIRMED": ("#e3e3f5", "#2b2b70", "≈"),
     "OPEN": ("#f5e3a1", "#4d3b00", "?"),
     "definition": ("#efefef", "#595959", "·"),
@@ -330,8 +330,8 @@ def plot_ledger(found: Ledger) -> Figure:
         cells = []
         for equation in equations:
             about = records_about(equation, equations, records)
-            damaged = bool(about) and is_only_in_the_copy(about[0])
-            status = "definition" if not about else "only in the copy" if damaged else str(about[0].status)
+            damaged = bool(about) and may_be_the_copy(about[0])
+            status = "definition" if not about else "perhaps the copy" if damaged else str(about[0].status)
             cells.append((equation, status))
         papers.append((summary.module, cells))
     return verdict_matrix(papers)

@@ -206,18 +206,18 @@ def sort_records(paper: Paper | None, records: Iterable[Item]) -> list[Item]:
 
 
 def records_about(equation: str, equations: Sequence[str], records: Iterable[Record]) -> list[Record]:
-    """Records on the formula of an equation, the worst verdict first; slips of a paper before the damage of a copy.
+    """Records on the formula of an equation, the worst verdict first; slips of a paper before what may be the copy's.
 
     Sentences and remarks beside it are not among them, nor a slip that another claim counts.
     """
     mine = [record for record in records if equation_of(record.number, equations) == equation]
     about = [record for record in mine if record.kind == "printed" and record.cause is None]
-    return sorted(about, key=lambda record: (WORST_FIRST.index(record.status), record.slip == "scan"))
+    return sorted(about, key=lambda record: (WORST_FIRST.index(record.status), may_be_the_copy(record)))
 
 
-def is_only_in_the_copy(record: Record) -> bool:
-    """True when a record, the first of :func:`records_about`, is refuted only for damage of the copy that was read."""
-    return record.status == "REFUTED" and record.slip == "scan"
+def may_be_the_copy(record: Record) -> bool:
+    """True when a record is refuted for damage of the copy that was read, or nobody can tell whether it is that."""
+    return record.status == "REFUTED" and record.slip in ("scan", "undecidable")
 
 
 # The files

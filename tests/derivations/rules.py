@@ -47,11 +47,14 @@ def slips_in_what_is_not_printed(judged: Judged) -> list[str]:
 
 
 def unknown_attributions(judged: Judged) -> list[str]:
-    """A printed formula that is refuted is a slip of the paper, of its copy, or nobody can tell which."""
+    """A printed formula that is refuted is a slip of the paper, of its copy, or nobody can tell which.
+
+    A title blames the copy only where the claim does.
+    """
     refuted = [c for c in judged.claims if c.expect == REFUTED and judged.paper.kind_of(c.number) == "printed"]
-    return [c.id for c in judged.claims if c.slip not in (None, *get_args(Slip))] + [
-        c.id for c in refuted if not c.slip
-    ]
+    blamed = [c for c in judged.claims if re.search(r"\b(scan|copy)\b", c.title) and c.slip != "scan"]
+    unknown = [c for c in judged.claims if c.slip not in (None, *get_args(Slip))]
+    return [c.id for c in (*blamed, *unknown, *(c for c in refuted if not c.slip))]
 
 
 def names_of_no_claim(judged: Judged) -> list[str]:
@@ -62,10 +65,11 @@ def names_of_no_claim(judged: Judged) -> list[str]:
 
 
 def causes_that_are_no_slips(judged: Judged) -> list[str]:
-    """A cause is a slip that is counted itself; what repeats it is one as well."""
-    slips = {claim.number for claim in judged.claims if claim.slip and claim.expect == REFUTED}
+    """A cause is a slip that is counted itself; what repeats it is one as well, of the same person."""
+    slips = {claim.number: claim.slip for claim in judged.claims if claim.slip and claim.expect == REFUTED}
     causes = judged.paper.causes
-    return [*(set(causes) - slips), *(set(causes.values()) - (slips - set(causes)))]
+    otherwise = [one for one, cause in causes.items() if slips.get(one) != slips.get(cause)]
+    return [*(set(causes) - set(slips)), *(set(causes.values()) - (set(slips) - set(causes))), *otherwise]
 
 
 def left_out_without_a_reason(judged: Judged) -> list[str]:

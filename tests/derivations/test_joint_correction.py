@@ -47,7 +47,7 @@ def test_the_true_decay_rate_is_that_of_the_numerical_eigenvalues():
     assert abs(numeric - exact) < 1e-4
 
 
-def test_routh_counts_the_poles_that_numpy_finds():
+def test_balls_count_the_poles_that_numpy_finds():
     for lam, kappa in ((1, 0), (1, sp.Rational(1, 2)), (1, 2), (2, sp.Rational(9, 10)), (sp.Rational(1, 2), 3)):
         A = section3_gains.coupled_velocity_block().subs({section3_gains.kappa: kappa, section3_gains.lam: lam})
         right = int((np.linalg.eigvals(np.array(A, dtype=float)).real > 1e-9).sum())

@@ -54,16 +54,6 @@ SAME: dict[tuple[str, str], str] = {
         ("trajectory:table.curse.first", end): "the ends of an enclosure rise alike; the proof compares its own"
         for end in ("a[1]: 1 -> 0", "b[0]: 0 -> 1")
     },
-    **{
-        ("trajectory:algorithm.field", line): "it counts different values, and as many differ"
-        for line in (
-            "first + rest -> first - rest",
-            "sum((ahead[i][j] * row[j] for j in range(n))) + q[i] * row[i] -> "
-            "sum((ahead[i][j] * row[j] for j in range(n))) - q[i] * row[i]",
-            "sum((a * b for a, b in zip(row, g, strict=True))) + 1 -> "
-            "sum((a * b for a, b in zip(row, g, strict=True))) - 1",
-        )
-    },
 }
 
 

@@ -103,7 +103,7 @@ FIGURES = [  # claim, the figure as the sheet has it, and what it is
     ("terrain_search:gain", "17.8", 40.05 / 2.25),
     ("trajectory:experiment.sigma_phi.100", "0.076", 1.2e-8 * EARTH),
     ("trajectory:experiment.sigma_phi.100", "0.0013", math.radians(1.2e-8) * EARTH),
-    ("trajectory:experiment.sigma_phi.2", "0.0024", math.radians(2.2e-8) * EARTH),
+    ("trajectory:experiment.sigma_phi.100", "0.0024", math.radians(2.2e-8) * EARTH),
 ]
 
 
