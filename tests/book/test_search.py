@@ -24,7 +24,7 @@ def renamed(text):
     return re.sub(r"(?<!\.)\b[A-Za-z]\w*", lambda mark: f"other_{mark[0]}" if mark[0] in names else mark[0], text)
 
 
-@pytest.mark.parametrize("entry", EQUATIONS, ids=lambda entry: entry.id)
+@pytest.mark.parametrize("entry", thinned(([entry] for entry in EQUATIONS), 4), ids=lambda entry: entry.id)
 def test_an_entry_is_found_first_under_other_names_with_its_sides_exchanged(entry):
     block = entry.document["claim"][0]
     if block.get("relation", "=") != "=" or "integral" in entry.statement or "sum(" in entry.statement:
