@@ -8,6 +8,7 @@ import navsym as nav
 from navsym.book.search import is_formula, is_renamed, read_sides, write_form
 from navsym.cli.main import run
 from navsym.language.tree import list_names
+from tests.sampling import thinned
 
 SAMPLE = [entry for entry in list(nav.book.values())[::12] if not entry.document["claim"][0].get("given")]
 EQUATIONS = [entry for entry in SAMPLE if "chain" not in entry.document["claim"][0]]

@@ -46,7 +46,9 @@ def reason(words):
 #: The first example of the README, which runs it too, and of docs/model_files.md.
 LONG = ("phases",)
 HERE = [
-    pytest.param(verb, words, id=verb, marks=[pytest.mark.slow] if verb in SLOW else [pytest.mark.long] if verb in LONG else [])
+    pytest.param(
+        verb, words, id=verb, marks=[pytest.mark.slow] if verb in SLOW else [pytest.mark.long] if verb in LONG else []
+    )
     for verb, words in examples()
     if not reason(words)
 ]

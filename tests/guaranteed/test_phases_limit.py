@@ -122,8 +122,7 @@ def test_hyperbolic_functions_and_quotients_have_a_scaled_form_from_length_zero_
 
 
 @pytest.mark.parametrize(
-    ("h", "scaled"),
-    [("1/u", False), ("log(1+u)", False), ("1/(1+u)", True), ("sinh(u)", True), ("exp(u)/(2+u)", True)],
+    ("h", "scaled"), [("1/u", False), ("log(1+u)", False), ("1/(1+u)", True), ("sinh(u)", True), ("exp(u)/(2+u)", True)]
 )
 def test_a_pole_at_zero_or_another_function_has_no_scaled_form(h, scaled):
     family = family_of(model_from(basis(["1", h], ["0", "T"], ["1", "0"], "T")), "c", "T")

@@ -88,7 +88,9 @@ CASES = {
 
 
 #: The first and the last but one take several times as long as all the others together.
-IN_EVERY_RUN = [pytest.param(case, marks=[pytest.mark.long] if "cosine" in case or "driven" in case else []) for case in CASES]
+IN_EVERY_RUN = [
+    pytest.param(case, marks=[pytest.mark.long] if "cosine" in case or "driven" in case else []) for case in CASES
+]
 
 
 @pytest.mark.parametrize("case", IN_EVERY_RUN)

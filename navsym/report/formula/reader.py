@@ -133,4 +133,3 @@ class Reader:
 def starts_with(whole: ast.expr, part: ast.expr) -> bool:
     """True when no bracket stands before a part that is the first one."""
     return part.col_offset == whole.col_offset
-
