@@ -88,11 +88,16 @@ class PlumbLine(reference.Flight):
             {**NORMAL, "frame": "inertial", "earth": "sphere", "gravity_radius": "R + h", "vector_error": "body"},
             {"radii": "R"},
         ),
-        (
+        pytest.param(
             {**NORMAL, "earth": "ellipsoid", "gravity_radius": "RN + h", "vector_error": "rotated"},
             {"radii": ["RN", "RE"], "position": ["x1", "x2", "x3"]},
+            marks=pytest.mark.long,
         ),
-        ({**NORMAL, "earth": "ellipsoid", "gravity_radius": "RE + h", "centrifugal": "kept"}, {"radii": ["RN", "RE"]}),
+        pytest.param(
+            {**NORMAL, "earth": "ellipsoid", "gravity_radius": "RE + h", "centrifugal": "kept"},
+            {"radii": ["RN", "RE"]},
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_gravity_of_one_number_along_the_normal_is_linearised_as_such(words, quantities):
