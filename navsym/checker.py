@@ -1573,7 +1573,8 @@ class Reader:
 
     def make_case(self, goals: list[tuple[Term, str, tuple[Term, ...]]], box: dict[str, Range]) -> Case:
         """The goals of this case on its box."""
-        terms = tuple(dict.fromkeys((*(t for goal in goals for t in goal[2]), *self.exists)))
+        shared = {id(goal[2]): goal[2] for goal in goals}.values()  # the entries of a matrix have one tuple of terms
+        terms = tuple(dict.fromkeys((*(t for parts in shared for t in parts), *self.exists)))
         box = box | dict.fromkeys(self.fractions, Range(ZERO, ONE, open_high=True))
         names = set().union(*map(symbols_of, (*terms, *self.zeros, *self.given)))
         require(names <= set(box), "a symbol without a range")
