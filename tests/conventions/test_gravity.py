@@ -203,6 +203,7 @@ def test_axes_that_wander_are_reached_from_the_frame_of_the_earth_by_their_angle
     assert turned.expand() == sp.zeros(3, 3)
 
 
+@pytest.mark.long
 def test_axes_that_wander_by_an_angle_without_a_name_are_not_reached():
     document = document_of(LEVEL, radii="R", earth_rate="W")
     with pytest.raises(nav.NavsymError, match="quantities with wander_angle"):
