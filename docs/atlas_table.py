@@ -14,9 +14,10 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from navsym.report.atlas_page import list_sheets  # noqa: E402
-from navsym.studies.atlas.cells import cell_names, compute_cell, keep_atlas  # noqa: E402
 from navsym.studies.atlas.kept import Cell, atlas  # noqa: E402
 from navsym.studies.atlas.published import PUBLISHED  # noqa: E402
+from navsym.studies.atlas.scenes import cell_names  # noqa: E402
+from tests.studies.atlas_cells import compute_cell, keep_atlas  # noqa: E402
 
 HEAD = """# Atlas of observability
 

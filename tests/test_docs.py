@@ -30,7 +30,7 @@ def blocks(path):
 
 
 #: Pages that take more than five seconds of processor time.
-LONG = ("cookbook", "gallery", "model_files", "worst_correlation")
+LONG = ("cookbook", "gallery", "model_files", "python", "worst_correlation")
 RUNNING = [path for path in PAGES if any(kind in ("python", "sh", "toml") for kind, _ in blocks(path))]
 
 

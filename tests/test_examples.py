@@ -18,6 +18,8 @@ NAMES = [name for name in nav.__all__ if not name.startswith("__")]
 #: Values rather than functions or classes: they have the documentation of their type.
 VALUES = {"PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"}
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+#: Names whose examples take several seconds of processor time.
+LONG = {"Phases", "PhaseMap", "doctor"}
 
 
 def documented(name: str) -> dict[str, Any]:
@@ -46,7 +48,9 @@ def run(test: doctest.DocTest) -> str:
     return "".join(report)
 
 
-@pytest.mark.parametrize("name", sorted(set(NAMES) - VALUES))
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in sorted(set(NAMES) - VALUES)]
+)
 def test_a_public_name_is_documented_with_an_example_that_runs(name: str, tmp_path: Path, monkeypatch: Any) -> None:
     assert inspect.getdoc(getattr(nav, name)), f"{name} has no documentation"
     found = examples_of(name)

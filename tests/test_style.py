@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -28,6 +29,19 @@ def tracked(*suffixes: str) -> list[Path]:
     else:
         paths = [p for p in ROOT.rglob("*") if not any(part.startswith(".") for part in p.parts)]
     return sorted(p for p in paths if p.is_file() and (not suffixes or p.suffix in suffixes))
+
+
+@cache
+def tree_of(path: Path) -> ast.Module:
+    """A source as a tree, read once for all tests of this file."""
+    return ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def trees() -> Iterator[None]:
+    """The trees of all sources are many: other tests are not to carry them along."""
+    yield
+    tree_of.cache_clear()
 
 
 def run_tool(*words: str) -> str:
@@ -53,7 +67,7 @@ def test_the_types_fit() -> None:
 def definitions(root: Path) -> Iterator[tuple[str, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef]]:
     """Every function and class of navsym, methods included, with the file that defines it."""
     for path in sorted((root / "navsym").rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(tree_of(path)):
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
                 yield path.relative_to(root).as_posix(), node
 
@@ -73,7 +87,7 @@ def ambiguous(root: Path) -> tuple[dict[str, list[str]], int]:
     """Names of top-level functions that stand in several files, with these; and the number of all names."""
     places: dict[str, list[str]] = {}
     for path in sorted((root / "navsym").rglob("*.py")):
-        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        for node in tree_of(path).body:
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not is_verb_of_the_command_line(path, node):
                 places.setdefault(node.name, []).append(path.relative_to(root).as_posix())
     return {name: files for name, files in places.items() if len(files) > 1}, len(places)
@@ -94,29 +108,29 @@ def test_a_name_is_seldom_defined_twice() -> None:
     assert len(twice) < AMBIGUOUS * names, "\n".join([f"{len(twice)} of {names} names are ambiguous:", *lines])
 
 
-def auxiliary_imperatives(source: str) -> list[str]:
+def auxiliary_imperatives(tree: ast.Module) -> list[str]:
     """Words of a program in which a remedy begins with *do*."""
-    texts = (n.value for n in ast.walk(ast.parse(source)) if isinstance(n, ast.Constant) and isinstance(n.value, str))
+    texts = (n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str))
     return [text for text in texts if re.search(r"; do [a-z]", text)]
 
 
 def test_no_remedy_begins_with_do() -> None:
     files = (ROOT / "navsym").rglob("*.py")
-    assert not {path.name: bad for path in files if (bad := auxiliary_imperatives(path.read_text(encoding="utf-8")))}
-    assert auxiliary_imperatives('f"expected {x}; got {y}; do mend it"')
-    assert not auxiliary_imperatives('f"expected {x}; got {y}; mend it"')
+    assert not {path.name: bad for path in files if (bad := auxiliary_imperatives(tree_of(path)))}
+    assert auxiliary_imperatives(ast.parse('f"expected {x}; got {y}; do mend it"'))
+    assert not auxiliary_imperatives(ast.parse('f"expected {x}; got {y}; mend it"'))
 
 
 # Docstrings; their form is judged by ruff
 
 
-def undocumented(source: str, name: str, public: set[str]) -> Iterator[str]:
+def undocumented(tree: ast.Module, name: str, public: set[str]) -> Iterator[str]:
     """Public functions and classes without a docstring, and their long methods.
 
     Public is what another room or file imports, which ruff cannot see. A helper inside its file has its name and its
     neighbours to explain it.
     """
-    for item in ast.parse(source, filename=name).body:
+    for item in tree.body:
         if not isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef) or item.name not in public:
             continue
         if not ast.get_docstring(item) and not is_plain(item):
@@ -138,7 +152,7 @@ def imported_names(files: Iterable[Path]) -> dict[str, set[str]]:
     """Module -> the names that other files import from it."""
     names: dict[str, set[str]] = {}
     for path in files:
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in ast.walk(tree_of(path)):
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("navsym"):
                 names.setdefault(str(node.module), set()).update(alias.name for alias in node.names)
     return names
@@ -158,7 +172,7 @@ def test_every_public_function_says_what_it_computes() -> None:
         place = path.relative_to(ROOT)
         if place.parts[0] == "navsym":
             names = public.get(".".join(place.with_suffix("").parts), set())
-            found += undocumented(path.read_text(), place.as_posix(), names)
+            found += undocumented(tree_of(path), place.as_posix(), names)
     assert not found, "\n".join(["without a docstring:", *found])
 
 
@@ -235,7 +249,7 @@ def test_what_is_too_long_or_ambiguous_is_found(house: Path) -> None:
 
 def test_a_missing_docstring_is_found() -> None:
     source = '"""Title."""\ndef f(): ...\ndef g(): ...\nclass C:\n    pass\n'
-    assert list(undocumented(source, "a.py", {"f", "C"})) == ["a.py:2: f", "a.py:4: C"]
+    assert list(undocumented(ast.parse(source), "a.py", {"f", "C"})) == ["a.py:2: f", "a.py:4: C"]
 
 
 def test_a_float_in_a_derivation_is_found_and_one_in_a_string_is_not() -> None:

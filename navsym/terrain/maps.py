@@ -77,14 +77,14 @@ class Transform:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Plain:
+class Band:
     """One band: heights (rows from the north), transform, value for none, whether in degrees, what is foreign to us.
 
     factor, offset : heights in metres are ``factor`` times the samples plus ``offset``
     """
 
     heights: NDArray[Any]
-    transform: Transform
+    transform: Any
     nodata: float | None
     geographic: bool
     foreign: str | None = None
@@ -100,7 +100,7 @@ class Bomb(OverflowError):
     """A small file that would inflate to a number of bytes, the argument, above the limit."""
 
 
-def read_plain(data: bytes, most: int) -> Plain | None:
+def read_plain(data: bytes, most: int) -> Band | None:
     """The band of a plain file; None when the file is not plain.
 
     most : largest number of heights ; raises Damaged, and OverflowError above ``most``
@@ -139,7 +139,7 @@ def require_small_directory(data: bytes) -> None:
         raise Damaged("a tag with too many values")
 
 
-def plain_page(page: Any, data: bytes, order: str, most: int) -> Plain | None:
+def plain_page(page: Any, data: bytes, order: str, most: int) -> Band | None:
     """The band of a page of tifffile, which has read the tags; None when it is not plain."""
     wanted = (SCALE, TIEPOINT, MATRIX, KEYS, METADATA, NODATA)
     tags = {tag.code: tag.value for tag in page.tags if tag.code in wanted}
@@ -161,7 +161,7 @@ def plain_page(page: Any, data: bytes, order: str, most: int) -> Plain | None:
     strange = foreign(keys, transform.a) or foreign_heights(band.get("unittype", ""))
     factor, offset = (finite_item(band, name, usual) for name, usual in (("scale", 1.0), ("offset", 0.0)))
     degrees = keys.get(MODEL_TYPE) == 2
-    return Plain(heights, transform, void(tags.get(NODATA, "")), degrees, strange, factor, offset)
+    return Band(heights, transform, void(tags.get(NODATA, "")), degrees, strange, factor, offset)
 
 
 def is_inflatable(size: int, compressed: int) -> bool:
@@ -499,7 +499,7 @@ def read_hgt(path: Path) -> Raster:
 
 
 def read_geotiff(path: Path) -> Raster:
-    """First band of an upright GeoTIFF: plain files by :mod:`navsym.terrain.maps`, others by rasterio if it is there.
+    """First band of an upright GeoTIFF: plain files are read here, others by rasterio if it is there.
 
     Raises MissingEngineError for a file that needs the extra ``maps``.
     """
@@ -516,10 +516,13 @@ def read_geotiff(path: Path) -> Raster:
         raise damaged(path, "a GeoTIFF", reason) from None
     if plain is not None:
         refuse_sidecar(path)
-        ours(plain.foreign, path)
-        raster = upright(plain.heights, plain.transform, plain.nodata, plain.geographic, path)
-        return in_metres(raster, plain.factor, plain.offset)
-    return by_rasterio(path)
+    band = by_rasterio(path) if plain is None else plain
+    if band.foreign is not None:  # it would be taken for metres, or for degrees, without being that
+        raise DomainError(
+            f"expected places in degrees or true metres, and heights in metres; got {band.foreign}; warp it first",
+            where=name_file(path),
+        )
+    return in_metres(upright(band, path), band.factor, band.offset)
 
 
 def refuse_sidecar(path: Path) -> None:
@@ -542,7 +545,7 @@ def in_metres(raster: Raster, factor: float, offset: float) -> Raster:
     return replace(raster, heights=factor * heights + offset, nodata=math.nan)
 
 
-def by_rasterio(path: Path) -> Raster:
+def by_rasterio(path: Path) -> Band:
     """Files that are not plain: compressed in other ways, tiled by planes, placed by a matrix."""
     try:
         import rasterio
@@ -559,22 +562,13 @@ def by_rasterio(path: Path) -> Raster:
             if not is_inflatable(size, path.stat().st_size):
                 raise bomb(size, path)
             geographic = bool(source.crs is not None and source.crs.is_geographic)
-            ours(foreign_to_us(source.crs) or foreign_heights(source.units[0] or ""), path)
-            raster = upright(source.read(1), transform, source.nodata, geographic, path)
-            return in_metres(raster, source.scales[0], source.offsets[0])
+            foreign = foreign_to_us(source.crs) or foreign_heights(source.units[0] or "")
+            scales = source.scales[0], source.offsets[0]
+            return Band(source.read(1), transform, source.nodata, geographic, foreign, *scales)
     except NavsymError:
         raise
     except Exception as reason:  # whatever GDAL says about a damaged file
         raise damaged(path, "a GeoTIFF", reason) from None
-
-
-def ours(foreign: str | None, path: Path) -> None:
-    """Refuse coordinates that would be taken for metres, or for degrees, without being that."""
-    if foreign is not None:
-        raise DomainError(
-            f"expected places in degrees or true metres, and heights in metres; got {foreign}; warp it first",
-            where=name_file(path),
-        )
 
 
 def foreign_to_us(crs: Any) -> str | None:
@@ -587,16 +581,17 @@ def foreign_to_us(crs: Any) -> str | None:
     return None if math.isclose(metres, 1.0, rel_tol=1e-9) else f"lengths in {name}"
 
 
-def upright(heights: NDArray[Any], transform: Any, nodata: Any, geographic: bool, path: Path) -> Raster:
+def upright(band: Band, path: Path) -> Raster:
     """A north-up raster with its rows turned round; heights stand at the middle of the pixels."""
+    heights, transform = band.heights, band.transform
     if transform.b or transform.d or transform.a <= 0 or transform.e >= 0:
         raise DomainError(
             "expected a raster with north up and no rotation; got another one; warp it first", where=name_file(path)
         )
     x0 = transform.c + 0.5 * transform.a
     y0 = transform.f + transform.e * (heights.shape[0] - 0.5)
-    void = None if nodata is None else float(nodata)
-    return Raster(heights[::-1], x0, y0, transform.a, -transform.e, void, geographic)
+    void = None if band.nodata is None else float(band.nodata)
+    return Raster(heights[::-1], x0, y0, transform.a, -transform.e, void, band.geographic)
 
 
 # Tracks

@@ -204,17 +204,10 @@ def found_by(prepared: Prepared, dense: bool, threads: int, centred: bool) -> Se
     # Outside this range single precision could overflow or underflow; nobody measures such heights.
     usual = 1e-10 < prepared.bound < 1e15 and total > 1 and (prepared.z.size >= 4 or not centred)
     # On the lattice all criteria in double precision take less time than some of them in single.
-    positions_only = prepared.counts[2:] == (1, 1)
-    if (
-        dense
-        or not (prepared.whole and usual)
-        or (positions_only and not prepared.plain)
-        or (prepared.on_lattice and not centred)
-    ):
-        return lowest(prepared, criteria(prepared, threads=threads, centred=centred), centred=centred)
-    found = quickly(prepared, centred)
-    if found.index < 0:
-        return lowest(prepared, criteria(prepared, threads=threads, centred=centred), centred=centred)
+    is_slow = (prepared.counts[2:] == (1, 1) and not prepared.plain) or (prepared.on_lattice and not centred)
+    found = None if dense or is_slow or not (prepared.whole and usual) else quickly(prepared, centred)
+    if found is None or found.index < 0:
+        return lowest(prepared, criteria(prepared, threads=threads, centred=centred), centred)
     index, runner_up = unravel(found.index, prepared.counts), unravel(max(found.runner_up, 0), prepared.counts)
     best, second = (index, found.criterion), (runner_up, found.second)
     unique = math.isinf(found.second) or is_unique(prepared, best, second, centred)
@@ -238,7 +231,7 @@ def need(track: Profile, least: int, what: str) -> None:
         )
 
 
-def lowest(prepared: Prepared, values: Array, *, exactly: bool = True, centred: bool = False) -> Search:
+def lowest(prepared: Prepared, values: Array, centred: bool = False) -> Search:
     """Minimum and runner-up of an array of criteria (Mvx, Mvy, My, Mx)."""
     flat = np.ravel(values)
     best = int(flat.argmin())
@@ -249,10 +242,7 @@ def lowest(prepared: Prepared, values: Array, *, exactly: bool = True, centred: 
     if math.isfinite(second):
         at = int(others.argmin())
         runner_up = unravel(at + (at >= best), prepared.counts)
-        if exactly:
-            unique = is_unique(prepared, (index, float(flat[best])), (runner_up, second), centred)
-        else:
-            unique = True if second > flat[best] * (1.0 + 1e-9) else None
+        unique = is_unique(prepared, (index, float(flat[best])), (runner_up, second), centred)
     return Search(index, float(flat[best]), second, unique, values.size, 1.0, values)
 
 

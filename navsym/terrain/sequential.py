@@ -65,7 +65,7 @@ def search_sequential(
     """
     need(track, 5 if offset_free else 4, "two coordinates, two velocities and the height offset if it is unknown")
     position = prepare(terrain, track, grid.position_only)
-    coarse = lowest(position, criteria(position, centred=offset_free), centred=offset_free)
+    coarse = lowest(position, criteria(position, centred=offset_free), offset_free)
     i, j = coarse.index[:2]
     start = np.array([i * grid.step[0], j * grid.step[1]])
     gx, gy = slopes(terrain, track.x + start[0], track.y + start[1])

@@ -124,8 +124,8 @@ def numerical_rank(model: LinearModel) -> int:
 
 def complete_set(name: str) -> int:
     """Number of conditions of the complete list of a triple of measurements; -1 where it is not complete."""
-    from navsym.studies.atlas.cells import NODES, nonzero_symbols, parts_of
-    from navsym.studies.atlas.scenes import error_model
+    from navsym.studies.atlas.scenes import error_model, parts_of
+    from tests.studies.atlas_cells import NODES, nonzero_symbols
 
     scene, aiding = parts_of(name)
     found = find_joint_drops(observe_jointly(error_model(scene, aiding)), nonzero_symbols(scene), NODES)

@@ -230,6 +230,7 @@ def test_the_text_names_the_most_probable_mode(tmp_path, capsys):
     assert "log-likelihood" in capsys.readouterr().out
 
 
+@pytest.mark.long
 def test_simulate_is_repeatable_and_scores_every_method(capsys):
     documents = []
     for _ in range(2):

@@ -87,6 +87,7 @@ def test_a_parameter_without_a_value_is_named(model, capsys):
     assert status == 2 and "T" in data["error"]["message"]
 
 
+@pytest.mark.long
 def test_phases_of_the_velocity_problem(model, capsys):
     status, data = document(capsys, "phases", model, "--target", "y3")
     assert status == 0

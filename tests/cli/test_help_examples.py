@@ -43,8 +43,12 @@ def reason(words):
     return next((why for start, why in NOT_HERE.items() if line.split(" --")[0].startswith(start)), "")
 
 
+#: The first example of the README, which runs it too, and of docs/model_files.md.
+LONG = ("phases",)
 HERE = [
-    pytest.param(verb, words, id=verb, marks=[pytest.mark.slow] if verb in SLOW else [])
+    pytest.param(
+        verb, words, id=verb, marks=[pytest.mark.slow] if verb in SLOW else [pytest.mark.long] if verb in LONG else []
+    )
     for verb, words in examples()
     if not reason(words)
 ]

@@ -9,7 +9,9 @@ import pytest
 from navsym.cli.main import run
 
 
-@pytest.mark.parametrize(("name", "options"), [("joint_correction", []), ("trajectory", ["--runs", "1"])])
+@pytest.mark.parametrize(
+    ("name", "options"), [("joint_correction", []), pytest.param("trajectory", ["--runs", "1"], marks=pytest.mark.long)]
+)
 def test_an_experiment_is_one_document(name, options, capsys):
     assert run(["simulate", name, *options, "--json"]) == 0
     document = json.loads(capsys.readouterr().out)

@@ -264,6 +264,7 @@ def test_a_rotation_may_be_given_by_angles():
     assert [(c.attitude_error, c.rotation_sign, c.bias_sign) for c in answer.cards] == [("body", "+", PLUS)]
 
 
+@pytest.mark.long
 def test_scale_factors_have_a_sign_of_their_own_and_move_to_other_errors():
     document = models.kf_gins(scaled=True)
     found = nav.conventions(document)

@@ -88,11 +88,16 @@ class PlumbLine(reference.Flight):
             {**NORMAL, "frame": "inertial", "earth": "sphere", "gravity_radius": "R + h", "vector_error": "body"},
             {"radii": "R"},
         ),
-        (
+        pytest.param(
             {**NORMAL, "earth": "ellipsoid", "gravity_radius": "RN + h", "vector_error": "rotated"},
             {"radii": ["RN", "RE"], "position": ["x1", "x2", "x3"]},
+            marks=pytest.mark.long,
         ),
-        ({**NORMAL, "earth": "ellipsoid", "gravity_radius": "RE + h", "centrifugal": "kept"}, {"radii": ["RN", "RE"]}),
+        pytest.param(
+            {**NORMAL, "earth": "ellipsoid", "gravity_radius": "RE + h", "centrifugal": "kept"},
+            {"radii": ["RN", "RE"]},
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_gravity_of_one_number_along_the_normal_is_linearised_as_such(words, quantities):
@@ -137,6 +142,7 @@ def test_vectors_that_turn_with_the_attitude_bring_gravity_into_its_column():
                 assert evaluate(read_tree("0", None), {}).overlaps(x - y), card
 
 
+@pytest.mark.long
 def test_entries_longer_than_a_formula_may_be_are_decided_too():
     words = {**WORDS, "frame": "inertial", "gravity_gradient": "radial", "vector_error": "body", "earth": "ellipsoid"}
     words["gravity_radius"] = "RN"
@@ -160,7 +166,7 @@ def test_a_measured_height_excludes_frames_without_one_and_no_more():
     assert found.model()["H"][0].count("0") == 14
 
 
-@pytest.mark.parametrize("azimuth", ["north", "wander"])
+@pytest.mark.parametrize("azimuth", ["north", pytest.param("wander", marks=pytest.mark.long)])
 def test_a_named_wander_angle_serves_axes_to_the_north_for_conversions(azimuth):
     other = {"north": "wander", "wander": "north"}[azimuth]
     document = document_of({**LEVEL, "azimuth": azimuth}, radii="R", earth_rate="W", wander_angle="longitude")
@@ -182,9 +188,8 @@ def rows_of_wander(sense=1):
     return sp.Matrix([[sp.cos(z), sp.sin(z), 0], [-sp.sin(z), sp.cos(z), 0], [0, 0, 1]])
 
 
-@pytest.mark.parametrize(
-    "target", [{"axes": "NED"}, pytest.param({"axes": "NED", "angle": "psi"}, marks=pytest.mark.long)]
-)
+@pytest.mark.long
+@pytest.mark.parametrize("target", [{"axes": "NED"}, {"axes": "NED", "angle": "psi"}])
 def test_axes_that_wander_are_reached_from_the_frame_of_the_earth_by_their_angle(target):
     words = {**NORMAL, "earth": "sphere", "gravity_radius": "R + h", "centrifugal": "kept"}
     document = document_of(words, radii="R", earth_rate="W", longitude="x1", wander_angle="longitude")
@@ -198,6 +203,7 @@ def test_axes_that_wander_are_reached_from_the_frame_of_the_earth_by_their_angle
     assert turned.expand() == sp.zeros(3, 3)
 
 
+@pytest.mark.long
 def test_axes_that_wander_by_an_angle_without_a_name_are_not_reached():
     document = document_of(LEVEL, radii="R", earth_rate="W")
     with pytest.raises(nav.NavsymError, match="quantities with wander_angle"):

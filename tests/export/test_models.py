@@ -96,7 +96,9 @@ def test_the_compilers_are_asked_for_every_warning_and_none_is_let_pass():
     "answer",
     [
         lambda: nav.solve(EXAMPLES / "schuler-velocity.toml", "drift", T="pi/2"),
-        lambda: nav.phases(EXAMPLES / "schuler-velocity.toml", "drift", T=("2", "4")),
+        pytest.param(
+            lambda: nav.phases(EXAMPLES / "schuler-velocity.toml", "drift", T=("2", "4")), marks=pytest.mark.long
+        ),
         lambda: nav.derive(EXAMPLES / "schuler-velocity.toml"),
         lambda: nav.book["third-flattening"],
         lambda: nav.prove("sin(2*a) = 2*sin(a)*cos(a)", a=("-1", "1")),

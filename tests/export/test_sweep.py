@@ -151,9 +151,7 @@ def test_the_c_of_every_sample_holds_at_many_points(real: str) -> None:
 
 
 @COMPILER
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=[] if n in ("trajectory", "earth") else pytest.mark.long) for n in READY]
-)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[] if n == "earth" else pytest.mark.long) for n in READY])
 def test_the_c_of_every_ready_made_function_holds_at_two_thousand_points(name: str) -> None:
     functions = ready(name)
     for function, found in zip(functions, sweep.sweep_c(functions, 2000).values(), strict=True):

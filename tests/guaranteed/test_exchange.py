@@ -42,6 +42,7 @@ def test_the_leading_chebyshev_coefficient_is_bounded_by_the_alternance(m):
     assert found.excess < 1e-12
 
 
+@pytest.mark.long
 def test_the_compiled_loops_give_the_bits_of_the_interpreted_ones():
     rng = np.random.default_rng(0)
     G, p = rng.standard_normal((40, 3)), rng.standard_normal(3)

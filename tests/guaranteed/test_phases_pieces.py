@@ -79,6 +79,7 @@ def stopped():
     return find_phases(family_of(model_from(STOPPED), "v", "T"), sp.Integer(0), sp.Integer(3))
 
 
+@pytest.mark.long
 def test_a_regime_in_pieces_agrees_with_single_values(stopped):
     family, regime = stopped.family, stopped.regimes[1]
     assert regime.status.holds and regime.closed is not None
@@ -88,6 +89,7 @@ def test_a_regime_in_pieces_agrees_with_single_values(stopped):
         assert sp.Rational(found.lower) <= sp.Rational(str(value)) <= sp.Rational(found.upper)
 
 
+@pytest.mark.long
 def test_a_contact_at_the_switch_stands_in_one_stretch_and_every_regime_has_its_closed_form(stopped):
     answer = stopped
     assert answer.uncovered == () and all(regime.status.holds for regime in answer.regimes)

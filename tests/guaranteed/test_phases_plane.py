@@ -166,6 +166,7 @@ def test_the_channel_with_a_free_frequency_follows_the_law_of_scaling(target):
         assert got == pytest.approx(float(scaled.value.lower) * float(Fraction(w)) ** power, rel=1e-9)
 
 
+@pytest.mark.long
 def test_the_command_line_prints_regions_curves_and_the_share(tmp_path, capsys):
     path = tmp_path / "triple.toml"
     nav.Model(**TRIPLE).save(path)

@@ -87,8 +87,10 @@ CASES = {
 }  # fmt: skip
 
 
-#: The first takes three times as long as all the others together.
-IN_EVERY_RUN = [pytest.param(case, marks=[pytest.mark.long] if "driven" in case else []) for case in CASES]
+#: The first and the last but one take several times as long as all the others together.
+IN_EVERY_RUN = [
+    pytest.param(case, marks=[pytest.mark.long] if "cosine" in case or "driven" in case else []) for case in CASES
+]
 
 
 @pytest.mark.parametrize("case", IN_EVERY_RUN)

@@ -21,7 +21,7 @@ from navsym.observability.linear import PRIME, residue_rank
 from navsym.observability.motion import residue_chains
 from navsym.observability.rank_drops import find_drops, find_joint_drops
 from navsym.observability.tree import search_drops
-from navsym.studies.atlas.cells import model_of
+from navsym.studies.atlas.scenes import model_of
 from tests.sampling import thinned
 
 a, b, c = sp.symbols("a b c", real=True)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from navsym.report.formula.reader import read_formula, unwrapped
+from navsym.report.formula.reader import read_formula
 from navsym.report.formula.sides import coordinates, latex, mathml, only_truth
 from navsym.report.names import latex_escape, split_name
 
@@ -74,7 +74,6 @@ def test_the_tree_means_what_the_text_means(a, b, c):
 
 def value(node, point):
     """What a tree means, in doubles."""
-    node = unwrapped(node)
     parts = [value(part, point) for part in node.parts]
     leaves = {"number": lambda: float(node.text), "name": lambda: point[node.text], "minus": lambda: -parts[0]}
     pairs = {"sum": operator.add, "difference": operator.sub, "product": operator.mul, "quotient": operator.truediv}

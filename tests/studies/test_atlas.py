@@ -20,9 +20,10 @@ from navsym.observability.chains import generic_rank, moving_rows
 from navsym.report.atlas_page import atlas_pages
 from navsym.report.explain import WORDS
 from navsym.report.page import MARKS, environment
-from navsym.studies.atlas.cells import cell_names, compute_cell, model_of
 from navsym.studies.atlas.published import PUBLISHED
+from navsym.studies.atlas.scenes import cell_names, model_of
 from tests.report.test_page import Reading
+from tests.studies.atlas_cells import compute_cell
 
 DOCS = Path(__file__).parents[2] / "docs"
 QUICK = ("INS: rest: position", "INS: straight: velocity", "INS: level turn: position", "VIO: rest: a known landmark")

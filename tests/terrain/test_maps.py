@@ -154,15 +154,14 @@ def test_a_tile_of_the_wrong_name_or_size_is_refused(tmp_path, name, size, kind)
     assert kind_of(tmp_path / name) == kind
 
 
-class Transform:
-    """The six numbers of a GeoTIFF's position, as rasterio names them."""
-
-    def __init__(self, a=2.0, b=0.0, c=100.0, d=0.0, e=-3.0, f=50.0):
-        self.a, self.b, self.c, self.d, self.e, self.f = a, b, c, d, e, f
+def band_of(heights, **place):
+    """A band whose corner lies at (100, 50), with pixels of 2 by 3."""
+    numbers = {"a": 2.0, "c": 100.0, "e": -3.0, "f": 50.0}
+    return readers_maps.Band(heights, readers_maps.Transform(**(numbers | place)), -1.0, False)
 
 
 def test_a_north_up_raster_is_turned_and_stands_at_the_middle_of_its_pixels(tmp_path):
-    raster = readers_maps.upright(np.arange(6.0).reshape(2, 3), Transform(), -1.0, False, tmp_path)
+    raster = readers_maps.upright(band_of(np.arange(6.0).reshape(2, 3)), tmp_path)
     assert (raster.x0, raster.y0, raster.dx, raster.dy) == (101.0, 45.5, 2.0, 3.0)
     np.testing.assert_array_equal(raster.heights, [[3, 4, 5], [0, 1, 2]])
 
@@ -170,7 +169,7 @@ def test_a_north_up_raster_is_turned_and_stands_at_the_middle_of_its_pixels(tmp_
 @pytest.mark.parametrize("wrong", [{"b": 0.1}, {"e": 3.0}, {"a": -2.0}])
 def test_a_turned_raster_is_refused(tmp_path, wrong):
     with pytest.raises(NavsymError, match="north up"):
-        readers_maps.upright(np.zeros((2, 2)), Transform(**wrong), None, False, tmp_path)
+        readers_maps.upright(band_of(np.zeros((2, 2)), **wrong), tmp_path)
 
 
 def test_the_sample_of_matplotlib_is_read():

@@ -1,10 +1,11 @@
-"""From the text of a record to a small tree: a grammar of formulas as they stand.
+"""From the text of a record to a small tree: a formula as it stands, by the grammar of Python.
 
 Nothing is evaluated, cancelled or reordered. What is not a formula (words, or text longer than a page) has no tree.
 """
 
 from __future__ import annotations
 
+import ast
 import re
 from dataclasses import dataclass
 
@@ -14,7 +15,14 @@ TOKEN = re.compile(
     r"\s*(?:(?P<number>\d+(?:\.\d+)?(?:e[+-]?\d+)?)|(?P<name>[A-Za-z][A-Za-z0-9_]*'{0,3})|"
     r"(?P<sign>\*\*|\+-|<=|>=|!=|==|[-+*/()\[\],;=<>]))"
 )
-RELATIONS = frozenset(("=", "!=", "<", "<=", ">", ">=", "+-"))
+#: Signs that Python spells otherwise; each relation is one of its comparisons, so that chains are read alike.
+SPELLED = {"=": "==", "+-": "in", ";": ","}
+RELATIONS: dict[type[ast.cmpop], str] = {
+    ast.Eq: "=", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.In: "+-",
+}  # fmt: skip
+OPERATIONS: dict[type[ast.operator], str] = {
+    ast.Add: "sum", ast.Sub: "difference", ast.Mult: "product", ast.Div: "quotient", ast.Pow: "power",
+}  # fmt: skip
 
 
 class NotAFormulaError(ValueError):
@@ -30,7 +38,15 @@ class Node:
     parts: tuple[Node, ...] = ()
 
 
-def tokens_of(text: str) -> list[str]:
+def read_formula(text: str) -> Node | None:
+    """The tree of a formula; None when the text is not one."""
+    try:
+        return read_tokens(tokens_of(text))
+    except (NotAFormulaError, SyntaxError, RecursionError, MemoryError):
+        return None
+
+
+def tokens_of(text: str) -> list[re.Match[str]]:
     """The tokens of a text; raises NotAFormulaError for one that is too long or has another sign."""
     if len(text) > LONGEST:
         raise NotAFormulaError("too long")
@@ -38,126 +54,82 @@ def tokens_of(text: str) -> list[str]:
     text = text.rstrip()
     while place < len(text):
         match = TOKEN.match(text, place)
-        if match is None:
+        if match is None or match["sign"] == "==":
             raise NotAFormulaError(f"column {place}")
-        found.append(match.group().strip())
+        found.append(match)
         place = match.end()
     return found
 
 
+def read_tokens(tokens: list[re.Match[str]]) -> Node:
+    """The tree of tokens: numbers and names by their places, so that none is a word of Python.
+
+    Raises NotAFormulaError, or what Python raises, for what is no formula.
+    """
+    depth, between, words = 0, "", list[str]()
+    for place, token in enumerate(tokens):
+        sign = token["sign"] or ""
+        depth += (sign in ("(", "[")) - (sign in (")", "]"))
+        if depth > DEEPEST or (sign == ";" and depth):
+            raise NotAFormulaError(sign)
+        between = sign if sign in (",", ";") and not depth else between
+        words.append(SPELLED.get(sign, sign) or f"_{place}")
+    if not tokens or tokens[-1]["sign"] in (",", ";"):
+        raise NotAFormulaError("the end")
+    whole = ast.parse(" ".join(words), mode="eval").body
+    reader = Reader(tokens)
+    if between and isinstance(whole, ast.Tuple):
+        return Node("list", between, reader.all_of(whole.elts))
+    return reader.node(whole)
+
+
 class Reader:
-    """Recursive descent, loosest first: parts between ; or , then relations, sums, products, powers."""
+    """From Python's tree to ours."""
 
-    def __init__(self, tokens: list[str]):
-        self.tokens, self.place, self.depth = tokens, 0, 0
+    def __init__(self, tokens: list[re.Match[str]]):
+        self.tokens = tokens
+        self.read: set[ast.expr] = set()  # minus signs that stand before a product already
 
-    def peek(self) -> str:
-        """The token that is read next, empty at the end."""
-        return self.tokens[self.place] if self.place < len(self.tokens) else ""
+    def all_of(self, parts: list[ast.expr]) -> tuple[Node, ...]:
+        """The trees of several parts."""
+        return tuple(map(self.node, parts))
 
-    def take(self) -> str:
-        """The next token, which is read; empty at the end."""
-        self.place += 1
-        return self.tokens[self.place - 1] if self.place <= len(self.tokens) else ""
+    def node(self, e: ast.expr) -> Node:
+        """The tree of one part; raises NotAFormulaError for what formulas do not have."""
+        if isinstance(e, ast.Name):
+            token = self.tokens[int(e.id[1:])]
+            return Node(token.lastgroup or "", token.group().strip())
+        if isinstance(e, ast.BinOp) and type(e.op) in OPERATIONS:
+            minus = self.leading_minus(e)
+            if minus is not None:
+                self.read.add(minus)
+                return Node("minus", "", (self.node(e),))  # (-a)*t is written -a t
+            return Node(OPERATIONS[type(e.op)], "", (self.node(e.left), self.node(e.right)))
+        if isinstance(e, ast.UnaryOp):
+            inner = self.node(e.operand)
+            return inner if isinstance(e.op, ast.UAdd) or e in self.read else Node("minus", "", (inner,))
+        if isinstance(e, ast.Compare):
+            found = self.node(e.left)
+            for sign, right in zip(e.ops, e.comparators, strict=True):
+                found = Node("relation", RELATIONS[type(sign)], (found, self.node(right)))
+            return found
+        if isinstance(e, ast.Tuple | ast.List):
+            return Node("group", "(" if isinstance(e, ast.Tuple) else "[", self.all_of(e.elts))
+        if isinstance(e, ast.Call) and isinstance(e.func, ast.Name) and not e.keywords:
+            function = self.node(e.func)
+            if function.kind == "name":
+                return Node("call", function.text, self.all_of(e.args))
+        raise NotAFormulaError(type(e).__name__)
 
-    def whole(self) -> Node:
-        """The tree of the whole text; raises NotAFormulaError when something is left."""
-        node = self.separated((";", ","))
-        if self.peek():
-            raise NotAFormulaError(self.peek())
-        return node
-
-    def separated(self, signs: tuple[str, ...]) -> Node:
-        """Relations between these signs, as a list; a single one as it is."""
-        parts, sign = [self.relation()], ""
-        while self.peek() in signs:
-            sign = self.take()
-            if self.peek() in (")", "]"):  # (x,) has one member
-                break
-            parts.append(self.relation())
-        return parts[0] if not sign else Node("list", sign, tuple(parts))
-
-    def relation(self) -> Node:
-        """Sums joined by relations, from the left."""
-        node = self.sum()
-        while self.peek() in RELATIONS:
-            sign = self.take()
-            node = Node("relation", sign, (node, self.sum()))
-        return node
-
-    def sum(self) -> Node:
-        """Products joined by + and -, from the left."""
-        node = self.product()
-        while self.peek() in ("+", "-"):
-            kind = "sum" if self.take() == "+" else "difference"
-            node = Node(kind, "", (node, self.product()))
-        return node
-
-    def product(self) -> Node:
-        """Factors joined by * and /, from the left; a minus before the first is one of the whole."""
-        node = self.unary()
-        negative = node.kind == "minus" and self.peek() in ("*", "/")
-        node = node.parts[0] if negative else node
-        while self.peek() in ("*", "/"):
-            kind = "product" if self.take() == "*" else "quotient"
-            node = Node(kind, "", (node, self.unary()))
-        return Node("minus", "", (node,)) if negative else node  # (-a)*t is written -a t
-
-    def unary(self) -> Node:
-        """A sign before a power; ``-2**2`` is minus four."""
-        if self.peek() in ("+", "-"):
-            sign = self.take()
-            inner = self.unary()
-            return Node("minus", "", (inner,)) if sign == "-" else inner
-        base = self.atom()
-        if self.peek() != "**":
-            return base
-        self.take()
-        return Node("power", "", (base, self.unary()))
-
-    def atom(self) -> Node:
-        """A number, name, call or bracket; raises NotAFormulaError for anything else."""
-        token = self.take()
-        if token[:1].isdigit():
-            return Node("number", token)
-        if token in ("(", "["):
-            return self.bracket(token)
-        if not token[:1].isalpha():
-            raise NotAFormulaError(token)
-        if self.peek() != "(":
-            return Node("name", token)
-        self.take()
-        inner = self.bracket("(")
-        return Node("call", token, inner.parts)
-
-    def bracket(self, opening: str) -> Node:
-        """What stands in a bracket whose opening is read; raises NotAFormulaError when it is not closed or too deep."""
-        closing = ")" if opening == "(" else "]"
-        self.depth += 1
-        if self.depth > DEEPEST:
-            raise NotAFormulaError("too deep")
-        if self.peek() == closing:
-            self.take()
-            self.depth -= 1
-            return Node("group", opening)
-        inner = self.separated((",",))
-        if self.take() != closing:
-            raise NotAFormulaError(closing)
-        self.depth -= 1
-        one = inner.kind != "list"
-        return Node("group", opening if not one or opening == "[" else "", (inner,) if one else inner.parts)
+    def leading_minus(self, e: ast.BinOp) -> ast.UnaryOp | None:
+        """The minus sign with which a product begins, outside of brackets; None where there is none, or it is read."""
+        first: ast.expr = e
+        while isinstance(first, ast.BinOp) and isinstance(first.op, ast.Mult | ast.Div) and starts_with(e, first):
+            first = first.left
+        is_minus = isinstance(first, ast.UnaryOp) and isinstance(first.op, ast.USub) and starts_with(e, first)
+        return first if is_minus and first is not e and first not in self.read else None  # type: ignore[return-value]
 
 
-def read_formula(text: str) -> Node | None:
-    """The tree of a formula; None when the text is not one."""
-    try:
-        return Reader(tokens_of(text)).whole()
-    except (NotAFormulaError, RecursionError):
-        return None
-
-
-def unwrapped(node: Node) -> Node:
-    """Brackets that only group are set again where the notation needs them."""
-    while node.kind == "group" and not node.text and len(node.parts) == 1:
-        node = node.parts[0]
-    return node
+def starts_with(whole: ast.expr, part: ast.expr) -> bool:
+    """True when no bracket stands before a part that is the first one."""
+    return part.col_offset == whole.col_offset

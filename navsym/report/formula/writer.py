@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from navsym.report.formula.notation import BESIDE_A_FUNCTION, Style
-from navsym.report.formula.reader import Node, unwrapped
+from navsym.report.formula.reader import Node
 from navsym.report.names import letter_of, split_name
 
 ATOM, POWER, FACTOR, PRODUCT, SUM, RELATION, LIST = 7, 6, 5, 4, 3, 2, 1
@@ -24,7 +24,6 @@ LEVELS = {
 
 def write(node: Node, style: Style, floor: int = 0) -> str:
     """The tree in one notation, in brackets when it binds looser than its neighbours need."""
-    node = unwrapped(node)
     if style.place != "line" and floor < FACTOR and is_simple(node):
         return write_two("/", PRODUCT, ATOM)(node, style)
     written = WRITERS[node.kind](node, style)
@@ -44,22 +43,22 @@ def write_two(sign: str, left: int, right: int) -> Callable[[Node, Style], str]:
 def write_product(node: Node, style: Style) -> str:
     """A product: a dot before a number or beside a name of several letters, else the style's sign, as a rule unseen."""
     first, second = node.parts
-    dotted = unwrapped(second).kind == "number" or any(is_word(part) for part in node.parts)
+    dotted = second.kind == "number" or any(is_word(part) for part in node.parts)
     sign = "·" if dotted else BESIDE_A_FUNCTION if any(is_function(part) for part in node.parts) else "*"
     return style.row([factor(first, style), style.sign(sign), factor(second, style)])
 
 
 def factor(node: Node, style: Style) -> str:
     """A part of a product: a quotient is set as a fraction, because T/2 x in one line can be read in two ways."""
-    return write(node, style, FACTOR if unwrapped(node).kind == "quotient" else PRODUCT)
+    return write(node, style, FACTOR if node.kind == "quotient" else PRODUCT)
 
 
 def is_simple(node: Node) -> bool:
     """A quotient of numbers and names that one line holds: T/4, 2 T/3."""
     if node.kind != "quotient":
         return False
-    top, bottom = (unwrapped(part) for part in node.parts)
-    factors = [unwrapped(part) for part in top.parts] if top.kind == "product" else [top]
+    top, bottom = node.parts
+    factors = top.parts if top.kind == "product" else (top,)
     return all(part.kind in ("number", "name") for part in (*factors, bottom))
 
 
@@ -73,19 +72,18 @@ def is_function(node: Node) -> bool:
     """A function that is written by its name, itself or raised to a power, or a product that ends in one."""
     node = last_factor(node)
     if node.kind == "power":
-        node = unwrapped(node.parts[0])
+        node = node.parts[0]
     return node.kind == "call" and node.text not in UNNAMED
 
 
 def last_factor(node: Node) -> Node:
-    """The second part of a product, or the node itself, without brackets that mean nothing."""
-    node = unwrapped(node)
-    return unwrapped(node.parts[1]) if node.kind == "product" else node
+    """The second part of a product, or the node itself."""
+    return node.parts[1] if node.kind == "product" else node
 
 
 def write_power(node: Node, style: Style) -> str:
     """A power; of a function it stands at its name: sin^2(x)."""
-    base, exponent = (unwrapped(part) for part in node.parts)
+    base, exponent = node.parts
     raised = write(exponent, style.above())
     if base.kind == "call" and base.text not in UNNAMED:
         head = style.power(style.function(base.text), raised)

@@ -46,7 +46,7 @@ class Cell:
     @property
     def model(self) -> Model:
         """The error model, written by the generator of error dynamics."""
-        from navsym.studies.atlas.cells import model_of
+        from navsym.studies.atlas.scenes import model_of
 
         linear = model_of(self.name)
         rates = {symbol.name: to_text(rate) for symbol, rate in linear.rates.items()}

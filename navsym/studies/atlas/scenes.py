@@ -8,7 +8,7 @@ landmarks.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import sympy as sp
@@ -28,6 +28,8 @@ from navsym.conventions.nilpotent import (
     skew,
     transpose,
 )
+from navsym.core.errors import DomainError
+from navsym.language.names import quote
 from navsym.models.linear import LinearModel
 
 g, V, w, u1, u2, q, k = sp.symbols("g V w u1 u2 q k", real=True)
@@ -317,3 +319,27 @@ def error_model(scene: Scene, aiding: Aiding) -> LinearModel:
     H = tidy(sp.Matrix(H).T)
     states = tuple(f"{block.replace(' ', '_')}_{j + 1}" for block, j in columns)
     return LinearModel(tidy(F), None, H, states, tuple(names), rates=scene.rates)
+
+
+def cell_names() -> Iterator[str]:
+    """Names of all cells: "INS: level turn: position"."""
+    for model, (_, aidings) in MODELS.items():
+        for manoeuvre in MANOEUVRES:
+            for aiding in aidings:
+                yield f"{model}: {manoeuvre.name}: {aiding.name}"
+
+
+def parts_of(name: str) -> tuple[Scene, Aiding]:
+    """The scene and the aiding of a cell. Raises DomainError for a name that is no cell."""
+    if name not in cell_names():
+        raise DomainError(f"expected a cell such as INS: rest: position; got {quote(name)}; see docs/atlas.md")
+    model, manoeuvre, aiding = name.split(": ")
+    card, aidings = MODELS[model]
+    chosen = next(a for a in aidings if a.name == aiding)
+    flown = next(m for m in MANOEUVRES if m.name == manoeuvre)
+    return make_scene(card, flown, chosen.points, ARM if chosen.arm else ()), chosen
+
+
+def model_of(name: str) -> LinearModel:
+    """The error model of a cell: F, H and the rates of all that moves."""
+    return error_model(*parts_of(name))

@@ -1,8 +1,14 @@
 """Compiled loops of the terrain search: criteria of a grid of hypotheses against a height map.
 
-A case and its shifts are those of :mod:`navsym.terrain.kernels.criteria`: hypothesis ``(i, j, Vi, Vj)`` is the shift
-``((i - Nx) sx, (j - Ny) sy, Vi - Nvx, Vj - Nvy)``. Rows of the map are interpolated once for all hypotheses that
-read them.
+Everything is counted in map cells. A *case* is the tuple ``(H, bx, by, z, wx, wy)``: the map, the track, the
+measured heights, and the velocity steps times the time since t0. A *shift* ``(px, py, vx, vy)`` puts measurement k at
+
+    u = bx[k] + (px + vx wx[k])     column coordinate
+    w = by[k] + (py + vy wy[k])     row coordinate
+
+and hypothesis ``(i, j, Vi, Vj)`` is the shift ``((i - Nx) sx, (j - Ny) sy, Vi - Nvx, Vj - Nvy)``. Heights between nodes
+are bilinear, columns first. Every search evaluates these expressions in this order and adds squares in the order of
+the measurements: that makes the fast loops equal their slow twins to the last bit.
 """
 
 from __future__ import annotations
@@ -12,19 +18,6 @@ from typing import Any
 import numpy as np
 
 from navsym.core.loops import njit
-
-# One hypothesis against a height map: interpolation, differences of heights, and the two criteria.
-#
-# Everything is counted in map cells. A *case* is the tuple ``(H, bx, by, z, wx, wy)``: the map, the track, the
-# measured heights, and the velocity steps times the time since t0. A *shift* ``(px, py, vx, vy)`` puts
-# measurement k at
-#
-#     u = bx[k] + (px + vx wx[k])     column coordinate
-#     w = by[k] + (py + vy wy[k])     row coordinate
-#
-# Heights between nodes are bilinear, columns first. Every search evaluates these expressions in this order and
-# adds squares in the order of the measurements: that makes the fast loops equal their slow twins to the last bit.
-
 
 unsigned = np.uint64
 COMPILE: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
@@ -170,15 +163,9 @@ def offset_free_masked(case: Any, shift: Any, d: np.ndarray) -> float:
     return about_the_mean(d, np.inf)
 
 
-# Compiled criteria of all hypotheses, one at a time: for tracks that may leave the map or cross voids.
-#
-# Where every node is known these loops give the values of the vector loops of
-# :mod:`navsym.terrain.kernels.criteria`; where one is missing the criterion is infinite.
-
-
 @njit(**COMPILE)
 def dense_masked(case: Any, steps: Any, counts: Any, centred: bool, out: np.ndarray) -> None:
-    """Criteria of all hypotheses, infinite where the track leaves the map.
+    """Criteria of all hypotheses, one at a time, infinite where the track leaves the map or crosses a void.
 
     centred : take the mean difference off first, which makes the criterion free of a constant height error
     out     : flat, in the order Vi, Vj, j, i

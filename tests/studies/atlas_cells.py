@@ -1,4 +1,7 @@
-"""Cells of the atlas: rank, unobservable space in words, exceptional set and certificate of one error model."""
+"""Cells of the atlas as they are computed: rank, unobservable space in words, exceptional set, certificate.
+
+``docs/atlas_table.py`` keeps them in navsym/studies/atlas/atlas.json; tests compute some of them again.
+"""
 
 from __future__ import annotations
 
@@ -8,44 +11,17 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import sympy as sp
 
-from navsym.core.errors import DomainError
-from navsym.language.names import quote
-from navsym.models.linear import LinearModel
 from navsym.observability.certificates import Certifier
 from navsym.observability.chains import JointObservability, direction_names, observe_jointly, prove_by_guesses
 from navsym.observability.pieces import independent_rows, is_spanned
 from navsym.observability.rank_drops import find_joint_drops
 from navsym.studies.atlas.kept import KEPT, Cell, atlas
-from navsym.studies.atlas.scenes import ARM, MANOEUVRES, MODELS, Aiding, Scene, error_model, g, list_columns, make_scene
+from navsym.studies.atlas.scenes import ARM, Aiding, Scene, cell_names, error_model, g, list_columns, parts_of
 
 #: Cases looked at for the exceptional set of a cell, and letters of a condition that is written.
 NODES, LETTERS = 150, 160
 #: Components in the frame of the INS, and in the body or camera.
 AXES: Mapping[bool, Sequence[str]] = {True: ("north", "east", "down"), False: "xyz"}
-
-
-def cell_names() -> Iterator[str]:
-    """Names of all cells: "INS: level turn: position"."""
-    for model, (_, aidings) in MODELS.items():
-        for manoeuvre in MANOEUVRES:
-            for aiding in aidings:
-                yield f"{model}: {manoeuvre.name}: {aiding.name}"
-
-
-def parts_of(name: str) -> tuple[Scene, Aiding]:
-    """The scene and the aiding of a cell. Raises DomainError for a name that is no cell."""
-    if name not in cell_names():
-        raise DomainError(f"expected a cell such as INS: rest: position; got {quote(name)}; see docs/atlas.md")
-    model, manoeuvre, aiding = name.split(": ")
-    card, aidings = MODELS[model]
-    chosen = next(a for a in aidings if a.name == aiding)
-    flown = next(m for m in MANOEUVRES if m.name == manoeuvre)
-    return make_scene(card, flown, chosen.points, ARM if chosen.arm else ()), chosen
-
-
-def model_of(name: str) -> LinearModel:
-    """The error model of a cell: F, H and the rates of all that moves."""
-    return error_model(*parts_of(name))
 
 
 def compute_cell(name: str) -> Cell:
