@@ -37,7 +37,7 @@ def read_rows(text: str, columns: int) -> Iterator[tuple[int, list[str]]]:
 def split(line: str, mark: str) -> list[str]:
     """Cells of a line; none when the line is not a row of a table at all."""
     try:
-        return [cell.strip() for cell in next(csv.reader([line], delimiter=mark), [])]
+        return [cell.strip() for cell in next(csv.reader([line], delimiter=mark, strict=True), [])]
     except csv.Error:
         return []
 
@@ -49,6 +49,8 @@ def number_of(text: str) -> float | None:
 
 def need_width(cells: Sequence[str], width: int, place: str) -> None:
     """Refuse a row of another length: with a stray or decimal comma, its columns cannot be told."""
+    if not cells:
+        raise ExpressionSyntaxError("expected cells of a table; got none, as behind a lone quote; mend it", where=place)
     if len(cells) != width:
         raise ShapeError(f"expected {width} cells, one per column; got {len(cells)}; mend the row", where=place)
 
