@@ -32,7 +32,7 @@ def read_epochs(path: str | os.PathLike[str], names: tuple[str, ...]) -> Iterato
         if head is None:
             head = cells
             need_head(head, names, place)
-        elif any(cells):
+        elif not cells or any(cells):
             need_width(cells, len(head), place)
             seen += 1
             yield place, read_cells(head, cells, place)
