@@ -417,22 +417,15 @@ def close_claim(claim: FileClaim | TextClaim) -> FileClaim:
     if isinstance(claim, FileClaim):
         return claim
     document, formula = claim.documents[0], claim.formula
-    for words, is_there in (
-        ("one equation", len(claim.documents) > 1 or document["relation"] != "="),
-        ("an exact equation", bool(formula.order or formula.tolerance)),
-        ("matrices of known size and no random numbers", bool({"matrices", "random"} & {*document})),
-    ):
-        if is_there:
-            message = f"expected {words}; got {quote(str(formula))}; state the part that is to be computed"
-            raise DomainError(message, where=claim.id)
-    for side in ("left", "right"):
+    is_equation = len(claim.documents) == 1 and document["relation"] == "=" and not (formula.order or formula.tolerance)
+    for side in ("left", "right") if is_equation and not {"matrices", "random"} & {*document} else ():
         if entries := list_closed_entries(document, side):
             used = {name for text in list_texts(entries) for name in re.findall(r"[A-Za-z]\w*", text)}
             symbols = {n: declare_limits(*limits) for n, limits in document["symbols"].items() if n in used}
             block = {"id": claim.id, "left": entries, "right": entries}
             return require_numbers(claims_from({"symbols": symbols, "claim": [block]}, claim.id).claims[0])
-    message = f"expected a side without integrals, limits and cases; got none in {quote(str(formula))}; write one so"
-    raise DomainError(message, where=claim.id)
+    expected = "one exact equation with a side without integrals, limits, cases and random numbers, of known size"
+    raise DomainError(f"expected {expected}; got {quote(str(formula))}; write one so", where=claim.id)
 
 
 def list_closed_entries(document: Mapping[str, Any], side: str) -> Any:

@@ -81,11 +81,11 @@ def test_the_code_of_a_closed_side_has_its_value(name, tmp_path):
 @pytest.mark.parametrize(
     ("left", "right", "relation", "more", "message"),
     [
-        ("integral(exp(-s**2), s, 0, T)", "integral(exp(-(T-s)**2), s, 0, T)", "=", "", "a side without integrals"),
-        ("dot(u, u)", "0", ">=", "", "expected one equation; got 'dot"),
-        ("sin(x)", "x", "=", "order = { x = 3 }", "an exact equation; got 'sin"),
+        ("integral(exp(-s**2), s, 0, T)", "integral(exp(-(T-s)**2), s, 0, T)", "=", "", "a side without"),
+        ("dot(u, u)", "0", ">=", "", "expected one exact equation .*; got 'dot"),
+        ("sin(x)", "x", "=", "order = { x = 3 }", "expected one exact equation .*; got 'sin"),
         ("integral(s, s, 0, T)", "T**2", "=", "", "which is refuted; correct it first"),
-        ("where(x > 0, x, -x)", "max(x, -x)", "=", "", "a side without integrals, limits and cases"),
+        ("where(x > 0, x, -x)", "max(x, -x)", "=", "", "a side without"),
     ],
 )
 def test_what_has_no_closed_side_is_refused_with_its_claim_and_a_remedy(tmp_path, left, right, relation, more, message):
