@@ -14,11 +14,11 @@ from fractions import Fraction
 from itertools import product
 from typing import Any
 
-from flint import arb, arb_mat, arb_series, ctx, fmpq_mat, fmpz_mat
+from flint import arb, arb_mat, arb_series, fmpq_mat, fmpz_mat
 
 from navsym.claims.display import write_card
 from navsym.core.answers import Answer, named
-from navsym.core.balls import precision
+from navsym.core.balls import precision, series_terms
 from navsym.core.errors import DomainError, EmptyError, ShapeError, UnknownSymbolError
 from navsym.export.accuracy.rounding import DOUBLE, followed, up
 from navsym.export.differences import exact_range
@@ -282,23 +282,21 @@ def enclose_by_series(term: Any, names: Sequence[str], part: Box) -> arb:
         place = {n: player.Jet(arb_series([x, step])) for n, x, step in zip(names, starts, steps, strict=True)}
         return arb_series(player.evaluate(term, place, player.strict).enclose())
 
-    cap, ctx.cap = ctx.cap, last + 2
     try:
-        rest = up(series_along(wide, [arb(0, up(h)) for h in halves])[last + 1])
-        found = {
-            d: series_along(middles, [h * k for h, k in zip(halves, d, strict=True)])
-            for d in whole_vectors(len(names), last)
-        }
-        total = next(iter(found.values()))[0] + arb(0, rest)
-        for degree in range(1, last + 1):
-            chosen, inverse = interpolation(len(names), last, degree)
-            values = arb_mat([[found[d][degree]] for d in chosen])
-            total += sum((arb(0, up(c)) for c in (arb_mat(inverse) * values).entries()), arb(0))
-        return total
+        with series_terms(last + 2):
+            rest = up(series_along(wide, [arb(0, up(h)) for h in halves])[last + 1])
+            found = {
+                d: series_along(middles, [h * k for h, k in zip(halves, d, strict=True)])
+                for d in whole_vectors(len(names), last)
+            }
     except (player.Refused, ValueError):  # no derivative, or a bound that is not finite
         return arb.nan()
-    finally:
-        ctx.cap = cap
+    total = next(iter(found.values()))[0] + arb(0, rest)
+    for degree in range(1, last + 1):
+        chosen, inverse = interpolation(len(names), last, degree)
+        values = arb_mat([[found[d][degree]] for d in chosen])
+        total += sum((arb(0, up(c)) for c in (arb_mat(inverse) * values).entries()), arb(0))
+    return total
 
 
 def whole_vectors(size: int, total: int) -> list[tuple[int, ...]]:
