@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import heapq
 import html
 import inspect
@@ -13,11 +14,11 @@ from fractions import Fraction
 from itertools import product
 from typing import Any
 
-from flint import arb, arb_series, ctx
+from flint import arb, arb_mat, arb_series, fmpq_mat, fmpz_mat
 
 from navsym.claims.display import write_card
 from navsym.core.answers import Answer, named
-from navsym.core.balls import precision
+from navsym.core.balls import precision, series_terms
 from navsym.core.errors import DomainError, EmptyError, ShapeError, UnknownSymbolError
 from navsym.export.accuracy.rounding import DOUBLE, followed, up
 from navsym.export.differences import exact_range
@@ -34,6 +35,7 @@ BOXES = 600
 ULPS = 4  # of a library function: the widest of what C libraries and numpy state
 ROUND = 120  # boxes after which the bound has to have fallen
 ORDER = 8  # of the series of a smooth difference
+DIRECTIONS = 40  # along which series are taken, at most
 CLOSE = 1.05  # a bound this near to what was seen, or to that of the round before, is not divided further
 ARITHMETIC = replace(DOUBLE, library=ULPS)
 ROUNDED = f"each operation rounded once, library functions within {ULPS} ulps"
@@ -257,47 +259,61 @@ def require_faithful(sides: Sides, graph: Graph, literals: Sequence[Any], points
             raise UntraceableError(f"the function does something else at {point} than with the number that takes notes")
 
 
-def enclose_by_series(term: Any, name: str, low: float, high: float) -> arb:
-    """A ball of a term of one symbol on a range: Taylor's polynomial in the middle and Lagrange's rest; NaN at a kink.
-
-    With x = m + u r and u in [-1, 1], f is the sum of its coefficients at the middle times powers of u. The last one is
-    that at some point of the range, which its coefficient on all of the range encloses. What two formulas have in
-    common cancels in each coefficient.
-    """
-    cap, ctx.cap = ctx.cap, ORDER + 1
-    half = (arb(high) - arb(low)) / 2
-    middle, around = (
-        player.Jet(arb_series([x, half])) for x in ((arb(low) + arb(high)) / 2, arb(low).union(arb(high)))
-    )
-    try:
-        near, last = (arb_series(player.evaluate(term, {name: x}, player.strict).enclose()) for x in (middle, around))
-        return near[0] + sum((arb(0, up(near[k])) for k in range(1, ORDER)), arb(0, up(last[ORDER])))
-    except (player.Refused, ValueError):  # no value, or a bound that is not finite
-        return arb.nan()
-    finally:
-        ctx.cap = cap
-
-
 def enclose_on(term: Any, names: Sequence[str], part: Box) -> arb:
-    """A ball of a term on a box: its value in the middle, and one slope after the other.
+    """The smaller of two balls of a term on a box: that of its values, and that of its series where it has one."""
+    plain = player.value_of(term, {n: player.Jet(arb(a).union(arb(b))) for n, (a, b) in zip(names, part, strict=True)})
+    found = [x for x in (arb(plain), enclose_by_series(term, names, part)) if x.is_finite()]
+    return min(found, key=lambda x: float_above(abs(x)), default=arb.nan())
 
-    f(x) - f(m) is a sum of steps in one argument each: the arguments before it stand in the middle, those behind it
-    anywhere. A step is s c1 with a ball c1 and s in [-1, 1].
+
+def enclose_by_series(term: Any, names: Sequence[str], part: Box) -> arb:
+    """Taylor's polynomial in the middle of a box and Lagrange's rest; NaN at a kink.
+
+    With x = m + r d and each |d_k| <= 1, f is a sum of homogeneous polynomials in d. Series along as many directions
+    as the last of them has terms give their coefficients, so that what two formulas have in common cancels. The rest
+    is the next coefficient along any direction from anywhere in the box.
     """
-    if len(names) == 1 and (value := enclose_by_series(term, names[0], *part[0])).is_finite():
-        return value
-    middles = {name: player.Jet((arb(low) + arb(high)) / 2) for name, (low, high) in zip(names, part, strict=True)}
-    place = {name: player.Jet(arb(low).union(arb(high))) for name, (low, high) in zip(names, part, strict=True)}
-    total = player.value_of(term, middles)
-    for name, (low, high) in zip(names, part, strict=True):
-        place[name] = player.Jet(middles[name].parts[0], (arb(high) - arb(low)) / 2)
-        try:
-            first, *slopes = player.evaluate(term, place, player.strict).parts
-        except player.Undefined:
-            return arb.nan()
-        total += arb(0, up(slopes[0])) if slopes and first.is_finite() else arb(0 if first.is_finite() else "nan")
-        place[name] = middles[name]
-    return arb(total)
+    last = max(k for k in range(1, ORDER) if k == 1 or math.comb(len(names) + k - 1, k) <= DIRECTIONS)
+    ends = [(arb(low), arb(high)) for low, high in part]
+    middles, halves = [(a + b) / 2 for a, b in ends], [(b - a) / 2 for a, b in ends]
+    wide = [a.union(b) for a, b in ends]
+
+    def series_along(starts: Sequence[arb], steps: Sequence[arb]) -> arb_series:
+        place = {n: player.Jet(arb_series([x, step])) for n, x, step in zip(names, starts, steps, strict=True)}
+        return arb_series(player.evaluate(term, place, player.strict).enclose())
+
+    try:
+        with series_terms(last + 2):
+            rest = up(series_along(wide, [arb(0, up(h)) for h in halves])[last + 1])
+            found = {
+                d: series_along(middles, [h * k for h, k in zip(halves, d, strict=True)])
+                for d in whole_vectors(len(names), last)
+            }
+    except (player.Refused, ValueError):  # no derivative, or a bound that is not finite
+        return arb.nan()
+    total = next(iter(found.values()))[0] + arb(0, rest)
+    for degree in range(1, last + 1):
+        chosen, inverse = interpolation(len(names), last, degree)
+        values = arb_mat([[found[d][degree]] for d in chosen])
+        total += sum((arb(0, up(c)) for c in (arb_mat(inverse) * values).entries()), arb(0))
+    return total
+
+
+def whole_vectors(size: int, total: int) -> list[tuple[int, ...]]:
+    """Vectors of whole numbers from 0 on with this sum."""
+    return [v for v in product(range(total + 1), repeat=size) if sum(v) == total]
+
+
+@functools.cache
+def interpolation(size: int, last: int, degree: int) -> tuple[list[tuple[int, ...]], fmpq_mat]:
+    """Directions among those of the last degree, and what turns values there into coefficients of this degree.
+
+    On the plane of vectors with one sum they are a lattice on which each polynomial of the degree is determined.
+    """
+    chosen = [v for v in whole_vectors(size, last) if v[0] >= last - degree]
+    powers = whole_vectors(size, degree)
+    rows = [[math.prod(x**k for x, k in zip(v, p, strict=True)) for p in powers] for v in chosen]
+    return chosen, fmpq_mat(fmpz_mat(rows)).inv()
 
 
 def divide_boxes(bound_on: Callable[[Box], float], box: Box, seen: float) -> tuple[float, Box]:

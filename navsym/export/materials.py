@@ -22,7 +22,7 @@ from navsym.core.errors import DomainError, NavsymError
 from navsym.core.sandbox import Exhausted, run_limited
 from navsym.export.accuracy.continuation import horner
 from navsym.export.algorithms.models import functions_of_model, matrix_function, plain_name, require_ranges
-from navsym.export.functions import RefusedError, formula_lines, function_of, material
+from navsym.export.functions import RefusedError, formula_lines, function_of, material, require_exportable
 from navsym.export.languages.names import function_name
 from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source, inside
 from navsym.export.ready import READY, algorithm, is_program, units_of_paper
@@ -38,8 +38,9 @@ from navsym.language.tomlfile import read_toml
 from navsym.models.derivation import Derivation
 from navsym.models.model import Model, contents_of
 from navsym.models.modelfile import BasisFile
-from navsym.prove.claimfile import claims_from, decide_claim, read_claims, statement_of
+from navsym.prove.claimfile import FileClaim, claims_from, close_claim, decide_claim, read_claims, statement_of
 from navsym.prove.ladder import leave_open
+from navsym.prove.relations.judge import TextClaim
 from navsym.prove.wording import expression_text
 from navsym.verification.decide import decide_or_grant
 from navsym.verification.papers import file_of_source, is_model, load_papers, split_id
@@ -166,16 +167,30 @@ def material_from_file(name: str, wanted: str, allow_confirmed: bool) -> Materia
         raise unknown_claim(wanted, list(claims), path.name)
     claim = claims[wanted]
     outcome = run_limited(decide_claim, (claim,), SECONDS, MEGABYTES)
-    return material(
+    verdict = leave_open(outcome) if isinstance(outcome, Exhausted) else outcome
+    return material_of(
+        claim,
+        verdict,
         f"{path.stem}:{wanted}",
-        statement_of(claim),
-        leave_open(outcome) if isinstance(outcome, Exhausted) else outcome,
-        title=claim.notes.get("title", f"Claim {wanted} of a claim file"),
+        title=claim.notes.get("title", str(claim.formula)),
         equation=f"claim {wanted}",
         paper=path.name,
         correction=next((f"{name}:{c.id}" for c in claims.values() if c.notes.get("corrects") == wanted), None),
         allow_confirmed=allow_confirmed,
     )
+
+
+def material_of(claim: FileClaim | TextClaim, verdict: Verdict, label: str, **about: Any) -> Material:
+    """A decided claim of a file; of one of the whole language, its closed side as a function of arrays."""
+    if isinstance(claim, FileClaim):
+        return material(label, statement_of(claim), verdict, **about)
+    require_exportable(label, verdict, about.get("correction"), about["allow_confirmed"])
+    part = material(label, statement_of(close_claim(claim)), verdict, **about)
+    used = {str(s) for _, formulas in part.results for e in formulas for s in e.free_symbols}
+    flat = {name: tuple(e for row in rows for e in row) for name, (_, rows) in claim.kinds.items()}
+    # A symmetric matrix has entries twice: they stay single numbers.
+    arrays = {n: names for n, names in flat.items() if used & {*names} and len({*names}) == len(names)}
+    return replace(part, arrays=arrays)
 
 
 ENTRY = re.compile(r"(\w+)\[(\d+(?:,\d+)*)\]", re.ASCII)
@@ -275,9 +290,7 @@ def material_of_verdict(verdict: Verdict, allow_confirmed: bool) -> Material:
         raise DomainError(message, where="export")
     (claim,) = claims_from(verdict.formula.document()).claims
     title, label = str(verdict.formula), verdict.id
-    return material(
-        label, statement_of(claim), verdict, title=title, equation=f"claim {label}", allow_confirmed=allow_confirmed
-    )
+    return material_of(claim, verdict, label, title=title, equation=f"claim {label}", allow_confirmed=allow_confirmed)
 
 
 def function_of_estimator(found: Estimator, real: str, units: Mapping[str, str]) -> ExportedFunction:

@@ -210,13 +210,14 @@ class State:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Material:
-    """What a decided claim brings: results, box and source."""
+    """What a decided claim brings: results, box, source, named values, and the entries of its arrays."""
 
     claim: str
     results: list[tuple[Output, list[sp.Expr]]]
     box: Mapping[Any, Any]
     source: Source
     lets: tuple[tuple[sp.Symbol, sp.Expr], ...] = ()
+    arrays: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def inside(end: Any, direction: int, real: str = "double") -> float:

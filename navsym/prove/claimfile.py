@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -38,11 +39,14 @@ from navsym.language.schema import (
 )
 from navsym.language.shapes import Shape
 from navsym.language.tomlfile import read_toml
+from navsym.language.vectors import read_value
 from navsym.prove.assumptions import is_nonnegative, is_nonzero, is_positive
+from navsym.prove.calculus.answers import read_with_answers
 from navsym.prove.grant import write_statements
 from navsym.prove.ladder import decide
-from navsym.prove.relations.judge import TextClaim, decide_text
+from navsym.prove.relations.judge import TROUBLE, TextClaim, decide_text
 from navsym.prove.relations.reading import is_text_claim, limit_scalar, read_shapes, read_text_claim
+from navsym.prove.rooms.goals import write_term
 from navsym.prove.sampling.points import ranges_of, write_range
 from navsym.prove.wording import expression_text, scope_of
 
@@ -400,8 +404,54 @@ def require_numbers(claim: FileClaim | TextClaim) -> FileClaim:
     """The claim, when its sides are numbers or lists of numbers; raises DomainError for one of the whole language."""
     if isinstance(claim, FileClaim):
         return claim
-    got = f"{claim.id}, which has vectors, cases, derivatives or hypotheses"
+    got = f"{quote(str(claim.formula))}, which has vectors, integrals, derivatives, cases, hypotheses or an order"
     raise DomainError(f"expected a claim between numbers; got {got}; write its entries out", where=claim.id)
+
+
+def close_claim(claim: FileClaim | TextClaim) -> FileClaim:
+    """The claim between numbers; of one of the whole language, a side of it on both sides, entry by entry.
+
+    The side is the first that has a value without a case and without an antiderivative or limit that was searched for,
+    as the checker reads it: its text stands for itself. Raises DomainError where there is none.
+    """
+    if isinstance(claim, FileClaim):
+        return claim
+    document, formula = claim.documents[0], claim.formula
+    is_equation = len(claim.documents) == 1 and document["relation"] == "=" and not (formula.order or formula.tolerance)
+    for side in ("left", "right") if is_equation and not {"matrices", "random"} & {*document} else ():
+        if entries := list_closed_entries(document, side):
+            used = {name for text in list_texts(entries) for name in re.findall(r"[A-Za-z]\w*", text)}
+            symbols = {n: declare_limits(*limits) for n, limits in document["symbols"].items() if n in used}
+            block = {"id": claim.id, "left": entries, "right": entries}
+            return require_numbers(claims_from({"symbols": symbols, "claim": [block]}, claim.id).claims[0])
+    expected = "one exact equation with a side without integrals, limits, cases and random numbers, of known size"
+    raise DomainError(f"expected {expected}; got {quote(str(formula))}; write one so", where=claim.id)
+
+
+def list_closed_entries(document: Mapping[str, Any], side: str) -> Any:
+    """The texts of the entries of a side, in rows where it is a matrix; None where it has cases or is not closed."""
+    sizes = {name: (len(rows), len(rows[0])) for name, rows in document["shapes"].items()}
+    sizes |= {name: None for name in document["symbols"]}
+    size = read_value(document[side], sizes).size
+    zero = "0" if size is None else f"zeros({size[0]}, {size[1]})"
+    try:
+        cases, _, answers = read_with_answers({**document, "left": document[side], "right": zero})
+    except TROUBLE:
+        return None
+    if len(cases) != 1 or answers:
+        return None
+    texts = [write_term(goal.term) for goal in cases[0].goals]
+    if size is None:
+        return texts[0]
+    columns = int(size[1])
+    return texts if columns == 1 else [texts[k : k + columns] for k in range(0, len(texts), columns)]
+
+
+def declare_limits(low: str | None, high: str | None, flags: Sequence[str]) -> Any:
+    """Limits in the words of the checker as a declaration; a number that is whole is a real one here."""
+    if (low, high) == ("0", None) and "open-low" in flags:
+        return "positive"
+    return ("nonzero" if "nonzero" in flags else "real") if low is high is None else [low or "-oo", high or "oo"]
 
 
 def statement_of(claim: FileClaim | TextClaim) -> Statement:

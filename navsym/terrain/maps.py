@@ -6,7 +6,6 @@ with a limit, and nothing in a file is executed.
 
 from __future__ import annotations
 
-import csv
 import io
 import logging
 import math
@@ -35,6 +34,7 @@ from navsym.core.errors import (
     ShapeError,
     TooLargeError,
 )
+from navsym.language.csvfile import read_numbers
 from navsym.language.files import name_file, read_bytes, read_text
 from navsym.models.earth import ECCENTRICITY_SQUARED, SEMI_MAJOR, prime_vertical_radius
 from navsym.terrain.heights import voids_in
@@ -602,41 +602,5 @@ PLANE, GEODETIC = ("t", "x", "y", "h"), ("t", "lat", "lon", "h")
 
 
 def read_track(path: str | os.PathLike[str]) -> dict[str, list[float]]:
-    """Columns t, x, y, h, or t, lat, lon, h, of a CSV file with a header line; other columns are ignored.
-
-    Lines that start with # and empty lines are skipped. Raises NavsymError with the line.
-    """
-    rows = csv.reader(io.StringIO(read_text(path, MOST_BYTES)))
-    where = name_file(path)
-    try:
-        lines = [(rows.line_num, row) for row in rows if row and not row[0].lstrip().startswith("#")]
-    except csv.Error as reason:
-        raise damaged(Path(path), "a CSV table", reason) from None
-    if not lines:
-        raise EmptyError("expected a header line t,x,y,h; got nothing; write one", where=where)
-    header = [name.strip().lower() for name in lines[0][1]]
-    wanted = next((names for names in (PLANE, GEODETIC) if all(header.count(name) == 1 for name in names)), None)
-    if wanted is None:
-        raise ExpressionSyntaxError(
-            f"expected the columns t, x, y, h, or t, lat, lon, h, once each; got {','.join(header)[:120]!r}; name them",
-            where=f"{where}: line {lines[0][0]}",
-        )
-    place = {name: header.index(name) for name in wanted}
-    table = [{name: cell(row, k, f"{where}: line {line}") for name, k in place.items()} for line, row in lines[1:]]
-    if not table:
-        raise EmptyError("expected at least one row below the header; got none; add the track", where=where)
-    return {name: [row[name] for row in table] for name in place}
-
-
-def cell(row: list[str], k: int, where: str) -> float:
-    """One number of a row."""
-    text = row[k].strip() if k < len(row) else ""
-    try:
-        if "_" in text:
-            raise ValueError
-        value = float(text)
-    except ValueError:
-        raise ExpressionSyntaxError(f"expected a number; got {text[:40]!r}; mend it", where=where) from None
-    if not math.isfinite(value):
-        raise NotFiniteError(f"expected a finite number; got {text[:40]!r}; drop the row", where=where)
-    return value
+    """Columns t, x, y, h, or t, lat, lon, h, of a CSV file with a head; raises NavsymError with the line."""
+    return read_numbers(path, (PLANE, GEODETIC))

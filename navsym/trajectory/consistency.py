@@ -8,8 +8,6 @@ have the squared correlation (Isserlis). Bar-Shalom, Li, Kirubarajan, Estimation
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import os
 from dataclasses import dataclass, replace
@@ -19,10 +17,12 @@ import numpy as np
 
 from navsym.core.answers import named
 from navsym.core.arrays import Array
-from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError
-from navsym.language.files import name_file, read_text
+from navsym.core.errors import EmptyError, NotFiniteError, ShapeError
+from navsym.language.csvfile import read_numbers
+from navsym.language.files import name_file
 
-LARGEST_FILE = 256 * 1024 * 1024
+#: Numbers of a reference are smaller, so that their squares have values.
+LARGEST = 1e15
 #: Quantile of the normal distribution at 97.5 %.
 Z975 = 1.959963984540054
 #: Columns of a reference; the deviations may be left out.
@@ -127,8 +127,9 @@ def compare(t: Array, velocity: Array, deviation: Array, reference: str | os.Pat
     if table.ndim != 2 or table.shape[1] not in (4, 7) or len(table) < 2:
         message = f"expected rows of t, ve, vn, vu; got shape {table.shape}; give two rows or more"
         raise ShapeError(message, where=place)
-    if not np.isfinite(table).all() or not (np.diff(table[:, 0]) > 0).all():
-        raise NotFiniteError("expected finite numbers at increasing times; got others; mend the reference", where=place)
+    if not (np.abs(table) < LARGEST).all() or not (np.diff(table[:, 0]) > 0).all():
+        message = f"expected numbers below {LARGEST:g} at increasing times; got others; mend the reference"
+        raise NotFiniteError(message, where=place)
     found = consistency_of(normalised_at(0.0, t, velocity, deviation, table))
     if found is None:
         wanted, got = (f"{ends[0]:.10g} to {ends[-1]:.10g}" for ends in (t, table[:, 0]))
@@ -176,14 +177,5 @@ def reference_table(reference: Any) -> tuple[Array, str]:
             return np.array(reference, dtype=float), "track: reference"
         except (TypeError, ValueError):
             raise ShapeError("expected rows of t, ve, vn, vu; got others", where="track: reference") from None
-    place = name_file(reference)
-    rows = [row for row in csv.reader(io.StringIO(read_text(reference, LARGEST_FILE))) if row]
-    head = [name.strip().lower() for name in rows[0]] if rows else []
-    if any(head.count(name) != 1 for name in COLUMNS):
-        message = f"expected the columns {', '.join(COLUMNS)} once each; got {', '.join(head)[:99]}; name them"
-        raise ShapeError(message, where=place)
-    names = (*COLUMNS, *DEVIATIONS) if all(head.count(name) == 1 for name in DEVIATIONS) else COLUMNS
-    try:
-        return np.array([[float(row[head.index(name)]) for name in names] for row in rows[1:]]), place
-    except (ValueError, IndexError):
-        raise DomainError("expected numbers in the columns t, ve, vn, vu; got others; mend them", where=place) from None
+    found = read_numbers(reference, ((*COLUMNS, *DEVIATIONS), COLUMNS))
+    return np.array(list(found.values())).T, name_file(reference)

@@ -7,7 +7,6 @@ repair is listed with its line. Nothing is repaired silently. Angles leave this 
 
 from __future__ import annotations
 
-import csv
 import math
 import os
 import re
@@ -30,16 +29,15 @@ from navsym.core.errors import (
     ShapeError,
     TooLargeError,
 )
+from navsym.language.csvfile import LARGEST_FILE, lines_of, number_of, read_rows
 from navsym.language.files import decode, name_file, read_bytes
 from navsym.trajectory.units import BRACKETS, Unit, unit_of, usual_unit
 
 Array = NDArray[np.float64]
 Policy = Literal["strict", "repair"]
 
-LARGEST_FILE = 256 * 1024 * 1024
 LARGEST_ROWS = 2_000_000
 MOST_PROBLEMS = 1_000  # after so many a strict reading gives up: the file is something else
-DECIMAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?|[+-]?(nan|inf|infinity)", re.I | re.A)
 GPS_EPOCH = datetime(1980, 1, 6, tzinfo=UTC)
 
 #: Column -> names that mean it, lower case, without the unit in brackets.
@@ -288,22 +286,18 @@ def rtklib_sigma(fields: Sequence[str], line: int, log: Log) -> tuple[float, flo
 
 def csv_rows(text: str, log: Log) -> Iterator[Row]:
     """Rows of a CSV; the separator is a comma, a semicolon or a tab."""
-    numbered = enumerate(lines_of(text), 1)
-    lines = [(i, line) for i, line in numbered if line.strip() and not line.startswith("#")]
+    lines = list(read_rows(text, len(NAMES)))
     if not lines:
         raise EmptyError("expected a track; got no rows; check the export", where=log.where)
     if len(lines) > LARGEST_ROWS:
         raise too_long(log)
-    # A semicolon or a tab wins over commas, which may be decimal.
-    separator = next((mark for mark in ";\t" if lines[0][1].count(mark) >= 3), ",")
-    first = split(lines[0][1], separator)
+    line, first = lines[0]
     columns, start = dict(zip(NAMES, range(4), strict=True)), 0
     if any(number_of(x) is None and decimal_comma(x) is None for x in first):
-        columns, start = columns_of(first, log, f"line {lines[0][0]}"), 1
+        columns, start = columns_of(first, log, f"line {line}"), 1
     # A row of another length has a stray or decimal comma: its columns cannot be told.
     width = max(len(first), 4)
-    for number, line in lines[start:]:
-        fields = split(line, separator)
+    for number, fields in lines[start:]:
         if len(fields) != width:
             message = f"expected {width} fields; got {len(fields)}; mend the row"
             log.problem(ShapeError, number, message, "row left out")
@@ -312,19 +306,6 @@ def csv_rows(text: str, log: Log) -> Iterator[Row]:
         row = row_of([value_of(x, number, log) for x in texts], number, texts, None, log)
         if row is not None:
             yield row
-
-
-def lines_of(text: str) -> list[str]:
-    """Lines as an editor counts them; other separators of Unicode are ordinary characters."""
-    return re.split(r"\r\n|\n|\r", text)
-
-
-def split(line: str, separator: str) -> list[str]:
-    """Fields of a line; none when the line is not a row of a table at all."""
-    try:
-        return [x.strip() for x in next(csv.reader([line], delimiter=separator), [])]
-    except csv.Error:
-        return []
 
 
 def columns_of(header: Sequence[str], log: Log, line: str) -> dict[str, int]:
@@ -359,11 +340,6 @@ def value_of(text: str, line: int, log: Log) -> float | None:
     message = f"expected a decimal point; got {text!r}; write points"
     log.problem(ExpressionSyntaxError, line, message, "decimal comma read as a point")
     return mended
-
-
-def number_of(text: str) -> float | None:
-    """A decimal number, nan or inf; None for anything else (no underscores, no hexadecimals)."""
-    return float(text) if DECIMAL.fullmatch(text.strip()) else None
 
 
 def decimal_comma(text: str) -> float | None:

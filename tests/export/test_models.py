@@ -113,9 +113,10 @@ def test_every_kind_of_answer_is_compiled_and_replayed(answer, tmp_path):
     assert found.accepted and {"manifest", "code:c", "code:python"} <= {part.kind for part in found}
 
 
-def test_an_entry_of_the_book_with_vectors_is_refused_and_says_what_to_write():
-    with pytest.raises(nav.NavsymError, match=r"expected a claim between numbers.*write its entries out"):
-        nav.export("book:skew-is-cross")
+def test_an_entry_of_the_book_with_vectors_leaves_as_a_function_of_arrays(tmp_path):
+    made = nav.export("book:skew-is-cross", to=["python"], out=tmp_path, vectors=8)
+    assert {outcome.status for outcome in made.outcomes} == {"verified"}
+    assert "[3]: each real" in (tmp_path / "python" / "navsym_functions.py").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

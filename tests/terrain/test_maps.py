@@ -181,20 +181,25 @@ def test_the_sample_of_matplotlib_is_read():
 
 def test_a_track_is_read_by_the_names_of_its_columns(tmp_path):
     path = tmp_path / "track.csv"
-    path.write_text("# flown in May\nH, x ,y,t,note\n5,1,2,0,a\n\n6,1.5,2.5,1,b\n")
-    assert read_track(path) == {"t": [0, 1], "x": [1, 1.5], "y": [2, 2.5], "h": [5, 6]}
+    text = "# flown in May\nH, x ,y,t,note\n5,1,2,0,a\n\n6,1.5,2.5,1,b\n"
+    for written in (text, text.replace(",", ";"), text.replace(",", "\t"), "\ufeff" + text.replace("\n", "\r")):
+        path.write_text(written, encoding="utf-8")
+        assert read_track(path) == {"t": [0, 1], "x": [1, 1.5], "y": [2, 2.5], "h": [5, 6]}
 
 
 @pytest.mark.parametrize(
     ("text", "kind", "message"),
     [
-        ("t,x,y\n0,1,2\n", "syntax", "columns t, x, y, h"),
-        ("t,x,y,h,h\n0,1,2,3,4\n", "syntax", "columns t, x, y, h"),
-        ("t,x,y,h\n0,1,2\n", "syntax", "line 2"),
+        ("t,x,y\n0,1,2\n", "shape", "columns t, x, y, h"),
+        ("t,x,y,h,h\n0,1,2,3,4\n", "shape", "columns t, x, y, h"),
+        ("t,x,y,h\n0,1,2\n", "shape", "line 2"),
+        ("t,x,y,h\n0,600,0,900,0,264,2\n", "shape", "line 2.*expected 4 cells"),
+        ("t;x;y;h\n0;600,0;900,0;264,2\n", "syntax", "line 2: x: expected a number"),
+        ("t,x,y,h\n0,1,2,١\n", "syntax", "line 2"),
         ("t,x,y,h\n0,1,2,1_0\n", "syntax", "line 2"),
         ("t,x,y,h\n0,1,2,nan\n", "not-finite", "line 2"),
-        ("t,x,y,h\n", "empty", "below the header"),
-        ("# nothing\n", "empty", "header"),
+        ("t,x,y,h\n", "empty", "below the head"),
+        ("# nothing\n", "shape", "columns t, x, y, h"),
     ],
 )
 def test_a_wrong_track_file_is_refused_with_its_line(tmp_path, text, kind, message):

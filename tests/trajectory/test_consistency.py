@@ -97,11 +97,19 @@ def test_the_answer_has_nees_and_the_csv_all_rows(tmp_path: Path) -> None:
         ([[0, 1, 2]], "shape"),
         ([[1e6, 0, 0, 0], [2e6, 0, 0, 0]], "empty"),
         ([[1, 0, 0, 0], [0, 0, 0, 0]], "not-finite"),
+        ([[0, 1e308, 0, 0], [60, 0, 0, 0]], "not-finite"),
+        ("semicolons.csv", "syntax"),
+        ("commas.csv", "shape"),
         ("none.csv", "missing-file"),
         (object(), "shape"),
     ],
 )
-def test_a_wrong_reference_is_an_error_with_kind_and_place(reference: object, kind: str) -> None:
+def test_a_wrong_reference_is_an_error_with_kind_and_place(reference: object, kind: str, tmp_path: Path) -> None:
+    """Decimal commas are refused whatever stands between the cells: no column takes the number of another."""
+    (tmp_path / "semicolons.csv").write_text("t;ve;vn;vu\n0;1,5;0;0\n60;1,5;0;0\n", encoding="utf-8")
+    (tmp_path / "commas.csv").write_text("t,ve,vn,vu\n0,1,5,0,5,0,5\n60,1,5,0,5,0,5\n", encoding="utf-8")
+    if reference in ("semicolons.csv", "commas.csv"):
+        reference = tmp_path / str(reference)
     with pytest.raises(NavsymError) as caught:
         nav.track("examples/drive.csv", sigma=0.5, order=2, reference=reference)
     assert caught.value.kind == kind and caught.value.where

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 from collections.abc import Iterator
 
-from navsym.core.errors import DuplicateError, EmptyError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
+from navsym.core.errors import DuplicateError, EmptyError, ShapeError, UnknownSymbolError
 from navsym.guaranteed.streaming.numbers import read_exact
+from navsym.language.csvfile import need_width, read_rows
 from navsym.language.files import name_file, read_text
 from navsym.language.names import quote
 
@@ -26,28 +25,17 @@ def read_epochs(path: str | os.PathLike[str], names: tuple[str, ...]) -> Iterato
     a remark. Raises NavsymError with file and line.
     """
     where = name_file(path)
-    lines = io.StringIO(read_text(path, LARGEST), newline="")
-    reader = csv.reader((line for line in lines), strict=True)
     head: list[str] | None = None
     seen = 0
-    try:
-        for cells in reader:
-            place = f"{where}: line {reader.line_num}"
-            cells = [cell.strip() for cell in cells]
-            if not any(cells) or cells[0].startswith("#"):
-                continue
-            if head is None:
-                head = cells
-                need_head(head, names, place)
-                continue
-            if len(cells) != len(head):
-                message = f"expected {len(head)} cells, one per column; got {len(cells)}; complete the row"
-                raise ShapeError(message, where=place)
+    for line, cells in read_rows(read_text(path, LARGEST), 2):
+        place = f"{where}: line {line}"
+        if head is None:
+            head = cells
+            need_head(head, names, place)
+        elif not cells or any(cells):
+            need_width(cells, len(head), place)
             seen += 1
             yield place, read_cells(head, cells, place)
-    except csv.Error as failure:
-        message = f"expected comma-separated cells ({failure}); got others; correct the line"
-        raise ExpressionSyntaxError(message, where=f"{where}: line {reader.line_num}") from None
     if not seen:
         message = "expected a row for each epoch; got none; add t and the measurements"
         raise EmptyError(message, where=where)
@@ -55,12 +43,12 @@ def read_epochs(path: str | os.PathLike[str], names: tuple[str, ...]) -> Iterato
 
 def need_head(head: list[str], names: tuple[str, ...], place: str) -> None:
     """Refuse a head without t, with a column twice, or with one that means nothing."""
-    twice = next((name for name in head if head.count(name) > 1), None)
-    if twice is not None:
-        raise DuplicateError(f"expected every column once; got {quote(twice)} again; drop one", where=place)
     if "t" not in head:
         message = f"expected a column t; got {', '.join(map(quote, head[:6]))}; name the columns in the first row"
         raise ShapeError(message, where=place)
+    twice = next((name for name in head if head.count(name) > 1), None)
+    if twice is not None:
+        raise DuplicateError(f"expected every column once; got {quote(twice)} again; drop one", where=place)
     if len(head) == 1:
         message = f"expected a column for a measurement; got t alone; add one of {', '.join(names)}"
         raise ShapeError(message, where=place)
