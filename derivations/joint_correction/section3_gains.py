@@ -10,7 +10,8 @@ from itertools import pairwise
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, Equation, claim, fact
+from navsym.claims import CERTIFIED, PROVED, Equation, claim, fact, state
+from navsym_papers.hurwitz import say_signs
 from navsym_papers.joint_correction.inertial import EARTH, MU
 from navsym_papers.joint_correction.matrices import exact_inverse, to_lowest_terms
 from navsym_papers.joint_correction.section1_systems import coefficients_of_polynomial, p, polynomial_of
@@ -167,6 +168,10 @@ def poles_cross_at_kappa_one():
         )
 
 
+#: Values of kappa inside and outside, and which of a0, D_1 ... D_5, a6 (Hurwitz) are negative there for lambda = 1.
+REGIONS = ((sp.Integer(0), ()), (sp.Rational(1, 2), ()), (sp.Integer(2), (3, 4, 5)))
+
+
 @claim("3.coupled.stable")
 def coupled_system_is_stable_inside():
     """The errors of (3.2) decay for every lambda_c > 0 exactly when |mu u_3| < 1.
@@ -175,9 +180,7 @@ def coupled_system_is_stable_inside():
     (3.coupled.crossing), so the number of poles on the right is constant on {lambda > 0, |kappa| < 1} and
     on {kappa > 1}; it is counted at one point of each. At kappa = 1 there is a pole on the axis.
     """
-    counts = tuple(
-        poles_on_the_right(sp.Integer(1), value) for value in (sp.Integer(0), sp.Rational(1, 2), sp.Integer(2))
-    )
+    counts = tuple(poles_on_the_right(sp.Integer(1), value) for value, _ in REGIONS)
     return fact(
         (0, 0, 2, True),
         (*counts, sp.resultant(3 * lam - lam**3, 1 - 3 * lam**2, lam) != 0),
@@ -185,8 +188,24 @@ def coupled_system_is_stable_inside():
         PROVED,
         scope="all lambda_c > 0, all real kappa",
         evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}; the parts have no common zero",
-        unsaid="roots of a polynomial with free coefficients are counted by regions",
+        meaning=[*say_no_common_zero(), *(part for value, turned in REGIONS for part in say_poles(value, turned))],
     )
+
+
+def say_no_common_zero() -> list[dict]:
+    """3 l - l^3 and 1 - 3 l^2 with cofactors whose sum of products is 1."""
+    first, second = 3 * lam - lam**3, 1 - 3 * lam**2
+    a, b, one = sp.gcdex(first, second, lam)
+    text = f"({a / one})*({first}) + ({b / one})*({second})"
+    return [state(text, "=", "1", {"lambda_c": [None, None, []]})]
+
+
+def say_poles(kappa_value: sp.Expr, negative: tuple[int, ...]) -> list[dict]:
+    """The polynomial of the six errors at lambda = 1, and the signs of Hurwitz's determinants, a few negative."""
+    polynomial = (p + 1) ** 6 + kappa_value**2 * link_polynomial(p).subs(lam, 1) ** 2
+    coefficients = [str(c) for c in sp.Poly(sp.expand(polynomial), p).all_coeffs()]
+    written = " + ".join(f"{c}*p**{6 - k}" if k < 6 else c for k, c in enumerate(coefficients))
+    return [state(str(polynomial), "=", written, {"p": [None, None, []]}), *say_signs(coefficients, None, negative)]
 
 
 def poles_on_the_right(lambda_value: sp.Expr, kappa_value: sp.Expr) -> int:
