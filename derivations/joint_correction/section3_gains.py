@@ -11,12 +11,12 @@ from itertools import pairwise
 import sympy as sp
 
 from navsym.claims import CERTIFIED, PROVED, Equation, claim, fact, state
-from navsym_papers.hurwitz import say_signs
 from navsym_papers.joint_correction.inertial import EARTH, MU
 from navsym_papers.joint_correction.matrices import exact_inverse, to_lowest_terms
 from navsym_papers.joint_correction.section1_systems import coefficients_of_polynomial, p, polynomial_of
 from navsym_papers.joint_correction.section2_groups import mu, position, velocity, w1, w2
 from navsym_papers.joint_correction.section3_algorithm import joint_error_matrix
+from navsym_papers.trajectory.hurwitz import say_signs
 
 lam, lam_h = sp.symbols("lambda_c lambda_h", positive=True)
 kappa, omega = sp.symbols("kappa omega", real=True)

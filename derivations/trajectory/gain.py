@@ -6,7 +6,6 @@ from fractions import Fraction
 import flint
 
 from navsym.claims import CERTIFIED, UNDECIDED, Finding, Property, claim, state
-from navsym_papers.hurwitz import say_signs
 from navsym_papers.trajectory.experiment.stability import (
     gain_stability,
     harmonic_lag,
@@ -17,6 +16,7 @@ from navsym_papers.trajectory.experiment.stability import (
     write_half_plane,
 )
 from navsym_papers.trajectory.experiment_printed import TAU, ball
+from navsym_papers.trajectory.hurwitz import say_signs
 from navsym_papers.trajectory.model import pascal_rows
 from navsym_papers.trajectory.scaling import write_rows
 
