@@ -1599,8 +1599,7 @@ class Reader:
         What holds for all such f holds for that of x; equal numbers have one. Where n <= u < n + 1, f is u - n.
         """
         self.need(x)
-        box = self.box | {n: Range(None, None, integer=True) for n, k in self.bound.items() if k in ("sum", "product")}
-        whole = [t for t in self.list_parts(x) if is_integral(t, box, self.floors)]
+        whole = [t for t in self.list_parts(x) if is_integral(t, self.box, self.floors)]
         rest = [t for t in self.list_parts(x) if t not in whole]
         if self.dead or not rest:
             return x
@@ -1639,7 +1638,7 @@ class Reader:
             entries = [entry[1] for entry in list_entries(self.names.get(group, ("symbol", group)))]
             m, c = list_entries(self.read(mean)), self.read(covariance)
             rows = c.rows if isinstance(c, Matrix) else [[c]]
-            sizes = {len(entries), len(m), len(rows), len(rows[0])}
+            sizes = {len(entries), len({*entries}), len(m), len(rows), len(rows[0])}
             require(len(sizes) == 1 and len(m) <= 4, "expected a mean and a covariance for up to 4 numbers")
             require(type(normal) is bool and not set(entries) & {*self.chances, *self.box}, "a name given twice")
             self.need(*m)
@@ -1904,12 +1903,13 @@ class Formula(Parser):
     def read_body(self, body: list[str], kind: str, name: str, value: Term) -> tuple[Term, list[Term]]:
         """A number with a value in the place of a name, and what has to have a value for it."""
         reader, words = self.reader, self.words
-        names, bound, exists = reader.names, reader.bound, reader.exists
+        own = {} if value[0] != "symbol" else {value[1]: Range(None, None, integer=kind in ("sum", "product"))}
+        names, bound, exists, box = reader.names, reader.bound, reader.exists, reader.box
         self.words, reader.exists, reader.names = ["", *body], {}, names | {name: value}
-        reader.bound = bound | ({value[1]: kind} if value[0] == "symbol" else {})
+        reader.bound, reader.box = bound | dict.fromkeys(own, kind), box | own
         term, needs = to_number(self.read_sum()), [*reader.exists]
         require(self.words == [""], f"expected a variable in {kind}")
-        self.words, reader.names, reader.bound, reader.exists = words, names, bound, exists
+        self.words, reader.names, reader.bound, reader.exists, reader.box = words, names, bound, exists, box
         return term, needs
 
     def read_question(self, kind: str) -> Term:
@@ -4077,8 +4077,8 @@ def grant(statement: Any, item: Any) -> str:
     refuting = [part for part in parts if part.get("kind") in ("counterexample", "sized") or part.get("outside") == 1]
     kinds = ("proof", "counterexample", "condition", "observability", "words", "sized")
     known = all(part.get("kind") in kinds for part in parts)
-    good = len(own) == 1 and own[0] in statements if refuting else own == statements
-    require(known and good, "the certificate of another statement")
+    good = own == statements or (len(own) == len(refuting) == 1 and own[0] in statements)
+    require(known and good and len(refuting) < 2, "the certificate of another statement")
     check(item)
     return "FAILS" if refuting else "HOLDS"
 

@@ -4,12 +4,10 @@ from itertools import product
 
 import sympy as sp
 
-from navsym.claims import PROVED, Bound, Equation, Finding, Property, claim
+from navsym.claims import PROVED, Bound, Equation, Finding, Property, claim, state
 from navsym.prove.identities.normal_form import vanishes_identically
 from navsym.prove.signs.bounds import Sign, prove_sign
 from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, weights
-
-A_NAME = "a name is compared, and statements are about numbers"
 
 sigma = sp.Symbol("sigma", positive=True)
 s, b = sp.symbols("s b", real=True)
@@ -346,14 +344,14 @@ def dual_of_a_polynomial():
 variables_of_the_minimum = claim(
     "3.3.min",
     "The minimum of (3.3) is taken over z_2, z_3, as printed.",
-    lambda: Property(printed=("z2", "z3"), derived=coefficients_of_the_polynomial(), unsaid=A_NAME),
+    lambda: Property(("z2", "z3"), coefficients_of_the_polynomial(), say_coefficients("z2", "z3")),
     slip="undecidable",
     reason="z_j stands below the minimum; the polynomial has the coefficients u_j, as (3.4) and (4.2) have them",
 )
 variables_of_the_minimum_corrected = claim(
     "3.3.min*",
     "The minimum of (3.3) is taken over u_2, u_3.",
-    lambda: Property(printed=("u2", "u3"), derived=coefficients_of_the_polynomial(), unsaid=A_NAME),
+    lambda: Property(("u2", "u3"), coefficients_of_the_polynomial(), say_coefficients("u2", "u3")),
 )
 
 
@@ -364,6 +362,13 @@ def coefficients_of_the_polynomial() -> Finding:
     polynomial = h1 + names[2] * h2 + names[3] * h3
     free = tuple(v.name for v in names if not vanishes_identically(sp.diff(polynomial, v)))
     return Finding(free, "normal form of the derivatives", PROVED, "all H1, H2, H3, also for other states than y3")
+
+
+def say_coefficients(second: str, third: str) -> tuple[dict, ...]:
+    """The derivatives of the polynomial by z2, z3, u2, u3, for H2, H3 != 0: these by the names given, else 0."""
+    slopes = {"z2": "0", "z3": "0", "u2": "0", "u3": "0"} | {second: "H2", third: "H3"}
+    line = {name: [None, None, ["nonzero"] if name in ("H2", "H3") else []] for name in ("H1", "H2", "H3", *slopes)}
+    return tuple(state(f"diff(H1 + u2*H2 + u3*H3, {name})", "=", slope, line) for name, slope in slopes.items())
 
 
 @claim("3.4")

@@ -8,12 +8,13 @@ channels.
 import sympy as sp
 from flint import arb, ctx, fmpq, fmpq_poly
 
-from navsym.claims import CERTIFIED, PROVED, Equation, claim, fact
+from navsym.claims import CERTIFIED, PROVED, Equation, claim, fact, state
 from navsym_papers.joint_correction.inertial import EARTH, MU
 from navsym_papers.joint_correction.matrices import exact_inverse, to_lowest_terms
 from navsym_papers.joint_correction.section1_systems import coefficients_of_polynomial, p, polynomial_of
 from navsym_papers.joint_correction.section2_groups import mu, position, velocity, w1, w2
 from navsym_papers.joint_correction.section3_algorithm import joint_error_matrix
+from navsym_papers.trajectory.hurwitz import say_signs
 
 lam, lam_h = sp.symbols("lambda_c lambda_h", positive=True)
 kappa, omega = sp.symbols("kappa omega", real=True)
@@ -165,6 +166,10 @@ def poles_cross_at_kappa_one():
         )
 
 
+#: Values of kappa inside and outside, and which of a0, D_1 ... D_5, a6 (Hurwitz) are negative there for lambda = 1.
+REGIONS = ((sp.Integer(0), ()), (sp.Rational(1, 2), ()), (sp.Integer(2), (3, 4, 5)))
+
+
 @claim("3.coupled.stable")
 def coupled_system_is_stable_inside():
     """The errors of (3.2) decay for every lambda_c > 0 exactly when |mu u_3| < 1.
@@ -173,9 +178,8 @@ def coupled_system_is_stable_inside():
     (3.coupled.crossing), so the number of poles on the right is constant on {lambda > 0, |kappa| < 1} and
     on {kappa > 1}; it is counted at one point of each. At kappa = 1 there is a pole on the axis.
     """
-    values = sp.Integer(0), sp.Rational(1, 2), sp.Integer(2)
-    counts = tuple(poles_on_the_right(sp.Integer(1), value) for value in values)
-    rates = ", ".join(str(sp.Float(decay_rate(sp.Integer(1), value), 6)) for value in values)
+    counts = tuple(poles_on_the_right(sp.Integer(1), value) for value, _ in REGIONS)
+    rates = ", ".join(str(sp.Float(decay_rate(sp.Integer(1), value), 6)) for value, _ in REGIONS)
     return fact(
         (0, 0, 2, True),
         (*counts, sp.resultant(3 * lam - lam**3, 1 - 3 * lam**2, lam) != 0),
@@ -185,15 +189,37 @@ def coupled_system_is_stable_inside():
         evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}, decay rates {rates}; "
         "the parts have no common zero",
         unsaid="roots of a polynomial with free coefficients are counted by regions",
+        meaning=[*say_no_common_zero(), *(part for value, turned in REGIONS for part in say_poles(value, turned))],
     )
+
+
+def say_no_common_zero() -> list[dict]:
+    """3 l - l^3 and 1 - 3 l^2 with cofactors whose sum of products is 1."""
+    first, second = 3 * lam - lam**3, 1 - 3 * lam**2
+    a, b, one = sp.gcdex(first, second, lam)
+    text = f"({a / one})*({first}) + ({b / one})*({second})"
+    return [state(text, "=", "1", {"lambda_c": [None, None, []]})]
+
+
+def say_poles(kappa_value: sp.Expr, negative: tuple[int, ...]) -> list[dict]:
+    """The polynomial of the six errors at lambda = 1, and the signs of Hurwitz's determinants, a few negative."""
+    closed = (p + 1) ** 6 + kappa_value**2 * link_polynomial(p).subs(lam, 1) ** 2
+    coefficients = [str(c) for c in errors_polynomial(sp.Integer(1), kappa_value).all_coeffs()]
+    written = " + ".join(f"{c}*p**{6 - k}" if k < 6 else c for k, c in enumerate(coefficients))
+    return [state(str(closed), "=", written, {"p": [None, None, []]}), *say_signs(coefficients, None, negative)]
+
+
+def errors_polynomial(lambda_value: sp.Expr, kappa_value: sp.Expr) -> sp.Poly:
+    """Characteristic polynomial of the coupled errors at a point."""
+    return sp.Poly(polynomial_of(coupled_velocity_block().subs({lam: lambda_value, kappa: kappa_value})), p)
 
 
 def poles(lambda_value: sp.Expr, kappa_value: sp.Expr) -> list[tuple[arb, int]]:
     """Real parts of the poles of the coupled errors, with multiplicities: balls of 200 bits around the exact roots."""
-    block = coupled_velocity_block().subs({lam: lambda_value, kappa: kappa_value})
-    coefficients = [fmpq(int(c.p), int(c.q)) for c in sp.Poly(polynomial_of(block), p).all_coeffs()[::-1]]
+    coefficients = errors_polynomial(lambda_value, kappa_value).all_coeffs()[::-1]
     with ctx.workprec(200):
-        return [(root.real, count) for root, count in fmpq_poly(coefficients).complex_roots()]
+        found = fmpq_poly([fmpq(int(c.p), int(c.q)) for c in coefficients]).complex_roots()
+        return [(root.real, count) for root, count in found]
 
 
 def poles_on_the_right(lambda_value: sp.Expr, kappa_value: sp.Expr) -> int:

@@ -90,8 +90,8 @@ def say_ends(rows: list[list[Fraction]], found: Enclosure, unit: bool) -> tuple[
     return state_condition(rows, lower, upper, equilibrate=unit), lower, upper
 
 
-#: Why the refutation of an order of condition numbers has no certificate.
-TWO_NUMBERS = "a refutation fails one statement, and the order of two condition numbers is none of one matrix"
+#: The rows of a matrix, and whether its columns are divided by their lengths.
+Rows = tuple[list[list[Fraction]], bool]
 Said = tuple[tuple[dict[str, Any], ...], dict[str, Any]]
 
 
@@ -106,6 +106,16 @@ def say_comparison(enclosed: Iterable[dict[str, Any]], relations: Iterable[tuple
     parts = [certify_condition(condition) for condition in conditions]
     parts += [{"kind": "proof", "statement": s, "bits": 128, "witness": {}, "proofs": [balls]} for s in compared]
     return (*conditions, *compared), {"kind": "all", "of": parts}
+
+
+def refute_order(larger: Rows, smaller: Rows, factor: Fraction = Fraction(1)) -> Said:
+    """What a sentence says that has factor times one condition number below another one, and its refutation.
+
+    The larger one is at most r, which is certified; so the smaller one would be at most r/factor, which fails.
+    """
+    known, _, r = say_ends(larger[0], condition_number(larger[0], digits=15, equilibrate=larger[1]), larger[1])
+    said = state_condition(smaller[0], Fraction(0), r / factor, equilibrate=smaller[1])
+    return (known, said), {"kind": "all", "of": [certify_condition(known), certify_condition(said)]}
 
 
 def entry(n: int, step: str, column: str, printed: str) -> Property:

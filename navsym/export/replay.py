@@ -34,8 +34,8 @@ REMEDIES = {
 #: The second checker, in the order in which its files need each other.
 SOURCES = tuple(
     Path(__file__).with_name("ocaml") / f"{name}.ml"
-    for name in "text tree ball value algebra calculus goal cones rules language statement condition observability gap "
-    "bounds sized words checker".split()
+    for name in "text tree ball value algebra calculus goal cones rules language answers statement condition "
+    "observability gap bounds sized words checker".split()
 )
 #: Seconds for one certificate: no answer is to depend on them, so they are many times what one takes.
 PATIENCE = 600

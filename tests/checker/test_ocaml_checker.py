@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Iterable
 from fractions import Fraction
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import flint
@@ -21,7 +22,7 @@ from navsym import checker
 from navsym.core.store import key_of
 from navsym.export.replay import build_checker, ocaml_version, replay
 from navsym.verification.certificates import read_outcomes
-from tests.checker import words
+from tests.checker import calculus, proofs, words
 
 ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.skipif(
@@ -59,12 +60,8 @@ def test_it_is_asked_like_a_kernel(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     forged = put(true, "/statement/right", "sin(x)*cos(x)")
     (row,) = nav.check(forged, kernel="ocaml")
     assert (row.status, row.kernel) == ("REJECTED", None)
-    integral = nav.prove("integral(x, x, 0, 1) = 1/2")
-    (row,) = nav.check(integral, kernel="ocaml")
-    assert row.kernel is not None and row.kernel.status == "UNWRITTEN" and not row.holds
-    assert "answers" in row.kernel.why
-    kept = [bool(outcome) for outcome in read_outcomes("ocaml", [true, forged, integral.certificate])]
-    assert kept == [True, False, True] and read_outcomes("coq", [true]) == [None]
+    kept = [bool(outcome) for outcome in read_outcomes("ocaml", [true, forged])]
+    assert kept == [True, False] and read_outcomes("coq", [true]) == [None]
     direct = replay(forged, tmp_path / "none.v", "ocaml")
     assert direct.status == "FAILED" and "differ" in direct.why
 
@@ -131,12 +128,37 @@ def test_no_certificate_of_the_page_is_refused_and_no_forgery_accepted(program: 
     true, forged = read_page()
     answers = judge(program, [json.dumps(c) for c in true])
     assert not [a for a in answers if a.startswith("refused")]
-    assert answers.count("accepted") >= 57
+    assert answers.count("accepted") >= 65
     answers = judge(program, [json.dumps(c) for c in forged])
     assert "accepted" not in answers
-    assert sum(a.startswith("refused") for a in answers) >= 247
+    assert sum(a.startswith("refused") for a in answers) >= 278
 
 
+def test_both_checkers_agree_on_every_row_of_the_tests_of_the_first(program: Path) -> None:
+    """True certificates of each rule and question, and those that lack one hypothesis; work and balls apart."""
+    noted = []
+
+    def grant(statement: Any, item: Any) -> str:
+        noted.append(json.dumps(item))
+        return checker.grant(statement, item)
+
+    recorder = SimpleNamespace(grant=grant, Refused=checker.Refused)
+    assert not [*proofs.discrepancies(recorder), *calculus.discrepancies(recorder)]
+    texts = [*dict.fromkeys(text for text in noted if json.loads(text).get("kind") in KINDS)]
+    answers = judge(program, texts)
+    apart = [
+        (text, answer)
+        for text, answer in zip(texts, answers, strict=True)
+        if (answer == "accepted") != checker_accepts(text) and not any(word in text for word in STRICTER)
+    ]
+    assert not apart, apart[:3]
+    assert answers.count("accepted") > 300 and sum(a.startswith("refused") for a in answers) > 500
+    assert all("units of work" in a or "unheard-of" in a for a in answers if a.startswith("outside"))
+
+
+KINDS = ("proof", "counterexample", "all")
+#: A polynomial of a degree that only the first checker refuses, and an exponent that only the second one does.
+STRICTER = ("x**200*x**2", "x**999999999")
 OPPOSITES = {"=": "!=", "!=": "=", ">": "<=", ">=": "<", "<": ">=", "<=": ">"}
 
 
@@ -295,7 +317,7 @@ def list_forgeries(dice: random.Random, count: int) -> list[str]:
     pool = [c for c in [*read_ledger(), *read_page()[0]] if c["kind"] in FALSIFIED and len(json.dumps(c)) < 3000]
     pool = [c for c in pool if c["kind"] not in ("proof", "counterexample") or is_one_relation(c["statement"])]
     pool = sorted(pool, key=lambda c: key_of(json.dumps(c, sort_keys=True)))[:POOL]
-    proofs = [c["proofs"] for c in pool if c["kind"] == "proof"]
+    others = [c["proofs"] for c in pool if c["kind"] == "proof"]
     found = []
     while len(found) < count:
         honest = dice.choice(pool)
@@ -304,7 +326,7 @@ def list_forgeries(dice: random.Random, count: int) -> list[str]:
             continue
         false = make_false(dice, honest)
         if honest["kind"] == "proof" and dice.random() < 0.4:
-            false = put(false, "/proofs", dice.choice(proofs))
+            false = put(false, "/proofs", dice.choice(others))
         elif honest["kind"] == "proof" and dice.random() < 0.5:
             false = put(false, "/proofs", change_one_place(dice, {"proofs": honest["proofs"]})["proofs"])
         found.append(json.dumps(false))

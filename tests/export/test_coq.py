@@ -300,6 +300,8 @@ def test_what_the_ledger_keeps_is_written_or_has_a_listed_reason():
         "guaranteed_velocity:4.13.y3",  # absolute values by the signs of what they are of
         "multistructure:1.nonlinear",  # a second derivative at a point of nine symbols
         "trajectory:1.degree",  # derivatives inside of derivatives inside of others
+        "terrain_search:sigmaV.unit*",  # a root that is a value by its square
+        "guaranteed_velocity:4.6.same-instants",  # a sine of half a turn below a line
     ],
 )
 def test_coq_proves_what_it_once_did_not(name, tmp_path):

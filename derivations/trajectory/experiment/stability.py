@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import flint
 
@@ -58,17 +59,28 @@ def closed_loop(gain: Sequence[flint.arb]) -> list[flint.arb]:
     return [moments[n - 1 - power] for power in range(n)] + [flint.arb(1)]
 
 
-def half_plane(coefficients: Sequence[flint.arb]) -> list[flint.arb]:
+def half_plane(coefficients: Sequence[Any]) -> list[Any]:
     """Coefficients in w after z = (1 + w) / (1 - w), that is s = 2 w / (1 - w); highest first.
 
     Roots with |z| < 1 become roots with negative real part.
     """
     n = len(coefficients) - 1
-    out = [flint.arb(0)] * (n + 1)
+    out: list[Any] = [0] * (n + 1)
     for power, c in enumerate(coefficients):
         for i in range(n - power + 1):
             out[power + i] += c * (2**power * math.comb(n - power, i) * (-1) ** i)
     return out[::-1]
+
+
+def write_half_plane(scale: Sequence[str]) -> list[str]:
+    """The coefficients of :func:`half_plane` for the gains k1/scale_1, k2/scale_2, ..., highest first, as texts."""
+    n, rows = len(scale), difference_rows(len(scale))
+    parts = [half_plane([0] * n + [1])]
+    parts += [half_plane([rows[n - 1 - power][i] for power in range(n)] + [0]) for i in range(n)]
+    names = ["1", *(f"k{i}/({text})" for i, text in enumerate(scale, start=1))]
+    return [
+        " + ".join(f"{c}*{name}" for c, name in zip(row, names, strict=True) if c) for row in zip(*parts, strict=True)
+    ]
 
 
 def routh_column(polynomial: Sequence[flint.arb]) -> list[flint.arb]:

@@ -72,12 +72,9 @@ def prove_equality(terms: Iterable[Term], names: Mapping[str, str]) -> list[str]
     write_absolutes([p for p in parts if p[0] == "abs"], script)
     rules = f" [{' '.join(script.rules)}]" if script.rules else ""
     rewrites = "".join(f"rewrite ?{rule}; " for rule in script.rules)
-    last = (
-        f"first [ solve [ring{rules}] | solve [field{rules}; nonzero] | solve [{rewrites}field; nonzero] ]."
-        if rules
-        else "first [ solve [ring] | field; nonzero ]."
-    )
-    return [*script.lines, last]
+    ways = [f"ring{rules}", f"field{rules}; nonzero", f"{rewrites}field; nonzero"]
+    ways += [f"field_simplify{rules}; first [ field; nonzero | nonzero ]"]
+    return [*script.lines, f"first [ {' | '.join(f'solve [{way}]' for way in ways)} ]."]
 
 
 def prove_modulo(proof: Mapping[str, Any], zeros: Iterable[Term], term: Term, names: Mapping[str, str]) -> list[str]:
@@ -307,12 +304,14 @@ class Follower:
         """The goal in the lemmas' form, or an equation."""
         proof = factor_roots(proof, term)
         rule = proof.get("rule")
-        if rule == "rewrite" and proof["equal"]["rule"] == "solve":
-            old, new = checker.parse(proof["from"]), checker.parse(proof["to"])
+        own = proof["equal"] if rule == "rewrite" else proof
+        if own.get("rule") == "solve":
+            texts = (proof["from"], proof["to"]) if rule == "rewrite" else (own["atom"], own["value"])
+            old, new = map(checker.parse, texts)
             if old[0] in ("abs", "sqrt"):
                 square = ["{", *prove_equality((new, old[1]), self.names), "}"]
-                lines = [f"apply {old[0]}_by_square.", *square, *self.go(proof["equal"]["proofs"][1], new, ">=")]
-                rest = self.go(proof["proof"], checker.replace(term, old, new), relation)
+                lines = [f"apply {old[0]}_by_square.", *square, *self.go(own["proofs"][1], new, ">=")]
+                rest = self.go(proof.get("proof", {}), checker.replace(term, old, new), relation)
                 return [*self.change(old, new, lines), *rest]
         if relation == "=":
             return prove_equality((term,), self.names)

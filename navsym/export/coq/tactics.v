@@ -23,7 +23,7 @@ Ltac nonzero :=
   repeat match goal with |- _ /\ _ => split end;
   repeat first
     [ assumption | lra | apply exp_not_0 | apply Rgt_not_eq, sqrt_lt_R0; first [ assumption | lra ] | apply Rmult_integral_contrapositive_currified | apply pow_nonzero
-    | apply Rinv_neq_0_compat
+    | apply Rinv_neq_0_compat | apply Rgt_not_eq, sin_gt_0; lra | apply Rgt_not_eq, cos_gt_0; lra
     | match goal with H : ?d <> 0 |- ?e <> 0 =>
         let Z := fresh in intro Z; apply H;
         first [ lra | solve [ ring [Z] ] | solve [ rewrite Z; ring ]

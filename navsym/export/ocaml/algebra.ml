@@ -30,6 +30,7 @@ type atom =
   | Asin of key
   | Acos of key
   | Atan of key
+  | Erf of key
   | Atan2 of key * key
   | Exp of Monomial.t
   | Cis of Monomial.t
@@ -402,6 +403,7 @@ let rec has_hidden_zero (a : key) = List.exists (fun (m, _) -> hides m) a
 and hides (m : Monomial.t) =
   let hidden = function
     | Root _ | Log _ | Asin _ | Acos _ | Atan _ | Atan2 _ -> true
+    | Erf k -> has_hidden_zero k
     | Exp m | Cis m -> hides m
     | Circle | Symbol _ | Part _ -> false
   in
@@ -446,6 +448,11 @@ let function_form name a =
   | "asin" -> of_atom (Asin (key a))
   | "acos" -> of_atom (Acos (key a))
   | "atan" -> of_atom (Atan (key a))
+  | "erf" ->
+      if Terms.is_empty a then nothing
+      else
+        let sign = Q.of_int (Q.sign (snd (Terms.min_binding a))) in
+        scale sign (of_atom (Erf (key (scale sign a))))
   | _ -> ( match tail_order name with Some (f, k) -> tail_form f k a | None -> outside "function %s" name)
 
 let rec normal t : form =
@@ -514,12 +521,14 @@ and quotient_power q n =
   else if n < 0 then quotient_power (quotient_inverse q) (-n)
   else { over = whole_power q.over (Z.of_int n); under = List.map (fun (f, k) -> (f, k * n)) (if n = 0 then [] else q.under) }
 
-let rec has_other_generator t =
+let rec generators t =
   match t with
-  | Num _ | Sym _ -> false
-  | Sum l | Prod l -> List.exists has_other_generator l
-  | Pow (a, b) -> whole_exponent b = None || has_other_generator a
-  | Pi | Fun _ -> true
+  | Num _ -> []
+  | Sum l | Prod l -> List.concat_map generators l
+  | Pow (a, b) when whole_exponent b <> None -> generators a
+  | Pow _ | Pi | Sym _ | Fun _ -> [ t ]
+
+let has_other_generator t = List.exists (function Sym _ -> false | _ -> true) (generators t)
 
 (* One question about normal forms *)
 let counted f x =
@@ -536,9 +545,17 @@ let rec atoms_inside atom =
   let of_form k = List.concat_map (fun (m, _) -> of_monomial m) k in
   match atom with
   | Circle | Symbol _ | Part _ -> []
-  | Log k | Asin k | Acos k | Atan k | Root k -> of_form k
+  | Log k | Asin k | Acos k | Atan k | Erf k | Root k -> of_form k
   | Atan2 (y, x) -> of_form y @ of_form x
   | Exp m | Cis m -> of_monomial m
+
+(* Numerator, and denominators with their powers; generators are atoms [Part]. *)
+let split_quotient t =
+  left := many_units;
+  match quotient t with
+  | q -> (key q.over, q.under)
+  | exception No_quotient -> refuse "a division by 0"
+  | exception Too_much -> outside "a quotient with more than %d units of work" many_units
 
 let try_quotient units t =
   left := units;

@@ -323,6 +323,25 @@ let cosh_ball x = rising cosh_point (size x) ~low:ball_one.lo ~high:Plus
 let tanh_ball x = clip (rising tanh_point x ~low:unit_ball.lo ~high:unit_ball.hi) unit_ball
 
 (* arcsin x = arctan(x/sqrt(1 - x^2)) for |x| < 1 *)
+
+(* erf(x) = 2 exp(-x^2)/sqrt(pi) times the sum of the terms t_0 = x, t_n = t_(n - 1) 2 x^2/(2n + 1). They are small only where n > 2 x^2,
+   and then every term is at most half of the one before. For large x it lies between 1 - exp(-x^2) and 1. *)
+let erf_point (m, e) =
+  let x = exactly (Z.abs m) e in
+  let value =
+    if Z.sign m = 0 then ball_zero
+    else if place m e > 6 then { lo = (less ball_one (exp_ball (minus (power x 2)))).lo; hi = ball_one.hi }
+    else
+      guarded 64 (fun () ->
+          let square = double (power x 2) in
+          let next j term = over (times term square) (of_int ((2 * j) + 3)) in
+          let factor = over (double (exp_ball (minus (power x 2)))) (sqrt_ball (pi ())) in
+          times factor (sum_terms ~bits:!precision x next))
+  in
+  if Z.sign m < 0 then minus value else value
+
+let erf_ball x = clip (rising erf_point x ~low:unit_ball.lo ~high:unit_ball.hi) unit_ball
+
 let asin_point (m, e) =
   let x = exactly m e in
   guarded 16 (fun () ->

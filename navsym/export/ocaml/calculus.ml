@@ -26,6 +26,7 @@ let slope_of name =
   | "tanh" -> "1 - tanh(x)**2"
   | "sqrt" -> "1/(2*sqrt(x))"
   | "abs" -> "x/abs(x)"
+  | "erf" -> "2*exp(-x*x)*pi**(-1/2)"
   | _ -> refuse "no derivative of %s" name
 
 let rec derive s t =

@@ -16,7 +16,12 @@ open Statement
 
 (* Kinds *)
 
-let keep_out_answers value = if List.mem_assoc "answers" (get_object "certificate" value) then outside "answers"
+(* The values of these keys, and the answers, which may be missing *)
+let get_with_answers what keys value =
+  let o = get_object what value in
+  match List.assoc_opt "answers" o with
+  | None -> (get_keys what keys value, List [])
+  | Some answers -> (get_keys what keys (Object (List.remove_assoc "answers" o)), answers)
 
 let get_names what value =
   let names = List.map (get_name what) (get_list what value) in
@@ -56,12 +61,11 @@ let check_positivity value =
   | _ -> assert false
 
 let check_proof value =
-  keep_out_answers value;
-  match get_keys "proof" [ "kind"; "statement"; "bits"; "witness"; "proofs" ] value with
-  | [ _; statement; bits; witness; proofs ] ->
+  match get_with_answers "proof" [ "kind"; "statement"; "bits"; "witness"; "proofs" ] value with
+  | [ _; statement; bits; witness; proofs ], answers ->
       at_precision (get_bits 20000 bits) (fun () ->
-          let cases = read_statement statement in
-          let (_ : ((string -> ball) * statement) list) = check_cases cases (read_numbers "witness" witness) in
+          let cases = read_statement answers statement in
+          ignore (check_cases cases (read_numbers "witness" witness));
           let goals = List.concat_map (fun s -> List.map (goal_of s) s.goals) cases in
           prove_each "proofs" goals (get_list "proofs" proofs))
   | _ -> assert false
@@ -77,18 +81,17 @@ let fails value (t, relation) =
       | AtLeast -> is_below x)
 
 let check_counterexample value =
-  keep_out_answers value;
-  match get_keys "counterexample" [ "kind"; "statement"; "bits"; "point"; "zero" ] value with
-  | [ _; statement; bits; point; zero ] ->
+  match get_with_answers "counterexample" [ "kind"; "statement"; "bits"; "point"; "zero" ] value with
+  | [ _; statement; bits; point; zero ], answers ->
       at_precision (get_bits 200000 bits) (fun () ->
-          let cases = read_statement statement in
           let point = read_numbers "point" point in
+          let cases = read_statement ~point answers statement in
           let found = check_cases cases point in
-          match (zero, List.concat_map (fun s -> s.goals) cases) with
+          match (zero, List.concat_map (fun (point, _, s) -> List.map (fun goal -> (point, goal)) s.goals) found) with
           | Null, _ ->
-              let fails_in (value, s) = List.exists (fails value) s.goals in
+              let fails_in (_, value, s) = List.exists (fails value) s.goals in
               shown "the statement is not seen to fail" (List.exists fails_in found)
-          | proof, [ (t, (Above | Unequal)) ] -> prove (alone (put point t) Equal) proof
+          | proof, [ (point, (t, (Above | Unequal))) ] -> prove (alone (put point t) Equal) proof
           | _ -> refuse "the relation allows 0")
   | _ -> assert false
 

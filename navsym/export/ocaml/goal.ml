@@ -162,7 +162,7 @@ let base_and_exponent t =
 (* The middle m and the half width h of the values of a function, and whether it reaches its ends *)
 let known_range = function
   | Fun (("sin" | "cos"), _) -> (zero, one, true)
-  | Fun ("tanh", _) -> (zero, one, false)
+  | Fun (("tanh" | "erf"), _) -> (zero, one, false)
   | Fun ("atan", _) -> (zero, half_pi, false)
   | Fun ("asin", _) -> (zero, half_pi, true)
   | Fun ("acos", _) -> (half_pi, half_pi, true)

@@ -14,6 +14,7 @@ type statement = {
   said : tree list; (* what has to have a value *)
   given : tree list;
   zeros : tree list;
+  fractions : (string * tree) list; (* symbols for u minus the whole part of u *)
 }
 
 let read_goals left right relation tolerance =
@@ -47,7 +48,7 @@ let read_order box (context : context) value =
   match get_object "order" value with
   | [ (s, n) ] ->
       let n = get_integer "order" 1 8 n in
-      let range = match List.assoc_opt s box with Some r -> r | None -> refuse "order: unknown symbol %s" s in
+      let range : range = match List.assoc_opt s box with Some r -> r | None -> refuse "order: unknown symbol %s" s in
       let ball t = number_ball "order" t in
       let reaches t = Algebra.vanishes t || is_above (ball t) in
       let is_limit =
@@ -61,7 +62,7 @@ let read_order box (context : context) value =
   | _ -> refuse "order: expected one symbol"
 
 let expand_order (context : context) (s, n) goals =
-  if context.branches > 0 then outside "cases in a statement with order";
+  if context.fractions <> [] then refuse "an order of a floor";
   let at_zero = put [ (s, zero) ] in
   let derivatives (d, _) =
     let rec go k d = if k = n then [] else (at_zero d, Equal) :: go (k + 1) (Calculus.derive s d) in
@@ -69,12 +70,13 @@ let expand_order (context : context) (s, n) goals =
   in
   (List.concat_map derivatives goals, at_zero)
 
-let read_case values long_values order plan =
+let read_case values long_values order random plan ~answers ~point =
   match values @ long_values with
   | [ left; right; relation; symbols; exists; tolerance; shapes; given; rates ] ->
       let read (name, v) = if is_name name then (name, read_range name v) else refuse "expected a name" in
       let box = List.map read (get_object "symbols" symbols) in
-      let context = make_context (List.map fst box) plan shapes rates in
+      if List.exists (fun (name, _) -> List.mem_assoc name box) random then refuse "random: a name with a range";
+      let context = make_context box plan shapes rates random in
       List.iter (fun v -> suppose context (read_condition context (get_text "given" v))) (get_list "given" given);
       List.iter (fun v -> ignore (read_value_of context (get_text "exists" v))) (get_list "exists" exists);
       let left = read_value_of context (get_text "left" left) in
@@ -82,7 +84,17 @@ let read_case values long_values order plan =
       let tolerance = match tolerance with Null -> None | v -> Some (get_tree "tolerance" v) in
       let relation = get_text "relation" relation in
       let goals = read_goals left right relation tolerance in
-      let said = entries left @ entries right @ Option.to_list tolerance @ List.rev context.said in
+      let said = entries left @ entries right @ Option.to_list tolerance in
+      let goals =
+        if context.questions = [] then goals
+        else
+          let values = Answers.settle context (said @ List.rev context.said) answers point in
+          context.given <- List.map values context.given;
+          context.zeros <- List.map values context.zeros;
+          context.said <- List.rev_map values (said @ List.rev context.said);
+          List.map (fun (t, r) -> (values t, r)) goals
+      in
+      let said = if context.questions = [] then said @ List.rev context.said else List.rev context.said in
       let goals, said =
         match order with
         | None -> (goals, said)
@@ -93,30 +105,33 @@ let read_case values long_values order plan =
             List.iter (say_smooth context) said;
             (goals, List.map at_zero (said @ List.rev context.said) @ List.map fst goals)
       in
-      (context, { goals; box; said; given = context.given; zeros = context.zeros })
+      (context, { goals; box; said; given = context.given; zeros = context.zeros; fractions = context.fractions })
   | _ -> assert false
 
-(* The cases of a statement *)
-let read_statement value =
+(* The cases of a statement. [answers] are those to its questions, at a point or in the whole box. *)
+let read_statement ?point answers value =
   let o = get_object "statement" value in
-  if List.mem_assoc "random" o then outside "statement with random numbers";
-  let is_long = List.exists (fun k -> List.mem_assoc k o) more_keys and has_order = List.mem_assoc "order" o in
-  let keys = plain_keys @ (if is_long then more_keys else []) @ if has_order then [ "order" ] else [] in
-  let values = get_keys "statement" keys value in
-  let rec split n l = if n = 0 then ([], l) else match l with x :: l -> let a, b = split (n - 1) l in (x :: a, b) | [] -> ([], []) in
-  let values, order = split (List.length values - if has_order then 1 else 0) values in
+  let given keys = List.filter (fun k -> List.mem_assoc k o) keys in
+  let is_long = given more_keys <> [] and get name = List.assoc_opt name o in
+  let keys = plain_keys @ if is_long then more_keys else [] in
+  ignore (get_keys "statement" (keys @ given [ "order"; "random" ]) value);
+  let values = List.map (fun k -> List.assoc k o) keys in
   let long_values = if is_long then [] else [ Object []; List []; Object [] ] in
-  let order = match order with [ v ] -> Some v | _ -> None in
+  let random = match get "random" with Some v -> get_object "random" v | None -> [] in
+  let answers = ref (get_list "answers" answers) in
   let rec go count plan =
     if count > 128 then refuse "more than 128 cases";
-    let context, case = read_case values long_values order plan in
+    let context, case = read_case values long_values (get "order") random plan ~answers ~point in
     case :: match next_plan context.answers with None -> [] | Some plan -> go (count + 1) plan
   in
-  go 1 []
+  let cases = go 1 [] in
+  if !answers <> [] then refuse "an answer without a question";
+  cases
 
 (* A tree of `given` that is a symbol, or -1 times a symbol, cuts the range at 0. *)
 let goal_of s (tree, relation) =
-  let goal = { tree; relation; box = s.box; exists = s.said; given = s.given; zeros = s.zeros } in
+  let fraction (name, _) = (name, { anything with low = Some zero; high = Some one; open_high = true }) in
+  let goal = { tree; relation; box = List.map fraction s.fractions @ s.box; exists = s.said; given = s.given; zeros = s.zeros } in
   let cut goal = function
     | Sym name -> cut_range goal name 1
     | Prod [ Num q; Sym name ] when Q.equal q Q.minus_one -> cut_range goal name (-1)
@@ -126,8 +141,13 @@ let goal_of s (tree, relation) =
   List.fold_left cut goal s.given
 
 (* All that the statement says has a finite ball at a point in the box, and the hypotheses hold there. *)
-let check_values s point =
+let check_values (s : statement) point =
   check_point s.box point;
+  let add_fraction point (name, u) =
+    let value = put point u in
+    (name, subtract value (number (find_whole value))) :: point
+  in
+  let point = List.fold_left add_fraction point s.fractions in
   let balls = List.map (fun (name, t) -> (name, number_ball name t)) point in
   let value name = match List.assoc_opt name balls with Some x -> x | None -> no_symbols name in
   List.iter (fun t -> if finite_ball value t = None then refuse "no value at the point") s.said;
@@ -135,11 +155,11 @@ let check_values s point =
   let is_null t = Algebra.vanishes (put point t) in
   shown "a hypothesis does not hold at the point"
     (List.for_all (fun t -> is_positive t || is_null t) s.given && List.for_all is_null s.zeros);
-  value
+  (point, value)
 
 (* The values at the point, and the cases to which it belongs; there is one at least. *)
 let check_cases cases point =
-  let belongs case = match check_values case point with value -> Ok (value, case) | exception Refused why -> Error why in
+  let belongs case = match check_values case point with point, value -> Ok (point, value, case) | exception Refused why -> Error why in
   match List.partition_map (fun c -> match belongs c with Ok x -> Either.Left x | Error why -> Either.Right why) cases with
   | [], why :: _ -> refuse "%s" why
   | found, _ -> found

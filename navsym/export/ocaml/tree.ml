@@ -55,7 +55,7 @@ let read_tokens s =
 (* Functions *)
 
 let of_one =
-  [ "exp"; "sin"; "cos"; "atan"; "sinh"; "cosh"; "tanh"; "log"; "sqrt"; "abs"; "asin"; "acos"; "tan"; "sec"; "cot"; "csc" ]
+  [ "exp"; "sin"; "cos"; "atan"; "sinh"; "cosh"; "tanh"; "log"; "sqrt"; "abs"; "asin"; "acos"; "tan"; "sec"; "cot"; "csc"; "erf" ]
 
 (* exp_k, sin_k, cos_k: the name before the mark and k. A leading 0 is not accepted. *)
 let tail_order name =
@@ -68,7 +68,6 @@ let tail_order name =
 let arguments_of name =
   if name = "atan2" then 2
   else if List.mem name of_one || tail_order name <> None then 1
-  else if name = "erf" then outside "erf"
   else refuse "expression: unknown function %s" name
 
 (* Grammar *)

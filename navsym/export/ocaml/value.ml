@@ -56,6 +56,7 @@ let one_argument mode name x =
   | "sinh" -> sinh_ball x
   | "cosh" -> cosh_ball x
   | "tanh" -> tanh_ball x
+  | "erf" -> erf_ball x
   | "log" -> log_in mode x
   | "sqrt" -> sqrt_in mode x
   | "abs" -> size x
@@ -130,6 +131,7 @@ let slope_of_function name x =
     | "cosh" -> sinh_ball x.v
     | "tanh" -> less ball_one (square v)
     | "log" -> over ball_one x.v
+    | "erf" -> over (scale (exp_ball (minus (square x.v))) 1) (sqrt_ball (pi ()))
     | "sqrt" -> over (scale ball_one (-1)) v
     | "abs" -> if is_above x.v then ball_one else if is_below x.v then minus ball_one else unit_ball
     | "asin" -> arc 1
