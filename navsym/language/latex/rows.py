@@ -31,7 +31,7 @@ WRAPPER = re.compile(
     r"\\(?:begin|end)\{(?:aligned|split|align\*?|gather\*?|gathered|eqnarray\*?|equation\*?|multline\*?|alignedat)\}(?:\{\d+\})?"
 )
 LABEL = re.compile(
-    r"\\(?:label|tag\*?|hspace\*?|vspace\*?)\{[^{}]*\}|\\(?:nonumber|notag)(?![A-Za-z])|\\text\{[\s.,;:]*\}"
+    r"\\(?:label|tag\*?|hspace\*?|vspace\*?)\{[^{}]*\}|\\(?:nonumber|notag|empty)(?![A-Za-z])(?!\s*[_^])|\\text\{[\s.,;:]*\}"
 )
 OPERATORS = ("+", "-", r"\cdot", r"\times", r"\otimes")
 #: Words between formulas, none of which is a condition.
@@ -45,7 +45,7 @@ DOTS = r"\\(?:l|c|)dots(?![A-Za-z])"
 RUN = re.compile(
     rf"([A-Za-z])\s*=\s*([0-9]{{1,4}})((?:\s*,\s*[0-9]{{1,4}}(?![A-Za-z]))*)\s*,?\s*{DOTS}\s*,?\s*({ENDS})?(?=\s*(?:$|\\\\|[,;.}}]|\\q?quad))"
 )
-SPACE = r"(?:\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])|\\empty(?![A-Za-z])|&)*"
+SPACE = r"(?:\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])|&)*"
 FOR = re.compile(
     rf"(?:\\(?:text|textrm|textnormal|mathrm)\s*\{{\s*for(?: all)?\s*\}}|\\forall)(?={SPACE}{RUN.pattern})"
 )
@@ -92,6 +92,7 @@ def mask(text: str) -> str:
     """The text with blanks in place of labels and of environments that only align."""
     blank = re.compile(r"[^\n]")
     text = re.sub(r"\\\\(\s*\[[-0-9. a-z]{1,12}\])", lambda m: "\\\\" + blank.sub(" ", m[1]), text)
+    text = re.sub(r"\\text\{\s*\}(?=\s*[_^])", lambda m: "{}".ljust(len(m[0])), text)
     for pattern in (WRAPPER, LABEL):
         text = pattern.sub(lambda m: blank.sub(" ", m[0]), text)
     text = LIMIT.sub(lambda m: rf"\lim_{{{m[1]}}}".ljust(len(m[0])), unframe(text))
