@@ -31,7 +31,7 @@ WRAPPER = re.compile(
     r"\\(?:begin|end)\{(?:aligned|split|align\*?|gather\*?|gathered|eqnarray\*?|equation\*?|multline\*?|alignedat)\}(?:\{\d+\})?"
 )
 LABEL = re.compile(
-    r"\\(?:label|tag\*?|hspace\*?|vspace\*?)\{[^{}]*\}|\\(?:nonumber|notag|empty)(?![A-Za-z])(?!\s*[_^])|\\text\{[\s.,;:]*\}"
+    r"\\(?:label|tag\*?|[hv]space\*?|textcolor)\{[^{}]*\}|\\(?:nonumber|notag|empty)(?![A-Za-z])(?!\s*[_^])|\\text\{[\s.,;:]*\}"
 )
 OPERATORS = ("+", "-", r"\cdot", r"\times", r"\otimes")
 #: Words between formulas, none of which is a condition.
@@ -145,7 +145,7 @@ def split_relations(text: str) -> list[Relation]:
         if piece.kind == "separator":
             segments.append([])
             continue
-        if piece.kind == "row" and continues(text, segments[-1], pieces[place + 1]):
+        if piece.kind == "row" and continues(text, segments[-1], pieces[place + 1], not found):
             text = text[: piece.stop] + " " * len(piece.mark) + text[piece.stop + len(piece.mark) :]
             pieces[place + 1].start = segments[-1].pop().start
             continue
@@ -176,14 +176,15 @@ def relate_row(text: str, segments: list[list[Piece]], previous: Side | None) ->
     return [relation for relations in lists for relation in relations]
 
 
-def continues(text: str, row: list[Piece], following: Piece) -> bool:
-    """True when the next row goes on with this one: it begins with an operator, or nothing stands here behind one."""
-    behind = text[following.start : following.stop].replace("&", " ").strip()
-    here = text[row[-1].start : row[-1].stop].replace("&", " ").strip()
+def continues(text: str, row: list[Piece], following: Piece, is_first: bool) -> bool:
+    """True when the next row goes on with this one: with an operator, or with a relation behind a first left side."""
+    behind = re.sub("[&~]", " ", text[following.start : following.stop]).strip()
+    here = re.sub("[&~]", " ", text[row[-1].start : row[-1].stop]).strip()
     if not behind or not (here or len(row) > 1):
-        return False
+        return bool(is_first and here and len(row) == 1 and following.kind == "relation")
     starts = behind.startswith(OPERATORS) or re.match(r"\\q?quad\s*([-+]|\\cdot|\\times)", behind)
-    return bool((starts and following.kind != "relation") or (len(row) > 1 and not here) or here.endswith(OPERATORS))
+    joins = following.kind != "relation" or (is_first and len(row) == 1)
+    return bool((starts and joins) or (len(row) > 1 and not here) or here.endswith(OPERATORS))
 
 
 def list_pieces(text: str) -> list[Piece]:

@@ -383,7 +383,7 @@ REFUSED = {
     "|C|": (1, "length"),
     r"\|P\|": (1, "length"),
     r"\|u\|_1": (4, "subscript"),
-    "||a| - b|": (8, "nested"),
+    "||a| - b|": (4, "nested"),
     "u^T v w": (7, "factors that fit"),
     "H P^T H": (7, "factors that fit"),
     r"q \otimes v": (11, "quaternion"),
