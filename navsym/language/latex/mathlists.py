@@ -156,7 +156,11 @@ class Builder:
                 if not primed or not takes_script(done[-1]):
                     raise Refusal(unit.at, "a name before its primes", "'", "write the name in [latex]")
                 done[-1].sup, done[-1].end = [*(done[-1].sup or []), prime], unit.end
-            elif unit.is_bar and done and done[-1].is_bar and done[-1].end == unit.at and sum(n.is_bar for n in done) % 2:
+            elif (
+                unit.is_bar
+                and any(n.is_bar and n.end == unit.at for n in done[-1:])
+                and sum(n.is_bar for n in done) % 2
+            ):
                 done[-1].value, done[-1].end = "||", unit.end  # but |a||b| has bars that close and open
             else:
                 done.append(unit)

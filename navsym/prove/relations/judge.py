@@ -210,7 +210,7 @@ def refute_at_points(claim: TextClaim, document: Document) -> Verdict | None:
     kinds = {name: kind for name, kind in claim.kinds.items() if {e for row in kind[1] for e in row} <= set(box)}
     points = draw_special_points(box, (), kinds, MOST_POINTS)
     for point in chain(islice(draw_corner_points(box, kinds), 1), points) if box else [{}]:
-        place = {name: player.number(value) for name, value in point.items()}
+        place = {name: player.parse(text) for name, text in write_point(point).items()}
         try:
             cases, _, _ = read_with_answers(document, place)
             inside = [(point, case) for case in cases if player.lies_in(case, place)]
@@ -223,7 +223,7 @@ def refute_at_points(claim: TextClaim, document: Document) -> Verdict | None:
 
 def difference_at(document: Document, point: Mapping[str, Any]) -> Any:
     """An enclosure of left - right at the point, of the entry that differs most visibly."""
-    place = {name: player.number(value) for name, value in point.items()}
+    place = {name: player.parse(text) for name, text in write_point(point).items()}
     cases, _, _ = read_with_answers({**document, "relation": "=", "tolerance": None}, place)
     inside = [(case, evaluate_point(case, point)) for case in cases if player.lies_in(case, place)]
     values = [player.value_of(goal.term, balls) for case, balls in inside for goal in case.goals]

@@ -1,6 +1,6 @@
 """Exact points at which hypotheses hold: unit vectors, rotations and unit quaternions have rational parameters.
 
-Other hypotheses are solved for a symbol in which they have a rational root. A point is a proposal: the checker looks at it.
+Other hypotheses are solved for a symbol with a rational root. A point is a proposal: the checker looks at it.
 """
 
 from __future__ import annotations
