@@ -40,6 +40,7 @@ FOREIGN = dict(
     ln="log", arcsin="asin", arccos="acos", arctan="atan", arctg="atan", arctan2="atan2", tg="tan", ctg="cot",
     cosec="csc", sh="sinh", ch="cosh", th="tanh", arsinh="asinh", arcosh="acosh", artanh="atanh", Abs="abs",
     fabs="abs", Pi="pi", PI="pi", e="exp(...)", E="exp(...)", pow="**",
+    oo="it as an end alone", inf="oo as an end", nan="a number",
 )  # fmt: skip
 
 UNITS = frozenset(("m", "km", "s", "min", "h", "deg", "rad", "kg", "Hz", "mg"))

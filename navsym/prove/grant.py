@@ -272,7 +272,7 @@ def answer_at_point(document: Document, point: Mapping[str, str]) -> Document:
     if not any(f"{name}(" in json.dumps(document) for name in (*BINDERS, "expm")):
         return {}
     place = {name: player.parse(text) for name, text in point.items()}
-    answers = read_with_answers(document, point=place)[2]
+    answers = read_with_answers(document, place)[2]
     return {"answers": answers} if answers else {}
 
 

@@ -107,3 +107,25 @@ def test_slopes_are_compared_at_every_symbol_and_at_a_point_of_the_box():
     assert 2 <= Fraction(proof["point"]["x"]) <= 3
     assert not [*equations.by_gradient(goal_of("log(2) - log(2)"), [])]
     assert not [*equations.by_gradient(goal_of("x*y - y*x"), [])]  # its slopes are no simpler
+
+
+FACTORED = [  # a claim, a hypothesis, and what makes the other factor of it no zero
+    ("x = y", "x*z = y*z", {"z": "nonzero"}),
+    ("x = y", "x*z*s = s*y*z", {"z": "nonzero", "s": "positive"}),
+    ("x = y", "x**2 = y**2", {"x": "positive", "y": "positive"}),
+    ("x = 1", "x*y - y + x*z - z = 0", {"y": ["1", "2"], "z": "nonnegative"}),
+]
+
+
+@pytest.mark.parametrize(("text", "hypothesis", "ranges"), FACTORED)
+def test_a_factor_that_is_not_zero_falls_out_of_a_hypothesis_and_only_then(text, hypothesis, ranges):
+    proved = nav.prove(text, given=[hypothesis], **ranges)
+    assert proved.status == "PROVED" and proved.check().accepted
+    assert nav.prove(text, given=[hypothesis]).status == "REFUTED"
+
+
+def test_an_infinite_number_is_no_symbol_that_nobody_declared():
+    for text in ("oo - oo = 0", "nan = nan", "inf = inf"):
+        with pytest.raises(nav.NavsymError, match="or declare it"):
+            nav.prove(text)
+    assert nav.prove("oo - oo = 0", oo="real").status == "PROVED"

@@ -595,6 +595,7 @@ class Climber(ClusterReader):
             body = body[match_brace(body, 0) + 1 :]
         rows = [split_tokens(row, "&") for row in split_tokens(body, "\\\\")]
         rows = [[[t for t in cell if t.text != r"\hline"] for cell in row] for row in rows]
+        rows = [[cell for cell in row if [t.text for t in cell] not in (["|"], ["||"])] for row in rows]
         rows = [row for row in rows if any(row)]
         cells = [cell for row in rows for cell in row]
         if opening == "cases" or (opening == "array" and self.look_at(self.place - 1) == "{<"):

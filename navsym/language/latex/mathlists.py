@@ -48,6 +48,10 @@ class Noad:
         return self.kind == "sym" and self.value in signs
 
     @property
+    def is_bar(self) -> bool:
+        return (self.kind, self.value) == ("bar", "|")
+
+    @property
     def has_scripts(self) -> bool:
         return self.sub is not None or self.sup is not None
 
@@ -152,6 +156,12 @@ class Builder:
                 if not primed or not takes_script(done[-1]):
                     raise Refusal(unit.at, "a name before its primes", "'", "write the name in [latex]")
                 done[-1].sup, done[-1].end = [*(done[-1].sup or []), prime], unit.end
+            elif (
+                unit.is_bar
+                and any(n.is_bar and n.end == unit.at for n in done[-1:])
+                and sum(n.is_bar for n in done) % 2
+            ):
+                done[-1].value, done[-1].end = "||", unit.end  # but |a||b| has bars that close and open
             else:
                 done.append(unit)
         if side:
@@ -259,8 +269,6 @@ class Builder:
             return []
         if name in SPACES:
             return [Noad("group", None, at, name_end, bold, ([],))]
-        if name == "empty":
-            return [Noad("group", None, at, end, bold, ([],))]
         if name in ("left", "right"):
             return [Noad("side", name, at, name_end)]
         if name in OPENERS or name in CLOSERS:
@@ -316,6 +324,7 @@ class Builder:
             else:
                 rows[-1][-1].append(inner)
         built = [[self.build(cell, False) for cell in row] for row in rows]
+        built = [[cell for cell in row if [n.kind for n in cell] != ["bar"]] for row in built]  # a line between columns
         built = [row for row in built if any(row)]
         widths = tuple(len(row) for row in built)
         return Noad("env", (node.environmentname, widths), at, end, False, tuple(c for row in built for c in row))

@@ -32,7 +32,7 @@ ACCENTS = frozenset(
 )
 DOTS = {"dot": 1, "ddot": 2, "dddot": 3}
 #: Spaces, behind which a script belongs to the symbol that follows; and commands that leave no trace.
-SPACES = frozenset([*",;:! >\n", "quad", "qquad", "thinspace"])
+SPACES = frozenset([*",;:! >\n", "quad", "qquad", "thinspace", "empty"])
 SETTINGS = frozenset("displaystyle textstyle limits nolimits mathstrut".split())
 SIZES = frozenset(f"{size}{side}" for size in ("big", "Big", "bigg", "Bigg") for side in ("", "l", "r"))
 

@@ -31,7 +31,7 @@ WRAPPER = re.compile(
     r"\\(?:begin|end)\{(?:aligned|split|align\*?|gather\*?|gathered|eqnarray\*?|equation\*?|multline\*?|alignedat)\}(?:\{\d+\})?"
 )
 LABEL = re.compile(
-    r"\\(?:label|tag\*?|hspace\*?|vspace\*?)\{[^{}]*\}|\\(?:nonumber|notag)(?![A-Za-z])|\\text\{[\s.,;:]*\}"
+    r"\\(?:label|tag\*?|[hv]space\*?|textcolor)\{[^{}]*\}|\\(?:nonumber|notag|empty)(?![A-Za-z])(?!\s*[_^])|\\text\{[\s.,;:]*\}"
 )
 OPERATORS = ("+", "-", r"\cdot", r"\times", r"\otimes")
 #: Words between formulas, none of which is a condition.
@@ -45,7 +45,7 @@ DOTS = r"\\(?:l|c|)dots(?![A-Za-z])"
 RUN = re.compile(
     rf"([A-Za-z])\s*=\s*([0-9]{{1,4}})((?:\s*,\s*[0-9]{{1,4}}(?![A-Za-z]))*)\s*,?\s*{DOTS}\s*,?\s*({ENDS})?(?=\s*(?:$|\\\\|[,;.}}]|\\q?quad))"
 )
-SPACE = r"(?:\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])|\\empty(?![A-Za-z])|&)*"
+SPACE = r"(?:\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])|&)*"
 FOR = re.compile(
     rf"(?:\\(?:text|textrm|textnormal|mathrm)\s*\{{\s*for(?: all)?\s*\}}|\\forall)(?={SPACE}{RUN.pattern})"
 )
@@ -92,6 +92,7 @@ def mask(text: str) -> str:
     """The text with blanks in place of labels and of environments that only align."""
     blank = re.compile(r"[^\n]")
     text = re.sub(r"\\\\(\s*\[[-0-9. a-z]{1,12}\])", lambda m: "\\\\" + blank.sub(" ", m[1]), text)
+    text = re.sub(r"\\text\{\s*\}(?=\s*[_^])", lambda m: "{}".ljust(len(m[0])), text)
     for pattern in (WRAPPER, LABEL):
         text = pattern.sub(lambda m: blank.sub(" ", m[0]), text)
     text = LIMIT.sub(lambda m: rf"\lim_{{{m[1]}}}".ljust(len(m[0])), unframe(text))
@@ -144,7 +145,7 @@ def split_relations(text: str) -> list[Relation]:
         if piece.kind == "separator":
             segments.append([])
             continue
-        if piece.kind == "row" and continues(text, segments[-1], pieces[place + 1]):
+        if piece.kind == "row" and continues(text, segments[-1], pieces[place + 1], not found):
             text = text[: piece.stop] + " " * len(piece.mark) + text[piece.stop + len(piece.mark) :]
             pieces[place + 1].start = segments[-1].pop().start
             continue
@@ -175,14 +176,15 @@ def relate_row(text: str, segments: list[list[Piece]], previous: Side | None) ->
     return [relation for relations in lists for relation in relations]
 
 
-def continues(text: str, row: list[Piece], following: Piece) -> bool:
-    """True when the next row goes on with this one: it begins with an operator, or nothing stands here behind one."""
-    behind = text[following.start : following.stop].replace("&", " ").strip()
-    here = text[row[-1].start : row[-1].stop].replace("&", " ").strip()
+def continues(text: str, row: list[Piece], following: Piece, is_first: bool) -> bool:
+    """True when the next row goes on with this one: with an operator, or with a relation behind a first left side."""
+    behind = re.sub("[&~]", " ", text[following.start : following.stop]).strip()
+    here = re.sub("[&~]", " ", text[row[-1].start : row[-1].stop]).strip()
     if not behind or not (here or len(row) > 1):
-        return False
+        return bool(is_first and here and len(row) == 1 and following.kind == "relation")
     starts = behind.startswith(OPERATORS) or re.match(r"\\q?quad\s*([-+]|\\cdot|\\times)", behind)
-    return bool((starts and following.kind != "relation") or (len(row) > 1 and not here) or here.endswith(OPERATORS))
+    joins = following.kind != "relation" or (is_first and len(row) == 1)
+    return bool((starts and joins) or (len(row) > 1 and not here) or here.endswith(OPERATORS))
 
 
 def list_pieces(text: str) -> list[Piece]:

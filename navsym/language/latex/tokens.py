@@ -46,8 +46,12 @@ def clean(text: str) -> list[Token]:
             side = name
             continue
         token.text = DELIMITERS.get(token.text, token.text)
-        if name == "empty":
-            tokens += [Token("{", token.at, token.at), Token("}", token.end, token.end)]
+        if token.text == "}" and [t.text for t in tokens[-3:-1]] == ["d", "{"]:  # the differential d{x}
+            del tokens[-2]
+            continue
+        is_second = token.text == "|" and bool(tokens) and (tokens[-1].text, tokens[-1].end) == ("|", token.at)
+        if is_second and not side and sum(t.text == "|" for t in tokens) % 2:  # no |a||b|
+            tokens[-1].text, tokens[-1].end = "||", token.end
             continue
         if side:
             if token.text in ("|", "||"):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from itertools import islice
 from typing import Any
 
 from flint import ctx
@@ -16,10 +17,9 @@ from navsym.prove.calculus import candidates
 from navsym.prove.calculus.candidates import Signs, list_candidates
 from navsym.prove.grant import BITS, REFUSALS, Document
 from navsym.prove.rooms.goals import Hole, player, values_of
-from navsym.prove.search import find_filled, plain
+from navsym.prove.search import SECONDS, find_filled, plain
 
-SECONDS = 8.0
-SHARE = 4.0  # seconds for one candidate
+MOST_CANDIDATES = 16  # of one question; formulas of textbooks need three
 TROUBLE = (*REFUSALS, *candidates.TROUBLE)
 MOST_POINTS = 3
 
@@ -40,9 +40,9 @@ take_sign, player.ask_sign = player.ask_sign, guess_sign
 class Search(player.Answers):  # type: ignore[misc,name-defined]
     """Answers that are sought when they are asked for; those that were found stay for the next case."""
 
-    def __init__(self, seconds: float, point: Mapping[str, Any] | None = None):
+    def __init__(self, point: Mapping[str, Any] | None = None):
         super().__init__([], None if point is None else dict(point))
-        self.deadline, self.found, self.known = time.process_time() + seconds, list[Any](), dict[Any, Any]()
+        self.deadline, self.found, self.known = time.process_time() + SECONDS, list[Any](), dict[Any, Any]()
 
     def settle(self, question: Any, goal: Any) -> Any:
         """The value of a question with the first candidate that its rule accepts."""
@@ -57,11 +57,8 @@ class Search(player.Answers):  # type: ignore[misc,name-defined]
     def seek(self, question: Any, goal: Any) -> tuple[Any, Any] | None:
         """The first answer and its value."""
         try:
-            for make in list_candidates(question, goal):
-                left = min(SHARE, self.deadline - time.process_time())
-                if left <= 0:
-                    return None
-                found = play(make, question, goal, left)
+            for make in islice(list_candidates(question, goal), MOST_CANDIDATES):
+                found = play(make, question, goal, self.deadline - time.process_time())
                 if found is not None:
                     return found
         except TROUBLE:
@@ -81,9 +78,9 @@ def play(make: Callable[[], Any], question: Any, goal: Any, seconds: float) -> t
     return None if value is None else (plain(tried[-1]), value)
 
 
-def read_with_answers(document: Document, seconds: float = SECONDS, point: Mapping[str, Any] | None = None) -> Any:
+def read_with_answers(document: Document, point: Mapping[str, Any] | None = None) -> Any:
     """The cases of a statement, its box and the answers of its questions; raises Refused."""
-    answers, before = Search(seconds, point), ctx.prec
+    answers, before = Search(point), ctx.prec
     ctx.prec = BITS[0]  # as the checker will read it
     try:
         cases, box = player.read_statement(document, answers)

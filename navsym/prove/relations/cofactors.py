@@ -7,6 +7,7 @@ solved modulo a prime and its solution guessed as fractions; the checker multipl
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 from typing import Any
@@ -40,15 +41,19 @@ def by_cofactors(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     own = [*relations, *list_own_relations(parts, generators, ring)]
     roots = [k for k, part in enumerate(parts) if part[0] == "sqrt"]
     most = FEW_UNKNOWNS if any(m[k] % 2 for m in read_terms(top) for k in roots) else MOST_UNKNOWNS
-    divisors = write_divisors(bottom, goal, generators, ring)
-    for rest, found in find_cofactors(top, None if goal.relation == "=" else bottom, own, most):
-        if fails(goal.relation, arb(rest)):
-            continue
-        shares = [
-            write_share(c, down, divisors, parts) if c else "0"
-            for c, (_, down) in zip(found, quotients[1:], strict=False)
-        ]
-        yield {"rule": "modulo", "to": f"({rest})", "cofactors": shares, "defined": Holes(), "proof": Hole()}
+    factored = [h.factor()[1] for h in relations if goal.relation == "="]
+    factors = (p for pairs in factored if len(pairs) > 1 for p, _ in pairs if divmod(top, p)[1])
+    common = math.prod(factors, start=ring.constant(1))
+    for more in (ring.constant(1), common)[: 1 + (not common.is_constant())]:  # f is 0 where f p is, and p is not
+        divisors = write_divisors(bottom * more, goal, generators, ring)
+        for rest, found in find_cofactors(top * more, None if goal.relation == "=" else bottom, own, most):
+            if fails(goal.relation, arb(rest)):
+                continue
+            shares = [
+                write_share(c, down, divisors, parts) if c else "0"
+                for c, (_, down) in zip(found, quotients[1:], strict=False)
+            ]
+            yield {"rule": "modulo", "to": f"({rest})", "cofactors": shares, "defined": Holes(), "proof": Hole()}
 
 
 def by_elimination(goal: Any, sample: list[arb]) -> Iterator[Proof]:

@@ -18,7 +18,7 @@ from flint import arb, ctx
 from navsym.claims.formula import Formula
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Verdict
 from navsym.core.errors import NavsymError
-from navsym.prove.calculus.answers import MOST_POINTS, SECONDS, read_with_answers
+from navsym.prove.calculus.answers import MOST_POINTS, read_with_answers
 from navsym.prove.grant import BITS, IDENTITY, REFUSALS, Document, grant, refute_document, withdraw, write_point
 from navsym.prove.relations.points import Rows, draw_corner_points, draw_special_points
 from navsym.prove.rooms.goals import player, subterms, to_sympy, write_term
@@ -197,7 +197,7 @@ def refute(claim: TextClaim, document: Document, point: Mapping[str, Any]) -> Ve
 def describe_lost_order(document: Document, point: Mapping[str, Any], shown: Mapping[str, str]) -> dict[str, Any]:
     """What a refuted order says: the lowest derivative that differs at 0. Its value is no left - right."""
     ((name, order),) = document["order"].items()
-    (case, *_), _, _ = read_with_answers(document, SECONDS, {n: player.number(value) for n, value in point.items()})
+    (case, *_), _, _ = read_with_answers(document, {n: player.number(value) for n, value in point.items()})
     values = [player.value_of(goal.term, evaluate_point(case, point)) for goal in case.goals]
     low = min(i % order for i, value in enumerate(values) if player.FAILURES["="](value))
     words = f"left - right is no O({name}**{order}): both sides differ in the derivative of order {low} at {name} = 0"
@@ -210,9 +210,9 @@ def refute_at_points(claim: TextClaim, document: Document) -> Verdict | None:
     kinds = {name: kind for name, kind in claim.kinds.items() if {e for row in kind[1] for e in row} <= set(box)}
     points = draw_special_points(box, (), kinds, MOST_POINTS)
     for point in chain(islice(draw_corner_points(box, kinds), 1), points) if box else [{}]:
-        place = {name: player.number(value) for name, value in point.items()}
+        place = {name: player.parse(text) for name, text in write_point(point).items()}
         try:
-            cases, _, _ = read_with_answers(document, SECONDS / 2, place)
+            cases, _, _ = read_with_answers(document, place)
             inside = [(point, case) for case in cases if player.lies_in(case, place)]
             if find_failure(inside) is not None:
                 return refute(claim, document, point)
@@ -223,8 +223,8 @@ def refute_at_points(claim: TextClaim, document: Document) -> Verdict | None:
 
 def difference_at(document: Document, point: Mapping[str, Any]) -> Any:
     """An enclosure of left - right at the point, of the entry that differs most visibly."""
-    place = {name: player.number(value) for name, value in point.items()}
-    cases, _, _ = read_with_answers({**document, "relation": "=", "tolerance": None}, SECONDS, place)
+    place = {name: player.parse(text) for name, text in write_point(point).items()}
+    cases, _, _ = read_with_answers({**document, "relation": "=", "tolerance": None}, place)
     inside = [(case, evaluate_point(case, point)) for case in cases if player.lies_in(case, place)]
     values = [player.value_of(goal.term, balls) for case, balls in inside for goal in case.goals]
     far = [value for value in values if value.is_finite()]

@@ -1,6 +1,6 @@
 """Exact points at which hypotheses hold: unit vectors, rotations and unit quaternions have rational parameters.
 
-Other hypotheses are solved for a symbol in which they are linear. A point is a proposal: the checker looks at it.
+Other hypotheses are solved for a symbol with a rational root. A point is a proposal: the checker looks at it.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def draw_special_points(
             for kind, rows in kinds.values() if k % 3 else ():
                 if kind == "vector" and player.symbols_of(zero) <= {name for row in rows for name in row}:
                     stretch(zero, point)
-            solve_for_one(zero, point, fixed)
+            solve_for_one(zero, point, fixed, k)
         yield point
 
 
@@ -157,8 +157,8 @@ def stretch(zero: Any, point: Point) -> None:
         point.update({name: root * point[name] for name in here})
 
 
-def solve_for_one(zero: Any, point: Point, fixed: set[str]) -> None:
-    """Move one symbol, in which the hypothesis is linear at this point, so that it holds; it is not moved again."""
+def solve_for_one(zero: Any, point: Point, fixed: set[str], k: int) -> None:
+    """Move one symbol to a rational root of the hypothesis, the k-th of them in turn; it is not moved again."""
     for name in sorted(player.symbols_of(zero) - fixed, reverse=True):
         term = player.substitute(zero, {n: player.number(v) for n, v in point.items() if n != name})
         try:
@@ -167,9 +167,9 @@ def solve_for_one(zero: Any, point: Point, fixed: set[str]) -> None:
             top, bottom = player.to_fraction(term)
         except (player.Refused, ZeroDivisionError):
             continue
-        if top.degree() == 1 and bottom != 0:
-            root = -top[0] / top[1]
-            if bottom(root) != 0:
-                point[name] = root
-                fixed.add(name)
-                return
+        roots = [-line[0] / line[1] for line, _ in top.factor()[1] if line.degree() == 1] if top else []
+        roots = sorted(root for root in roots if bottom(root) != 0)
+        if roots:
+            point[name] = roots[k % len(roots)]
+            fixed.add(name)
+            return

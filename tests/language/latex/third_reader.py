@@ -70,7 +70,9 @@ def show(units):
 
 
 def list_units(latex, bold=False):
-    """The symbols of LaTeX."""
+    """The symbols of LaTeX; two bars side by side are a norm, unless one of them closes |a| and one opens |b|."""
+    latex = re.sub(r"&\s*\|\s*(?=&)", "", latex)
+    latex = re.sub(r"(?<![\\\w|])\|(?!\|)([^|]*)\|", r"\\vert \1\\vert ", latex).replace("||", r"\Vert ")
     text = SILENT.sub(
         lambda m: (
             r"\\ "
