@@ -14,10 +14,10 @@ from navsym.audit.evaluate import Case
 from navsym.audit.form import spell_entry
 from navsym.audit.mend import Budget, suggest
 from navsym.audit.names import Names
-from navsym.audit.questions import SENSES, Entry, Question, cells_of, list_entries, read_question
+from navsym.audit.questions import SENSES, Entry, Question, list_entries, read_question
 from navsym.audit.senses import weaken
 from navsym.audit.sources import Source, find_function, load_unit, read_source
-from navsym.audit.values import Array, Cell, Scalar, Unread, places_of
+from navsym.audit.values import Array, Cell, Scalar, Unread, cells_of, places_of
 from navsym.claims.display import write_table
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.answers import Answer, named

@@ -71,7 +71,7 @@ class Reader(SourceReader):
         """The tree of a source in which no variable is taken for a type, as ``b`` is in ``a*(b) - c``."""
         root, text = SourceReader.parse(self, source), bytearray(source)
         known = self.unit.variables
-        known |= list_variables(root)
+        known |= list_variables(root, NAMED)
         unions = (inner for node in descend(root) if node.type == "union_specifier" for inner in descend(node))
         self.unit.types |= list_types(root)
         self.unit.overlaid |= {text_of(inner) for inner in unions if inner.type == "field_identifier"}
@@ -93,7 +93,7 @@ class Reader(SourceReader):
 
     def read_file(self, root: Any) -> None:
         """Functions, constants and macros, also inside namespaces and classes."""
-        dropped: set[int] = set()
+        dropped, others = set[int](), list_variables(root, NAMED[1:])
         for node in descend(root):
             if node.id in dropped or (node.parent is not None and node.parent.id in dropped):
                 dropped.add(node.id)
@@ -106,6 +106,8 @@ class Reader(SourceReader):
                 self.read_macro(node)
             elif node.type == "preproc_function_def":
                 self.unit.macros[text_of(field_of(node, "name"))] = "a macro with arguments"
+            elif node.type == "preproc_call" and text_of(node).startswith("#undef"):
+                self.unit.macros[text_of(named(node)[-1]).strip()] = "a macro that is undefined again"
             elif node.type == "enumerator_list":
                 self.read_enumerators(node)
             elif node.type == "field_declaration" or (node.type == "declaration" and not is_constant(node)):
@@ -113,6 +115,7 @@ class Reader(SourceReader):
             elif node.type == "declaration":
                 self.unit.constants += [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
         self.unit.constants.sort(key=lambda statement: statement.span)
+        self.unit.macros |= dict.fromkeys(others & {*self.unit.macros}, "a macro, and a name of something else as well")
 
     def read_field(self, node: Any) -> None:
         """A member of a structure, or a variable of the file; one name with two types is left open."""
@@ -170,28 +173,41 @@ class Reader(SourceReader):
         self.pointers = {
             text_of(n)
             for c in inner
-            if any(p.type in POINTER for p in (c, c.parent) if p is not None)
+            if any(p.type in (*POINTER, "array_declarator") for p in (c, c.parent) if p is not None)
             for n in descend(c)
             if n.type == "identifier"
         }
-        arguments = tuple(self.argument(p) for p in parameters if text_of(p) != "void")
+        is_template = node.parent is not None and node.parent.type == "template_declaration"
+        head = field_of(node.parent, "parameters") if is_template else None
+        types = {text_of(n) for n in descend(head) if n.type == "type_identifier"} if head is not None else set()
+        arguments = tuple(self.argument(p, types) for p in parameters if text_of(p) != "void")
+        before = [c for c in named(node) if c.type == "field_initializer_list"]  # what is in no statement
+        start = tuple(
+            self.part("unread", c, "a constructor that begins with a list of its members", ()) for c in before
+        )
         is_plain = field_of(node, "declarator").type == "function_declarator" and field_of(node, "type") is not None
         number = number_of(self.type_of(node)) if is_plain else "auto"
-        function = Function(name, line_of(node), arguments, self.block(body), number=number)
+        function = Function(name, line_of(node), arguments, start + self.block(body), number=number)
         self.unit.functions.setdefault(name, []).append(function)
 
-    def argument(self, node: Any) -> Argument:
-        """A parameter with its sizes; pointers, references and arrays are shared with the caller."""
+    def argument(self, node: Any, types: set[str]) -> Argument:
+        """A parameter with its sizes; pointers, references and arrays are shared with the caller.
+
+        types : those of a template, which are those of what is given
+        """
         kind = self.type_of(node)
         name, sizes, shared = self.declared(field_of(node, "declarator"))
         shape = sizes or self.sizes(node, shape_of_type(kind))
-        return Argument(name, number_of(kind), shape, shared)
+        return Argument(name, "auto" if kind in types else number_of(kind), shape, shared)
 
     def type_of(self, node: Any) -> str:
         """The type of a declaration, with names of types that the file defines replaced."""
         text, types = text_of(field_of(node, "type")), self.unit.types
         for _ in range(ROUNDS):
             text = re.sub(r"(?<![\w:])\w+", lambda found: types.get(found[0], found[0]), text)
+        for child in node.children_by_field_name("declarator"):
+            if name := re.search(r"[A-Za-z_]\w*", text_of(child)):
+                self.unit.kinds.setdefault(name[0], set()).add(text)
         return text
 
     def declared(self, node: Any) -> tuple[str, tuple[Part, ...] | None, bool]:
@@ -537,6 +553,9 @@ def list_types(root: Any) -> dict[str, str]:
     templates = (node for node in descend(root) if node.type.endswith("type_parameter_declaration"))
     open_types = {text_of(inner) for node in templates for inner in named(node)}
     for node in descend(root):
+        is_class = node.type in ("struct_specifier", "class_specifier") and node.parent.type != "template_declaration"
+        if is_class and any(inner.type == "operator_name" for inner in descend(node)):
+            types[text_of(field_of(node, "name"))] = "own"  # with operators of its own, also where its name is known
         if node.type in ("type_definition", "alias_declaration"):
             name = field_of(node, "declarator") or field_of(node, "name")
             is_plain = name.type == "type_identifier"
@@ -547,12 +566,12 @@ def list_types(root: Any) -> dict[str, str]:
     return types
 
 
-def list_variables(root: Any) -> set[str]:
-    """The names of a source that are declared or defined as values, and never as types."""
+def list_variables(root: Any, kinds: tuple[str, ...]) -> set[str]:
+    """The names of a source that are declared as values or defined by these kinds, and never as types."""
     values, types = set[str](), set[str]()
     for node in descend(root):
-        name = node if node.type == "identifier" else field_of(node, "name") if node.type in NAMED else None
-        if name is not None and node.parent is not None and (node.type in NAMED or node.parent.type in DECLARING):
+        name = node if node.type == "identifier" else field_of(node, "name") if node.type in kinds else None
+        if name is not None and node.parent is not None and (node.type in kinds or node.parent.type in DECLARING):
             values.add(text_of(name))
         elif node.type.endswith(("_specifier", "type_definition", "alias_declaration")):
             types |= {text_of(child) for child in node.children if child.type == "type_identifier"}

@@ -6,6 +6,8 @@ the point, goes to the checker as text. Nothing else makes an entry PROVED or RE
 
 from __future__ import annotations
 
+import contextlib
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -14,6 +16,7 @@ from typing import Any
 from flint import fmpq, fmpq_mat
 
 from navsym.audit.evaluate import Condition
+from navsym.audit.shared import shorten_pairs
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.errors import DomainError, NavsymError, TooLargeError
 from navsym.language.domains import rational_value
@@ -23,7 +26,7 @@ from navsym.language.printer import print_tree
 from navsym.language.tree import ZERO, Tree, build_number, build_sum, build_symbol, fold_tree, list_names, negate
 from navsym.language.tree import replace as replace_parts
 from navsym.prove.grant import IDENTITY, REFUSALS, find_witness, grant, refute_document
-from navsym.prove.rooms.goals import player, simple_point
+from navsym.prove.rooms.goals import player, simple_point, write_term
 from navsym.prove.search import ROUNDS, Rounds, find_proof, rules_of
 
 #: Of the search for one entry.
@@ -123,18 +126,16 @@ def measure(tree: Tree) -> int:
 def write_document(code: Tree, expected: Tree, scope: Scope) -> Document:
     """The statement in the words of the checker, with the relations as hypotheses."""
     names = list_names(code, expected, *scope.relations, *map(build_symbol, scope.order))
-    document: Document = {
-        "left": print_tree(code),
-        "relation": "=",
-        "right": print_tree(expected),
-        "symbols": {name: scope.ranges[name] for name in names},
-        "exists": [],
-        "tolerance": None,
-    }
-    if scope.relations:
-        given = [f"{print_tree(relation)} = 0" for relation in scope.relations]
-        document |= {"shapes": {}, "given": given, "rates": {}}
+    given = [f"{print_tree(relation)} = 0" for relation in scope.relations]
+    symbols = {name: scope.ranges[name] for name in names}
+    document = write_equation(print_tree(code), print_tree(expected), symbols, given)
     return document | ({"order": dict(scope.order)} if scope.order else {})
+
+
+def write_equation(left: str, right: str, symbols: Mapping[str, Any], given: Sequence[str]) -> Document:
+    """An equation in the words of the checker, below hypotheses."""
+    document = {"left": left, "relation": "=", "right": right, "symbols": symbols, "exists": [], "tolerance": None}
+    return document | ({"shapes": {}, "given": given, "rates": {}} if given else {})
 
 
 def prove_document(document: Document) -> Document | None:
@@ -154,24 +155,15 @@ def write_proof(document: Document, witness: Mapping[str, str], proofs: list[Any
 
 def prove_shared(pairs: Sequence[tuple[Tree, Tree]], scope: Scope) -> dict[tuple[Tree, Tree], Document]:
     """The certificates of identities in shared parts, with their meanings as hypotheses; one for several pairs."""
-    from navsym.audit.shared import shorten_pairs
-
     done = dict[tuple[Tree, Tree], Document]()
     for equal, short in shorten_pairs(pairs):
         inputs, (left, right) = short.inputs(), zip(*short.pairs, strict=True)
         numbers = [simple_point(player.read_range(scope.ranges[name]), i % 2) for i, name in enumerate(inputs)]
         point = {name: Fraction(int(q.p), int(q.q)) for name, q in zip(inputs, numbers, strict=True)}
-        document: Document = {
-            "left": f"[{', '.join(map(print_tree, left))}]",
-            "relation": "=",
-            "right": f"[{', '.join(map(print_tree, right))}]",
-            "symbols": {**{name: scope.ranges[name] for name in inputs}, **{name: REAL for name in short.meanings}},
-            "exists": [],
-            "tolerance": None,
-            "shapes": {},
-            "given": [f"{name} = {print_tree(tree)}" for name, tree in short.meanings.items()],
-            "rates": {},
-        }
+        both = [f"[{', '.join(map(print_tree, side))}]" for side in (left, right)]
+        given = [f"{name} = {print_tree(tree)}" for name, tree in short.meanings.items()]
+        ranges = {name: scope.ranges[name] for name in inputs} | dict.fromkeys(short.meanings, REAL)
+        document = write_equation(*both, ranges, given)
         try:
             witness = {name: str(value) for name, value in short.complete(point).items()}
             certificate = write_proof(document, witness, [IDENTITY for _ in equal])
@@ -218,17 +210,17 @@ def refute(document: Document, code: Tree, expected: Tree, scope: Scope) -> Deci
         if not all(holds_at(condition, place) for condition in scope.conditions):
             continue
         values = [player.value_of(goal.term, place) for goal in case.goals]
-        if not all(player.value_of(t, place).is_finite() for t in case.terms) or not any(
-            v > 0 or v < 0 for v in values
-        ):
+        is_there = all(player.value_of(term, place).is_finite() for term in case.terms)
+        if not is_there or not any(v > 0 or v < 0 for v in values):
             continue
         texts = {name: str(value) for name, value in point.items()}
         try:
             certificate = refute_document([document], document, {n: texts[n] for n in document["symbols"]})
         except REFUSALS:
             continue
-        both = value_text(code, point), value_text(expected, point)
-        return Decision(REFUTED, point=texts, values=both, certificate=certificate)
+        return Decision(
+            REFUTED, "exact", texts, (value_text(code, point), value_text(expected, point)), "", certificate
+        )
     return None
 
 
@@ -236,7 +228,11 @@ def draw_points(box: Mapping[str, Any], scope: Scope) -> Iterator[Point]:
     """Simple exact points of the box at which the relations hold."""
     names = sorted(box)
     for k in range(POINTS):
-        point = {name: choose_value(box[name], k, i) for i, name in enumerate(names)}
+        point = dict[str, fmpq]()
+        for i, name in enumerate(names):  # a simple number of its range
+            simple = SIMPLE[(i * (k // 3 + 1) + k) % len(SIMPLE)]
+            is_inside = player.is_inside(("number", simple), box[name])
+            point[name] = simple if is_inside else simple_point(box[name], k + i)
         for entries in scope.rotations:
             if {*entries} <= {*names}:
                 turn(entries, point, k)
@@ -252,12 +248,6 @@ def turn(entries: Sequence[str], point: Point, trial: int) -> None:
     square = w * w + sum(x * x for x in v)
     whole = fmpq_mat(3, 3, [int(i == j) for i in range(3) for j in range(3)]) + (skew * w + skew * skew) * (2 / square)
     point |= dict(zip(entries, whole.entries(), strict=True))
-
-
-def choose_value(limits: Any, trial: int, place: int) -> fmpq:
-    """A simple number of a range."""
-    candidate = SIMPLE[(place * (trial // 3 + 1) + trial) % len(SIMPLE)]
-    return candidate if player.is_inside(("number", candidate), limits) else simple_point(limits, trial + place)
 
 
 def meet(relation: Tree, point: Point, box: Mapping[str, Any]) -> bool:
@@ -278,12 +268,11 @@ def meet(relation: Tree, point: Point, box: Mapping[str, Any]) -> bool:
     else:
         for at, name in enumerate(names):
             if max(exponents[at] for exponents in terms) == 1:
-                rest = [(fmpq(c), e) for e, c in terms.items()]
                 parts = [fmpq(0), fmpq(0)]
-                for coefficient, exponents in rest:
-                    for other, power in zip(names, exponents, strict=True):
-                        coefficient = coefficient * point[other] ** int(power) if other != name else coefficient
-                    parts[exponents[at]] += coefficient
+                for exponents, coefficient in terms.items():
+                    powers = zip(names, exponents, strict=True)
+                    factors = (point[other] ** int(power) for other, power in powers if other != name)
+                    parts[exponents[at]] += math.prod(factors, start=fmpq(coefficient))
                 if parts[1] != 0:
                     point[name] = -parts[0] / parts[1]
                     break
@@ -302,33 +291,26 @@ def holds_at(condition: Condition, place: Mapping[str, Any]) -> bool:
         return True
     term = player.parse(print_tree(build_sum(condition.left, negate(condition.right))))
     ball = player.value_of(term, dict(place))
-    if not ball.is_finite():
-        return False
     exact_zero = ball == 0
     truths = {
         "<": (ball < 0, ball >= 0), "<=": (ball <= 0, ball > 0), ">": (ball > 0, ball <= 0),
         ">=": (ball >= 0, ball < 0), "==": (exact_zero, ball != 0), "!=": (ball != 0, exact_zero),
     }  # fmt: skip
-    return bool(truths[condition.sign][0 if condition.holds else 1])
+    return bool(ball.is_finite() and truths[condition.sign][0 if condition.holds else 1])
 
 
 def value_text(tree: Tree, point: Point) -> str:
     """The value of a formula at a point: exact where it is rational, else to 15 digits."""
     used = {name: point[name] for name in list_names(tree)}
-    try:
-        exact = value_at(tree, used)
-    except NavsymError:
-        exact = None
-    if exact is not None:
-        return str(exact)
+    with contextlib.suppress(NavsymError):
+        if (exact := value_at(tree, used)) is not None:
+            return str(exact)
     place = {name: player.Jet(player.arb(value)) for name, value in used.items()}
     return str(player.value_of(player.parse(print_tree(tree)), place).str(15, radius=False))
 
 
 def differentiate(tree: Tree, symbol: Tree) -> Tree:
     """The derivative by the rules of the checker, as a tree; raises DomainError where none is known."""
-    from navsym.prove.rooms.goals import write_term
-
     if measure(tree) > LONGEST:
         raise DomainError("expected a formula of at most 200,000 characters; got a longer one; ask for its parts")
     try:

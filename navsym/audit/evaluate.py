@@ -26,6 +26,7 @@ from navsym.audit.values import (
     Variable,
     add,
     as_real,
+    cells_of,
     combine,
     constant_of,
     convert,
@@ -464,8 +465,7 @@ class Evaluator:
         if len(shapes) != 1 or not values:
             raise Unreadable(line, "a list of different shapes")
         (shape,) = shapes
-        cells = tuple(c for v in values for c in (v.cells if isinstance(v, Array) else (v,)))
-        return Array((len(values), *shape), cells)
+        return Array((len(values), *shape), tuple(c for v in values for c in cells_of(v)))
 
     def linked(self, value: Part | None, statement: Part) -> Variable:
         """The variable to which a reference or pointer is a second name."""
@@ -620,6 +620,10 @@ class Evaluator:
             if not sides and self.unit.language != "python":
                 return self.linked(inner, given)
         value = self.value(given)
+        if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in cells_of(value)):
+            raise Unreadable(
+                given.line, f"an integer given to {function.name}, a template, which may cut its quotients"
+            )
         shape = value.shape if isinstance(value, Array) else ()
         variable = Variable(argument.name, "list" if isinstance(value, List) else argument.number, shape)
         if isinstance(value, Unread):

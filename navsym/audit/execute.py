@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import math
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -26,6 +27,7 @@ from navsym.audit.values import (
     Unreadable,
     Value,
     Variable,
+    cells_of,
     combine,
     constant_of,
     convert,
@@ -372,8 +374,7 @@ class Machine(Decider):
 
     def note_unread(self, value: Value, statement: Part) -> None:
         """Keep in mind an assignment of what is not read."""
-        cells = value.cells if isinstance(value, Array) else (value,)
-        unread = next((cell for cell in cells if isinstance(cell, Unread)), None)
+        unread = next((cell for cell in cells_of(value) if isinstance(cell, Unread)), None)
         if unread is not None:
             self.reading.valueless[statement.span] = unread.why
 
@@ -623,18 +624,24 @@ class Machine(Decider):
         elif call.kind == "call" and call.parts[0] == "memcpy" and len(call.parts[1]) == 3:
             target, source, size = call.parts[1]
             names = [self.unit.text(part) for part in (target, source)]
-            local = [name for name in names if any(name in table for table in self.shadows)]
-            if not any(self.unit.text(size).replace(" ", "") == f"sizeof({name})" for name in local):
+            if not any(self.unit.text(size).replace(" ", "") == f"sizeof({n})" and self.is_own(n) for n in names):
                 raise Unreadable(statement.line, "memcpy of other than sizeof an array that is declared here")
+            known = (self.unit.kinds.get(re.split(r"->|\.", name)[-1], set()) for name in names_in(target, source))
+            if len(set().union(*known)) > 1:
+                raise Unreadable(statement.line, "memcpy between numbers of different types")
             self.run_assign(target, "", source, statement)
             return
         elif call.kind == "call" and call.parts[0] == "memset" and len(call.parts[1]) == 3:
             name, size = (self.unit.text(part).replace(" ", "").lstrip("&") for part in call.parts[1][::2])
-            if size != f"sizeof({name})" or (name in self.frame and not any(name in t for t in self.shadows)):
+            if size != f"sizeof({name})" or (name in self.frame and not self.is_own(name)):
                 raise Unreadable(statement.line, "memset of other than sizeof an array that is declared here")
             self.reset(call.parts[1][0], "memset", call.parts[1][1:2], statement)
             return
         self.value(call, wants_value=False)
+
+    def is_own(self, name: str) -> bool:
+        """True for an array that the function declares; a pointer has another size."""
+        return any(name in table for table in self.shadows) and self.frame[name].name == name
 
     def reset(self, base: Part, name: str, arguments: tuple[Part, ...], statement: Part) -> None:
         """A whole array set to one number, or to ones on the diagonal."""

@@ -93,6 +93,7 @@ class Unit:
     variables : names of C that are values, and no types
     overlaid : names of members of unions, which share their place with others
     types     : name of a type that the file defines -> what it stands for, in C
+    kinds     : name of a variable of C -> the types with which it is declared
     imported  : what names of numpy and math are called in Python
     """
 
@@ -110,6 +111,7 @@ class Unit:
     decimals: dict[Fraction, Tree] = field(default_factory=dict)
     variables: set[str] = field(default_factory=set)
     overlaid: set[str] = field(default_factory=set)
+    kinds: dict[str, set[str]] = field(default_factory=dict)
     imported: dict[str, str] = field(default_factory=dict)
     declared: set[str] = field(default_factory=set)
     types: dict[str, str] = field(default_factory=dict)

@@ -133,9 +133,10 @@ def cellwise(step: Callable[..., Tree]) -> Known:
 
 
 def whole_or_real(step: Callable[..., Tree]) -> Known:
-    """The same of functions that give integers for integers in numpy."""
-    real = cellwise(step)
-    return lambda unit, *values: map_cells(step, *values) if unit.language == "python" else real(unit, *values)
+    """The same of functions that give integers for integers, in numpy and C++."""
+    return lambda unit, *values: (
+        map_cells(step, *values) if unit.language in ("python", "cpp") else as_real(map_cells(step, *values))
+    )
 
 
 def plain(name: str) -> Known:

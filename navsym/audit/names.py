@@ -8,8 +8,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.core.errors import DuplicateError, ExpressionSyntaxError
+from navsym.language.declarations import box_of, read_parameters
 from navsym.language.names import NAME_LENGTH, RESERVED, check_name, join_place, quote
 from navsym.language.tree import Tree, build_symbol
+from navsym.prove.sampling.points import ranges_of, write_range
 
 SPELLING = re.compile(r"[A-Za-z_]\w*(?:(?:\.|->|::)\w+)*(?:\(\))?(?:\s*(?:\[[\d,\s]*\]|\([\d,\s]*\)))*", re.ASCII)
 
@@ -109,17 +111,11 @@ class Names:
 
     def ranges(self) -> dict[str, Any]:
         """Symbol -> its range in the words of the checker."""
-        from navsym.language.declarations import box_of, read_parameters
-        from navsym.prove.sampling.points import ranges_of, write_range
-
-        ranges: dict[str, Any] = {}
         for name, declaration in self.declarations.items():
-            if name not in self.written:
-                if declaration == "real":
-                    self.written[name] = [None, None, []]
-                    continue
+            if name not in self.written and declaration == "real":
+                self.written[name] = [None, None, []]
+            elif name not in self.written:
                 parameters = read_parameters({name: declaration}, "code.symbols")
                 symbol = parameters[name].symbol
                 self.written[name] = write_range(ranges_of([symbol], box_of(parameters))[symbol])
-        ranges.update(self.written)
-        return ranges
+        return dict(self.written)

@@ -8,12 +8,12 @@ from typing import Any
 from navsym.core.errors import DomainError, ExpressionSyntaxError, UnknownSymbolError
 from navsym.language.names import quote
 from navsym.language.printer import to_text
+from navsym.models.model import Model
+from navsym.prove.claimfile import read_claims, require_numbers
 
 
 def read_claim_side(reference: Any, folder: Path, where: str) -> list[list[str]]:
     """The right side of a claim of a claim file, ``"formulas.toml:half-angle"``, as rows of texts."""
-    from navsym.prove.claimfile import read_claims, require_numbers
-
     if not isinstance(reference, str) or ".toml:" not in reference:
         message = f'expected a claim such as "claims.toml:name"; got {quote(reference)}; write file and id'
         raise ExpressionSyntaxError(message, where=where)
@@ -32,8 +32,6 @@ def read_claim_side(reference: Any, folder: Path, where: str) -> list[list[str]]
 
 def read_model_matrices(path: Path) -> dict[str, list[list[str]]]:
     """F, and H, of a linear model file as rows of texts."""
-    from navsym.models.model import Model
-
     model = Model.load(path)
     found = {"F": model.F, "H": model.H}
     return {

@@ -263,9 +263,11 @@ class Reader(SourceReader):
                 return self.refuse(node, f"{base}, which this file uses for something else")
             if base in ("np", "numpy", "math", "np.linalg", "numpy.linalg"):
                 return self.part("call", node, name, tuple(arguments))
-            if base == "self":
-                return self.part("call", node, name.removeprefix("self."), tuple(arguments))
             method = text_of(field_of(function, "attribute"))
+            if base == "self" and method in ("abs", "max", "min") and f"def {method}(".encode() not in self.unit.source:
+                return self.refuse(node, f"the method {method}, which another file defines")
+            if base == "self":
+                return self.part("call", node, method, tuple(arguments))
             return self.part("method", node, self.expression(field_of(function, "object")), method, tuple(arguments))
         if function.type == "identifier":
             return self.part("call", node, self.unit.imported.get(name, name), tuple(arguments))

@@ -24,6 +24,7 @@ from navsym.audit.values import (
     Value,
     Variable,
     add,
+    cells_of,
     identity_array,
     make_array,
     map_cells,
@@ -35,7 +36,7 @@ from navsym.audit.values import (
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, ShapeError, UnknownSymbolError
 from navsym.language.expression import read_tree
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
-from navsym.language.schema import Table, as_list, as_table, as_text, as_title, require_key
+from navsym.language.schema import as_list, as_table, as_text, as_title, require_key
 from navsym.language.tree import ONE, SYMBOL, Tree, list_parts, replace
 
 MOST_CASES = 64
@@ -470,11 +471,6 @@ def is_symmetric(matrix: Array) -> bool:
 def flatten(reference: Any) -> list[Any]:
     """The references in a list of lists."""
     return [r for item in reference for r in flatten(item)] if isinstance(reference, list) else [reference]
-
-
-def cells_of(value: Value) -> tuple[Cell, ...]:
-    """The cells of a value."""
-    return value.cells if isinstance(value, Array) else (value,)
 
 
 def derivative(cell: Cell, symbol: Any) -> Cell:

@@ -112,12 +112,8 @@ class Source:
         if shape:
             return [self.symbol(spell_entry(self.unit, key, place)) for place in places_of(shape)]
         if key not in self.names.symbols and key not in self.names.inputs:
-            listed = [*self.names.symbols]
-            message = (
-                f"expected an input that {self.function.name} reads; got {quote(reference)}; "
-                f"correct it: {suggest_nearest(reference, listed)}"
-            )
-            raise UnknownSymbolError(message, where=where)
+            message = f"expected an input that {self.function.name} reads; got {quote(reference)}; correct it: "
+            raise UnknownSymbolError(message + suggest_nearest(reference, self.names.symbols), where=where)
         return [self.names.symbol(reference)]
 
 
@@ -136,8 +132,8 @@ def load_unit(
     """
     where, language = name_file(path), language or LANGUAGES.get(Path(path).suffix.lower())
     if language is None:
-        expected = f"a source that ends in {' '.join(LANGUAGES)}"
-        raise ExpressionSyntaxError(f"expected {expected}; got {quote(Path(path).name)}; rename it", where=where)
+        message = f"expected a source that ends in {' '.join(LANGUAGES)}; got {quote(Path(path).name)}; rename it"
+        raise ExpressionSyntaxError(message, where=where)
     data, pieces = b"", list[tuple[int, int, str]]()
     for file in (Path(path), *also):  # one text, so that each part has a place of its own
         text = read_bytes(file, SIZE).removeprefix(b"\xef\xbb\xbf")
@@ -196,28 +192,28 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
     """One ``[[code]]`` block; a line tells several functions of one name apart."""
     table = as_table(block, where)
     expect_keys(table, KEYS, where)
-    texts = {
-        key: as_text(require_key(table, key, where), join_place(where, key), "a name")
+    name, file, asked = (
+        as_text(require_key(table, key, where), join_place(where, key), "a name")
         for key in ("name", "file", "function")
-    }
-    language = table.get("language")
-    if language is not None:
+    )
+    if (language := table.get("language")) is not None:
         one_of(as_text(language, join_place(where, "language"), "a language"), LANGUAGES.values(), where)
     also, defined, ignored = (read_names(table, key, where) for key in ("also", "defined", "ignored"))
     known = None if defined is None else frozenset(defined)
-    unit = load_unit(folder / texts["file"], language, [folder / name for name in also or ()], known)
-    declare_constants(unit, as_table(table.get("constants", {}), join_place(where, "constants")), where)
-    declare_functions(unit, as_table(table.get("functions", {}), join_place(where, "functions")), where)
+    unit = load_unit(folder / file, language, [folder / other for other in also or ()], known)
+    constants, functions, symbols = (
+        as_table(table.get(key, {}), join_place(where, key)) for key in ("constants", "functions", "symbols")
+    )
+    declare_constants(unit, constants, where)
+    declare_functions(unit, functions, where)
     unit.ignored = frozenset(ignored or ())
     lines = read_lines(table["lines"], join_place(where, "lines")) if "lines" in table else None
-    function = find_function(unit, texts["function"], join_place(where, "function"), lines[0] if lines else line)
-    whole = function
+    whole = function = find_function(unit, asked, join_place(where, "function"), lines[0] if lines else line)
     if lines is not None:
         function = take_lines(unit, function, *lines, join_place(where, "lines"))
-        fixed = as_table(table.get("constants", {}), where)  # such as the counter of a loop around the lines
-        function = replace(function, arguments=tuple(a for a in function.arguments if a.name not in fixed))
+        own = tuple(a for a in function.arguments if a.name not in constants)  # as the counter of a loop around them
+        function = replace(function, arguments=own)
     place = join_place(where, "symbols")
-    symbols = as_table(table.get("symbols", {}), place)
     unit.declared |= {squeeze(spelling).partition("[")[0].replace("->", ".") for spelling in symbols}
     shapes, symmetric = read_symbols(symbols, names, place)
     starts = {
@@ -226,7 +222,7 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
         if isinstance(declaration, dict) and read_start(declaration, join_place(place, spelling))
         for p in places_of(shapes[spelling])
     }
-    source = Source(texts["name"], unit, function, names, shapes, symmetric, (), starts=starts)
+    source = Source(name, unit, function, names, shapes, symmetric, (), starts=starts)
     names.inputs |= list_inputs(source, whole)
     relations, approximations = (read_equations(table, key, names, where) for key in ("relations", "approximations"))
     source.relations = tuple(build_sum(left, negate(right)) for left, right in relations)
@@ -253,9 +249,8 @@ def is_rotation(declaration: Any, where: str) -> bool:
 def relate_rotation(matrix: Array) -> tuple[Tree, ...]:
     """What is zero of a rotation: C C' - E, C' C - E, and c_i x c_j - c_k for its rows."""
     mirror = transpose(matrix, True)
-    rows = [Array((3,), matrix.cells[3 * i : 3 * i + 3]) for i in range(3)]
-    pairs: list[tuple[Value, Value]] = [(matrix_product(matrix, mirror), identity_array(3, 3))]
-    pairs += [(matrix_product(mirror, matrix), identity_array(3, 3))]
+    rows, one = [matrix.row(i) for i in range(3)], identity_array(3, 3)
+    pairs: list[tuple[Value, Value]] = [(matrix_product(matrix, mirror), one), (matrix_product(mirror, matrix), one)]
     pairs += [(cross_product(rows[i], rows[(i + 1) % 3]), rows[(i + 2) % 3]) for i in range(3)]
     cells = [c for p in pairs for c in map_cells(lambda a, b: add(a, minus(b)), *p).cells]  # type: ignore[union-attr]
     return tuple(dict.fromkeys(cell.tree for cell in cells if isinstance(cell, Scalar)))
@@ -263,9 +258,8 @@ def relate_rotation(matrix: Array) -> tuple[Tree, ...]:
 
 def read_names(table: Table, key: str, where: str) -> list[str] | None:
     """A list of names, which may be empty; None where the key is not there."""
-    if key not in table or table[key] == []:
-        return table.get(key)
-    return [as_text(name, join_place(where, key), "a name") for name in as_list(table[key], join_place(where, key))]
+    place, names = join_place(where, key), table.get(key)
+    return [as_text(name, place, "a name") for name in as_list(names, place)] if names else names
 
 
 def list_inputs(source: Source, whole: Function) -> set[str]:
@@ -282,9 +276,8 @@ def read_lines(value: Any, where: str) -> tuple[int, int]:
     """The first and the last line."""
     is_pair = isinstance(value, list) and len(value) == 2 and all(type(n) is int for n in value)
     if not is_pair or not 0 < value[0] <= value[1]:
-        raise ShapeError(
-            f"expected the first and the last line, [12, 30]; got {quote(value)}; correct them", where=where
-        )
+        message = f"expected the first and the last line, [12, 30]; got {quote(value)}; correct them"
+        raise ShapeError(message, where=where)
     return value[0], value[1]
 
 
@@ -351,8 +344,7 @@ def read_symbols(table: Table, names: Names, where: str) -> tuple[dict[str, Inde
         shapes[spelling] = tuple(given)
         if declaration.get("symmetric") is True:
             if len(given) != 2 or given[0] != given[1]:
-                message = f"expected a square matrix; got {quote(sizes)}; remove symmetric"
-                raise ShapeError(message, where=place)
+                raise ShapeError(f"expected a square matrix; got {quote(sizes)}; remove symmetric", where=place)
             symmetric.add(spelling)
     return shapes, frozenset(symmetric)
 

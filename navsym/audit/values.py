@@ -99,6 +99,11 @@ class List(Array):
 Value = Scalar | Array | Unread
 
 
+def cells_of(value: Value) -> tuple[Cell, ...]:
+    """The cells of a value."""
+    return value.cells if isinstance(value, Array) else (value,)
+
+
 @dataclass(slots=True, eq=False)
 class Variable:
     """What a name holds.
@@ -362,8 +367,7 @@ def rotate(quaternion: Value, vector: Value) -> Array:
 
 def square_sum(value: Value) -> Cell:
     """The sum of the squares of all cells."""
-    cells = value.cells if isinstance(value, Array) else (value,)
-    return map_cell(lambda *trees: total([raise_to(t, build_number(2)) for t in trees]), *cells)
+    return map_cell(lambda *trees: total([raise_to(t, build_number(2)) for t in trees]), *cells_of(value))
 
 
 def identity_array(m: int, n: int) -> Array:
@@ -396,7 +400,7 @@ def does_fit(cell: Scalar, kind: str) -> bool:
 
 def require_fit(unit: Unit, value: Value, line: int) -> Value:
     """The value, where no constant among its integers is past the ends of its type."""
-    for cell in (value.cells if isinstance(value, Array) else (value,)) if unit.rules.integer else ():
+    for cell in cells_of(value) if unit.rules.integer else ():
         if isinstance(cell, Scalar) and cell.number in LIMITS and not does_fit(cell, cell.number):
             raise Unreadable(line, "integers that do not fit their type")
     return value
