@@ -255,24 +255,19 @@ def audit(path: str | os.PathLike[str], /, function: str | None = None) -> Audit
 
 def audit_specification(path: Path, only: str | None = None) -> Audit:
     """The verdicts on the questions of a file, or on the one of a name."""
-    sources, questions = read_specification(path)
-    chosen = [question for question in questions if only in (None, question.name)]
-    answers = tuple(answer_question(question, sources) for question in chosen)
-    return Audit(describe_files(sources), answers)
-
-
-def read_specification(path: Path) -> tuple[list[Source], list[Question]]:
-    """The sources and questions of a file."""
     document, where = read_toml(path), name_file(path)
     expect_keys(document, ("code", "question"), where)
     names, by_name = read_sources(document, path.parent, where)
-    blocks = read_blocks(document, "question", where)
     place = join_place(where, "question")
     questions = [
-        read_question(block, by_name, names, path.parent, join_place(place, i)) for i, block in enumerate(blocks)
+        read_question(block, by_name, names, path.parent, join_place(place, i))
+        for i, block in enumerate(read_blocks(document, "question", where))
     ]
     require_distinct((question.name for question in questions), place)
-    return [*by_name.values()], questions
+    sources = [*by_name.values()]
+    chosen = [question for question in questions if only in (None, question.name)]
+    answers = tuple(answer_question(question, sources) for question in chosen)
+    return Audit(describe_files(sources), answers)
 
 
 def read_sources(document: Mapping[str, Any], folder: Path, where: str) -> tuple[Names, dict[str, Source]]:
@@ -328,8 +323,7 @@ def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQue
     order = (PROVED, CERTIFIED, OPEN, REFUTED)
     for entry, scope, decision in zip(entries, scopes, decisions, strict=True):
         answer = write_answer(question, entry, scope, decision, budget)
-        known = worst.get(entry.place)
-        if known is None or order.index(answer.status) > order.index(known.status):
+        if (known := worst.get(entry.place)) is None or order.index(answer.status) > order.index(known.status):
             worst[entry.place] = answer
     return AuditedQuestion(question.name, question.kind, tuple(worst.values()), question.inputs())
 
@@ -337,9 +331,10 @@ def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQue
 def decide_cells(entry: Entry, scope: Scope, decided: dict[Any, Decision]) -> Decision:
     """The verdict on one entry in one case, as it stands."""
     code, expected = entry.code, entry.expected
-    if isinstance(code, Unread) or isinstance(expected, Unread):
-        unread = code if isinstance(code, Unread) else expected
-        return Decision(OPEN, why=f"not read: {unread.why if isinstance(unread, Unread) else ''}")
+    for cell in (code, expected):
+        if isinstance(cell, Unread):
+            return Decision(OPEN, why=f"not read: {cell.why}")
+    assert isinstance(code, Scalar) and isinstance(expected, Scalar)
     if (code.tree, expected.tree) in decided:  # for all points, whatever the conditions
         return decided[code.tree, expected.tree]
     key = (code.tree, expected.tree, entry.conditions)
@@ -360,8 +355,7 @@ def write_answer(question: Question, entry: Entry, scope: Scope, decision: Decis
     point, suggestion, why = None, None, decision.why
     if decision.status == REFUTED:
         point = {question.names.spellings.get(n, n): value for n, value in (decision.point or {}).items()}
-        mend = suggest(entry, scope, budget)
-        if mend is not None:
+        if (mend := suggest(entry, scope, budget)) is not None:
             line, suggestion = mend.line, mend.text
         why = "; ".join(filter(None, (describe_case(entry), why)))
     right = None if isinstance(entry.expected, Unread) or entry.conditions else print_tree(entry.expected.tree)
@@ -391,7 +385,12 @@ def list_formulas(source: Source) -> Iterator[OutputFormula]:
     """What the function returns, and what it assigns to parameters, members and globals, case by case."""
     for case in source.read().cases:
         for name, cell in list_outputs(source, case):
-            yield OutputFormula(name, cell.line, write_cell(source, cell), describe_case(case))
+            text = f"not read: {cell.why}" if isinstance(cell, Unread) else ""
+            if isinstance(cell, Scalar) and measure(cell.tree) > LONGEST:
+                text = "not shown: a formula of more than 20,000 characters"
+            elif isinstance(cell, Scalar):
+                text = source.names.show(print_tree(cell.tree))
+            yield OutputFormula(name, cell.line, text, describe_case(case))
 
 
 def list_outputs(source: Source, case: Case) -> Iterator[tuple[str, Cell]]:
@@ -404,12 +403,3 @@ def list_outputs(source: Source, case: Case) -> Iterator[tuple[str, Cell]]:
             is_output = variable.is_input or name in source.function.outputs
             if is_output and (isinstance(cell, Unread) or cell.line):
                 yield spell_entry(source.unit, name, place), variable.all_unread or cell
-
-
-def write_cell(source: Source, cell: Cell) -> str:
-    """A formula in the spelling of the source, or why there is none."""
-    if isinstance(cell, Unread):
-        return f"not read: {cell.why}"
-    if measure(cell.tree) > LONGEST:
-        return "not shown: a formula of more than 20,000 characters"
-    return source.names.show(print_tree(cell.tree))

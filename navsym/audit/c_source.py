@@ -8,7 +8,17 @@ from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, names_in, walk
 from navsym.audit.functions import METHODS
-from navsym.audit.syntax import SourceReader, descend, field_of, identifiers_in, line_of, named, text_of, whole_kind
+from navsym.audit.syntax import (
+    SourceReader,
+    descend,
+    field_of,
+    identifiers_in,
+    line_of,
+    list_above,
+    named,
+    text_of,
+    whole_kind,
+)
 from navsym.audit.values import LIMITS
 
 RULES = Rules(integer=True)
@@ -76,7 +86,8 @@ class Reader(SourceReader):
         self.unit.types |= list_types(root)
         self.unit.overlaid |= {text_of(inner) for inner in unions if inner.type == "field_identifier"}
         for _ in range(ROUNDS):
-            found = [n for n in map(find_type, descend(root)) if n is not None and text_of(n) in known]
+            casts = [field_of(field_of(n, "type"), "type") for n in descend(root) if n.type == "cast_expression"]
+            found = [n for n in casts if n is not None and n.type == "type_identifier" and text_of(n) in known]
             if not found:
                 break
             for node in found:
@@ -88,8 +99,6 @@ class Reader(SourceReader):
     @staticmethod
     def find_value(node: Any) -> Any:
         return field_of(field_of(node, "declarator"), "value") if node.type == "declaration" else None
-
-    # -- the file --
 
     def read_file(self, root: Any) -> None:
         """Functions, constants and macros, also inside namespaces and classes."""
@@ -110,10 +119,12 @@ class Reader(SourceReader):
                 self.unit.macros[text_of(named(node)[-1]).strip()] = "a macro that is undefined again"
             elif node.type == "enumerator_list":
                 self.read_enumerators(node)
-            elif node.type == "field_declaration" or (node.type == "declaration" and not is_constant(node)):
-                self.read_field(node)
-            elif node.type == "declaration":
-                self.unit.constants += [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
+            elif node.type in ("field_declaration", "declaration"):
+                is_const = any(text_of(child) in ("const", "constexpr") for child in node.children)
+                if node.type == "declaration" and is_const and "function_definition" not in list_above(node):
+                    self.unit.constants += [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
+                else:
+                    self.read_field(node)
         self.unit.constants.sort(key=lambda statement: statement.span)
         self.unit.macros |= dict.fromkeys(others & {*self.unit.macros}, "a macro, and a name of something else as well")
 
@@ -121,7 +132,11 @@ class Reader(SourceReader):
         """A member of a structure, or a variable of the file; one name with two types is left open."""
         kind = number_of(self.type_of(node))
         kind = kind if kind in LIMITS else "real"
-        for child in node.children_by_field_name("declarator") if is_outside(node) or "field" in node.type else ():
+        for child in (
+            node.children_by_field_name("declarator")
+            if "function_definition" not in list_above(node) or "field" in node.type
+            else ()
+        ):
             name, members = self.declared(field_of(child, "declarator") or child)[0], self.unit.members
             members[name] = (kind if members.get(name, (kind,))[0] == kind else "other", None)
 
@@ -169,14 +184,10 @@ class Reader(SourceReader):
         parameters = named(field_of(declarator, "parameters"))
         declared = (n for n in descend(node) if n.type in ("declaration", "parameter_declaration"))
         inner = [field_of(c, "declarator") or c for n in declared for c in n.children_by_field_name("declarator")]
-        self.locals = {text_of(n) for c in inner for n in descend(c) if n.type == "identifier"}
-        self.pointers = {
-            text_of(n)
-            for c in inner
-            if any(p.type in (*POINTER, "array_declarator") for p in (c, c.parent) if p is not None)
-            for n in descend(c)
-            if n.type == "identifier"
-        }
+        pairs = [(c, text_of(n)) for c in inner for n in descend(c) if n.type == "identifier"]
+        kinds = (*POINTER, "array_declarator")
+        self.locals = {name for _, name in pairs}
+        self.pointers = {name for c, name in pairs if c.type in kinds or c.parent.type in kinds}
         is_template = node.parent is not None and node.parent.type == "template_declaration"
         head = field_of(node.parent, "parameters") if is_template else None
         types = {text_of(n) for n in descend(head) if n.type == "type_identifier"} if head is not None else set()
@@ -217,17 +228,13 @@ class Reader(SourceReader):
         while node is not None and node.type not in ("identifier", "field_identifier"):
             if node.type == "array_declarator":
                 size = field_of(node, "size")
-                sizes.append(
-                    self.expression(size) if size is not None else self.refuse(node, "an array without a size")
-                )
+                sizes.append(self.expression(size) if size else self.refuse(node, "an array without a size"))
                 shared = True
             shared |= node.type in ("reference_declarator", *POINTER)
             if node.type == "function_declarator":
                 return text_of(node), None, True
             node = field_of(node, "declarator") or next(iter(named(node)), None)
         return (text_of(node) if node is not None else ""), tuple(reversed(sizes)) or None, shared
-
-    # -- statements --
 
     def block(self, node: Any) -> tuple[Part, ...]:
         """The statements of a body, or the one that stands for it."""
@@ -317,11 +324,12 @@ class Reader(SourceReader):
             inner = field_of(child, "declarator") if child.type == "init_declarator" else child
             name, sizes, shared = self.declared(inner)
             shape = sizes or self.sizes(child, shape_of_type(kind))
-            if value is not None and value.type == "argument_list":
-                items = tuple(map(self.expression, named(value)))
-                start = self.part("list", value, items) if len(items) > 1 else items[0] if items else None
-            elif value is not None and value.type == "initializer_list" and sizes is None and len(named(value)) == 1:
-                start = self.expression(named(value)[0])  # Vector3f v{a + b}
+            is_call = value is not None and value.type == "argument_list"
+            if is_call or (value is not None and value.type == "initializer_list" and sizes is None):
+                items = tuple(map(self.expression, named(value)))  # v(a, b), v{a + b}
+                start = (
+                    items[0] if len(items) == 1 else self.part("list", value, items) if items or not is_call else None
+                )
             else:
                 start = None if value is None else self.expression(value)
             if inner.type == "structured_binding_declarator":
@@ -371,15 +379,13 @@ class Reader(SourceReader):
                 right = field_of(node, "right")
                 if any(inner.type == "primitive_type" for inner in descend(field_of(node, "left"))):
                     return (self.unread(node, "a type where a name is assigned, as of a reference to an array"),)
-                if right.type == "assignment_expression":  # a = b = c
-                    inner = self.effect(right)
-                    value = self.expression(field_of(right, "left"))
-                    return (*inner, self.part("assign", node, self.expression(field_of(node, "left")), sign, value))
+                is_chain = right.type == "assignment_expression"  # a = b = c
+                first, right = (self.effect(right), field_of(right, "left")) if is_chain else ((), right)
                 left, value = self.expression(field_of(node, "left")), self.expression(right)
                 sides = names_in(*(side for side in value.parts[1:] if value.kind == "op" and side.kind != "op"))
                 if "noalias()" in text_of(field_of(node, "left")) and names_in(left) & sides:
                     return (self.unread(node, "noalias() of a product with the target in it"),)
-                return (self.part("assign", node, left, sign, value),)
+                return (*first, self.part("assign", node, left, sign, value))
             case "update_expression":
                 one = self.part("number", node, 1, "int")
                 target = self.expression(field_of(node, "argument"))
@@ -399,8 +405,6 @@ class Reader(SourceReader):
             return None
         cells = tuple(map(self.expression, (field_of(first, "right"), *items)))
         return self.part("assign", node, self.expression(field_of(first, "left")), "<<", self.part("list", node, cells))
-
-    # -- expressions --
 
     def read_expression(self, node: Any) -> Part | None:
         match node.type:
@@ -494,9 +498,7 @@ class Reader(SourceReader):
             return self.part("method", node, *arguments, "eval", ()) if is_copy else self.part("list", node, arguments)
         if found := re.fullmatch(r"\(\*(\w+)\)", name):  # (*M)(i, j)
             name = found[1]
-        if (
-            function.type == "call_expression"
-        ):  # s.q()(0) is an entry of an accessor, M.transpose()(0, 1) one of a value
+        if function.type == "call_expression":  # s.q()(0) is an entry of an accessor, M.transpose()(0, 1) of a value
             owner = self.expression(function)
             if owner.kind == "name":
                 return self.part("call", node, owner.parts[0], arguments)
@@ -539,12 +541,6 @@ class Reader(SourceReader):
             return self.refuse(node, "a number of cells that is no number")
         low = self.part("minus", node, size) if is_last else None
         return self.part("slice", node, low, None if is_last else size)
-
-
-def find_type(node: Any) -> Any:
-    """The name of the type in a cast; None where there is none."""
-    kind = field_of(field_of(node, "type"), "type") if node.type == "cast_expression" else None
-    return kind if kind is not None and kind.type == "type_identifier" else None
 
 
 def list_types(root: Any) -> dict[str, str]:
@@ -596,15 +592,3 @@ def number_of(kind: str) -> str:
         return "auto"
     is_real = kind in REAL or kind in ("long double", "") or shape_of_type(kind) is not None
     return "real" if is_real else "other"
-
-
-def is_outside(node: Any) -> bool:
-    """True for what stands in no function."""
-    while node is not None and node.type != "function_definition":
-        node = node.parent
-    return node is None
-
-
-def is_constant(node: Any) -> bool:
-    """True for a declaration of the file, or of a class, that is const."""
-    return is_outside(node) and any(text_of(child) in ("const", "constexpr") for child in node.children)

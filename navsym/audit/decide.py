@@ -7,6 +7,7 @@ the point, goes to the checker as text. Nothing else makes an entry PROVED or RE
 from __future__ import annotations
 
 import contextlib
+import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -16,14 +17,30 @@ from typing import Any
 from flint import fmpq, fmpq_mat
 
 from navsym.audit.evaluate import Condition
-from navsym.audit.shared import shorten_pairs
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.errors import DomainError, NavsymError, TooLargeError
 from navsym.language.domains import rational_value
 from navsym.language.expression import read_tree
 from navsym.language.polynomials import to_polynomial
 from navsym.language.printer import print_tree
-from navsym.language.tree import ZERO, Tree, build_number, build_sum, build_symbol, fold_tree, list_names, negate
+from navsym.language.tree import (
+    NUMBER,
+    POWER,
+    PRODUCT,
+    SUM,
+    SYMBOL,
+    ZERO,
+    Tree,
+    build,
+    build_number,
+    build_sum,
+    build_symbol,
+    fold_tree,
+    list_names,
+    list_parts,
+    negate,
+    parts_of,
+)
 from navsym.language.tree import replace as replace_parts
 from navsym.prove.grant import IDENTITY, REFUSALS, find_witness, grant, refute_document
 from navsym.prove.rooms.goals import player, simple_point, write_term
@@ -84,16 +101,13 @@ class Scope:
 def decide_entry(code: Tree, expected: Tree, scope: Scope, rounds: Rounds = TRIES) -> Decision:
     """Whether the code computes what is expected, at all points of the scope."""
     length = measure(code) + measure(expected)
-    if length > LONG:
-        granted = prove_shared([(code, expected)], scope).get((code, expected))
-        if granted is not None:
-            return Decision(PROVED, certificate=granted)
+    if length > LONG and (granted := prove_shared([(code, expected)], scope).get((code, expected))) is not None:
+        return Decision(PROVED, certificate=granted)
     if length > LONGEST:
         return Decision(OPEN, why="a formula of more than 200,000 characters")
     document = write_document(code, expected, replace(scope, relations=()))
     try:
-        granted = prove_document(document)
-        if granted is not None:
+        if (granted := prove_document(document)) is not None:
             return Decision(PROVED, certificate=granted)
         dark = next((c for c in scope.conditions if c.left is None), None)
         refuted = refute(document, code, expected, scope) if dark is None else None
@@ -134,7 +148,14 @@ def write_document(code: Tree, expected: Tree, scope: Scope) -> Document:
 
 def write_equation(left: str, right: str, symbols: Mapping[str, Any], given: Sequence[str]) -> Document:
     """An equation in the words of the checker, below hypotheses."""
-    document = {"left": left, "relation": "=", "right": right, "symbols": symbols, "exists": [], "tolerance": None}
+    document: Document = {
+        "left": left,
+        "relation": "=",
+        "right": right,
+        "symbols": symbols,
+        "exists": [],
+        "tolerance": None,
+    }
     return document | ({"shapes": {}, "given": given, "rates": {}} if given else {})
 
 
@@ -160,10 +181,10 @@ def prove_shared(pairs: Sequence[tuple[Tree, Tree]], scope: Scope) -> dict[tuple
         inputs, (left, right) = short.inputs(), zip(*short.pairs, strict=True)
         numbers = [simple_point(player.read_range(scope.ranges[name]), i % 2) for i, name in enumerate(inputs)]
         point = {name: Fraction(int(q.p), int(q.q)) for name, q in zip(inputs, numbers, strict=True)}
-        both = [f"[{', '.join(map(print_tree, side))}]" for side in (left, right)]
+        code, expected = (f"[{', '.join(map(print_tree, side))}]" for side in (left, right))
         given = [f"{name} = {print_tree(tree)}" for name, tree in short.meanings.items()]
         ranges = {name: scope.ranges[name] for name in inputs} | dict.fromkeys(short.meanings, REAL)
-        document = write_equation(*both, ranges, given)
+        document = write_equation(code, expected, ranges, given)
         try:
             witness = {name: str(value) for name, value in short.complete(point).items()}
             certificate = write_proof(document, witness, [IDENTITY for _ in equal])
@@ -318,3 +339,100 @@ def differentiate(tree: Tree, symbol: Tree) -> Tree:
     except REFUSALS:
         raise DomainError("expected a formula with a derivative; got one without; ask for its parts") from None
     return read_tree(write_term(term), set(list_names(tree))) if term != player.ZERO else ZERO
+
+
+# Long entries: the sums that code and expectation share become symbols of their own, with their meaning as hypotheses.
+# Code of a filter names its common parts, and what is expected of it has the same parts. Multiplied out they are long;
+# by name both sides are short. The statement "shared1x = ... implies left = right" is the same statement as the long
+# one: each symbol stands for a polynomial, which has one value at every point. The checker reads it as a whole.
+
+Pair = tuple[Tree, Tree]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shortened:
+    """Pairs of sides in which shared parts are symbols.
+
+    meanings : symbol -> what it stands for, in the symbols of its own parts and the inputs
+    """
+
+    pairs: tuple[Pair, ...]
+    meanings: Mapping[str, Tree]
+
+    def inputs(self) -> list[str]:
+        """The other symbols."""
+        names = list_names(*itertools.chain(*self.pairs), *self.meanings.values())
+        return [name for name in names if name not in self.meanings]
+
+    def complete(self, point: Mapping[str, Fraction]) -> dict[str, Fraction]:
+        """The point with the exact values of the shared parts."""
+        known = {build_symbol(name): build_number(value) for name, value in point.items()}
+        for name, tree in self.meanings.items():  # each behind those in it
+            if (value := rational_value(replace_parts(tree, known))) is None:
+                raise TooLargeError("expected numbers of bounded size; got larger ones; ask for fewer entries")
+            known[build_symbol(name)] = build_number(value)
+        return {symbol.args[0]: number.args[0] for symbol, number in known.items()}
+
+
+def shorten_pairs(pairs: Sequence[Pair]) -> Iterator[tuple[list[Pair], Shortened]]:
+    """Those pairs whose sides are equal as polynomials in shared parts, as they are and by these parts.
+
+    The parts are the sums that both sides have: all of them, then only those without another one inside.
+    """
+    waiting = list(pairs)
+    for is_inner in (False, True):
+        codes, expected = ({*list_parts(*side)} for side in zip(*waiting, strict=True))
+        parts = list_parts(*itertools.chain(*waiting))
+        total, above = set[Tree](), set[Tree]()
+        for part in parts:
+            if is_polynomial_head(part) and total.issuperset(parts_of(part)):
+                total.add(part)
+        shared = {part for part in codes & expected & total if part.head == SUM} - {*itertools.chain(*waiting)}
+        for part in parts:  # those with a shared one inside
+            if any(inner in above or inner in shared for inner in parts_of(part)):
+                above.add(part)
+        shared = shared - above if is_inner else shared
+        if not shared:
+            return
+        short = name_parts(waiting, parts, shared)
+        equal = [is_same(*pair) for pair in short.pairs]
+        if any(equal):
+            kept = tuple(itertools.compress(short.pairs, equal))
+            yield list(itertools.compress(waiting, equal)), Shortened(kept, short.meanings)
+        waiting = [pair for pair, is_equal in zip(waiting, equal, strict=True) if not is_equal]
+        if not waiting:
+            return
+
+
+def is_same(left: Tree, right: Tree) -> bool:
+    """True for two polynomials that are equal."""
+    names = list_names(left, right)
+    try:
+        return bool(to_polynomial(left, names) == to_polynomial(right, names))
+    except (DomainError, TooLargeError):
+        return False
+
+
+def is_polynomial_head(part: Tree) -> bool:
+    """True for what makes polynomials of polynomials, which have a value at every point."""
+    if part.head != POWER:
+        return part.head in (NUMBER, SYMBOL, SUM, PRODUCT)
+    exponent = part.args[1]
+    return exponent.head == NUMBER and exponent.args[0].denominator == 1 and 0 < exponent.args[0] <= 64
+
+
+def name_parts(pairs: Sequence[Pair], parts: list[Tree], shared: set[Tree]) -> Shortened:
+    """The sides with a symbol for each shared part, under names that occur nowhere in them."""
+    taken = {part.args[0] for part in parts if part.head == SYMBOL}
+    letter = "shared"
+    while any(name.startswith(letter) for name in taken):
+        letter += "x"
+    renamed: dict[Tree, Tree] = {}
+    meanings: dict[str, Tree] = {}
+    for part in parts:
+        inner = tuple(renamed.get(arg, arg) if isinstance(arg, Tree) else arg for arg in part.args)
+        renamed[part] = build(part.head, inner) if parts_of(part) else part
+        if part in shared:
+            name = f"{letter}{len(meanings) + 1}"
+            meanings[name], renamed[part] = renamed[part], build_symbol(name)
+    return Shortened(tuple((renamed[code], renamed[expected]) for code, expected in pairs), meanings)

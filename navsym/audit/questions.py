@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,7 +14,6 @@ from navsym.audit.decide import differentiate
 from navsym.audit.evaluate import Case, Condition
 from navsym.audit.form import spell_entry
 from navsym.audit.names import Names
-from navsym.audit.outside import read_claim_side, read_model_matrices
 from navsym.audit.sources import Source
 from navsym.audit.values import (
     Array,
@@ -36,8 +36,11 @@ from navsym.audit.values import (
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, ShapeError, UnknownSymbolError
 from navsym.language.expression import read_tree
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
+from navsym.language.printer import to_text
 from navsym.language.schema import as_list, as_table, as_text, as_title, require_key
 from navsym.language.tree import ONE, SYMBOL, Tree, list_parts, replace
+from navsym.models.model import Model
+from navsym.prove.claimfile import read_claims, require_numbers
 
 MOST_CASES = 64
 MOST_ENTRIES = 4000
@@ -177,14 +180,11 @@ def list_entries(question: Question) -> list[Entry]:
         return list_dead(question)
     entries: list[Entry] = []
     for asking in list_askings(question):
-        try:
-            asked: list[Entry] = getattr(asking, f"ask_{question.kind}")()
-        except NotThereError:
-            continue
-        if question.kind == "symmetric":
-            asked = [entry for entry in asked if entry.place[0] < entry.place[1]]
-        entries += asked
-    if not entries and question.kind != "symmetric":
+        with contextlib.suppress(NotThereError):
+            entries += getattr(asking, f"ask_{question.kind}")()
+    if question.kind == "symmetric":
+        return [entry for entry in entries if entry.place[0] < entry.place[1]]
+    if not entries:
         message = "expected names that have values in one case; got some that never have one together; ask for others"
         raise DomainError(message, where=question.where)
     return entries
@@ -259,8 +259,6 @@ class Asking:
     def place(self, key: str) -> str:
         return join_place(self.question.where, key)
 
-    # -- references --
-
     def split(self, reference: Any, where: str) -> tuple[Source, str] | None:
         """Source and name of ``code:name``; None for another text."""
         if isinstance(reference, str) and ":" in reference:
@@ -295,8 +293,7 @@ class Asking:
         base, indices = (found[1].strip(), found[2]) if found else (name, "")
         numbers = [int(n) - source.unit.rules.first for n in re.findall(r"\d+", indices)]
         if base == "return":
-            value = case.returned
-            if value is None:
+            if (value := case.returned) is None:
                 raise UnknownSymbolError(f"expected a returned value; got none in {source.function.name}; "
                                          "name a variable", where=where)  # fmt: skip
             if numbers and isinstance(value, Array):
@@ -319,8 +316,7 @@ class Asking:
         where = self.place(key)
         if isinstance(reference, list):
             return [symbol for item in reference for symbol in self.inputs(item, key)]
-        parts = self.split(reference, where)
-        if parts is None:
+        if (parts := self.split(reference, where)) is None:
             message = f'expected inputs of a code, such as "model:x[0]"; got {quote(reference)}; name them so'
             raise ExpressionSyntaxError(message, where=where)
         return parts[0].inputs(parts[1], where)
@@ -332,8 +328,6 @@ class Asking:
             why = value.why if isinstance(value, Unread) else "a number"
             raise ShapeError(f"expected a matrix; got {why}; declare its size", where=self.place(key))
         return value if len(value.shape) == 2 else Array((*value.shape, 1), value.cells)
-
-    # -- entries --
 
     def pair(self, code: Value, expected: Value, key: str, *, upper: bool = False) -> list[Entry]:
         """Entries of two values of one shape."""
@@ -503,11 +497,42 @@ def read_variable(source: Source, variable: Variable, place: Index, where: str) 
             return Scalar(source.symbol(spell_entry(source.unit, variable.name, spot)))
         return Unread(source.function.line, f"{source.function.name} does not assign it")
 
-    shape = variable.shape
-    if shape is None and (spots := [spot for spot in variable.cells if spot]):
+    if (shape := variable.shape) is None and (spots := [spot for spot in variable.cells if spot]):
         shape = tuple(max(spot[k] for spot in spots) + 1 for k in range(len(spots[0])))
     if place:
         if shape is not None:
             require_inside(shape, place, where)
         return cell(place)
     return Array(shape, tuple(map(cell, places_of(shape)))) if shape else cell(())
+
+
+# What code is compared with from other files
+
+
+def read_claim_side(reference: Any, folder: Path, where: str) -> list[list[str]]:
+    """The right side of a claim of a claim file, ``"formulas.toml:half-angle"``, as rows of texts."""
+    if not isinstance(reference, str) or ".toml:" not in reference:
+        message = f'expected a claim such as "claims.toml:name"; got {quote(reference)}; write file and id'
+        raise ExpressionSyntaxError(message, where=where)
+    file, _, name = reference.rpartition(":")
+    claims = {claim.id: claim for claim in read_claims(folder / file).claims}
+    if name not in claims:
+        message = f"expected a claim of {file} ({', '.join([*claims][:12])}); got {quote(name)}; correct the id"
+        raise UnknownSymbolError(message, where=where)
+    claim = require_numbers(claims[name])
+    if claim.relation != "=" or claim.tolerance is not None:
+        raise DomainError("expected an equation; got another claim; choose one with =", where=where)
+    right = claim.formula.right
+    rows = right if isinstance(right, list) else [right]
+    return [[str(cell) for cell in row] if isinstance(row, list) else [str(row)] for row in rows]
+
+
+def read_model_matrices(path: Path) -> dict[str, list[list[str]]]:
+    """F, and H, of a linear model file as rows of texts."""
+    model = Model.load(path)
+    found = {"F": model.F, "H": model.H}
+    return {
+        key: [[to_text(matrix[i, j]) for j in range(matrix.shape[1])] for i in range(matrix.shape[0])]
+        for key, matrix in found.items()
+        if matrix is not None
+    }

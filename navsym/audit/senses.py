@@ -159,8 +159,7 @@ def weaken(question: Question, entries: Sequence[Entry], decisions: list[Decisio
     for sense in SENSES[2:]:
         notes = dict[int, str]()
         for table, at, k in failed if sense not in admitted else ():
-            found = hold(table, at, sense, SHORT)
-            if found is None or not found.status.holds:
+            if (found := hold(table, at, sense, SHORT)) is None or not found.status.holds:
                 break
             notes[k] = f'not exact, but {found.why} (sense {sense}, which senses = ["{sense}"] admits)'
         if len(notes) == len(failed):
@@ -177,8 +176,7 @@ def admit(table: Table, at: int, exact: Decision, senses: Sequence[str]) -> Deci
     """
     undecided = list[str]()
     for sense in sorted(senses, key=SENSES.index):
-        found = hold(table, at, sense, TRIES)
-        if found is not None and found.status.holds:
+        if (found := hold(table, at, sense, TRIES)) is not None and found.status.holds:
             return replace(found, sense=sense)
         if found is None or found.status == OPEN:
             undecided.append(sense)
@@ -217,7 +215,8 @@ def read_tangent(table: Table) -> Iterator[Reading]:
         sides = {x: table.pair(k) for x, k in zip(table.by, row, strict=True)}
         pairs = [pair for x, pair in sides.items() if not any(x in move for move in moves)]
         for move in moves:
-            pairs.append(tuple(build_sum(*(build_product(sides[x][s], y) for x, y in move.items())) for s in (0, 1)))
+            along = [[build_product(sides[x][s], slope) for x, slope in move.items()] for s in (0, 1)]
+            pairs.append((build_sum(*along[0]), build_sum(*along[1])))
         yield Reading(f"equal on the tangent space of {' and '.join(words)}", frozenset(row), tuple(pairs))
 
 

@@ -11,8 +11,7 @@ import pytest
 
 import navsym as nav
 from navsym import checker
-from navsym.audit.decide import Scope, decide_entry
-from navsym.audit.shared import shorten_pairs
+from navsym.audit.decide import Scope, decide_entry, shorten_pairs
 from navsym.language.expression import read_tree
 from navsym.language.tree import build_symbol, replace
 
