@@ -81,7 +81,7 @@ class Reader(SourceReader):
         """The tree of a source in which no variable is taken for a type, as ``b`` is in ``a*(b) - c``."""
         root, text = SourceReader.parse(self, source), bytearray(source)
         known = self.unit.variables
-        known |= list_variables(root, NAMED)
+        known |= list_variables(root)
         unions = (inner for node in descend(root) if node.type == "union_specifier" for inner in descend(node))
         self.unit.types |= list_types(root)
         self.unit.overlaid |= {text_of(inner) for inner in unions if inner.type == "field_identifier"}
@@ -102,7 +102,10 @@ class Reader(SourceReader):
 
     def read_file(self, root: Any) -> None:
         """Functions, constants and macros, also inside namespaces and classes."""
-        dropped, others = set[int](), list_variables(root, NAMED[1:])
+        dropped: set[int] = set()
+        inner = (n for n in descend(root) if n.type == "identifier" and n.parent.type in (*DECLARING, "enumerator"))
+        heads = ((n, field_of(n.parent, "declarator") or field_of(n.parent, "name")) for n in inner)
+        others = {text_of(n) for n, head in heads if head is None or head.id == n.id}
         for node in descend(root):
             if node.id in dropped or (node.parent is not None and node.parent.id in dropped):
                 dropped.add(node.id)
@@ -562,12 +565,12 @@ def list_types(root: Any) -> dict[str, str]:
     return types
 
 
-def list_variables(root: Any, kinds: tuple[str, ...]) -> set[str]:
-    """The names of a source that are declared as values or defined by these kinds, and never as types."""
+def list_variables(root: Any) -> set[str]:
+    """The names of a source that are declared or defined as values, and never as types."""
     values, types = set[str](), set[str]()
     for node in descend(root):
-        name = node if node.type == "identifier" else field_of(node, "name") if node.type in kinds else None
-        if name is not None and node.parent is not None and (node.type in kinds or node.parent.type in DECLARING):
+        name = node if node.type == "identifier" else field_of(node, "name") if node.type in NAMED else None
+        if name is not None and node.parent is not None and (node.type in NAMED or node.parent.type in DECLARING):
             values.add(text_of(name))
         elif node.type.endswith(("_specifier", "type_definition", "alias_declaration")):
             types |= {text_of(child) for child in node.children if child.type == "type_identifier"}
