@@ -229,7 +229,7 @@ class Reader(SourceReader):
         if name == "T":
             return self.part("method", node, self.expression(field_of(node, "object")), "T", ())
         name = "".join(text_of(node).split())
-        is_name = re.fullmatch(r"[\w.]+", name) is not None
+        is_name = re.fullmatch(r"[^\W\d][\w.]*", name) is not None
         return self.part("name", node, name) if is_name else self.refuse(node, "a member of an expression")
 
     def call(self, node: Any) -> Part:

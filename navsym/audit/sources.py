@@ -257,7 +257,7 @@ def relate_rotation(matrix: Array) -> tuple[Tree, ...]:
 def read_names(table: Table, key: str, where: str) -> list[str] | None:
     """A list of names, which may be empty; None where the key is not there."""
     place, names = join_place(where, key), table.get(key)
-    return [as_text(name, place, "a name") for name in as_list(names, place)] if names else names
+    return names if names in (None, []) else [as_text(name, place, "a name") for name in as_list(names, place)]
 
 
 def list_inputs(source: Source, whole: Function) -> set[str]:
