@@ -303,9 +303,8 @@ def describe_files(sources: Sequence[Source]) -> tuple[AuditedFile, ...]:
             spans = {span for span in met if unit.locate(1 + unit.source.count(b"\n", 0, span[0]))[0] == name}
             lines = {unit.locate(line)[1]: why for line, why in refused.items() if unit.locate(line)[0] == name}
             if name == file or spans or lines:
-                done.append(
-                    AuditedFile(name, unit.language, len(spans), tuple(sorted(lines.items())), len(unread & spans))
-                )
+                refusals = tuple(sorted(lines.items()))
+                done.append(AuditedFile(name, unit.language, len(spans), refusals, len(unread & spans)))
     return tuple(done)
 
 

@@ -24,9 +24,7 @@ from navsym.audit.values import LIMITS
 RULES = Rules(integer=True)
 RULES_OF_CPP = Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))
 REAL = frozenset("float double real_t ftype Scalar scalar_t Real postype_t T float32_t float64_t f32 f64".split())
-WHOLE = re.compile(
-    r"(unsigned |signed )*(int|long|short|char|size_t|(u?int\d+(_t)?)|bool|unsigned|Eigen::Index)( int)?"
-)
+WHOLE = re.compile(r"(unsigned |signed )*(u?int\d+(_t)?|int|long|short|char|size_t|bool|unsigned|Eigen::Index)( int)?")
 VECTOR = re.compile(r"(?:\w+::)*(?:(?:Sparse)?Vector([2-9]|[1-5]\d)[fd]?(?:<[\w, ]+>)?|Vector<\w+,(\d+)>)")
 MATRIX = re.compile(
     r"(?:\w+::)*(?:(?:Square)?Matrix([2-9]|[1-5]\d)[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
@@ -196,9 +194,7 @@ class Reader(SourceReader):
         types = {text_of(n) for n in descend(head) if n.type == "type_identifier"} if head is not None else set()
         arguments = tuple(self.argument(p, types) for p in parameters if text_of(p) != "void")
         before = [c for c in named(node) if c.type == "field_initializer_list"]  # what is in no statement
-        start = tuple(
-            self.part("unread", c, "a constructor that begins with a list of its members", ()) for c in before
-        )
+        start = tuple(self.part("unread", c, "the list of members before a constructor", ()) for c in before)
         is_plain = field_of(node, "declarator").type == "function_declarator" and field_of(node, "type") is not None
         number = number_of(self.type_of(node)) if is_plain else "auto"
         function = Function(name, line_of(node), arguments, start + self.block(body), number=number)
@@ -330,9 +326,8 @@ class Reader(SourceReader):
             is_call = value is not None and value.type == "argument_list"
             if is_call or (value is not None and value.type == "initializer_list" and sizes is None):
                 items = tuple(map(self.expression, named(value)))  # v(a, b), v{a + b}
-                start = (
-                    items[0] if len(items) == 1 else self.part("list", value, items) if items or not is_call else None
-                )
+                whole = self.part("list", value, items) if items or not is_call else None
+                start = items[0] if len(items) == 1 else whole
             else:
                 start = None if value is None else self.expression(value)
             if inner.type == "structured_binding_declarator":

@@ -605,9 +605,7 @@ class Evaluator:
                 return self.linked(inner, given)
         value = self.value(given)
         if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in cells_of(value)):
-            raise Unreadable(
-                given.line, f"an integer given to {function.name}, a template, which may cut its quotients"
-            )
+            raise Unreadable(given.line, f"an integer given to the template {function.name}, which may cut quotients")
         shape = value.shape if isinstance(value, Array) else ()
         variable = Variable(argument.name, "list" if isinstance(value, List) else argument.number, shape)
         if isinstance(value, Unread):

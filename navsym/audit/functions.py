@@ -135,9 +135,8 @@ def cellwise(step: Callable[..., Tree]) -> Known:
 
 def whole_or_real(step: Callable[..., Tree]) -> Known:
     """The same of functions that give integers for integers, in numpy and C++."""
-    return lambda unit, *values: (
-        map_cells(step, *values) if unit.language in ("python", "cpp") else as_real(map_cells(step, *values))
-    )
+    real, keeping = cellwise(step), ("python", "cpp")
+    return lambda unit, *values: map_cells(step, *values) if unit.language in keeping else real(unit, *values)
 
 
 def plain(name: str) -> Known:

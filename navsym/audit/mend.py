@@ -386,12 +386,10 @@ def edit_calls(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """sin for cos, and the like; a root less, or more."""
     root, functions = ROOTS[place.source.unit.language], place.source.unit.functions
     for part in parts:
-        if part.kind == "call":
-            for name in sorted(functions):
-                if name != part.parts[0] and len(functions[name][0].arguments) == len(part.parts[1]):
-                    yield part.span[0], part.span[0] + len(part.parts[0]), name
-        for name in SWAPS.get(part.parts[0], ()) if part.kind == "call" else ():
-            yield part.span[0], part.span[0] + len(part.parts[0]), name
+        known, given = part.parts[:2] if part.kind == "call" else ("", ())
+        own = (n for n in sorted(functions) if n != known and len(functions[n][0].arguments) == len(given))
+        for name in (*own, *SWAPS.get(known, ())) if part.kind == "call" else ():
+            yield part.span[0], part.span[0] + len(known), name
         if part.kind == "call" and part.parts[0].endswith(("sqrt", "sqrtf")) and len(part.parts[1]) == 1:
             yield *part.span, place.source.unit.text(part.parts[1][0])
     for part in parts:

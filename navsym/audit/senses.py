@@ -310,9 +310,8 @@ def read_noise(table: Table) -> Iterator[Reading]:
         return
     names = {(i, j): table.question.names.free_name(f"noise{i + 1}_{j + 1}") for i in range(n) for j in range(i, n)}
     is_full = kind == "any"
-    N = make_array(
-        (n, n), lambda i, j: Scalar(build_symbol(names[min(i, j), max(i, j)]) if is_full or i == j else ZERO)
-    )
+    cells = {place: Scalar(build_symbol(name)) for place, name in names.items()}
+    N = make_array((n, n), lambda i, j: cells[min(i, j), max(i, j)] if is_full or i == j else Scalar(ZERO))
     sides = []
     for side in (0, 1):
         V = Array((m, n), tuple(Scalar(table.pair(k)[side]) for k in range(m * n)))
@@ -335,10 +334,8 @@ def read_renamed(table: Table) -> Iterator[Reading | None]:
     orders, is_complete = list_orders(*values)
     for order in orders:
         by = {table.by[i]: table.by[order[i]] for i in range(len(table.by))}
-        places = product(range(n), repeat=2)
-        pairs = [
-            (table.pair(order[i] * n + order[j])[0], replace_parts(table.pair(i * n + j)[1], by)) for i, j in places
-        ]
+        moved = [table.pair(i * n + j)[0] for i, j in product(order, repeat=2)]
+        pairs = [(code, replace_parts(table.pair(k)[1], by)) for k, code in enumerate(moved)]
         words = ", ".join(str(i + 1) for i in order)
         yield Reading(f"equal with the states in the order {words}", frozenset(range(n * n)), tuple(pairs))
     if not is_complete:

@@ -42,13 +42,8 @@ from navsym.language.schema import Table, as_list, as_table, as_text, require_ke
 from navsym.language.tree import NUMBER, ONE, POWER, PRODUCT, SUM, ZERO, Tree, build_number, build_sum, negate
 from navsym.prove.rooms.goals import player
 
-LANGUAGES = {
-    **dict.fromkeys((".c", ".h"), "c"),
-    **dict.fromkeys((".cpp", ".cc", ".cxx", ".hpp", ".hh", ".ino"), "cpp"),
-    ".py": "python",
-    ".m": "matlab",
-    ".rs": "rust",
-}
+LANGUAGES = {".c": "c", ".h": "c", ".py": "python", ".m": "matlab", ".rs": "rust"}
+LANGUAGES |= dict.fromkeys((".cpp", ".cc", ".cxx", ".hpp", ".hh", ".ino"), "cpp")
 LARGEST_SIDE = 64
 BITS = 256  # at which a decimal is compared with what it stands for
 #: The keys of a block ``[[code]]``.
@@ -199,9 +194,8 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
     also, defined, ignored = (read_names(table, key, where) for key in ("also", "defined", "ignored"))
     known = None if defined is None else frozenset(defined)
     unit = load_unit(folder / file, language, [folder / other for other in also or ()], known)
-    constants, functions, symbols = (
-        as_table(table.get(key, {}), join_place(where, key)) for key in ("constants", "functions", "symbols")
-    )
+    keys = ("constants", "functions", "symbols")
+    constants, functions, symbols = (as_table(table.get(key, {}), join_place(where, key)) for key in keys)
     declare_constants(unit, constants, where)
     declare_functions(unit, functions, where)
     unit.ignored = frozenset(ignored or ())
