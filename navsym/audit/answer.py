@@ -4,28 +4,33 @@ from __future__ import annotations
 
 import html
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from navsym.audit.decide import Decision, Scope, decide_entry, decide_together, measure
+from navsym.audit.evaluate import Case
+from navsym.audit.form import spell_entry
+from navsym.audit.mend import Budget, suggest
+from navsym.audit.names import Names
+from navsym.audit.questions import SENSES, Entry, Question, list_entries, read_question
+from navsym.audit.senses import weaken
+from navsym.audit.sources import Source, find_function, load_unit, read_source
+from navsym.audit.values import Array, Cell, Scalar, Unread, cells_of, places_of
 from navsym.claims.display import write_table
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 from navsym.core.errors import ExpressionSyntaxError, NavsymError, ShapeError
 from navsym.language.files import name_file
 from navsym.language.names import expect_keys, join_place, quote
+from navsym.language.printer import print_tree
 from navsym.language.schema import as_table, require_distinct, require_key
 from navsym.language.tomlfile import read_toml
-
-if TYPE_CHECKING:
-    from navsym.audit.decide import Decision, Scope
-    from navsym.audit.mend import Budget
-    from navsym.audit.names import Names
-    from navsym.audit.questions import Entry, Question
-    from navsym.audit.sources import Source
+from navsym.language.tree import list_names
 
 MOST = 200  # questions of a file
+LONGEST = 20_000  # characters of a formula that is shown
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,13 +45,8 @@ class AuditedFile:
 
     def document(self) -> dict[str, Any]:
         """The file as plain data."""
-        return {
-            "file": self.file,
-            "language": self.language,
-            "statements": self.statements,
-            "read": self.statements - self.unread,
-            "refused": [{"line": line, "why": why} for line, why in self.refused],
-        }
+        refused = [{"line": line, "why": why} for line, why in self.refused]
+        return {**named(self, "file language statements"), "read": self.statements - self.unread, "refused": refused}
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,16 +78,7 @@ class AuditedEntry:
 
     def document(self) -> dict[str, Any]:
         """The entry as plain data."""
-        return {
-            "entry": list(self.entry),
-            "file": self.file,
-            "line": self.line,
-            "status": str(self.status),
-            "counterexample": dict(self.counterexample) if self.counterexample is not None else None,
-            "values": list(self.values) if self.values else None,
-            "suggestion": self.suggestion,
-            "why": self.why or None,
-        }
+        return {**named(self, "entry file line status counterexample values suggestion"), "why": self.why or None}
 
     def remark(self) -> str:
         """The ground of the verdict in one line."""
@@ -120,8 +111,6 @@ class AuditedQuestion:
     @property
     def sense(self) -> str:
         """The weakest sense that was needed."""
-        from navsym.audit.questions import SENSES
-
         return max((entry.sense for entry in self.entries), key=SENSES.index, default="exact")
 
     @property
@@ -138,8 +127,7 @@ class AuditedQuestion:
     def document(self, every: bool = False) -> dict[str, Any]:
         """The question as plain data; entries that are PROVED only on demand, ``weaker`` only where there is one."""
         entries = [entry.document() for entry in self.entries if every or entry.status != PROVED]
-        document = {"name": self.name, "kind": self.kind, "status": str(self.status), "sense": self.sense}
-        return {**document, **({"weaker": self.weaker} if self.weaker else {}), "entries": entries}
+        return {**named(self, "name kind status sense" + " weaker" * bool(self.weaker)), "entries": entries}
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +141,7 @@ class OutputFormula:
 
     def document(self) -> dict[str, Any]:
         """The formula as plain data."""
-        return {"name": self.name, "line": self.line, "formula": self.formula, "case": self.case or None}
+        return {**named(self, "name line formula"), "case": self.case or None}
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -255,54 +243,35 @@ def audit(path: str | os.PathLike[str], /, function: str | None = None) -> Audit
     """
     where = Path(os.fspath(path))
     if function is not None:
-        return audit_function(where, function)
+        unit = load_unit(where)
+        source = Source("code", unit, find_function(unit, function, "audit: function"), Names(), {}, frozenset(), ())
+        source.read()
+        return Audit(describe_files([source]), (), tuple(list_formulas(source)))
     if where.suffix != ".toml":
         message = f"expected a specification (TOML), or a source with the name of a function; got {quote(where.name)}; "
         raise ExpressionSyntaxError(f"{message}add --function NAME", where="audit")
     return audit_specification(where)
 
 
-def audit_function(path: Path, function: str) -> Audit:
-    """The outputs of one function as formulas."""
-    from navsym.audit.listing import list_formulas
-    from navsym.audit.names import Names
-    from navsym.audit.sources import Source, find_function, load_unit
-
-    unit = load_unit(path)
-    source = Source("code", unit, find_function(unit, function, "audit: function"), Names(), {}, frozenset(), ())
-    source.read()
-    return Audit(describe_files([source]), (), tuple(list_formulas(source)))
-
-
 def audit_specification(path: Path, only: str | None = None) -> Audit:
     """The verdicts on the questions of a file, or on the one of a name."""
-    sources, questions = read_specification(path)
+    document, where = read_toml(path), name_file(path)
+    expect_keys(document, ("code", "question"), where)
+    names, by_name = read_sources(document, path.parent, where)
+    place = join_place(where, "question")
+    questions = [
+        read_question(block, by_name, names, path.parent, join_place(place, i))
+        for i, block in enumerate(read_blocks(document, "question", where))
+    ]
+    require_distinct((question.name for question in questions), place)
+    sources = [*by_name.values()]
     chosen = [question for question in questions if only in (None, question.name)]
     answers = tuple(answer_question(question, sources) for question in chosen)
     return Audit(describe_files(sources), answers)
 
 
-def read_specification(path: Path) -> tuple[list[Source], list[Question]]:
-    """The sources and questions of a file."""
-    from navsym.audit.questions import read_question
-
-    document, where = read_toml(path), name_file(path)
-    expect_keys(document, ("code", "question"), where)
-    names, by_name = read_sources(document, path.parent, where)
-    blocks = read_blocks(document, "question", where)
-    place = join_place(where, "question")
-    questions = [
-        read_question(block, by_name, names, path.parent, join_place(place, i)) for i, block in enumerate(blocks)
-    ]
-    require_distinct((question.name for question in questions), place)
-    return [*by_name.values()], questions
-
-
 def read_sources(document: Mapping[str, Any], folder: Path, where: str) -> tuple[Names, dict[str, Source]]:
     """The blocks ``[[code]]`` of a file, by their names, and the table of names that they share."""
-    from navsym.audit.names import Names
-    from navsym.audit.sources import read_source
-
     names, place = Names(), join_place(where, "code")
     blocks = read_blocks(document, "code", where)
     sources = [read_source(block, folder, names, join_place(place, i)) for i, block in enumerate(blocks)]
@@ -334,20 +303,13 @@ def describe_files(sources: Sequence[Source]) -> tuple[AuditedFile, ...]:
             spans = {span for span in met if unit.locate(1 + unit.source.count(b"\n", 0, span[0]))[0] == name}
             lines = {unit.locate(line)[1]: why for line, why in refused.items() if unit.locate(line)[0] == name}
             if name == file or spans or lines:
-                done.append(
-                    AuditedFile(name, unit.language, len(spans), tuple(sorted(lines.items())), len(unread & spans))
-                )
+                refusals = tuple(sorted(lines.items()))
+                done.append(AuditedFile(name, unit.language, len(spans), refusals, len(unread & spans)))
     return tuple(done)
 
 
 def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQuestion:
     """The verdicts on the entries of a question; of several cases the worst stands for the entry."""
-    from navsym.audit.decide import decide_together
-    from navsym.audit.mend import Budget
-    from navsym.audit.questions import list_entries
-    from navsym.audit.senses import weaken
-    from navsym.audit.values import Scalar
-
     relations, entries = question.relations(), list_entries(question)
     scopes = [make_scope(question.names, entry, relations) for entry in entries]
     cells = [(e.code, e.expected) for e in entries]
@@ -360,21 +322,18 @@ def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQue
     order = (PROVED, CERTIFIED, OPEN, REFUTED)
     for entry, scope, decision in zip(entries, scopes, decisions, strict=True):
         answer = write_answer(question, entry, scope, decision, budget)
-        known = worst.get(entry.place)
-        if known is None or order.index(answer.status) > order.index(known.status):
+        if (known := worst.get(entry.place)) is None or order.index(answer.status) > order.index(known.status):
             worst[entry.place] = answer
     return AuditedQuestion(question.name, question.kind, tuple(worst.values()), question.inputs())
 
 
 def decide_cells(entry: Entry, scope: Scope, decided: dict[Any, Decision]) -> Decision:
     """The verdict on one entry in one case, as it stands."""
-    from navsym.audit.decide import Decision, decide_entry
-    from navsym.audit.values import Unread
-
     code, expected = entry.code, entry.expected
-    if isinstance(code, Unread) or isinstance(expected, Unread):
-        unread = code if isinstance(code, Unread) else expected
-        return Decision(OPEN, why=f"not read: {unread.why if isinstance(unread, Unread) else ''}")
+    for cell in (code, expected):
+        if isinstance(cell, Unread):
+            return Decision(OPEN, why=f"not read: {cell.why}")
+    assert isinstance(code, Scalar) and isinstance(expected, Scalar)
     if (code.tree, expected.tree) in decided:  # for all points, whatever the conditions
         return decided[code.tree, expected.tree]
     key = (code.tree, expected.tree, entry.conditions)
@@ -388,10 +347,6 @@ def decide_cells(entry: Entry, scope: Scope, decided: dict[Any, Decision]) -> De
 
 def write_answer(question: Question, entry: Entry, scope: Scope, decision: Decision, budget: Budget) -> AuditedEntry:
     """The verdict on one entry with its line, and with a mend where it is refuted."""
-    from navsym.audit.mend import suggest
-    from navsym.audit.values import Unread
-    from navsym.language.printer import print_tree
-
     unit = entry.source.unit if entry.source else next(iter(question.sources.values())).unit
     line = next((cell.line for cell in (entry.code, entry.expected) if isinstance(cell, Unread)), None)
     if line is None:
@@ -399,8 +354,7 @@ def write_answer(question: Question, entry: Entry, scope: Scope, decision: Decis
     point, suggestion, why = None, None, decision.why
     if decision.status == REFUTED:
         point = {question.names.spellings.get(n, n): value for n, value in (decision.point or {}).items()}
-        mend = suggest(entry, scope, budget)
-        if mend is not None:
+        if (mend := suggest(entry, scope, budget)) is not None:
             line, suggestion = mend.line, mend.text
         why = "; ".join(filter(None, (describe_case(entry), why)))
     right = None if isinstance(entry.expected, Unread) or entry.conditions else print_tree(entry.expected.tree)
@@ -410,18 +364,41 @@ def write_answer(question: Question, entry: Entry, scope: Scope, decision: Decis
     )  # fmt: skip
 
 
-def describe_case(entry: Entry) -> str:
+def describe_case(case: Entry | Case) -> str:
     """The conditions of a case in words."""
-    return " and ".join(c.text if c.holds else f"not {c.text}" for c in entry.conditions)
+    return " and ".join(c.text if c.holds else f"not {c.text}" for c in case.conditions)
 
 
 def make_scope(names: Names, entry: Entry, relations: tuple[Any, ...]) -> Scope:
     """Ranges, relations and conditions under which an entry is decided; relations of other symbols do not count."""
-    from navsym.audit.decide import Scope
-    from navsym.audit.values import Scalar
-    from navsym.language.tree import list_names
-
     trees = [cell.tree for cell in (entry.code, entry.expected) if isinstance(cell, Scalar)]
     used = set(list_names(*trees, *(t for c in entry.conditions for t in (c.left, c.right) if t is not None)))
     near = tuple(relation for relation in relations if used & set(list_names(relation)))
     return Scope(names.ranges(), near, entry.conditions, rotations=tuple(names.rotations.values()))
+
+
+# The outputs of a function as formulas, when nothing is asked
+
+
+def list_formulas(source: Source) -> Iterator[OutputFormula]:
+    """What the function returns, and what it assigns to parameters, members and globals, case by case."""
+    for case in source.read().cases:
+        for name, cell in list_outputs(source, case):
+            text = f"not read: {cell.why}" if isinstance(cell, Unread) else ""
+            if isinstance(cell, Scalar) and measure(cell.tree) > LONGEST:
+                text = "not shown: a formula of more than 20,000 characters"
+            elif isinstance(cell, Scalar):
+                text = source.names.show(print_tree(cell.tree))
+            yield OutputFormula(name, cell.line, text, describe_case(case))
+
+
+def list_outputs(source: Source, case: Case) -> Iterator[tuple[str, Cell]]:
+    """Names of outputs with their values."""
+    if (value := case.returned) is not None:
+        places = [*places_of(value.shape)] if isinstance(value, Array) else [()]
+        yield from ((spell_entry(source.unit, "return", p), c) for p, c in zip(places, cells_of(value), strict=True))
+    for name, variable in case.variables.items():
+        for place, cell in sorted(variable.cells.items()):
+            is_output = variable.is_input or name in source.function.outputs
+            if is_output and (isinstance(cell, Unread) or cell.line):
+                yield spell_entry(source.unit, name, place), variable.all_unread or cell

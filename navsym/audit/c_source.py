@@ -8,15 +8,23 @@ from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, names_in, walk
 from navsym.audit.functions import METHODS
-from navsym.audit.syntax import SourceReader, descend, field_of, identifiers_in, line_of, named, text_of, whole_kind
+from navsym.audit.syntax import (
+    SourceReader,
+    descend,
+    field_of,
+    identifiers_in,
+    line_of,
+    list_above,
+    named,
+    text_of,
+    whole_kind,
+)
 from navsym.audit.values import LIMITS
 
 RULES = Rules(integer=True)
 RULES_OF_CPP = Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))
 REAL = frozenset("float double real_t ftype Scalar scalar_t Real postype_t T float32_t float64_t f32 f64".split())
-WHOLE = re.compile(
-    r"(unsigned |signed )*(int|long|short|char|size_t|(u?int\d+(_t)?)|bool|unsigned|Eigen::Index)( int)?"
-)
+WHOLE = re.compile(r"(unsigned |signed )*(u?int\d+(_t)?|int|long|short|char|size_t|bool|unsigned|Eigen::Index)( int)?")
 VECTOR = re.compile(r"(?:\w+::)*(?:(?:Sparse)?Vector([2-9]|[1-5]\d)[fd]?(?:<[\w, ]+>)?|Vector<\w+,(\d+)>)")
 MATRIX = re.compile(
     r"(?:\w+::)*(?:(?:Square)?Matrix([2-9]|[1-5]\d)[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
@@ -76,7 +84,8 @@ class Reader(SourceReader):
         self.unit.types |= list_types(root)
         self.unit.overlaid |= {text_of(inner) for inner in unions if inner.type == "field_identifier"}
         for _ in range(ROUNDS):
-            found = [n for n in map(find_type, descend(root)) if n is not None and text_of(n) in known]
+            casts = [field_of(field_of(n, "type"), "type") for n in descend(root) if n.type == "cast_expression"]
+            found = [n for n in casts if n is not None and n.type == "type_identifier" and text_of(n) in known]
             if not found:
                 break
             for node in found:
@@ -89,11 +98,12 @@ class Reader(SourceReader):
     def find_value(node: Any) -> Any:
         return field_of(field_of(node, "declarator"), "value") if node.type == "declaration" else None
 
-    # -- the file --
-
     def read_file(self, root: Any) -> None:
         """Functions, constants and macros, also inside namespaces and classes."""
         dropped: set[int] = set()
+        inner = (n for n in descend(root) if n.type == "identifier" and n.parent.type in (*DECLARING, "enumerator"))
+        heads = ((n, field_of(n.parent, "declarator") or field_of(n.parent, "name")) for n in inner)
+        others = {text_of(n) for n, head in heads if head is None or head.id == n.id}
         for node in descend(root):
             if node.id in dropped or (node.parent is not None and node.parent.id in dropped):
                 dropped.add(node.id)
@@ -106,19 +116,28 @@ class Reader(SourceReader):
                 self.read_macro(node)
             elif node.type == "preproc_function_def":
                 self.unit.macros[text_of(field_of(node, "name"))] = "a macro with arguments"
+            elif node.type == "preproc_call" and text_of(node).startswith("#undef"):
+                self.unit.macros[text_of(named(node)[-1]).strip()] = "a macro that is undefined again"
             elif node.type == "enumerator_list":
                 self.read_enumerators(node)
-            elif node.type == "field_declaration" or (node.type == "declaration" and not is_constant(node)):
-                self.read_field(node)
-            elif node.type == "declaration":
-                self.unit.constants += [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
+            elif node.type in ("field_declaration", "declaration"):
+                is_const = any(text_of(child) in ("const", "constexpr") for child in node.children)
+                if node.type == "declaration" and is_const and "function_definition" not in list_above(node):
+                    self.unit.constants += [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
+                else:
+                    self.read_field(node)
         self.unit.constants.sort(key=lambda statement: statement.span)
+        self.unit.macros |= dict.fromkeys(others & {*self.unit.macros}, "a macro, and a name of something else as well")
 
     def read_field(self, node: Any) -> None:
         """A member of a structure, or a variable of the file; one name with two types is left open."""
         kind = number_of(self.type_of(node))
         kind = kind if kind in LIMITS else "real"
-        for child in node.children_by_field_name("declarator") if is_outside(node) or "field" in node.type else ():
+        for child in (
+            node.children_by_field_name("declarator")
+            if "function_definition" not in list_above(node) or "field" in node.type
+            else ()
+        ):
             name, members = self.declared(field_of(child, "declarator") or child)[0], self.unit.members
             members[name] = (kind if members.get(name, (kind,))[0] == kind else "other", None)
 
@@ -166,32 +185,39 @@ class Reader(SourceReader):
         parameters = named(field_of(declarator, "parameters"))
         declared = (n for n in descend(node) if n.type in ("declaration", "parameter_declaration"))
         inner = [field_of(c, "declarator") or c for n in declared for c in n.children_by_field_name("declarator")]
-        self.locals = {text_of(n) for c in inner for n in descend(c) if n.type == "identifier"}
-        self.pointers = {
-            text_of(n)
-            for c in inner
-            if any(p.type in POINTER for p in (c, c.parent) if p is not None)
-            for n in descend(c)
-            if n.type == "identifier"
-        }
-        arguments = tuple(self.argument(p) for p in parameters if text_of(p) != "void")
+        pairs = [(c, text_of(n)) for c in inner for n in descend(c) if n.type == "identifier"]
+        kinds = (*POINTER, "array_declarator")
+        self.locals = {name for _, name in pairs}
+        self.pointers = {name for c, name in pairs if c.type in kinds or c.parent.type in kinds}
+        is_template = node.parent is not None and node.parent.type == "template_declaration"
+        head = field_of(node.parent, "parameters") if is_template else None
+        types = {text_of(n) for n in descend(head) if n.type == "type_identifier"} if head is not None else set()
+        arguments = tuple(self.argument(p, types) for p in parameters if text_of(p) != "void")
+        before = [c for c in named(node) if c.type == "field_initializer_list"]  # what is in no statement
+        start = tuple(self.part("unread", c, "the list of members before a constructor", ()) for c in before)
         is_plain = field_of(node, "declarator").type == "function_declarator" and field_of(node, "type") is not None
         number = number_of(self.type_of(node)) if is_plain else "auto"
-        function = Function(name, line_of(node), arguments, self.block(body), number=number)
+        function = Function(name, line_of(node), arguments, start + self.block(body), number=number)
         self.unit.functions.setdefault(name, []).append(function)
 
-    def argument(self, node: Any) -> Argument:
-        """A parameter with its sizes; pointers, references and arrays are shared with the caller."""
+    def argument(self, node: Any, types: set[str]) -> Argument:
+        """A parameter with its sizes; pointers, references and arrays are shared with the caller.
+
+        types : those of a template, which are those of what is given
+        """
         kind = self.type_of(node)
         name, sizes, shared = self.declared(field_of(node, "declarator"))
         shape = sizes or self.sizes(node, shape_of_type(kind))
-        return Argument(name, number_of(kind), shape, shared)
+        return Argument(name, "auto" if kind in types else number_of(kind), shape, shared)
 
     def type_of(self, node: Any) -> str:
         """The type of a declaration, with names of types that the file defines replaced."""
         text, types = text_of(field_of(node, "type")), self.unit.types
         for _ in range(ROUNDS):
             text = re.sub(r"(?<![\w:])\w+", lambda found: types.get(found[0], found[0]), text)
+        for child in node.children_by_field_name("declarator"):
+            if name := re.search(r"[A-Za-z_]\w*", text_of(child)):
+                self.unit.kinds.setdefault(name[0], set()).add(text)
         return text
 
     def declared(self, node: Any) -> tuple[str, tuple[Part, ...] | None, bool]:
@@ -201,17 +227,13 @@ class Reader(SourceReader):
         while node is not None and node.type not in ("identifier", "field_identifier"):
             if node.type == "array_declarator":
                 size = field_of(node, "size")
-                sizes.append(
-                    self.expression(size) if size is not None else self.refuse(node, "an array without a size")
-                )
+                sizes.append(self.expression(size) if size else self.refuse(node, "an array without a size"))
                 shared = True
             shared |= node.type in ("reference_declarator", *POINTER)
             if node.type == "function_declarator":
                 return text_of(node), None, True
             node = field_of(node, "declarator") or next(iter(named(node)), None)
         return (text_of(node) if node is not None else ""), tuple(reversed(sizes)) or None, shared
-
-    # -- statements --
 
     def block(self, node: Any) -> tuple[Part, ...]:
         """The statements of a body, or the one that stands for it."""
@@ -301,11 +323,11 @@ class Reader(SourceReader):
             inner = field_of(child, "declarator") if child.type == "init_declarator" else child
             name, sizes, shared = self.declared(inner)
             shape = sizes or self.sizes(child, shape_of_type(kind))
-            if value is not None and value.type == "argument_list":
-                items = tuple(map(self.expression, named(value)))
-                start = self.part("list", value, items) if len(items) > 1 else items[0] if items else None
-            elif value is not None and value.type == "initializer_list" and sizes is None and len(named(value)) == 1:
-                start = self.expression(named(value)[0])  # Vector3f v{a + b}
+            is_call = value is not None and value.type == "argument_list"
+            if is_call or (value is not None and value.type == "initializer_list" and sizes is None):
+                items = tuple(map(self.expression, named(value)))  # v(a, b), v{a + b}
+                whole = self.part("list", value, items) if items or not is_call else None
+                start = items[0] if len(items) == 1 else whole
             else:
                 start = None if value is None else self.expression(value)
             if inner.type == "structured_binding_declarator":
@@ -355,15 +377,13 @@ class Reader(SourceReader):
                 right = field_of(node, "right")
                 if any(inner.type == "primitive_type" for inner in descend(field_of(node, "left"))):
                     return (self.unread(node, "a type where a name is assigned, as of a reference to an array"),)
-                if right.type == "assignment_expression":  # a = b = c
-                    inner = self.effect(right)
-                    value = self.expression(field_of(right, "left"))
-                    return (*inner, self.part("assign", node, self.expression(field_of(node, "left")), sign, value))
+                is_chain = right.type == "assignment_expression"  # a = b = c
+                first, right = (self.effect(right), field_of(right, "left")) if is_chain else ((), right)
                 left, value = self.expression(field_of(node, "left")), self.expression(right)
                 sides = names_in(*(side for side in value.parts[1:] if value.kind == "op" and side.kind != "op"))
                 if "noalias()" in text_of(field_of(node, "left")) and names_in(left) & sides:
                     return (self.unread(node, "noalias() of a product with the target in it"),)
-                return (self.part("assign", node, left, sign, value),)
+                return (*first, self.part("assign", node, left, sign, value))
             case "update_expression":
                 one = self.part("number", node, 1, "int")
                 target = self.expression(field_of(node, "argument"))
@@ -383,8 +403,6 @@ class Reader(SourceReader):
             return None
         cells = tuple(map(self.expression, (field_of(first, "right"), *items)))
         return self.part("assign", node, self.expression(field_of(first, "left")), "<<", self.part("list", node, cells))
-
-    # -- expressions --
 
     def read_expression(self, node: Any) -> Part | None:
         match node.type:
@@ -478,9 +496,7 @@ class Reader(SourceReader):
             return self.part("method", node, *arguments, "eval", ()) if is_copy else self.part("list", node, arguments)
         if found := re.fullmatch(r"\(\*(\w+)\)", name):  # (*M)(i, j)
             name = found[1]
-        if (
-            function.type == "call_expression"
-        ):  # s.q()(0) is an entry of an accessor, M.transpose()(0, 1) one of a value
+        if function.type == "call_expression":  # s.q()(0) is an entry of an accessor, M.transpose()(0, 1) of a value
             owner = self.expression(function)
             if owner.kind == "name":
                 return self.part("call", node, owner.parts[0], arguments)
@@ -525,18 +541,15 @@ class Reader(SourceReader):
         return self.part("slice", node, low, None if is_last else size)
 
 
-def find_type(node: Any) -> Any:
-    """The name of the type in a cast; None where there is none."""
-    kind = field_of(field_of(node, "type"), "type") if node.type == "cast_expression" else None
-    return kind if kind is not None and kind.type == "type_identifier" else None
-
-
 def list_types(root: Any) -> dict[str, str]:
     """What names of types stand for that a source defines; nothing is known of one with two meanings."""
     types: dict[str, str] = {}
     templates = (node for node in descend(root) if node.type.endswith("type_parameter_declaration"))
     open_types = {text_of(inner) for node in templates for inner in named(node)}
     for node in descend(root):
+        is_class = node.type in ("struct_specifier", "class_specifier") and node.parent.type != "template_declaration"
+        if is_class and any(inner.type == "operator_name" for inner in descend(node)):
+            types[text_of(field_of(node, "name"))] = "own"  # with operators of its own, also where its name is known
         if node.type in ("type_definition", "alias_declaration"):
             name = field_of(node, "declarator") or field_of(node, "name")
             is_plain = name.type == "type_identifier"
@@ -577,15 +590,3 @@ def number_of(kind: str) -> str:
         return "auto"
     is_real = kind in REAL or kind in ("long double", "") or shape_of_type(kind) is not None
     return "real" if is_real else "other"
-
-
-def is_outside(node: Any) -> bool:
-    """True for what stands in no function."""
-    while node is not None and node.type != "function_definition":
-        node = node.parent
-    return node is None
-
-
-def is_constant(node: Any) -> bool:
-    """True for a declaration of the file, or of a class, that is const."""
-    return is_outside(node) and any(text_of(child) in ("const", "constexpr") for child in node.children)

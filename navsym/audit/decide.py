@@ -6,6 +6,9 @@ the point, goes to the checker as text. Nothing else makes an entry PROVED or RE
 
 from __future__ import annotations
 
+import contextlib
+import itertools
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -20,10 +23,27 @@ from navsym.language.domains import rational_value
 from navsym.language.expression import read_tree
 from navsym.language.polynomials import to_polynomial
 from navsym.language.printer import print_tree
-from navsym.language.tree import ZERO, Tree, build_number, build_sum, build_symbol, fold_tree, list_names, negate
+from navsym.language.tree import (
+    NUMBER,
+    POWER,
+    PRODUCT,
+    SUM,
+    SYMBOL,
+    ZERO,
+    Tree,
+    build,
+    build_number,
+    build_sum,
+    build_symbol,
+    fold_tree,
+    list_names,
+    list_parts,
+    negate,
+    parts_of,
+)
 from navsym.language.tree import replace as replace_parts
 from navsym.prove.grant import IDENTITY, REFUSALS, find_witness, grant, refute_document
-from navsym.prove.rooms.goals import player, simple_point
+from navsym.prove.rooms.goals import player, simple_point, write_term
 from navsym.prove.search import ROUNDS, Rounds, find_proof, rules_of
 
 #: Of the search for one entry.
@@ -81,16 +101,13 @@ class Scope:
 def decide_entry(code: Tree, expected: Tree, scope: Scope, rounds: Rounds = TRIES) -> Decision:
     """Whether the code computes what is expected, at all points of the scope."""
     length = measure(code) + measure(expected)
-    if length > LONG:
-        granted = prove_shared([(code, expected)], scope).get((code, expected))
-        if granted is not None:
-            return Decision(PROVED, certificate=granted)
+    if length > LONG and (granted := prove_shared([(code, expected)], scope).get((code, expected))) is not None:
+        return Decision(PROVED, certificate=granted)
     if length > LONGEST:
         return Decision(OPEN, why="a formula of more than 200,000 characters")
     document = write_document(code, expected, replace(scope, relations=()))
     try:
-        granted = prove_document(document)
-        if granted is not None:
+        if (granted := prove_document(document)) is not None:
             return Decision(PROVED, certificate=granted)
         dark = next((c for c in scope.conditions if c.left is None), None)
         refuted = refute(document, code, expected, scope) if dark is None else None
@@ -123,18 +140,23 @@ def measure(tree: Tree) -> int:
 def write_document(code: Tree, expected: Tree, scope: Scope) -> Document:
     """The statement in the words of the checker, with the relations as hypotheses."""
     names = list_names(code, expected, *scope.relations, *map(build_symbol, scope.order))
+    given = [f"{print_tree(relation)} = 0" for relation in scope.relations]
+    symbols = {name: scope.ranges[name] for name in names}
+    document = write_equation(print_tree(code), print_tree(expected), symbols, given)
+    return document | ({"order": dict(scope.order)} if scope.order else {})
+
+
+def write_equation(left: str, right: str, symbols: Mapping[str, Any], given: Sequence[str]) -> Document:
+    """An equation in the words of the checker, below hypotheses."""
     document: Document = {
-        "left": print_tree(code),
+        "left": left,
         "relation": "=",
-        "right": print_tree(expected),
-        "symbols": {name: scope.ranges[name] for name in names},
+        "right": right,
+        "symbols": symbols,
         "exists": [],
         "tolerance": None,
     }
-    if scope.relations:
-        given = [f"{print_tree(relation)} = 0" for relation in scope.relations]
-        document |= {"shapes": {}, "given": given, "rates": {}}
-    return document | ({"order": dict(scope.order)} if scope.order else {})
+    return document | ({"shapes": {}, "given": given, "rates": {}} if given else {})
 
 
 def prove_document(document: Document) -> Document | None:
@@ -154,24 +176,15 @@ def write_proof(document: Document, witness: Mapping[str, str], proofs: list[Any
 
 def prove_shared(pairs: Sequence[tuple[Tree, Tree]], scope: Scope) -> dict[tuple[Tree, Tree], Document]:
     """The certificates of identities in shared parts, with their meanings as hypotheses; one for several pairs."""
-    from navsym.audit.shared import shorten_pairs
-
     done = dict[tuple[Tree, Tree], Document]()
     for equal, short in shorten_pairs(pairs):
         inputs, (left, right) = short.inputs(), zip(*short.pairs, strict=True)
         numbers = [simple_point(player.read_range(scope.ranges[name]), i % 2) for i, name in enumerate(inputs)]
         point = {name: Fraction(int(q.p), int(q.q)) for name, q in zip(inputs, numbers, strict=True)}
-        document: Document = {
-            "left": f"[{', '.join(map(print_tree, left))}]",
-            "relation": "=",
-            "right": f"[{', '.join(map(print_tree, right))}]",
-            "symbols": {**{name: scope.ranges[name] for name in inputs}, **{name: REAL for name in short.meanings}},
-            "exists": [],
-            "tolerance": None,
-            "shapes": {},
-            "given": [f"{name} = {print_tree(tree)}" for name, tree in short.meanings.items()],
-            "rates": {},
-        }
+        code, expected = (f"[{', '.join(map(print_tree, side))}]" for side in (left, right))
+        given = [f"{name} = {print_tree(tree)}" for name, tree in short.meanings.items()]
+        ranges = {name: scope.ranges[name] for name in inputs} | dict.fromkeys(short.meanings, REAL)
+        document = write_equation(code, expected, ranges, given)
         try:
             witness = {name: str(value) for name, value in short.complete(point).items()}
             certificate = write_proof(document, witness, [IDENTITY for _ in equal])
@@ -218,9 +231,8 @@ def refute(document: Document, code: Tree, expected: Tree, scope: Scope) -> Deci
         if not all(holds_at(condition, place) for condition in scope.conditions):
             continue
         values = [player.value_of(goal.term, place) for goal in case.goals]
-        if not all(player.value_of(t, place).is_finite() for t in case.terms) or not any(
-            v > 0 or v < 0 for v in values
-        ):
+        is_there = all(player.value_of(term, place).is_finite() for term in case.terms)
+        if not is_there or not any(v > 0 or v < 0 for v in values):
             continue
         texts = {name: str(value) for name, value in point.items()}
         try:
@@ -228,7 +240,7 @@ def refute(document: Document, code: Tree, expected: Tree, scope: Scope) -> Deci
         except REFUSALS:
             continue
         both = value_text(code, point), value_text(expected, point)
-        return Decision(REFUTED, point=texts, values=both, certificate=certificate)
+        return Decision(REFUTED, "exact", texts, both, "", certificate)
     return None
 
 
@@ -236,7 +248,11 @@ def draw_points(box: Mapping[str, Any], scope: Scope) -> Iterator[Point]:
     """Simple exact points of the box at which the relations hold."""
     names = sorted(box)
     for k in range(POINTS):
-        point = {name: choose_value(box[name], k, i) for i, name in enumerate(names)}
+        point = dict[str, fmpq]()
+        for i, name in enumerate(names):  # a simple number of its range
+            simple = SIMPLE[(i * (k // 3 + 1) + k) % len(SIMPLE)]
+            is_inside = player.is_inside(("number", simple), box[name])
+            point[name] = simple if is_inside else simple_point(box[name], k + i)
         for entries in scope.rotations:
             if {*entries} <= {*names}:
                 turn(entries, point, k)
@@ -252,12 +268,6 @@ def turn(entries: Sequence[str], point: Point, trial: int) -> None:
     square = w * w + sum(x * x for x in v)
     whole = fmpq_mat(3, 3, [int(i == j) for i in range(3) for j in range(3)]) + (skew * w + skew * skew) * (2 / square)
     point |= dict(zip(entries, whole.entries(), strict=True))
-
-
-def choose_value(limits: Any, trial: int, place: int) -> fmpq:
-    """A simple number of a range."""
-    candidate = SIMPLE[(place * (trial // 3 + 1) + trial) % len(SIMPLE)]
-    return candidate if player.is_inside(("number", candidate), limits) else simple_point(limits, trial + place)
 
 
 def meet(relation: Tree, point: Point, box: Mapping[str, Any]) -> bool:
@@ -278,12 +288,11 @@ def meet(relation: Tree, point: Point, box: Mapping[str, Any]) -> bool:
     else:
         for at, name in enumerate(names):
             if max(exponents[at] for exponents in terms) == 1:
-                rest = [(fmpq(c), e) for e, c in terms.items()]
                 parts = [fmpq(0), fmpq(0)]
-                for coefficient, exponents in rest:
-                    for other, power in zip(names, exponents, strict=True):
-                        coefficient = coefficient * point[other] ** int(power) if other != name else coefficient
-                    parts[exponents[at]] += coefficient
+                for exponents, coefficient in terms.items():
+                    powers = zip(names, exponents, strict=True)
+                    factors = (point[other] ** int(power) for other, power in powers if other != name)
+                    parts[exponents[at]] += math.prod(factors, start=fmpq(coefficient))
                 if parts[1] != 0:
                     point[name] = -parts[0] / parts[1]
                     break
@@ -302,33 +311,26 @@ def holds_at(condition: Condition, place: Mapping[str, Any]) -> bool:
         return True
     term = player.parse(print_tree(build_sum(condition.left, negate(condition.right))))
     ball = player.value_of(term, dict(place))
-    if not ball.is_finite():
-        return False
     exact_zero = ball == 0
     truths = {
         "<": (ball < 0, ball >= 0), "<=": (ball <= 0, ball > 0), ">": (ball > 0, ball <= 0),
         ">=": (ball >= 0, ball < 0), "==": (exact_zero, ball != 0), "!=": (ball != 0, exact_zero),
     }  # fmt: skip
-    return bool(truths[condition.sign][0 if condition.holds else 1])
+    return bool(ball.is_finite() and truths[condition.sign][0 if condition.holds else 1])
 
 
 def value_text(tree: Tree, point: Point) -> str:
     """The value of a formula at a point: exact where it is rational, else to 15 digits."""
     used = {name: point[name] for name in list_names(tree)}
-    try:
-        exact = value_at(tree, used)
-    except NavsymError:
-        exact = None
-    if exact is not None:
-        return str(exact)
+    with contextlib.suppress(NavsymError):
+        if (exact := value_at(tree, used)) is not None:
+            return str(exact)
     place = {name: player.Jet(player.arb(value)) for name, value in used.items()}
     return str(player.value_of(player.parse(print_tree(tree)), place).str(15, radius=False))
 
 
 def differentiate(tree: Tree, symbol: Tree) -> Tree:
     """The derivative by the rules of the checker, as a tree; raises DomainError where none is known."""
-    from navsym.prove.rooms.goals import write_term
-
     if measure(tree) > LONGEST:
         raise DomainError("expected a formula of at most 200,000 characters; got a longer one; ask for its parts")
     try:
@@ -336,3 +338,100 @@ def differentiate(tree: Tree, symbol: Tree) -> Tree:
     except REFUSALS:
         raise DomainError("expected a formula with a derivative; got one without; ask for its parts") from None
     return read_tree(write_term(term), set(list_names(tree))) if term != player.ZERO else ZERO
+
+
+# Long entries: the sums that code and expectation share become symbols of their own, with their meaning as hypotheses.
+# Code of a filter names its common parts, and what is expected of it has the same parts. Multiplied out they are long;
+# by name both sides are short. The statement "shared1x = ... implies left = right" is the same statement as the long
+# one: each symbol stands for a polynomial, which has one value at every point. The checker reads it as a whole.
+
+Pair = tuple[Tree, Tree]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shortened:
+    """Pairs of sides in which shared parts are symbols.
+
+    meanings : symbol -> what it stands for, in the symbols of its own parts and the inputs
+    """
+
+    pairs: tuple[Pair, ...]
+    meanings: Mapping[str, Tree]
+
+    def inputs(self) -> list[str]:
+        """The other symbols."""
+        names = list_names(*itertools.chain(*self.pairs), *self.meanings.values())
+        return [name for name in names if name not in self.meanings]
+
+    def complete(self, point: Mapping[str, Fraction]) -> dict[str, Fraction]:
+        """The point with the exact values of the shared parts."""
+        known = {build_symbol(name): build_number(value) for name, value in point.items()}
+        for name, tree in self.meanings.items():  # each behind those in it
+            if (value := rational_value(replace_parts(tree, known))) is None:
+                raise TooLargeError("expected numbers of bounded size; got larger ones; ask for fewer entries")
+            known[build_symbol(name)] = build_number(value)
+        return {symbol.args[0]: number.args[0] for symbol, number in known.items()}
+
+
+def shorten_pairs(pairs: Sequence[Pair]) -> Iterator[tuple[list[Pair], Shortened]]:
+    """Those pairs whose sides are equal as polynomials in shared parts, as they are and by these parts.
+
+    The parts are the sums that both sides have: all of them, then only those without another one inside.
+    """
+    waiting = list(pairs)
+    for is_inner in (False, True):
+        codes, expected = ({*list_parts(*side)} for side in zip(*waiting, strict=True))
+        parts = list_parts(*itertools.chain(*waiting))
+        total, above = set[Tree](), set[Tree]()
+        for part in parts:
+            if is_polynomial_head(part) and total.issuperset(parts_of(part)):
+                total.add(part)
+        shared = {part for part in codes & expected & total if part.head == SUM} - {*itertools.chain(*waiting)}
+        for part in parts:  # those with a shared one inside
+            if any(inner in above or inner in shared for inner in parts_of(part)):
+                above.add(part)
+        shared = shared - above if is_inner else shared
+        if not shared:
+            return
+        short = name_parts(waiting, parts, shared)
+        equal = [is_same(*pair) for pair in short.pairs]
+        if any(equal):
+            kept = tuple(itertools.compress(short.pairs, equal))
+            yield list(itertools.compress(waiting, equal)), Shortened(kept, short.meanings)
+        waiting = [pair for pair, is_equal in zip(waiting, equal, strict=True) if not is_equal]
+        if not waiting:
+            return
+
+
+def is_same(left: Tree, right: Tree) -> bool:
+    """True for two polynomials that are equal."""
+    names = list_names(left, right)
+    try:
+        return bool(to_polynomial(left, names) == to_polynomial(right, names))
+    except (DomainError, TooLargeError):
+        return False
+
+
+def is_polynomial_head(part: Tree) -> bool:
+    """True for what makes polynomials of polynomials, which have a value at every point."""
+    if part.head != POWER:
+        return part.head in (NUMBER, SYMBOL, SUM, PRODUCT)
+    exponent = part.args[1]
+    return exponent.head == NUMBER and exponent.args[0].denominator == 1 and 0 < exponent.args[0] <= 64
+
+
+def name_parts(pairs: Sequence[Pair], parts: list[Tree], shared: set[Tree]) -> Shortened:
+    """The sides with a symbol for each shared part, under names that occur nowhere in them."""
+    taken = {part.args[0] for part in parts if part.head == SYMBOL}
+    letter = "shared"
+    while any(name.startswith(letter) for name in taken):
+        letter += "x"
+    renamed: dict[Tree, Tree] = {}
+    meanings: dict[str, Tree] = {}
+    for part in parts:
+        inner = tuple(renamed.get(arg, arg) if isinstance(arg, Tree) else arg for arg in part.args)
+        renamed[part] = build(part.head, inner) if parts_of(part) else part
+        if part in shared:
+            name = f"{letter}{len(meanings) + 1}"
+            meanings[name], renamed[part] = renamed[part], build_symbol(name)
+    return Shortened(tuple((renamed[code], renamed[expected]) for code, expected in pairs), meanings)

@@ -26,11 +26,14 @@ from navsym.audit.values import (
     Variable,
     add,
     as_real,
+    cells_of,
     combine,
     constant_of,
     convert,
     divide,
     does_fit,
+    find_unread,
+    forbid,
     join,
     map_cells,
     minus,
@@ -157,8 +160,6 @@ class Evaluator:
         """The source."""
         return self.reading.unit
 
-    # -- names and places --
-
     def variable(self, name: str) -> Variable:
         """What a name stands for; an unknown one is an input."""
         name = self.canonical(name)
@@ -170,10 +171,9 @@ class Evaluator:
             shape, head = self.shapes.get(name), head_of(name)
             if head in self.lost_heads:
                 return Variable(name, shape=shape, is_input=True, all_unread=self.lost_heads[head])
-            own = self.unit.members.get(re.split(r"->|\.", name)[-1] if self.unit.language in ("c", "cpp") else name)
-            number, sizes = own or ("real", None)
-            shape = sizes if shape is None else shape
-            self.globals[name] = Variable(name, number, shape, is_input=True, all_unread=self.lost)
+            own = re.split(r"->|\.", name)[-1] if self.unit.language in ("c", "cpp") else name
+            number, sizes = self.unit.members.get(own, ("real", None))
+            self.globals[name] = Variable(name, number, shape or sizes, is_input=True, all_unread=self.lost)
         return self.globals[name]
 
     def canonical(self, name: str) -> str:
@@ -188,7 +188,7 @@ class Evaluator:
         """The structure to which a reference or pointer leads, and the sign before its members where it is another."""
         if value.kind not in ("name", "address", "first"):
             return None
-        sign, inner = {"name": "", "address": ".", "first": "->"}[value.kind], value
+        sign = {"name": "", "address": ".", "first": "->"}[value.kind]
         inner = value if value.kind == "name" else value.parts[0]
         if inner.kind != "name":
             return None
@@ -197,10 +197,10 @@ class Evaluator:
 
     def read(self, variable: Variable, place: Index, line: int) -> Cell:
         """One cell."""
-        if place in variable.cells and variable.all_unread is None:
-            return variable.cells[place]
         if variable.all_unread is not None:
             return variable.all_unread
+        if place in variable.cells:
+            return variable.cells[place]
         if variable.is_input:
             cell = Scalar(self.inputs(spell_entry(self.unit, variable.name, place)), promote(variable.number), 0)
             if variable.shape is None:  # a number or an array from now on
@@ -211,8 +211,7 @@ class Evaluator:
 
     def whole(self, part: Part) -> int:
         """A constant whole number."""
-        exact = constant_of(self.value(part))
-        if exact is None or exact.denominator != 1:
+        if (exact := constant_of(self.value(part))) is None or exact.denominator != 1:
             raise Unreadable(part.line, "an index or size that is no constant")
         return int(exact)
 
@@ -236,8 +235,7 @@ class Evaluator:
             raise Unreadable(part.line, "a target that is no entry")
         indices: list[Part] = []
         while part.kind == "index":
-            if indices and any(index.kind == "slice" for index in part.parts[1]):
-                raise Unreadable(part.line, "an index of a block")
+            forbid(indices and any(index.kind == "slice" for index in part.parts[1]), part.line, "an index of a block")
             indices = [*part.parts[1], *indices]
             part = part.parts[0]
         if part.kind == "call":
@@ -286,14 +284,13 @@ class Evaluator:
 
     def index_range(self, index: Part, size: int | None, line: int) -> tuple[list[int], Index]:
         """The whole numbers that one index means, from 0, and its part of the shape."""
-        first, outer = self.unit.rules.first, self.frame.pop("end", None)
+        first, outer = self.unit.rules.first, self.frame
         if self.unit.language == "matlab" and size is not None:
-            self.frame["end"] = Variable("end", "int", (), {(): Scalar(build_number(size), "int")})
+            self.frame = {**outer, "end": Variable("end", "int", (), {(): Scalar(build_number(size), "int")})}
         try:
             return self.index_inside(index, size, first, line)
         finally:
-            self.frame.pop("end", None)
-            self.frame |= {} if outer is None else {"end": outer}
+            self.frame = outer
 
     def index_inside(self, index: Part, size: int | None, first: int, line: int) -> tuple[list[int], Index]:
         """The same, where ``end`` is the size."""
@@ -304,17 +301,13 @@ class Evaluator:
             low = 0 if start is None else self.whole(start) - first
             high = size if stop is None else self.whole(stop)
             low, high = (low + size if low < 0 else low), (high + size if high < 0 else high)
-            if not 0 <= low <= high <= size:
-                raise Unreadable(line, "a slice outside the array")
+            forbid(not 0 <= low <= high <= size, line, "a slice outside the array")
             return [*range(low, high)], (high - low,)
         i = self.whole(index) - first
         if i < 0 and self.unit.language == "python" and size is not None:
             i += size
-        if i < 0 or (size is not None and i >= size):
-            raise Unreadable(line, "an index outside the array")
+        forbid(i < 0 or (size is not None and i >= size), line, "an index outside the array")
         return [i], ()
-
-    # -- expressions --
 
     def value(self, part: Part, wants_value: bool = True) -> Value:
         """The value of an expression."""
@@ -322,8 +315,8 @@ class Evaluator:
         self.steps += 1
         kind = part.kind
         try:
-            if kind == "number" and part.parts[0] in self.unit.decimals:
-                return Scalar(self.unit.decimals[part.parts[0]])
+            if kind == "number" and (known := self.unit.decimals.get(abs(part.parts[0]))) is not None:
+                return Scalar(known if part.parts[0] > 0 else minus(known))
             if kind == "number":
                 return Scalar(build_number(Fraction(part.parts[0])), part.parts[1])
             if kind == "name":
@@ -398,8 +391,7 @@ class Evaluator:
         if self.unit.language not in ("c", "cpp") or not isinstance(value, Scalar) or value.number not in LIMITS:
             return value
         kind = self.kind_of(other)
-        if not kind:
-            raise Unreadable(other.line, "a choice between numbers whose type is not known")
+        forbid(not kind, other.line, "a choice between numbers whose type is not known")
         number = "real" if kind == "real" else max(promote(kind), value.number)
         return require_fit(self.unit, replace(value, number=number), other.line)
 
@@ -430,9 +422,9 @@ class Evaluator:
         value, kind = self.value(part.parts[1]), part.parts[0]
         if kind not in LIMITS:
             return as_real(value)
-        if constant_of(value) is None or not does_fit(value, kind):  # type: ignore[arg-type]
+        if not isinstance(value, Scalar) or constant_of(value) is None or not does_fit(value, kind):
             raise Unreadable(part.line, CUT)
-        return replace(value, number=promote(kind))  # type: ignore[arg-type]
+        return replace(value, number=promote(kind))
 
     def entries(self, part: Part) -> Value:
         """An entry or a block of a variable."""
@@ -461,11 +453,9 @@ class Evaluator:
     def stack(self, values: list[Value], line: int) -> Array:
         """Numbers as a vector, vectors as the rows of a matrix."""
         shapes = {value.shape if isinstance(value, Array) else () for value in values}
-        if len(shapes) != 1 or not values:
-            raise Unreadable(line, "a list of different shapes")
+        forbid(len(shapes) != 1 or not values, line, "a list of different shapes")
         (shape,) = shapes
-        cells = tuple(c for v in values for c in (v.cells if isinstance(v, Array) else (v,)))
-        return Array((len(values), *shape), cells)
+        return Array((len(values), *shape), tuple(c for v in values for c in cells_of(v)))
 
     def linked(self, value: Part | None, statement: Part) -> Variable:
         """The variable to which a reference or pointer is a second name."""
@@ -476,8 +466,7 @@ class Evaluator:
             return self.variable(value.parts[0])
         if value is not None and value.kind in ("index", "call", "method"):
             base, (place, *others), _ = self.targets(value)
-            if others:
-                raise Unreadable(value.line, "a block where an entry is needed")
+            forbid(others, value.line, "a block where an entry is needed")
             name = spell_entry(self.unit, base.name, place)
             base.cells.setdefault(place, self.read(base, place, value.line))
             view = Variable(name, base.number, ())
@@ -485,8 +474,6 @@ class Evaluator:
             view.views.append(base)  # a write that is not read loses the whole of it: a pointer may be moved
             return view
         raise Unreadable(statement.line, "a reference or pointer to what is no variable")
-
-    # -- calls --
 
     def call(self, part: Part, wants_value: bool) -> Value:
         """A known function, one of the file, or an entry ``M(i, j)``."""
@@ -515,20 +502,19 @@ class Evaluator:
         values = [self.value(item) for item in items]
         sizes = {len(value.shape) if isinstance(value, Array) else 0 for value in values}
         if sizes == {1} and name in ("hstack", "concatenate"):
-            cells = tuple(c for value in values for c in value.cells)  # type: ignore[union-attr]
+            cells = tuple(c for value in values for c in cells_of(value))
             return Array((len(cells),), cells)
         known = {"row": {0, 1, 2}, "vstack": {1, 2}, "hstack": {2}, "concatenate": {2}}.get(name, set())
-        if not sizes <= known:
-            raise Unreadable(part.line, f"{name} of arrays of different shapes")
+        forbid(not sizes <= known, part.line, f"{name} of arrays of different shapes")
         rows = [Array((1, *v.shape), v.cells) if isinstance(v, Array) and len(v.shape) == 1 else v for v in values]
         return join(*rows, across=name in ("hstack", "row"))
 
     def extreme(self, part: Part, sign: str) -> Value:
         """The larger or the smaller of two numbers, as cases."""
         a, b = (self.value(argument) for argument in part.parts[1])
+        if (unread := find_unread(a, b)) is not None:
+            return unread
         if not (isinstance(a, Scalar) and isinstance(b, Scalar)):
-            if isinstance(a, Unread) or isinstance(b, Unread):
-                return a if isinstance(a, Unread) else b
             raise Unreadable(part.line, f"{part.parts[0]} of arrays")
         x, y = constant_of(a), constant_of(b)
         text = " >= ".join(self.unit.text(argument) for argument in part.parts[1])
@@ -547,8 +533,7 @@ class Evaluator:
         """The body of a function of the file, on its arguments."""
         name, arguments = part.parts
         candidates = [f for f in self.unit.functions[name] if len(f.arguments) == len(arguments)]
-        if len(candidates) != 1:
-            raise Unreadable(part.line, f"a call of {name}, which has {len(candidates)} definitions that fit")
+        forbid(len(candidates) != 1, part.line, f"a call of {name}, which has {len(candidates)} definitions that fit")
         if name in self.calls or len(self.calls) >= INLINED:
             raise Unreadable(part.line, f"the recursion of {name}" if name in self.calls else "calls nested too deep")
         function = candidates[0]
@@ -573,8 +558,7 @@ class Evaluator:
         if function.outputs and returned is None:
             self.outputs = [self.whole_value(frame[output], part.line) for output in function.outputs]
             returned = self.outputs[0]
-        if returned is None and wants_value:
-            raise Unreadable(part.line, f"{name} returns no value")
+        forbid(returned is None and wants_value, part.line, f"{name} returns no value")
         return convert(returned, function.number, part.line) if returned is not None else Unread(part.line, "no value")
 
     def require_no_structure(self, function: Function, arguments: tuple[Part, ...], line: int) -> None:
@@ -620,6 +604,8 @@ class Evaluator:
             if not sides and self.unit.language != "python":
                 return self.linked(inner, given)
         value = self.value(given)
+        if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in cells_of(value)):
+            raise Unreadable(given.line, f"an integer given to the template {function.name}, which may cut quotients")
         shape = value.shape if isinstance(value, Array) else ()
         variable = Variable(argument.name, "list" if isinstance(value, List) else argument.number, shape)
         if isinstance(value, Unread):
@@ -632,13 +618,11 @@ class Evaluator:
         """``M.transpose()`` and the like; an accessor without arguments is a name."""
         base, name, arguments = part.parts
         is_array = base.kind != "name" or name == "T" or bool(self.variable_shape(base.parts[0]))
-        if is_method(name, len(arguments), self.unit.language) and is_array:
+        if (is_known_method := is_method(name, len(arguments), self.unit.language)) and is_array:
             return METHODS[name, len(arguments)](self.unit, self.value(base), *map(self.value, arguments))
         if base.kind == "name" and self.variable_shape(base.parts[0]):
             return self.entries(self.component(part))
-        if is_method(
-            name, len(arguments), self.unit.language
-        ):  # never an accessor: without its size nobody knows what it gives
+        if is_known_method:  # never an accessor: without its size nobody knows what it gives
             raise Unreadable(part.line, f"{name} of what has no known size; declare it under [code.symbols]")
         if base.kind == "name" and self.unit.language in ("c", "cpp"):
             return self.call(Part("call", part.line, (f"{base.parts[0]}.{name}", arguments), part.span), True)
@@ -679,9 +663,7 @@ class CellView(dict[Index, Cell]):
         self.base, self.where = base, place
 
     def __getitem__(self, _: Index) -> Cell:
-        if self.base.all_unread is not None:
-            return self.base.all_unread
-        return self.base.cells[self.where]
+        return self.base.all_unread if self.base.all_unread is not None else self.base.cells[self.where]
 
     def __setitem__(self, _: Index, cell: Cell) -> None:
         self.base.cells[self.where] = cell

@@ -5,12 +5,14 @@ from __future__ import annotations
 import contextlib
 import functools
 import math
+import operator
+import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any
 
-from navsym.audit.conditions import Decider, is_integer
-from navsym.audit.evaluate import CASES, Case, CellView, Failing, Inputs, Reading, Returning
+from navsym.audit.evaluate import CASES, Case, CellView, Condition, Evaluator, Failing, Inputs, Reading, Returning
 from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_return_view, names_in, walk
 from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, VIEWS, bare_name, does_take, is_method
 from navsym.audit.values import (
@@ -26,20 +28,24 @@ from navsym.audit.values import (
     Unreadable,
     Value,
     Variable,
+    cells_of,
     combine,
     constant_of,
     convert,
     does_fit,
+    forbid,
     join,
     lose,
     lose_views,
     make_array,
+    map_cell,
     places_of,
     promote,
+    require_fit,
     share,
 )
 from navsym.core.errors import TooLargeError
-from navsym.language.tree import build_number
+from navsym.language.tree import NUMBER, ZERO, build_number
 
 Body = tuple[Part, ...]
 STEPS = 250_000
@@ -99,12 +105,10 @@ def list_cases(
 
 
 @dataclass(slots=True, eq=False)
-class Machine(Decider):
+class Machine(Evaluator):
     """One run. Undecided conditions take the ways of ``choices``, and then the first of both.
 
     choices : None leaves unread what depends on an undecided condition
-    frame   : the names of the running function
-    shadows : what a block's own names have hidden, one table for each block
     """
 
     def run(self, function: Function) -> Case:
@@ -131,16 +135,11 @@ class Machine(Decider):
 
     def make_argument(self, argument: Argument) -> Variable:
         """A parameter of the function that is audited: an input."""
-        shape: Index | None = None
-        if argument.shape is not None:
-            try:
+        shape = self.shapes.get(argument.name)
+        with contextlib.suppress(Unreadable):
+            if shape is None and argument.shape is not None:
                 shape = tuple(self.whole(size) for size in argument.shape)
-            except Unreadable:
-                shape = None
-        shape = self.shapes.get(argument.name, shape)
         return Variable(argument.name, argument.number, shape, is_input=True)
-
-    # -- statements --
 
     def block(self, body: tuple[Part, ...]) -> None:
         """Statements with names of their own."""
@@ -197,7 +196,10 @@ class Machine(Decider):
                 is_c = self.unit.language == "c"  # which gives a called function a copy of a number
                 targets |= {name for name in names_in(part) if not (is_c and self.variable_shape(name) == ())}
             may_leave = part.kind == "refused" and part.parts[3:] == (True,)
-            if part.kind in ("jump", "fail") or may_leave or (part.kind == "call" and self.may_jump(part)):
+            name = part.parts[0] if part.kind == "call" else ""  # of a macro, or of what looks like one, with a return
+            may_leave |= name in self.unit.macros
+            may_leave |= name.isupper() and name not in self.frame and not self.is_plain(part)
+            if part.kind in ("jump", "fail") or may_leave:
                 self.stop(unread)
             if part.kind == "unread" or self.has_effect(part):
                 self.lose(unread)
@@ -237,11 +239,6 @@ class Machine(Decider):
             if variable.name != name and head_of(variable.name) == name:
                 variable.all_unread = unread
 
-    def may_jump(self, part: Part) -> bool:
-        """True for what is a macro, or looks like one: it may hold a return."""
-        name = part.parts[0]
-        return name in self.unit.macros or (name.isupper() and name not in self.frame and not self.is_plain(part))
-
     def stop(self, unread: Unread) -> None:
         """The end of a run whose way nobody knows any more: nothing that it holds is read."""
         self.lose(unread)
@@ -271,9 +268,7 @@ class Machine(Decider):
 
     def has_effect(self, part: Part) -> bool:
         """True for an expression that may write more than the target of its statement."""
-        if part.kind == "refused":
-            return any(part.parts[2:])
-        return part.kind == "call" and not self.is_plain(part)
+        return any(part.parts[2:]) if part.kind == "refused" else part.kind == "call" and not self.is_plain(part)
 
     def root_names(self, target: Part) -> set[str]:
         """The variable of a target; all names in one that is not understood."""
@@ -309,12 +304,10 @@ class Machine(Decider):
             raise Unreadable(statement.line, "several names assigned at once")
         self.outputs = []
         self.value(call)
-        if len(self.outputs) < len(targets):
-            raise Unreadable(statement.line, "more names than values")
+        forbid(len(self.outputs) < len(targets), statement.line, "more names than values")
         for target, value in zip(targets, self.outputs[:], strict=False):
             self.note_unread(value, statement)
-            if target.kind != "name":
-                raise Unreadable(statement.line, "entries among several names assigned at once")
+            forbid(target.kind != "name", statement.line, "entries among several names assigned at once")
             self.rename(target.parts[0], call, value, statement)
 
     def run_declare(
@@ -339,10 +332,16 @@ class Machine(Decider):
         sizes = () if shape is None else tuple(self.whole(size) for size in shape)
         result = None if value is None else self.value(value)
         if shape is None and isinstance(result, Array):
-            if number == "other":
-                raise Unreadable(statement.line, "a structure made of a list")
+            forbid(number == "other", statement.line, "a structure made of a list")
             sizes = result.shape  # auto
-        elif isinstance(result, Array) and len(sizes) == 2 and not self.does_fill(value, result, sizes):
+        elif (
+            isinstance(result, Array)
+            and len(sizes) == 2
+            and not (
+                sizes in (self.fill(result, sizes).shape, result.shape[1:])  # type: ignore[union-attr]
+                or (len(result.shape) == 1 and value is not None and value.kind == "list")
+            )
+        ):
             raise Unreadable(statement.line, f"{name}, a matrix made of a row of numbers, which may be its columns")
         elif number == "matrix" and isinstance(result, Scalar):
             raise Unreadable(statement.line, f"{name}, a matrix of unknown size")
@@ -372,15 +371,9 @@ class Machine(Decider):
 
     def note_unread(self, value: Value, statement: Part) -> None:
         """Keep in mind an assignment of what is not read."""
-        cells = value.cells if isinstance(value, Array) else (value,)
-        unread = next((cell for cell in cells if isinstance(cell, Unread)), None)
+        unread = next((cell for cell in cells_of(value) if isinstance(cell, Unread)), None)
         if unread is not None:
             self.reading.valueless[statement.span] = unread.why
-
-    def does_fill(self, value: Part | None, result: Array, sizes: Index) -> bool:
-        """True for a matrix, or for all its numbers in a list, as they stand."""
-        is_whole = sizes in (self.fill(result, sizes).shape, result.shape[1:])  # type: ignore[union-attr]
-        return is_whole or (len(result.shape) == 1 and value is not None and value.kind == "list")
 
     def fill(self, value: Value, shape: Index) -> Value:
         """An initial value in its shape: the rest of a C initializer is zero."""
@@ -400,8 +393,7 @@ class Machine(Decider):
             raise Unreadable(statement.line, "a matrix that Eigen changes while a part of it is read; write .eval()")
         if sign:
             before = self.value(target)
-            if isinstance(before, List):
-                raise Unreadable(statement.line, f"{sign}= of a list, which is no array")
+            forbid(isinstance(before, List), statement.line, f"{sign}= of a list, which is no array")
             result = combine(self.unit, sign, before, result, statement.line)
         self.note_unread(result, statement)
         target = self.component(member) if (member := self.member_of_array(target)) else target
@@ -416,7 +408,7 @@ class Machine(Decider):
                 return
             self.write(variable, result, statement)
             return
-        variable, places, shape = self.targets(target)
+        variable, places, _ = self.targets(target)
         if variable.number == "list" and isinstance(result, Array) and value.kind != "list":
             lose(variable, Unread(statement.line, "a row of a list that may stand in two places"))
             raise Unreadable(statement.line, "a row of a list that may stand in two places")
@@ -443,8 +435,7 @@ class Machine(Decider):
     def fill_by_commas(self, target: Part, value: Part) -> Value:
         """``M << A, b, c`` of Eigen: blocks side by side until a row is full, and then below."""
         *_, shape = self.targets(target)
-        if not shape:
-            raise Unreadable(value.line, "<< into what has no known size")
+        forbid(not shape, value.line, "<< into what has no known size")
         if names_in(target) & {*names_in(value), *(p.parts[0] for p in walk(value) if p.kind == "call")}:
             raise Unreadable(value.line, "a matrix that is filled with its own entries")
         rows: list[list[Value]] = [[]]
@@ -460,8 +451,7 @@ class Machine(Decider):
         In Python two names share one array, and a slice is a view: a later write leaves the other one unread.
         """
         is_python, name = self.unit.language == "python", self.canonical(name)
-        if self.is_property(name):
-            raise Unreadable(statement.line, f"{name}, which a function of the file may set")
+        forbid(self.is_property(name), statement.line, f"{name}, which a function of the file may set")
         self.rename_object(name, value, statement)
         if is_python and value.kind == "name" and isinstance(result, Array):
             self.frame[name] = self.variable(value.parts[0])
@@ -512,23 +502,19 @@ class Machine(Decider):
             lose(variable, value)
             return
         variable.all_unread = None
-        if isinstance(value, Array):
-            is_other = variable.shape not in (None, value.shape)
-            if is_other and math.prod(variable.shape or ()) != len(value.cells):
-                raise Unreadable(statement.line, "an assignment between shapes that do not fit")
-            variable.shape = variable.shape or value.shape
-            for place, cell in zip(places_of(variable.shape), value.cells, strict=True):
-                self.write_cell(variable, place, cell, statement)
-        else:
-            if variable.shape is not None and variable.shape != ():
-                raise Unreadable(statement.line, "a number assigned to an array")
-            self.write_cell(variable, (), value, statement)
+        shape = value.shape if isinstance(value, Array) else ()
+        forbid(not shape and variable.shape, statement.line, "a number assigned to an array")
+        if variable.shape not in (None, shape) and math.prod(variable.shape or ()) != math.prod(shape):
+            raise Unreadable(statement.line, "an assignment between shapes that do not fit")
+        if shape:
+            variable.shape = variable.shape or shape
+        for place, cell in zip(places_of(variable.shape or ()), cells_of(value), strict=True):
+            self.write_cell(variable, place, cell, statement)
 
     def write_cell(self, variable: Variable, place: Index, cell: Cell, statement: Part) -> None:
         """One cell, with the line of the statement."""
         if isinstance(cell, Scalar):
-            if variable.number in LIMITS and not does_fit(cell, variable.number):
-                raise Unreadable(statement.line, CUT)
+            forbid(variable.number in LIMITS and not does_fit(cell, variable.number), statement.line, CUT)
             number = promote(variable.number) if self.unit.rules.integer else cell.number
             number = "real" if number in ("quaternion", "auto") else number
             cell = Scalar(cell.tree, number, statement.line, statement)
@@ -544,9 +530,8 @@ class Machine(Decider):
 
     def run_for(self, name: str, start: Part, stop: Part, step: Part, body: Any, statement: Part) -> None:
         """A loop between constants."""
-        first, end, by = (self.whole(part) for part in (start, stop, step))
-        if by == 0 or len(range(first, end, by)) > STEPS:
-            raise Unreadable(statement.line, "a loop without an end")
+        first, end, by = map(self.whole, (start, stop, step))
+        forbid(by == 0 or len(range(first, end, by)) > STEPS, statement.line, "a loop without an end")
         with self.scope():
             if self.unit.language == "rust":  # where the counter is a name of its own
                 self.shadows[-1][name] = self.frame.get(name)
@@ -608,49 +593,105 @@ class Machine(Decider):
                 self.run_assign(base, "", Part("method", call.line, (base, IN_PLACE[name], ()), call.span), statement)
                 return
             if self.unit.language == "cpp" and name in ("transpose", "inverse", "conjugate"):  # of some libraries
-                unread = Unread(
-                    statement.line, f"{name} without a use of its value: it may change what it is called on"
-                )
+                why = f"{name} without a use of its value: it may change what it is called on"
                 for known in names_in(base):
-                    lose(self.variable(known), unread)
-                raise Unreadable(unread.line, unread.why)
-        elif call.kind == "call" and (
-            call.parts[0] in (*HARMLESS, *PURE[self.unit.language]) or call.parts[0] in self.unit.ignored
-        ):
+                    lose(self.variable(known), Unread(statement.line, why))
+                raise Unreadable(statement.line, why)
+        elif call.kind == "call" and call.parts[0] in {*HARMLESS, *PURE[self.unit.language], *self.unit.ignored}:
             if any(self.has_effect(part) for part in walk(call.parts[1])):
                 raise Unreadable(statement.line, f"an argument of {call.parts[0]} that may write")
             return
         elif call.kind == "call" and call.parts[0] == "memcpy" and len(call.parts[1]) == 3:
             target, source, size = call.parts[1]
             names = [self.unit.text(part) for part in (target, source)]
-            local = [name for name in names if any(name in table for table in self.shadows)]
-            if not any(self.unit.text(size).replace(" ", "") == f"sizeof({name})" for name in local):
+            if not any(self.unit.text(size).replace(" ", "") == f"sizeof({n})" and self.is_own(n) for n in names):
                 raise Unreadable(statement.line, "memcpy of other than sizeof an array that is declared here")
+            types = [self.unit.kinds.get(re.split(r"->|\.", n)[-1], set()) for n in names_in(target, source)]
+            forbid(len(set[str]().union(*types)) > 1, statement.line, "memcpy between numbers of different types")
             self.run_assign(target, "", source, statement)
             return
         elif call.kind == "call" and call.parts[0] == "memset" and len(call.parts[1]) == 3:
             name, size = (self.unit.text(part).replace(" ", "").lstrip("&") for part in call.parts[1][::2])
-            if size != f"sizeof({name})" or (name in self.frame and not any(name in t for t in self.shadows)):
+            if size != f"sizeof({name})" or (name in self.frame and not self.is_own(name)):
                 raise Unreadable(statement.line, "memset of other than sizeof an array that is declared here")
             self.reset(call.parts[1][0], "memset", call.parts[1][1:2], statement)
             return
         self.value(call, wants_value=False)
 
+    def is_own(self, name: str) -> bool:
+        """True for an array that the function declares; a pointer has another size."""
+        known = self.frame.get(name)
+        return known is not None and known.name == name and any(name in table for table in self.shadows)
+
     def reset(self, base: Part, name: str, arguments: tuple[Part, ...], statement: Part) -> None:
         """A whole array set to one number, or to ones on the diagonal."""
         while base.kind == "address":
             base = base.parts[0]
-        if base.kind != "name":
-            raise Unreadable(statement.line, f"{name} of what is no variable")
+        forbid(base.kind != "name", statement.line, f"{name} of what is no variable")
         variable = self.variable(base.parts[0])
         if not variable.shape or variable.number == "quaternion":
             raise Unreadable(statement.line, f"{name} of an array without a known size")
         number = self.value(arguments[0]) if arguments else Scalar(build_number(0))
-        if name == "memset" and constant_of(number) != 0:
-            raise Unreadable(statement.line, "memset to bytes that are not zero")
+        forbid(name == "memset" and constant_of(number) != 0, statement.line, "memset to bytes that are not zero")
         is_identity = name in ("setIdentity", "identity")
         one = Scalar(build_number(1))
         for place in places_of(variable.shape):
             on_diagonal = is_identity and len({*place, 0} if len(place) == 1 else {*place}) == 1
             self.write_cell(variable, place, one if on_diagonal else number, statement)  # type: ignore[arg-type]
         variable.all_unread = None
+
+    def decide(self, test: Part) -> bool:
+        """Whether a condition holds in this case; one that is not read has two ways, of which nothing is known."""
+        try:
+            return self.decide_known(test)
+        except Unreadable as refusal:
+            if self.choices is None or not self.is_bold:
+                raise
+            self.refuse(test, Unread(refusal.line or test.line, refusal.why))
+            return self.choose(Condition(self.unit.text(test), test.line, True, f"?{len(self.conditions)}"))
+
+    def decide_known(self, test: Part) -> bool:
+        """Whether a condition holds that can be read."""
+        if test.kind == "both":
+            return self.decide(test.parts[0]) and self.decide(test.parts[1])
+        if test.kind == "either":
+            return self.decide(test.parts[0]) or self.decide(test.parts[1])
+        if test.kind == "not":
+            return not self.decide(test.parts[0])
+        forbid(test.kind in ("refused", "list"), test.line, "a condition outside the language of audit")
+        sign, *sides = test.parts if test.kind == "compare" else ("!=", test)
+        is_size = sides[0].kind == "call" and sides[0].parts[0] in ("fabs", "fabsf")
+        if is_size and sign == "<=" and self.unit.text(sides[1]) in ("DBL_MAX", "FLT_MAX"):
+            return True  # numbers are real numbers here
+        a, b = [*map(self.value, sides), Scalar(ZERO, "int")][:2]
+        if not (isinstance(a, Scalar) and isinstance(b, Scalar)):
+            raise Unreadable(test.line, "a condition on what is not read")
+        require_fit(self.unit, map_cell(lambda x, _: x, a, b), test.line)  # -1 < 1U does not hold
+        require_fit(self.unit, map_cell(lambda x, _: x, b, a), test.line)
+        if a.tree.head == b.tree.head == NUMBER:
+            return COMPARE[sign](a.tree.args[0], b.tree.args[0])
+        return self.choose(Condition(self.unit.text(test), test.line, True, sign, a.tree, b.tree))
+
+    def choose(self, condition: Condition) -> bool:
+        """The way of this run at an undecided condition."""
+        for known in self.conditions:
+            if (known.sign, known.left, known.right) == (condition.sign, condition.left, condition.right):
+                return known.holds
+        if self.choices is None:
+            raise Unreadable(condition.line, f"one of more than {CASES} cases")
+        place = len(self.conditions)
+        holds = self.choices[place] if place < len(self.choices) else True
+        if place >= len(self.choices):
+            self.other_ways.append([*(known.holds for known in self.conditions), False])
+        self.conditions.append(replace(condition, holds=holds))
+        return holds
+
+
+def is_integer(cell: Cell) -> bool:
+    """True for a cell that holds an integer of the source."""
+    return isinstance(cell, Scalar) and cell.number in LIMITS
+
+
+COMPARE: Mapping[str, Callable[[Fraction, Fraction], bool]] = {
+    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
+}  # fmt: skip

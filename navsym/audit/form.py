@@ -93,6 +93,7 @@ class Unit:
     variables : names of C that are values, and no types
     overlaid : names of members of unions, which share their place with others
     types     : name of a type that the file defines -> what it stands for, in C
+    kinds     : name of a variable of C -> the types with which it is declared
     imported  : what names of numpy and math are called in Python
     """
 
@@ -110,6 +111,7 @@ class Unit:
     decimals: dict[Fraction, Tree] = field(default_factory=dict)
     variables: set[str] = field(default_factory=set)
     overlaid: set[str] = field(default_factory=set)
+    kinds: dict[str, set[str]] = field(default_factory=dict)
     imported: dict[str, str] = field(default_factory=dict)
     declared: set[str] = field(default_factory=set)
     types: dict[str, str] = field(default_factory=dict)
@@ -150,15 +152,11 @@ def names_in(*parts: Any) -> set[str]:
 def may_write(function: Function, name: str) -> bool:
     """True for a function that may write to a parameter of its own; one that only reads it may share the caller's."""
     for part in walk(*function.body):
-        if part.kind == "assign" and name in {*names_in(part.parts[0]), *called_in(part.parts[0])}:
-            return True
         is_link = part.kind == "declare" and part.parts[4]
-        if (is_link or part.kind in ("do", "address", "refused", "unread")) and name in {
-            *names_in(part),
-            *called_in(part),
-        }:
-            return True
-        if part.kind == "call" and any(a.kind == "name" and a.parts[0] == name for a in part.parts[1]):
+        is_open = is_link or part.kind in ("do", "address", "refused", "unread")
+        written = part.parts[:1] if part.kind == "assign" else (part,) if is_open else ()
+        given = (a for a in part.parts[1] if a.kind == "name") if part.kind == "call" else ()
+        if name in names_in(*given) | mentioned_in(*written):
             return True
     return False
 
@@ -166,6 +164,11 @@ def may_write(function: Function, name: str) -> bool:
 def called_in(*parts: Any) -> set[str]:
     """The names before parentheses: ``v`` of ``v(0)``."""
     return {inner.parts[0] for inner in walk(*parts) if inner.kind == "call"}
+
+
+def mentioned_in(*parts: Any) -> set[str]:
+    """The names that parts read, write or call."""
+    return names_in(*parts) | called_in(*parts)
 
 
 def head_of(name: str) -> str:

@@ -14,15 +14,17 @@ from navsym.audit.values import (
     List,
     Quaternion,
     Scalar,
-    Unread,
     Unreadable,
     Value,
     add,
     as_real,
+    cells_of,
     constant_of,
     cross_product,
     determinant,
     divide,
+    find_unread,
+    forbid,
     identity_array,
     invert,
     make_array,
@@ -31,6 +33,7 @@ from navsym.audit.values import (
     matrix_product,
     minus,
     multiply,
+    operate,
     raise_to,
     rotate,
     square_sum,
@@ -109,16 +112,14 @@ def extreme_of(name: str, language: str) -> str:
 
 def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Value:
     """The value of a known function."""
-    unread = next((value for value in values if isinstance(value, Unread)), None)
-    if unread is not None:
+    if (unread := find_unread(*values)) is not None:
         return unread
     values = [Array(value.shape, value.cells) if isinstance(value, List) else value for value in values]
     if (known := KNOWN.get((bare_name(name), len(values)))) is not None:
         return known(unit, *values)
     if found := MAKE.search(name):
-        sides = sizes_of(unit, *values) or tuple(
-            int(side) for side in (found[1] or found[2], found[1] or found[3]) if side
-        )
+        named = (found[1] or found[2], found[1] or found[3])
+        sides = sizes_of(unit, *values) or tuple(int(side) for side in named if side)
         if len(sides) == 2:
             return identity_array(*sides) if found[4] == "Identity" else filled(sides, 0)
     raise Unreadable(line, f"the function {name} with {len(values)} arguments")
@@ -133,9 +134,9 @@ def cellwise(step: Callable[..., Tree]) -> Known:
 
 
 def whole_or_real(step: Callable[..., Tree]) -> Known:
-    """The same of functions that give integers for integers in numpy."""
-    real = cellwise(step)
-    return lambda unit, *values: map_cells(step, *values) if unit.language == "python" else real(unit, *values)
+    """The same of functions that give integers for integers, in numpy and C++."""
+    real, keeping = cellwise(step), ("python", "cpp")
+    return lambda unit, *values: map_cells(step, *values) if unit.language in keeping else real(unit, *values)
 
 
 def plain(name: str) -> Known:
@@ -149,8 +150,7 @@ def turn(factor: Fraction) -> Known:
 
 
 def absolute(unit: Unit, value: Value) -> Value:
-    if unit.language == "c":
-        raise Unreadable(0, "abs, which cuts to an integer in C; fabs does not")
+    forbid(unit.language == "c", 0, "abs, which cuts to an integer in C; fabs does not")
     return whole_or_real(lambda x: build_call("abs", x))(unit, value)
 
 
@@ -163,16 +163,10 @@ def filled(shape: tuple[int, ...], number: int) -> Array:
     return make_array(shape, lambda *_: Scalar(build_number(number)))
 
 
-def identity_of(unit: Unit, *values: Value) -> Array:
-    return identity_array(*(sizes_of(unit, *values) * 2)[:2])
-
-
 def sizes_of(unit: Unit, *values: Value) -> tuple[int, ...]:
     """The shape that arguments give: numbers, or a tuple of them."""
-    cells = [c for v in values for c in (v.cells if isinstance(v, Array) else (v,))]
-    numbers = [constant_of(cell) for cell in cells]
-    if any(n is None or n.denominator != 1 for n in numbers):
-        raise Unreadable(0, "a size that is no constant")
+    numbers = [constant_of(cell) for value in values for cell in cells_of(value)]
+    forbid(any(n is None or n.denominator != 1 for n in numbers), 0, "a size that is no constant")
     sizes = tuple(int(n) for n in numbers if n is not None)
     return sizes * 2 if unit.language == "matlab" and len(sizes) == 1 else sizes
 
@@ -194,20 +188,17 @@ def make_diagonal(unit: Unit, value: Value) -> Value:
 def make_outer(unit: Unit, a: Value, b: Value) -> Value:
     if not (isinstance(a, Array) and isinstance(b, Array)):
         raise Unreadable(0, "outer of what are no vectors")
-    cells = [map_cells(multiply, x, y) for x in a.cells for y in b.cells]
-    return Array((len(a.cells), len(b.cells)), tuple(cells))  # type: ignore[arg-type]
+    return Array((len(a.cells), len(b.cells)), tuple(map_cell(multiply, x, y) for x in a.cells for y in b.cells))
 
 
 def norm_of(unit: Unit, value: Value) -> Value:
-    if isinstance(value, Array) and len(value.shape) == 2 and 1 not in value.shape:
-        raise Unreadable(0, "the norm of a matrix")
+    forbid(is_matrix(value), 0, "the norm of a matrix")
     return map_cells(lambda x: build_call("sqrt", x), square_sum(value))
 
 
-def multiply_arrays(unit: Unit, a: Value, b: Value) -> Value:
-    if not (isinstance(a, Array) and isinstance(b, Array)):
-        raise Unreadable(0, "a product of matrices with a number")
-    return matrix_product(a, b)
+def is_matrix(value: Value) -> bool:
+    """True for an array with several rows and columns."""
+    return isinstance(value, Array) and len(value.shape) == 2 and 1 not in value.shape
 
 
 def dot_of(unit: Unit, a: Value, b: Value) -> Value:
@@ -216,10 +207,9 @@ def dot_of(unit: Unit, a: Value, b: Value) -> Value:
         return matrix_product(a, b)
     if not (isinstance(a, Array) and isinstance(b, Array)):
         raise Unreadable(0, "a dot product of what are no vectors")
-    if math.prod(a.shape) != math.prod(b.shape) or any(len(v.shape) == 2 and 1 not in v.shape for v in (a, b)):
+    if len(a.cells) != len(b.cells) or is_matrix(a) or is_matrix(b):
         raise Unreadable(0, "a dot product of different sizes, or of matrices")
-    flat = (len(a.cells),)
-    return matrix_product(Array(flat, a.cells), Array(flat, b.cells))
+    return matrix_product(*(Array((len(v.cells),), v.cells) for v in (a, b)))
 
 
 def normalize(unit: Unit, value: Value) -> Value:
@@ -245,7 +235,7 @@ def determine(unit: Unit, value: Value) -> Value:
 
 def sum_of(unit: Unit, value: Value) -> Value:
     """The sum of all entries; of a matrix MATLAB sums the columns."""
-    if not isinstance(value, Array) or (unit.language == "matlab" and len(value.shape) == 2 and 1 not in value.shape):
+    if not isinstance(value, Array) or (unit.language == "matlab" and is_matrix(value)):
         raise Unreadable(0, "the sum of what is no vector")
     return map_cell(lambda *trees: total(list(trees)), *value.cells)
 
@@ -259,12 +249,11 @@ def make_matrix(unit: Unit, *values: Value) -> Value:
     return Array(shape, entries.cells)
 
 
-def make_quaternion(unit: Unit, w: Value, *others: Value) -> Value:
+def make_quaternion(unit: Unit, *values: Value) -> Value:
     """From w, i, j and k, or from w and the vector."""
-    cells = others[0].cells if len(others) == 1 and isinstance(others[0], Array) else others
-    if len(cells) != 3 or not all(isinstance(cell, Scalar) for cell in (w, *cells)):
-        raise Unreadable(0, "a quaternion of other than four numbers")
-    return Quaternion((4,), (*cells, w))  # type: ignore[arg-type]
+    w, *cells = (cell for value in values for cell in cells_of(value))
+    forbid(len(cells) != 3, 0, "a quaternion of other than four numbers")
+    return Quaternion((4,), (*cells, w))
 
 
 def require_quaternion(unit: Unit, value: Value) -> Quaternion:
@@ -300,11 +289,6 @@ def as_another(unit: Unit, value: Value) -> Value:
     return value
 
 
-def coefficients_of(count: int) -> Known:
-    """The first coefficients of a quaternion, as a vector."""
-    return lambda unit, value: Array((count,), require_quaternion(unit, value).cells[:count])
-
-
 def transposed(unit: Unit, value: Value) -> Value:
     return transpose(value, unit.rules.matrix)
 
@@ -319,12 +303,14 @@ NUMBERS: dict[tuple[str, int], Known] = {
 }  # fmt: skip
 #: Functions of arrays.
 ARRAYS: dict[tuple[str, int], Known] = {
-    **dict.fromkeys((("eye", 1), ("eye", 2), ("identity", 1)), identity_of),
+    **dict.fromkeys((("eye", 1), ("eye", 2), ("identity", 1)),
+                    lambda unit, *values: identity_array(*(sizes_of(unit, *values) * 2)[:2])),
     **dict.fromkeys((("zeros", 1), ("zeros", 2)), lambda unit, *values: filled(sizes_of(unit, *values), 0)),
     **dict.fromkeys((("ones", 1), ("ones", 2)), lambda unit, *values: filled(sizes_of(unit, *values), 1)),
     **dict.fromkeys((("array", 1), ("asarray", 1), ("copy", 1)), same), ("transpose", 1): transposed,
     **dict.fromkeys((("norm", 1), ("linalg.norm", 1)), norm_of), ("diag", 1): make_diagonal, ("outer", 2): make_outer,
-    ("cross", 2): lambda unit, a, b: cross_product(a, b), ("dot", 2): dot_of, ("matmul", 2): multiply_arrays,
+    ("cross", 2): lambda unit, a, b: cross_product(a, b), ("dot", 2): dot_of,
+    ("matmul", 2): lambda unit, a, b: operate(unit, "@", a, b, 0),
     **dict.fromkeys((("inv", 1), ("linalg.inv", 1)), lambda unit, value: invert(value)),
     ("linalg.solve", 2): lambda unit, a, b: matrix_product(invert(a), b), ("trace", 1): trace_of, ("sum", 1): sum_of,
     **dict.fromkeys((("det", 1), ("linalg.det", 1)), determine),
@@ -363,7 +349,9 @@ METHODS: dict[tuple[str, int], Known] = {
     **dict.fromkeys((("squaredNorm", 0), ("norm_squared", 0)), lambda unit, value: square_sum(value)),
     **dict.fromkeys((("normalized", 0), ("normalize", 0), ("unit", 0)), normalize), ("norm", 0): norm_of,
     ("dot", 1): dot_of, ("cross", 1): ARRAYS["cross", 2], ("conjugate", 0): conjugate, ("inverse", 0): invert_any,
-    ("toRotationMatrix", 0): rotation_of, ("coeffs", 0): coefficients_of(4), ("vec", 0): coefficients_of(3),
+    ("toRotationMatrix", 0): rotation_of, 
+    **{(name, 0): lambda unit, value, n=n: Array((n,), require_quaternion(unit, value).cells[:n])
+       for name, n in (("coeffs", 4), ("vec", 3))},
     ("trace", 0): trace_of, ("sum", 0): sum_of, ("diagonal", 0): diagonal_of, ("determinant", 0): determine,
     ("asDiagonal", 0): make_diagonal, ("cwiseProduct", 1): lambda unit, a, b: map_cells(multiply, a, b),
 }  # fmt: skip
@@ -373,9 +361,6 @@ IN_PLACE = {"normalize": "normalized", "transposeInPlace": "transpose"}
 
 def is_method(name: str, count: int, language: str) -> bool:
     """True for a method that gives a value and writes nothing."""
-    is_there = (
-        name in ("T", "transpose", "copy", "dot", "sum", "trace", "diagonal")
-        if language == "python"
-        else language != "cpp" or name not in IN_PLACE
-    )
+    of_numpy = name in ("T", "transpose", "copy", "dot", "sum", "trace", "diagonal")
+    is_there = of_numpy if language == "python" else language != "cpp" or name not in IN_PLACE
     return (name, count) in METHODS and is_there

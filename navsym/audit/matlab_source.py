@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -52,13 +53,10 @@ class Reader(SourceReader):
         name = text_of(field_of(node, "name"))
         children = {child.type: child for child in named(node)}
         output, given, body = (children.get(kind) for kind in ("function_output", "function_arguments", "block"))
-        outputs = [n for n in descend(output) if n.type == "identifier"] if output is not None else []
-        arguments = [Argument(text_of(n)) for n in named(given)] if given is not None else []
-        in_order = tuple(text_of(n) for n in sorted(outputs, key=lambda n: n.start_byte))
-        function = Function(name, line_of(node), tuple(arguments), self.block(body), in_order)
+        arguments = tuple(Argument(text_of(n)) for n in named(given))
+        outputs = () if output is None else tuple(re.findall(r"\w+", text_of(output)))
+        function = Function(name, line_of(node), arguments, self.block(body), outputs)
         self.unit.functions.setdefault(name, []).append(function)
-
-    # -- statements --
 
     def read_statement(self, node: Any) -> tuple[Part, ...] | None:
         match node.type:
@@ -125,8 +123,6 @@ class Reader(SourceReader):
         stop = self.part("op", node, "+" if step.kind == "number" else "-", ends[-1], one)
         return self.part("for", node, text_of(parts[0]), ends[0], stop, step, self.block(find_body(node)))
 
-    # -- expressions --
-
     def read_expression(self, node: Any) -> Part | None:
         match node.type:
             case "number":
@@ -170,7 +166,7 @@ class Reader(SourceReader):
         """A function, or entries ``M(i, j)``, which look alike."""
         name = field_of(node, "name")
         given = next((c for c in named(node) if c.type == "arguments"), None)
-        arguments = tuple(self.index(child) for child in (named(given) if given is not None else []))
+        arguments = tuple(map(self.index, named(given)))
         if name.type not in ("identifier", "field_expression"):
             return self.refuse(node, "a call of an expression")
         return self.part("call", node, "".join(text_of(name).split()), arguments)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.decide import Scope, decide_entry, draw_points
-from navsym.audit.form import Function, Part, Unit, called_in, names_in, spell_entry, walk
+from navsym.audit.form import Function, Part, Unit, mentioned_in, names_in, spell_entry, walk
 from navsym.audit.names import squeeze
 from navsym.audit.questions import Entry, NotThereError
 from navsym.audit.sources import Source, read_expression
@@ -68,8 +68,7 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
 
     First the statement that assigns the entry is edited, then those that it depends on, then the others.
     """
-    source = entry.source
-    if source is None or entry.again is None or not isinstance(entry.expected, Scalar):
+    if (source := entry.source) is None or entry.again is None or not isinstance(entry.expected, Scalar):
         return None
     assert isinstance(entry.code, Scalar)
     least = budget.question - PER_ENTRY
@@ -172,22 +171,17 @@ class Place:
 
     def change(self, kinds: Sequence[Kind]) -> Iterator[Mend]:
         """The mends by edits of some kinds."""
-        (low, high), text = self.part.span, self.source.unit.source
-        parts = [inner for inner in walk(self.part) if low <= inner.span[0] < inner.span[1] <= high]
-        for kind in kinds:
-            for start, end, new in kind(self, parts):
-                yield from self.put(f"{cut(text, low, start)}{new}{cut(text, end, high)}")
+        parts = list_inner(self.part)
+        for text in (text for kind in kinds for text in rewrite_part(self.source.unit, self.part, kind(self, parts))):
+            yield from self.put(text)
 
     def put(self, text: str) -> Iterator[Mend]:
         """The mend with a text in the place of the expression, where it is one."""
-        part = read_mend(text, self.source.unit)
-        if part is not None and text != self.source.unit.text(self.part):
-            whole, source = whole_side(self.statement) or self.part, self.source.unit.source
-            before, behind = (
-                cut(source, whole.span[0], self.part.span[0]),
-                cut(source, self.part.span[1], whole.span[1]),
-            )
-            yield Mend(self.part.line, " ".join(f"{before}{text}{behind}".split()), {id(self.part): part})
+        if (part := read_mend(text, self.source.unit)) is not None and text != self.source.unit.text(self.part):
+            (low, high), (start, end) = (whole_side(self.statement) or self.part).span, self.part.span
+            source = self.source.unit.source
+            whole = f"{cut(source, low, start)}{text}{cut(source, end, high)}"
+            yield Mend(self.part.line, " ".join(whole.split()), {id(self.part): part})
 
     def change_target(self) -> Iterator[Mend]:
         """The mends by another name or index on the left."""
@@ -197,14 +191,13 @@ class Place:
         side = unit.text(whole_side(statement))
         target, *rest = statement.parts
         targets: list[tuple[str, Any]]
-        if statement.kind == "declare":
-            targets = [(name, name) for name in sorted(list_orphans(self.function))]
+        if statement.kind == "declare":  # names that the function reads, and that nobody has declared
+            body, arguments = self.function.body, {argument.name for argument in self.function.arguments}
+            declared = {p.parts[0] for p in walk(*body) if p.kind in ("declare", "for")}
+            targets = [(name, name) for name in sorted(names_in(*body) - declared - arguments)]
         else:
-            low, high = target.span
-            parts = [inner for inner in walk(target) if low <= inner.span[0] < inner.span[1] <= high]
-            edits = [*edit_indices(self, parts), *edit_names(self, parts)]
-            texts = [f"{cut(unit.source, low, start)}{new}{cut(unit.source, end, high)}" for start, end, new in edits]
-            taken = self.list_taken()
+            parts, taken = list_inner(target), self.list_taken()
+            texts = rewrite_part(unit, target, itertools.chain(edit_indices(self, parts), edit_names(self, parts)))
             free = [text for text in texts if squeeze(text) not in taken]
             targets = [(text, part) for text in free if (part := read_mend(text, unit)) is not None]
         for text, new in targets:
@@ -216,14 +209,25 @@ class Place:
         """The entries that other statements assign."""
         variables = self.source.read().cases[0].variables.items()
         cells = [(name, at, cell) for name, variable in variables for at, cell in variable.cells.items()]
-        is_other = [isinstance(c, Unread) or (c.line and c.origin is not self.statement) for *_, c in cells]
-        spelled = [squeeze(spell_entry(self.source.unit, name, at)) for name, at, _ in cells]
-        return {text for text, other in zip(spelled, is_other, strict=True) if other}
+        others = [(n, at) for n, at, c in cells if isinstance(c, Unread) or (c.line and c.origin is not self.statement)]
+        return {squeeze(spell_entry(self.source.unit, name, at)) for name, at in others}
 
 
 def cut(source: bytes, start: int, end: int) -> str:
     """A piece of a source."""
     return source[start:end].decode("utf-8", "replace")
+
+
+def list_inner(part: Part) -> list[Part]:
+    """A part and those in it that stand inside its text."""
+    low, high = part.span
+    return [inner for inner in walk(part) if low <= inner.span[0] < inner.span[1] <= high]
+
+
+def rewrite_part(unit: Unit, part: Part, edits: Iterator[Edit]) -> Iterator[str]:
+    """The text of a part after each of the edits."""
+    low, high = part.span
+    return (f"{cut(unit.source, low, start)}{new}{cut(unit.source, end, high)}" for start, end, new in edits)
 
 
 def read_mend(text: str, unit: Unit) -> Part | None:
@@ -241,43 +245,25 @@ def list_places(source: Source, own: Part | None, expected: Tree) -> list[Place]
         functions += [f for f in dict.fromkeys(fresh) if f not in functions]
         at += 1
     kinds = ("assign", "declare", "return", "do", "for", "loop")
-    statements = [
-        (function, statement)
-        for function in functions
-        for statement in sorted((p for p in walk(*function.body) if p.kind in kinds), key=lambda p: -p.line)
-    ]
+    pairs = ((function, part) for function in functions for part in walk(*function.body) if part.kind in kinds)
+    statements = sorted(pairs, key=lambda pair: (functions.index(pair[0]), -pair[1].line))
     distances, near, at = {id(own): 0}, [own] if own is not None else [], 1
     while near:
         used = set[str]().union(*map(read_in, near))
-        near = [s for f, s in statements if id(s) not in distances and used & {*written_in(s), f.name}]
+        waiting = [(f.name, s) for f, s in statements if id(s) not in distances]
+        near = [s for name, s in waiting if used & {name, *mentioned_in(*(s.parts[:1] if s.kind == "assign" else ()))}
+                or (s.kind in ("declare", "for") and s.parts[0] in used)]  # fmt: skip
         distances |= {id(statement): at for statement in near}
         at += 1
-    words = list_words(source, expected)
-    places = [
-        Place(source, f, s, part, words, distances.get(id(s), at)) for f, s in statements for part in right_sides(s)
-    ]
+    words, sides = list_words(source, expected), ((f, s, part) for f, s in statements for part in right_sides(s))
+    places = [Place(source, f, s, part, words, distances.get(id(s), at)) for f, s, part in sides]
     return sorted(places, key=lambda place: place.distance)
 
 
 def read_in(statement: Part) -> set[str]:
     """The names that a statement reads; ``+=`` reads what it writes."""
     is_new = statement.kind == "declare" or (statement.kind == "assign" and not statement.parts[1])
-    read = whole_side(statement) if is_new else statement
-    return names_in(read) | called_in(read)
-
-
-def written_in(statement: Part) -> set[str]:
-    """The names that a statement writes."""
-    if statement.kind in ("declare", "for"):
-        return {statement.parts[0]}
-    targets = statement.parts[:1] if statement.kind == "assign" else ()
-    return names_in(*targets) | called_in(*targets)
-
-
-def list_orphans(function: Function) -> set[str]:
-    """The names that a function reads, and that nobody has declared."""
-    declared = {p.parts[0] for p in walk(*function.body) if p.kind in ("declare", "for")}
-    return names_in(*function.body) - declared - {argument.name for argument in function.arguments}
+    return mentioned_in(whole_side(statement) if is_new else statement)
 
 
 def whole_side(statement: Part) -> Any:
@@ -294,8 +280,7 @@ def right_sides(statement: Part) -> list[Part]:
         return [bound for bound in statement.parts[1:4] if bound.span[0] < bound.span[1]]
     waiting, done = [unwrap(whole_side(statement))], list[Part]()
     while waiting:
-        part = waiting.pop(0)
-        if part is not None and part.kind == "list":
+        if (part := waiting.pop(0)) is not None and part.kind == "list":
             waiting += part.parts[0]
         elif part is not None:
             done.append(part)
@@ -312,9 +297,8 @@ def right_side(statement: Part, place: tuple[int, int]) -> Part | None:
     """What a statement assigns to a place: the item of a list, or the whole right side."""
     value = unwrap(whole_side(statement)) if statement.kind in ("declare", "assign") else None
     for at in place:
-        if value is None or value.kind != "list":
-            break
-        value = value.parts[0][at - 1] if at <= len(value.parts[0]) else None
+        if value is not None and value.kind == "list":
+            value = value.parts[0][at - 1] if at <= len(value.parts[0]) else None
     return None if value is not None and value.kind == "list" else value
 
 
@@ -335,16 +319,17 @@ def is_right(mend: Mend, entry: Entry, source: Source, scope: Scope, probes: lis
         return False
     for probe in probes:
         a, b = (evaluate(tree, probe) for tree in (cell.tree, expected.tree))
-        if a is None and b is None:  # neither has a value there
-            continue
-        if a is None or b is None or abs(a - b) > TOLERANCE * (1 + abs(a) + abs(b)):
+        if (a is None) != (b is None):
+            return False
+        if a is not None and b is not None and abs(a - b) > TOLERANCE * (1 + abs(a) + abs(b)):
             return False
     return decide_entry(cell.tree, expected.tree, scope).status == PROVED
 
 
 FLOATS: dict[str, Any] = {
     **{name: getattr(math, name) for name in "sin cos tan exp log sqrt asin acos atan sinh cosh tanh atan2".split()},
-    "abs": abs,
+    **{"abs": abs, "pi": lambda: math.pi, POWER: pow},
+    **{"+": lambda *terms: math.fsum(terms), "*": lambda *factors: math.prod(factors)},
 }
 
 
@@ -352,17 +337,9 @@ def evaluate(tree: Tree, point: dict[str, float]) -> float | None:
     """The value in doubles, or None."""
 
     def step(part: Tree, inner: list[float]) -> float:
-        if part.head == NUMBER:
-            return float(part.args[0])
-        if part.head == SYMBOL:
-            return point[part.args[0]]
-        if part.head == "+":
-            return math.fsum(inner)
-        if part.head == "*":
-            return math.prod(inner)
-        if part.head == POWER:
-            return float(inner[0] ** inner[1])
-        return math.pi if part.head == "pi" else float(FLOATS[part.head](*inner))
+        if part.head in (NUMBER, SYMBOL):
+            return float(part.args[0] if part.head == NUMBER else point[part.args[0]])
+        return float(FLOATS[part.head](*inner))
 
     try:
         return fold_tree(tree, step)
@@ -378,22 +355,13 @@ def edit_signs(place: Place, parts: list[Part]) -> Iterator[Edit]:
     for part in parts:
         if part.kind == "op":
             sign, a, b = part.parts
-            at = find_sign(place.source.unit, a, b, sign)
-            if at is None:
-                continue
-            for other in {"+": "-*/", "-": "+*/", "*": "/+-", "/": "*-+"}.get(sign, ""):
+            at = place.source.unit.source.find(sign.encode(), a.span[1], b.span[0])
+            for other in {"+": "-*/", "-": "+*/", "*": "/+-", "/": "*-+"}.get(sign, "") if at >= 0 else "":
                 yield at, at + len(sign), other
         elif part.kind == "minus":
             yield part.span[0], part.parts[0].span[0], ""
     for part in parts:
         yield part.span[0], part.span[0], "-"
-
-
-def find_sign(unit: Unit, a: Part, b: Part, sign: str) -> int | None:
-    """The byte of an operator between its operands."""
-    between = unit.source[a.span[1] : b.span[0]]
-    place = between.find(sign.encode())
-    return None if place < 0 else a.span[1] + place
 
 
 def edit_indices(place: Place, parts: list[Part]) -> Iterator[Edit]:
@@ -418,14 +386,10 @@ def edit_calls(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """sin for cos, and the like; a root less, or more."""
     root, functions = ROOTS[place.source.unit.language], place.source.unit.functions
     for part in parts:
-        if part.kind == "call":
-            for name in sorted(functions):
-                if name != part.parts[0] and len(functions[name][0].arguments) == len(part.parts[1]):
-                    yield part.span[0], part.span[0] + len(part.parts[0]), name
-        if part.kind == "call" and part.parts[0] in SWAPS:
-            low = part.span[0]
-            for name in SWAPS[part.parts[0]]:
-                yield low, low + len(part.parts[0]), name
+        known, given = part.parts[:2] if part.kind == "call" else ("", ())
+        own = (n for n in sorted(functions) if n != known and len(functions[n][0].arguments) == len(given))
+        for name in (*own, *SWAPS.get(known, ())) if part.kind == "call" else ():
+            yield part.span[0], part.span[0] + len(known), name
         if part.kind == "call" and part.parts[0].endswith(("sqrt", "sqrtf")) and len(part.parts[1]) == 1:
             yield *part.span, place.source.unit.text(part.parts[1][0])
     for part in parts:
@@ -553,10 +517,8 @@ def rewrite(source: Source, expected: Tree) -> Iterator[str]:
             return build_call("pow", *inner)
         return build(part.head, tuple(inner))
 
-    text = print_tree(fold_tree(expected, step))
-    if source.unit.language == "python":
+    text, language = print_tree(fold_tree(expected, step)), source.unit.language
+    if language == "python":
         text = re.sub(r"\b(sin|cos|tan|exp|log|sqrt)\(", r"np.\1(", text)
-    text = source.names.show(text) if source.unit.language != "matlab" else source.names.show(text).replace("**", "^")
-    if source.unit.language in ("c", "cpp"):
-        text = re.sub(r"(?<![\w.])(\d+)/(\d+)", r"\1.0/\2.0", text)
-    yield text
+    text = source.names.show(text).replace("**", "^" if language == "matlab" else "**")
+    yield re.sub(r"(?<![\w.])(\d+)/(\d+)", r"\1.0/\2.0", text) if language in ("c", "cpp") else text

@@ -8,8 +8,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.core.errors import DuplicateError, ExpressionSyntaxError
+from navsym.language.declarations import box_of, read_parameters
 from navsym.language.names import NAME_LENGTH, RESERVED, check_name, join_place, quote
 from navsym.language.tree import Tree, build_symbol
+from navsym.prove.sampling.points import ranges_of, write_range
 
 SPELLING = re.compile(r"[A-Za-z_]\w*(?:(?:\.|->|::)\w+)*(?:\(\))?(?:\s*(?:\[[\d,\s]*\]|\([\d,\s]*\)))*", re.ASCII)
 
@@ -42,8 +44,9 @@ class Names:
         """The symbol of an input, made when it is first met."""
         key = squeeze(spelling)
         if key not in self.symbols:
-            self.enter(key, self.free_name(key))
-            self.spellings.setdefault(self.symbols[key], spelling)
+            name = self.symbols[key] = self.free_name(key)
+            self.declarations.setdefault(name, "real")
+            self.spellings.setdefault(name, spelling)
         return build_symbol(self.symbols[key])
 
     def twin(self, symbol: Tree) -> Tree:
@@ -52,11 +55,6 @@ class Names:
         twin = self.symbol(f"{self.spellings.get(name, name)}'")
         self.declarations[twin.args[0]] = self.declarations[name]
         return twin
-
-    def enter(self, key: str, name: str) -> None:
-        """A spelling with its symbol, real unless it is declared."""
-        self.symbols[key] = name
-        self.declarations.setdefault(name, "real")
 
     def free_name(self, spelling: str) -> str:
         """A name of the language that is like a spelling and not taken."""
@@ -71,22 +69,18 @@ class Names:
         """A declaration of ``[code.symbols]``: a range, a word, or a table with a name of its own."""
         key, name = squeeze(spelling), None
         if isinstance(declaration, Mapping):
-            name = declaration.get("name")
-            if name is not None:
+            if (name := declaration.get("name")) is not None:
                 check_name(name, where=join_place(where, "name"))
             declaration = declaration.get("range", declaration.get("sign", "real"))
-        name = name or self.symbols.get(key) or (key if self.is_free(key) else self.free_name(key))
+        is_name = re.fullmatch(r"[A-Za-z]\w*", key, re.ASCII) is not None and len(key) <= NAME_LENGTH
+        is_free = is_name and key not in RESERVED and key not in self.declarations
+        name = name or self.symbols.get(key) or (key if is_free else self.free_name(key))
         if self.declarations.get(name, declaration) != declaration and self.declarations[name] != "real":
             message = f"expected one declaration of {quote(name)}; got two different ones; make them equal"
             raise DuplicateError(message, where=where)
         self.declarations[name] = declaration
         self.symbols[key] = name
         self.spellings.setdefault(name, spelling)
-
-    def is_free(self, key: str) -> bool:
-        """True for a spelling that is a name of the language already and means nothing else."""
-        plain = re.fullmatch(r"[A-Za-z]\w*", key, re.ASCII) is not None and len(key) <= NAME_LENGTH
-        return plain and key not in RESERVED and key not in self.declarations
 
     def translate(self, text: str, where: str) -> str:
         """An expression of a question: spellings of the source in it become their symbols."""
@@ -97,9 +91,7 @@ class Names:
             key = squeeze(found[0])
             if key in self.symbols:
                 return self.symbols[key]
-            if key.partition("[")[0] in self.inputs:
-                return str(self.symbol(found[0].strip()).args[0])
-            return found[0]
+            return str(self.symbol(found[0].strip()).args[0]) if key.partition("[")[0] in self.inputs else found[0]
 
         return SPELLING.sub(step, text)
 
@@ -109,17 +101,11 @@ class Names:
 
     def ranges(self) -> dict[str, Any]:
         """Symbol -> its range in the words of the checker."""
-        from navsym.language.declarations import box_of, read_parameters
-        from navsym.prove.sampling.points import ranges_of, write_range
-
-        ranges: dict[str, Any] = {}
         for name, declaration in self.declarations.items():
-            if name not in self.written:
-                if declaration == "real":
-                    self.written[name] = [None, None, []]
-                    continue
+            if name not in self.written and declaration == "real":
+                self.written[name] = [None, None, []]
+            elif name not in self.written:
                 parameters = read_parameters({name: declaration}, "code.symbols")
                 symbol = parameters[name].symbol
                 self.written[name] = write_range(ranges_of([symbol], box_of(parameters))[symbol])
-        ranges.update(self.written)
-        return ranges
+        return dict(self.written)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, names_in
-from navsym.audit.syntax import OPERATORS, SourceReader, descend, field_of, line_of, named, text_of
+from navsym.audit.syntax import OPERATORS, SourceReader, descend, field_of, line_of, list_above, named, text_of
 
 RULES = Rules(entry=("{}[{}]", "{}[{}, {}]"))
 #: Decorators that leave a function what it is.
@@ -66,9 +66,11 @@ class Reader(SourceReader):
                 left = field_of(node, "left")
                 for target in named(left) if left.type.endswith(("_list", "_pattern")) else [left]:
                     bound.append(re.match(r"\w*", text_of(target))[0])  # type: ignore[index]
-                    is_local = target.type == "identifier" and is_inside(node, "function_definition")
+                    above = list_above(node)
+                    is_local = target.type == "identifier" and "function_definition" in above
                     is_alone = node.type == "assignment" and target is left and left.type == "identifier"
-                    if not is_local and not (is_alone and is_top(node)):
+                    is_top = above[1:2] == ["module"] or above[1:3] == ["block", "class_definition"]
+                    if not is_local and not (is_alone and is_top):
                         self.changed.add(bound[-1])
             elif node.type in ("function_definition", "class_definition"):
                 bound = [text_of(field_of(node, "name"))]
@@ -110,14 +112,11 @@ class Reader(SourceReader):
         """A function; one whose decorator may change it is not read."""
         name = text_of(field_of(node, "name"))
         arguments = [Argument(name_parameter(child), shared=True) for child in named(field_of(node, "parameters"))]
-        body = tuple(s for child in named(field_of(node, "body")) for s in self.statement(child))
+        body = self.block(field_of(node, "body"))
         if decorator is not None:
             body = (self.part("jump", decorator, "a decorator that may change the function", ()),)
-        if arguments and arguments[0].name == "self":
-            arguments = arguments[1:]
+        arguments = arguments[1:] if arguments and arguments[0].name == "self" else arguments
         self.unit.functions.setdefault(name, []).append(Function(name, line_of(node), tuple(arguments), body))
-
-    # -- statements --
 
     def read_statement(self, node: Any) -> tuple[Part, ...] | None:
         match node.type:
@@ -194,8 +193,6 @@ class Reader(SourceReader):
         pairs = zip(targets, items, strict=True)
         return (*first, *(self.part("assign", node, self.expression(t), "", v) for t, v in pairs))
 
-    # -- expressions --
-
     def read_expression(self, node: Any) -> Part | None:
         match node.type:
             case "integer" | "float":
@@ -220,27 +217,20 @@ class Reader(SourceReader):
         return None
 
     def slice(self, node: Any) -> Part:
-        ends: list[Part | None] = [None]
-        for child in node.children:
-            if child.type == ":":
-                ends.append(None)
-            else:
-                ends[-1] = self.expression(child)
-        if len(ends) != 2:
+        colons = [child.start_byte for child in node.children if child.type == ":"]
+        if len(colons) != 1:
             return self.refuse(node, "a slice with a step")
-        return self.part("slice", node, *ends)
+        ends = {child.start_byte > colons[0]: self.expression(child) for child in named(node)}
+        return self.part("slice", node, ends.get(False), ends.get(True))
 
     def attribute(self, node: Any) -> Part:
         """``R.T``, or a member as a name."""
         name = text_of(field_of(node, "attribute"))
         if name == "T":
             return self.part("method", node, self.expression(field_of(node, "object")), "T", ())
-        inner = node
-        while inner.type == "attribute":
-            inner = field_of(inner, "object")
-        if inner.type != "identifier":
-            return self.refuse(node, "a member of an expression")
-        return self.part("name", node, "".join(text_of(node).split()))
+        name = "".join(text_of(node).split())
+        is_name = re.fullmatch(r"[^\W\d][\w.]*", name) is not None
+        return self.part("name", node, name) if is_name else self.refuse(node, "a member of an expression")
 
     def call(self, node: Any) -> Part:
         """A function or a method; keywords other than dtype=float are refused."""
@@ -248,9 +238,8 @@ class Reader(SourceReader):
         arguments = []
         for child in named(given):
             if child.type == "keyword_argument":
-                if text_of(field_of(child, "name")) == "dtype" and text_of(field_of(child, "value")) in (
-                    "float", "np.float64", "np.float32",
-                ):  # fmt: skip
+                key, value = (text_of(field_of(child, name)) for name in ("name", "value"))
+                if key == "dtype" and value in ("float", "np.float64", "np.float32"):
                     continue
                 return self.refuse(node, "an argument by keyword")
             arguments.append(self.expression(child))
@@ -263,9 +252,11 @@ class Reader(SourceReader):
                 return self.refuse(node, f"{base}, which this file uses for something else")
             if base in ("np", "numpy", "math", "np.linalg", "numpy.linalg"):
                 return self.part("call", node, name, tuple(arguments))
-            if base == "self":
-                return self.part("call", node, name.removeprefix("self."), tuple(arguments))
             method = text_of(field_of(function, "attribute"))
+            if base == "self" and method in ("abs", "max", "min") and f"def {method}(".encode() not in self.unit.source:
+                return self.refuse(node, f"the method {method}, which another file defines")
+            if base == "self":
+                return self.part("call", node, method, tuple(arguments))
             return self.part("method", node, self.expression(field_of(function, "object")), method, tuple(arguments))
         if function.type == "identifier":
             return self.part("call", node, self.unit.imported.get(name, name), tuple(arguments))
@@ -275,17 +266,3 @@ class Reader(SourceReader):
 def name_parameter(node: Any) -> str:
     """The name of a parameter, without its type and its default."""
     return text_of(node if node.type == "identifier" else field_of(node, "name") or next(iter(named(node)), node))
-
-
-def is_top(node: Any) -> bool:
-    """True for an assignment of a module or a class, in no other statement."""
-    above = node.parent.parent if node.parent is not None else None
-    is_class = above is not None and above.parent is not None and above.parent.type == "class_definition"
-    return above is not None and (above.type == "module" or is_class)
-
-
-def is_inside(node: Any, kind: str) -> bool:
-    """True for a node below one of a kind."""
-    while node is not None and node.type != kind:
-        node = node.parent
-    return node is not None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,6 +24,7 @@ from navsym.audit.values import (
     Value,
     Variable,
     add,
+    cells_of,
     identity_array,
     make_array,
     map_cells,
@@ -34,8 +36,11 @@ from navsym.audit.values import (
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, ShapeError, UnknownSymbolError
 from navsym.language.expression import read_tree
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
-from navsym.language.schema import Table, as_list, as_table, as_text, as_title, require_key
+from navsym.language.printer import to_text
+from navsym.language.schema import as_list, as_table, as_text, as_title, require_key
 from navsym.language.tree import ONE, SYMBOL, Tree, list_parts, replace
+from navsym.models.model import Model
+from navsym.prove.claimfile import read_claims, require_numbers
 
 MOST_CASES = 64
 MOST_ENTRIES = 4000
@@ -118,10 +123,10 @@ class Question:
 def read_question(block: Any, sources: Mapping[str, Source], names: Names, folder: Path, where: str) -> Question:
     """One ``[[question]]`` block."""
     table = as_table(block, where)
-    kind = as_text(require_key(table, "kind", where), join_place(where, "kind"), "a kind")
-    if kind not in KINDS:
+    place = join_place(where, "kind")
+    if (kind := as_text(require_key(table, "kind", where), place, "a kind")) not in KINDS:
         message = f"expected one of {' '.join(KINDS)}; got {quote(kind)}; correct it: {suggest_nearest(kind, KINDS)}"
-        raise ExpressionSyntaxError(message, where=join_place(where, "kind"))
+        raise ExpressionSyntaxError(message, where=place)
     expect_keys(table, ("name", "kind", *NOTES, *KINDS[kind], *more_keys(kind)), where)
     for key in KINDS[kind] if kind != "model" else ("file",):
         require_key(table, key, where)
@@ -146,9 +151,13 @@ def read_senses(question: Question) -> None:
         message = f'expected "any" or "independent"; got {quote(noise)}; correct it'
         raise ExpressionSyntaxError(message, where=join_place(question.where, "noise"))
     if "order" in keys:
-        read_order_key(
-            as_table(keys["order"], join_place(question.where, "order")), join_place(question.where, "order")
-        )
+        place = join_place(question.where, "order")
+        table = as_table(keys["order"], place)
+        expect_keys(table, ("of", "up_to"), place)
+        require_key(table, "of", place)
+        if type(require_key(table, "up_to", place)) is not int or not 0 <= table["up_to"] <= 7:
+            message = f"expected an order from 0 to 7; got {quote(table['up_to'])}; correct it"
+            raise DomainError(message, where=join_place(place, "up_to"))
     needs = {
         "order": ("order" in keys, "order = { of, up_to }"),
         "approximation": (any(s.approximations for s in question.sources.values()), "approximations below [[code]]"),
@@ -159,21 +168,10 @@ def read_senses(question: Question) -> None:
     known = [*needs][: 2 if "noise" not in more_keys(question.kind) else None]
     for sense in as_list(keys["senses"], where) if "senses" in keys else ():
         if sense not in known:
-            raise ExpressionSyntaxError(
-                f"expected one of {' '.join(known)}; got {quote(sense)}; correct it", where=where
-            )
-        is_there, what = needs[sense]
-        if not is_there:
-            raise DomainError(f"expected {what} for the sense {sense}; got none; declare it", where=where)
-
-
-def read_order_key(table: Table, where: str) -> None:
-    """``{ of = ["model:dt"], up_to = 2 }``."""
-    expect_keys(table, ("of", "up_to"), where)
-    require_key(table, "of", where)
-    if type(require_key(table, "up_to", where)) is not int or not 0 <= table["up_to"] <= 7:
-        message = f"expected an order from 0 to 7; got {quote(table['up_to'])}; correct it"
-        raise DomainError(message, where=join_place(where, "up_to"))
+            message = f"expected one of {' '.join(known)}; got {quote(sense)}; correct it"
+            raise ExpressionSyntaxError(message, where=where)
+        if not needs[sense][0]:
+            raise DomainError(f"expected {needs[sense][1]} for the sense {sense}; got none; declare it", where=where)
 
 
 def list_entries(question: Question) -> list[Entry]:
@@ -182,14 +180,11 @@ def list_entries(question: Question) -> list[Entry]:
         return list_dead(question)
     entries: list[Entry] = []
     for asking in list_askings(question):
-        try:
-            asked: list[Entry] = getattr(asking, f"ask_{question.kind}")()
-        except NotThereError:
-            continue
-        if question.kind == "symmetric":
-            asked = [entry for entry in asked if entry.place[0] < entry.place[1]]
-        entries += asked
-    if not entries and question.kind != "symmetric":
+        with contextlib.suppress(NotThereError):
+            entries += getattr(asking, f"ask_{question.kind}")()
+    if question.kind == "symmetric":
+        return [entry for entry in entries if entry.place[0] < entry.place[1]]
+    if not entries:
         message = "expected names that have values in one case; got some that never have one together; ask for others"
         raise DomainError(message, where=question.where)
     return entries
@@ -225,7 +220,8 @@ def list_dead(question: Question) -> list[Entry]:
             raise DomainError(message, where=join_place(question.where, "by"))
         twin = {symbol: question.names.twin(symbol)}
         for one, two in combinations_with_replacement(askings, 2):
-            conditions = (*one.conditions, *(replace_in(condition, twin) for condition in two.conditions))
+            moved_ones = [(c, [t and replace(t, twin) for t in (c.left, c.right)]) for c in two.conditions]
+            conditions = (*one.conditions, *(Condition(c.text, c.line, c.holds, c.sign, *s) for c, s in moved_ones))
             if is_contradictory(conditions):
                 continue
             if len(entries) > MOST_ENTRIES:
@@ -238,31 +234,18 @@ def list_dead(question: Question) -> list[Entry]:
     return entries
 
 
-def replace_in(condition: Condition, by: Mapping[Tree, Tree]) -> Condition:
-    """A condition on other symbols."""
-    sides = (None if tree is None else replace(tree, by) for tree in (condition.left, condition.right))
-    return Condition(condition.text, condition.line, condition.holds, condition.sign, *sides)
-
-
 def is_used(name: str, keys: Any) -> bool:
     """True when a reference to a code stands somewhere in a question."""
-    if isinstance(keys, Mapping):
-        return any(is_used(name, value) for value in keys.values())
-    if isinstance(keys, list):
-        return any(is_used(name, value) for value in keys)
+    if isinstance(keys, Mapping | list):
+        return any(is_used(name, value) for value in (keys.values() if isinstance(keys, Mapping) else keys))
     return isinstance(keys, str) and keys.startswith(f"{name}:")
 
 
 def is_contradictory(conditions: Sequence[Condition]) -> bool:
     """True for two sources of which one needs what the other excludes."""
-    known: dict[Any, bool] = {}
-    for condition in conditions:
-        if condition.left is None:  # what is not read may be two things
-            continue
-        key = (condition.sign, condition.left, condition.right)
-        if known.setdefault(key, condition.holds) != condition.holds:
-            return True
-    return False
+    read = [c for c in conditions if c.left is not None]  # what is not read may be two things
+    known = {(c.sign, c.left, c.right): c.holds for c in read}
+    return any(known[c.sign, c.left, c.right] != c.holds for c in read)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -276,8 +259,6 @@ class Asking:
     def place(self, key: str) -> str:
         return join_place(self.question.where, key)
 
-    # -- references --
-
     def split(self, reference: Any, where: str) -> tuple[Source, str] | None:
         """Source and name of ``code:name``; None for another text."""
         if isinstance(reference, str) and ":" in reference:
@@ -285,12 +266,8 @@ class Asking:
             if head in self.question.sources:
                 return self.question.sources[head], tail.strip()
             if not tail.startswith(":"):
-                known = self.question.sources
-                message = (
-                    f"expected the name of a code before the colon; got {quote(head)}; "
-                    f"correct it: {suggest_nearest(head, known)}"
-                )
-                raise UnknownSymbolError(message, where=where)
+                message = f"expected the name of a code before the colon; got {quote(head)}; correct it: "
+                raise UnknownSymbolError(message + suggest_nearest(head, self.question.sources), where=where)
         return None
 
     def resolve(self, reference: Any, key: str) -> Value:
@@ -301,15 +278,13 @@ class Asking:
             shapes = {value.shape if isinstance(value, Array) else () for value in values}
             if len(shapes) != 1:
                 raise ShapeError("expected rows of one length; got a ragged list; correct it", where=where)
-            cells = tuple(c for v in values for c in (v.cells if isinstance(v, Array) else (v,)))
-            return Array((len(values), *next(iter(shapes))), cells)
+            return Array((len(values), *next(iter(shapes))), tuple(c for v in values for c in cells_of(v)))
         if (parts := self.split(reference, where)) is not None:
             return self.output(*parts, where)
         if not isinstance(reference, (str, int)) or isinstance(reference, bool):
             message = f'expected a reference such as "model:F" or an expression; got {quote(reference)}; quote it'
             raise ExpressionSyntaxError(message, where=where)
-        names = self.question.names
-        return Scalar(read_tree(names.translate(str(reference), where), names.declarations, where=where))
+        return self.known(str(reference), key)
 
     def output(self, source: Source, name: str, where: str) -> Value:
         """What the code assigns to a name, or returns."""
@@ -318,12 +293,12 @@ class Asking:
         base, indices = (found[1].strip(), found[2]) if found else (name, "")
         numbers = [int(n) - source.unit.rules.first for n in re.findall(r"\d+", indices)]
         if base == "return":
-            value = case.returned
-            if value is None:
+            if (value := case.returned) is None:
                 raise UnknownSymbolError(f"expected a returned value; got none in {source.function.name}; "
                                          "name a variable", where=where)  # fmt: skip
             if numbers and isinstance(value, Array):
-                return at_place(value, tuple(numbers), where)
+                require_inside(value.shape, numbers, where)
+                return value.at(*numbers)
             return value
         variable = case.variables.get(base)
         if variable is None and any(base in other.variables for other in source.read().cases):
@@ -332,11 +307,8 @@ class Asking:
                 raise NotThereError(f"{base} has no value in this case")
             return Unread(source.function.line, f"{base} is not assigned in a case of {source.function.name}")
         if variable is None:
-            message = (
-                f"expected a name that {source.function.name} assigns; got {quote(base)}; "
-                f"correct it: {suggest_nearest(base, case.variables)}"
-            )
-            raise UnknownSymbolError(message, where=where)
+            message = f"expected a name that {source.function.name} assigns; got {quote(base)}; correct it: "
+            raise UnknownSymbolError(message + suggest_nearest(base, case.variables), where=where)
         return read_variable(source, variable, tuple(numbers), where)
 
     def inputs(self, reference: Any, key: str) -> list[Any]:
@@ -344,21 +316,18 @@ class Asking:
         where = self.place(key)
         if isinstance(reference, list):
             return [symbol for item in reference for symbol in self.inputs(item, key)]
-        parts = self.split(reference, where)
-        if parts is None:
+        if (parts := self.split(reference, where)) is None:
             message = f'expected inputs of a code, such as "model:x[0]"; got {quote(reference)}; name them so'
             raise ExpressionSyntaxError(message, where=where)
         return parts[0].inputs(parts[1], where)
 
     def matrix(self, key: str) -> Array:
         """A reference that must be a matrix; a vector is a column."""
-        value = self.resolve(self.question.keys[key], key)
+        value = self.side(key)
         if not isinstance(value, Array):
             why = value.why if isinstance(value, Unread) else "a number"
             raise ShapeError(f"expected a matrix; got {why}; declare its size", where=self.place(key))
         return value if len(value.shape) == 2 else Array((*value.shape, 1), value.cells)
-
-    # -- entries --
 
     def pair(self, code: Value, expected: Value, key: str, *, upper: bool = False) -> list[Entry]:
         """Entries of two values of one shape."""
@@ -405,15 +374,15 @@ class Asking:
 
         return source, again
 
+    def side(self, key: str) -> Value:
+        """The value of a key."""
+        return self.resolve(self.question.keys[key], key)
+
     def ask_equal(self) -> list[Entry]:
-        left = self.resolve(self.question.keys["left"], "left")
-        right = self.resolve(self.question.keys["right"], "right")
-        return self.pair(left, right, "left")
+        return self.pair(self.side("left"), self.side("right"), "left")
 
     def ask_jacobian(self) -> list[Entry]:
-        of = cells_of(self.resolve(self.question.keys["of"], "of"))
-        by = self.inputs(self.question.keys["by"], "by")
-        given = self.resolve(self.question.keys["is"], "is")
+        of, by, given = cells_of(self.side("of")), self.inputs(self.question.keys["by"], "by"), self.side("is")
         shape = (len(of), len(by))
         if isinstance(given, Unread):
             given = Array(shape, (given,) * (len(of) * len(by)))
@@ -434,13 +403,9 @@ class Asking:
 
     def start_of(self, key: str, shape: Index) -> Array:
         """A matrix of the code before the code has changed it."""
-        reference = self.question.keys[key]
-        parts = self.split(reference, self.place(key))
-        if parts is None:
-            return self.matrix(key)
-        source, name = parts
-        variable = self.cases[source.name].variables.get(name)
-        if variable is None or not variable.is_input:
+        source, name = self.split(self.question.keys[key], self.place(key)) or (None, "")
+        variable = self.cases[source.name].variables.get(name) if source is not None else None
+        if source is None or variable is None or not variable.is_input:
             return self.matrix(key)
         size = variable.shape or (shape[1], shape[1])
         return make_array(size, lambda *p: Scalar(source.symbol(spell_entry(source.unit, name, p))))
@@ -451,27 +416,21 @@ class Asking:
 
     def ask_orthogonal(self) -> list[Entry]:
         of = self.matrix("of")
-        square = matrix_product(of, transpose(of, True))
-        return self.pair(square, identity_array(of.shape[0], of.shape[0]), "of")
+        return self.pair(matrix_product(of, transpose(of, True)), identity_array(of.shape[0], of.shape[0]), "of")
 
     def ask_unit(self) -> list[Entry]:
-        of = self.resolve(self.question.keys["of"], "of")
+        of = self.side("of")
         return self.pair(square_sum(of) if not isinstance(of, Unread) else of, Scalar(ONE), "of")
 
     def ask_inverse(self) -> list[Entry]:
         of, given = self.matrix("of"), self.matrix("is")
-        whole = matrix_product(of, given)
-        return self.pair(whole, identity_array(of.shape[0], given.shape[1]), "is")
+        return self.pair(matrix_product(of, given), identity_array(of.shape[0], given.shape[1]), "is")
 
     def ask_claim(self) -> list[Entry]:
-        from navsym.audit.outside import read_claim_side
-
         side = read_claim_side(self.question.keys["claim"], self.question.folder, self.place("claim"))
-        return self.pair(self.resolve(self.question.keys["of"], "of"), self.outside(side, "claim"), "of")
+        return self.pair(self.side("of"), self.outside(side, "claim"), "of")
 
     def ask_model(self) -> list[Entry]:
-        from navsym.audit.outside import read_model_matrices
-
         path = as_text(self.question.keys["file"], self.place("file"), "a model file")
         matrices = read_model_matrices(self.question.folder / path)
         asked = [key for key in MATRIX_KEYS if key in self.question.keys]
@@ -487,14 +446,13 @@ class Asking:
 
     def outside(self, rows: list[list[str]], key: str) -> Value:
         """Formulas of another file in the symbols of the code."""
-        names = self.question.names
-        cells = [[self.known(text, names, key) for text in row] for row in rows]
-        if len(cells) == 1 and len(cells[0]) == 1:
-            return cells[0][0]
-        return Array((len(cells), len(cells[0])), tuple(cell for row in cells for cell in row))
+        cells = tuple(self.known(text, key) for row in rows for text in row)
+        return cells[0] if len(cells) == 1 else Array((len(rows), len(rows[0])), cells)
 
-    def known(self, text: str, names: Names, key: str) -> Scalar:
-        return Scalar(read_tree(names.translate(text, self.place(key)), names.declarations, where=self.place(key)))
+    def known(self, text: str, key: str) -> Scalar:
+        """A formula in the symbols of the code."""
+        names, where = self.question.names, self.place(key)
+        return Scalar(read_tree(names.translate(text, where), names.declarations, where=where))
 
 
 def is_symmetric(matrix: Array) -> bool:
@@ -509,11 +467,6 @@ def flatten(reference: Any) -> list[Any]:
     return [r for item in reference for r in flatten(item)] if isinstance(reference, list) else [reference]
 
 
-def cells_of(value: Value) -> tuple[Cell, ...]:
-    """The cells of a value."""
-    return value.cells if isinstance(value, Array) else (value,)
-
-
 def derivative(cell: Cell, symbol: Any) -> Cell:
     """The derivative of a formula."""
     if isinstance(cell, Unread):
@@ -524,12 +477,11 @@ def derivative(cell: Cell, symbol: Any) -> Cell:
         return Unread(cell.line, error.message)
 
 
-def at_place(value: Array, place: Index, where: str) -> Cell:
-    """A cell of an array; raises ShapeError outside it."""
-    if len(place) != len(value.shape) or any(not 0 <= i < n for i, n in zip(place, value.shape, strict=True)):
-        message = f"expected a place inside {list(value.shape)}; got {list(place)}; correct it"
+def require_inside(shape: Index, place: Sequence[int], where: str) -> None:
+    """Raise ShapeError for a place outside an array."""
+    if len(place) != len(shape) or any(not 0 <= i < n for i, n in zip(place, shape, strict=True)):
+        message = f"expected a place inside {list(shape)}; got {list(place)}; correct it"
         raise ShapeError(message, where=where)
-    return value.at(*place)
 
 
 def read_variable(source: Source, variable: Variable, place: Index, where: str) -> Value:
@@ -545,14 +497,42 @@ def read_variable(source: Source, variable: Variable, place: Index, where: str) 
             return Scalar(source.symbol(spell_entry(source.unit, variable.name, spot)))
         return Unread(source.function.line, f"{source.function.name} does not assign it")
 
-    shape = variable.shape
-    if shape is None and variable.cells:
-        spots = [spot for spot in variable.cells if spot]
-        if spots:
-            shape = tuple(max(spot[k] for spot in spots) + 1 for k in range(len(spots[0])))
+    if (shape := variable.shape) is None and (spots := [spot for spot in variable.cells if spot]):
+        shape = tuple(max(spot[k] for spot in spots) + 1 for k in range(len(spots[0])))
     if place:
-        if shape is not None and (len(shape) != len(place) or any(i >= n for i, n in zip(place, shape, strict=True))):
-            message = f"expected a place inside {list(shape)}; got {list(place)}; correct it"
-            raise ShapeError(message, where=where)
+        if shape is not None:
+            require_inside(shape, place, where)
         return cell(place)
     return Array(shape, tuple(map(cell, places_of(shape)))) if shape else cell(())
+
+
+# What code is compared with from other files
+
+
+def read_claim_side(reference: Any, folder: Path, where: str) -> list[list[str]]:
+    """The right side of a claim of a claim file, ``"formulas.toml:half-angle"``, as rows of texts."""
+    if not isinstance(reference, str) or ".toml:" not in reference:
+        message = f'expected a claim such as "claims.toml:name"; got {quote(reference)}; write file and id'
+        raise ExpressionSyntaxError(message, where=where)
+    file, _, name = reference.rpartition(":")
+    claims = {claim.id: claim for claim in read_claims(folder / file).claims}
+    if name not in claims:
+        message = f"expected a claim of {file} ({', '.join([*claims][:12])}); got {quote(name)}; correct the id"
+        raise UnknownSymbolError(message, where=where)
+    claim = require_numbers(claims[name])
+    if claim.relation != "=" or claim.tolerance is not None:
+        raise DomainError("expected an equation; got another claim; choose one with =", where=where)
+    right = claim.formula.right
+    rows = right if isinstance(right, list) else [right]
+    return [[str(cell) for cell in row] if isinstance(row, list) else [str(row)] for row in rows]
+
+
+def read_model_matrices(path: Path) -> dict[str, list[list[str]]]:
+    """F, and H, of a linear model file as rows of texts."""
+    model = Model.load(path)
+    found = {"F": model.F, "H": model.H}
+    return {
+        key: [[to_text(matrix[i, j]) for j in range(matrix.shape[1])] for i in range(matrix.shape[0])]
+        for key, matrix in found.items()
+        if matrix is not None
+    }

@@ -71,36 +71,25 @@ class Reader(SourceReader):
             if node.type == "function_item":
                 self.read_function(node)
             elif node.type == "const_item" and field_of(node, "value") is not None:
-                name, kind = (text_of(field_of(node, key)) for key in ("name", "type"))
-                number, shape = type_of(kind)
+                number, shape = type_of(text_of(field_of(node, "type")))
+                what = text_of(field_of(node, "name")), number, self.sizes(node, shape)
                 value = self.expression(field_of(node, "value"))
-                self.unit.constants.append(
-                    self.part("declare", node, name, number, self.sizes(node, shape), value, False)
-                )
-            elif node.type == "field_declaration":
-                self.read_field(node)
+                self.unit.constants.append(self.part("declare", node, *what, value, False))
+            elif node.type == "field_declaration":  # of two structures that have it differently it stays unknown
+                name, known = f"self.{text_of(field_of(node, 'name'))}", type_of(text_of(field_of(node, "type")))
+                is_new = self.unit.members.get(name, known) == known
+                self.unit.members[name] = known if is_new else ("other", None)
         self.unit.constants.sort(key=lambda statement: statement.span)
-
-    def read_field(self, node: Any) -> None:
-        """A field of a structure as a member of ``self``; one that two structures have differently stays unknown."""
-        number, shape = type_of(text_of(field_of(node, "type")))
-        name, known = f"self.{text_of(field_of(node, 'name'))}", (number, shape)
-        is_new = name not in self.unit.members or self.unit.members[name] == known
-        self.unit.members[name] = known if is_new else ("other", None)
 
     def read_function(self, node: Any) -> None:
         name, arguments = text_of(field_of(node, "name")), []
-        for child in named(field_of(node, "parameters")):
-            if child.type != "parameter":
-                continue
+        for child in [child for child in named(field_of(node, "parameters")) if child.type == "parameter"]:
             kind = text_of(field_of(child, "type"))
             number, shape = type_of(kind)
             label = text_of(field_of(child, "pattern")).removeprefix("mut ")
             arguments.append(Argument(label, number, self.sizes(child, shape), "&mut" in kind.replace(" ", "")))
-        body = tuple(self.body(field_of(node, "body")))
-        self.unit.functions.setdefault(name, []).append(Function(name, line_of(node), tuple(arguments), body))
-
-    # -- statements --
+        function = Function(name, line_of(node), tuple(arguments), tuple(self.body(field_of(node, "body"))))
+        self.unit.functions.setdefault(name, []).append(function)
 
     def body(self, node: Any) -> list[Part]:
         """The statements of a function; an expression at its end is its value."""
@@ -163,7 +152,8 @@ class Reader(SourceReader):
             return self.normalized_or_left(node, text_of(pattern), value, other)
         number, shape = type_of(text_of(given)) if given is not None else ("auto", None)
         if pattern.type == "tuple_pattern" and value is not None and value.type == "tuple_expression":
-            pairs = [*zip(map(text_of, named(pattern)), map(self.expression, named(value)), strict=False)]
+            names = [text_of(child).removeprefix("mut ") for child in named(pattern)]
+            pairs = [*zip(names, map(self.expression, named(value)), strict=False)]
             is_apart = len({n for n, _ in pairs} & names_in(*(v for _, v in pairs))) == 0
             if len(pairs) == len(named(pattern)) == len(named(value)) and is_apart:
                 return tuple(self.part("declare", node, n, "auto", None, v, False) for n, v in pairs)
@@ -183,13 +173,10 @@ class Reader(SourceReader):
         is_vector = function is not None and function.type == "field_expression"
         if not found or not is_vector or text_of(field_of(function, "field")) != "try_normalize":
             return (self.unread(node, "a let that may fail"),)
-        vector, least = (
-            self.expression(field_of(function, "value")),
-            self.expression(named(field_of(value, "arguments"))[0]),
-        )
-        length = self.part("method", value, vector, "norm", ())
+        vector = self.expression(field_of(function, "value"))
+        least = self.expression(named(field_of(value, "arguments"))[0])
+        length, start = (self.part("method", value, vector, name, ()) for name in ("norm", "normalize"))
         test = self.part("compare", value, ">", length, least)
-        start = self.part("method", value, vector, "normalize", ())
         return (self.part("if", value, test, (), self.block(other)),
                 self.part("declare", node, found[1], "auto", None, start, False))  # fmt: skip
 
@@ -215,8 +202,6 @@ class Reader(SourceReader):
         if any(text_of(child) == "..=" for child in source.children):
             stop = self.part("op", source, "+", stop, one)
         return self.part("for", node, text_of(name), start, stop, one, self.block(field_of(node, "body")))
-
-    # -- expressions --
 
     def read_expression(self, node: Any) -> Part | None:
         match node.type:
@@ -283,8 +268,7 @@ class Reader(SourceReader):
             return self.part("call", node, "Convert::into", arguments)
         if last in ("zero", "one") and not arguments:
             return self.part("number", node, int(last == "one"), "auto")
-        shape = type_of(head)[1]
-        if shape and last == "from_row_slice" and arguments and arguments[0].kind == "list":
+        if (shape := type_of(head)[1]) and last == "from_row_slice" and arguments and arguments[0].kind == "list":
             last, arguments = "new", arguments[0].parts[0]
         if shape and last == "new" and arguments:
             sides = (self.part("number", node, n, "int") for n in shape)

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import combinations, combinations_with_replacement
+from itertools import combinations, combinations_with_replacement, product
 from typing import Any
 
 from navsym.audit.decide import (
@@ -26,12 +26,12 @@ from navsym.audit.decide import (
     value_at,
 )
 from navsym.audit.questions import SENSES, Entry, Question
-from navsym.audit.values import Array, Scalar, make_array, matrix_product, transpose
+from navsym.audit.values import Array, Scalar, cells_of, make_array, matrix_product, transpose
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.errors import NavsymError
 from navsym.language.polynomials import to_polynomial
 from navsym.language.printer import print_tree
-from navsym.language.tree import Tree, build_number, build_product, build_sum, build_symbol, list_names, negate
+from navsym.language.tree import ZERO, Tree, build_product, build_sum, build_symbol, list_names, negate
 from navsym.language.tree import replace as replace_parts
 from navsym.prove.rooms.goals import player
 from navsym.prove.search import Rounds
@@ -145,29 +145,27 @@ def weaken(question: Question, entries: Sequence[Entry], decisions: list[Decisio
     for several in places.values():
         scope = replace(scopes[several[0]], relations=question.relations())
         table = Table(question, [entries[k] for k in several], scope)
-        waiting += [
-            (table, at, k)
-            for at, k in enumerate(several)
-            if not decisions[k].status.holds and is_read(entries[k])
-        ]  # fmt: skip
-    unread = sum(not is_read(e) for e in entries)
+        failing = [k for k in several if not decisions[k].status.holds and is_read(entries[k])]
+        waiting += [(table, several.index(k), k) for k in failing]
     for table, at, k in waiting:
         decisions[k] = admit(table, at, decisions[k], admitted)
     failed = [(table, at, k) for table, at, k in waiting if not decisions[k].status.holds]
-    if not failed or unread or any(sum(map(measure, table.pair(at))) > BRIEF for table, at, _ in failed):
+    if (
+        not failed
+        or not all(map(is_read, entries))
+        or any(sum(map(measure, table.pair(at))) > BRIEF for table, at, _ in failed)
+    ):
         return
     for sense in SENSES[2:]:
         notes = dict[int, str]()
         for table, at, k in failed if sense not in admitted else ():
-            found = hold(table, at, sense, SHORT)
-            if found is None or not found.status.holds:
+            if (found := hold(table, at, sense, SHORT)) is None or not found.status.holds:
                 break
             notes[k] = f'not exact, but {found.why} (sense {sense}, which senses = ["{sense}"] admits)'
         if len(notes) == len(failed):
             for k, note in notes.items():
-                decisions[k] = replace(
-                    decisions[k], weaker=sense, why="; ".join(filter(None, (decisions[k].why, note)))
-                )
+                why = "; ".join(filter(None, (decisions[k].why, note)))
+                decisions[k] = replace(decisions[k], weaker=sense, why=why)
             return
 
 
@@ -178,8 +176,7 @@ def admit(table: Table, at: int, exact: Decision, senses: Sequence[str]) -> Deci
     """
     undecided = list[str]()
     for sense in sorted(senses, key=SENSES.index):
-        found = hold(table, at, sense, TRIES)
-        if found is not None and found.status.holds:
+        if (found := hold(table, at, sense, TRIES)) is not None and found.status.holds:
             return replace(found, sense=sense)
         if found is None or found.status == OPEN:
             undecided.append(sense)
@@ -218,10 +215,8 @@ def read_tangent(table: Table) -> Iterator[Reading]:
         sides = {x: table.pair(k) for x, k in zip(table.by, row, strict=True)}
         pairs = [pair for x, pair in sides.items() if not any(x in move for move in moves)]
         for move in moves:
-            code, expected = (
-                build_sum(*(build_product(sides[x][side], slope) for x, slope in move.items())) for side in (0, 1)
-            )
-            pairs.append((code, expected))
+            along = [[build_product(sides[x][s], slope) for x, slope in move.items()] for s in (0, 1)]
+            pairs.append((build_sum(*along[0]), build_sum(*along[1])))
         yield Reading(f"equal on the tangent space of {' and '.join(words)}", frozenset(row), tuple(pairs))
 
 
@@ -282,9 +277,8 @@ def read_order(table: Table) -> Iterator[Reading]:
     for k in range(len(table.entries)):
         for n in orders if is_read(table.entries[k]) else ():
             code, expected = (replace_parts(tree, by) for tree in table.pair(k))
-            yield Reading(
-                f"equal up to order {n - 1} in {words}", frozenset({k}), ((code, expected),), {small: n}, ranges
-            )
+            note = f"equal up to order {n - 1} in {words}"
+            yield Reading(note, frozenset({k}), ((code, expected),), {small: n}, ranges)
 
 
 def find_small(table: Table) -> tuple[list[str], Sequence[int], str]:
@@ -300,9 +294,7 @@ def find_small(table: Table) -> tuple[list[str], Sequence[int], str]:
 def read_approximation(table: Table) -> Iterator[Reading]:
     """Entries that are equal when one thing is put for another, as the mapping declares, on both sides."""
     listed = [a for source in table.question.sources.values() for a in source.approximations]
-    for k in range(len(table.entries)):
-        if not is_read(table.entries[k]):
-            continue
+    for k in [k for k, entry in enumerate(table.entries) if is_read(entry)]:
         code, expected = table.pair(k)
         used = [(a, b) for a, b in listed if any(replace_parts(t, {a: b}) is not t for t in (code, expected))]
         if used:
@@ -318,28 +310,16 @@ def read_noise(table: Table) -> Iterator[Reading]:
         return
     names = {(i, j): table.question.names.free_name(f"noise{i + 1}_{j + 1}") for i in range(n) for j in range(i, n)}
     is_full = kind == "any"
-    zero = Scalar(build_number(0))
-    N = make_array(
-        (n, n), lambda i, j: Scalar(build_symbol(names[min(i, j), max(i, j)])) if is_full or i == j else zero
-    )
+    cells = {place: Scalar(build_symbol(name)) for place, name in names.items()}
+    N = make_array((n, n), lambda i, j: cells[min(i, j), max(i, j)] if is_full or i == j else Scalar(ZERO))
     sides = []
     for side in (0, 1):
         V = Array((m, n), tuple(Scalar(table.pair(k)[side]) for k in range(m * n)))
-        sides.append(matrix_product(matrix_product(V, N), transpose(V, True)))
-    pairs = [
-        (one.tree, two.tree)
-        for i, j in combinations_with_replacement(range(m), 2)
-        for one, two in [(cell_at(sides[0], m, i, j), cell_at(sides[1], m, i, j))]
-    ]
+        sides.append(cells_of(matrix_product(matrix_product(V, N), transpose(V, True))))
+    upper = [i * m + j for i, j in combinations_with_replacement(range(m), 2)]
+    pairs = [(sides[0][k].tree, sides[1][k].tree) for k in upper]  # type: ignore[union-attr]
     note = f"V N V' is equal for every {'' if is_full else 'diagonal '}covariance N"
     yield Reading(note, frozenset(range(m * n)), tuple(pairs), {}, dict.fromkeys(names.values(), REAL))
-
-
-def cell_at(value: Any, m: int, i: int, j: int) -> Scalar:
-    """An entry of a product, which is a number where it has one."""
-    cell = value.cells[i * m + j] if isinstance(value, Array) else value
-    assert isinstance(cell, Scalar)
-    return cell
 
 
 def read_renamed(table: Table) -> Iterator[Reading | None]:
@@ -354,11 +334,8 @@ def read_renamed(table: Table) -> Iterator[Reading | None]:
     orders, is_complete = list_orders(*values)
     for order in orders:
         by = {table.by[i]: table.by[order[i]] for i in range(len(table.by))}
-        pairs = [
-            (table.pair(order[i] * n + order[j])[0], replace_parts(table.pair(i * n + j)[1], by))
-            for i in range(n)
-            for j in range(n)
-        ]
+        moved = [table.pair(i * n + j)[0] for i, j in product(order, repeat=2)]
+        pairs = [(code, replace_parts(table.pair(k)[1], by)) for k, code in enumerate(moved)]
         words = ", ".join(str(i + 1) for i in order)
         yield Reading(f"equal with the states in the order {words}", frozenset(range(n * n)), tuple(pairs))
     if not is_complete:
@@ -408,12 +385,10 @@ def list_orders(code: Balls, expected: Balls) -> tuple[list[tuple[int, ...]], bo
             continue
         i = len(order)
         for new in reversed([k for k in range(n) if k not in order]):
-            several = (*order, new)
-            if all(
-                code[new][p].overlaps(expected[i][j]) and code[p][new].overlaps(expected[j][i])
-                for j, p in enumerate(several)
-            ):
-                waiting.append(several)
+            several = [*enumerate((*order, new))]
+            is_row = all(code[new][p].overlaps(expected[i][j]) for j, p in several)
+            if is_row and all(code[p][new].overlaps(expected[j][i]) for j, p in several):
+                waiting.append((*order, new))
     return found, True
 
 

@@ -15,8 +15,7 @@ from flint import ctx, fmpq
 
 from navsym.audit.evaluate import Reading
 from navsym.audit.execute import read_function
-from navsym.audit.form import Argument, Function, Part, Unit, called_in, names_in, spell_entry, walk
-from navsym.audit.fragment import take_lines
+from navsym.audit.form import Argument, Function, Part, Unit, called_in, mentioned_in, names_in, spell_entry, walk
 from navsym.audit.names import Names, squeeze
 from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import (
@@ -43,13 +42,8 @@ from navsym.language.schema import Table, as_list, as_table, as_text, require_ke
 from navsym.language.tree import NUMBER, ONE, POWER, PRODUCT, SUM, ZERO, Tree, build_number, build_sum, negate
 from navsym.prove.rooms.goals import player
 
-LANGUAGES = {
-    **dict.fromkeys((".c", ".h"), "c"),
-    **dict.fromkeys((".cpp", ".cc", ".cxx", ".hpp", ".hh", ".ino"), "cpp"),
-    ".py": "python",
-    ".m": "matlab",
-    ".rs": "rust",
-}
+LANGUAGES = {".c": "c", ".h": "c", ".py": "python", ".m": "matlab", ".rs": "rust"}
+LANGUAGES |= dict.fromkeys((".cpp", ".cc", ".cxx", ".hpp", ".hh", ".ino"), "cpp")
 LARGEST_SIDE = 64
 BITS = 256  # at which a decimal is compared with what it stands for
 #: The keys of a block ``[[code]]``.
@@ -105,19 +99,14 @@ class Source:
         """The symbols that a reference to an input means: one, or all of an array."""
         key = "".join(reference.split())
         argument = next((a for a in self.function.arguments if a.name == key), None)
-        shape = self.shapes.get(key)
-        if shape is None and argument is not None and argument.shape is not None:
+        if (shape := self.shapes.get(key)) is None and argument is not None and argument.shape is not None:
             sizes = [int(size.parts[0]) for size in argument.shape if size.kind == "number"]
             shape = tuple(sizes) if len(sizes) == len(argument.shape) else None
         if shape:
             return [self.symbol(spell_entry(self.unit, key, place)) for place in places_of(shape)]
         if key not in self.names.symbols and key not in self.names.inputs:
-            listed = [*self.names.symbols]
-            message = (
-                f"expected an input that {self.function.name} reads; got {quote(reference)}; "
-                f"correct it: {suggest_nearest(reference, listed)}"
-            )
-            raise UnknownSymbolError(message, where=where)
+            message = f"expected an input that {self.function.name} reads; got {quote(reference)}; correct it: "
+            raise UnknownSymbolError(message + suggest_nearest(reference, self.names.symbols), where=where)
         return [self.names.symbol(reference)]
 
 
@@ -136,8 +125,8 @@ def load_unit(
     """
     where, language = name_file(path), language or LANGUAGES.get(Path(path).suffix.lower())
     if language is None:
-        expected = f"a source that ends in {' '.join(LANGUAGES)}"
-        raise ExpressionSyntaxError(f"expected {expected}; got {quote(Path(path).name)}; rename it", where=where)
+        message = f"expected a source that ends in {' '.join(LANGUAGES)}; got {quote(Path(path).name)}; rename it"
+        raise ExpressionSyntaxError(message, where=where)
     data, pieces = b"", list[tuple[int, int, str]]()
     for file in (Path(path), *also):  # one text, so that each part has a place of its own
         text = read_bytes(file, SIZE).removeprefix(b"\xef\xbb\xbf")
@@ -196,28 +185,27 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
     """One ``[[code]]`` block; a line tells several functions of one name apart."""
     table = as_table(block, where)
     expect_keys(table, KEYS, where)
-    texts = {
-        key: as_text(require_key(table, key, where), join_place(where, key), "a name")
+    name, file, asked = (
+        as_text(require_key(table, key, where), join_place(where, key), "a name")
         for key in ("name", "file", "function")
-    }
-    language = table.get("language")
-    if language is not None:
+    )
+    if (language := table.get("language")) is not None:
         one_of(as_text(language, join_place(where, "language"), "a language"), LANGUAGES.values(), where)
     also, defined, ignored = (read_names(table, key, where) for key in ("also", "defined", "ignored"))
     known = None if defined is None else frozenset(defined)
-    unit = load_unit(folder / texts["file"], language, [folder / name for name in also or ()], known)
-    declare_constants(unit, as_table(table.get("constants", {}), join_place(where, "constants")), where)
-    declare_functions(unit, as_table(table.get("functions", {}), join_place(where, "functions")), where)
+    unit = load_unit(folder / file, language, [folder / other for other in also or ()], known)
+    keys = ("constants", "functions", "symbols")
+    constants, functions, symbols = (as_table(table.get(key, {}), join_place(where, key)) for key in keys)
+    declare_constants(unit, constants, where)
+    declare_functions(unit, functions, where)
     unit.ignored = frozenset(ignored or ())
     lines = read_lines(table["lines"], join_place(where, "lines")) if "lines" in table else None
-    function = find_function(unit, texts["function"], join_place(where, "function"), lines[0] if lines else line)
-    whole = function
+    whole = function = find_function(unit, asked, join_place(where, "function"), lines[0] if lines else line)
     if lines is not None:
         function = take_lines(unit, function, *lines, join_place(where, "lines"))
-        fixed = as_table(table.get("constants", {}), where)  # such as the counter of a loop around the lines
-        function = replace(function, arguments=tuple(a for a in function.arguments if a.name not in fixed))
+        own = tuple(a for a in function.arguments if a.name not in constants)  # as the counter of a loop around them
+        function = replace(function, arguments=own)
     place = join_place(where, "symbols")
-    symbols = as_table(table.get("symbols", {}), place)
     unit.declared |= {squeeze(spelling).partition("[")[0].replace("->", ".") for spelling in symbols}
     shapes, symmetric = read_symbols(symbols, names, place)
     starts = {
@@ -226,7 +214,7 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
         if isinstance(declaration, dict) and read_start(declaration, join_place(place, spelling))
         for p in places_of(shapes[spelling])
     }
-    source = Source(texts["name"], unit, function, names, shapes, symmetric, (), starts=starts)
+    source = Source(name, unit, function, names, shapes, symmetric, (), starts=starts)
     names.inputs |= list_inputs(source, whole)
     relations, approximations = (read_equations(table, key, names, where) for key in ("relations", "approximations"))
     source.relations = tuple(build_sum(left, negate(right)) for left, right in relations)
@@ -253,9 +241,8 @@ def is_rotation(declaration: Any, where: str) -> bool:
 def relate_rotation(matrix: Array) -> tuple[Tree, ...]:
     """What is zero of a rotation: C C' - E, C' C - E, and c_i x c_j - c_k for its rows."""
     mirror = transpose(matrix, True)
-    rows = [Array((3,), matrix.cells[3 * i : 3 * i + 3]) for i in range(3)]
-    pairs: list[tuple[Value, Value]] = [(matrix_product(matrix, mirror), identity_array(3, 3))]
-    pairs += [(matrix_product(mirror, matrix), identity_array(3, 3))]
+    rows, one = [matrix.row(i) for i in range(3)], identity_array(3, 3)
+    pairs: list[tuple[Value, Value]] = [(matrix_product(matrix, mirror), one), (matrix_product(mirror, matrix), one)]
     pairs += [(cross_product(rows[i], rows[(i + 1) % 3]), rows[(i + 2) % 3]) for i in range(3)]
     cells = [c for p in pairs for c in map_cells(lambda a, b: add(a, minus(b)), *p).cells]  # type: ignore[union-attr]
     return tuple(dict.fromkeys(cell.tree for cell in cells if isinstance(cell, Scalar)))
@@ -263,9 +250,8 @@ def relate_rotation(matrix: Array) -> tuple[Tree, ...]:
 
 def read_names(table: Table, key: str, where: str) -> list[str] | None:
     """A list of names, which may be empty; None where the key is not there."""
-    if key not in table or table[key] == []:
-        return table.get(key)
-    return [as_text(name, join_place(where, key), "a name") for name in as_list(table[key], join_place(where, key))]
+    place, names = join_place(where, key), table.get(key)
+    return names if names in (None, []) else [as_text(name, place, "a name") for name in as_list(names, place)]
 
 
 def list_inputs(source: Source, whole: Function) -> set[str]:
@@ -282,9 +268,8 @@ def read_lines(value: Any, where: str) -> tuple[int, int]:
     """The first and the last line."""
     is_pair = isinstance(value, list) and len(value) == 2 and all(type(n) is int for n in value)
     if not is_pair or not 0 < value[0] <= value[1]:
-        raise ShapeError(
-            f"expected the first and the last line, [12, 30]; got {quote(value)}; correct them", where=where
-        )
+        message = f"expected the first and the last line, [12, 30]; got {quote(value)}; correct them"
+        raise ShapeError(message, where=where)
     return value[0], value[1]
 
 
@@ -351,8 +336,7 @@ def read_symbols(table: Table, names: Names, where: str) -> tuple[dict[str, Inde
         shapes[spelling] = tuple(given)
         if declaration.get("symmetric") is True:
             if len(given) != 2 or given[0] != given[1]:
-                message = f"expected a square matrix; got {quote(sizes)}; remove symmetric"
-                raise ShapeError(message, where=place)
+                raise ShapeError(f"expected a square matrix; got {quote(sizes)}; remove symmetric", where=place)
             symmetric.add(spelling)
     return shapes, frozenset(symmetric)
 
@@ -376,3 +360,58 @@ def read_equations(table: Table, key: str, names: Names, where: str) -> list[tup
         left, right = (read_tree(names.translate(side, own), names.declarations, where=own) for side in sides)
         pairs.append((left, right))
     return pairs
+
+
+# Some lines of a function, read by themselves: what they read and do not assign is an input
+
+
+def take_lines(unit: Unit, function: Function, first: int, last: int, where: str) -> Function:
+    """The statements between two lines as a function; raises DomainError where the lines cut a statement.
+
+    Names that are declared before keep their numbers and sizes, references what they stand for. A pointer that is set
+    again is no number any more, so that what depends on it stays unread.
+    """
+    body, before = function.body, list[Part]()
+    while True:
+        near = [s for s in body if s.line <= last and last_line(unit, s) >= first]
+        if near and all(first <= s.line and last_line(unit, s) <= last for s in near):
+            break
+        blocks = [part for s in near if len(near) == 1 for part in s.parts if isinstance(part, tuple)]
+        inner = [
+            b for b in blocks if any(isinstance(s, Part) and s.line <= last and last_line(unit, s) >= first for s in b)
+        ]
+        if len(inner) != 1:
+            got = "half of one" if near else "none"
+            message = f"expected whole statements of one block of {function.name} in lines {first} to {last}; got {got}"
+            raise DomainError(f"{message}; correct the lines", where=where)
+        before += [s for s in body if s.line < near[0].line] + near
+        body = inner[0]
+    before += [s for s in body if s.line < near[0].line]
+    before = [inner for s in before for inner in ((s, *s.parts[0]) if s.kind == "loop" else (s,))]
+    declared = {s.parts[0]: s for s in before if s.kind in ("declare", "for")}
+    reseated = {s.parts[0].parts[0] for s in walk(*function.body) if s.kind == "assign" and s.parts[0].kind == "name"}
+    links = [s for s in declared.values() if s.kind == "declare" and s.parts[4] and s.parts[0] not in reseated]
+    arguments = {argument.name: argument for argument in function.arguments}
+    for name, statement in declared.items():
+        if statement not in links:
+            arguments[name] = argument_of(statement)
+    used = mentioned_in(*near, *links)
+    kept = tuple(replace(a, shared=True) for a in arguments.values() if a.name in used)
+    return Function(function.name, near[0].line, kept, (*links, *near))
+
+
+def last_line(unit: Unit, statement: Part) -> int:
+    """The line in which a statement ends; ``elif`` ends before its ``else``."""
+    end = max(part.span[1] for part in walk(statement))
+    return 1 + unit.source.count(b"\n", 0, max(end - 1, 0))
+
+
+def argument_of(statement: Part) -> Argument:
+    """A name that was declared before the lines, as an input."""
+    if statement.kind == "for":
+        return Argument(statement.parts[0], "int", ())
+    name, number, shape, value, is_pointer = statement.parts
+    if is_pointer or number == "matrix":
+        return Argument(name, "other", () if is_pointer else shape)
+    is_number = number == "real" and shape is None and (value is None or value.kind == "number")
+    return Argument(name, number, shape if shape is not None or not is_number else ())

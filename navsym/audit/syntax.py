@@ -15,6 +15,7 @@ from navsym.core.errors import MissingEngineError, TooLargeError
 DEPTH = 200
 SIZE = 2_000_000
 NODES = 400_000
+COMMENTS = ("comment", "line_continuation", "line_comment", "block_comment")
 
 
 @functools.cache
@@ -36,27 +37,19 @@ def parse_source(source: bytes, grammar: str, where: str) -> Any:
     if len(source) > SIZE:
         raise TooLargeError(f"expected a file of at most {SIZE} bytes; got {len(source)}; split it", where=where)
     root = load_parser(grammar).parse(source).root_node
-    bound_tree(root, where)
-    return root
-
-
-def bound_tree(root: Any, where: str) -> None:
-    """Refuse trees that are too deep or too large for what reads them."""
     cursor, depth, count = root.walk(), 0, 0
     while True:
         count += 1
         if depth > DEPTH or count > NODES:
             got = f"one deeper than {DEPTH}" if depth > DEPTH else f"more than {NODES} parts"
-            line = cursor.node.start_point[0] + 1
-            raise TooLargeError(
-                f"expected nested source of bounded size; got {got}; split it", where=f"{where}: line {line}"
-            )
+            message = f"expected nested source of bounded size; got {got}; split it"
+            raise TooLargeError(message, where=f"{where}: line {line_of(cursor.node)}")
         if cursor.goto_first_child():
             depth += 1
             continue
         while not cursor.goto_next_sibling():
             if not cursor.goto_parent():
-                return
+                return root
             depth -= 1
 
 
@@ -72,11 +65,7 @@ def line_of(node: Any) -> int:
 
 def named(node: Any) -> list[Any]:
     """The children that are more than signs; comments left out."""
-    return [
-        child
-        for child in (node.named_children if node is not None else ())
-        if child.type not in ("comment", "line_continuation", "line_comment", "block_comment")
-    ]
+    return [child for child in (node.named_children if node is not None else ()) if child.type not in COMMENTS]
 
 
 def field_of(node: Any, name: str) -> Any:
@@ -86,11 +75,8 @@ def field_of(node: Any, name: str) -> Any:
 
 def find_body(node: Any) -> Any:
     """The body of a statement."""
-    return (
-        field_of(node, "consequence")
-        or field_of(node, "body")
-        or next((child for child in named(node) if child.type == "block"), None)
-    )
+    block = next((child for child in named(node) if child.type == "block"), None)
+    return field_of(node, "consequence") or field_of(node, "body") or block
 
 
 def sign_of(node: Any) -> str:
@@ -105,6 +91,11 @@ def descend(node: Any) -> Iterator[Any]:
         current = waiting.pop()
         yield current
         waiting.extend(current.children)
+
+
+def list_above(node: Any) -> list[str]:
+    """The kinds of the nodes around a node, the nearest first."""
+    return [] if node.parent is None else [node.parent.type, *list_above(node.parent)]
 
 
 def identifiers_in(node: Any) -> tuple[str, ...]:
@@ -276,22 +267,16 @@ class SourceReader:
 
     def literal(self, node: Any, text: str, is_real: bool) -> Part:
         """A number in decimal digits."""
-        value = read_decimal(text)
-        if value is None:
+        if (value := read_decimal(text)) is None:
             return self.refuse(node, f"the number {text_of(node)[:20]}")
         return self.part("number", node, value, "real" if is_real else "int")
 
     def chain(self, node: Any, clauses: list[Any]) -> Part:
         """``if`` with the clauses behind it, the first as its other way."""
-        test, then, other = (
-            self.expression(field_of(node, "condition")),
-            self.block(find_body(node)),
-            tuple[Part, ...](),
-        )
-        if clauses:
-            is_if = field_of(clauses[0], "condition") is not None
-            other = (self.chain(clauses[0], clauses[1:]),) if is_if else self.block(find_body(clauses[0]))
-        return self.part("if", node, test, then, other)
+        test, then = self.expression(field_of(node, "condition")), self.block(find_body(node))
+        is_if = bool(clauses) and field_of(clauses[0], "condition") is not None
+        last = self.block(find_body(clauses[0])) if clauses and not is_if else ()
+        return self.part("if", node, test, then, (self.chain(clauses[0], clauses[1:]),) if is_if else last)
 
     def sizes(self, node: Any, shape: tuple[int, ...] | None) -> tuple[Part, ...] | None:
         """A shape as parts."""
@@ -299,16 +284,13 @@ class SourceReader:
 
     def part(self, kind: str, node: Any, *parts: Any) -> Part:
         """A part with its line and span."""
-        start, end = node.start_byte + self.shift, node.end_byte + self.shift
-        return Part(kind, line_of(node), parts, (start, end))
+        return Part(kind, line_of(node), parts, (node.start_byte + self.shift, node.end_byte + self.shift))
 
     def refuse(self, node: Any, why: str) -> Part:
         """An expression that is not read: its names, whether it may write them, and whether it may leave the way."""
-        inside = {inner.type for inner in descend(node)}
-        is_shouting = "call_expression" in inside and any(name.isupper() for name in identifiers_in(node))
-        return self.part(
-            "refused", node, why, identifiers_in(node), bool(inside & WRITES), bool(inside & JUMPS) or is_shouting
-        )
+        inside, names = {inner.type for inner in descend(node)}, identifiers_in(node)
+        is_shouting = "call_expression" in inside and any(name.isupper() for name in names)
+        return self.part("refused", node, why, names, bool(inside & WRITES), bool(inside & JUMPS) or is_shouting)
 
     def unread(self, node: Any, why: str) -> Part:
         """A statement that is not read: all names in it may have been written, or the way may be left there."""

@@ -43,6 +43,12 @@ class Unreadable(Exception):
         self.line, self.why = line, why
 
 
+def forbid(condition: object, line: int, why: str) -> None:
+    """Raise Unreadable where a condition holds."""
+    if condition:
+        raise Unreadable(line, why)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Scalar:
     """A number as a formula of the inputs.
@@ -97,6 +103,11 @@ class List(Array):
 
 
 Value = Scalar | Array | Unread
+
+
+def cells_of(value: Value) -> tuple[Cell, ...]:
+    """The cells of a value."""
+    return value.cells if isinstance(value, Array) else (value,)
 
 
 @dataclass(slots=True, eq=False)
@@ -160,8 +171,7 @@ def add(a: Tree, b: Tree) -> Tree:
     if a.head == b.head == NUMBER:
         return build_number(a.args[0] + b.args[0])
     terms = (*(a.args if a.head == "+" else (a,)), *(b.args if b.head == "+" else (b,)))
-    if len(terms) > TERMS:
-        raise Unreadable(0, f"a sum of more than {TERMS} terms")
+    forbid(len(terms) > TERMS, 0, f"a sum of more than {TERMS} terms")
     return build_sum(*terms)
 
 
@@ -176,9 +186,7 @@ def multiply(a: Tree, b: Tree) -> Tree:
         return ZERO
     if a is ONE or b is ONE:
         return b if a is ONE else a
-    if a.head == b.head == NUMBER:
-        return build_number(a.args[0] * b.args[0])
-    return build_product(a, b)
+    return build_number(a.args[0] * b.args[0]) if a.head == b.head == NUMBER else build_product(a, b)
 
 
 def divide(a: Tree, b: Tree) -> Tree:
@@ -209,8 +217,7 @@ def total(trees: list[Tree]) -> Tree:
 def map_cells(step: Callable[..., Tree], *values: Value) -> Value:
     """A function of the trees of numbers or arrays of one shape, cell by cell; numbers go with every cell."""
     shapes = {value.shape for value in values if isinstance(value, Array)}
-    if len(shapes) > 1:
-        raise Unreadable(0, "arrays of different shapes")
+    forbid(len(shapes) > 1, 0, "arrays of different shapes")
     if not shapes:
         return map_cell(step, *values)  # type: ignore[arg-type]
     (shape,) = shapes
@@ -230,10 +237,14 @@ def map_cell(step: Callable[..., Tree], *cells: Cell) -> Cell:
     return Scalar(step(*trees), "real" if not kinds <= {"int", "unsigned"} else max(kinds, default="int"))
 
 
+def find_unread(*values: Value) -> Unread | None:
+    """The first of the values that is not read."""
+    return next((value for value in values if isinstance(value, Unread)), None)
+
+
 def make_array(shape: Index, cell: Callable[..., Cell]) -> Array:
     """An array by places."""
-    if math.prod(shape) > LARGEST or any(size < 0 for size in shape):
-        raise Unreadable(0, f"an array of more than {LARGEST} cells")
+    forbid(math.prod(shape) > LARGEST or any(size < 0 for size in shape), 0, f"an array of more than {LARGEST} cells")
     return Array(shape, tuple(cell(*place) for place in places_of(shape)))
 
 
@@ -244,22 +255,18 @@ def transpose(value: Value, column: bool) -> Value:
     if len(value.shape) == 1:
         return Array((1, *value.shape), value.cells) if column else value
     m, n = value.shape
-    if m == 1 and column:
-        return Array((n,), value.cells)
-    return make_array((n, m), lambda i, j: value.at(j, i))
+    return Array((n,), value.cells) if m == 1 and column else make_array((n, m), lambda i, j: value.at(j, i))
 
 
 def join(*values: Value, across: bool) -> Value:
     """Matrices side by side, or below each other; a vector is a column, a number a matrix of one."""
-    unread = next((value for value in values if isinstance(value, Unread)), None)
-    if unread is not None:
+    if (unread := find_unread(*values)) is not None:
         return unread
     blocks = [v if isinstance(v, Array) else Array((1, 1), (v,)) for v in values]
     blocks = [b if len(b.shape) == 2 else Array((*b.shape, 1), b.cells) for b in blocks]
     blocks = [b for b in blocks if b.cells]  # [] joins with everything
     sides = {block.shape[0 if across else 1] for block in blocks}
-    if len(sides) != 1:
-        raise Unreadable(0, "blocks of different sizes side by side" if blocks else "a matrix without entries")
+    forbid(len(sides) != 1, 0, "blocks of different sizes side by side" if blocks else "a matrix without entries")
     if not across:
         return Array((sum(b.shape[0] for b in blocks), *sides), tuple(cell for b in blocks for cell in b.cells))
     (height,) = sides
@@ -275,8 +282,7 @@ def matrix_product(a: Value, b: Value) -> Value:
     if len(a.shape) == 1 and len(b.shape) == 2 and b.shape[0] == 1:
         left = (*a.shape, 1)  # a column and a row
     right = b.shape if len(b.shape) == 2 else (*b.shape, 1)
-    if left[1] != right[0]:
-        raise Unreadable(0, "a product of matrices that do not fit")
+    forbid(left[1] != right[0], 0, "a product of matrices that do not fit")
 
     def cell(i: int, j: int) -> Cell:
         row = [a.cells[i * left[1] + k] for k in range(left[1])]
@@ -333,20 +339,11 @@ def cross_product(a: Value, b: Value) -> Value:
 
 def quaternion_product(a: Quaternion, b: Quaternion) -> Quaternion:
     """Hamilton's product."""
-    (i, j, k, w), (p, q, r, s) = a.cells, b.cells
-    signed = (
-        ((w, p, 1), (i, s, 1), (j, r, 1), (k, q, -1)),
-        ((w, q, 1), (i, r, -1), (j, s, 1), (k, p, 1)),
-        ((w, r, 1), (i, q, 1), (j, p, -1), (k, s, 1)),
-        ((w, s, 1), (i, p, -1), (j, q, -1), (k, r, -1)),
-    )
-
-    def cell(row: tuple[tuple[Cell, Cell, int], ...]) -> Cell:
-        products = [map_cell(multiply, x, y) for x, y, _ in row]
-        signs = [sign for *_, sign in row]
-        return map_cell(lambda *t: total([x if s > 0 else minus(x) for x, s in zip(t, signs, strict=True)]), *products)
-
-    return Quaternion((4,), tuple(map(cell, signed)))
+    (u, w), (v, s) = ((Array((3,), q.cells[:3]), q.cells[3]) for q in (a, b))
+    parts = map_cells(multiply, w, v), map_cells(multiply, s, u), cross_product(u, v)
+    vector = map_cells(lambda *trees: total([*trees]), *parts)
+    real = map_cells(lambda x, y: add(x, minus(y)), map_cells(multiply, w, s), matrix_product(u, v))
+    return Quaternion((4,), (*cells_of(vector), *cells_of(real)))
 
 
 def rotate(quaternion: Value, vector: Value) -> Array:
@@ -354,16 +351,13 @@ def rotate(quaternion: Value, vector: Value) -> Array:
     assert isinstance(quaternion, Array)
     u, w = Array((3,), quaternion.cells[:3]), quaternion.cells[3]
     t = map_cells(lambda x: multiply(build_number(2), x), cross_product(u, vector))
-    turned: Array = map_cells(  # type: ignore[assignment]
-        lambda x, y, z: add(x, add(y, z)), vector, map_cells(multiply, w, t), cross_product(u, t)
-    )
-    return turned
+    parts = vector, map_cells(multiply, w, t), cross_product(u, t)
+    return map_cells(lambda *trees: total([*trees]), *parts)  # type: ignore[return-value]
 
 
 def square_sum(value: Value) -> Cell:
     """The sum of the squares of all cells."""
-    cells = value.cells if isinstance(value, Array) else (value,)
-    return map_cell(lambda *trees: total([raise_to(t, build_number(2)) for t in trees]), *cells)
+    return map_cell(lambda *trees: total([raise_to(t, build_number(2)) for t in trees]), *cells_of(value))
 
 
 def identity_array(m: int, n: int) -> Array:
@@ -373,9 +367,7 @@ def identity_array(m: int, n: int) -> Array:
 
 def constant_of(value: Value) -> Fraction | None:
     """The number that a value is, or None."""
-    if isinstance(value, Scalar) and value.tree.head == NUMBER:
-        return Fraction(value.tree.args[0])
-    return None
+    return Fraction(value.tree.args[0]) if isinstance(value, Scalar) and value.tree.head == NUMBER else None
 
 
 # The operators of the languages
@@ -396,7 +388,7 @@ def does_fit(cell: Scalar, kind: str) -> bool:
 
 def require_fit(unit: Unit, value: Value, line: int) -> Value:
     """The value, where no constant among its integers is past the ends of its type."""
-    for cell in (value.cells if isinstance(value, Array) else (value,)) if unit.rules.integer else ():
+    for cell in cells_of(value) if unit.rules.integer else ():
         if isinstance(cell, Scalar) and cell.number in LIMITS and not does_fit(cell, cell.number):
             raise Unreadable(line, "integers that do not fit their type")
     return value
@@ -433,11 +425,11 @@ def require_no_wrap(value: Value, line: int) -> Value:
 
 def operate(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
     """The same, whatever fits."""
-    if isinstance(a, Unread) or isinstance(b, Unread):
-        return a if isinstance(a, Unread) else b
+    if (unread := find_unread(a, b)) is not None:
+        return unread
+    both, rules = isinstance(a, Array) and isinstance(b, Array), unit.rules
     if unit.language == "c" and (isinstance(a, Array) or isinstance(b, Array)):
         raise Unreadable(line, "arithmetic with an array, which is a pointer in C")
-    both, rules = isinstance(a, Array) and isinstance(b, Array), unit.rules
     if (isinstance(a, List) or isinstance(b, List)) and (joined := join_lists(sign, a, b)) is not None:
         return joined
     if sign in ("*", "@"):
@@ -446,8 +438,7 @@ def operate(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
             return quaternion_product(a, b)
         if kinds == [True, False] and both and unit.language in ("cpp", "rust") and b.shape == (3,):  # type: ignore[union-attr]
             return rotate(a, b)
-        if both and any(kinds):
-            raise Unreadable(line, "the product of a quaternion and a vector")
+        forbid(both and any(kinds), line, "the product of a quaternion and a vector")
         if both and unit.language == "rust" and len(a.shape) == len(b.shape) == 1:  # type: ignore[union-attr]
             raise Unreadable(line, "the product of two columns")
         if sign == "@" and not both:
@@ -477,8 +468,7 @@ def join_lists(sign: str, a: Value, b: Value) -> Value | None:
     (size, *rest), cells = pair[0].shape, pair[0].cells
     if len(pair) == 2 and sign == "+" and [*pair[1].shape[1:]] == rest:
         return List((size + pair[1].shape[0], *rest), cells + pair[1].cells)
-    if len(pair) == 1 and sign == "*" and rest:
-        raise Unreadable(0, "a list repeated in a list, which shares its rows")
+    forbid(len(pair) == 1 and sign == "*" and rest, 0, "a list repeated in a list, which shares its rows")
     if len(pair) == 1 and sign == "*" and times is not None and times.denominator == 1 and 0 < times <= LARGEST:
         return List((size * int(times), *rest), cells * int(times))
     if len(pair) == 2 or not (isinstance(a, Array) and isinstance(b, Array)):
@@ -489,8 +479,7 @@ def join_lists(sign: str, a: Value, b: Value) -> Value | None:
 def quotient(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
     """A quotient; of integers it is cut in C, which is read for constants only."""
     if isinstance(b, Array) and unit.rules.matrix:
-        if unit.language != "matlab" or len(b.shape) != 2:
-            raise Unreadable(line, "division by a matrix")
+        forbid(unit.language != "matlab" or len(b.shape) != 2, line, "division by a matrix")
         return matrix_product(a, invert(b))
     whole = [isinstance(v, Scalar) and v.number in LIMITS for v in (a, b)]
     if sign == "/" and not (unit.rules.integer and all(whole)):

@@ -11,8 +11,7 @@ import pytest
 
 import navsym as nav
 from navsym import checker
-from navsym.audit.decide import Scope, decide_entry
-from navsym.audit.shared import shorten_pairs
+from navsym.audit.decide import Scope, decide_entry, shorten_pairs
 from navsym.language.expression import read_tree
 from navsym.language.tree import build_symbol, replace
 
@@ -81,7 +80,7 @@ def test_a_dense_covariance_of_six_states_is_proved_by_shared_parts_and_its_cert
 
 def test_a_wrong_factor_in_a_dense_covariance_is_refuted_where_it_stands(tmp_path, monkeypatch):
     monkeypatch.setattr(
-        import_module("navsym.audit.mend"), "suggest", lambda *_: None
+        import_module("navsym.audit.answer"), "suggest", lambda *_: None
     )  # the search for a mend is another test's
     code = write_covariance(6, 5)
     wrong, count = re.subn(r"(Pn\[2\]\[4\] = .*?u_2_0\*)(f_4_0)", r"\1f_4_1", code)

@@ -77,5 +77,7 @@ def test_every_exported_claim_of_the_ledger_reads_back(first, capsys):
     assert sum(counts[f"{language} PROVED"] for language in FILES) >= counts["exported"]
 
 
-def test_a_claim_of_the_ledger_reads_back_in_every_language(tmp_path):
-    assert read_back("alpha_beta_filter:4", tmp_path) == dict.fromkeys(FILES, "PROVED")
+@pytest.mark.parametrize("claim", ["alpha_beta_filter:4", "multistructure:2.growth.every*"])
+def test_a_claim_of_the_ledger_reads_back_in_every_language(claim, tmp_path):
+    """The second one has no inputs: its code holds decimals, one of them with both signs."""
+    assert read_back(claim, tmp_path) == dict.fromkeys(FILES, "PROVED")

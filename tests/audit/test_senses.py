@@ -37,7 +37,7 @@ void generated(const float q[4], float c, float s, float H[4])
 @pytest.fixture(autouse=True)
 def without_mends(monkeypatch):
     """The search for mends is another test's."""
-    monkeypatch.setattr(import_module("navsym.audit.mend"), "suggest", lambda *_: None)
+    monkeypatch.setattr(import_module("navsym.audit.answer"), "suggest", lambda *_: None)
 
 
 def ask(folder, code, question, head="", functions=("f",), end="c"):

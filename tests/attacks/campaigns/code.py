@@ -32,7 +32,7 @@ import numpy as np
 
 import navsym as nav
 from navsym.audit.answer import make_scope
-from navsym.audit.decide import decide_entry
+from navsym.audit.decide import TRIES, decide_entry
 from navsym.audit.mend import Budget, suggest
 from navsym.audit.names import Names
 from navsym.audit.questions import Question, list_entries
@@ -457,7 +457,7 @@ def decide_mutant(subject: Subject, mutant: str, wants_mend: bool = False) -> tu
                 scope = make_scope(question.names, entry, ())
                 key = (entry.code.tree, entry.expected.tree, entry.conditions)
                 if key not in comparison.decided:
-                    comparison.decided[key] = str(decide_entry(*key[:2], scope, 0.2).status)
+                    comparison.decided[key] = str(decide_entry(*key[:2], scope, TRIES[:1]).status)
                 status = comparison.decided[key]
                 statuses.add(status)
                 if status == "REFUTED" and wants_mend and not mended:
