@@ -18,10 +18,11 @@ from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED
 from navsym.conventions.mechanisation import Mechanisation, World, add_centrifugal, axes_rows
 from navsym.conventions.reading import Problem
-from navsym.core.balls import OPERATIONS, exact_ball, general_power, integer_power, rational_power
+from navsym.core.balls import exact_ball
 from navsym.core.errors import DomainError
 from navsym.language.declarations import Parameter
-from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, SYMBOL, Tree, fold_tree, list_names
+from navsym.language.domains import flatten
+from navsym.language.tree import SYMBOL, Tree, list_names
 
 BITS = 256
 
@@ -40,38 +41,7 @@ class ImpossibleError(Exception):
 
 def evaluate(tree: Tree, values: Mapping[str, Any]) -> Any:
     """The ball of a tree; not finite where it has no value."""
-
-    def step(part: Tree, inner: list[Any]) -> Any:
-        if part.head == NUMBER:
-            number = part.args[0]
-            return arb(fmpq(number.numerator, number.denominator))
-        if part.head == SYMBOL:
-            return values[part.args[0]]
-        if part.head == SUM:
-            return sum(inner[1:], inner[0])
-        if part.head == PRODUCT:
-            result = inner[0]
-            for factor in inner[1:]:
-                result = result * factor
-            return result
-        if part.head == POWER:
-            return raise_power(part, inner)
-        if part.head == "sqrt":
-            return rational_power(inner[0], 1, 2)
-        return OPERATIONS[part.head](None, inner, {})
-
-    return fold_tree(tree, step)
-
-
-def raise_power(part: Tree, inner: Sequence[Any]) -> Any:
-    """A power of balls."""
-    exponent = part.args[1]
-    if exponent.head == NUMBER:
-        number = exponent.args[0]
-        if number.denominator == 1:
-            return integer_power(inner[0], number.numerator)
-        return rational_power(inner[0], number.numerator, number.denominator)
-    return general_power(inner[0], inner[1])
+    return flatten(tree).run(values)
 
 
 class Sampler:
@@ -198,12 +168,12 @@ class Sampler:
         h: Any = self.settle("height", None, 0.25, 1.0)[0] if "height" in given else 0
         RN, RE, third = self.radii()
         meridian, angle = self.circle("longitude"), self.circle("earth_angle")
-        normal, r = [arb(0)] * 3, None
-        if {"latitude", "longitude", "radii"} <= set(given) and not level:
-            turn = angle if card.frame == "inertial" else (arb(0), arb(1))
-            normal = turn_about_pole(turn, (-cosine * meridian[1], -cosine * meridian[0], -sine))
-            r = turn_about_pole(turn, locate(sine, cosine, meridian, h, RN, RE))
-        r = self.vector("position") if r is None else self.settle("position", r)
+        turn = angle if card.frame == "inertial" else (arb(0), arb(1))
+        normal = turn_about_pole(turn, (-cosine * meridian[1], -cosine * meridian[0], -sine))
+        if self.problem.is_placed and not level:
+            r = self.settle("position", turn_about_pole(turn, locate(sine, cosine, meridian, h, RN, RE)))
+        else:
+            r = self.vector("position")
         radius = sum((x * x for x in r), arb(0)).sqrt()
         earth = self.rotation_of_earth(sine, cosine, level)
         pull, gravity = self.gravitation(r, radius, level, normal, earth)

@@ -98,7 +98,7 @@ class Formulas:
         angle = self.text("wander_angle") or HIDDEN + "wander_angle"  # of this card, or of one that it goes to
         wander = self.symbol("wander_sin", f"sin({angle})"), self.symbol("wander_cos", f"cos({angle})")
         r = self.vector("r", "position")
-        if {"latitude", "longitude", "radii"} <= set(given) and card.frame != "local-level":
+        if self.problem.is_placed and card.frame != "local-level":
             u = locate(sine, cosine, circles[0], h, RN, RE)
             r = [a * 1 for a in (turn_about_pole(circles[1], u) if card.frame == "inertial" else u)]
             self.derived = {self.texts[f"r{k}"]: r[k] for k in range(3)}
