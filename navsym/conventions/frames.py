@@ -235,7 +235,9 @@ def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool,
     frame = words["frame"]
     moves = frame != card.frame and LEVEL in (frame, card.frame)
     refuse(moves and radii > 1 and not height, "height beside two radii: those that contain it tell no centre", OTHERS)
-    refuse(alone, "position among the roles: its errors drive those of velocity in another frame", "none; add its states")
+    refuse(
+        alone, "position among the roles: its errors drive those of velocity in another frame", "none; add its states"
+    )
     refuse(card.frame == LEVEL and card.earth == "none", "a curved Earth: a flat one has no centre to go to")
     hub = replace(card, frame="earth", axes=None, azimuth=None, angle=None, transport_rate=None, height_variation=None)
     hub = replace(hub, radius_variation=None, position_error=card.position_error and "metres", arm_rate=None)

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from flint import arb, fmpq
+from flint import arb, arb_mat, fmpq
 
 from navsym.conventions.card import KEPT, Card
 from navsym.conventions.frames import locate
@@ -118,12 +118,10 @@ class Sampler:
         known = "rotation" in self.problem.quantities
         flat = self.settle("rotation", None if known else [x for row in self.cayley() for x in row])
         C = [flat[3 * k : 3 * k + 3] for k in range(3)]
-        for i in range(3):
-            for j in range(3):
-                if not (sum((x * y for x, y in zip(C[i], C[j], strict=True)), arb(0)) - int(i == j)).contains(0):
-                    message = "expected a rotation, C C' = E for all values of its names; got another matrix; "
-                    raise DomainError(message + "write it by angles or by nine names", where="quantities: rotation")
-        if not sum((x * y for x, y in zip(C[0], turn_right(C[1], C[2]), strict=True)), arb(0)) > 0:
+        if not all((dot(C[i], C[j]) - int(i == j)).contains(0) for i in range(3) for j in range(3)):
+            message = "expected a rotation, C C' = E for all values of its names; got another matrix; "
+            raise DomainError(message + "write it by angles or by nine names", where="quantities: rotation")
+        if not arb_mat(C).det() > 0:
             message = "expected a rotation, det C = 1; got a reflection; correct the sign or the order of an axis"
             raise DomainError(message, where="quantities: rotation")
         return C
@@ -144,14 +142,14 @@ class Sampler:
         """The specific force in the body; that in the frame is C times it."""
         if "specific_force" in self.problem.quantities and "specific_force_body" not in self.problem.quantities:
             frame = self.settle("specific_force")
-            return [sum((C[i][k] * frame[i] for i in range(3)), arb(0)) for k in range(3)]
+            return [dot(column, frame) for column in zip(*C, strict=True)]
         body = self.vector("specific_force_body")
-        self.settle("specific_force", [sum((a * x for a, x in zip(row, body, strict=True)), arb(0)) for row in C])
+        self.settle("specific_force", [dot(row, body) for row in C])
         return body
 
     def turned(self, ned: Sequence[Any]) -> list[Any]:
         """A vector in the axes from north, east, down."""
-        return [sum((a * x for a, x in zip(row, ned, strict=True)), arb(0)) for row in self.rows]
+        return [dot(row, ned) for row in self.rows]
 
     def draw(self) -> Point:
         """The point."""
@@ -174,7 +172,7 @@ class Sampler:
             r = self.settle("position", turn_about_pole(turn, locate(sine, cosine, meridian, h, RN, RE)))
         else:
             r = self.vector("position")
-        radius = sum((x * x for x in r), arb(0)).sqrt()
+        radius = dot(r, r).sqrt()
         earth = self.rotation_of_earth(sine, cosine, level)
         pull, gravity = self.gravitation(r, radius, level, normal, earth)
         motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.settle("radius_slope")[0]
@@ -228,7 +226,7 @@ class Sampler:
                 trees = self.problem.quantities["gravity"]
                 if any(t.head != SYMBOL or t.args[0] in self.values for t in trees):
                     found = self.settle("gravity")
-                    scalar = sum((self.rows[k][2] * found[k] for k in range(3)), arb(0))
+                    scalar = dot([row[2] for row in self.rows], found)
                 self.settle("gravity", self.turned([arb(0), arb(0), scalar]))
             return pull, [scalar]
         if size == 3:
@@ -254,7 +252,7 @@ class Sampler:
             return self.settle("earth_rate")
         if all(tree.head != SYMBOL for tree in trees):
             found = self.settle("earth_rate")
-            north, east, down = (sum((self.rows[k][j] * found[k] for k in range(3)), arb(0)) for j in range(3))
+            north, east, down = (dot(column, found) for column in zip(*self.rows, strict=True))
             if not east.contains(0):
                 raise ImpossibleError("earth_rate")
             return [north, down]
@@ -268,9 +266,9 @@ class Sampler:
         return self.settle("transport_rate", [arb(x.value) for x in flow.transport_rate(flow.truth())])
 
 
-def turn_right(u: Sequence[Any], v: Sequence[Any]) -> list[Any]:
-    """u x v in balls."""
-    return [u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)]
+def dot(u: Sequence[Any], v: Sequence[Any]) -> Any:
+    """The sum of u_k v_k in balls."""
+    return sum((x * y for x, y in zip(u, v, strict=True)), arb(0))
 
 
 def turn_about_pole(angle: Sequence[Any], u: Sequence[Any]) -> list[Any]:

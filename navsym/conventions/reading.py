@@ -109,7 +109,9 @@ class Problem:
     @property
     def is_placed(self) -> bool:
         """True where latitude, longitude, radii, and the height above an ellipsoid, tell the position."""
-        needed = {"latitude", "longitude", "radii"} | ({"height"} if len(self.quantities.get("radii", ())) > 1 else set())
+        needed = {"latitude", "longitude", "radii"} | (
+            {"height"} if len(self.quantities.get("radii", ())) > 1 else set()
+        )
         return needed <= set(self.quantities)
 
     def places(self, side: str) -> tuple[int, ...]:

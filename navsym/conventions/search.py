@@ -198,8 +198,7 @@ class Comparison:
     def has_small_terms(self, card: Card, block: Block) -> bool:
         """True where the block vanishes for a card of a flat Earth that does not turn: its terms may be dropped."""
         row, column = block
-        parts = [x for k in range(3) for x in self.columns(card, column, 0)[k][row]]
-        return all(type(x) is int or x.contains(0) for x in parts)
+        return all(is_same(x, 0) for k in range(3) for x in self.columns(card, column, 0)[k][row])
 
 
 def sign_of(card: Card, block: Block) -> int:

@@ -23,6 +23,7 @@ from navsym.conventions.mechanisation import AXES, Mechanisation, World, add_cen
 from navsym.conventions.nilpotent import times
 from navsym.conventions.points import gradient_names, turn_about_pole
 from navsym.conventions.reading import Problem
+from navsym.core.exact import to_fmpq
 from navsym.core.rational_functions import Quotient, Ratio
 from navsym.language.expression import read_tree
 from navsym.language.printer import print_tree
@@ -74,7 +75,7 @@ class Formulas:
         number = read_number(text)
         one = self.context.constant(1)
         place = GENERATORS.index(name)
-        poly = self.context.gen(place) if number is None else self.context.constant(to_flint(number))
+        poly = self.context.gen(place) if number is None else self.context.constant(to_fmpq(number))
         return Ratio(Quotient(poly, one))
 
     def vector(self, name: str, quantity: str) -> list[Ratio]:
@@ -199,7 +200,7 @@ class Formulas:
 
         def step(part: Tree, inner: list[Any]) -> Any:
             if part.head == NUMBER:
-                return Ratio(Quotient(self.context.constant(to_flint(part.args[0])), one))
+                return Ratio(Quotient(self.context.constant(to_fmpq(part.args[0])), one))
             if part in known:
                 return known[part]
             if part.head == "tan":
@@ -254,16 +255,7 @@ def protect(text: str) -> str:
 
 def read_number(text: str | None) -> Fraction | None:
     """The number of a text that is one."""
-    if text is None:
-        return None
-    return Fraction(text) if NUMERAL.fullmatch(text) else None
-
-
-def to_flint(number: Fraction) -> Any:
-    """A fraction of flint."""
-    from flint import fmpq
-
-    return fmpq(number.numerator, number.denominator)
+    return Fraction(text) if text is not None and NUMERAL.fullmatch(text) else None
 
 
 def as_fraction(number: Any) -> Fraction:
