@@ -280,7 +280,7 @@ def convert(
         pairs.append((multiply_texts(H, T), print_matrix(problem.H)))
     if G:
         pairs.append((G, multiply_texts(T, print_matrix(problem.G))))
-    frozen = (freeze(M) for M in (T, inverse, rate, neglected, F, H, G, reset))
+    frozen = (tuple(map(tuple, M)) for M in (T, inverse, rate, neglected, F, H, G, reset))
     is_proved = converter.is_proved(pairs)
     proofs = tuple(converter.prover.certificates)
     return Conversion(source, target, *frozen, is_proved, problem, proofs)  # type: ignore[call-arg,arg-type]
@@ -289,8 +289,3 @@ def convert(
 def print_matrix(M: Sequence[Sequence[Any]]) -> list[list[str]]:
     """A matrix of trees as texts."""
     return [[print_tree(x) for x in row] for row in M]
-
-
-def freeze(M: Sequence[Sequence[str]]) -> Texts:
-    """A matrix that nobody changes."""
-    return tuple(tuple(row) for row in M)

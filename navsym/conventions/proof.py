@@ -12,7 +12,7 @@ from functools import cache
 from itertools import chain
 from typing import Any
 
-from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
+from navsym.claims.verdict import OPEN, PROVED, Verdict
 from navsym.conventions.card import DROPPED, KEPT, Card
 from navsym.conventions.measuring import MEASURED_MARK, RESET_MARK
 from navsym.conventions.mechanisation import CONSTANTS, Mechanisation
@@ -79,10 +79,6 @@ class Prover:
         else:
             pairs = [*zip(chain(*written), chain(*self.block_texts(card, block, sign)), strict=True)]
         return all(self.compare(card, *pair).status == PROVED for pair in pairs if pair != ("0", "0"))
-
-    def refutes(self, card: Card, written: str, expected: str) -> bool:
-        """True where the checker has a point of the relations at which the texts differ."""
-        return self.compare(card, written, expected).status == REFUTED
 
     def compare(self, card: Card, left: str, right: str) -> Verdict:
         """The verdict on ``left = right`` under the relations of the quantities."""

@@ -72,10 +72,9 @@ class Formulas:
     def symbol(self, name: str, text: str | None) -> Ratio:
         """A generator, with its text; a number stands for itself."""
         self.texts[name] = text if text is not None else HIDDEN + name
-        number = read_number(text)
-        one = self.context.constant(1)
-        place = GENERATORS.index(name)
-        poly = self.context.gen(place) if number is None else self.context.constant(to_fmpq(number))
+        poly, one = self.context.gen(GENERATORS.index(name)), self.context.constant(1)
+        if text is not None and NUMERAL.fullmatch(text):
+            poly = one * to_fmpq(Fraction(text))
         return Ratio(Quotient(poly, one))
 
     def vector(self, name: str, quantity: str) -> list[Ratio]:
@@ -251,11 +250,6 @@ def protect(text: str) -> str:
     """A text as a factor: in parentheses unless it is a name or a call."""
     simple = text.replace("_", "").isalnum() or (text[:4] in ("sin(", "cos(") and text.count("(") == 1)
     return text if simple else f"({text})"
-
-
-def read_number(text: str | None) -> Fraction | None:
-    """The number of a text that is one."""
-    return Fraction(text) if text is not None and NUMERAL.fullmatch(text) else None
 
 
 def as_fraction(number: Any) -> Fraction:
