@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
-from navsym.claims.verdict import PROVED
+from navsym.claims.verdict import PROVED, REFUTED
 from navsym.conventions.card import Card
 from navsym.conventions.converting import Conversion, convert, print_matrix
 from navsym.conventions.generating import list_missing
@@ -256,7 +256,8 @@ def state_conflict(outcome: Outcome, mismatch: Mismatch, comparison: Comparison,
     expected = prover.block_texts(plain_card(card), block, sign)
     written = prover.written(block)
     places = [(rows.index(i), columns.index(j)) for i, j in mismatch.entries]
-    granted = all(prover.refutes(plain_card(card), written[i][j], expected[i][j]) for i, j in places)
+    verdicts = (prover.compare(plain_card(card), written[i][j], expected[i][j]).status for i, j in places)
+    granted = all(status == REFUTED for status in verdicts)  # with a point of the relations at which they differ
     entries = tuple((i + 1, j + 1) for i, j in mismatch.entries)
     order = [sorted(range(len(side)), key=side.__getitem__) for side in (rows, columns)]
     change = describe_change(written, expected, prover, card, "1 + " * (block[0] == RESET_MARK + block[1]), order)

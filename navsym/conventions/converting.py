@@ -13,7 +13,7 @@ from typing import Any
 
 from navsym.claims.verdict import PROVED
 from navsym.conventions.card import CHOICES, Card
-from navsym.conventions.frames import Passage, carry_motion, change_frame, restore_terms
+from navsym.conventions.frames import LEVEL, OTHERS, Passage, carry_motion, change_frame, refuse, restore_terms
 from navsym.conventions.generating import require_names, write_blocks
 from navsym.conventions.measuring import NOISE_MARK
 from navsym.conventions.mechanisation import ROLES, Mechanisation, unit_error
@@ -115,10 +115,12 @@ def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> t
     moved = whole
     if frame != source.frame or changes.get("azimuth", source.azimuth) != source.azimuth:
         sizes = len(given.get("radii", ())), "height" in given, "earth_rate" in given
+        tilted = source.frame != LEVEL and any(repr(x) != "<0>" for x in given.get("earth_rate", ())[:-1])
+        refuse(tilted, "one number as earth_rate: the third axis is that of the Earth", OTHERS)
         whole = restore_terms(whole, frame, sizes[0])
         alone = "velocity" in problem.roles and "position" not in problem.roles
         moved = change_frame(whole, {**changes, "frame": frame}, *sizes, alone)
-    elif terms and plain_card(whole) not in map(plain_card, list_cards(problem)):
+    elif terms and plain_card(whole) not in map(plain_card, list_cards(problem, whole.words())):
         message = f"expected terms of one card; got {', '.join(terms)} beside others; change what belongs to them, too"
         raise DomainError(message, where="convert")
     curved = moved.frame == "local-level" and moved.earth != "none"
@@ -278,7 +280,7 @@ def convert(
         pairs.append((multiply_texts(H, T), print_matrix(problem.H)))
     if G:
         pairs.append((G, multiply_texts(T, print_matrix(problem.G))))
-    frozen = (freeze(M) for M in (T, inverse, rate, neglected, F, H, G, reset))
+    frozen = (tuple(map(tuple, M)) for M in (T, inverse, rate, neglected, F, H, G, reset))
     is_proved = converter.is_proved(pairs)
     proofs = tuple(converter.prover.certificates)
     return Conversion(source, target, *frozen, is_proved, problem, proofs)  # type: ignore[call-arg,arg-type]
@@ -287,8 +289,3 @@ def convert(
 def print_matrix(M: Sequence[Sequence[Any]]) -> list[list[str]]:
     """A matrix of trees as texts."""
     return [[print_tree(x) for x in row] for row in M]
-
-
-def freeze(M: Sequence[Sequence[str]]) -> Texts:
-    """A matrix that nobody changes."""
-    return tuple(tuple(row) for row in M)

@@ -33,6 +33,7 @@ from navsym.conventions.nilpotent import (
 from navsym.core.errors import DomainError
 
 LEVEL = "local-level"
+OTHERS = "others; correct [quantities]"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -232,7 +233,11 @@ def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool,
     alone   : True for velocities without positions, whose errors would drive them in another frame
     """
     frame = words["frame"]
-    refuse(alone, "position among the roles: errors of position drive those of velocity in another frame")
+    moves = frame != card.frame and LEVEL in (frame, card.frame)
+    refuse(moves and radii > 1 and not height, "height beside two radii: those that contain it tell no centre", OTHERS)
+    refuse(
+        alone, "position among the roles: its errors drive those of velocity in another frame", "none; add its states"
+    )
     refuse(card.frame == LEVEL and card.earth == "none", "a curved Earth: a flat one has no centre to go to")
     hub = replace(card, frame="earth", axes=None, azimuth=None, angle=None, transport_rate=None, height_variation=None)
     hub = replace(hub, radius_variation=None, position_error=card.position_error and "metres", arm_rate=None)
@@ -250,7 +255,7 @@ def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool,
         return hub
     if frame == "inertial":
         return replace(hub, frame=frame, earth_rate=None, centrifugal=None)
-    refuse(not radii, "quantities with radii")
+    refuse(not radii, "quantities with radii", OTHERS)
     refuse(hub.centrifugal == KEPT, "gravity with its centrifugal part in one: along the normal there is no other")
     shape, lifted = "sphere" if radii == 1 else "ellipsoid", "R + h" if height else "R"
     vertical = lifted if hub.gravity_gradient == "central" else card.gravity_radius
@@ -271,8 +276,7 @@ def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool,
     )
 
 
-def refuse(wrong: bool, expected: str) -> None:
+def refuse(wrong: bool, expected: str, got: str = "another card; convert it first, or its axes only") -> None:
     """Refuse a card that has no equal in the other frame."""
     if wrong:
-        message = f"expected {expected}; got another card; convert it first where that can be, else its axes only"
-        raise DomainError(message, where="convert: frame")
+        raise DomainError(f"expected {expected}; got {got}", where="convert: frame")

@@ -16,7 +16,7 @@ from navsym.conventions.card import CHOICES, NORTH, Card
 from navsym.conventions.measuring import CORRECTED, MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
 from navsym.conventions.mechanisation import CONSTANTS, Mechanisation
 from navsym.conventions.reading import Problem, matrix_of, read_known, read_problem
-from navsym.conventions.search import SIGNS, Block, list_cards, list_problem_structures, list_signs, plain_card, sign_of
+from navsym.conventions.search import Block, list_cards, plain_card, sign_of
 from navsym.conventions.symbols import HIDDEN, Formulas
 from navsym.core.errors import DomainError, EmptyError
 from navsym.language.names import join_place, quote
@@ -95,23 +95,18 @@ def list_zeros(M: Sequence[Sequence[Any]]) -> list[list[str]]:
 
 def require_known(problem: Problem, where: str) -> None:
     """Refuse known words that no card has together."""
-    signs = {name: word for name, word in problem.known.items() if name in SIGNS}
-    shapes = [*problem.known.items() - signs.items()]
-    has_signs = any(all(words[n] == word for n, word in signs.items()) for words in list_signs(problem))
-    structures = list_problem_structures(problem)
-    if not has_signs or not any(all(getattr(card, n) == word for n, word in shapes) for card in structures):
+    if next(list_cards(problem, problem.known), None) is None:
         choose_card(problem, problem.known, where)
 
 
 def choose_card(problem: Problem, words: Mapping[str, str], where: str) -> Card:
     """The one card that says these words."""
-    cards = list(list_cards(problem))
-    right = [card for card in cards if all(getattr(card, name) == word for name, word in words.items())]
+    right = list(list_cards(problem, words))
     if len(right) == 1:
         return right[0]
     for name in (f.name for f in fields(Card) if f.name in CHOICES):
-        near = [card for card in cards if all(getattr(card, k) == w for k, w in words.items() if k != name)]
-        found = list(dict.fromkeys(str(getattr(card, name)) for card in right or near))
+        near = right or list(list_cards(problem, {k: w for k, w in words.items() if k != name}))
+        found = list(dict.fromkeys(str(getattr(card, name)) for card in near))
         if right and len(found) > 1 and name not in words:
             known = ", ".join(word for word in found if word != "None")
             message = f"expected {name}, one of {known}; got none; add it to the card"

@@ -56,7 +56,8 @@ def measure(flow: Mechanisation, kind: str, estimate: State, x: State) -> Vector
     if kind == "position":
         return measure_position(flow, estimate, x)
     if kind == "height":
-        return [position_along(flow, estimate, x)]
+        moved = add_vectors(estimate.position, negate(x.position))
+        return [moved[2] if flow.is_geodetic else -apply(transpose(flow.turn(x)), moved)[2]]
     if kind == "attitude":
         return flow.unskew(multiply(estimate.attitude, transpose(x.attitude)))
     shown = SHOWN[kind]
@@ -75,12 +76,6 @@ def measure_position(flow: Mechanisation, estimate: State, x: State) -> Vector:
         return add_vectors(apply(flow.turn(x), along), arm)
     ned = apply(transpose(flow.turn(x)), arm)
     return add_vectors(moved, [part / unit for part, unit in zip(ned, metres, strict=True)])
-
-
-def position_along(flow: Mechanisation, estimate: State, x: State) -> Nilpotent:
-    """Height."""
-    moved = add_vectors(estimate.position, negate(x.position))
-    return moved[2] if flow.is_geodetic else -apply(transpose(flow.turn(x)), moved)[2]
 
 
 def spin(flow: Mechanisation, x: State) -> Vector:

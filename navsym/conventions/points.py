@@ -11,17 +11,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from flint import arb, fmpq
+from flint import arb, arb_mat, fmpq
 
 from navsym.conventions.card import KEPT, Card
 from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED
 from navsym.conventions.mechanisation import Mechanisation, World, add_centrifugal, axes_rows
 from navsym.conventions.reading import Problem
-from navsym.core.balls import OPERATIONS, exact_ball, general_power, integer_power, rational_power
+from navsym.core.balls import exact_ball
 from navsym.core.errors import DomainError
 from navsym.language.declarations import Parameter
-from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, SYMBOL, Tree, fold_tree, list_names
+from navsym.language.domains import flatten
+from navsym.language.tree import SYMBOL, Tree, list_names
 
 BITS = 256
 
@@ -40,38 +41,7 @@ class ImpossibleError(Exception):
 
 def evaluate(tree: Tree, values: Mapping[str, Any]) -> Any:
     """The ball of a tree; not finite where it has no value."""
-
-    def step(part: Tree, inner: list[Any]) -> Any:
-        if part.head == NUMBER:
-            number = part.args[0]
-            return arb(fmpq(number.numerator, number.denominator))
-        if part.head == SYMBOL:
-            return values[part.args[0]]
-        if part.head == SUM:
-            return sum(inner[1:], inner[0])
-        if part.head == PRODUCT:
-            result = inner[0]
-            for factor in inner[1:]:
-                result = result * factor
-            return result
-        if part.head == POWER:
-            return raise_power(part, inner)
-        if part.head == "sqrt":
-            return rational_power(inner[0], 1, 2)
-        return OPERATIONS[part.head](None, inner, {})
-
-    return fold_tree(tree, step)
-
-
-def raise_power(part: Tree, inner: Sequence[Any]) -> Any:
-    """A power of balls."""
-    exponent = part.args[1]
-    if exponent.head == NUMBER:
-        number = exponent.args[0]
-        if number.denominator == 1:
-            return integer_power(inner[0], number.numerator)
-        return rational_power(inner[0], number.numerator, number.denominator)
-    return general_power(inner[0], inner[1])
+    return flatten(tree).run(values)
 
 
 class Sampler:
@@ -148,12 +118,10 @@ class Sampler:
         known = "rotation" in self.problem.quantities
         flat = self.settle("rotation", None if known else [x for row in self.cayley() for x in row])
         C = [flat[3 * k : 3 * k + 3] for k in range(3)]
-        for i in range(3):
-            for j in range(3):
-                if not (sum((x * y for x, y in zip(C[i], C[j], strict=True)), arb(0)) - int(i == j)).contains(0):
-                    message = "expected a rotation, C C' = E for all values of its names; got another matrix; "
-                    raise DomainError(message + "write it by angles or by nine names", where="quantities: rotation")
-        if not sum((x * y for x, y in zip(C[0], turn_right(C[1], C[2]), strict=True)), arb(0)) > 0:
+        if not all((dot(C[i], C[j]) - int(i == j)).contains(0) for i in range(3) for j in range(3)):
+            message = "expected a rotation, C C' = E for all values of its names; got another matrix; "
+            raise DomainError(message + "write it by angles or by nine names", where="quantities: rotation")
+        if not arb_mat(C).det() > 0:
             message = "expected a rotation, det C = 1; got a reflection; correct the sign or the order of an axis"
             raise DomainError(message, where="quantities: rotation")
         return C
@@ -174,14 +142,14 @@ class Sampler:
         """The specific force in the body; that in the frame is C times it."""
         if "specific_force" in self.problem.quantities and "specific_force_body" not in self.problem.quantities:
             frame = self.settle("specific_force")
-            return [sum((C[i][k] * frame[i] for i in range(3)), arb(0)) for k in range(3)]
+            return [dot(column, frame) for column in zip(*C, strict=True)]
         body = self.vector("specific_force_body")
-        self.settle("specific_force", [sum((a * x for a, x in zip(row, body, strict=True)), arb(0)) for row in C])
+        self.settle("specific_force", [dot(row, body) for row in C])
         return body
 
     def turned(self, ned: Sequence[Any]) -> list[Any]:
         """A vector in the axes from north, east, down."""
-        return [sum((a * x for a, x in zip(row, ned, strict=True)), arb(0)) for row in self.rows]
+        return [dot(row, ned) for row in self.rows]
 
     def draw(self) -> Point:
         """The point."""
@@ -198,13 +166,13 @@ class Sampler:
         h: Any = self.settle("height", None, 0.25, 1.0)[0] if "height" in given else 0
         RN, RE, third = self.radii()
         meridian, angle = self.circle("longitude"), self.circle("earth_angle")
-        normal, r = [arb(0)] * 3, None
-        if {"latitude", "longitude", "radii"} <= set(given) and not level:
-            turn = angle if card.frame == "inertial" else (arb(0), arb(1))
-            normal = turn_about_pole(turn, (-cosine * meridian[1], -cosine * meridian[0], -sine))
-            r = turn_about_pole(turn, locate(sine, cosine, meridian, h, RN, RE))
-        r = self.vector("position") if r is None else self.settle("position", r)
-        radius = sum((x * x for x in r), arb(0)).sqrt()
+        turn = angle if card.frame == "inertial" else (arb(0), arb(1))
+        normal = turn_about_pole(turn, (-cosine * meridian[1], -cosine * meridian[0], -sine))
+        if self.problem.is_placed and not level:
+            r = self.settle("position", turn_about_pole(turn, locate(sine, cosine, meridian, h, RN, RE)))
+        else:
+            r = self.vector("position")
+        radius = dot(r, r).sqrt()
         earth = self.rotation_of_earth(sine, cosine, level)
         pull, gravity = self.gravitation(r, radius, level, normal, earth)
         motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.settle("radius_slope")[0]
@@ -258,7 +226,7 @@ class Sampler:
                 trees = self.problem.quantities["gravity"]
                 if any(t.head != SYMBOL or t.args[0] in self.values for t in trees):
                     found = self.settle("gravity")
-                    scalar = sum((self.rows[k][2] * found[k] for k in range(3)), arb(0))
+                    scalar = dot([row[2] for row in self.rows], found)
                 self.settle("gravity", self.turned([arb(0), arb(0), scalar]))
             return pull, [scalar]
         if size == 3:
@@ -284,7 +252,7 @@ class Sampler:
             return self.settle("earth_rate")
         if all(tree.head != SYMBOL for tree in trees):
             found = self.settle("earth_rate")
-            north, east, down = (sum((self.rows[k][j] * found[k] for k in range(3)), arb(0)) for j in range(3))
+            north, east, down = (dot(column, found) for column in zip(*self.rows, strict=True))
             if not east.contains(0):
                 raise ImpossibleError("earth_rate")
             return [north, down]
@@ -298,9 +266,9 @@ class Sampler:
         return self.settle("transport_rate", [arb(x.value) for x in flow.transport_rate(flow.truth())])
 
 
-def turn_right(u: Sequence[Any], v: Sequence[Any]) -> list[Any]:
-    """u x v in balls."""
-    return [u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)]
+def dot(u: Sequence[Any], v: Sequence[Any]) -> Any:
+    """The sum of u_k v_k in balls."""
+    return sum((x * y for x, y in zip(u, v, strict=True)), arb(0))
 
 
 def turn_about_pole(angle: Sequence[Any], u: Sequence[Any]) -> list[Any]:

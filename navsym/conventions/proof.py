@@ -12,7 +12,7 @@ from functools import cache
 from itertools import chain
 from typing import Any
 
-from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
+from navsym.claims.verdict import OPEN, PROVED, Verdict
 from navsym.conventions.card import DROPPED, KEPT, Card
 from navsym.conventions.measuring import MEASURED_MARK, RESET_MARK
 from navsym.conventions.mechanisation import CONSTANTS, Mechanisation
@@ -72,14 +72,13 @@ class Prover:
 
     def is_right(self, card: Card, block: Block, sign: int) -> bool:
         """True where the prover grants that the blocks are equal."""
-        if block[0] in CONSTANTS and block[1] in CONSTANTS:
-            return True
-        pairs = zip(chain(*self.written(block)), chain(*self.block_texts(card, block, sign)), strict=True)
+        written = self.written(block)
+        if {*block} <= {*CONSTANTS}:  # a constant may decay; it depends on no other one
+            own = block[0] == block[1]
+            pairs = [(cell, "0") for i, row in enumerate(written) for j, cell in enumerate(row) if i != j or not own]
+        else:
+            pairs = [*zip(chain(*written), chain(*self.block_texts(card, block, sign)), strict=True)]
         return all(self.compare(card, *pair).status == PROVED for pair in pairs if pair != ("0", "0"))
-
-    def refutes(self, card: Card, written: str, expected: str) -> bool:
-        """True where the checker has a point of the relations at which the texts differ."""
-        return self.compare(card, written, expected).status == REFUTED
 
     def compare(self, card: Card, left: str, right: str) -> Verdict:
         """The verdict on ``left = right`` under the relations of the quantities."""

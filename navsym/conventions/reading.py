@@ -106,6 +106,14 @@ class Problem:
         C = tuple(replace_parts(read_tree(text, None), parts) for row in rows for text in row)
         return replace(self, quantities={**self.quantities, "rotation": C})
 
+    @property
+    def is_placed(self) -> bool:
+        """True where latitude, longitude, radii, and the height above an ellipsoid, tell the position."""
+        needed = {"latitude", "longitude", "radii"} | (
+            {"height"} if len(self.quantities.get("radii", ())) > 1 else set()
+        )
+        return needed <= set(self.quantities)
+
     def places(self, side: str) -> tuple[int, ...]:
         """The rows or columns of a side of a block."""
         if side.startswith(MEASURED_MARK):

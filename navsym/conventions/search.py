@@ -6,7 +6,7 @@ zero excludes the card. What no point excludes is a candidate; the prover decide
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import islice, product
@@ -34,6 +34,7 @@ Block = tuple[str, str]
 
 SIGNS = ("error", "rotation_sign", "bias_sign", "scale_sign", "innovation")
 POINTS = 3
+NOTHING_KNOWN: Mapping[str, str] = {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,8 +182,8 @@ class Comparison:
         """The sign of a noise, which nothing else tells."""
         rows = [(row, sign) for row, sign in signs if row in self.problem.roles]
         found = {s: [self.sign(card, (row, noise), s * sign) for row, sign in rows] for s in (1, -1)}
-        wrong = {s: sum(len(m.entries) for m in mismatches if m) for s, mismatches in found.items()}
-        return 1 if wrong[1] <= wrong[-1] else -1
+        sizes = {s: [len(m.entries) for m in mismatches if m] for s, mismatches in found.items()}
+        return min((1, -1), key=lambda s: (len(sizes[s]), sum(sizes[s])))
 
     def has_zeros(self, block: Block) -> bool:
         """True where every entry of the user's block is written as zero."""
@@ -197,8 +198,7 @@ class Comparison:
     def has_small_terms(self, card: Card, block: Block) -> bool:
         """True where the block vanishes for a card of a flat Earth that does not turn: its terms may be dropped."""
         row, column = block
-        parts = [x for k in range(3) for x in self.columns(card, column, 0)[k][row]]
-        return all(type(x) is int or x.contains(0) for x in parts)
+        return all(is_same(x, 0) for k in range(3) for x in self.columns(card, column, 0)[k][row])
 
 
 def sign_of(card: Card, block: Block) -> int:
@@ -233,8 +233,8 @@ def list_blocks(problem: Problem) -> list[Block]:
     return sorted(blocks, key=lambda block: main.index(block) if block in main else len(main) + ("position" in block))
 
 
-def list_signs(problem: Problem) -> Iterator[dict[str, Any]]:
-    """The signs that a card may have; those of states that the model does not have say nothing."""
+def list_signs(problem: Problem, known: Mapping[str, str] = NOTHING_KNOWN) -> Iterator[dict[str, Any]]:
+    """The signs that a card may have beside known words; those of states that the model does not have say nothing."""
     errors = (ESTIMATE, TRUTH) if {"velocity", "position"} & set(problem.roles) else (ESTIMATE,)
     attitudes: tuple[str | None, ...] = ("+", "-") if "attitude" in problem.roles else (None,)
     biases, scales = (
@@ -243,34 +243,32 @@ def list_signs(problem: Problem) -> Iterator[dict[str, Any]]:
     )
     shown: tuple[str | None, ...] = CHOICES["innovation"] if problem.measured else (None,)
     for words in product(errors, attitudes, biases, scales, shown):
-        yield dict(zip(SIGNS, words, strict=True))
+        if all(known.get(name, word) == word for name, word in zip(SIGNS, words, strict=True)):
+            yield dict(zip(SIGNS, words, strict=True))
 
 
-def list_problem_structures(problem: Problem, frames: tuple[str, ...] = CHOICES["frame"]) -> Iterator[Card]:
-    """Every card without its signs that a model with these roles and quantities may have."""
-    given = problem.quantities
+def list_problem_structures(problem: Problem, known: Mapping[str, str] = NOTHING_KNOWN) -> Iterator[Card]:
+    """Every card without its signs that a model with these roles and quantities may have beside known words."""
+    given, frames = problem.quantities, (known["frame"],) if "frame" in known else CHOICES["frame"]
     placed = {"latitude", "longitude"} <= set(given)
     azimuth = WANDER if "wander_angle" in given and problem.known.get("azimuth") != NORTH else NORTH
     sizes = len(given.get("radii", ())), frames, "height" in given, placed, azimuth, "quaternion" in given
     arm = "lever_arm" in given and {"velocity", "body_velocity"} & set(problem.measured)
-    return list_structures(frozenset(problem.roles), *sizes, bool(arm))
+    shapes = [(name, word) for name, word in known.items() if name not in SIGNS]
+    cards = list_structures(frozenset(problem.roles), *sizes, bool(arm))
+    return (card for card in cards if all(getattr(card, name) == word for name, word in shapes))
 
 
-def list_cards(problem: Problem) -> Iterator[Card]:
-    """Every card with its signs."""
-    signs = list(list_signs(problem))
-    return (replace(structure, **words) for structure in list_problem_structures(problem) for words in signs)
+def list_cards(problem: Problem, known: Mapping[str, str] = NOTHING_KNOWN) -> Iterator[Card]:
+    """Every card with its signs that says the known words."""
+    signs = list(list_signs(problem, known))
+    return (replace(structure, **words) for structure in list_problem_structures(problem, known) for words in signs)
 
 
 def examine(problem: Problem, comparison: Comparison, most: int = 0) -> Iterator[Outcome]:
     """Every card that agrees with what is known, with up to ``most + 1`` of the blocks that exclude it."""
-    frames = (problem.known["frame"],) if "frame" in problem.known else CHOICES["frame"]
-    blocks = list_blocks(problem)
-    signs = [words for words in list_signs(problem) if all(problem.known.get(k, w) == w for k, w in words.items())]
-    fixed = {name: word for name, word in problem.known.items() if name not in SIGNS}
-    for structure in list_problem_structures(problem, frames):
-        if any(getattr(structure, name) != word for name, word in fixed.items()):
-            continue
+    blocks, signs = list_blocks(problem), list(list_signs(problem, problem.known))
+    for structure in list_problem_structures(problem, problem.known):
         try:
             comparison.point(key_of_points(structure), 0)
         except ImpossibleError as error:

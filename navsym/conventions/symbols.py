@@ -23,6 +23,7 @@ from navsym.conventions.mechanisation import AXES, Mechanisation, World, add_cen
 from navsym.conventions.nilpotent import times
 from navsym.conventions.points import gradient_names, turn_about_pole
 from navsym.conventions.reading import Problem
+from navsym.core.exact import to_fmpq
 from navsym.core.rational_functions import Quotient, Ratio
 from navsym.language.expression import read_tree
 from navsym.language.printer import print_tree
@@ -71,10 +72,9 @@ class Formulas:
     def symbol(self, name: str, text: str | None) -> Ratio:
         """A generator, with its text; a number stands for itself."""
         self.texts[name] = text if text is not None else HIDDEN + name
-        number = read_number(text)
-        one = self.context.constant(1)
-        place = GENERATORS.index(name)
-        poly = self.context.gen(place) if number is None else self.context.constant(to_flint(number))
+        poly, one = self.context.gen(GENERATORS.index(name)), self.context.constant(1)
+        if text is not None and NUMERAL.fullmatch(text):
+            poly = one * to_fmpq(Fraction(text))
         return Ratio(Quotient(poly, one))
 
     def vector(self, name: str, quantity: str) -> list[Ratio]:
@@ -98,7 +98,7 @@ class Formulas:
         angle = self.text("wander_angle") or HIDDEN + "wander_angle"  # of this card, or of one that it goes to
         wander = self.symbol("wander_sin", f"sin({angle})"), self.symbol("wander_cos", f"cos({angle})")
         r = self.vector("r", "position")
-        if {"latitude", "longitude", "radii"} <= set(given) and card.frame != "local-level":
+        if self.problem.is_placed and card.frame != "local-level":
             u = locate(sine, cosine, circles[0], h, RN, RE)
             r = [a * 1 for a in (turn_about_pole(circles[1], u) if card.frame == "inertial" else u)]
             self.derived = {self.texts[f"r{k}"]: r[k] for k in range(3)}
@@ -199,7 +199,7 @@ class Formulas:
 
         def step(part: Tree, inner: list[Any]) -> Any:
             if part.head == NUMBER:
-                return Ratio(Quotient(self.context.constant(to_flint(part.args[0])), one))
+                return Ratio(Quotient(self.context.constant(to_fmpq(part.args[0])), one))
             if part in known:
                 return known[part]
             if part.head == "tan":
@@ -250,20 +250,6 @@ def protect(text: str) -> str:
     """A text as a factor: in parentheses unless it is a name or a call."""
     simple = text.replace("_", "").isalnum() or (text[:4] in ("sin(", "cos(") and text.count("(") == 1)
     return text if simple else f"({text})"
-
-
-def read_number(text: str | None) -> Fraction | None:
-    """The number of a text that is one."""
-    if text is None:
-        return None
-    return Fraction(text) if NUMERAL.fullmatch(text) else None
-
-
-def to_flint(number: Fraction) -> Any:
-    """A fraction of flint."""
-    from flint import fmpq
-
-    return fmpq(number.numerator, number.denominator)
 
 
 def as_fraction(number: Any) -> Fraction:

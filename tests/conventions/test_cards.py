@@ -149,6 +149,9 @@ def test_a_model_in_another_frame_is_what_the_generator_gives_there(card, quanti
 
 FLAT = replace(LEVEL, earth="none", height_variation=None, transport_rate="dropped", gravity_gradient="none")
 RADIAL = replace(EARTH, gravity_gradient="radial")
+OVAL = replace(LEVEL, earth="ellipsoid", radius_variation="kept", gravity_radius="RN")
+LOW = {name: trees for name, trees in ELLIPSOID.items() if name != "height"}  # radii that contain the height
+TILTED = {name: trees for name, trees in ABROAD.items() if name != "longitude"} | {"earth_rate": ["e1", "e2", "e3"]}
 
 
 @pytest.mark.parametrize(
@@ -160,6 +163,8 @@ RADIAL = replace(EARTH, gravity_gradient="radial")
         (replace(RADIAL, centrifugal="kept"), ABROAD, {"frame": "inertial"}, "gradient"),
         (LEVEL, PLACED, {"frame": "earth", "transport_rate": "dropped"}, "transport_rate"),
         (LEVEL, PLACED, {"gravity_gradient": "central"}, "one card"),
+        (OVAL, LOW, {"frame": "earth", "vector_error": "rotated"}, "height"),
+        (replace(EARTH, centrifugal="kept"), TILTED, {"frame": "inertial"}, "third axis"),
         (LEVEL, PLACED, {"transport_rate": "lost"}, "dropped"),
         (LEVEL, PLACED, {"azimuth": "free"}, "wander"),
     ],

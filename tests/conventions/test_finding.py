@@ -246,6 +246,16 @@ def test_biases_may_decay_and_not_grow():
         assert [c.block for c in answer.conflicts] == [("accelerometer_bias", "accelerometer_bias")] * conflicts
 
 
+def test_an_entry_between_biases_that_no_point_tells_from_zero_is_not_taken_for_zero():
+    document = models.sola_local()
+    document["parameters"]["tau"] = "real"
+    document["model"]["F"][9][10] = "(tau + 1)**2 - tau**2 - 2*tau - 1"
+    assert nav.conventions(document).complete
+    document["model"]["F"][9][10] += " + 1/10**90"
+    answer = nav.conventions(document)
+    assert not answer.cards and answer.undecided
+
+
 def test_a_rotation_may_be_given_by_angles():
     quantities = {
         "specific_force_body": models.F_B,

@@ -235,6 +235,22 @@ def test_a_reset_that_is_left_out_says_nothing_and_one_of_the_wrong_sign_must_ch
 
 
 @pytest.mark.parametrize(
+    ("matrix", "corner", "block"),
+    [
+        ("F", (0, 3), ("position", "velocity")),
+        ("H", (0, 0), ("measured position", "position")),
+        ("G", (9, 6), ("accelerometer_bias", "noise accelerometer_bias")),
+    ],
+)
+def test_a_unit_matrix_that_is_left_out_is_no_small_term(matrix, corner, block):
+    document, (row, column) = sola(), corner
+    for cells in document["model"][matrix][row : row + 3]:
+        cells[column : column + 3] = ["0"] * 3
+    answer = nav.conventions(document)
+    assert not answer.cards and [(c.block, c.status) for c in answer.conflicts] == [(block, "PROVED")]
+
+
+@pytest.mark.parametrize(
     ("matrix", "entry", "block"),
     [
         ("H", (0, 7), ("measured position", "attitude")),
