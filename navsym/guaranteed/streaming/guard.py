@@ -261,7 +261,7 @@ class Guard:
             self.need_scarcely_consistent(at)
         if not self.showing:
             return Estimate(to_float(at), self.target, None, self.radius_kind)
-        plan = self.plan or self.solve_scarcely(at)
+        plan = self.plan or solve_scarce(self.flow, self.memory.rows[self.memory.first :], at)
         if plan is None:
             return Estimate(to_float(at), self.target, None, self.radius_kind)
         value, count = middle(plan.value()), len(plan.support())
@@ -325,10 +325,6 @@ class Guard:
         places = [i - memory.first for i in weights]
         lower, upper = bounds_of(cloud or memory.cloud(), found)
         return Plan(self.flow, at, window, self.flow.columns, places, self.signs, [*weights.values()], lower, upper)
-
-    def solve_scarcely(self, at: fmpq) -> Plan | None:
-        """The optimum where the measurements do not determine the state."""
-        return solve_scarce(self.flow, self.memory.rows[self.memory.first :], at)
 
     def interval(self) -> Number | None:
         """All values of the target at the last epoch that the data allow, as an enclosure from both sides.
