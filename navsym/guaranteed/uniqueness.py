@@ -244,8 +244,8 @@ class Pin:
 
 def is_only_optimum(problem: PanelProblem, basis: Basis, contacts: Contacts, dual: Sequence[arb]) -> bool | None:
     """True when the optimal estimator is proved to be the only one, False when another is, else None."""
-    x = [c for c in map(recognised, dual) if c is not None]
-    exact = (exact_places(problem, contacts, x) if len(x) == len(dual) else None) or []
+    simple = [c for c in map(recognised, dual) if c is not None]
+    exact = (exact_places(problem, contacts, simple) if len(simple) == len(dual) else None) or []
     used = largest_support(*signed_columns(problem, exact)) if exact else []
     if used and has_interior_weights(problem, [exact[i] for i in used]):
         return False
@@ -259,7 +259,7 @@ def is_only_optimum(problem: PanelProblem, basis: Basis, contacts: Contacts, dua
         x = None if pins is None else interior_dual(basis.panels, places)
         if pins is not None and x is not None and touches_only_at(problem, basis, pins, x):
             return decide_weights(problem, [pin.place for pin in pins])
-    return decide_by_simple_dual(problem, exact, x)
+    return decide_by_simple_dual(problem, exact, simple)
 
 
 def decide_by_simple_dual(
