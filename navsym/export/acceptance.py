@@ -196,7 +196,8 @@ def file_parts(path: Path, asked: Asked, *, inside: bool = False) -> list[Part]:
         return [] if inside else whole
     if "kind" in document or document.keys() <= KEYS:
         return whole
-    return [(name, partial(check_plain, name, part, asked)) for name, part in find_certificates(document)]
+    parts = [(name or path.name, part) for name, part in find_certificates(document)]
+    return [(name, partial(check_plain, name, part, asked)) for name, part in parts]
 
 
 def find_certificates(document: Any, place: str = "") -> Iterator[tuple[str, Any]]:
