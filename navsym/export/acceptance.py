@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -105,8 +105,9 @@ def check(
 ) -> Checks:
     """Replay certificates in the independent checker, and run exported code on its own vectors.
 
-    items    : paths of certificates (JSON), of the ``certificates.json`` that ``verify`` keeps, of exported folders or
-               of folders of either; certificates as plain data; answers, of which every certificate is replayed
+    items    : paths of certificates (JSON), of documents with certificates in them, such as ``--json`` prints and
+               ``verify`` keeps, of exported folders or of folders of these; certificates as plain data; answers, of
+               which every certificate is replayed
     kernel   : ``"coq"`` has Coq prove the statement of every accepted certificate as well, from a theory in ``out``;
                ``"ocaml"`` asks the second checker; UNWRITTEN and FAILED count as not confirmed
     out      : folder of the theories; default: beside the certificate's file, build/coq for answers
@@ -172,24 +173,41 @@ def parts_of(item: Any, asked: Asked) -> list[Part]:
         message = "expected a file or folder that exists; got none of this name; correct it"
         raise NavsymError(message, where=str(path), kind="missing-file")
     if not path.is_dir():
-        return kept_parts(path, asked) or [(path.name, lambda: [check_file(path, asked)])]
-    parts: list[Part] = [(path.name, lambda: [Check(**row) for row in check_export(path)])]
-    for file in sorted(path.rglob("*.json")):
-        parts += kept_parts(file, asked) or [(file.name, partial(check_in_folder, file, asked))]
-    return parts
+        parts = file_parts(path, asked)
+        if not parts:
+            message = "expected a certificate, or a document with some in it; got one without; name another file"
+            raise EmptyError(message, where=str(path))
+        return parts
+    parts = [(path.name, lambda: [Check(**row) for row in check_export(path)])]
+    return parts + [part for file in sorted(path.rglob("*.json")) for part in file_parts(file, asked, inside=True)]
 
 
-def kept_parts(path: Path, asked: Asked) -> list[Part]:
-    """One part for each certificate that ``navsym verify`` keeps, named by its hash; none for another file."""
+def file_parts(path: Path, asked: Asked, *, inside: bool = False) -> list[Part]:
+    """The file as a certificate, or one part for each certificate of a document, named by where it stands there.
+
+    Data of other shapes have none when they lie in a folder: vectors and manifests do not count.
+    """
+    whole: list[Part] = [(path.name, lambda: [check_file(path, asked)])]
     try:
         document = json.loads(path.read_bytes())
     except (OSError, ValueError, RecursionError):
-        return []
-    entries = document.items() if isinstance(document, dict) and "kind" not in document else ()
-    kept = {key: entry["certificate"] for key, entry in entries if isinstance(entry, dict) and "certificate" in entry}
-    if len(kept) != len(entries) or not all(isinstance(certificate, dict) for certificate in kept.values()):
-        return []
-    return [(key[:NAMED], partial(check_plain, key[:NAMED], part, asked)) for key, part in kept.items()]
+        return whole
+    if not isinstance(document, dict) or not document:
+        return [] if inside else whole
+    if "kind" in document or document.keys() <= KEYS:
+        return whole
+    parts = [(name or path.name, part) for name, part in find_certificates(document)]
+    return [(name, partial(check_plain, name, part, asked)) for name, part in parts]
+
+
+def find_certificates(document: Any, place: str = "") -> Iterator[tuple[str, Any]]:
+    """What stands under ``certificate`` anywhere in a document, and its place; null is none."""
+    entries = document.items() if isinstance(document, dict) else enumerate(document, start=1)
+    for key, entry in entries:
+        if key == "certificate" and entry is not None:
+            yield place, entry
+        elif isinstance(entry, dict | list):
+            yield from find_certificates(entry, f"{place}.{str(key)[:NAMED]}".strip("."))
 
 
 def certificate_parts(certificates: list[Mapping[str, Any]], asked: Asked) -> list[Part]:
@@ -198,9 +216,9 @@ def certificate_parts(certificates: list[Mapping[str, Any]], asked: Asked) -> li
     return [(n, partial(check_plain, n, c, asked)) for n, c in zip(names, certificates, strict=True)]
 
 
-def check_plain(name: str, certificate: Mapping[str, Any], asked: Asked) -> list[Check]:
+def check_plain(name: str, certificate: Any, asked: Asked) -> list[Check]:
     """A certificate as plain data, through the text that a file would hold; the parts of one that joins several."""
-    kind = certificate.get("kind")
+    kind = certificate.get("kind") if isinstance(certificate, Mapping) else None
     if kind == "all" and isinstance(certificate.get("of"), list):
         parts = enumerate(certificate["of"], start=1)
         return [row for place, part in parts for row in check_plain(f"{name}.{place}", part, asked)]
@@ -220,16 +238,6 @@ def check_text(name: str, text: str, beside: Path, asked: Asked) -> Check:
     except checker.Refused as error:
         return Check(name, kind_of(text), "REJECTED", str(error))
     return asked.confirm(row, certificate, beside)
-
-
-def check_in_folder(file: Path, asked: Asked) -> list[Check]:
-    """A JSON file in a folder counts when it is a certificate; vectors and manifests do not."""
-    try:
-        document = json.loads(file.read_text("utf-8"))
-    except (OSError, ValueError):
-        return [check_file(file, asked)]
-    certificate = isinstance(document, dict) and bool(document) and ("kind" in document or document.keys() <= KEYS)
-    return [check_file(file, asked)] if certificate else []
 
 
 def check_file(path: Path, asked: Asked) -> Check:

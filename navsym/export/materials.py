@@ -432,12 +432,14 @@ def material_of_support(
 def join_pieces(parts: Sequence[Material], found: Phases, real: str) -> list[Material]:
     """Pieces that meet: a gap without a number of the type in it is closed, and a piece without one is left out.
 
-    Raises RefusedError for other gaps.
+    The number of the type nearest to an end of the range stands for that end. Raises RefusedError for other gaps.
     """
-    parameter, done, end = found.family.parameter, [], found.lower
     kind = np.float32 if real == "float" else np.float64
-    for part in parts:
+    first, last = (sp.Rational(float(kind(float(sp.N(end, 40))))) for end in (found.lower, found.upper))
+    parameter, done, end = found.family.parameter, [], min(found.lower, first)
+    for k, part in enumerate(parts, start=1):
         low, high = part.box[parameter]
+        high = max(high, last) if k == len(parts) else high
         if inside(low, 1, real) > np.nextafter(kind(inside(end, -1, real)), kind(np.inf)):
             ends = f"{end_text(end)} to {end_text(low)}"
             raise RefusedError(f"expected tables on the whole range; got none from {ends}; narrow the range")

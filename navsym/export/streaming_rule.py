@@ -195,30 +195,28 @@ class StreamingRule:
         """Estimate, radius and least; None where rounding errors leave no bound.
 
         With E = 1 - V A and the rest r = P - w V the exact weights are w + r A (1 - E)**-1, so that
-        sum sigma |exact - w| <= sum sigma |r A| / (1 - q), q the norm of E with weights sigma.
+        sum u |exact - w| <= sum u |r A| / (1 - q) with u = sigma + |z|, q the norm of E with weights u.
         """
         if found is None:
             return None
-        cost = value = values = far = 0.0
-        for i, row in enumerate(self.support):
-            z, bound, w = (
-                self.epochs[row // len(self.sigma)][0][row % len(self.sigma)],
-                self.bound(row),
-                found.weight[i],
-            )
+        cost = value = values = 0.0
+        both = []
+        for w, row in zip(found.weight, self.support, strict=True):
+            lag, j = divmod(row, len(self.sigma))
+            z, bound = self.epochs[lag][0][j], self.epochs[lag][1][j]
             cost += bound * abs(w)
             value += w * z
             values += abs(w) * abs(z)
-            far = max(far, abs(z) / bound)
-        q = self.defect(found)
+            both.append(bound + abs(z))
+        q = self.defect(found, both)
         if not q < 0.5:
             return None
         rest, drift = self.bias(found), 0.0
-        for i, row in enumerate(self.support):
+        for i, u in enumerate(both):
             for j, r in enumerate(rest):
-                drift += r * abs(found.inverse[j][i]) * self.bound(row)
+                drift += r * abs(found.inverse[j][i]) * u
         drift = (drift + SMALLEST) / (0.999 - q)
-        radius = (cost + (drift * (1.0 + far)) + (self.gamma * values) + SMALLEST) * UP
+        radius = (cost + drift + (self.gamma * values) + SMALLEST) * UP
         low, size = add_products(self.target, found.dual)
         total = 0.0
         for x in found.dual:
@@ -228,8 +226,8 @@ class StreamingRule:
         good = radius <= LARGEST and least >= 0.0 and abs(value) <= LARGEST
         return (value, radius, least) if good else None
 
-    def defect(self, found: Support) -> float:
-        """Bound of the norm of 1 - V A."""
+    def defect(self, found: Support, size: Sequence[float]) -> float:
+        """Bound of the norm of 1 - V A with weights."""
         q, gamma = 0.0, self.gamma
         for i, row in enumerate(self.support):
             norm = 0.0
@@ -237,9 +235,9 @@ class StreamingRule:
                 one, total = 1.0 if i == j else 0.0, 0.0
                 for entry in column:
                     total += abs(entry)
-                value, size = add_products(self.table[row], column)
-                error = abs(one - value) + (gamma * (size + one)) + (self.tiny * total) + SMALLEST
-                norm += error * (self.bound(self.support[j]) / self.bound(row))
+                value, sizes = add_products(self.table[row], column)
+                error = abs(one - value) + (gamma * (sizes + one)) + (self.tiny * total) + SMALLEST
+                norm += error * (size[j] / size[i])
             q = q if norm <= q else norm
         return q
 

@@ -25,6 +25,7 @@ from navsym.core.exact import decimal, from_decimal, to_fmpq, upper_end
 from navsym.core.numbers import Number
 from navsym.guaranteed.search.cones import Cone
 from navsym.guaranteed.streaming.exchange import Cloud, exchange
+from navsym.guaranteed.streaming.flow import pivot_columns
 from navsym.guaranteed.streaming.numbers import read_exact, to_float, write_rational
 from navsym.language.names import quote
 from navsym.models.modelfile import NORMS
@@ -307,7 +308,7 @@ def touch_noise(
             worst = [arb(0)] if part.norm == "nonpositive" else part.cone.worst(arb_mat([[arb(e)] for e in w]))
             used = [k for k, e in enumerate(w) if part.norm != "linf" or e != 0]
             rows, sides = rows + [part.H.tolist()[k] for k in used], sides + [worst[k] for k in used]
-    kept = pivots_of(fmpq_mat(rows).transpose()) if rows else []
+    kept = pivot_columns(fmpq_mat(rows).transpose().tolist()) if rows else []
     table = [square.tolist()[i] + [arb(rows[k][i]) for k in kept] for i in range(m)]
     table += [[*map(arb, rows[k]), *[arb(0)] * len(kept)] for k in kept]
     try:
@@ -421,12 +422,6 @@ def stack(parts: Sequence[Part]) -> fmpq_mat:
     return fmpq_mat(sum(part.H.nrows() for part in parts), parts[0].H.ncols(), rows)
 
 
-def pivots_of(matrix: fmpq_mat) -> list[int]:
-    """The pivot columns of the reduced echelon form."""
-    reduced, rank = matrix.rref()
-    return [next(j for j in range(matrix.ncols()) if reduced[i, j] != 0) for i in range(rank)]
-
-
 def independent_columns(parts: Sequence[Part], functional: fmpq_mat) -> list[int]:
     """Unknowns in which unbiased weights are unbiased in all. Raises NotEstimableError."""
     H = stack(parts)
@@ -436,7 +431,7 @@ def independent_columns(parts: Sequence[Part], functional: fmpq_mat) -> list[int
             f"the target is not estimable from these {H.nrows()} measurements: it does not lie in the row space of the "
             f"regressors (rank {H.rank()} of {H.ncols()}); add measurements or estimate fewer unknowns"
         )
-    return pivots_of(H)
+    return pivot_columns(H.tolist())
 
 
 def balance_weights(parts: Sequence[Part], P: fmpq_mat, proposed: Sequence[Sequence[fmpq]]) -> list[list[fmpq]]:
@@ -445,13 +440,12 @@ def balance_weights(parts: Sequence[Part], P: fmpq_mat, proposed: Sequence[Seque
     order = sorted(range(len(flat)), key=lambda k: -abs(flat[k]))
     used = [k for k in order if flat[k] != 0]
     for some in (used, order):  # a weight that is zero stays so where it may
-        table = fmpq_mat([[rows[k][i] for k in some] + [P[i, 0]] for i in range(P.nrows())])
-        if (picked := pivots_of(table)) and picked[-1] < len(some):
+        table = [[rows[k][i] for k in some] + [P[i, 0]] for i in range(P.nrows())]
+        if (picked := pivot_columns(table)) and picked[-1] < len(some):
             break
     rest = P - stack(parts).transpose() * fmpq_mat(len(flat), 1, flat)
     picked = [some[k] for k in picked]
-    columns = fmpq_mat([rows[k] for k in picked])
-    kept = pivots_of(columns)
+    kept = pivot_columns([rows[k] for k in picked])
     square = fmpq_mat([[rows[k][i] for k in picked] for i in kept])
     for k, e in zip(picked, square.solve(fmpq_mat([[rest[i, 0]] for i in kept])).entries(), strict=True):
         flat[k] += e

@@ -152,15 +152,6 @@ def need_estimable(problem: GridProblem) -> None:
 # --- casadi ------------------------------------------------------------------------------------------
 
 
-def conic(quadratic: Any, A: Array, engine: str) -> Any:
-    """A casadi solver of  min x^T Q x / 2 + g^T x,  A x = b,  lb <= x <= ub."""
-    import casadi as ca
-
-    need_one_highs(engine)
-    shapes = {"h": quadratic.sparsity(), "a": ca.DM(A).sparsity()}
-    return ca.conic("grid", engine, shapes, {"error_on_fail": False, "print_time": False, **SILENT[engine]})
-
-
 def need_one_highs(engine: str) -> None:
     """Refuse to load casadi's HiGHS beside another shared one: the process would die in it.
 
@@ -183,7 +174,9 @@ def lp_by_casadi(problem: GridProblem, engine: str) -> tuple[Any, str]:
 
     n = problem.regressors.shape[1]
     A = np.hstack([problem.regressors, -problem.regressors])
-    solver = conic(ca.DM(2 * n, 2 * n), A, engine)
+    need_one_highs(engine)
+    shapes = {"h": ca.DM(2 * n, 2 * n).sparsity(), "a": ca.DM(A).sparsity()}
+    solver = ca.conic("grid", engine, shapes, {"error_on_fail": False, "print_time": False, **SILENT[engine]})
     cost = np.concatenate([problem.bounds, problem.bounds])
     answer = solver(g=cost, a=A, lba=problem.functional, uba=problem.functional, lbx=0.0, ubx=np.inf)
     x = np.array(answer["x"]).reshape(-1)

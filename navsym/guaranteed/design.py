@@ -382,9 +382,12 @@ class Market:
 
     def failing(self, dual: arb_mat, value: arb) -> tuple[frozenset[int], arb_mat]:
         """The needs of rows at which the dual, scaled to the goal, exceeds the bound; and that dual, as decimals."""
-        scale = self.goal / value
-        x = arb_mat([[arb(from_decimal(decimal(e * scale, self.digits + 28)))] for e in dual.entries()])
+        x = self.round_dual(dual, self.goal / value)
         return self.refused(x), x
+
+    def round_dual(self, dual: arb_mat, scale: arb) -> arb_mat:
+        """A dual times a factor, as decimals."""
+        return arb_mat([[arb(from_decimal(decimal(e * scale, self.digits + 28)))] for e in dual.entries()])
 
     def refused(self, x: arb_mat) -> frozenset[int]:
         """The needs of rows at which a dual exceeds the bound, or may."""
@@ -509,10 +512,7 @@ class Market:
 
     def least_dual(self) -> arb_mat:
         """The dual of all rows, which bounds every selection."""
-        found = self.optimum(set(range(len(self.rows))))
-        return arb_mat(
-            [[arb(from_decimal(decimal(e * arb(1 - self.margin), self.digits + 28)))] for e in found.dual.entries()]
-        )
+        return self.round_dual(self.optimum(set(range(len(self.rows)))).dual, arb(1 - self.margin))
 
     def list_points(self, pairs: Sequence[tuple[int, arb]], dual: arb_mat, cost: arb) -> tuple[DesignPoint, ...]:
         """The support with its sensitivities: ``dV/dsigma = |w|``, ``dV/dt = -w h'(t) . x``."""

@@ -31,7 +31,7 @@ from navsym.guaranteed.problem import GuaranteedProblem, problem_of
 from navsym.guaranteed.search.exchange import find_contacts
 from navsym.guaranteed.separation import FAR, separate_regressors
 from navsym.guaranteed.time_varying import ERROR
-from navsym.guaranteed.uniqueness import has_other_optimum, is_only_optimum
+from navsym.guaranteed.uniqueness import is_only_optimum
 from navsym.language.expression import to_text
 from navsym.language.names import quote
 from navsym.models.model import file_in_errors
@@ -224,8 +224,7 @@ def solve_problem(problem: GuaranteedProblem, digits: int = 30) -> Estimator:
     found = certify_separated(exact, digits, basis)
     unique = found.unique
     if unique is None and not problem.error:
-        contacts, bound = find_contacts(basis.panels), found.dual
-        unique = False if has_other_optimum(exact, contacts, bound) else is_only_optimum(exact, basis, contacts, bound)
+        unique = is_only_optimum(exact, basis, find_contacts(basis.panels), found.dual)
     dual = ["0"] * len(problem.functional)
     for k, x in zip(kept, found.dual, strict=True):
         dual[k] = decimal(x, digits)

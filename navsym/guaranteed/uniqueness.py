@@ -42,19 +42,6 @@ class ContactPlace:
     sign: int
 
 
-def has_other_optimum(problem: PanelProblem, contacts: Contacts, dual: Sequence[arb]) -> bool:
-    """True when a second optimal estimator is proved to exist."""
-    x = [recognised(c) for c in dual]
-    if any(c is None for c in x):
-        return False
-    exact = [c for c in x if c is not None]
-    places = exact_places(problem, contacts, exact)
-    if not places:
-        return False
-    places = [places[i] for i in largest_support(*signed_columns(problem, places))]
-    return bool(places) and has_interior_weights(problem, places)
-
-
 def recognised(x: arb) -> sp.Rational | None:
     """The rational with a small denominator next to a ball."""
     value = to_fmpq(x)
@@ -257,6 +244,11 @@ class Pin:
 
 def is_only_optimum(problem: PanelProblem, basis: Basis, contacts: Contacts, dual: Sequence[arb]) -> bool | None:
     """True when the optimal estimator is proved to be the only one, False when another is, else None."""
+    simple = [c for c in map(recognised, dual) if c is not None]
+    exact = (exact_places(problem, contacts, simple) if len(simple) == len(dual) else None) or []
+    used = largest_support(*signed_columns(problem, exact)) if exact else []
+    if used and has_interior_weights(problem, [exact[i] for i in used]):
+        return False
     if any(panel.values for panel in problem.panels):
         return None
     sets = [contacts, flatten_contacts(contacts)]
@@ -267,13 +259,13 @@ def is_only_optimum(problem: PanelProblem, basis: Basis, contacts: Contacts, dua
         x = None if pins is None else interior_dual(basis.panels, places)
         if pins is not None and x is not None and touches_only_at(problem, basis, pins, x):
             return decide_weights(problem, [pin.place for pin in pins])
-    return decide_by_simple_dual(problem, contacts, dual)
+    return decide_by_simple_dual(problem, exact, simple)
 
 
-def decide_by_simple_dual(problem: PanelProblem, contacts: Contacts, dual: Sequence[arb]) -> bool | None:
+def decide_by_simple_dual(
+    problem: PanelProblem, places: Sequence[ContactPlace], x: Sequence[sp.Rational]
+) -> bool | None:
     """The same from a dual of simple rational numbers and all places where it touches, when these are single ones."""
-    x = [c for c in map(recognised, dual) if c is not None]
-    places = exact_places(problem, contacts, x) if len(x) == len(dual) else None
     if not places:
         return None
     with precision(BITS):

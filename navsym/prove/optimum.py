@@ -22,7 +22,7 @@ from navsym.prove.assumptions import conditions_as_written, is_nonnegative, rema
 from navsym.prove.equations import decide_equation, weakest_verdict
 from navsym.prove.inequalities import decide_difference
 from navsym.prove.signs.bounds import Sign, SignProof, prove_sign
-from navsym.prove.signs.products import as_product
+from navsym.prove.signs.products import as_product, as_squares
 from navsym.prove.wording import scope_of
 
 #: Position inside the interval: t = start + (end - start) * share.
@@ -117,7 +117,7 @@ def judge_signs(proofs: Sequence[SignProof], what: str) -> Verdict:
 
 
 def decide_feasibility(statement: Optimum) -> Verdict:
-    """1 - x.H(t) >= 0 and 1 + x.H(t) >= 0 on the interval, as products where they factor."""
+    """1 - x.H(t) >= 0 and 1 + x.H(t) >= 0 on the interval, as products or sums of squares where they are."""
     polynomial = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.Integer(0))
     start, end = statement.interval
     if SHARE in sp.Tuple(polynomial, start, end).free_symbols:
@@ -130,7 +130,8 @@ def decide_side(side: sp.Expr, statement: Optimum, box: Box) -> Verdict:
     """side >= 0 on the interval: proved, or broken by a point."""
     start, end = statement.interval
     place = start + (end - start) * SHARE
-    forms = [form.subs(statement.variable, place) for form in (as_product(side), side) if form is not None]
+    written = (as_product(side), as_squares(side, statement.variable), side)
+    forms = [form.subs(statement.variable, place) for form in written if form is not None]
     for form in forms:
         proof = prove_sign(form, box)
         if proof.sign != Sign.UNKNOWN:

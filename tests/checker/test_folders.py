@@ -37,3 +37,14 @@ def test_a_file_that_is_no_text_is_rejected_in_words(tmp_path, capsys):
     status, found = rows(capsys, str(tmp_path))
     assert status == 1 and [row["status"] for row in found] == ["REJECTED"] * 3
     assert all("expected" in row["why"] for row in found)
+
+
+def test_a_certificate_inside_a_document_is_named_by_its_file_and_never_overlooked(tmp_path, capsys):
+    (tmp_path / "answer.json").write_text(json.dumps({"value": 1.5, "certificate": GAP}))
+    assert rows(capsys, str(tmp_path)) == rows(capsys, str(tmp_path / "answer.json"))
+    status, found = rows(capsys, str(tmp_path))
+    assert status == 0 and [row["path"] for row in found] == ["answer.json"]
+    for forged in ({**GAP, "upper": "1/1000"}, {}, [], "gap", 7):
+        (tmp_path / "answer.json").write_text(json.dumps({"value": 1.5, "rows": [{"certificate": forged}]}))
+        status, found = rows(capsys, str(tmp_path))
+        assert status == 1 and [row["status"] for row in found] == ["REJECTED"]

@@ -62,6 +62,28 @@ def test_the_certificates_are_accepted_by_check(guard, tmp_path, capsys):
     assert [(row["kind"], row["status"]) for row in rows] == [("gap", "ACCEPTED")] * 2
 
 
+def check(capsys, *paths):
+    status = run(["check", *map(str, paths), "--json"])
+    return status, json.loads(capsys.readouterr().out)
+
+
+def test_check_finds_the_certificates_in_a_document_and_says_where_there_are_none(guard, tmp_path, capsys):
+    path, state = tmp_path / "answer.json", tmp_path / "state.json"
+    _, document = guard(DATA, "--state", str(state))
+    path.write_text(json.dumps(document))
+    status, answer = check(capsys, path)
+    assert status == 0 and [row["path"] for row in answer["checked"]] == ["epochs.2", "epochs.3"]
+    document["epochs"][2]["certificate"]["upper"] = "1/4"
+    path.write_text(json.dumps(document))
+    status, answer = check(capsys, path)
+    assert status == 1 and [row["status"] for row in answer["checked"]] == ["ACCEPTED", "REJECTED"]
+    document["epochs"][1]["certificate"] = "gap"
+    path.write_text(json.dumps(document))
+    assert [row["status"] for row in check(capsys, path)[1]["checked"]] == ["REJECTED"] * 2
+    status, answer = check(capsys, tmp_path / "proofs.json", state) if path.rename(tmp_path / "proofs.json") else None
+    assert status == 2 and answer["error"]["kind"] == "empty" and "without" in answer["error"]["message"]
+
+
 def test_a_state_continues_as_if_the_files_were_one(guard, tmp_path):
     head, *lines = DATA.splitlines()
     state = str(tmp_path / "guard.json")

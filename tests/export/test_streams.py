@@ -144,6 +144,17 @@ def test_the_bounds_enclose_the_radius_of_the_guard(F, H):
     assert seen > 40
 
 
+def test_large_measurements_beside_small_bounds_cost_no_more_than_their_rounding():
+    """z of a thousand and bounds from a thousandth to a hundred: rounding is a millionth of some bounds."""
+    rule, generator, seen = twin(guard_of(chain(3), ["x0", "x0 + x2"], ["1", "1"], 9, "1/2")), random.Random(3), 0
+    for _ in range(300):
+        z = [generator.uniform(-1000, 1000) if generator.random() < 0.75 else None for _ in range(2)]
+        status, _, radius, least = rule.step(z, [generator.choice((0.001, 0.5, 3.0, 100.0)) for _ in range(2)])
+        assert status != 0 or radius - least <= 1e-6 * radius
+        seen += status == 0
+    assert seen > 290
+
+
 def exact_errors(scale, sigma, drop=0.0):
     """(error, radius) in exact arithmetic of a polynomial of degree 4 seen through doubles; errors of at most sigma.
 

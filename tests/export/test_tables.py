@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import math
 import random
 from dataclasses import replace
 from fractions import Fraction
@@ -77,7 +78,7 @@ def test_polynomials_of_low_degree_have_larger_errors_that_are_not_far_from_the_
 
 def test_a_regime_without_a_closed_form_is_exported_compiled_and_replayed(found, tmp_path):
     out = tmp_path / "code"
-    short = nav.phases(nav.Model(**CHANNEL), T=("2", "2.01"))
+    short = nav.phases(nav.Model(**CHANNEL), T=("2", "2.02"))
     answer = nav.export(short, ["c", "python"], out, vectors=10)
     assert [outcome.status for outcome in answer.outcomes] == ["verified"] * 2
     assert all(row.status == "ACCEPTED" for row in nav.check(out))
@@ -85,7 +86,10 @@ def test_a_regime_without_a_closed_form_is_exported_compiled_and_replayed(found,
     spec = importlib.util.spec_from_file_location("navsym_functions", out / "python" / "navsym_functions.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    for at in (2.0, 2.0078125):
+    assert Fraction("2.02") < 2.02  # the double nearest to the end is outside, and stands for it
+    with pytest.raises(ValueError, match="expected numbers"):
+        module.velocity(math.nextafter(2.02, 3.0))
+    for at in (2.0, 2.0078125, 2.02):
         value, weights, times, error, late = module.velocity(at)
         known = nav.solve(nav.Model(**CHANNEL), T=str(Fraction(at)))
         assert abs(value - float(known.lower)) <= error + 1e-14 * value and error < 1e-12 and late < 1e-12

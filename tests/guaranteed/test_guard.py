@@ -6,6 +6,7 @@ import json
 import resource
 import time
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ import pytest
 import navsym as nav
 from navsym import checker
 from navsym.core.errors import InconsistentError
+from navsym.guaranteed.streaming.guard import moved_basis
 from tests.guaranteed.streams import Epochs, random_epochs, random_model
 
 GAP = Fraction(1, 10**12)
@@ -666,6 +668,15 @@ def stream_long(count, gaps):
             replayed += 1
     assert replayed == count // 1000
     return float(np.median(times)) * 1e6
+
+
+def test_a_support_moves_on_to_the_next_rows_of_its_own_measurements():
+    rows = [SimpleNamespace(j=j) for j in (0, 1, 0, 1, 1, 0, 1)]
+    assert moved_basis([0, 1], rows, 0) == [2, 3]
+    assert moved_basis([2, 3], rows, 0) == [5, 4]  # a measurement is missing, and its neighbour is not taken for it
+    assert moved_basis([0, 1], rows, 4) == [5, 4]  # rows that have left the memory
+    assert moved_basis([5, 6], rows, 0) == [5, 6]  # the newest stay
+    assert moved_basis([0, 2], rows, 5) == []  # two rows become one
 
 
 def test_two_thousand_epochs_keep_their_gap_and_a_constant_memory():

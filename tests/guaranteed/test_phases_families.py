@@ -22,7 +22,9 @@ from navsym.guaranteed.phases.narrow import certify_slivers
 from navsym.guaranteed.phases.patterns import sample_contacts
 from navsym.guaranteed.phases.recognise import recognise_constant
 from navsym.guaranteed.phases.singular_values import exact_real_roots
+from navsym.guaranteed.solver import solve
 from navsym.models.modelfile import model_from
+from navsym.prove.signs.products import as_squares
 
 
 def basis(H, interval, target, sigma=None):
@@ -53,6 +55,45 @@ def solved(document, lower, upper, target="c", **options):
 def regimes(answer):
     assert answer.uncovered == ()
     return [(str(r.lower), str(r.upper), str(r.closed.value)) for r in answer.regimes]
+
+
+def rotation(h, sigma, target, speed="1"):
+    """x' = speed v, v' = -speed x, with the length of the interval as the parameter p."""
+    turn = [["0", speed], [f"-{speed}", "0"]]
+    measured = [{"name": f"z{k}", "h": row, "sigma": s} for k, (row, s) in enumerate(zip(h, sigma, strict=True))]
+    rest = {"parameters": {"p": ["0", "20"]}, "interval": {"T": "p"}, "targets": {"c": target}}
+    return {"model": {"name": "rotation", "states": ["x", "v"], "F": turn}, "measurement": measured} | rest
+
+
+def test_a_touch_at_an_irrational_angle_is_proved_and_not_only_sampled():
+    document = rotation([["1", "0"], ["0", "1"]], ["1", "3"], ["2", "1"])
+    (found,) = solved(document, sp.Rational(1, 2), sp.Rational(13, 20)).regimes
+    assert found.closed.value == 2 + 2 * sp.sqrt(2) and found.status.holds
+    known = solve(family_of(model_from(document), "c", "p").problem(sp.Rational(3, 5)), digits=20)
+    assert float(known.lower) == pytest.approx(float(found.closed.value), rel=1e-15)
+
+
+def test_a_constant_value_of_one_measurement_at_an_irrational_time_is_proved():
+    answer = solved(rotation([["1", "1/2"]], ["5"], ["2", "2"], speed="2"), 3, sp.Rational(13, 4))
+    assert regimes(answer) == [("3", "13/4", "4*sqrt(10)")] and answer.regimes[0].status is PROVED
+
+
+@pytest.mark.parametrize(("c", "squares"), [("3", True), ("299/100", False), ("301/100", False)])
+def test_a_sinusoid_is_a_sum_of_squares_where_it_touches_zero_only(c, squares):
+    u = sp.Symbol("u", real=True)
+    side = sp.Rational(c) - 2 * sp.sqrt(2) * sp.cos(2 * u) - sp.sin(2 * u)
+    form = as_squares(side, u)
+    assert (form is not None) is squares
+    if squares:
+        assert all(abs(sp.N((form - side).subs(u, k), 30)) < 1e-25 for k in range(5))
+    assert as_squares(side + u, u) is as_squares(side + sp.cos(u), u) is None
+
+
+@pytest.mark.parametrize("turns", [-2, -1, 1, 3])
+def test_places_beyond_a_half_turn_are_recognised(turns):
+    exact = turns * sp.pi - sp.atan(sp.sqrt(10) - 3)
+    found = recognise_constant(sp.Rational(str(exact.evalf(90))))
+    assert abs(sp.N(found - exact, 60)) < 1e-50
 
 
 def test_where_estimability_is_lost_inside_the_range_it_is_split_and_said_so():

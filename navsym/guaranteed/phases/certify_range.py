@@ -40,6 +40,7 @@ from navsym.guaranteed.phases.closed_forms import sharp_member
 from navsym.guaranteed.phases.family import Family, U
 from navsym.guaranteed.phases.narrow import join_intervals
 from navsym.guaranteed.phases.patterns import Pattern
+from navsym.guaranteed.streaming.flow import pivot_columns
 from navsym.language.expression import to_text
 
 # Next to a vanishing interval: regressors on [0, T] scaled by powers of T, so that the limit is regular.
@@ -77,9 +78,10 @@ def echelon_form(family: Family) -> Echelon | None:
     if any(t is None for t in tables) or not all(p.is_Rational for p in family.functional):
         return None
     wide = [[t[i][k] for k in range(count) for t in tables if t is not None] for i in range(m)]
-    reduced, A, pivots = reduce_rows(wide)
+    pivots = pivot_columns(wide)
     if len(pivots) < m:
         return None
+    A = fmpq_mat([[row[k] for k in pivots] for row in wide]).inv()
     lows = tuple(k // len(tables) for k in pivots)
     exact = tuple(A * fmpq_mat(m, count, [c for row in t for c in row]) for t in tables if t is not None)
     image = A * fmpq_mat(m, 1, rational_functional(family.moving))
@@ -145,28 +147,6 @@ def taylor_table(row: tuple[sp.Expr, ...], count: int) -> list[list[fmpq]] | Non
             derivative = derivative.diff(U)
         table.append(coefficients)
     return table
-
-
-def reduce_rows(rows: list[list[fmpq]]) -> tuple[list[list[fmpq]], fmpq_mat, list[int]]:
-    """Gauss and Jordan with the matrix of the row operations; rows scaled to one at their pivots."""
-    m, n = len(rows), len(rows[0])
-    work = [[*row, *(fmpq(int(i == j)) for j in range(m))] for i, row in enumerate(rows)]
-    pivots: list[int] = []
-    for column in range(n):
-        done = len(pivots)
-        at = next((i for i in range(done, m) if work[i][column] != 0), None)
-        if at is None:
-            continue
-        work[done], work[at] = work[at], work[done]
-        below = work[done][column]
-        work[done] = [c / below for c in work[done]]
-        for i in range(m):
-            if i != done and work[i][column] != 0:
-                factor = work[i][column]
-                work[i] = [a - factor * b for a, b in zip(work[i], work[done], strict=True)]
-        pivots.append(column)
-    A = fmpq_mat(m, m, [c for row in work for c in row[n:]])
-    return [row[:n] for row in work], A, pivots
 
 
 def scaled_problem(family: Family, form: Echelon, start: fmpq, end: fmpq) -> VanishingProblem:

@@ -367,7 +367,7 @@ def solve_by_cramer(
 def shorten_formula(expression: sp.Expr) -> sp.Expr:
     """A short form: the product of the normal form when there is one; nothing rests on it."""
     if not expression.free_symbols:
-        return sp.nsimplify(expression) if expression.is_Rational else sp.radsimp(expression)
+        return sp.radsimp(sp.expand(sp.expand_trig(expression)))
     if not expression.has(sp.sin, sp.cos, sp.exp):
         return sp.factor(expression)
     product = as_product(expression)

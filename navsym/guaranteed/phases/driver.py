@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import sympy as sp
 from flint import fmpq
@@ -42,9 +42,6 @@ from navsym.guaranteed.phases.singular_values import (
     unsolved_boundary,
 )
 from navsym.guaranteed.solver import solve_problem
-
-if TYPE_CHECKING:
-    pass
 
 # One regime settled: its proved closed form, or contacts followed for every value, slivers, holes and a table.
 

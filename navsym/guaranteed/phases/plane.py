@@ -166,11 +166,6 @@ def simplest_between(a: Fraction, b: Fraction) -> Fraction:
     return Fraction(math.ceil(a * bottom), bottom)
 
 
-def repeat_length(run: Sequence[object]) -> list[int]:
-    """The length of a run, once for each of its entries."""
-    return [len(run)] * len(run)
-
-
 def gaps_to_cut(
     slices: dict[Fraction, Slice], low: Fraction, high: Fraction, tried: Collection[Fraction]
 ) -> Iterator[tuple[Fraction, Fraction]]:
@@ -180,7 +175,7 @@ def gaps_to_cut(
     """
     values = sorted(slices)
     orders = [None, *(slices[value].order for value in values), None]
-    groups = [size for _, run in groupby(orders) for size in repeat_length(list(run))]
+    groups = [len(run) for run in (list(run) for _, run in groupby(orders)) for _ in run]
     for k, (a, b) in enumerate(pairwise([low, *values, high])):
         rare = min(groups[k] if orders[k] else ENOUGH, groups[k + 1] if orders[k + 1] else ENOUGH) < ENOUGH
         least = NARROWEST if rare else NEAR if None not in orders[k : k + 2] else Fraction(2)

@@ -47,10 +47,9 @@ def recognise_relation(x: sp.Rational) -> sp.Expr | None:
         if line is not None and line[0]:
             return -(line[1] + line[2] * sp.pi) / sp.Integer(line[0])
         found = recognise_quadratic(at)
-        inverses = [(mpmath.exp, sp.log, 20), (mpmath.tan, sp.atan, mpmath.pi / 2)]
-        for function, inverse, end in inverses:
-            inner = recognise_quadratic(function(at)) if found is None and abs(at) < end else None
-            found = found if inner is None else inverse(inner)
+        for function, inverse, period in ((mpmath.exp, sp.log, 0), (mpmath.tan, sp.atan, sp.pi)):
+            inner = recognise_quadratic(function(at)) if found is None and abs(at) < 20 else None
+            found = found if inner is None else inverse(inner) + period * int(mpmath.nint(at / mpmath.pi))
         return found
 
 

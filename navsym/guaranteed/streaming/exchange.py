@@ -161,12 +161,14 @@ class Optimum:
 def exchange(cloud: Cloud, target: arb_mat, basis: Sequence[int], signs: Sequence[int] = ()) -> Optimum | None:
     """The optimum from a start; None where the rows are not seen to be independent, or the limit is met."""
     found = exchange_rows(cloud, target, basis, signs)
+    if not cloud.cones:
+        return found
     before = None
     for _ in range(MOST_CUTS):
         if found is None or found.ray is not None:
             break
         support = list_touching(cloud, found)
-        if cloud.cones and support[:2] == before:
+        if support[:2] == before:
             sharp = sharpen(cloud, target, found.dual, *support)
             if sharp is not None:
                 return sharp
@@ -257,8 +259,6 @@ def cut_cones(cloud: Cloud, found: Optimum) -> bool:
 
     Doubles see most of it; balls look at all where they see none.
     """
-    if not cloud.cones:
-        return False
     before = len(cloud.atoms)
     cones = [(cone, places) for cone, places in cloud.cones if cloud.may_use(places[0])]
     parts = cloud.scaled @ to_doubles(found.dual.transpose()) - (0.0 if cloud.shifted is None else cloud.shifted)

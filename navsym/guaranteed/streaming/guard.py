@@ -27,7 +27,7 @@ from navsym.guaranteed.streaming.exchange import (
 )
 from navsym.guaranteed.streaming.explanations import Combination, contradiction, explain_data
 from navsym.guaranteed.streaming.flow import BITS, Flow
-from navsym.guaranteed.streaming.memory import MOST_ROWS, Memory
+from navsym.guaranteed.streaming.memory import MOST_ROWS, Memory, Row
 from navsym.guaranteed.streaming.numbers import middle, read_exact, to_float, write_rational
 from navsym.guaranteed.streaming.scarce import find_contradiction, solve_scarce
 from navsym.language.names import quote
@@ -261,7 +261,7 @@ class Guard:
             self.need_scarcely_consistent(at)
         if not self.showing:
             return Estimate(to_float(at), self.target, None, self.radius_kind)
-        plan = self.plan or self.solve_scarcely(at)
+        plan = self.plan or solve_scarce(self.flow, self.memory.rows[self.memory.first :], at)
         if plan is None:
             return Estimate(to_float(at), self.target, None, self.radius_kind)
         value, count = middle(plan.value()), len(plan.support())
@@ -295,7 +295,7 @@ class Guard:
             self.basis, self.signs, start = [], [], cloud.start() or []
             self.solved = exchange(cloud, target, start) if start else None
             return None if self.solved is None else self.make_plan(at, self.solved, cloud)
-        old, end = self.solved, len(memory.rows)
+        old = self.solved
         kept = bool(self.basis) and min(self.basis) >= memory.first
         found = None
         if kept:  # also after a restart, so that a tie ends as it would have without one
@@ -306,7 +306,7 @@ class Guard:
             if found is not None and violated_row(cloud, found) is None:
                 self.solved, self.signs = found, found.signs
                 return self.make_plan(at, found)
-        start = shifted_basis(self.basis, fresh if kept else memory.first - min(self.basis, default=0), end)
+        start = moved_basis(self.basis, memory.rows, memory.first)
         support = cheaper_start(cloud, target, [self.basis if kept else [], start])
         found = exchange(cloud, target, support) if support else None
         if found is None:
@@ -325,10 +325,6 @@ class Guard:
         places = [i - memory.first for i in weights]
         lower, upper = bounds_of(cloud or memory.cloud(), found)
         return Plan(self.flow, at, window, self.flow.columns, places, self.signs, [*weights.values()], lower, upper)
-
-    def solve_scarcely(self, at: fmpq) -> Plan | None:
-        """The optimum where the measurements do not determine the state."""
-        return solve_scarce(self.flow, self.memory.rows[self.memory.first :], at)
 
     def interval(self) -> Number | None:
         """All values of the target at the last epoch that the data allow, as an enclosure from both sides.
@@ -473,10 +469,10 @@ class Window(Sequence[Any]):
         return self.entries[self.first + place]
 
 
-def shifted_basis(basis: Sequence[int], shift: int, end: int) -> list[int]:
-    """The support as it moves on with time; empty where two rows become one."""
-    moved = [min(i + shift, end - 1) for i in basis]
-    return moved if len(set(moved)) == len(moved) else []
+def moved_basis(basis: Sequence[int], rows: Sequence[Row], first: int) -> list[int]:
+    """The support as it moves on with time, each row to the next of its measurement; empty where two become one."""
+    moved = [next((k for k in range(max(i + 1, first), len(rows)) if rows[k].j == rows[i].j), i) for i in basis]
+    return moved if len(set(moved)) == len(moved) and min(moved, default=0) >= first else []
 
 
 def cheaper_start(cloud: Cloud, target: arb_mat, starts: Sequence[Sequence[int]]) -> Sequence[int]:

@@ -158,14 +158,15 @@ class Memory:
             self.shifted = np.concatenate([self.shifted, np.zeros_like(self.shifted)])
         h = self.flow.row(row.j, row.t)
         vector = self.flow.cut(h if self.carry is None else h * self.carry)
-        scaled, shifted = [middle(e / row.sigma) for e in vector.entries()], middle(arb(row.z) / row.sigma)
+        parts = [e / row.sigma for e in vector.entries()]
+        scaled, shifted = [*map(middle, parts)], middle(arb(row.z) / row.sigma)
         if not np.isfinite(shifted):
             message = "expected z/sigma within the range of doubles; got an overflow; scale z"
             raise TooLargeError(message, where="Guard")
         if not np.isfinite(scaled).all():
             raise OverflowError("regressors")
         self.scaled[n] = scaled
-        self.wide = max(self.wide, *(float((e / row.sigma).rad()) for e in vector.entries()))
+        self.wide = max(self.wide, *(float(e.rad()) for e in parts))
         self.shifted[n] = shifted
         self.rows.append(row)
         self.vectors.append(vector)

@@ -41,6 +41,23 @@ def as_product(expression: sp.Expr) -> sp.Expr | None:
     return product if vanishes_identically(expression - product) else None
 
 
+def as_squares(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr | None:
+    """``a cos x + b sin x + c`` with ``a**2 + b**2 = c**2``, zero at one angle, as ``((a + c cos x)**2 + …) / (2 c)``.
+
+    None for others, and for what has the symbol in other ways.
+    """
+    angles = {wave.args[0] for wave in expression.atoms(sp.sin, sp.cos) if wave.has(symbol)}
+    if len(angles) != 1:
+        return None
+    cosine, sine = sp.cos(*angles), sp.sin(*angles)
+    whole = sp.expand(expression)
+    a, b = whole.coeff(cosine), whole.coeff(sine)
+    c = sp.expand(whole - a * cosine - b * sine)
+    if c == 0 or any(part.has(symbol) for part in (a, b, c)) or not vanishes_identically(c**2 - a**2 - b**2):
+        return None
+    return ((a + c * cosine) ** 2 + (b + c * sine) ** 2) / (2 * c)
+
+
 def constant_ratio(expression: sp.Expr, product: sp.Expr) -> sp.Rational:
     """Guess the constant from one point, or 1; the guess is proved afterwards."""
     symbols = sorted(expression.free_symbols, key=str)
