@@ -60,7 +60,7 @@ class Verdict(Answer):
     >>> import navsym as nav
     >>> verdict = nav.prove("2*sin(a) = sin(2*a)")
     >>> verdict
-    <REFUTED: 2*sin(a) = sin(2*a); exact point, ball arithmetic; one point>
+    <REFUTED: 2*sin(a) = sin(2*a); exact point, ball arithmetic; at a = 1: left - right = 0.7736445427901113305…>
     >>> verdict.holds, dict(verdict.counterexample)
     (False, {'a': '1'})
     >>> nav.prove("(a - b)*(a + b) = a**2 - b**2").certificate["kind"]
@@ -88,7 +88,8 @@ class Verdict(Answer):
         return self.status.holds
 
     def __repr__(self) -> str:
-        parts = ([str(self.formula)] if self.formula else []) + [self.method, self.scope]
+        found = self.point_text() if self.counterexample else self.scope
+        parts = [str(self.formula or ""), self.method, found]
         return f"<{self.status}: {'; '.join(part for part in parts if part)}>"
 
     def certificates(self) -> list[Mapping[str, Any]]:

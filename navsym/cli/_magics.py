@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from navsym.cli import audit as audit_verb
+from navsym.cli import prove as prove_verb
 from navsym.cli.diff import read_range
 from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError
 
@@ -20,36 +23,35 @@ TABLE = re.compile(r"^\s*\[+\s*(symbols|claim|rates)\b", re.M)
 
 
 def register_magics(shell: Any) -> None:
-    """Add the commands to a shell of IPython."""
+    """Add the commands to a shell of IPython, and tables of their answers where it has no pages."""
     from IPython.core.error import UsageError
+
+    def refuse_shortly(work: Callable[[str], Any], text: str) -> Any:
+        try:
+            return work(text)
+        except NavsymError as error:
+            raise UsageError(f"{error.kind}: {error}") from None
 
     def prove(line: str) -> Verdict:
         """Decide one formula: ``%prove sin(T) <= T --range T=0,pi``; names without a range are real."""
-        try:
-            return prove_line(line)
-        except NavsymError as error:
-            raise UsageError(f"{error.kind}: {error}") from None
+        return refuse_shortly(prove_line, line)
 
     def claims(line: str, cell: str) -> Verdicts:
         """Decide a cell of TOML, of a formula a line, or of LaTeX; ``%%claims name`` keeps the verdicts by a name."""
-        try:
-            verdicts = prove_cell(cell)
-        except NavsymError as error:
-            raise UsageError(f"{error.kind}: {error}") from None
+        verdicts = refuse_shortly(prove_cell, cell)
         if line.strip():
             shell.push({line.strip(): verdicts})
         return verdicts
 
     def audit(line: str) -> Audit:
         """Decide the questions of a file: ``%audit spec.toml``; ``%audit ekf.c --function NAME`` lists formulas."""
-        try:
-            return audit_line(line)
-        except NavsymError as error:
-            raise UsageError(f"{error.kind}: {error}") from None
+        return refuse_shortly(audit_line, line)
 
-    shell.register_magic_function(audit, "line", "audit")
-    shell.register_magic_function(prove, "line", "prove")
-    shell.register_magic_function(claims, "cell", "claims")
+    for magic, kind in ((audit, "line"), (prove, "line"), (claims, "cell")):
+        shell.register_magic_function(magic, kind, magic.__name__)
+    plain = shell.display_formatter.formatters["text/plain"]
+    for home, name, verb in (("claims.verdict", "Verdicts", prove_verb), ("audit.answer", "Audit", audit_verb)):
+        plain.for_type_by_name(f"navsym.{home}", name, lambda found, page, _, say=verb.as_text: page.text(say(found)))
 
 
 def prove_line(line: str) -> Verdict:

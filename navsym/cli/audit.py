@@ -42,7 +42,7 @@ def command(
     return 1 if any(question.status == nav.REFUTED for question in answer.questions) else 0
 
 
-def as_text(answer: Audit, every: bool) -> str:
+def as_text(answer: Audit, every: bool = False) -> str:
     """What was read, then the questions with their entries, or the formulas."""
     blocks = []
     for title, heads, rows in answer.tables(every):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, remark, table
+from navsym.core.errors import NavsymError
 
 if TYPE_CHECKING:
     from navsym.claims import Record
@@ -30,14 +31,13 @@ def command(
 ) -> int:
     """Decide every claim of the papers. Status 1 when a verdict is not the one declared.
 
-    Status 3 when every verdict is as declared but some could not be kept; they are named.
+    Status 3 when every verdict is as declared but some of a ledger could not be kept; they are named.
 
     Every statement is built from its source. Where a certificate is kept for it, the checker grants it again.
 
     Example: navsym verify guaranteed_velocity
     """
     import navsym as nav
-    from navsym.core.errors import NavsymError
     from navsym.verification.ledger import ledger_file
 
     started = time.monotonic()
@@ -53,7 +53,7 @@ def command(
             ledger = replace(ledger, unsaved=tuple(record.id for record in ledger))
     spent = time.monotonic() - started
     emit(ledger.document(), as_json=json_, text=lambda: as_text(ledger, spent))
-    return 1 if ledger.unexpected or ledger.missing else 3 if ledger.unsaved else 0
+    return 1 if ledger.unexpected or ledger.missing else 3 if ledger.unsaved and ledger.is_kept else 0
 
 
 def as_text(ledger: Ledger, seconds: float) -> str:
@@ -72,16 +72,15 @@ def as_text(ledger: Ledger, seconds: float) -> str:
         blocks += refuted_lines(records)
     statuses = ", ".join(f"{count} {status}" for status, count in ledger.counts.items() if count)
     blocks.append(f"{counted(len(ledger), 'claim')} in {seconds:.1f} s: {statuses}")
-    blocks.append(
-        f"unchecked, because the checker has no certificate of them: {counted(len(ledger.unchecked), 'verdict')}"
-    )
+    if unchecked := ledger.unchecked:
+        told = f"{counted(len(unchecked), 'verdict')}, {unchecked[0].id} first"
+        blocks.append(f"unchecked, because the checker has no certificate of them: {told}")
     return "\n".join([*blocks, compare_line(ledger), *unexpected_lines(ledger.unexpected)])
 
 
 def compare_line(ledger: Ledger) -> str:
     """How the ledger as it was last written compares with these verdicts."""
     from navsym.claims.display import count_in_words as counted
-    from navsym.core.errors import NavsymError
     from navsym.verification.ledger import ledger_file
 
     if not ledger.is_kept:
@@ -117,7 +116,7 @@ def remark_of(record: Record) -> str:
     """What is wrong, what is corrected, or for what it holds."""
     if record.status == "REFUTED":
         where = f"(at {record.point_text})" if record.point_text else ""
-        return f"{f'{record.slip}: ' if record.slip else ''}{record.reason} {where}".strip()
+        return f"{': '.join(filter(None, (record.slip, record.reason)))} {where}".strip()
     if record.corrects:
         return f"corrects {record.corrects.partition(':')[2]}"
     text = "; ".join(record.assumptions) or record.scope

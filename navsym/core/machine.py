@@ -28,7 +28,7 @@ ENGINES = {name: "python-flint" if name == "flint" else name for name in NAMES}
 
 #: Packages behind an extra, and programs, all optional: what each is for, and how it is asked for.
 TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
-EXTRAS: dict[str, dict[str, str]] = TABLE["extras"]
+EXTRAS: dict[str, str] = TABLE["extras"]
 PROGRAMS: dict[str, dict[str, Any]] = TABLE["programs"]
 
 
@@ -116,13 +116,11 @@ def engine(module: str, distribution: str) -> Equipment:
     return Equipment(module, True, found, version_of(distribution), advice)
 
 
-def extra(module: str, about: Mapping[str, str]) -> Equipment:
+def extra(module: str, purpose: str) -> Equipment:
     """A package behind an extra; when it is not installed, that is no fault."""
     version = version_of(module)
     found = bool(version) and importable(module)[0]
-    advice = (
-        "" if found else f"for {about['purpose']}: python -m pip install -e '.[{about['extra']}]' in the environment"
-    )
+    advice = "" if found else f"for {purpose}: python -m pip install {module} in the environment"
     return Equipment(module, False, found, version, advice)
 
 
@@ -149,11 +147,9 @@ def program(name: str, about: Mapping[str, Any]) -> Equipment:
             continue
         code, output = answer([path, about["question"]])
         if code == 0:
-            lines = output.strip().splitlines()
-            return Equipment(name, False, True, lines[0].strip()[:60] if lines else "", "")
-    return Equipment(
-        name, False, False, "", f"for {about['purpose']}: install {about['commands'][0]} and put it on PATH"
-    )
+            return Equipment(name, False, True, output.strip().partition("\n")[0].strip()[:60], "")
+    advice = f"for {about['purpose']}: install {about['commands'][0]} and put it on PATH"
+    return Equipment(name, False, False, "", advice)
 
 
 def answer(words: Sequence[str]) -> tuple[int, str]:

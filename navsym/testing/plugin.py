@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from argparse import ArgumentTypeError
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,10 +24,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def read_budget(text: str) -> float:
     """Seconds above zero."""
-    seconds = float(text)
-    if not 0 < seconds < float("inf"):
-        raise ValueError("expected seconds above 0")
-    return seconds
+    with suppress(ValueError):
+        if 0 < float(text) < float("inf"):
+            return float(text)
+    raise ArgumentTypeError(f"expected seconds above 0; got {text}; write a number such as 60")
 
 
 def pytest_configure(config: pytest.Config) -> None:

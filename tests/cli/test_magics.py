@@ -51,6 +51,19 @@ def test_a_cell_of_claims_is_decided_and_kept_by_its_name(shell):
     assert prove_cell(CELL).document() == verdicts.document()
 
 
+def test_a_shell_without_pages_shows_what_is_wrong_and_where(shell):
+    """The text of an answer names the refuted line with its point, and the entry of the code with its mend."""
+
+    def text(answer):
+        return shell.display_formatter.format(answer)[0]["text/plain"]
+
+    verdicts = shell.run_cell_magic("claims", "", "cos(2*a) = 2*cos(a)**2 - 1\ncos(2*a) = 1 - sin(a)**2\n")
+    proved, refuted = text(verdicts).splitlines()[-2:]
+    assert proved.split()[:3] == ["line", "1", "PROVED"] and "line 2" in refuted and "at a = " in refuted
+    assert "at a = " in text(verdicts["line 2"]) and "all real a" in text(verdicts["line 1"])
+    assert "write -v * sinf(x[2]) * dt" in text(shell.run_line_magic("audit", str(YAW.with_suffix(".toml"))))
+
+
 def test_a_cell_of_formulas_as_printed_is_decided_line_by_line(shell):
     cell = r"\cos^2\frac{a}{2} = \frac{1+\cos a}{2} \\" + "\n\nsin(T) <= T --range T=0,pi\nsin(2*a) = 2*sin(a)\n"
     verdicts = shell.run_cell_magic("claims", "", cell)

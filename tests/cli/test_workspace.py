@@ -170,6 +170,19 @@ def test_nothing_is_written_to_a_home_that_is_read_only(inside, monkeypatch, tmp
     assert "the ledger ledger.json agrees" in capsys.readouterr().out and not list(home.iterdir())
 
 
+def test_a_claim_file_of_no_workspace_passes_where_nothing_can_be_kept(tmp_path, monkeypatch, capsys):
+    """No ledger waits for its verdicts: that a cache cannot be written is a remark, and no failure of a workflow."""
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path / "file" / "cache"))
+    monkeypatch.chdir(tmp_path)
+    claim = '[[claim]]\nid = "one"\nleft = "1"\nright = "{}"\n'
+    for right, status in (("1", 0), ("2", 1)):
+        (tmp_path / "my.claims.toml").write_text(claim.format(right))
+        assert run(["verify", "my.claims.toml"]) == status
+        told = capsys.readouterr()
+        assert "verdicts are not kept: " in told.err and "navsym init" in told.out and "unchecked" not in told.out
+
+
 @pytest.mark.parametrize("wanted", ["claims/baro.toml:square", "../claims/baro.toml:square"])
 def test_a_claim_is_shown_by_its_listed_name_or_its_path(inside, capsys, wanted):
     status, record = document(capsys, "show", wanted)

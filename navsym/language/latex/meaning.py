@@ -491,7 +491,7 @@ def list_letters(latex: str, name: str) -> set[str]:
     return letters | {f"{one}_{other}" for _, one, other in found if other}
 
 
-DOUBTFUL_ARGUMENT = ("an argument in parentheses", "is this factor part of the argument?", WRITE)
+DOUBTFUL_ARGUMENT = ("an argument in parentheses", "a factor that may be part of the argument or not", WRITE)
 
 
 def refuse_doubtful(args: tuple[Any, ...], columns: list[bool]) -> bool:
