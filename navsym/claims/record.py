@@ -18,7 +18,7 @@ from navsym.core.numbers import Number
 NOT_IN_LEDGERS = ("certificate", "seconds")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Record:
     """Name, both sides as text, and verdict of one claim: plain values only, so that it outlives the engines.
 
@@ -38,8 +38,8 @@ class Record:
     ...     "expect": "PROVED", "method": "normal form", "scope": "numbers", "assumptions": [], "printed": "1",
     ...     "derived": "1", "corrects": None, "slip": None, "reason": "", "evidence": "", "counterexample": None,
     ...     "difference": None})
-    >>> record.status.holds, record.is_expected, "seconds" in record.ledger_json()
-    (True, True, False)
+    >>> record.is_expected, "seconds" in record.ledger_json(), record
+    (True, False, <paper:1: PROVED; One is one.>)
     """
 
     id: str
@@ -64,6 +64,9 @@ class Record:
     certificate: Mapping[str, Any] | None = None
     seconds: float = 0.0
     statement: str = ""
+
+    def __repr__(self) -> str:
+        return f"<{self.id}: {self.status}; {self.title}>"
 
     @property
     def is_expected(self) -> bool:

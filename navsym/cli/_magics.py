@@ -69,8 +69,7 @@ def audit_line(line: str) -> Audit:
 
     file, *names = FUNCTION.split(line.strip())
     if len(names) > 1:
-        message = f"expected one function; got {len(names)}; ask for one at a time"
-        raise ExpressionSyntaxError(message, where="%audit")
+        raise ExpressionSyntaxError(f"expected one function; got {len(names)}; ask for one at a time", where="%audit")
     return nav.audit(file.strip("\"'"), function=names[0].strip() if names else None)
 
 

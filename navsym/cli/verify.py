@@ -51,8 +51,7 @@ def command(
         except NavsymError as error:  # what was decided is printed all the same
             remark(f"the ledger is not written: {error}")
             ledger = replace(ledger, unsaved=tuple(record.id for record in ledger))
-    spent = time.monotonic() - started
-    emit(ledger.document(), as_json=json_, text=lambda: as_text(ledger, spent))
+    emit(ledger.document(), as_json=json_, text=lambda: as_text(ledger, time.monotonic() - started))
     return 1 if ledger.unexpected or ledger.missing else 3 if ledger.unsaved and ledger.is_kept else 0
 
 

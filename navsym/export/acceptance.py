@@ -87,10 +87,8 @@ class Checks(Answers[Check]):
         return f"<{len(self)} checked, {f'{rejected} REJECTED' if rejected else 'all ACCEPTED'}>"
 
     def _repr_html_(self) -> str:
-        rows = [row.words() for row in self.checked]
-        return write_card(
-            [write_table(("path", "kind", "status", "why"), rows)], "PROVED" if self.accepted else "REFUTED"
-        )
+        listed = write_table(("path", "kind", "status", "why"), [row.words() for row in self.checked])
+        return write_card([listed], "PROVED" if self.accepted else "REFUTED")
 
 
 #: A place to check, and how.

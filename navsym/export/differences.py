@@ -16,7 +16,7 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims import REFUTED, Bound, Equation, Record
-from navsym.claims.display import write_table
+from navsym.claims.display import count_in_words, write_table
 from navsym.claims.formula import Formula as Statement
 from navsym.core.answers import Answers, named
 from navsym.core.balls import enclose, hull
@@ -109,7 +109,7 @@ class Differences(Answers[Difference]):
 
     def __repr__(self) -> str:
         counts = Counter(found.status for found in self.differences)
-        return f"<{len(self)} formulas: {', '.join(f'{n} {status}' for status, n in counts.items())}>"
+        return f"<{count_in_words(len(self), 'formula')}: {', '.join(f'{n} {status}' for status, n in counts.items())}>"
 
     def _repr_html_(self) -> str:
         return write_table(("formula", "status", "why"), ((d.name, d.status, d.why) for d in self.differences))

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from navsym.claims.display import count_in_words
 from navsym.export.folder import is_plain
 from navsym.export.languages.targets import SANITIZERS, TARGETS, WORDS, Target
 from navsym.export.processes import run
@@ -161,7 +162,7 @@ def language_row(folder: Path, name: str, files: Sequence[str]) -> dict[str, Any
     why = f"not executed: {outcome.why}" if outcome.status == "not executed" else ""
     if not why:
         vectors = sum(n for n, _, _ in outcome.functions.values())
-        why = f"{len(outcome.functions)} functions, {vectors} vectors inside their enclosures"
+        why = f"{count_in_words(len(outcome.functions), 'function')}, {vectors} vectors inside their enclosures"
     return {"path": str(folder / name), "kind": f"code:{name}", "status": "ACCEPTED", "why": why}
 
 
