@@ -312,11 +312,11 @@ def judge(
 
 
 def has_evidence(card: Card, comparison: Comparison, blocks: Sequence[Block]) -> bool:
-    """False where every term of a curved or turning Earth is dropped: the card of a flat Earth says the same."""
-    if card.earth == "none" and card.earth_rate in (None, DROPPED):
-        return True
+    """False where the card of a flat Earth says the same and agrees with what is known: all other terms are dropped."""
     plain = plain_card(card)
-    flat = flat_card(plain)
+    flat, other = flat_card(plain), flat_card(card)
+    if flat == plain or any(getattr(other, name) != word for name, word in comparison.problem.known.items()):
+        return True
     for block in blocks:
         if block in card.dropped:
             continue

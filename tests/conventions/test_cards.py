@@ -16,7 +16,7 @@ import navsym as nav
 from navsym.cli.main import run
 from navsym.conventions.card import Card
 from navsym.conventions.converting import convert
-from navsym.conventions.generating import choose_card
+from navsym.conventions.generating import choose_card, fill_model
 from navsym.conventions.reading import read_problem
 from navsym.conventions.search import Comparison, find_candidates, list_cards
 from navsym.core.errors import NavsymError
@@ -46,6 +46,20 @@ def test_a_card_beside_a_model_asks_whether_it_is_right(tmp_path, capsys):
     wrong.write_text(CARD.read_text().replace('rotation_sign  = "-"', 'rotation_sign  = "+"'))
     assert run(["conventions", model, "--card", str(wrong)]) == 1
     assert "must change" in capsys.readouterr().out
+
+
+def test_a_card_is_right_beside_its_own_model_where_a_flat_earth_has_the_same_one():
+    """With the psi angle and vectors in the body no rate of a sphere is left in the blocks of velocity and attitude."""
+    whole = read_toml(CARD)
+    roles = {role: whole["roles"][role] for role in ("velocity", "attitude")}
+    quantities = {**whole["quantities"], "angular_rate": ["w1", "w2", "w3"], "radii": "R", "latitude": "L"}
+    parameters = {**whole["parameters"], "w1": "real", "w2": "real", "w3": "real", "R": "positive", "L": ["-1", "1"]}
+    document = {**whole, "roles": roles, "quantities": quantities, "parameters": parameters}
+    words = {"frame": "local-level", "axes": "NED", "angle": "psi", "earth": "sphere", "transport_rate": "kept"}
+    words |= {"earth_rate": "dropped", "error": "estimate - truth", "attitude_error": "body", "rotation_sign": "-"}
+    words |= {"vector_error": "body"}
+    found = nav.conventions({**document, "card": words, "model": fill_model({**document, "card": words})["model"]})
+    assert found.complete and [{**card.words(), **words} == card.words() for card in found.cards] == [True]
 
 
 def test_measurements_noise_and_reset_are_derived_too():
