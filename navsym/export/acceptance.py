@@ -17,6 +17,7 @@ from navsym.core.errors import DomainError, EmptyError, NavsymError
 from navsym.export.replay import Replay, replay, require_kernel
 from navsym.export.roundtrip import check_export
 from navsym.language.files import decode
+from navsym.language.jsonfile import require_unique_keys
 from navsym.language.names import quote
 
 LARGEST = 50_000_000
@@ -187,23 +188,33 @@ def file_parts(path: Path, asked: Asked, *, inside: bool = False) -> list[Part]:
     """
     whole: list[Part] = [(path.name, lambda: [check_file(path, asked)])]
     try:
-        document = json.loads(path.read_bytes())
-    except (OSError, ValueError, RecursionError):
+        document = json.loads(path.read_bytes(), object_pairs_hook=lambda pairs: require_unique_keys(pairs, str(path)))
+    except (OSError, ValueError, RecursionError, NavsymError):
         return whole
     if not isinstance(document, dict) or not document:
         return [] if inside else whole
     if "kind" in document or document.keys() <= KEYS:
         return whole
-    parts = [(name or path.name, part) for name, part in find_certificates(document)]
-    return [(name, partial(check_plain, name, part, asked)) for name, part in parts]
+    parts = [(name or path.name, *part) for name, *part in find_certificates(document)]
+    return [(name, partial(check_beside, name, part, status, asked)) for name, part, status in parts]
 
 
-def find_certificates(document: Any, place: str = "") -> Iterator[tuple[str, Any]]:
-    """What stands under ``certificate`` anywhere in a document, and its place; null is none."""
+def check_beside(name: str, certificate: Any, status: Any, asked: Asked) -> list[Check]:
+    """A certificate of a document; rejected where it does not show what the status beside it says."""
+    rows = check_plain(name, certificate, asked)
+    kinds = {row.kind for row in rows}
+    differs = kinds & {"counterexample", "sized"} if status != "REFUTED" else kinds <= {"proof", "words"}
+    if status in ("PROVED", "CERTIFIED", "REFUTED") and differs:
+        return [replace(row, status="REJECTED", why=f"not a certificate of what is {status}") for row in rows]
+    return rows
+
+
+def find_certificates(document: Any, place: str = "") -> Iterator[tuple[str, Any, Any]]:
+    """What stands under ``certificate`` anywhere in a document, its place, and the status beside; null is none."""
     entries = document.items() if isinstance(document, dict) else enumerate(document, start=1)
     for key, entry in entries:
         if key == "certificate" and entry is not None:
-            yield place, entry
+            yield place, entry, document.get("status")
         elif isinstance(entry, dict | list):
             yield from find_certificates(entry, f"{place}.{str(key)[:NAMED]}".strip("."))
 
@@ -217,8 +228,9 @@ def certificate_parts(certificates: list[Mapping[str, Any]], asked: Asked) -> li
 def check_plain(name: str, certificate: Any, asked: Asked) -> list[Check]:
     """A certificate as plain data, through the text that a file would hold; the parts of one that joins several."""
     kind = certificate.get("kind") if isinstance(certificate, Mapping) else None
-    if kind == "all" and isinstance(certificate.get("of"), list):
-        parts = enumerate(certificate["of"], start=1)
+    of = certificate.get("of") if kind == "all" and len(certificate) == 2 else None
+    if isinstance(of, list) and of:
+        parts = enumerate(of, start=1)
         return [row for place, part in parts for row in check_plain(f"{name}.{place}", part, asked)]
     beside = Path("build", "coq", f"{name.replace(' ', '-').replace('.', '-')}.json")
     try:
@@ -230,11 +242,13 @@ def check_plain(name: str, certificate: Any, asked: Asked) -> list[Check]:
 
 def check_text(name: str, text: str, beside: Path, asked: Asked) -> Check:
     """The text of a certificate."""
+    certificate: Any = None
     try:
         certificate = checker.load(text)
         row = Check(name, checker.check(certificate), "ACCEPTED", "")
     except checker.Refused as error:
-        return Check(name, kind_of(text), "REJECTED", str(error))
+        kind = certificate.get("kind") if isinstance(certificate, dict) else None
+        return Check(name, kind if isinstance(kind, str) else None, "REJECTED", str(error))
     return asked.confirm(row, certificate, beside)
 
 
@@ -249,13 +263,3 @@ def check_file(path: Path, asked: Asked) -> Check:
     except NavsymError as error:
         return Check(str(path), None, "REJECTED", error.message)
     return check_text(str(path), text, path, asked)
-
-
-def kind_of(text: str) -> str | None:
-    """The kind that a text says it has."""
-    try:
-        document = json.loads(text)
-    except (ValueError, RecursionError):
-        return None
-    kind = document.get("kind") if isinstance(document, dict) else None
-    return kind if isinstance(kind, str) else None

@@ -19,7 +19,7 @@ from flint import arb, arb_mat, arb_series, fmpq_mat, fmpz_mat
 from navsym.claims.display import write_card
 from navsym.core.answers import Answer, named
 from navsym.core.balls import precision, series_terms
-from navsym.core.errors import DomainError, EmptyError, ShapeError, UnknownSymbolError
+from navsym.core.errors import DomainError, EmptyError, ShapeError, TooLargeError, UnknownSymbolError
 from navsym.export.accuracy.rounding import DOUBLE, followed, up
 from navsym.export.differences import exact_range
 from navsym.export.expression_graph import Graph
@@ -109,7 +109,11 @@ def compare(
     if not isinstance(points, int) or isinstance(points, bool) or points < 2:
         raise DomainError(f"expected 2 points or more; got {points!r}; correct it", where="compare: points")
     prove(formula, "=", formula, seconds=seconds, **ranges)  # the reader's errors, and a range of no name of it
-    term = player.parse(write_numerals(formula))
+    try:
+        term = player.parse(write_numerals(formula))
+    except player.Refused as error:
+        message = f"expected operations and elementary functions of numbers; got {error}; write it with abs"
+        raise DomainError(message, where="compare: formula") from None
     for name in sorted(player.symbols_of(term) - set(names)):
         message = f'expected a range for each name; got none of {name}; write {name}=("0", "1")'
         raise UnknownSymbolError(message, where="compare")
@@ -121,7 +125,7 @@ def compare(
     try:
         bound, evidence = certify(sides, formula, box, [sample.point for sample in seen], worst, ranges, seconds)
         how = "certified"
-    except UntraceableError as error:
+    except (UntraceableError, TooLargeError) as error:  # the trace may be deeper than what is read
         bound, how, evidence = worst.difference, "sampled", f"not certified: {error}"
     place = {name: repr(value) for name, value in zip(names, worst.point, strict=True)}
     return FunctionComparison(how, write_upper(bound), place, write_upper(worst.difference), evidence, len(seen))
@@ -162,7 +166,7 @@ class Sides:
 
 
 def read_box(ranges: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
-    """The doubles that enclose each range; raises NavsymError for a range without two finite ends in order."""
+    """The first and the last double of each range; raises NavsymError for a range that has none, or no two ends."""
     if not ranges:
         raise EmptyError('expected a range for each argument; got none; write x=("0", "3")', where="compare")
     found = {}
@@ -172,9 +176,11 @@ def read_box(ranges: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
             raise ShapeError(f'expected two ends; got {quote(ends)}; write {name}=("0", "3")', where=where)
         with precision(BITS):
             lower, upper = (player.value_of(player.parse(str(end)), {}) for end in exact_range(name, ends))
-            if not (lower.is_finite() and upper.is_finite() and lower <= upper):
-                raise DomainError(f"expected two finite ends in order; got {quote(ends)}; correct it", where=where)
-            found[name] = (0.0 - float_above(-lower), float_above(upper))  # and never -0.0
+            low, high = 0.0 + float_above(lower), 0.0 - float_above(-upper)  # and never -0.0
+            if not (lower.is_finite() and upper.is_finite() and low <= high):
+                message = f"expected two finite ends in order, a double between; got {quote(ends)}; correct them"
+                raise DomainError(message, where=where)
+            found[name] = (low, high)
     return found
 
 

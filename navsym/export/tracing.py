@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from numbers import Integral
-from typing import Any
+from typing import Any, NoReturn
 
 import sympy as sp
 
@@ -34,6 +34,7 @@ UFUNCS = {
     "absolute": "abs",
     "fabs": "abs",
     "power": "pow",
+    "square": "pow",
     "float_power": "pow",
     "arcsin": "asin",
     "arccos": "acos",
@@ -61,6 +62,7 @@ UNARY = frozenset("neg abs sqrt sin cos tan exp log expm1 asin acos atan sinh co
 BINARY = frozenset("add sub mul div pow atan2 max min".split())
 SIGNS = {"add": "({} + {})", "sub": "({} - {})", "mul": "({}*{})", "div": "({}/{})", "pow": "({}**{})", "neg": "(-{})"}
 SIGNS |= {"expm1": "(exp({}) - 1)"}
+SIGNS |= {"max": "(({0} + {1} + abs({0} - {1}))/2)", "min": "(({0} + {1} - abs({0} - {1}))/2)"}
 
 
 class UntraceableError(Exception):
@@ -73,22 +75,28 @@ class Notes:
 
     nodes: list[Node] = field(default_factory=list)
     literals: list[float | None] = field(default_factory=list)
+    refused: str = ""
+
+    def refuse(self, why: str) -> NoReturn:
+        """End the trace for this reason, also where the function catches the error."""
+        self.refused = why
+        raise UntraceableError(why)
 
     def put(self, op: str, args: Sequence[Any] = (), value: Any = None, literal: float | None = None) -> Traced:
         """Note an operation; raises UntraceableError above the most of them."""
         places = tuple(self.wrap(a).place for a in args)
         if len(self.nodes) >= MOST_NODES:
-            raise UntraceableError(f"more than {MOST_NODES} operations")
+            self.refuse(f"more than {MOST_NODES} operations")
         self.nodes.append(Node(op, places, value))
         self.literals.append(literal)
         return Traced(self, len(self.nodes) - 1)
 
     def wrap(self, value: Any) -> Traced:
         """A number as an operation: a double stands for the shortest decimal that rounds to it, or a part of pi."""
-        if isinstance(value, Traced):
+        if type(value) is Traced:
             return value
         if isinstance(value, bool) or not isinstance(value, (float, Integral, Fraction)) or not math.isfinite(value):
-            raise UntraceableError(f"an operand that is no double: {type(value).__name__}")
+            self.refuse(f"an operand that is no double: {type(value).__name__}")
         if isinstance(value, (Integral, Fraction)):
             exact = Fraction(value)
         elif share := share_of_pi(float(value)):
@@ -99,26 +107,25 @@ class Notes:
 
     def apply(self, op: str, args: Sequence[Any]) -> Traced:
         """One operation on numbers of which one at least is traced; raises UntraceableError for what is none."""
-        if op == "pow" and isinstance(args[1], (float, int)) and float(args[1]).is_integer():
-            return self.power(self.wrap(args[0]), int(args[1]))
+        n = args[1] if op == "pow" and type(args[1]) is not Traced else None
+        if isinstance(n, (float, int)) and float(n).is_integer():
+            return self.power(self.wrap(args[0]), int(n))
         if op == "hypot" and args:
             return self.length([self.wrap(a) for a in args])
         if op in SCALES and len(args) == 1:
             scale = SCALES[op]
             return self.put("mul", (args[0], self.put("const", value=scale, literal=float(scale))))
         if len(args) != (1 if op in UNARY else 2) or op not in UNARY | BINARY:
-            raise UntraceableError(f"the function {op} of {len(args)} arguments")
+            self.refuse(f"the function {op} of {len(args)} arguments")
         return self.put(op, args)
 
     def power(self, base: Traced, n: int) -> Traced:
         """A whole power as products; products with 1 make the bound cover a library's pow, see ``PRODUCTS``."""
         if abs(n) > MOST_POWER:
-            raise UntraceableError(f"a power of {n}")
+            self.refuse(f"a power of {n}")
         found: Any = 1.0
-        for _ in range(PRODUCTS - abs(n)):
-            found = self.put("mul", (found, 1.0))
-        for _ in range(abs(n)):
-            found = self.put("mul", (found, base))
+        for k in range(max(PRODUCTS, abs(n))):
+            found = self.put("mul", (found, base if k < abs(n) else 1.0))
         return self.put("div", (1.0, found)) if n < 0 else self.wrap(found)
 
     def length(self, parts: Sequence[Traced]) -> Traced:
@@ -155,6 +162,11 @@ def noted_operator(op: str) -> tuple[Operator, Operator]:
     )
 
 
+def refuses(why: str) -> Any:
+    """The method that ends a trace for this reason."""
+    return lambda traced, *_: traced.notes.refuse(why)
+
+
 class Traced:
     """A number that notes what is done with it."""
 
@@ -172,36 +184,33 @@ class Traced:
     def __neg__(self) -> Traced:
         return self.notes.apply("neg", (self,))
 
-    def __pos__(self) -> Traced:
-        return self
-
     def __abs__(self) -> Traced:
         return self.notes.apply("abs", (self,))
+
+    def __pos__(self) -> Traced:
+        return self
 
     def __array_ufunc__(self, ufunc: Any, method: str, *args: Any, **named: Any) -> Traced:
         """A function of numpy."""
         name = str(ufunc.__name__)
-        if method != "__call__" or named or name == "square":
-            if name == "square" and not named:
-                return self.notes.power(self, 2)
-            raise UntraceableError(f"numpy's {name} with options")
-        return self.notes.apply(UFUNCS.get(name, name), args)
+        if method != "__call__" or named:
+            self.notes.refuse(f"numpy's {name} with options")
+        return self.notes.apply(UFUNCS.get(name, name), (*args, 2) if name == "square" else args)
 
-    def __bool__(self) -> bool:
-        raise UntraceableError("a branch")
+    def __getattr__(self, name: str) -> Any:
+        """What a double has and this number has not ends the trace."""
+        if hasattr(float, name):
+            self.notes.refuse(f"a double's {name}")
+        raise AttributeError(name)
 
-    def compare(self, other: Any) -> bool:
-        """Every comparison."""
-        raise UntraceableError("a comparison")
-
-    __lt__ = __le__ = __gt__ = __ge__ = __eq__ = __ne__ = compare  # type: ignore[assignment]
-    __hash__ = None  # type: ignore[assignment]
-
-    def convert(self, *_: Any) -> Any:
-        """Every conversion."""
-        raise UntraceableError("a conversion to another number")
-
-    __float__ = __int__ = __index__ = __complex__ = __round__ = __floor__ = __ceil__ = convert
+    __class__ = property(lambda self: float)  # type: ignore[assignment]  # for isinstance it is a double
+    __bool__ = refuses("a branch")
+    __lt__ = __le__ = __gt__ = __ge__ = __eq__ = __ne__ = refuses("a comparison")
+    __float__ = __int__ = __index__ = __complex__ = __round__ = __floor__ = __ceil__ = __trunc__ = __hash__ = refuses(
+        "a conversion to another number"
+    )
+    __str__ = __repr__ = __format__ = refuses("a conversion to text")
+    __floordiv__ = __rfloordiv__ = __mod__ = __rmod__ = __divmod__ = __rdivmod__ = refuses("a division with rest")
 
 
 def trace(function: Callable[..., Any], names: Sequence[str], by_name: bool) -> tuple[Graph, list[float | None]]:
@@ -219,11 +228,11 @@ def trace(function: Callable[..., Any], names: Sequence[str], by_name: bool) -> 
             noted = with_noted_math(function, {})
             answer = noted(**given) if by_name else noted(*given.values())
         root = notes.wrap(answer).place
-    except UntraceableError:
-        raise
     except Exception as error:  # whatever a function does with what is no double
         words = (str(error).splitlines() or [""])[0]
-        raise UntraceableError(f"{type(error).__name__}: {words}"[:200]) from None
+        raise UntraceableError(notes.refused or f"{type(error).__name__}: {words}"[:200]) from None
+    if notes.refused:
+        raise UntraceableError(notes.refused)
     graph = Graph(tuple(sp.Symbol(name, real=True) for name in names), tuple(notes.nodes), (root,))
     return graph, notes.literals
 
@@ -282,7 +291,7 @@ def noted_value(value: Any) -> Any:
     plain: Any = value
 
     def noted(*args: Any) -> Any:
-        traced = next((a for a in args if isinstance(a, Traced)), None)
+        traced = next((a for a in args if type(a) is Traced), None)
         return plain(*args) if traced is None else traced.notes.apply(UFUNCS.get(name, name), args)
 
     return noted

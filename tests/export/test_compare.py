@@ -239,3 +239,80 @@ def test_what_cannot_be_called_is_refused():
 def test_the_answer_is_plain_data():
     document = nav.compare(sine_over_argument, "sin(x)/x", x=("1", "2"), points=10).document()
     assert set(document) == {"how", "bound", "worst", "deviation", "evidence", "points"} and document["points"] == 10
+
+
+@pytest.mark.parametrize(
+    ("function", "formula", "double"),
+    [
+        (lambda y: math.atan2((y + 0.1) - 0.1, -1.0), "atan2(y, -1)", -1e-300),
+        (lambda y: math.atan2(-y, -1.0), "atan2(-y, -1)", 0.0),
+        (lambda y: math.atan2(y, -1.0), "atan2(y, -1)", -0.0),
+    ],
+)
+def test_a_bound_across_the_cut_of_an_angle_has_a_turn(function, formula, double):
+    """Rounding moves an angle across the cut; so does the sign of a zero. No sample meets these doubles."""
+    answer = nav.compare(function, formula, y=("-1", "2"))
+    exact = math.atan2(double + 0.0, -1.0)
+    assert answer.how == "sampled" or float(answer.bound) >= abs(function(double) - exact) > 6
+
+
+def other_for_doubles(x):
+    return 7.0 if isinstance(x, float) and abs(x - 1.2345) < 1e-4 else x * x
+
+
+def other_where_it_counts_as_number(x):
+    return 7.0 if np.isscalar(x) and abs(x - 1.2345) < 1e-4 else x * x
+
+
+def other_with_the_methods_of_doubles(x):
+    return 7.0 if hasattr(x, "is_integer") and abs(x - 1.2345) < 1e-4 else x * x
+
+
+def other_behind_a_caught_error(x):
+    try:
+        if abs(x - 1.2345) < 1e-4:
+            return 7.0
+    except Exception:  # as careless code has it
+        pass
+    return x * x
+
+
+def other_by_a_division_with_rest(x):
+    try:
+        return x * x + ((x - 1.2345) ** 2 + 1 - 1e-8) // 1 - 1
+    except TypeError:
+        return x * x - 1
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        other_for_doubles,
+        other_where_it_counts_as_number,
+        other_with_the_methods_of_doubles,
+        other_behind_a_caught_error,
+        other_by_a_division_with_rest,
+    ],
+)
+def test_a_branch_that_few_doubles_take_is_never_certified(function):
+    assert nav.compare(function, "x**2", x=("0", "2")).how == "sampled"
+
+
+def test_only_doubles_within_the_ends_count():
+    """The double 0.1 is above 1/10, where this formula has a slope that the proof did not cover."""
+    answer = nav.compare(lambda x: 0 * x, "1000000*(abs(x - 1/10) + x - 1/10)", x=("0", "1/10"))
+    assert answer.how == "certified" and float(answer.deviation) < 1e-40
+    with pytest.raises(nav.NavsymError, match="a double between"):
+        nav.compare(lambda x: x, "x", x=("1/3", "1/3 + 1/10**30"))
+
+
+def test_the_larger_of_two_numbers_is_followed():
+    answer = nav.compare(lambda x: np.maximum(x, 0.5) - np.minimum(x, 0.5), "abs(x - 1/2)", x=("0", "1"))
+    assert answer.how == "certified" and float(answer.bound) < 1e-15
+
+
+def test_a_trace_too_deep_to_be_read_is_sampled_and_cases_in_a_formula_are_refused():
+    deep = nav.compare(lambda x: sum([0.1 * x] * 100), "10*x", x=("0", "1"))
+    assert deep.how == "sampled" and "levels" in deep.evidence
+    with pytest.raises(nav.NavsymError, match="expected operations and elementary functions"):
+        nav.compare(lambda x: x, "where(x > 1/2, x, 1)", x=("0", "1"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 from pathlib import Path
 
 import pytest
@@ -70,3 +71,25 @@ def test_a_forged_certificate_is_rejected(drift):
 def test_a_wrong_argument_is_a_navsym_error_that_says_what_to_write(call, words):
     with pytest.raises(nav.NavsymError, match=words):
         call()
+
+
+def test_a_document_that_says_more_than_its_certificate_is_rejected(tmp_path):
+    """A status that was edited, a list without certificates, and keys given twice, beside a certificate that holds."""
+    claims = nav.prove("x**2 >= 0", x="real").document(), nav.prove("x**2 > 0", x="real").document()
+    assert [claim["status"] for claim in claims] == ["PROVED", "REFUTED"]
+    file = tmp_path / "document.json"
+
+    def statuses(*rows):
+        file.write_text(json.dumps({"claims": rows}))
+        return [row.status for row in nav.check(file)]
+
+    good, bad = claims
+    assert statuses(good, bad) == ["ACCEPTED", "ACCEPTED"]
+    assert statuses(good, {**bad, "status": "PROVED"}) == ["ACCEPTED", "REJECTED"]
+    assert statuses(bad, {**good, "status": "REFUTED"}) == ["ACCEPTED", "REJECTED"]
+    assert statuses(good, {**good, "certificate": bad["certificate"]}) == ["ACCEPTED", "REJECTED"]
+    assert statuses(good, {**good, "certificate": {}}) == ["ACCEPTED", "REJECTED"]
+    assert statuses(good, {**good, "certificate": {"kind": "all", "of": []}}) == ["ACCEPTED", "REJECTED"]
+    text = json.dumps({"claims": [good]})
+    file.write_text(text.replace('"statement": {', '"statement": {"left": "1",', 1))
+    assert [row.status for row in nav.check(file)] == ["REJECTED"]

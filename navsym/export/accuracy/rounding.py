@@ -246,6 +246,9 @@ def exact_value(node: Node, args: list[Bounded]) -> arb:
 
 def propagated(node: Node, args: list[Bounded], value: arb) -> tuple[arb, arb]:
     """Bounds of the error that the arguments bring, before the operation's own rounding."""
+    # Across the cut they bring a turn, also zero by its sign.
+    if node.op == "atan2" and not (down(args[0].value) > args[0].absolute or args[1].value > args[1].absolute):
+        return 2 * arb.pi(), INFINITE
     if all(a.absolute == 0 for a in args):
         return arb(0), arb(0)
     if node.op in ("add", "sub"):
@@ -303,7 +306,8 @@ def carried_arctangent(args: list[Bounded], value: arb) -> tuple[arb, arb]:
 def carried_extreme(args: list[Bounded], value: arb) -> tuple[arb, arb]:
     """Bounds of the error of max or min: the larger of the two."""
     a, b = args
-    return a.absolute.max(b.absolute), a.relative.max(b.relative)
+    relative = a.relative.max(b.relative)
+    return a.absolute.max(b.absolute), relative if relative < 1 else INFINITE
 
 
 PAIRS = {
