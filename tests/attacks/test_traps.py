@@ -12,15 +12,17 @@ from tests.attacks.campaigns.code import Subject
 from tests.attacks.traps import list_traps, read_trap
 
 LONG = pytest.mark.long
-TOOLS = [("python", "python3"), ("c", "gcc"), *(pytest.param(*pair, marks=LONG) for pair in (
-    ("cpp", "g++"), ("matlab", "octave"), ("rust", "rustc")))]  # fmt: skip
+TOOLS = {"python": "python3", "c": "gcc", "cpp": "g++", "matlab": "octave", "rust": "rustc"}
 
 
-@pytest.mark.parametrize(("language", "tool"), TOOLS)
-def test_what_is_read_of_a_trap_is_what_it_computes(language, tool):
+@pytest.mark.parametrize(
+    ("language", "every"), [("python", 4), ("c", 4), *(pytest.param(name, 1, marks=LONG) for name in TOOLS)]
+)
+def test_what_is_read_of_a_trap_is_what_it_computes(language, every):
+    tool = TOOLS[language]
     if shutil.which(tool) is None:
         pytest.skip(f"needs {tool}")
-    answers = {trap.name: read_trap(trap) for trap in list_traps(language)}
+    answers = {trap.name: read_trap(trap) for trap in [*list_traps(language)][::every]}
     assert {name: notes for name, (answer, notes) in answers.items() if answer in ("wrong", "silent")} == {}
     counts = Counter(answer for answer, _ in answers.values())
     assert counts["right"] >= len(answers) // 4  # what is refused is never wrong
