@@ -51,7 +51,11 @@ def audit_fault(folder, line, old, new):
     return nav.audit(folder / "spec.toml")["same"]
 
 
-@pytest.mark.parametrize("kind", FAULTS)
+#: Every second kind in every run, the others in the long ones.
+KINDS = [pytest.param(kind, marks=[pytest.mark.long] * (place % 2)) for place, kind in enumerate(FAULTS)]
+
+
+@pytest.mark.parametrize("kind", KINDS)
 def test_each_kind_of_fault_is_mended(kind, tmp_path):
     line, old, new, mend = FAULTS[kind]
     question = audit_fault(tmp_path, line, old, new)

@@ -71,13 +71,15 @@ MODELS = [
     for path in sorted(folder.glob("*.toml"))
     if {"model", "measurement"} <= tomllib.loads(path.read_text(encoding="utf-8")).keys()
 ]
-SLOW_MODELS = ("conventions",)
+#: Every third in every run, the others in the long ones, one by hand.
+MARKS = [
+    [pytest.mark.slow] if path.stem == "conventions" else [pytest.mark.long] if place % 3 else []
+    for place, path in enumerate(MODELS)
+]
 
 
 @needs_compilers
-@pytest.mark.parametrize(
-    "path", [pytest.param(p, id=p.stem, marks=[pytest.mark.slow] * (p.stem in SLOW_MODELS)) for p in MODELS]
-)
+@pytest.mark.parametrize("path", [pytest.param(p, id=p.stem, marks=m) for p, m in zip(MODELS, MARKS, strict=True)])
 def test_an_example_model_is_compiled_and_replayed(path, tmp_path):
     """Every model with measurements in the examples and in a new workspace, without a warning of the compilers."""
     made = nav.export(str(path), to=["c", "cpp"], out=tmp_path, vectors=8)
