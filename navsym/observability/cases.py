@@ -111,29 +111,35 @@ def is_whole(search: Search, rows: Matrix, rank: int, system: System, pivot: Pol
 
 def is_irreducible(system: System, ring: Ring) -> bool:
     """True when all equations but one name a variable each: a graph over an irreducible hypersurface."""
-    rest = [f for f in system if solved_variable(f, system, ring) is None]
+    rest = [f for f, place in solved_variables(system, ring) if place is None]
     return not rest or (len(rest) == 1 and irreducible_factors(rest[0]) in ([rest[0]], [-rest[0]]))
 
 
-def solved_variable(f: Poly, system: System, ring: Ring) -> int | None:
-    """Place of a variable x with f = c x - g, where c is a unit without x, and x stands in no other equation."""
-    listed = f.to_dict()
-    for place in range(len(ring.symbols)):
-        if f.degrees()[place] != 1 or any(other is not f and other.degrees()[place] for other in system):
-            continue
-        alone = [powers for powers in listed if powers[place]]
-        if (len(alone) == 1 and sum(alone[0]) == 1) or (ring.units and ring.is_unit(f.derivative(place))):
-            return place
-    return None
+def solved_variables(system: System, ring: Ring) -> list[tuple[Poly, int | None]]:
+    """Every equation f with the place of a variable x that it names; None where it names none.
+
+    f = c x - g, where c is a unit without x, and x stands in no other equation.
+    """
+    held = [f.degrees() for f in system]
+    uses = [sum(map(bool, degrees)) for degrees in zip(*held, strict=True)]
+    found: list[tuple[Poly, int | None]] = []
+    for f, degrees in zip(system, held, strict=True):
+        places = (k for k, degree in enumerate(degrees) if degree == 1 == uses[k])
+        found.append((f, next((k for k in places if ring.is_unit(f.derivative(k))), None)))
+    return found
 
 
 def substitute_row(row: list[Poly], system: System, ring: Ring) -> list[Poly]:
     """The row with the variables that the system solves for replaced; a row times a unit."""
-    for f in system:
-        place = solved_variable(f, system, ring) if len(f) <= SOLUTION else None
-        if place is not None:
-            row = replace_in_row(row, f, place, ring)
-    return row
+    return substitute_rows([row], system, ring)[0]
+
+
+def substitute_rows(rows: Matrix, system: System, ring: Ring) -> Matrix:
+    """The rows with the variables that the system solves for replaced; rows times units."""
+    for f, place in solved_variables(system, ring):
+        if place is not None and len(f) <= SOLUTION:
+            rows = [replace_in_row(row, f, place, ring) for row in rows]
+    return rows
 
 
 def replace_in_row(row: list[Poly], f: Poly, place: int, ring: Ring) -> list[Poly]:
@@ -152,11 +158,6 @@ def replace_in_entry(entry: Poly, place: int, value: Poly, factor: Poly, degree:
     for (power,), rest in powers_apart(entry, place).items():
         total += rest * value**power * factor ** (degree - power)
     return total
-
-
-def substitute_rows(rows: Matrix, system: System, ring: Ring) -> Matrix:
-    """The rows with the variables that the system solves for replaced; rows times units."""
-    return [substitute_row(row, system, ring) for row in rows]
 
 
 def minors_on(rows: Matrix, wanted: int, system: System, ring: Ring) -> tuple[list[Poly], Poly]:

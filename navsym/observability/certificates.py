@@ -25,7 +25,7 @@ from navsym.core.rational_functions import cancel_fraction, replace_square
 from navsym.language.printer import to_text
 from navsym.models.certificates import matrix_texts
 from navsym.models.linear import LinearModel
-from navsym.observability.cases import replace_in_entry, solved_variable
+from navsym.observability.cases import replace_in_entry, solved_variables
 from navsym.observability.chains import JointObservability
 from navsym.observability.linear import Matrix, null_vectors, scalar_product
 from navsym.observability.motion import Motion, motion_of
@@ -258,7 +258,7 @@ def as_combination(value: Poly, zeros: System, said: Statement) -> tuple[list[Po
     """(factors q, unit u) with u value = sum q_k zeros_k up to squares of roots; None where there are none."""
     ring = said.ring
     unit, parts = ring.constant(1), [ring.constant(0) for _ in zeros]
-    places = [own_variable(f, zeros, ring) for f in zeros]
+    places = own_variables(zeros, ring)
     for k in sorted(range(len(zeros)), key=lambda k: places[k] is None):
         f, place = zeros[k], places[k]
         scale = ring.constant(1)
@@ -277,11 +277,13 @@ def as_combination(value: Poly, zeros: System, said: Statement) -> tuple[list[Po
     return (parts, unit) if said.motion.reduced(value) == 0 else divide_on(value, zeros, parts, unit)
 
 
-def own_variable(f: Poly, system: System, ring: Ring) -> int | None:
-    """Place of a variable of degree one that stands in no other equation, with a unit as its factor if possible."""
-    place = solved_variable(f, system, ring)
-    alone = (k for k, _ in linear_places(f) if not any(g is not f and g.degrees()[k] for g in system))
-    return min(alone, key=lambda k: len(f.derivative(k)), default=None) if place is None else place
+def own_variables(system: System, ring: Ring) -> list[int | None]:
+    """Places of variables of degree one that stand in no other equation, with a unit as factor where it can be."""
+    found = []
+    for f, place in solved_variables(system, ring):
+        alone = (k for k, _ in linear_places(f) if not any(g is not f and g.degrees()[k] for g in system))
+        found.append(min(alone, key=lambda k: len(f.derivative(k)), default=None) if place is None else place)
+    return found
 
 
 def divide_on(value: Poly, zeros: System, parts: list[Poly], unit: Poly) -> tuple[list[Poly], Poly] | None:

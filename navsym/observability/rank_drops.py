@@ -23,8 +23,8 @@ from navsym.observability.cases import drops_by_cases
 from navsym.observability.chains import Chain, Chains, JointObservability
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
-from navsym.observability.reduction import Hashed, System, components, irredundant, krylov_remainder
-from navsym.observability.ring import Poly, Ring, irreducible_factors, is_odd
+from navsym.observability.reduction import System, components, irredundant, krylov_remainder
+from navsym.observability.ring import Hashed, Poly, Ring, irreducible_factors, is_odd
 from navsym.observability.tree import SPLIT_TERMS, Leaf, is_covered, leaf_on, lost_columns, search_drops
 from navsym.prove.assumptions import is_nonzero
 

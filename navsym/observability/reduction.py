@@ -22,7 +22,7 @@ from navsym.core.errors import TooLargeError
 from navsym.core.rational_functions import factor_exactly, polynomial_sum
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
-from navsym.observability.ring import Poly, Ring, gcd_all, irreducible_factors, is_divisor
+from navsym.observability.ring import Hashed, Poly, Ring, gcd_all, irreducible_factors, is_divisor
 from navsym.prove.signs.bounds import Sign, prove_sign
 
 # Common real zeros of polynomials as a list of simple systems.
@@ -182,19 +182,6 @@ def is_nowhere(system: Sequence[Poly], ring: Ring) -> bool:
     """Sine and cosine of half an angle do not vanish together."""
     gens = [(ring.context.gen(sine), ring.context.gen(cosine)) for sine, cosine in ring.pairs()]
     return any(all(any(f == g or f == -g for f in system) for g in pair) for pair in gens)
-
-
-@dataclass(frozen=True, slots=True)
-class Hashed:
-    """A polynomial that can stand in a set: equal texts are equal polynomials of one ring."""
-
-    poly: Poly
-
-    def __hash__(self) -> int:
-        return hash(str(self.poly))
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Hashed) and self.poly == other.poly
 
 
 def irredundant(systems: list[list[Poly]]) -> list[list[Poly]]:

@@ -6,6 +6,7 @@ and greatest common divisors of polynomials. Matrices come in as sympy and go ou
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import comb, lcm
@@ -341,6 +342,25 @@ def gcd_all(values: Iterable[Poly], zero: Poly) -> Poly:
     return common
 
 
+@dataclass(frozen=True, slots=True)
+class Hashed:
+    """A polynomial that can stand in a set: equal texts are equal polynomials of one ring."""
+
+    poly: Poly
+
+    def __hash__(self) -> int:
+        return hash(str(self.poly))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Hashed) and self.poly == other.poly
+
+
 def irreducible_factors(value: Poly) -> list[Poly]:
     """Different irreducible factors that are not numbers."""
-    return [base for base, _ in factor_exactly(value)[1]]
+    return list(factors_of(Hashed(value)))
+
+
+@functools.lru_cache(4096)
+def factors_of(value: Hashed) -> tuple[Poly, ...]:
+    """The factors of a polynomial; a search meets the same equations in many cases."""
+    return tuple(base for base, _ in factor_exactly(value.poly)[1])

@@ -24,11 +24,17 @@ from flint import Ordering, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
 from navsym.core.errors import TooLargeError
 from navsym.core.rational_functions import powers_apart
-from navsym.observability.cases import SOLUTION, is_irreducible, replace_in_row, solved_variable, substitute_row
+from navsym.observability.cases import (
+    SOLUTION,
+    is_irreducible,
+    replace_in_row,
+    solved_variables,
+    substitute_row,
+    substitute_rows,
+)
 from navsym.observability.linear import Matrix, primitive_vector
 from navsym.observability.motion import Motion
 from navsym.observability.reduction import (
-    Hashed,
     System,
     UnitBasis,
     alternatives,
@@ -42,7 +48,7 @@ from navsym.observability.reduction import (
     small_points,
     two_squares,
 )
-from navsym.observability.ring import Poly, Ring, irreducible_factors
+from navsym.observability.ring import Hashed, Poly, Ring, irreducible_factors
 
 #: Nodes looked at, terms of a row, and terms of an entry to split on; what lies beyond is listed as open.
 NODES, TERMS, SPLIT_TERMS = 120, 2000, 400
@@ -281,7 +287,7 @@ def solve_further(system: System, ring: Ring, motion: Motion | None) -> Parts | 
             y, others = ring.context.gen(own), [g for g in system if g is not f]
             at_zero = [twice, b, 2 * f - 2 * b * y - twice * y**2]
             return [([*others, twice * y + b, root], ring.with_units([twice])), ([*others, *at_zero], ring)]
-    unsolved = [f for f in system if solved_variable(f, system, ring) is None]
+    unsolved = [f for f, place in solved_variables(system, ring) if place is None]
     for f in unsolved:
         place = next((k for k, c in linear_places(f) if ring.is_unit(c)), None)
         if place is not None:
@@ -320,7 +326,8 @@ def derived_parts(system: System, unsolved: System, ring: Ring, motion: Motion |
     """The system with the derivative of an equation along a motion; None where all are zero on it."""
     if motion is None or not motion.rates:
         return None
-    moved = [ring.without_units(substitute_row([motion.derivative(f)], system, ring)[0]) for f in system]
+    rows = substitute_rows([[motion.derivative(f)] for f in system], system, ring)
+    moved = [ring.without_units(f) for (f,) in rows]
     fresh = [f for f in moved if f != 0 and not lies_in_ideal(f, unsolved)]
     if not fresh:
         return None
@@ -397,7 +404,7 @@ def has_dense_points(system: System, ring: Ring) -> bool:
     Theorem: an irreducible f that has both signs generates all polynomials that vanish on its real zeros. The variables
     that the other equations name follow.
     """
-    rest = [f for f in system if solved_variable(f, system, ring) is None]
+    rest = [f for f, place in solved_variables(system, ring) if place is None]
     points = small_points(len(ring.symbols))
     return all(len({f(*point) > 0 for point in points if f(*point) != 0}) == 2 for f in rest)
 
@@ -452,8 +459,7 @@ def solving_units(system: System, ring: Ring, domain: Ring) -> list[Poly]:
     """
     units = ring.units
     if is_irreducible(system, ring):
-        places = [(f, solved_variable(f, system, ring)) for f in system]
-        factors = [f.derivative(k) for f, k in places if k is not None]
+        factors = [f.derivative(k) for f, k in solved_variables(system, ring) if k is not None]
         units = tuple(unit for factor in factors for unit in irreducible_factors(factor))
     known = [*map(str, domain.units)]
     return list({str(unit): unit for unit in units if str(unit) not in known}.values())
