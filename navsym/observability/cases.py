@@ -17,7 +17,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from navsym.core.errors import TooLargeError
-from navsym.core.rational_functions import powers_apart
 from navsym.observability.linear import Matrix, clear_column, sparsest
 from navsym.observability.reduction import System, components, lies_in_ideal, take_out_regular
 from navsym.observability.ring import Poly, Ring, irreducible_factors
@@ -155,9 +154,13 @@ def replace_in_row(row: list[Poly], f: Poly, place: int, ring: Ring) -> list[Pol
 def replace_in_entry(entry: Poly, place: int, value: Poly, factor: Poly, degree: int, ring: Ring) -> Poly:
     """c^degree times the entry at x = value/c."""
     total = ring.constant(0)
-    for (power,), rest in powers_apart(entry, place).items():
-        total += rest * value**power * factor ** (degree - power)
-    return total
+    for power in range(entry.degrees()[place] if entry != 0 else 0, 0, -1):
+        lead = entry
+        for k in range(power):
+            lead = lead.derivative(place) / (k + 1)
+        entry = entry - lead * ring.context.gen(place) ** power
+        total += lead * value**power * factor ** (degree - power)
+    return total + entry * factor**degree
 
 
 def minors_on(rows: Matrix, wanted: int, system: System, ring: Ring) -> tuple[list[Poly], Poly]:

@@ -106,6 +106,8 @@ def alternatives(f: Poly, ring: Ring) -> list[list[Poly]]:
 def real_systems(system: list[Poly], ring: Ring) -> list[list[Poly]]:
     """A sum of squares of monomials vanishes over the reals only where every monomial does."""
     f = system[0]
+    if any(degree % 2 for degree in f.degrees()):
+        return [system]
     terms = f.to_dict()
     signs = {int(c) > 0 for c in terms.values()}
     if len(terms) < 2 or len(signs) > 1 or any(p % 2 for powers in terms for p in powers):
@@ -159,11 +161,10 @@ def reduce_generators(system: list[Poly], ring: Ring) -> list[Poly] | None:
 
 def is_definite(f: Poly) -> bool:
     """True for a polynomial that is proved to have one sign at all real points: it vanishes nowhere."""
-    terms = f.to_dict()
-    at_zero = terms.get((0,) * f.context().nvars(), 0)
-    if at_zero == 0 or f.total_degree() % 2 or len(terms) > DEFINITE_TERMS:
-        return False
     size = f.context().nvars()
+    at_zero = f[(0,) * size]
+    if at_zero == 0 or f.total_degree() % 2 or len(f) > DEFINITE_TERMS:
+        return False
     if any(f(*point) * at_zero <= 0 for point in small_points(size)):
         return False
     names = [sp.Symbol(f"x{k}", real=True) for k in range(size)]
