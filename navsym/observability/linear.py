@@ -8,7 +8,7 @@ together are the generic rank; no coefficient is ever tested for being "probably
 from __future__ import annotations
 
 import random
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from flint import nmod_mat
@@ -67,41 +67,12 @@ def independent_places(rows: list[list[int]]) -> list[int]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reduced:
-    """Row-reduced form without fractions: ``pivot * identity`` on the pivot columns.
-
-    The result of :func:`triangular_form` is triangular there instead.
-    """
+    """Triangular form without fractions: row k has zeros in the pivot columns of the earlier rows."""
 
     pivot: Poly
     rows: Matrix
     columns: tuple[int, ...]  # pivot column of each row
     sign: int  # of the row permutation
-
-
-def pivot_rows(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None) -> Reduced:
-    """Row-reduced form without fractions, pivots taken from the given columns (all by default).
-
-    Bareiss' elimination downwards, then each free column by substitution upwards: a column that is a pivot
-    needs no arithmetic at all. Every division is exact; the last pivot is the determinant of the pivot
-    block up to the sign.
-    """
-    found = triangular_form(matrix, ring, columns)
-    size = len(found.rows)
-    width = len(matrix[0]) if matrix else 0
-    zero = ring.constant(0)
-    rows = [[zero] * width for _ in range(size)]
-    for row, column in zip(rows, found.columns, strict=True):
-        row[column] = found.pivot
-    for column in (k for k in range(width) if k not in found.columns):
-        for k in range(size - 1, -1, -1):
-            upper = found.rows[k]
-            total = found.pivot * upper[column] if upper[column] != 0 else zero
-            for later in range(k + 1, size):
-                factor = upper[found.columns[later]]
-                if factor != 0 and rows[later][column] != 0:
-                    total = total - factor * rows[later][column]
-            rows[k][column] = total / upper[found.columns[k]] if total != 0 else zero
-    return Reduced(found.pivot, rows, found.columns, found.sign)
 
 
 def triangular_form(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None) -> Reduced:
@@ -201,16 +172,13 @@ def linear_relation(vectors: Matrix, target: list[Poly], ring: Ring) -> list[Quo
         return [] if all(x == 0 for x in target) else None
     stacked = [[*column, t] for column, t in zip(zip(*vectors, strict=True), target, strict=True)]
     size = len(vectors)
-    reduced = pivot_rows(stacked, ring, range(size))
-    if len(reduced.rows) < size:
+    found = triangular_form(stacked, ring, range(size))
+    if len(found.rows) < size:
         raise ArithmeticError("relation: the vectors are dependent")
-    values = [ring.constant(0)] * size
-    for row, column in zip(reduced.rows, reduced.columns, strict=True):
-        values[column] = row[size]
-    for k, t in enumerate(target):
-        if scalar_product(values, [v[k] for v in vectors], ring.constant(0)) != reduced.pivot * t:
-            return None
-    return [cancel_fraction(value, reduced.pivot) for value in values]
+    (relation,) = null_columns(found.rows, found.columns, size + 1, ring)
+    if any(scalar_product(row, relation, ring.constant(0)) != 0 for row in stacked):
+        return None
+    return [cancel_fraction(-value, relation[size]) for value in relation[:size]]
 
 
 def null_vectors(rows: Matrix, size: int, ring: Ring) -> Matrix:
@@ -220,18 +188,29 @@ def null_vectors(rows: Matrix, size: int, ring: Ring) -> Matrix:
     """
     if not rows:
         return [[ring.constant(int(i == k)) for i in range(size)] for k in range(size)]
-    reduced = pivot_rows(rows, ring)
-    basis = []
-    for free in (k for k in range(size) if k not in reduced.columns):
-        vector = [ring.constant(0)] * size
-        vector[free] = reduced.pivot
-        for row, column in zip(reduced.rows, reduced.columns, strict=True):
-            vector[column] = -row[free]
-        basis.append(primitive_vector(vector, ring))
+    found = triangular_form(rows, ring)
+    basis = list(null_columns(found.rows, found.columns, size, ring))
     for vector in basis:
         if any(scalar_product(row, vector, ring.constant(0)) != 0 for row in rows):
             raise ArithmeticError("null_vectors: a product does not vanish")
     return basis
+
+
+def null_columns(rows: Matrix, places: Sequence[int], size: int, ring: Ring) -> Iterator[list[Poly]]:
+    """For every free column the vector on which all rows vanish, without a common factor.
+
+    rows : triangular: row k has zeros in the columns ``places`` of the earlier ones
+    """
+    for free in (k for k in range(size) if k not in places):
+        vector = [ring.constant(0)] * size
+        vector[free] = ring.constant(1)
+        for row, place in zip(reversed(rows), reversed(places), strict=True):
+            top = scalar_product(row, vector, ring.constant(0))
+            if top != 0:
+                common = top.gcd(row[place])
+                vector = [entry * (row[place] / common) if entry != 0 else entry for entry in vector]
+                vector[place] = -top / common
+        yield primitive_vector(vector, ring)
 
 
 def primitive_vector(vector: list[Poly], ring: Ring) -> list[Poly]:

@@ -32,7 +32,7 @@ from navsym.observability.cases import (
     substitute_row,
     substitute_rows,
 )
-from navsym.observability.linear import Matrix, primitive_vector
+from navsym.observability.linear import Matrix, null_columns
 from navsym.observability.motion import Motion
 from navsym.observability.reduction import (
     System,
@@ -132,17 +132,7 @@ class Node:
 
     def unseen(self, width: int) -> Matrix:
         """The columns of so many entries that vanish on the basis, by its free columns."""
-        found = []
-        for free in (k for k in range(width) if k not in self.basis.columns):
-            column = [self.ring.constant(0)] * width
-            column[free] = common = self.ring.constant(1)
-            for row, place in zip(self.basis.rows, self.basis.columns, strict=True):
-                top, bottom = -row[free] * common, row[place]
-                share = bottom / bottom.gcd(top) if top != 0 else self.ring.constant(1)
-                common, column = common * share, [entry * share for entry in column]
-                column[place] = top * share / bottom
-            found.append(primitive_vector(column, self.ring))
-        return found
+        return list(null_columns(self.basis.rows, self.basis.columns, width, self.ring))
 
 
 def need_short(row: list[Poly]) -> list[Poly]:
