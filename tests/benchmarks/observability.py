@@ -24,7 +24,7 @@ from sympy.polys.matrices import DomainMatrix
 
 from navsym.models.linear import LinearModel, observability_matrix
 from navsym.observability.chains import chains_of, numerators, observe_jointly, prove_rank
-from navsym.observability.linear import pivot_rows
+from navsym.observability.linear import null_columns, triangular_form
 from navsym.observability.rank_drops import chain_determinant, find_joint_drops
 from navsym.observability.ring import Ring
 from navsym_papers.joint_correction.inertial import FULL, full_model
@@ -184,14 +184,15 @@ def square_part(model: LinearModel) -> sp.Matrix:
 
 
 def ours_reduce(matrix: sp.Matrix) -> int:
-    """Fraction-free row-reduced form."""
+    """Null space by elimination without fractions; the rank."""
     ring = Ring.of(matrix)
     entries, _ = numerators([matrix[r, :] for r in range(matrix.rows)], ring)
-    return len(pivot_rows(entries, ring).rows)
+    found = triangular_form(entries, ring)
+    return matrix.cols - len(list(null_columns(found.rows, found.columns, matrix.cols, ring)))
 
 
 def sympy_reduce(matrix: sp.Matrix) -> int:
-    """The peer: the same form over the polynomial ring."""
+    """The peer: the reduced form over the polynomial ring, whose free columns are the null space."""
     symbols = sorted(matrix.free_symbols, key=str)
     domain = sp.ZZ[tuple(symbols)] if symbols else sp.ZZ
     return len(DomainMatrix.from_Matrix(matrix).convert_to(domain).to_sparse().rref_den()[2])
