@@ -319,8 +319,9 @@ def points_on(zeros: System, said: Statement, symbols: Sequence[sp.Symbol]) -> I
             s: sp.Rational(sp.prime(2 * i + k + 3), c * (7 * i + 2 * k + 9))
             for i, (s, c) in enumerate(zip(symbols, signed, strict=True))
         }
-        at |= {s: TURNS[k % len(TURNS)] for s in angles if k < len(TURNS)}
-        rest = [value for text in texts if (value := text.subs({s: at[s] for s in angles})) != 0]
+        at |= {s: TURNS[k] if k < len(TURNS) else 4 * sp.atan(sp.Rational(1, k)) for s in angles}
+        here = [text.subs({s: at[s] for s in angles}).expand(trig=True) for text in texts]
+        rest = [value for value in here if value != 0]
         if all(value.free_symbols for value in rest):
             with suppress(BasePolynomialError, np.linalg.LinAlgError):
                 yield at | (solve_near(rest, at, k) if rest else {})
