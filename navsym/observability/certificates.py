@@ -35,7 +35,7 @@ from navsym.observability.ring import Poly, Ring
 from navsym.observability.tree import linear_places
 
 #: Points tried, terms of the columns and of all remainders, and bits for each state.
-POINTS, COLUMN_TERMS, TERMS, BITS = 6, 600, 8000, 96
+POINTS, COLUMN_TERMS, TERMS, BITS = 6, 1500, 30000, 96
 #: Rounds of divisions by all zeros, and steps of Newton's method.
 DIVISIONS, NEWTON = 12, 25
 #: Values of angles that an equation names.
