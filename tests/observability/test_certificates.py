@@ -41,7 +41,13 @@ def two_rows():
     return nav.observe(nav.Model("x y z", F=[["0"] * 3] * 3, H=H, **dict.fromkeys(names.split(), REAL)))
 
 
-@pytest.mark.parametrize("answer_of", [couplings, turning, at_latitude, on_a_cone, two_rows])
+def at_an_angle():
+    """On a sin(p) = b the rank is smaller still where p is a multiple of a right angle."""
+    H = [["a*sin(p) - b", "0"], ["0", "b*sin(2*p)"]]
+    return nav.observe(nav.Model("x y", F=[["0"] * 2] * 2, H=H, a=REAL, b=REAL, p=REAL))
+
+
+@pytest.mark.parametrize("answer_of", [couplings, turning, at_latitude, at_an_angle, on_a_cone, two_rows])
 def test_every_rank_and_every_drop_that_lasts_is_granted(answer_of):
     answer = answer_of()
     lasting = [drop for drop in list_nested(answer.rank_drops) if drop.lasting]
