@@ -159,6 +159,8 @@ def test_hypotheses_are_needed_and_a_wrong_use_of_them_is_refuted():
     assert nav.prove("norm(cross(u, v))**2 = 1", given=unit, **vectors).status == REFUTED
     assert nav.prove("norm(cross(u, v)) = 1", given=[*unit, "dot(u, v) = 0"], **vectors).status != REFUTED
     assert nav.prove("x = 2", given="x**2 = 4").status != PROVED
+    linear = ["x + y + z = 6", "x - y = -1", "x = 1"]  # z follows when x and y are known
+    assert nav.prove("z = 3", given=linear).holds and nav.prove("z = 2", given=linear).status == REFUTED
     assert nav.prove("x = 2", given=["x**2 = 4", "x > 0"], x="positive").status != REFUTED
 
 

@@ -99,6 +99,7 @@ def test_what_holds_for_n_equal_to_one_alone_is_refuted(formula, declared):
         ("A = B", {"A": SQUARE, "B": SQUARE, "P": POSITIVE}, "A @ P = B @ P"),
         ("A = eye(n)", {"A": {**SQUARE, "invertible": True}}, "A @ A = A"),
         ("u @ u.T @ u @ u.T = u @ u.T", {"u": VECTOR}, "dot(u, u) = 1"),
+        ("F @ F = F", {"F": SQUARE, "u": VECTOR, "v": VECTOR}, ["F = u @ v.T", "dot(u, v) = 1"]),
         ("D @ E = E @ D", {"D": {**SQUARE, "diagonal": True}, "E": {**SQUARE, "diagonal": True}}, ()),
         ("inv(eye(n) + S).T = inv(eye(n) - S)", {"S": {**SQUARE, "skew": True}}, ()),
     ],

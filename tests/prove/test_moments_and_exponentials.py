@@ -62,6 +62,16 @@ PAIRS = [
 ]  # fmt: skip
 
 
+#: Van Loan's matrix of three positions and three velocities that decay.
+LOAN = [["0"] * 12 for _ in range(12)]
+for axis in range(3):
+    LOAN[axis][3 + axis], LOAN[3 + axis][3 + axis], LOAN[3 + axis][9 + axis] = "-t", "b*t", f"t*q{axis + 1}"
+    LOAN[9 + axis][6 + axis], LOAN[9 + axis][9 + axis] = "t", "-b*t"
+LOAN = "expm([" + ", ".join(f"[{', '.join(row)}]" for row in LOAN) + "])[4,10]"
+GIVEN = {"b": "positive", "t": "positive", "q1": "positive"}
+PAIRS += [(f"{LOAN} = q1*sinh(b*t)/b", f"{LOAN} = q1*cosh(b*t)/b", GIVEN)]
+
+
 @pytest.mark.parametrize(("true", "false", "given"), PAIRS, ids=[pair[0][:40] for pair in PAIRS])
 def test_a_formula_is_proved_and_its_spoiled_form_refuted(true, false, given):
     proved, refuted = nav.prove(true, **given), nav.prove(false, **given)

@@ -88,7 +88,7 @@ def factor_characteristic(whole: DomainMatrix, goal: Any) -> Iterator[Factor | N
     for factor, times in sp.factor_list(sp.numer(sp.together(polynomial)), X)[1]:
         first, *tail = sp.Poly(factor, X).all_coeffs()
         if factor.has(X):
-            yield (tuple(sp.cancel(c / first) for c in tail), times) if len(tail) < 3 else None
+            yield (tuple(sp.cancel(c / first) for c in tail), int(times)) if len(tail) < 3 else None
 
 
 def take_minimal(whole: DomainMatrix, factors: list[Factor]) -> list[Factor]:

@@ -49,7 +49,7 @@ def draw_special_points(
             fixed.update(
                 entries if kind in ("rotation", "quaternion", "orthogonal", "positive") or (values and k % 3) else ()
             )
-        for zero in zeros:
+        for zero in sorted(zeros, key=lambda zero: len(player.symbols_of(zero))):
             for kind, rows in kinds.values() if k % 3 else ():
                 if kind == "vector" and player.symbols_of(zero) <= {name for row in rows for name in row}:
                     stretch(zero, point)

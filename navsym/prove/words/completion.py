@@ -122,8 +122,7 @@ class Completion:
         total: dict[tuple[int, str, str], Any] = {}
         for c, left, k, right in steps:
             add_to(total, (k, left, right), c)
-        while total and max(total)[0] >= self.count:
-            k = max(total)[0]
+        while total and (k := max(total)[0]) >= self.count:
             for key in [key for key in total if key[0] == k]:
                 c, (_, left, right) = total.pop(key), key
                 for d, before, own, behind in self.rules[k - self.count].steps:

@@ -157,8 +157,9 @@ def read_linear(term: Term) -> dict[str, fmpq] | None:
 
 
 def find_scalars(algebra: Any, body: dict[Word, Term]) -> list[tuple[Term, Word]]:
-    """The numbers among the symbols of a difference that are words with one row and one column."""
-    names = sorted(set().union(*map(player.symbols_of, body.values())))
+    """The numbers among the symbols of a difference and of hypotheses that are words with one row and one column."""
+    terms = [*body.values(), *(c for r in algebra.relations if set(r[:2]) == {1} for c in r.body.values())]
+    names = sorted(set().union(*map(player.symbols_of, terms)))
     words = ((name, next(list_rotations(algebra, name))) for name in names if name.startswith("trace__"))
     found = []
     for name, word in words:
@@ -202,8 +203,8 @@ class Settlement:
         for _ in range(3):
             before = dict(self.body)
             self.reduce_words()
-            self.reduce_traces()
             self.use_numbers()
+            self.reduce_traces()
             if self.is_settled() or self.solve_traces():
                 return self.shares
             if self.body == before:
