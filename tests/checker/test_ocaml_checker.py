@@ -127,11 +127,10 @@ def proof_by(rule: dict[str, Any], claim: dict[str, Any], witness: dict[str, str
 def test_no_certificate_of_the_page_is_refused_and_no_forgery_accepted(program: Path) -> None:
     true, forged = read_page()
     answers = judge(program, [json.dumps(c) for c in true])
-    assert not [a for a in answers if a.startswith("refused")]
-    assert answers.count("accepted") >= 65
+    assert answers.count("accepted") == len(true) >= 67
     answers = judge(program, [json.dumps(c) for c in forged])
     assert "accepted" not in answers
-    assert sum(a.startswith("refused") for a in answers) >= 278
+    assert sum(a.startswith("refused") for a in answers) >= 287
 
 
 def test_both_checkers_agree_on_every_row_of_the_tests_of_the_first(program: Path) -> None:
@@ -187,7 +186,7 @@ def list_places(part: Any, place: str = "") -> Iterable[tuple[str, Any]]:
 
 
 def change_one_place(dice: random.Random, document: Any) -> Any:
-    """The document with one text, number or list changed a little."""
+    """The document with one text, number or list changed a little; itself where a hundred draws change nothing."""
     relations = ["=", "!=", ">", ">=", "<", "<="]
     swaps = [
         "+-",
@@ -203,8 +202,8 @@ def change_one_place(dice: random.Random, document: Any) -> Any:
         "01",
         "/*",
     ]
-    while True:
-        place, old = dice.choice([found for found in list_places(document) if found[0] != "/kind"])
+    places = [found for found in list_places(document) if found[0] != "/kind"]
+    for place, old in dice.choices(places, k=100 if places else 0):
         new = old
         if isinstance(old, list) and old:
             i = dice.randrange(len(old))
@@ -218,6 +217,14 @@ def change_one_place(dice: random.Random, document: Any) -> Any:
             new = dice.choice([0, 1, -1, old + 1, 2 * old])
         if new != old and new != []:
             return put(document, place, new)
+    return document
+
+
+def test_a_document_that_cannot_be_changed_is_given_back() -> None:
+    """Search for a change ends: at an empty list, a null, or the kind alone."""
+    for document in ({"proofs": []}, {"rule": None}, {"kind": "all"}):
+        assert change_one_place(random.Random(1), document) == document
+    assert change_one_place(random.Random(1), {"bits": 64}) != {"bits": 64}
 
 
 def test_both_checkers_agree_on_sums_of_words(program: Path) -> None:
