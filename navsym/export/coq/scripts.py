@@ -72,7 +72,7 @@ def prove_equality(terms: Iterable[Term], names: Mapping[str, str]) -> list[str]
     write_absolutes([p for p in parts if p[0] == "abs"], script)
     rules = f" [{' '.join(script.rules)}]" if script.rules else ""
     rewrites = "".join(f"rewrite ?{rule}; " for rule in script.rules)
-    ways = [f"ring{rules}", f"field{rules}; nonzero", f"{rewrites}field; nonzero"]
+    ways = [f"ring{rules}", f"progress same_denominators; ring{rules}", f"field{rules}; nonzero", f"{rewrites}field; nonzero"]
     ways += [f"field_simplify{rules}; first [ field; nonzero | nonzero ]"]
     return [*script.lines, f"first [ {' | '.join(f'solve [{way}]' for way in ways)} ]."]
 
@@ -330,8 +330,6 @@ class Follower:
             return [*lines, "lra."]
         if rule == "product":
             return self.split(proof["factors"], checker.list_factors(term), term, relation)
-        if rule == "cones":
-            raise Unwritten("a bound by cones")
         return prove_bound(self.box, self.names, rule == "balls")
 
     def split(self, entries: Iterable[Any], factors: list[Term], term: Term, relation: str) -> list[str]:

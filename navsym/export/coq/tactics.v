@@ -38,6 +38,12 @@ Ltac nonzero :=
       end
     | timeout 10 nra ].
 
+(* Denominators that are equal as polynomials become the same one: fewer are cleared, or none. *)
+Ltac same_denominators :=
+  unfold Rdiv;
+  repeat match goal with |- context [/ ?a] => match goal with |- context [/ ?b] =>
+    lazymatch a with b => fail | _ => replace (/ b) with (/ a) by (f_equal; ring) end end end.
+
 (* Sines and cosines of sums. *)
 Ltac by_addition :=
   repeat first
