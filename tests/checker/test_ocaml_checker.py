@@ -16,11 +16,15 @@ from typing import Any
 
 import flint
 import pytest
+from flint import fmpq
 
 import navsym as nav
 from navsym import checker
 from navsym.core.store import key_of
 from navsym.export.replay import build_checker, ocaml_version, replay
+from navsym.guaranteed.phases.certify_range import follow_regime
+from navsym.guaranteed.phases.family import family_of
+from navsym.models.modelfile import model_from
 from navsym.verification.certificates import read_outcomes
 from tests.checker import calculus, proofs, words
 
@@ -153,6 +157,22 @@ def test_both_checkers_agree_on_every_row_of_the_tests_of_the_first(program: Pat
     assert not apart, apart[:3]
     assert answers.count("accepted") > 300 and sum(a.startswith("refused") for a in answers) > 500
     assert all("units of work" in a or "unheard-of" in a for a in answers if a.startswith("outside"))
+
+
+@pytest.mark.long
+def test_both_checkers_agree_on_the_optimum_along_a_parameter(program: Path) -> None:
+    """Twenty pieces on which one contact moves; the optimum lies between the bounds and nowhere else."""
+    H = ["a*cos(u) + sin(u)", "cos(u) - a*sin(u)"]
+    document = {"basis": {"variable": "u", "H": H, "interval": ["0", "3"]}, "targets": {"c": ["1", "0"]}}
+    family = family_of(model_from(document | {"parameters": {"a": ["-2", "2"]}}), "c", "a")
+    (true,) = follow_regime(family, ((0, "no", 1),), fmpq(-2), fmpq(2)).documents
+    middle = (Fraction(true["lower"]) + Fraction(true["upper"])) / 2
+    changes = [("/lower", str(middle)), ("/upper", str(middle)), ("/panels/0/sigma", "2"), ("/panels/0/to", "3/2")]
+    changes += [("/functional/0", "11/10"), ("/pieces/3/dual/0/0", "0"), ("/pieces/7/contacts/0/weight/0", "-1")]
+    texts = [json.dumps(c) for c in (true, *(put(true, place, value) for place, value in changes))]
+    answers = judge(program, texts)
+    assert answers[0] == "accepted" and all(a.startswith("refused") for a in answers[1:]), answers
+    assert [checker_accepts(text) for text in texts] == [True] + [False] * len(changes)
 
 
 KINDS = ("proof", "counterexample", "all")

@@ -345,7 +345,7 @@ class Follower:
             whole = ("number", abs(factor[1])) if factor[0] == "number" else base
             signed.append(("^", base, factor[2]) if power else whole)
         if signed != factors and relation != "!=":
-            lines += self.change(term, ("*", *signed), ["field; nonzero."])
+            lines += self.change(term, ("*", *signed), ["first [ solve [ring] | field; nonzero ]."])
         return [*lines, "first [ solve [ positive ] | solve [ nonzero ] ]."]
 
 

@@ -219,6 +219,8 @@ let centre_of x =
   | At (m, e), At (n, f) -> round_ball (scale (plus (exactly m e) (exactly n f)) (-1))
   | _ -> raise No_value
 
+let widened x = let width = less x (centre_of x) in plus x (double width)
+
 (* The polynomial of Taylor's formula about a centre, with the remainder for a ball around it as its last coefficient *)
 let expand_about n s centre whole value t =
   in_order n (fun () ->
@@ -273,6 +275,9 @@ let check_piece problem piece =
     let x, places, weights = split (List.map2 plus known move) in
     let fits c v w = is_above (times (of_rational c.sign) w) && (c.outward <> 0 || (is_above v && is_above (less ball_one v))) in
     shown "a weight of the wrong sign, or a contact outside its panel" (List.for_all2 (fun (c, v) w -> fits c v w) (List.combine piece.contacts places) weights);
+    let optimum = plus (enclose_along cell (dot target)) (sum_up (let d, _, _ = split move in d) (List.map on target)) in
+    let is_least a b = sign_of (less b a).lo >= 0 in
+    shown "the optimum is not between the bounds" (is_least (of_rational problem.lower) optimum && is_least optimum (of_rational problem.upper));
     let touching = List.combine piece.contacts places in
     let check_panel (p, q) =
       let is_positive t = is_above (on (put_parameter t)) in
@@ -280,7 +285,8 @@ let check_piece problem piece =
       let within cell =
         let side = find cell share in
         let v = part_ball side and length = scale ball_one (-side.level) in
-        let is_near (c, place) = c.own == p && not (is_above (less (size (less place (middle_ball side))) length)) in
+        (* within its own width of where a contact may be *)
+        let is_near (c, place) = c.own == p && not (is_above (less (size (less (widened place) (middle_ball side))) length)) in
         let touch = List.find_opt is_near touching in
         let place = match touch with Some (_, place) -> place | None -> v in
         let whole = hull v place and centre = centre_of place in
@@ -294,18 +300,16 @@ let check_piece problem piece =
             let concave = sign_of (rises (less place centre)).lo >= 0 && is_below (signed (evaluate (derivative slopes) u)) in
             (concave || is_above (rises u)) && is_above (plus ball_one (signed (evaluate f u)))
       in
-      bisect ~cells:problem.left ~names:[ share ] ~settled:(fun cell -> try within cell with No_value -> false)
+      let cells = if Q.sign piece.half > 0 then min problem.left 400 else problem.left in (* shorter pieces are tried after those *)
+      bisect ~cells ~names:[ share ] ~settled:(fun cell -> try within cell with No_value -> false)
         (Map_of_names.singleton share whole_side)
     in
-    List.iter check_panel rows;
-    let optimum = plus (enclose_along cell (dot target)) (sum_up (let d, _, _ = split move in d) (List.map on target)) in
-    let is_least a b = sign_of (less b a).lo >= 0 in
-    shown "the optimum is not between the bounds" (is_least (of_rational problem.lower) optimum && is_least optimum (of_rational problem.upper))
+    List.iter check_panel rows
   in
   let whole = { low = of_int (-1); length = of_int 2; start = Z.zero; level = 0 } in
   (* a cell fails for one reason at a time: where no half of it can do better, the reason is that of the whole *)
   let attempt cell = try settled cell; true with Refused _ | No_value when Q.sign piece.half > 0 -> false in
-  bisect ~cells:200 ~names:[ along ] ~settled:attempt (Map_of_names.singleton along whole)
+  bisect ~cells:100 ~names:[ along ] ~settled:attempt (Map_of_names.singleton along whole)
 
 let check_pieces value =
   read_problem [ "pieces" ] value ~use:(fun problem others ->
