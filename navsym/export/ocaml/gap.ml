@@ -309,7 +309,7 @@ let check_piece problem piece =
   let whole = { low = of_int (-1); length = of_int 2; start = Z.zero; level = 0 } in
   (* a cell fails for one reason at a time: where no half of it can do better, the reason is that of the whole *)
   let attempt cell = try settled cell; true with Refused _ | No_value when Q.sign piece.half > 0 -> false in
-  bisect ~cells:100 ~names:[ along ] ~settled:attempt (Map_of_names.singleton along whole)
+  bisect ~cells:40 ~names:[ along ] ~settled:attempt (Map_of_names.singleton along whole)
 
 let check_pieces value =
   read_problem [ "pieces" ] value ~use:(fun problem others ->
