@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from flint import fmpq
 
@@ -31,7 +31,7 @@ class Unwritten(Exception):
     """No theorem or script is written for a certificate; the text says why."""
 
 
-def rename(box: Mapping[str, Range]) -> dict[str, str]:
+def rename(box: Collection[str]) -> dict[str, str]:
     """Names in Coq: the same, or with an underscore where the word is taken."""
     names: dict[str, str] = {}
     for name in box:

@@ -19,17 +19,17 @@ class Written(checker.Algebra):
 
     def __init__(self, statement: Any):
         super().__init__(statement)
-        self.texts = rename({**self.box, **dict.fromkeys(statement["matrices"])})
+        self.texts = rename([*self.box, *statement["matrices"]])
         self.numbers = self.texts | {name: f"INR {self.texts[name]}" for name in self.dimensions}
-        self.letters, self.inverses, self.sides = dict[str, str](), dict[str, str](), ("", "")
-        self.says: dict[str, None] = {}
+        self.letters, self.inverses, self.says = dict[str, str](), dict[str, str](), dict[str, None]()
+        self.sides: list[str] = []
 
     def write(self, term: Term) -> str:
         return f"({write_term(term, self.numbers)})"
 
     def make_letter(self, name: str, rows: Any, columns: Any, words: list[str]) -> str:
         text = self.texts.setdefault(name, name)
-        self.letters[text] = " ".join(self.texts[d] if d in self.texts else str(d) for d in ("mat", rows, columns))
+        self.letters[text] = f"mat {self.texts.get(rows, rows)} {self.texts.get(columns, columns)}"
         return text
 
     def declare(self, x: Typed, words: list[str]) -> None:
@@ -68,7 +68,7 @@ class Written(checker.Algebra):
         return self.inverses[x]
 
     def subtract(self, x: Any, y: Any) -> Any:
-        self.sides = tuple(side.body if isinstance(side, Typed) else self.write(side) for side in (x, y))
+        self.sides = [side.body if isinstance(side, Typed) else self.write(side) for side in (x, y)]
         return super().subtract(x, y)
 
     def relate(self, x: Any) -> None:
