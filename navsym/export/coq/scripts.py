@@ -72,8 +72,8 @@ def prove_equality(terms: Iterable[Term], names: Mapping[str, str]) -> list[str]
     write_absolutes([p for p in parts if p[0] == "abs"], script)
     rules = f" [{' '.join(script.rules)}]" if script.rules else ""
     rewrites = "".join(f"rewrite ?{rule}; " for rule in script.rules)
-    ways = [f"ring{rules}", f"field{rules}; nonzero", f"{rewrites}field; nonzero"]
-    ways += [f"field_simplify{rules}; first [ field; nonzero | nonzero ]"]
+    ways = [f"ring{rules}", f"progress same_denominators; ring{rules}", f"field{rules}; nonzero"]
+    ways += [f"{rewrites}field; nonzero", f"field_simplify{rules}; first [ field; nonzero | nonzero ]"]
     return [*script.lines, f"first [ {' | '.join(f'solve [{way}]' for way in ways)} ]."]
 
 
@@ -330,8 +330,6 @@ class Follower:
             return [*lines, "lra."]
         if rule == "product":
             return self.split(proof["factors"], checker.list_factors(term), term, relation)
-        if rule == "cones":
-            raise Unwritten("a bound by cones")
         return prove_bound(self.box, self.names, rule == "balls")
 
     def split(self, entries: Iterable[Any], factors: list[Term], term: Term, relation: str) -> list[str]:
@@ -347,7 +345,7 @@ class Follower:
             whole = ("number", abs(factor[1])) if factor[0] == "number" else base
             signed.append(("^", base, factor[2]) if power else whole)
         if signed != factors and relation != "!=":
-            lines += self.change(term, ("*", *signed), ["field; nonzero."])
+            lines += self.change(term, ("*", *signed), ["first [ solve [unfold Rdiv; ring] | field; nonzero ]."])
         return [*lines, "first [ solve [ positive ] | solve [ nonzero ] ]."]
 
 

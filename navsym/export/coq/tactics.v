@@ -24,6 +24,7 @@ Ltac nonzero :=
   repeat first
     [ assumption | lra | apply exp_not_0 | apply Rgt_not_eq, sqrt_lt_R0; first [ assumption | lra ] | apply Rmult_integral_contrapositive_currified | apply pow_nonzero
     | apply Rinv_neq_0_compat | apply Rgt_not_eq, sin_gt_0; lra | apply Rgt_not_eq, cos_gt_0; lra
+    | apply Rlt_not_eq, sin_lt_0; lra | apply Rlt_not_eq, cos_lt_0; lra
     | match goal with H : ?d <> 0 |- ?e <> 0 =>
         let Z := fresh in intro Z; apply H;
         first [ lra | solve [ ring [Z] ] | solve [ rewrite Z; ring ]
@@ -37,6 +38,12 @@ Ltac nonzero :=
         first [ solve [ replace e with d by field; lra ] | solve [ replace e with (- d) by field; lra ] ]
       end
     | timeout 10 nra ].
+
+(* Denominators that are equal as polynomials become the same one: fewer are cleared, or none. *)
+Ltac same_denominators :=
+  unfold Rdiv;
+  repeat match goal with |- context [/ ?a] => match goal with |- context [/ ?b] =>
+    lazymatch a with b => fail | _ => replace (/ b) with (/ a) by (f_equal; ring) end end end.
 
 (* Sines and cosines of sums. *)
 Ltac by_addition :=
@@ -64,17 +71,22 @@ Lemma above : forall x, 0 <= x -> x <> 0 -> 0 < x.
 Proof. intros x [P | E] N; [ exact P | now rewrite E in N ]. Qed.
 Lemma opposite_sine : forall x, (- 1) * sin x = sin (- x).
 Proof. intro x. rewrite sin_neg. ring. Qed.
+Lemma half_turn : forall x, (- 1) * sin x = sin (x + PI).
+Proof. intro x. rewrite neg_sin. ring. Qed.
+Lemma whole_turn : forall x, sin x = sin (x + 2 * PI).
+Proof. intro x. rewrite <- (sin_period x 1). f_equal. simpl. ring. Qed.
 Lemma abs_by_square : forall v u, v ^ 2 = u ^ 2 -> 0 <= v -> Rabs u = v.
 Proof. intros v u S P. rewrite <- (Rabs_pos_eq v P). apply Rsqr_eq_abs_0. unfold Rsqr. simpl in S. lra. Qed.
 Lemma sqrt_by_square : forall v u, v ^ 2 = u -> 0 <= v -> sqrt u = v.
 Proof. intros v u S P. rewrite <- S. now apply sqrt_pow2. Qed.
 Ltac reach := first [ assumption | lra | assert (A := PI2_3_2); assert (B := PI_4); first [ lra | few_digits | timeout 5 nra ] ].
+Ltac in_half_turn rule := first [ apply rule; reach | rewrite whole_turn; apply rule; reach ].
 Ltac positive :=
   first [ assumption | lazymatch goal with
-  | |- 0 <= (- 1) * sin _ => rewrite opposite_sine; apply sin_ge_0; reach
-  | |- 0 < (- 1) * sin _ => rewrite opposite_sine; apply sin_gt_0; reach
-  | |- 0 <= sin _ => apply sin_ge_0; reach
-  | |- 0 < sin _ => apply sin_gt_0; reach
+  | |- 0 <= (- 1) * sin _ => first [ rewrite opposite_sine; apply sin_ge_0; reach | rewrite half_turn; in_half_turn sin_ge_0 ]
+  | |- 0 < (- 1) * sin _ => first [ rewrite opposite_sine; apply sin_gt_0; reach | rewrite half_turn; in_half_turn sin_gt_0 ]
+  | |- 0 <= sin _ => in_half_turn sin_ge_0
+  | |- 0 < sin _ => in_half_turn sin_gt_0
   | |- 0 <= cos _ => apply cos_ge_0; reach
   | |- 0 < cos _ => apply cos_gt_0; reach
   | |- 0 <= _ * _ => apply Rmult_le_pos; positive

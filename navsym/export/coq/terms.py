@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from flint import fmpq
 
@@ -14,8 +14,8 @@ from navsym.checker import Range, Term
 RESERVED = frozenset(
     "Abs Admitted All Axiom Definition End Fixpoint IZR INR In Inductive Lemma Let Ltac Module PI Proof Prop Qed R R0 "
     "R1 Rabs Rdefinitions Require Section Set Theorem Type Variable acos all as asin at atan cofix cos cosh cot else "
-    "end exists exists2 exp few_digits fix for forall fun if in let ln many_digits match mod nat nonzero not "
-    "numbers or pow return sin sinh split sqr sqrt tan tanh then using where with".split()
+    "end exists exists2 exp few_digits fix for forall fun if in let ln many_digits mat match mod nat nonzero not "
+    "number numbers or pow return sin sinh split sqr sqrt tan tanh then turn unit using where with zeros".split()
 )
 FUNCTIONS = {
     "sin": "sin", "cos": "cos", "tan": "tan", "exp": "exp", "log": "ln", "sqrt": "sqrt", "abs": "Rabs",
@@ -31,7 +31,7 @@ class Unwritten(Exception):
     """No theorem or script is written for a certificate; the text says why."""
 
 
-def rename(box: Mapping[str, Range]) -> dict[str, str]:
+def rename(box: Collection[str]) -> dict[str, str]:
     """Names in Coq: the same, or with an underscore where the word is taken."""
     names: dict[str, str] = {}
     for name in box:
@@ -129,7 +129,10 @@ def write_power(
         return power if q.p > 0 else "1" if q.p == 0 else f"/ ({power})" if abs(q.p) > 1 else f"/ {text}"
     if q.q == 2:
         return write_power(f"(sqrt {text})", fmpq(q.p), base, exponent, names, now)
-    raise Unwritten("a root that is no square root")
+    constant = checker.constant_of(base)
+    if q < 0 or (constant is not None and constant > 0):  # the base is positive where there is a value
+        return f"exp ({q.p} / {q.q} * ln {text})"
+    raise Unwritten("a root that is no square root, of what may be 0")
 
 
 def subterms(term: Term) -> Iterator[Term]:

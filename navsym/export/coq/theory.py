@@ -21,11 +21,12 @@ from navsym.export.coq.calculus import Writer, list_all, list_slopes, name_quest
 from navsym.export.coq.condition import write_condition
 from navsym.export.coq.scripts import Follower, prove_modulo, refute
 from navsym.export.coq.terms import RELATIONS, Unwritten, defined, ranges, rename, subterms, write_term
+from navsym.export.coq.words import write_words
 
 #: How numbers are compared: by polynomials alone, or by balls of few digits, then of many.
 PLAIN = "Ltac few_digits := lra.\nLtac many_digits := lra.\n"
 #: Files with lemmas and tactics, in the order in which they rest on one another.
-LEMMAS = ("tactics.v", "calculus.v", "condition.v")
+LEMMAS = ("tactics.v", "calculus.v", "condition.v", "words.v")
 #: Letters of a theory: larger ones take Coq many minutes.
 MOST_LETTERS = 200_000
 Said = list[tuple[Term, str, Term]]
@@ -46,7 +47,7 @@ def write_theory(certificate: Mapping[str, Any]) -> str:
     parts = certificate.get("of", []) if certificate.get("kind") == "all" else [certificate]
     theorems, libraries = [], set[str]()
     for place, part in enumerate(parts, start=1):
-        if part.get("kind") not in ("proof", "counterexample", "condition"):
+        if part.get("kind") not in ("proof", "counterexample", "condition", "words"):
             message = (
                 f"expected a certificate of a statement; got one of kind {part.get('kind')}; check it without kernel"
             )
@@ -56,13 +57,17 @@ def write_theory(certificate: Mapping[str, Any]) -> str:
                 theorems.append(write_condition(f"statement_{place}", part))
                 libraries.add("condition.v")
                 continue
+            if part["kind"] == "words":
+                theorems.append(write_words(f"statement_{place}", part))
+                libraries |= {"tactics.v", "words.v"}
+                continue
             cases = [*read_cases(part)]
             libraries |= {"tactics.v", *(file for case in cases for file in case.list_libraries(part))}
             theorems.append(write_theorem(f"statement_{place}", part, cases))
         except (Unwritten, checker.Refused) as reason:
             raise DomainError(f"expected what Coq has words for; got {reason}; rest on the checker") from None
     names = ", ".join(re.findall(r"^Theorem (\w+)", "\n".join(theorems), re.M))
-    balls, calculus = "Interval" in libraries, "calculus.v" in libraries
+    balls, calculus = "Interval" in libraries, libraries & {"calculus.v", "words.v"}
     text = "\n".join(
         [
             "Require Import Reals Lra.",

@@ -189,6 +189,7 @@ let rec check value =
       | "words" -> at_precision 128 (fun () -> Words.check value)
       | "sized" -> at_precision 128 (fun () -> Sized.check value)
       | "gap" | "sliver" -> Gap.check value
+      | "touch" | "range" -> Gap.check_pieces value
       | "cones" -> Bounds.check_cones value ~at_precision
       | "design" -> Bounds.check_design value ~at_precision
       | "exclusion" -> Bounds.check_exclusion value ~at_precision

@@ -19,38 +19,16 @@ type term =
   | Turned of term (* transposed *)
   | Call of string * term list
 
-let gather make = function [ a ] -> a | l -> make (List.rev l)
-
-let rec read_sum r =
-  let rec go parts =
-    match next r with
-    | Mark "+" -> drop r; let t = read_product r in go (t :: parts)
-    | Mark "-" -> drop r; let t = read_product r in go (Minus t :: parts)
-    | _ -> gather (fun l -> Plus l) parts
-  in
-  go [ read_product r ]
-
-and read_product r =
-  let rec go parts =
-    match next r with
-    | Mark "*" -> drop r; let t = read_signed r in go (t :: parts)
-    | Mark "/" -> drop r; let t = read_signed r in go (Below t :: parts)
-    | Mark "@" ->
-        drop r;
-        let left = gather (fun l -> Times l) parts in
-        let right = read_signed r in
-        go [ Matmul (left, right) ]
-    | _ -> gather (fun l -> Times l) parts
-  in
-  go [ read_signed r ]
-
-and read_signed r =
-  match next r with
-  | Mark "+" -> drop r; deeper r read_signed
-  | Mark "-" -> drop r; Minus (deeper r read_signed)
-  | _ ->
-      let base = read_entry r in
-      if next r = Mark "**" then (drop r; let e = deeper r read_signed in Power (base, e)) else base
+let rec grammar () =
+  {
+    sum = (fun l -> Plus l);
+    negated = (fun t -> Minus t);
+    product = (fun l -> Times l);
+    below = (fun t -> Below t);
+    applied = (fun a b -> Matmul (a, b));
+    power = (fun a b -> Power (a, b));
+    entry = read_entry;
+  }
 
 and read_entry r =
   let rec go t =
@@ -67,36 +45,28 @@ and read_entry r =
 and read_value r =
   match next r with
   | Tree.Number q -> drop r; Number q
-  | Mark "(" ->
-      drop r;
-      let t = deeper r read_sum in
-      take r ")"; t
+  | Mark "(" -> drop r; read_inside (grammar ()) r
   | Tree.Name "pi" -> drop r; Ratio_of_circle
   | Tree.Name name -> (
       drop r;
       match next r with
-      | Mark "(" -> drop r; let args = read_arguments r in Call (name, args)
+      | Mark "(" -> drop r; Call (name, read_arguments (grammar ()) r)
       | _ -> Name name)
   | _ -> refuse "expression: expected a number, a name or a parenthesis"
 
-and read_arguments r =
-  let rec go done_ =
-    let done_ = deeper r read_sum :: done_ in
-    if next r = Mark "," then (drop r; go done_) else (take r ")"; List.rev done_)
-  in
-  go []
+let read_whole r = read_sum (grammar ()) r
 
 let read_text what value =
   let r = { rest = Language.read_tokens (get_text what value); depth = 0 } in
-  let t = read_sum r in
+  let t = read_whole r in
   if next r <> End then refuse "%s: expected an operator" what;
   t
 
 let read_equation value =
   let r = { rest = Language.read_tokens (get_text "given" value); depth = 0 } in
-  let left = read_sum r in
+  let left = read_whole r in
   take r "=";
-  let right = read_sum r in
+  let right = read_whole r in
   if next r <> End then refuse "given: expected an equation";
   (left, right)
 

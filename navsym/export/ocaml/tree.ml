@@ -87,59 +87,87 @@ let deeper r f =
 
 let gather make = function [ a ] -> a | parts -> make (List.rev parts)
 
-let rec read_sum r =
+(* What is made of the parts of a text *)
+type 'a grammar = {
+  sum : 'a list -> 'a;
+  negated : 'a -> 'a;
+  product : 'a list -> 'a;
+  below : 'a -> 'a; (* 1/x *)
+  applied : 'a -> 'a -> 'a; (* a @ b *)
+  power : 'a -> 'a -> 'a;
+  entry : reader -> 'a;
+}
+
+let rec read_sum g r =
   let rec go parts =
     match next r with
-    | Mark "+" -> drop r; let t = read_product r in go (t :: parts)
-    | Mark "-" -> drop r; let t = read_product r in go (negate t :: parts)
-    | _ -> gather (fun l -> Sum l) parts
+    | Mark "+" -> drop r; let t = read_product g r in go (t :: parts)
+    | Mark "-" -> drop r; let t = read_product g r in go (g.negated t :: parts)
+    | _ -> gather g.sum parts
   in
-  go [ read_product r ]
+  go [ read_product g r ]
 
-and read_product r =
+and read_product g r =
   let rec go parts =
     match next r with
-    | Mark "*" -> drop r; let t = read_signed r in go (t :: parts)
-    | Mark "/" -> drop r; let t = read_signed r in go (Pow (t, Num Q.minus_one) :: parts)
-    | _ -> gather (fun l -> Prod l) parts
+    | Mark "*" -> drop r; let t = read_signed g r in go (t :: parts)
+    | Mark "/" -> drop r; let t = read_signed g r in go (g.below t :: parts)
+    | Mark "@" ->
+        drop r;
+        let left = gather g.product parts in
+        let right = read_signed g r in
+        go [ g.applied left right ]
+    | _ -> gather g.product parts
   in
-  go [ read_signed r ]
+  go [ read_signed g r ]
 
-and read_signed r =
+and read_signed g r =
   match next r with
-  | Mark "+" -> drop r; deeper r read_signed
-  | Mark "-" -> drop r; negate (deeper r read_signed)
+  | Mark "+" -> drop r; deeper r (read_signed g)
+  | Mark "-" -> drop r; g.negated (deeper r (read_signed g))
   | _ ->
-      let base = read_atom r in
-      if next r = Mark "**" then (drop r; Pow (base, deeper r read_signed)) else base
+      let base = g.entry r in
+      if next r = Mark "**" then (drop r; let e = deeper r (read_signed g) in g.power base e) else base
+
+let read_arguments g r =
+  let rec go done_ =
+    let done_ = deeper r (read_sum g) :: done_ in
+    if next r = Mark "," then (drop r; go done_) else (take r ")"; List.rev done_)
+  in
+  go []
+
+let read_inside g r =
+  let t = deeper r (read_sum g) in
+  take r ")"; t
+
+let rec grammar () =
+  {
+    sum = (fun l -> Sum l);
+    negated = negate;
+    product = (fun l -> Prod l);
+    below = (fun t -> Pow (t, Num Q.minus_one));
+    applied = (fun _ _ -> refuse "expression: unexpected @");
+    power = (fun a b -> Pow (a, b));
+    entry = read_atom;
+  }
 
 and read_atom r =
   match next r with
   | Number q -> drop r; Num q
-  | Mark "(" ->
-      drop r;
-      let t = deeper r read_sum in
-      take r ")"; t
+  | Mark "(" -> drop r; read_inside (grammar ()) r
   | Name f -> (
       drop r;
       match next r with
-      | Mark "(" -> drop r; let args = read_arguments r in
+      | Mark "(" -> drop r; let args = read_arguments (grammar ()) r in
           if List.length args <> arguments_of f then refuse "expression: %s with %d arguments" f (List.length args);
           Fun (f, args)
       | _ -> if f = "pi" then Pi else Sym f)
   | _ -> refuse "expression: expected a number, a name or a parenthesis"
 
-and read_arguments r =
-  let rec go done_ =
-    let done_ = deeper r read_sum :: done_ in
-    if next r = Mark "," then (drop r; go done_) else (take r ")"; List.rev done_)
-  in
-  go []
-
 let read_tree s =
   if s = "" || String.length s > longest then refuse "expression: expected 1 to %d characters" longest;
   let r = { rest = read_tokens s; depth = 0 } in
-  let t = read_sum r in
+  let t = read_sum (grammar ()) r in
   if next r <> End then refuse "expression: expected an operator";
   t
 
