@@ -67,7 +67,7 @@ def advise_on_character(text: str, at: int) -> str:
 def advise_on_name(name: str, known: Iterable[str]) -> str:
     """What to do about a name that nobody declared."""
     if name in FOREIGN and name not in known:
-        return f"write {FOREIGN[name]}, or declare it if it is a symbol of yours"
+        return f"write {FOREIGN[name]}" + ("" if name == "oo" else ", or declare it if it is a symbol of yours")
     return f"declare it or correct it: {suggest_nearest(name, known)}"
 
 

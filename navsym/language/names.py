@@ -26,7 +26,7 @@ INVERSES = {"asinh": "log(x + sqrt(x**2 + 1))", "acosh": "log(x + sqrt(x**2 - 1)
 FUNCTIONS = (*"sin cos tan cot sec csc exp log sqrt abs asin acos atan atan2 sinh cosh tanh".split(), *INVERSES)
 
 #: Names that have a meaning already.
-RESERVED = frozenset({"pi", *FUNCTIONS})
+RESERVED = frozenset({"pi", "oo", *FUNCTIONS})
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
@@ -34,7 +34,7 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 def check_name(name: object, *, where: str = "") -> str:
     """The name itself, when a file may declare it: ASCII letters, digits and underscores.
 
-    Raises ExpressionSyntaxError, TooLargeError, or DuplicateError for ``pi`` and the functions.
+    Raises ExpressionSyntaxError, TooLargeError, or DuplicateError for ``pi``, ``oo`` and the functions.
     """
     if not isinstance(name, str) or (len(name) <= NAME_LENGTH and not NAME.fullmatch(name)):
         raise ExpressionSyntaxError(
@@ -48,7 +48,7 @@ def check_name(name: object, *, where: str = "") -> str:
             where=where,
         )
     if name in RESERVED:
-        meaning = "the number pi" if name == "pi" else "a function"
+        meaning = {"pi": "the number pi", "oo": "infinity"}.get(name, "a function")
         raise DuplicateError(
             f"expected a new name; got {name!r}, which already means {meaning}; rename it", where=where
         )
