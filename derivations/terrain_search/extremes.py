@@ -72,20 +72,15 @@ def example():
 @claim("roots.both")
 def two_directions():
     """The directions (beta_x : beta_y) that solve it are two, here the axes, with t_G = 1 and 0."""
-    values = sorted(int(crossing_time([(1, 0), (0, 1)], way)) for way in axes_of_the_example())
-    finding = Finding(tuple(values), "exact example: slopes (1, 0) and (0, 1)", PROVED)
     A2, A1, A0 = example()
+    ways = [(u, v) for u, v in ((1, 0), (0, 1)) if A2 * u * u + A1 * u * v + A0 * v * v == 0]
+    values = sorted(int(crossing_time([(1, 0), (0, 1)], way)) for way in ways)
+    finding = Finding(tuple(values), "exact example: slopes (1, 0) and (0, 1)", PROVED)
     form, off_axes = f"{A2}*u**2 + {A1}*u*v + {A0}*v**2", {name: [None, None, ["nonzero"]] for name in "uv"}
     axes = [(form.replace("u", x).replace("v", y), "=", "0") for x, y in ("10", "01")]
     points = [(1, 0), (0, 1)]
     least = (*say_least(points, (1, 0), 0), *say_least(points, (0, 1), 1))
     return Property((0, 1), finding, (*(state(*axis) for axis in axes), state(form, "!=", "0", off_axes), *least))
-
-
-def axes_of_the_example():
-    """Directions among the axes at which the quadratic form vanishes."""
-    A2, A1, A0 = (int(v) for v in example())
-    return [(u, v) for u, v in ((1, 0), (0, 1)) if A2 * u * u + A1 * u * v + A0 * v * v == 0]
 
 
 @claim("roots.values")
