@@ -105,10 +105,14 @@ def every_value_lies_between_the_roots():
 
 @claim("roots.solvable")
 def always_solvable():
-    """The solvability that the paper tests always holds: G11^2 times the discriminant is a sum of squares."""
+    """The solvability that the paper tests always holds: G11^2 and G22^2 times the discriminant are sums of squares.
+
+    The sums have det G >= 0 before one square (roots.gram); where G11 and G22 are both zero, all slopes are.
+    """
     A2, A1, A0 = form_sums(G, M)
-    squares = (G[0, 0] * A1 - 2 * G[0, 1] * A2) ** 2 + 4 * G.det() * A2**2
-    return Equation(squares, G[0, 0] ** 2 * (A1**2 - 4 * A2 * A0))
+    ends = ((G[0, 0], A2), (G[1, 1], A0))
+    squares = [(g * A1 - 2 * G[0, 1] * A) ** 2 + 4 * G.det() * A**2 for g, A in ends]
+    return Equation(squares, [g**2 * (A1**2 - 4 * A2 * A0) for g, _ in ends])
 
 
 @claim("roots.gram")
