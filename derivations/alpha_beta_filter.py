@@ -229,13 +229,14 @@ def discriminant_of_the_filter() -> sp.Expr:
     return sp.Poly((z * sp.eye(2) - loop).det(), z).discriminant()
 
 
-optimal_gains_are_called_critical = claim(
+@claim(
     "remark.critical",
-    "The optimal relation (5) makes the filter critically damped: the discriminant of (12) is zero.",
-    lambda: Equation(sp.Integer(0), discriminant_of_the_filter(), RATIO),
     expect=REFUTED,
     reason="a remark often met in documentation: the optimal gains give complex roots unless r <= 3 - 2 sqrt(2)",
 )
+def optimal_gains_are_called_critical():
+    """The optimal relation (5) makes the filter critically damped: the discriminant of (12) is zero."""
+    return Equation(sp.Integer(0), discriminant_of_the_filter(), RATIO)
 
 
 @claim("remark.critical*")

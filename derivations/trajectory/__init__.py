@@ -25,7 +25,7 @@ PAPER = Paper(
         "4.Phi.series 6.D.orders 6.Nf.row_step 6.Np.rows 6.first_stage.worse 6.second_stage earth.ellipse "
         "algorithm.NQ.power algorithm.field algorithm.J.* experiment.heading experiment.parts experiment.stop "
         "experiment.physical experiment.one_gain.* experiment.sigma_v.straight.100.noise experiment.sigma_v.2 "
-        "experiment.sigma_v.300 experiment.sigma_v.yaw.100.full experiment.together.*"
+        "experiment.sigma_v.300 experiment.sigma_v.yaw.100.full experiment.together*"
     ),
     beyond="limit.* window.* table.curse* table.n2.closed table.n2.best 6.Nf.det* experiment.straight.*",
     causes={
