@@ -269,7 +269,7 @@ def study(
         "runs": runs,
         "steps": steps,
         "seed": seed,
-        "methods": [asdict(item) for item in scores],
+        "methods": [asdict(item) | {"rmse": [*map(asdict, item.rmse)]} for item in scores],
     }
 
 
