@@ -254,7 +254,7 @@ for axis, name in zip(axes, ("log_loss", "nees"), strict=True):
         scores = [getattr(study_of_stays[stay][number], name) for stay in stays]
         axis.errorbar(
             np.arange(len(stays)) + 0.06 * number,
-            [m.value for m in scores],
+            [m.mean for m in scores],
             [m.half_width for m in scores],
             fmt="o",
             ms=4,
@@ -273,10 +273,10 @@ axes[1].text(-0.1, 3.2, "3: consistent", fontsize=8)
 axes[0].legend(fontsize=7)
 plt.close(figure)
 rare = {score.method: score for score in study_of_stays[0.99] if score.depth is None}
-assert rare["imm"].log_loss.value < rare["pulsating"].log_loss.value
+assert rare["imm"].log_loss.mean < rare["pulsating"].log_loss.mean
 assert rare["imm"].filters_per_step < rare["gpb2"].filters_per_step
 for stay, scores in study_of_stays.items():
-    print(f"{stay:<5}", "  ".join(f"{x.method} {x.depth or ''}: {x.log_loss.value:.3f}" for x in scores))
+    print(f"{stay:<5}", "  ".join(f"{x.method} {x.depth or ''}: {x.log_loss.mean:.3f}" for x in scores))
 figure
 
 # %% [markdown]
@@ -296,7 +296,7 @@ def depth_and_switching(K=2, switch=0.1, runs=40):
     scores = study.compare(chosen, [("k-pulsating", K), ("imm", None)], runs, 7, 1, exact=True)
     for score in scores[1:]:
         excess = score.excess
-        print(f"{score.method:12s} K {score.depth or '':>2} excess {excess.value:.3f} +- {excess.half_width:.3f}")
+        print(f"{score.method:12s} K {score.depth or '':>2} excess {excess.mean:.3f} +- {excess.half_width:.3f}")
 
 
 interact(

@@ -91,7 +91,7 @@ def piecewise(name: str) -> tuple[sp.Expr, sp.Expr]:
 def integral(pieces: tuple[sp.Expr, sp.Expr], impulse: sp.Expr) -> sp.Expr:
     """The integral over [0, T] of the pieces, which meet at b, and of one impulse."""
     first, second = (sp.integrate(sp.expand(piece), s) for piece in pieces)
-    return first.subs(s, b) - first.subs(s, 0) + second.subs(s, T) - second.subs(s, b) + impulse
+    return first.subs(s, b) + second.subs(s, T) - second.subs(s, b) + impulse  # primitives without a constant
 
 
 def products(one: tuple[sp.Expr, sp.Expr], other: tuple[sp.Expr, sp.Expr]) -> tuple[sp.Expr, sp.Expr]:

@@ -74,22 +74,17 @@ def schuler_oscillation():
     return Equation(lam * (lam**2 + 1), (lam * sp.eye(3) - sp.Matrix(CHANNEL.F)).det())
 
 
+QUARTER_PERIOD = (sp.pi / 2 * sp.sqrt(sp.Rational(6371000) / sp.Rational("9.81"))) / 60  # minutes
 quarter_period = claim(
     "1.quarter-period",
     "T = pi/2 is about 20 minutes (the printed figure is read to ten minutes).",
-    lambda: Equation(
-        sp.Integer(20), (sp.pi / 2 * sp.sqrt(sp.Rational(6371000) / sp.Rational("9.81"))) / 60, tolerance=sp.Integer(5)
-    ),
+    lambda: Equation(sp.Integer(20), QUARTER_PERIOD, tolerance=sp.Integer(5)),
     expect=CERTIFIED,
 )
 quarter_period_to_the_minute = claim(
     "1.quarter-period.minute",
     "T = pi/2 is 21 minutes to the minute; the printed 20 stands behind a sign of approximation.",
-    lambda: Equation(
-        sp.Integer(21),
-        (sp.pi / 2 * sp.sqrt(sp.Rational(6371000) / sp.Rational("9.81"))) / 60,
-        tolerance=sp.Rational(1, 2),
-    ),
+    lambda: Equation(sp.Integer(21), QUARTER_PERIOD, tolerance=sp.Rational(1, 2)),
     expect=CERTIFIED,
 )
 

@@ -34,8 +34,8 @@ PAPER = Paper(
         "1.6.gain_unique.determinant 1.6.initial 1.6.kalman_unique.* 1.11.characteristic 1.13.preferable "
         "1.13.equivalent 1.14.characteristic 1.14.exists* 1.14.gains_unique 1.14.next 1.two_stage.transition "
         "1.two_stage.dimension 2.1.dropped 2.8.solution 2.[89].accuracy* 2.assumption1.orthodrome.* "
-        "2.scale.earth 2.scale.mu_u3 3.2.gains_unique 3.3.gains_unique 3.3.triangular 3.preestimation.* "
-        "3.situations.*"
+        "2.condition2.height 2.scale.earth 2.scale.mu_u3 2.scale.period 3.2.gains_unique 3.3.gains_unique "
+        "3.3.triangular 3.preestimation.* 3.situations.*"
     ),
     beyond="3.coupled.* 3.bias.* 3.noise.* 3.choice.* sensors.*",
     causes={"2.9.inhomogeneous_printed": "2.9.y2"},

@@ -54,10 +54,7 @@ def rank_of(rows: sp.MatrixBase) -> int:
 
 
 def characteristic(matrix: sp.MatrixBase) -> list[sp.Expr]:
-    """theta_1 ... theta_m of a matrix.
-
-    Its characteristic polynomial is p^m - theta_m p^(m-1) - ... - theta_1.
-    """
+    """theta_1 ... theta_m of a matrix: its characteristic polynomial is p^m - theta_m p^(m-1) - ... - theta_1."""
     values = [-value for value in section1_systems.coefficients_of_polynomial(matrix)[1:]]
     return values[::-1]
 

@@ -108,15 +108,7 @@ def systems() -> tuple[System, ...]:
     one = sp.Matrix([[g[0], 0], [g[1], g[2]]])
     two = sp.Matrix([[0, 1, 0], [g[0], g[1], 0], [g[2], 1, g[3]]])
     three = sp.Matrix([[g[0], 1, 0, 0], [g[1], 0, 0, 0], [0, g[2], 0, 1], [1, 0, g[3], g[4]]])
-    four = sp.Matrix(
-        [
-            [0, 1, 0, 0, 0],
-            [g[0], 0, 1, 0, 0],
-            [1, g[1], 0, 0, 0],
-            [g[2], 0, 0, 1, 1],
-            [0, 1, 0, g[3], 2]
-        ]
-    )  # fmt: skip
+    four = sp.Matrix([[0, 1, 0, 0, 0], [g[0], 0, 1, 0, 0], [1, g[1], 0, 0, 0], [g[2], 0, 0, 1, 1], [0, 1, 0, g[3], 2]])
     return (
         scrambled(one, 1, sp.Matrix([[1, 2]])),
         scrambled(two, 2, sp.Matrix([[0, 1, 1]])),

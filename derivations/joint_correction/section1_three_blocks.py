@@ -42,10 +42,7 @@ def constant_matrices():
 
 @claim("1.14.delta")
 def delta_relation():
-    """b_{j+1} in the basis a_1 ... a_i, b_1 ... b_j has the coefficients delta.
-
-    The coefficients come from Cramer's rule.
-    """
+    """b_{j+1} in the basis a_1 ... a_i, b_1 ... b_j has the coefficients delta, here by Cramer's rule."""
     for i, j in CASES:
         s = overlapping()
         basis = sp.Matrix.vstack(s.chain(1, i), s.chain(2, j))
@@ -152,10 +149,7 @@ def higher_derivatives_take_longer():
 
 @claim("1.14.choice")
 def choice_of_i():
-    """The least max(i, j) over all bases.
-
-    For the overlapping system i = j = 2, not the two-stage i = m = 3.
-    """
+    """The least max(i, j) over all bases: for the overlapping system i = j = 2, not the two-stage i = m = 3."""
     from navsym.observability.splits import best_split
 
     best = best_split(overlapping().found)

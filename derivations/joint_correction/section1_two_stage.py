@@ -107,10 +107,7 @@ def rows_of_phi():
 
 @claim("1.10.phi")
 def next_vector_of_the_second_chain():
-    """b_{n-m+1} in the basis a_1 ... a_m, b_1 ... b_{n-m} has the coefficients phi.
-
-    Here phi is the last row of L G L^-1.
-    """
+    """b_{n-m+1} in the basis a_1 ... a_m, b_1 ... b_{n-m} has the coefficients phi, the last row of L G L^-1."""
     for s in systems():
         L, back = coordinates(s, sp.eye(s.m), sp.eye(s.rest))
         phi = (L * s.G * back)[s.n - 1, :]

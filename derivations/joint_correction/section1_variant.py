@@ -36,10 +36,7 @@ def general(m: int, rest: int) -> dict[str, sp.Matrix]:
 
 @claim("1.13.error")
 def general_error():
-    """In (1.13) the error of x enters that of z with the weight K°_z.
-
-    It enters through G°_z1 - K°_z g_z1^T, and z enters itself through G°_z2 - K°_z g_z2^T.
-    """
+    """In (1.13) the error of x enters that of z through G°_z1 - K°_z g_z1^T, z itself through G°_z2 - K°_z g_z2^T."""
     for m, rest in PAIRS[:4]:
         b = general(m, rest)
         e, f, x, z = (

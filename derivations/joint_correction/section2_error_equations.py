@@ -265,10 +265,7 @@ def correction_is_short():
 
 @claim("2.scale.earth")
 def earth_rate_is_of_order_one():
-    """u = Omega/(mu omega_0) lies between 1/2 and 1 at 45 degrees and 250 m/s.
-
-    mu is the largest rate over all headings.
-    """
+    """u = Omega/(mu omega_0), mu the largest rate over all headings, is in (1/2, 1) at 45 degrees and 250 m/s."""
     largest = EARTH_RATE * sp.sqrt(2) / 2 + sp.Rational(250, EARTH_RADIUS)
     value = EARTH_RATE / largest
     return Bound((value - sp.Rational(1, 2)) * (1 - value), ">", 0)

@@ -190,33 +190,19 @@ DOT = (
     "mu; by hand: constant omega, beta_3 = 1, all others 0: y_2 and y_6 stand still, the print has mu omega_2 and "
     "-mu omega_1"
 )
-row_y2_printed = row(
-    "2.9.y2",
-    "Derivative of y_2, as printed.",
-    -y3 + mu**2 * (w1 * y5 - w2 * y1) * w2 + mu * w2 * b3,
-    lambda: position().rates[1],
-    slip="scan",
-    reason=DOT,
-)
-row_y2 = row(
-    "2.9.y2*",
-    "Derivative of y_2 up to terms of order mu^2 rho.",
-    -y3 + mu**2 * (w1 * y5 - w2 * y1) * w2 + mu * dw2 * b3,
-    lambda: position().rates[1],
-)
-row_y6_printed = row(
-    "2.9.y6",
-    "Derivative of y_6, as printed.",
-    -y7 + mu**2 * (w2 * y1 - w1 * y5) * w1 - mu * w1 * b3,
-    lambda: position().rates[5],
-    slip="scan",
-    reason=DOT,
-)
-row_y6 = row(
-    "2.9.y6*",
-    "Derivative of y_6 up to terms of order mu^2 rho.",
-    -y7 + mu**2 * (w2 * y1 - w1 * y5) * w1 - mu * dw1 * b3,
-    lambda: position().rates[5],
+rows_y_with_a_dot = tuple(
+    row(
+        f"2.9.y{k}{star}",
+        f"Derivative of y_{k}, as printed." if more else f"Derivative of y_{k} up to terms of order mu^2 rho.",
+        -y + mu**2 * slow + mu * once * b3,
+        lambda k=k: position().rates[k - 1],
+        **more,
+    )
+    for k, y, slow, turn, rate in (
+        (2, y3, (w1 * y5 - w2 * y1) * w2, w2, dw2),
+        (6, y7, (w2 * y1 - w1 * y5) * w1, -w1, -dw1),
+    )
+    for star, once, more in (("", turn, {"slip": "scan", "reason": DOT}), ("*", rate, {}))
 )
 output_m1 = row(
     "2.9.sigma1", "sigma_1^M in the variables of the group, without noise.", y1, lambda: position().outputs[0]
@@ -231,10 +217,7 @@ output_m2 = row(
 
 @claim("2.8.neglected")
 def neglected_terms():
-    """What (2.8) and (2.9) leave out has the order mu^2 rho exactly.
-
-    No lower, and nothing of higher order either.
-    """
+    """What (2.8) and (2.9) leave out has the order mu^2 rho exactly: nothing is lower, nothing higher."""
     dropped = [term for group in (velocity(), position()) for row_ in group.dropped for term in row_]
     orders = {term.order for term in dropped}
     method = "bookkeeping of every monomial"

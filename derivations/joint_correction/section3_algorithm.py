@@ -210,10 +210,7 @@ def joint_error_matrix(Kx: tuple[sp.Expr, ...] = Kc, Ky: dict[int, sp.Expr] = Kh
 
 @claim("3.3.triangular")
 def position_errors_do_not_disturb_the_velocity_stage():
-    """Errors of (3.2) drive those of (3.3) through Delta x_1 and Delta x_4 only.
-
-    They are never driven by them.
-    """
+    """Errors of (3.2) drive those of (3.3) through Delta x_1 and Delta x_4 only, and are never driven by them."""
     A = joint_error_matrix()
     printed = sp.zeros(4, 6)
     printed[1, 0] = printed[3, 3] = -1

@@ -21,6 +21,8 @@ kappa, omega = sp.symbols("kappa omega", real=True)
 
 #: K_1, K_2, K_3 (and K_4, K_5, K_6) for (p + lambda_c)^3.
 VELOCITY_GAINS = (1 - 3 * lam**2, 3 * lam - lam**3, lam**3)
+#: Position gains that leave the small terms as they are, and none.
+PLAIN, NO_POSITION = {1: 2 * lam_h, 2: lam_h**2, 5: 2 * lam_h, 6: lam_h**2}, dict.fromkeys((1, 2, 5, 6), sp.Integer(0))
 
 
 def velocity_block(gains: tuple[sp.Expr, ...], channel: int = 0) -> sp.Matrix:
@@ -51,18 +53,9 @@ def velocity_gains_are_unique():
     """These gains are the only ones: the coefficients are affine in K with determinant 1 or -1."""
     K = sp.symbols("K1:4", real=True)
     values = sp.Matrix(coefficients_of_polynomial(velocity_block(K))[1:])
-    return Equation(
-        [sp.Integer(1), *[sp.Integer(0)] * 3],
-        [
-            values.jacobian(K).det() ** 2,
-            *(
-                sp.expand(value)
-                for value in values.jacobian(K) * sp.Matrix(VELOCITY_GAINS)
-                + values.subs(dict.fromkeys(K, 0))
-                - sp.Matrix([3 * lam, 3 * lam**2, lam**3])
-            ),
-        ],
-    )
+    slopes, wanted = values.jacobian(K), sp.Matrix([3 * lam, 3 * lam**2, lam**3])
+    rest = slopes * sp.Matrix(VELOCITY_GAINS) + values.subs(dict.fromkeys(K, 0)) - wanted
+    return Equation([sp.Integer(1), *[sp.Integer(0)] * 3], [slopes.det() ** 2, *rest.applyfunc(sp.expand)])
 
 
 # K_6^h has omega_1 in the place of omega_2.
@@ -89,18 +82,18 @@ def position_gains_are_unique():
 # The coupled velocity stage
 
 
+def coupled_errors(Ky: dict[int, sp.Expr]) -> sp.Matrix:
+    """All ten errors with the gains of 3.2.gains and position gains, kappa = mu u_3."""
+    return joint_error_matrix((*VELOCITY_GAINS, *VELOCITY_GAINS), Ky).subs(EARTH[2], kappa / MU).applyfunc(sp.expand)
+
+
 def coupled_velocity_block() -> sp.Matrix:
     """Errors of (3.2), all six, with kappa = mu u_3."""
-    gains = {"Kx": (*VELOCITY_GAINS, *VELOCITY_GAINS)}
-    A = joint_error_matrix(gains["Kx"])[:6, :6]
-    return A.subs(EARTH[2], kappa / MU).applyfunc(sp.expand)
+    return coupled_errors(NO_POSITION)[:6, :6]
 
 
 def link_polynomial(variable: sp.Expr) -> sp.Expr:
-    """p ((1 - 3 lambda^2) p + 3 lambda - lambda^3).
-
-    The transfer of the innovation to x_1 times its denominator.
-    """
+    """p ((1 - 3 lambda^2) p + 3 lambda - lambda^3): transfer of the innovation to x_1 times its denominator."""
     return variable * ((1 - 3 * lam**2) * variable + 3 * lam - lam**3)
 
 
@@ -130,10 +123,7 @@ def crossing() -> tuple[sp.Expr, sp.Expr]:
 
 @claim("3.coupled.factors")
 def coupled_polynomial_factors():
-    """The polynomial of the six errors is a sum of two squares, so it factors over i.
-
-    The squares are those of (p + lambda_c)^3 and of kappa times the link polynomial.
-    """
+    """The polynomial of the six errors is ((p + l)^3)^2 + (kappa link)^2, l = lambda_c, and so factors over i."""
     first, second = (p + lam) ** 3, kappa * link_polynomial(p)
     product = sp.expand((first + sp.I * second) * (first - sp.I * second))
     return Equation(product, polynomial_of(coupled_velocity_block()))
@@ -141,10 +131,7 @@ def coupled_polynomial_factors():
 
 @claim("3.coupled.crossing")
 def poles_cross_the_axis_at_one():
-    """A pole i omega on the imaginary axis has omega = 1 or -1.
-
-    8 lambda_c^3 omega (omega^2 - 1) = 0 follows, and omega = 0 is no pole.
-    """
+    """A pole i omega on the axis has omega = 1 or -1: 8 lambda_c^3 omega (omega^2 - 1) = 0, and 0 is no pole."""
     real, imaginary = crossing()
     combination = real * omega * (1 - 3 * lam**2) - imaginary * (3 * lam - lam**3)
     return Equation([8 * lam**3 * omega * (omega**2 - 1), lam**3], [sp.expand(combination), real.subs(omega, 0)])
@@ -309,13 +296,9 @@ plain_position_gains_are_better = claim(
 @claim("3.coupled.whole")
 def whole_polynomial():
     """The ten errors have the product of the polynomials of both stages."""
-    from sympy import expand
-
-    A = joint_error_matrix((*VELOCITY_GAINS, *VELOCITY_GAINS), {1: 2 * lam_h, 2: lam_h**2, 5: 2 * lam_h, 6: lam_h**2})
-    A = A.subs(EARTH[2], kappa / MU).applyfunc(expand)
     first = (p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2
     second = (p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))
-    return Equation(first * second, polynomial_of(A))
+    return Equation(first * second, polynomial_of(coupled_errors(PLAIN)))
 
 
 # What the inhomogeneous terms do
@@ -350,10 +333,7 @@ def steady_error_of_the_position_stage():
 
 @claim("3.preestimation.exact")
 def preestimation_frees_the_position_stage():
-    """With exact x_1° the errors of y_1, y_2 obey (p + lambda_h)^2 alone.
-
-    Two variables remain to be estimated instead of four.
-    """
+    """With exact x_1° the errors of y_1, y_2 obey (p + lambda_h)^2 alone: two variables instead of four."""
     t = sp.Symbol("t", positive=True)
     start = sp.Matrix(sp.symbols("e_1 e_2", real=True))
     A = position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2))
@@ -363,10 +343,7 @@ def preestimation_frees_the_position_stage():
 
 @claim("3.preestimation.transient")
 def transient_driven_by_the_velocity_stage():
-    """Without it an error of the velocity stage drives y.
-
-    Delta y_1 has the transfer -1/(p + lambda_h)^2 from Delta x_1.
-    """
+    """Without it an error of the velocity stage drives y: Delta y_1 is -1/(p + lambda_h)^2 of Delta x_1."""
     A = position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2))
     return Equation(
         [sp.Integer(-1), (p + lam_h) ** 2],
@@ -397,9 +374,7 @@ position_only_by_zeroing_oscillates = claim(
     "Only position with K^c = 0.",
     lambda: Equation(
         p**2 * (p**2 + 1) ** 2 * ((p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))),
-        polynomial_of(
-            joint_error_matrix(tuple([sp.Integer(0)] * 6), {1: 2 * lam_h, 2: lam_h**2, 5: 2 * lam_h, 6: lam_h**2})
-        ),
+        polynomial_of(joint_error_matrix((sp.Integer(0),) * 6, PLAIN)),
     ),
 )
 neither_information = claim(
@@ -407,22 +382,17 @@ neither_information = claim(
     "Neither information: all gains are zero and the estimates are carried along.",
     lambda: Equation(
         p**4 * (p**2 + 1) ** 2 * (p**2 + mu**2 * (w1**2 + w2**2)),
-        polynomial_of(joint_error_matrix(tuple([sp.Integer(0)] * 6), dict.fromkeys((1, 2, 5, 6), sp.Integer(0)))),
+        polynomial_of(joint_error_matrix((sp.Integer(0),) * 6, NO_POSITION)),
     ),
 )
 
 
 @claim("3.situations.velocity_after_joint")
 def velocity_after_a_joint_session():
-    """Only velocity after a joint session: x keeps its poles, y is carried along undamped.
-
-    K^h = 0.
-    """
-    A = joint_error_matrix((*VELOCITY_GAINS, *VELOCITY_GAINS), dict.fromkeys((1, 2, 5, 6), sp.Integer(0)))
-    A = A.subs(EARTH[2], kappa / MU).applyfunc(sp.expand)
+    """Only velocity after a joint session (K^h = 0): x keeps its poles, y is carried along undamped."""
     return Equation(
         ((p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2) * p**2 * (p**2 + mu**2 * (w1**2 + w2**2)),
-        polynomial_of(A),
+        polynomial_of(coupled_errors(NO_POSITION)),
     )
 
 

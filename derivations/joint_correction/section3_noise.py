@@ -97,17 +97,8 @@ def noise_that_the_first_stage_hands_on():
     A, noise = both_stages()
     P = covariance_of(A, noise)
     first = l**5 + 7 * l**4 * h - 6 * l**3 - 6 * l**2 * h + 9 * l + 3 * h
-    second = (
-        3 * l**6
-        + 13 * l**5 * h
-        + 28 * l**4 * h**2
-        - 6 * l**4
-        - 30 * l**3 * h
-        - 24 * l**2 * h**2
-        + 7 * l**2
-        + 37 * l * h
-        + 12 * h**2
-    )
+    second = 3 * l**6 + 13 * l**5 * h + 28 * l**4 * h**2 - 6 * l**4 - 30 * l**3 * h
+    second += -24 * l**2 * h**2 + 7 * l**2 + 37 * l * h + 12 * h**2
     below = 4 * l * (l + h) ** 4
     return Equation([first / (h * below), 2 * first / below, second / below], [P[3, 3], P[3, 4], P[4, 4]])
 

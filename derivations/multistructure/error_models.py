@@ -11,6 +11,8 @@ from navsym_papers.multistructure import model
 RECKONING = model.dead_reckoning()
 S = RECKONING.right_side()
 scale = sp.Symbol("epsilon", real=True)
+#: Unit speed on the unit sphere.
+UNIT = {model.vy: 1, model.vx: 0, model.height: 0, model.radius: 1}
 #: The whole sphere but the poles, at heights above its centre.
 SPHERE = {model.latitude: (sp.Rational(-3, 2), sp.Rational(3, 2)), model.height: (0, None)}
 
@@ -18,7 +20,7 @@ SPHERE = {model.latitude: (sp.Rational(-3, 2), sp.Rational(3, 2)), model.height:
 @claim("1.nonlinear")
 def nonlinear():
     """The errors of reckoned coordinates depend on the sensor errors in a nonlinear way."""
-    point = {model.latitude: 0, model.vy: 1, model.vx: 0, model.heading: 0, model.height: 0, model.radius: 1}
+    point = UNIT | {model.latitude: 0, model.heading: 0}
     at_rest = dict.fromkeys((*RECKONING.errors, *RECKONING.sensor_errors), 0)
     curvature = S.diff(model.d_heading, 2).subs(at_rest)[0].subs(point)
     scope, evidence = "course and log on a sphere", f"d2S/dK2 = {curvature} at the equator, heading north at unit speed"
@@ -75,14 +77,7 @@ def linearised():
 def unsteady():
     """(3): S1 and S2 depend on the coordinates, hence on time."""
     S1, S2 = RECKONING.linear_parts()
-    point = {
-        model.latitude: sp.pi / 4,
-        model.vy: 1,
-        model.vx: 0,
-        model.heading: sp.pi / 2,
-        model.height: 0,
-        model.radius: 1,
-    }
+    point = UNIT | {model.latitude: sp.pi / 4, model.heading: sp.pi / 2}
     # at one radian, a rational point
     rational = point | {model.latitude: 1, model.heading: 1}
     meaning = tuple(changes_at(part[1, 0], model.latitude, 1, rational) for part in (S1, S2))
@@ -203,8 +198,7 @@ def inertial_linearised():
 
 def latitude_rates(heading):
     """Rates of the latitude error per constant sensor error at unit speed and one heading, radius 1, height 0."""
-    point = {model.heading: heading, model.vy: 1, model.vx: 0, model.height: 0, model.radius: 1}
-    return [sp.expand(entry.subs(point)) for entry in RECKONING.linear_parts()[1].row(0)]
+    return [sp.expand(entry.subs(UNIT | {model.heading: heading})) for entry in RECKONING.linear_parts()[1].row(0)]
 
 
 @claim(

@@ -96,11 +96,6 @@ STICKY = [[sp.Rational(9, 10), sp.Rational(1, 10)], [sp.Rational(1, 10), sp.Rati
 CALM, JUMP = scalar(1, 0, 1, 1), scalar(1, 25, 1, 1)
 
 
-def means(method, models, transitions, measurements, **options) -> list[sp.Expr]:
-    """Estimates of the scalar state after every step."""
-    return [step.mean[0] for step in run(method, models, transitions, measurements, **options)]
-
-
 def in_fractions(method, models, transitions, measurements, *, depth=None) -> list[ExactStep]:
     """Steps of a method in fractions, the densities to sixty digits."""
     half = Fraction(1, 2)

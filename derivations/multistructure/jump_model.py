@@ -5,7 +5,7 @@ from itertools import product
 import sympy as sp
 
 from navsym.claims import Equation, claim
-from navsym_papers.multistructure.finite import distribution, frozen
+from navsym_papers.multistructure.finite import distribution, free, frozen
 
 TWO = (0, 1)
 
@@ -60,15 +60,11 @@ def summed(table, **fixed):
     return sp.expand(sp.Add(*(v for key, v in table.items() if all(key[a] == b for a, b in wanted))))
 
 
-def free(name, size=2):
-    return [sp.Symbol(f"{name}_{k}", positive=True) for k in range(size)]
-
-
 @claim("6.markov")
 def markov():
     """Under (6): the vector of state, mode and previous measurement is Markov (two modes, two states)."""
     table = path(
-        [free(f"s{i}") for i in TWO],
+        [free(f"s{i}", 2) for i in TWO],
         [distribution(f"p{j}", 2) for j in TWO],
         [[distribution(f"f{i}{y}", 2) for y in TWO] for i in TWO],
         [[distribution(f"l{i}{x}", 2) for x in TWO] for i in TWO],
@@ -115,7 +111,7 @@ def forgetful():
 def follows_printed():
     """Before (14): after the Gaussian approximation the mode is predicted by P[I(k) = i] (two modes)."""
     start, switch = chain(2)
-    seen = free("rho")
+    seen = free("rho", 2)
     prior = sum(start[j] * switch[j][0] for j in TWO)
     given = sum(seen[j] * start[j] * switch[j][0] for j in TWO) / sum(seen[j] * start[j] for j in TWO)
     return Equation(prior, given, {start[0]: (0, 1), switch[0][0]: (0, 1), switch[1][0]: (0, 1)})

@@ -7,7 +7,7 @@ import sympy as sp
 from navsym.claims import PROVED, Equation, claim, fact
 from navsym.multimodel.exact import Leaf, Model, run_exactly
 from navsym.multimodel.schemes import scheme
-from navsym_papers.multistructure import finite
+from navsym_papers.multistructure import finite, pulsating
 from navsym_papers.multistructure.examples import fractions_kit
 from navsym_papers.multistructure.finite import Step, step
 from navsym_papers.multistructure.recursion import UNIT
@@ -27,29 +27,10 @@ def predicted(s: Step, i: int, x: int) -> sp.Expr:
 
 def rho(s: Step, i: int) -> sp.Expr:
     """f[Y(k) / Y_0^{k-1}, i]: what makes (20) sum to one."""
-    return sp.expand(sum(s.L(i, x) * predicted(s, i, x) for x in s.X))
+    return pulsating.rho(s, i, predicted)
 
 
-@claim(
-    "20",
-    slip="scan",
-    reason="an equals sign stands between the fraction and the integral where (8) has a product, as in (15); by "
-    "hand: a measurement that says nothing makes the fraction 1, and the posterior is the integral",
-)
-def partial_printed():
-    """(20) as printed: pi^i equals the fraction, and equals the integral."""
-    s = frozen_steps()[0]
-    truth = finite.partial(s, 0, 0)
-    return Equation([s.L(0, 0) / rho(s, 0), predicted(s, 0, 0)], [truth, truth], UNIT(s))
-
-
-@claim("20*")
-def partial():
-    """(20) with the product of fraction and integral: (8) under (19) [I,n = 2,2 3,2 2,3]."""
-    cases = [(s, i) for s in frozen_steps() for i in s.I]
-    return Equation(
-        [s.L(i, 0) / rho(s, i) * predicted(s, i, 0) for s, i in cases], [finite.partial(s, 0, i) for s, i in cases]
-    )
+partial_densities = pulsating.product_of("20", "19", frozen_steps, predicted, ", as in (15)")
 
 
 @claim(

@@ -1,10 +1,11 @@
 """Equations (15)-(17) and the words about the pulsating filter."""
 
+from collections.abc import Callable
 from itertools import product
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, Bound, Equation, Finding, Property, claim, fact, state
+from navsym.claims import CERTIFIED, PROVED, Bound, Claim, Equation, Finding, Property, claim, fact, state
 from navsym.language.expression import to_text
 from navsym_papers.multistructure import examples, finite
 from navsym_papers.multistructure.finite import Step, step
@@ -28,31 +29,36 @@ def predicted(s: Step, i: int, x: int) -> sp.Expr:
     return sp.expand(sum(s.f(i, x, y) * whole(s, y) for y in s.X))
 
 
-def rho(s: Step, i: int) -> sp.Expr:
+def rho(s: Step, i: int, predicted: Callable[[Step, int, int], sp.Expr] = predicted) -> sp.Expr:
     """What makes (15) sum to one."""
     return sp.expand(sum(s.L(i, x) * predicted(s, i, x) for x in s.X))
 
 
-@claim(
-    "15",
-    slip="scan",
-    reason="an equals sign stands between the fraction and the integral where (8) has a product; by hand: a "
-    "measurement that says nothing makes the fraction 1, and the posterior is the integral",
-)
-def partial_printed():
-    """(15) as printed: pi^i equals the fraction, and equals the integral."""
-    s = forgetful_steps()[0]
-    truth = finite.partial(s, 0, 0)
-    return Equation([s.L(0, 0) / rho(s, 0), predicted(s, 0, 0)], [truth, truth], UNIT(s))
+def product_of(
+    number: str, condition: str, steps: Callable[[], list[Step]], predicted: Callable, like: str = ""
+) -> tuple[Claim, Claim]:
+    """(15) or (20), as printed and with the product; ``predicted`` is its integral."""
 
+    def printed() -> Equation:
+        s = steps()[0]
+        truth = finite.partial(s, 0, 0)
+        return Equation([s.L(0, 0) / rho(s, 0, predicted), predicted(s, 0, 0)], [truth, truth], UNIT(s))
 
-@claim("15*")
-def partial():
-    """(15) with the product of fraction and integral: (8) under (14) [I,n = 2,2 3,2 2,3]."""
-    cases = [(s, i) for s in forgetful_steps() for i in s.I]
-    return Equation(
-        [s.L(i, 0) / rho(s, i) * predicted(s, i, 0) for s, i in cases], [finite.partial(s, 0, i) for s, i in cases]
+    def corrected() -> Equation:
+        cases = [(s, i) for s in steps() for i in s.I]
+        parts = [s.L(i, 0) / rho(s, i, predicted) * predicted(s, i, 0) for s, i in cases]
+        return Equation(parts, [finite.partial(s, 0, i) for s, i in cases])
+
+    reason = (
+        f"an equals sign stands between the fraction and the integral where (8) has a product{like}; by hand: a "
+        "measurement that says nothing makes the fraction 1, and the posterior is the integral"
     )
+    title = f"({number}) as printed: pi^i equals the fraction, and equals the integral."
+    right = f"({number}) with the product of fraction and integral: (8) under ({condition}) [I,n = 2,2 3,2 2,3]."
+    return claim(number, title, printed, slip="scan", reason=reason), claim(f"{number}*", right, corrected)
+
+
+partial_densities = product_of("15", "14", forgetful_steps, predicted)
 
 
 @claim("16")

@@ -38,7 +38,7 @@ PAPER = Paper(
     ),
     remarks=(
         "1.height 6.rest 9.family 9.small 10.after 10.before 10.sufficient 10.unique 10.flat 11.beta 12.linear* "
-        "bias.mirror bias.only_way bias.units cost.experiment middle.trace noise roots.both roots.values "
+        "bias.mirror bias.only_way bias.units cost.experiment cost.total middle.trace noise roots.both roots.values "
         "roots.range roots.gram roots.solvable flat mean.* interval.half interval.whole sigma.mean sigma.table "
         "sigmaV.cell sigmaV.floor table.bias* table.close.mean table.grid* table.percent table.runs* "
         "table.quantisation table.acceleration* table.real_time table.sequential"
@@ -87,5 +87,10 @@ PAPER = Paper(
         "the editors' questions in the manuscript": "no statements of the authors; one asks for the time of t_G: "
         "O(n) operations by 12.linear, O(n^2) by the printed double sums",
         "the index of the velocity step in (8)": "illegible in the copy",
+        "(3), (14): delta x*, delta y* as errors": "a convention of sign: what is added to the indicated position has "
+        "the sign opposite to the error of (1)",
+        "the error of a height, N(0.015 (h_abs - h_rv)) + delta h_rv": "a model of the noise, given; N has one of two "
+        "arguments, and h_abs - h_rv is the height of the ground: noise takes the height above it",
+        "(6): t_G as the most probable instant of crossing": "no probability is given; (10) is the least criterion",
     },
 )

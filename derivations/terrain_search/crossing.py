@@ -72,13 +72,8 @@ def angle_between_the_tracks():
 family = claim(
     "9.family",
     "The tracks of the search are y + alpha + tan(beta) k step with tan(beta) = deltaV / V.",
-    lambda: Equation(y + alpha + dV / speed * k * step, drifted()),
+    lambda: Equation(y + alpha + dV / speed * k * step, y + free_motion(k * step / speed, alpha, dV, 0)[0]),
 )
-
-
-def drifted():
-    """Cross-track coordinate of measurement k after the time k step / V, by the model (1)."""
-    return y + free_motion(k * step / speed, alpha, dV, 0)[0]
 
 
 @claim("9.small")
@@ -155,16 +150,14 @@ def criterion():
         )
 
 
-def weighted_mean(q):
-    """The printed right side of (10)."""
-    return sum(m * v**2 for m, v in enumerate(q)) / sum(v**2 for v in q)
-
-
 @claim("10")
 def crossing():
     """t_G is the mean of the measurement numbers, weighted with the squared slopes."""
-    tracks = [own_slopes(size) for size in (1, 2, 3, 4)]
-    return Equation([weighted_mean(q) for q in tracks], [crossing_time([(0, v) for v in q], (0, beta)) for q in tracks])
+    for q in map(own_slopes, (1, 2, 3, 4)):
+        yield (
+            sum(m * v**2 for m, v in enumerate(q)) / sum(v**2 for v in q),
+            crossing_time([(0, v) for v in q], (0, beta)),
+        )
 
 
 @claim("10.weights")
@@ -220,7 +213,7 @@ def sufficiency():
 def uniqueness():
     """With one slope that is not zero the second derivative is positive and t_G the only minimum."""
     u, v = sp.Symbol("q0", positive=True), sp.Symbol("q1", real=True)
-    return Bound(curvature_of([u, v]), ">", sp.Integer(0))
+    return Bound(sp.expand(sp.diff(misfit([(0, u), (0, v)], (0, 1), t), t, 2) / step**2), ">", sp.Integer(0))
 
 
 @claim("10.flat")
@@ -229,11 +222,6 @@ def flat_across():
     flat = [(0, 0)] * 3
     numerator, denominator = (sum(m**power * q**2 for m, (_, q) in enumerate(flat)) for power in (1, 0))
     return Equation([sp.Integer(0)] * 3, [misfit(flat, (0, beta), t), sp.Integer(numerator), sp.Integer(denominator)])
-
-
-def curvature_of(q):
-    """Second derivative of the criterion in t, per squared beta and step."""
-    return sp.expand(sp.diff(misfit([(0, v) for v in q], (0, 1), t), t, 2) / step**2)
 
 
 @claim("10.equal.sum")

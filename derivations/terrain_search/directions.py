@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, claim, fact, state
+from navsym.claims import PROVED, Claim, Equation, claim, fact, state
 from navsym.language.expression import to_text
 from navsym_papers.terrain_search.model import (
     SIZES,
@@ -140,36 +140,40 @@ def printed_sums(name):
     return [double_sum(size, PRINTED[name]) for size in PAIRS]
 
 
-ax2_as_printed = claim(
-    "12.Ax2",
-    "The sum A_x2, as printed.",
-    lambda: Equation(printed_sums("Ax2"), [from_x(size)[0] for size in PAIRS]),
-    slip="undecidable",
-    reason="the last factor reads h(x_i, y_j)/dx: a del is lost and the point is off the track; A_y2, "
-    "its negative, has dh(x_j, y_j)/dx",
+def sums(number: str, reason: str = "") -> tuple[Claim, ...]:
+    """A sum against the derivative of t_G by its angle: as printed and, where that is wrong, as it should read."""
+    name, place = number[3:], 2 - int(number[-1])
+    derive, title = from_x if name[1] == "x" else from_y, f"The sum A_{name[1:]}"
+
+    def stated(which: str):
+        return lambda: Equation(printed_sums(which), [derive(size)[place] for size in PAIRS])
+
+    if not reason:
+        return (claim(number, f"{title}.", stated(name)),)
+    printed = claim(number, f"{title}, as printed.", stated(name), slip="undecidable", reason=reason)
+    return printed, claim(f"{number}*", f"{title}.", stated(f"{name}*"))
+
+
+SUMS = (
+    *sums(
+        "12.Ax2",
+        "the last factor reads h(x_i, y_j)/dx: a del is lost and the point is off the track; A_y2, its negative, has "
+        "dh(x_j, y_j)/dx",
+    ),
+    *sums("12.Ax1"),
+    *sums(
+        "12.Ax0",
+        "the last product is (dh_j/dy)(dh_j/dy) where the derivative of (11) gives (dh_i/dy)(dh_j/dx); by hand: "
+        "slopes (0, 1), (1, 1) make it 1, the print 0",
+    ),
+    *sums("13.Ay2"),
+    *sums("13.Ay1"),
+    *sums(
+        "13.Ay0",
+        "the bracket is (dh_i/dy)(dh_j/dy) - (dh_j/dy)^2, without any slope along x; the derivative of (11) "
+        "gives (dh_i/dy)(dh_j/dx) - (dh_i/dx)(dh_j/dy); by hand: slopes (0, 1), (1, 1) make it -1, the print 0",
+    ),
 )
-ax2 = claim("12.Ax2*", "The sum A_x2.", lambda: Equation(printed_sums("Ax2*"), [from_x(size)[0] for size in PAIRS]))
-ax1 = claim("12.Ax1", "The sum A_x1.", lambda: Equation(printed_sums("Ax1"), [from_x(size)[1] for size in PAIRS]))
-ax0_as_printed = claim(
-    "12.Ax0",
-    "The sum A_x0, as printed.",
-    lambda: Equation(printed_sums("Ax0"), [from_x(size)[2] for size in PAIRS]),
-    slip="undecidable",
-    reason="the last product is (dh_j/dy)(dh_j/dy) where the derivative of (11) gives (dh_i/dy)(dh_j/dx); by hand: "
-    "slopes (0, 1), (1, 1) make it 1, the print 0",
-)
-ax0 = claim("12.Ax0*", "The sum A_x0.", lambda: Equation(printed_sums("Ax0*"), [from_x(size)[2] for size in PAIRS]))
-ay2 = claim("13.Ay2", "The sum A_y2.", lambda: Equation(printed_sums("Ay2"), [from_y(size)[0] for size in PAIRS]))
-ay1 = claim("13.Ay1", "The sum A_y1.", lambda: Equation(printed_sums("Ay1"), [from_y(size)[1] for size in PAIRS]))
-ay0_as_printed = claim(
-    "13.Ay0",
-    "The sum A_y0, as printed.",
-    lambda: Equation(printed_sums("Ay0"), [from_y(size)[2] for size in PAIRS]),
-    slip="undecidable",
-    reason="the bracket is (dh_i/dy)(dh_j/dy) - (dh_j/dy)^2, without any slope along x; the derivative of (11) "
-    "gives (dh_i/dy)(dh_j/dx) - (dh_i/dx)(dh_j/dy); by hand: slopes (0, 1), (1, 1) make it -1, the print 0",
-)
-ay0 = claim("13.Ay0*", "The sum A_y0.", lambda: Equation(printed_sums("Ay0*"), [from_y(size)[2] for size in PAIRS]))
 
 
 @claim("12.linear")
@@ -201,22 +205,15 @@ def sums_in_one_pass_for_any_track():
     return Equation(printed, [i * term for term in terms])
 
 
-def quadratic_form(sums):
-    a2, a1, a0 = sums
-    return a2 * beta_x**2 + a1 * beta_x * beta_y + a0 * beta_y**2
-
-
-def scaled(size, variable):
-    """2 beta D^-2, the factor between the derivative of t_G and the quadratic form."""
-    squares = sum((p * beta_x + q * beta_y) ** 2 for p, q in slopes(size))
-    return 2 * variable / squares**2
-
-
 def derivatives(number, names, variable, other, sign):
     """The derivative of t_G by one angle as the quadratic form of three sums: as printed, and with its factor."""
 
     def form(size):
-        return quadratic_form([double_sum(size, PRINTED[name]) for name in names])
+        a2, a1, a0 = (double_sum(size, PRINTED[name]) for name in names)
+        return a2 * beta_x**2 + a1 * beta_x * beta_y + a0 * beta_y**2
+
+    def scaled(size):
+        return 2 * other / sum((p * beta_x + q * beta_y) ** 2 for p, q in slopes(size)) ** 2 * form(size)
 
     return (
         claim(
@@ -231,9 +228,7 @@ def derivatives(number, names, variable, other, sign):
         claim(
             f"{number}*",
             f"The derivative of t_G by {variable} is the quadratic form times 2 {other} / D^2, D the sum of squares.",
-            lambda: Equation(
-                [scaled(s, other) * form(s) for s in PAIRS], [derivative(slopes(s), variable) for s in PAIRS]
-            ),
+            lambda: Equation([scaled(s) for s in PAIRS], [derivative(slopes(s), variable) for s in PAIRS]),
         ),
     )
 

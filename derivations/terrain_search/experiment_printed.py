@@ -52,15 +52,10 @@ def mean_square_measure(runs, n):
     return sp.sqrt(sum(e**2 + f**2 for e, f in runs) / n)
 
 
-def stretched(runs):
-    """The same runs measured in a unit ``scale`` times smaller."""
-    return [(scale * e, scale * f) for e, f in runs]
-
-
 def scales(measure, count):
     """That a measure of so many runs is as much larger as the unit is smaller."""
     runs = errors(count)
-    return Equation(scale * measure(runs, count), measure(stretched(runs), count))
+    return Equation(scale * measure(runs, count), measure([(scale * e, scale * f) for e, f in runs], count))
 
 
 unit_as_printed = claim(

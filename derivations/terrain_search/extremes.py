@@ -72,20 +72,15 @@ def example():
 @claim("roots.both")
 def two_directions():
     """The directions (beta_x : beta_y) that solve it are two, here the axes, with t_G = 1 and 0."""
-    values = sorted(int(crossing_time([(1, 0), (0, 1)], way)) for way in axes_of_the_example())
-    finding = Finding(tuple(values), "exact example: slopes (1, 0) and (0, 1)", PROVED)
     A2, A1, A0 = example()
+    ways = [(u, v) for u, v in ((1, 0), (0, 1)) if A2 * u * u + A1 * u * v + A0 * v * v == 0]
+    values = sorted(int(crossing_time([(1, 0), (0, 1)], way)) for way in ways)
+    finding = Finding(tuple(values), "exact example: slopes (1, 0) and (0, 1)", PROVED)
     form, off_axes = f"{A2}*u**2 + {A1}*u*v + {A0}*v**2", {name: [None, None, ["nonzero"]] for name in "uv"}
     axes = [(form.replace("u", x).replace("v", y), "=", "0") for x, y in ("10", "01")]
     points = [(1, 0), (0, 1)]
     least = (*say_least(points, (1, 0), 0), *say_least(points, (0, 1), 1))
     return Property((0, 1), finding, (*(state(*axis) for axis in axes), state(form, "!=", "0", off_axes), *least))
-
-
-def axes_of_the_example():
-    """Directions among the axes at which the quadratic form vanishes."""
-    A2, A1, A0 = (int(v) for v in example())
-    return [(u, v) for u, v in ((1, 0), (0, 1)) if A2 * u * u + A1 * u * v + A0 * v * v == 0]
 
 
 @claim("roots.values")
@@ -110,10 +105,14 @@ def every_value_lies_between_the_roots():
 
 @claim("roots.solvable")
 def always_solvable():
-    """The solvability that the paper tests always holds: G11^2 times the discriminant is a sum of squares."""
+    """The solvability that the paper tests always holds: G11^2 and G22^2 times the discriminant are sums of squares.
+
+    The sums have det G >= 0 before one square (roots.gram); where G11 and G22 are both zero, all slopes are.
+    """
     A2, A1, A0 = form_sums(G, M)
-    squares = (G[0, 0] * A1 - 2 * G[0, 1] * A2) ** 2 + 4 * G.det() * A2**2
-    return Equation(squares, G[0, 0] ** 2 * (A1**2 - 4 * A2 * A0))
+    ends = ((G[0, 0], A2), (G[1, 1], A0))
+    squares = [(g * A1 - 2 * G[0, 1] * A) ** 2 + 4 * G.det() * A**2 for g, A in ends]
+    return Equation(squares, [g**2 * (A1**2 - 4 * A2 * A0) for g, _ in ends])
 
 
 @claim("roots.gram")

@@ -25,7 +25,7 @@ PAPER = Paper(
         "4.Phi.series 6.D.orders 6.Nf.row_step 6.Np.rows 6.first_stage.worse 6.second_stage earth.ellipse "
         "algorithm.NQ.power algorithm.field algorithm.J.* experiment.heading experiment.parts experiment.stop "
         "experiment.physical experiment.one_gain.* experiment.sigma_v.straight.100.noise experiment.sigma_v.2 "
-        "experiment.sigma_v.300 experiment.sigma_v.yaw.100.full experiment.together.*"
+        "experiment.sigma_v.300 experiment.sigma_v.yaw.100.full experiment.together*"
     ),
     beyond="limit.* window.* table.curse* table.n2.closed table.n2.best 6.Nf.det* experiment.straight.*",
     causes={
@@ -41,6 +41,7 @@ PAPER = Paper(
         "(5): N_pN = N_p D^-1 is the observability matrix of (5), with columns of unit length": "what x^q = D x means",
         "S_k = x_k^q, N_p = N_s D_s D_f": "follow from 6.D and 6.Np by N_s = N_f D_s^-1",
         "the algorithm: P(0) = P_0": "a first value, given",
+        "the algorithm: Q*_k in P^-_(k+1), Q*_(k+1) below": "an index of a step, read as the Q that J_(k+1) chooses",
         "sigma_v = 0.019 m, sigma_a = 0.003 m/s^2 on straight courses": "no interval is given; after yawing the gain "
         "forgets for minutes, and some start gives any value from 0.36 to 0.017 m/s",
         "failure in physical variables, explained by condition numbers": "the trials are not described",

@@ -5,6 +5,7 @@ Everything is read off the record of ``navsym verify``; nothing is decided here.
 
 from __future__ import annotations
 
+import contextlib
 import html
 import inspect
 import re
@@ -143,8 +144,9 @@ class Arithmetic:
 
     @property
     def differs(self) -> bool:
-        """True when the two sides are not the same."""
-        return self.printed != self.derived
+        """True when the two sides are apart: no number lies in both enclosures."""
+        (low, high), (least, most) = (map(Decimal, ends) for ends in (self.printed, self.derived))
+        return high < least or most < low
 
 
 def arithmetic(record: Record) -> list[Arithmetic]:
@@ -160,12 +162,9 @@ def arithmetic(record: Record) -> list[Arithmetic]:
         return []
     single, found = len(printed) == 1, []
     for place, pair in enumerate(zip(printed, derived, strict=True), start=1):
-        if pair[0] == pair[1]:
-            continue
-        try:
-            found.append(Arithmetic(0 if single else place, *(value_at(side, point) for side in pair)))
-        except (NavsymError, ValueError, ArithmeticError, TypeError):
-            continue
+        with contextlib.suppress(NavsymError, ValueError, ArithmeticError, TypeError):
+            if pair[0] != pair[1]:
+                found.append(Arithmetic(0 if single else place, *(value_at(side, point) for side in pair)))
     return found
 
 

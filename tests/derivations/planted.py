@@ -205,28 +205,32 @@ class Outcome:
 
 
 def plant(paper: str, place: Place, seen: Watched, most: int = 5) -> Outcome:
-    """Change one place, state the claims that name it, and decide those that changed until one falls."""
+    """Change one place, state the claims that name it, and decide those that changed until one falls.
+
+    A place that runs on import belongs to all claims: they are stated until one equation falls, which is quick.
+    """
 
     def edit(fullname: str, tree: ast.Module) -> ast.Module:
         if fullname != place[0]:
             return tree
         return Places(lambda number, node, changed, _: changed if number == place[1] else node).visit(tree)
 
-    names = seen.names[place]
+    names, silent, fell = seen.names[place], [], ""
     moved: dict[str, tuple[Claim, Statement | None]] = {}
-    silent = []
     try:
         with edited(paper, edit) as claims:
             for claim in claims:
-                if "import" in names or claim.number in names:
+                if not fell and ("import" in names or claim.number in names):
                     statement = state(claim)
                     if statement is None or hash_statement(statement, None) != seen.hashes.get(claim.number):
                         moved[claim.number] = claim, statement
+                        early = "import" in names and len(moved) <= most and isinstance(statement, Equation | None)
+                        fell = claim.number if early and falls(claim, statement) else ""
                     else:
                         silent.append(claim.number)
             # an equation falls at a point, the quickest
             tried = sorted(moved.values(), key=lambda pair: not isinstance(pair[1], Equation | None))[:most]
-            fell = next((claim.number for claim, statement in tried if falls(claim, statement)), "")
+            fell = fell or next((claim.number for claim, statement in tried if falls(claim, statement)), "")
     except (ValueError, ArithmeticError, LookupError, TypeError, AttributeError):
         return Outcome(place, seen.lines[place], "the whole paper", (), ())  # it cannot even be imported
     return Outcome(place, seen.lines[place], fell, tuple(moved), tuple(silent))

@@ -88,16 +88,16 @@ def test_simulated_modes_follow_the_chain(models):
 def test_the_exact_filter_is_consistent_and_the_likeliest(models):
     scores = multimodel_study.compare(models, [("pulsating", None), ("gpb2", None)], 150, 5, 9, exact=True)
     exact = scores[0]
-    assert abs(exact.nees.value - 3.0) < 3.0 * exact.nees.half_width
-    assert exact.excess.value == 0.0
-    assert all(item.excess.value > 0.0 for item in scores[1:])
+    assert abs(exact.nees.mean - 3.0) < 3.0 * exact.nees.half_width
+    assert exact.excess.mean == 0.0
+    assert all(item.excess.mean > 0.0 for item in scores[1:])
 
 
 def test_the_interval_of_a_mean_holds_for_few_runs_too():
     """Of 4,000 means of five normal numbers 95 % lie within half a width; with the quantile of many runs 88 % would."""
     samples = np.random.default_rng(4).normal(3.0, 2.0, (4000, 5))
     found = [multimodel_study.mean_of(sample) for sample in samples]
-    inside = np.mean([abs(mean.value - 3.0) <= mean.half_width for mean in found])
+    inside = np.mean([abs(mean.mean - 3.0) <= mean.half_width for mean in found])
     assert 0.94 <= inside <= 0.96
 
 

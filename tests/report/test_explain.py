@@ -47,6 +47,13 @@ def test_what_is_not_a_number_at_the_point_is_left_out():
     assert arithmetic(wild) == []
 
 
+def test_an_entry_that_agrees_to_the_last_digit_is_not_shown_as_the_one_that_differs():
+    record = hostile.record(
+        "1", "", printed="(-3*x, 1)", derived="(-3*x*sin(y)**2 - 3*x*cos(y)**2, 2)", counterexample={"x": "1", "y": "1"}
+    )
+    assert [(line.entry, line.differs) for line in arithmetic(record)] == [(1, False), (2, True)]
+
+
 def test_entries_of_tuples_and_matrices():
     assert entries_of("((a, f(b, c)), d)") == ["a", " f(b, c)".strip(), "d"]
     assert entries_of("[[1, 2], [3, 4]]") == ["1", "2", "3", "4"]

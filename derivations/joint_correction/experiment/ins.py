@@ -263,10 +263,7 @@ def chain_matrix(kappa: float) -> Array:
 
 
 def standard_deviations(steps: Steps, errors: Errors) -> Array:
-    """(N + 1, 10).
-
-    Standard deviations of the errors of x_1 ... x_6, y_1, y_2, y_5, y_6, propagated exactly.
-    """
+    """(N + 1, 10): standard deviations of the errors of x_1 ... x_6, y_1, y_2, y_5, y_6, propagated exactly."""
     P = np.zeros((26, 26))
     P[:16, :16] = errors.covariance()
     found = [spread(P, steps.M[0])]

@@ -8,7 +8,7 @@ it is a matrix product.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -85,21 +85,13 @@ class TwoStageObserver:
 
     def __post_init__(self) -> None:
         m, rest = np.shape(self.G_x)[0], np.shape(self.G_z2)[0]
-        shapes = {
-            "L": (m + rest, m + rest),
-            "G_x": (m, m),
-            "g_x": (m,),
-            "K_x": (m,),
-            "G_z1": (rest, m),
-            "G_z2": (rest, rest),
-            "g_z1": (m,),
-            "g_z2": (rest,),
-            "K_z": (rest,),
-        }
-        for name, shape in shapes.items():
-            value = getattr(self, name)
-            array = freeze(np.zeros(shape)) if 0 in shape else as_array(name, value, shape, "blocks of the observer")
-            object.__setattr__(self, name, array)
+        shapes = [(m + rest, m + rest), (m, m), (m,), (m,), (rest, m), (rest, rest), (m,), (rest,), (rest,)]
+        for part, shape in zip(fields(self), shapes, strict=True):
+            value = getattr(self, part.name)
+            array = (
+                freeze(np.zeros(shape)) if 0 in shape else as_array(part.name, value, shape, "blocks of the observer")
+            )
+            object.__setattr__(self, part.name, array)
 
     @property
     def stages(self) -> tuple[int, int]:
@@ -115,17 +107,10 @@ def observer_of(
     Raises DomainError when a symbol has no value.
     """
     values = values or {}
-    return TwoStageObserver(
-        L=rounded_entries(blocks.L, values),
-        G_x=rounded_entries(blocks.G_x, values),
-        g_x=rounded_entries(blocks.g_x, values)[0],
-        K_x=rounded_entries(sp.Matrix(len(K_x), 1, list(K_x)), values)[:, 0],
-        G_z1=rounded_entries(blocks.G_z1, values),
-        G_z2=rounded_entries(blocks.G_z2, values),
-        g_z1=rounded_entries(blocks.g_z1, values)[0],
-        g_z2=rounded_entries(blocks.g_z2, values)[0],
-        K_z=rounded_entries(sp.Matrix(len(K_z), 1, list(K_z)), values)[:, 0],
-    )
+    found = {part.name: rounded_entries(getattr(blocks, part.name), values) for part in fields(blocks)}
+    found |= {name: matrix[0] for name, matrix in found.items() if name.startswith("g_")}
+    columns = (rounded_entries(sp.Matrix(len(K), 1, list(K)), values)[:, 0] for K in (K_x, K_z))
+    return TwoStageObserver(**found, **dict(zip(("K_x", "K_z"), columns, strict=True)))
 
 
 def rounded_entries(matrix: sp.MatrixBase, values: Mapping[sp.Symbol, Any]) -> Array:

@@ -7,7 +7,7 @@ the estimates against the truth: errors with confidence intervals, never a singl
 import itertools
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -45,7 +45,7 @@ class Mean:
     Where a few runs carry the mean, as of a NEES, the interval is too narrow: ``docs/measurement_files.md``.
     """
 
-    value: float
+    mean: float
     half_width: float
 
 
@@ -59,7 +59,7 @@ class Score:
     nees           : mean normalised squared error; its expectation is the number of states
     excess         : mean squared distance of the estimate from the exact one, in units of the exact variance,
                      or None without an exact run
-    microseconds   : per step of one run
+    microseconds_per_step : of one run
     """
 
     method: str
@@ -69,8 +69,8 @@ class Score:
     log_likelihood: Mean
     nees: Mean
     excess: Mean | None
-    microseconds: float
     filters_per_step: float
+    microseconds_per_step: float
 
 
 def simulate(models: Bank, runs: int, steps: int, seed: int) -> Signals:
@@ -173,14 +173,14 @@ def score(method: str, depth: int | None, found: Filtered, signals: Signals, exa
         mean_of(found.log_likelihood),
         mean_of(nees),
         excess,
-        found.microseconds,
         found.filters_per_step,
+        found.microseconds,
     )
 
 
 def root_of(mean: Mean) -> Mean:
     """Root of a mean square, and its confidence interval by the derivative of the root."""
-    root = float(np.sqrt(mean.value))
+    root = float(np.sqrt(mean.mean))
     return Mean(root, mean.half_width / (2.0 * root) if root > 0.0 else 0.0)
 
 
@@ -269,26 +269,7 @@ def study(
         "runs": runs,
         "steps": steps,
         "seed": seed,
-        "methods": [as_row(item) for item in scores],
-    }
-
-
-def as_row(item: Score) -> dict[str, Any]:
-    """A score as plain data."""
-
-    def pair(mean: Mean | None) -> dict[str, float] | None:
-        return None if mean is None else {"mean": mean.value, "half_width": mean.half_width}
-
-    return {
-        "method": item.method,
-        "depth": item.depth,
-        "rmse": [pair(value) for value in item.rmse],
-        "log_loss": pair(item.log_loss),
-        "log_likelihood": pair(item.log_likelihood),
-        "nees": pair(item.nees),
-        "excess": pair(item.excess),
-        "filters_per_step": item.filters_per_step,
-        "microseconds_per_step": item.microseconds,
+        "methods": [asdict(item) | {"rmse": [*map(asdict, item.rmse)]} for item in scores],
     }
 
 

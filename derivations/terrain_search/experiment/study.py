@@ -211,21 +211,6 @@ def grounds() -> list[tuple[str, TerrainMap, TerrainMap]]:
     return places
 
 
-def growth(
-    terrain: TerrainMap | None = None,
-    *,
-    drifts: Iterable[float] = (0.0, 0.5, 1.0, 2.0, 4.0),
-    measurements: Iterable[int] = (250, 500, 1000),
-    tracks: int = 3,
-    runs: int = 5,
-    seed: int = 2,
-) -> list[dict[str, Any]]:
-    """How each algorithm's error grows with the velocity error and the length of the track."""
-    settings = [Setting(measurements=n, drift=v) for n in measurements for v in drifts]
-    rows: list[dict[str, Any]] = experiment(terrain, settings=settings, tracks=tracks, runs=runs, seed=seed)["rows"]
-    return rows
-
-
 def sweep_job(sweep: Any, index: int) -> dict[str, Any]:
     """Errors of position and velocity of every search algorithm on one simulated flight over the sample terrain."""
     terrain = matching_map()

@@ -111,6 +111,10 @@ class Start:
         if (self.Q < 0).any():
             raise DomainError("Q: expected no negative element; got one; Q is a diagonal of variances")
 
+    def copies(self) -> tuple[Array, Array, Array]:
+        """Estimate, P and Q as arrays that a run may overwrite."""
+        return self.estimate.copy(), self.P.copy(), self.Q.copy()
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AdaptiveRun:
@@ -180,26 +184,11 @@ def adaptive_filter(z: Array, model: SteppedModel, start: Start, tuning: Tuning)
     z : (N,) measurements at steps 1..N.
     """
     z = checked(z, model, start)
-    states, gains, diagonals, values = empty_run(len(z), model.order)
-    tune_one_step(
-        model.Phi,
-        model.gain_row,
-        model.row,
-        float(tuning.R),
-        z,
-        start.estimate.copy(),
-        start.P.copy(),
-        start.Q.copy(),
-        float(tuning.step),
-        np.array(tuning.weights, dtype=float),
-        CRITERIA[tuning.criterion],
-        len(z) if tuning.stop is None else tuning.stop,
-        states,
-        gains,
-        diagonals,
-        values,
-    )
-    return AdaptiveRun(states, gains, diagonals, values)
+    out, stop = empty_run(len(z), model.order), len(z) if tuning.stop is None else tuning.stop
+    given, weights = (model.Phi, model.gain_row, model.row), np.array(tuning.weights, dtype=float)
+    kind = CRITERIA[tuning.criterion]
+    tune_one_step(given, float(tuning.R), z, start.copies(), float(tuning.step), weights, kind, stop, out)
+    return AdaptiveRun(*out)
 
 
 def windowed_filter(
@@ -222,26 +211,10 @@ def windowed_filter(
     only_first = not model.gain_row[1:].any() and model.gain_row[0] > 0
     if not only_first:
         raise DomainError("model: expected the corrected form; got a gain row with more than one entry; use it")
-    states, gains, diagonals, values = empty_run(len(z), model.order)
-    low, high = (np.full(model.order, b) for b in bounds)
-    tune_by_windows(
-        model.Phi,
-        model.gain_row,
-        float(tuning.R),
-        z,
-        start.estimate.copy(),
-        start.P.copy(),
-        start.Q.copy(),
-        float(tuning.step),
-        window,
-        low,
-        high,
-        states,
-        gains,
-        diagonals,
-        values,
-    )
-    return AdaptiveRun(states, gains, diagonals, values)
+    out, ends = empty_run(len(z), model.order), [np.full(model.order, b) for b in bounds]
+    R, step = float(tuning.R), float(tuning.step)
+    tune_by_windows(model.Phi, model.gain_row, R, z, start.copies(), step, window, *ends, out)
+    return AdaptiveRun(*out)
 
 
 def fixed_gain_filter(z: Array, model: SteppedModel, gain: Array, estimate: Array) -> Array:

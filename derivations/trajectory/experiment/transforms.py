@@ -127,20 +127,7 @@ def likeliest(S: Array, squared: float, around: Array) -> tuple[int, float]:
 
 
 @njit(error_model="numpy")
-def smallest_change(
-    S: Array,
-    g: Array,
-    h: Array,
-    q: Array,
-    seen: NDArray[np.bool_],
-    step: float,
-    innovation: float,
-    ahead: Array,
-    y: Array,
-    weights: Array,
-    kind: int,
-    row: Array,
-) -> tuple[int, float]:
+def smallest_change(S, g, h, q, seen, step, innovation, ahead, y, weights, kind, row):
     """Index and value of the smallest criterion J of the paper over all candidates, first of equals.
 
     weights : three numbers, of the residual, of the change of state 2 and of state 3
@@ -181,9 +168,7 @@ def candidate(q: Array, seen: NDArray[np.bool_], step: float, index: int, out: A
 
 
 @njit(error_model="numpy", fastmath={"contract"})
-def apply(
-    B: Array, g: Array, h: Array, q: Array, S: float, ahead: Array, innovation: float, y: Array, P: Array, gain: Array
-) -> None:
+def apply(B, g, h, q, S, ahead, innovation, y, P, gain):
     """Correct by the chosen candidate: y, P and gain are written; P = P^- - K S K^T is symmetric by construction."""
     n = y.shape[0]
     inverse = 1.0 / S
@@ -198,30 +183,14 @@ def apply(
 
 
 @njit(error_model="numpy")
-def tune_one_step(
-    Phi: Array,
-    h: Array,
-    row: Array,
-    R: float,
-    z: Array,
-    y: Array,
-    P: Array,
-    q: Array,
-    step: float,
-    weights: Array,
-    kind: int,
-    stop: int,
-    states: Array,
-    gains: Array,
-    diagonals: Array,
-    values: Array,
-) -> None:
+def tune_one_step(model, R, z, start, step, weights, kind, stop, out):
     """The adaptive filter, Q chosen anew at each of the first ``stop`` steps, then a constant gain.
 
-    z : (N,) measurements 1..N; y, P, q : estimate, matrix and diagonal at step 0, overwritten
-    h : (n,) row in the gain; row : (n,) row of the predicted measurement, z = row x_k (H_p of the paper)
-    states, gains, diagonals : (N, n) and values (N,) are filled
+    model : Phi (n, n), h (n,) row in the gain, row (n,) of the predicted measurement, z = row x_k (H_p of the paper)
+    z : (N,) measurements 1..N; start : estimate, matrix and diagonal at step 0, overwritten
+    out, filled here : states, gains, diagonals (N, n) and values (N,)
     """
+    (Phi, h, row), (y, P, q), (states, gains, diagonals, values) = model, start, out
     n = y.shape[0]
     ahead, g, chosen, gain = np.empty(n), np.empty(n), np.empty(n), np.zeros(n)
     B = np.empty((n, n))

@@ -7,27 +7,14 @@ whose matrices stay in the first cache through a whole window of steps.
 import numpy as np
 
 from navsym.core.loops import njit
-from navsym_papers.trajectory.experiment.transforms import Array, candidate
+from navsym_papers.trajectory.experiment.transforms import candidate
 
 #: Candidates in a block: a multiple of what one vector instruction takes.
 LANES = 32
 
 
 @njit(error_model="numpy", fastmath={"contract"})
-def bank_step(
-    Phi: Array,
-    h0: float,
-    R: float,
-    z: float,
-    ys: Array,
-    Ps: Array,
-    qs: Array,
-    misfit: Array,
-    product: Array,
-    ahead: Array,
-    T: Array,
-    B: Array,
-) -> None:
+def bank_step(Phi, h0, R, z, ys, Ps, qs, misfit, product, ahead, T, B):
     """One step of a block of W candidates, each with its own estimate; W is the innermost dimension.
 
     ys (n, W), Ps (n, n, W; upper triangle), qs (n, W) are overwritten; ``misfit`` (W,) grows by
@@ -74,20 +61,7 @@ def bank_step(
 
 
 @njit(error_model="numpy")
-def run_block(
-    Phi: Array,
-    h0: float,
-    R: float,
-    z: Array,
-    y: Array,
-    P: Array,
-    qs: Array,
-    ys: Array,
-    Ps: Array,
-    cost: Array,
-    scratch: tuple[Array, Array, Array, Array, Array],
-    trace: Array,
-) -> None:
+def run_block(Phi, h0, R, z, y, P, qs, ys, Ps, cost, scratch, trace):
     """Carry one block of candidates through a window z (L,) from a common start y, P.
 
     qs (n, W) diagonals; ys, Ps, cost are written: estimates, matrices, sum of log S + innovation^2 / S.
@@ -116,20 +90,9 @@ def run_block(
 
 
 @njit(error_model="numpy")
-def report_window(
-    trace: Array,
-    q: Array,
-    h0: float,
-    R: float,
-    first: int,
-    steps: int,
-    states: Array,
-    gains: Array,
-    diagonals: Array,
-    values: Array,
-) -> None:
+def report_window(trace, q, h0, R, first, steps, out):
     """States, gains P h / R after the correction (no inverse is needed), diagonals and values of one window."""
-    n = q.shape[0]
+    n, (states, gains, diagonals, values) = q.shape[0], out
     for k in range(steps):
         for i in range(n):
             states[first + k, i] = trace[k, i]
@@ -139,30 +102,15 @@ def report_window(
 
 
 @njit(error_model="numpy")
-def tune_by_windows(
-    Phi: Array,
-    h: Array,
-    R: float,
-    z: Array,
-    y: Array,
-    P: Array,
-    q: Array,
-    step: float,
-    window: int,
-    floor: Array,
-    ceiling: Array,
-    states: Array,
-    gains: Array,
-    diagonals: Array,
-    values: Array,
-) -> None:
+def tune_by_windows(Phi, h, R, z, start, step, window, floor, ceiling, out):
     """The adaptive filter with all 3^n candidates carried through windows of steps.
 
     At the end of each window the likeliest candidate becomes the centre of the next field, its estimate
     and matrix the common start. Inside a window the unchanged candidate, number 0, is reported.
     Candidates go in blocks of at most 32, whose matrices stay in the first cache for a whole window;
-    a last block that is not full repeats the last candidate.
+    a last block that is not full repeats the last candidate. start and out as for :func:`tune_one_step`.
     """
+    (y, P, q), (states, gains, _, values) = start, out
     n = y.shape[0]
     C, h0 = 3**n, h[0]
     W = min(C, LANES)
@@ -183,7 +131,7 @@ def tune_by_windows(
                     qs[i, c] = min(max(diagonal[i], floor[i]), ceiling[i])
             run_block(Phi, h0, R, part, y, P, qs, ys, Ps, cost, scratch, trace)
             if block == 0:
-                report_window(trace, q, h0, R, first, part.shape[0], states, gains, diagonals, values)
+                report_window(trace, q, h0, R, first, part.shape[0], out)
             c = int(np.argmin(cost))
             if cost[c] < lowest:
                 lowest = cost[c]
