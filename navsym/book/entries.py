@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -17,6 +18,8 @@ from typing import Any
 from navsym.claims import OPEN, Status, Verdict
 from navsym.core.catalogue import Catalogue
 from navsym.core.errors import DuplicateError
+from navsym.core.tables import Shown
+from navsym.core.tables import Table as Rows
 from navsym.language.names import quote
 from navsym.language.schema import Table, expect_keys, join_place, require_key
 from navsym.language.shapes import NOTES
@@ -60,7 +63,7 @@ class Misprint:
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class Entry(Shown):
     """One formula of the book.
 
     id, chapter, title : what it is called and where it stands
@@ -111,8 +114,21 @@ class Entry:
         misprints = [{"source": misprint.source, "printed": misprint.latex} for misprint in self.misprints]
         return {**shown, "status": str(self.status), "source": self.source, "misprints": misprints}
 
+    def table(self) -> Rows:
+        """A line of the table of a search."""
+        return Entries([self]).table()
+
     def __repr__(self) -> str:
         return f"<{self.status}: {self.id}; {self.statement}>"
+
+
+class Entries(Shown, list[Entry]):
+    """What a search has found, in order."""
+
+    def table(self) -> Rows:
+        """Each entry with its verdict, its statement and its source."""
+        rows = [(entry.id, entry.status, entry.title, entry.statement, entry.source) for entry in self]
+        return ("entry", "verdict", "title", "statement", "source"), rows
 
 
 class Book(Catalogue[Entry]):
@@ -144,10 +160,14 @@ class Book(Catalogue[Entry]):
         """What was granted: entry -> hash of its statement, status, hash of its certificate, the same of misprints."""
         return dict(json.loads(KEPT.read_text(encoding="utf-8")))
 
+    def table(self) -> Rows:
+        """The chapters, with the number of their entries."""
+        return ("chapter", "entries"), Counter(entry.chapter for entry in self.values()).items()
+
     def __repr__(self) -> str:
         return f"<book: {len(self)} entries>"
 
-    def search(self, words: str = "") -> list[Entry]:
+    def search(self, words: str = "") -> Entries:
         """Entries in which every word occurs, in id, chapter, title, LaTeX, statement or source; or by a formula.
 
         A formula finds what is the same up to the names of symbols and the order of terms: first the entries that state
@@ -162,9 +182,9 @@ class Book(Catalogue[Entry]):
         from navsym.book.search import find_formula, is_formula
 
         if is_formula(words):
-            return find_formula(words, self)
+            return Entries(find_formula(words, self))
         wanted = words.lower().split()
-        return [entry for entry in self.values() if all(word in text_of(entry) for word in wanted)]
+        return Entries(entry for entry in self.values() if all(word in text_of(entry) for word in wanted))
 
 
 def text_of(entry: Entry) -> str:

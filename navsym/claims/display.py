@@ -6,13 +6,14 @@ here. Every word that comes from data is escaped.
 
 from __future__ import annotations
 
-import html
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
-#: Colours of verdicts; dark enough on white, light enough on black. The mark says the same without colour.
-COLOURS = {"PROVED": "#1a7f37", "CERTIFIED": "#0f7f7f", "CONFIRMED": "#0969da", "REFUTED": "#cf222e", "OPEN": "#9a6700"}
-MARKS = {"PROVED": "✓", "CERTIFIED": "◎", "CONFIRMED": "≈", "REFUTED": "✗", "OPEN": "?"}
+from navsym.core.tables import COLOURS as COLOURS
+from navsym.core.tables import MARKS as MARKS
+from navsym.core.tables import mark_verdict as mark_verdict
+from navsym.core.tables import write_table as write_table
+
 SIGNS = {"<=": r"\le", ">=": r"\ge", "!=": r"\ne"}
 
 
@@ -44,26 +45,6 @@ def write_card(lines: Iterable[str], status: str = "") -> str:
     colour = COLOURS.get(status, "#57606a")
     body = "<br>".join(lines)
     return f'<div style="border-left:4px solid {colour};padding-left:10px;margin:4px 0;overflow-x:auto">{body}</div>'
-
-
-def mark_verdict(status: str) -> str:
-    """A verdict in its colour, with its mark."""
-    colour = COLOURS.get(status, "inherit")
-    return f'<b style="color:{colour}">{MARKS.get(status, "")} {html.escape(status)}</b>'
-
-
-def write_table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """A table; a cell between dollar signs is a formula, a verdict has its colour, anything else is text."""
-    head = "".join(f'<th style="text-align:left">{html.escape(name)}</th>' for name in heads)
-    body = "".join("<tr>" + "".join(write_cell(value) for value in row) + "</tr>" for row in rows)
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-
-
-def write_cell(value: Any) -> str:
-    """One cell of a table of text in HTML; a verdict has its mark and colour."""
-    text = str(value)
-    shown = mark_verdict(text) if text in MARKS else html.escape(text)
-    return f'<td style="text-align:left">{shown}</td>'
 
 
 def count_in_words(count: int, word: str) -> str:

@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
-from navsym.claims.display import count_in_words, mark_verdict, write_card, write_table
+from navsym.claims.display import count_in_words, mark_verdict, write_card
 from navsym.claims.formula import Formula
 from navsym.core.answers import Answer, Answers, named
 from navsym.core.errors import NavsymError
 from navsym.core.numbers import Number
+from navsym.core.tables import Table
 
 
 class Status(StrEnum):
@@ -181,8 +182,9 @@ class Verdicts(Answers[Verdict]):
         records = [{**r, **self.errors[r["id"]].as_json()} if r.get("id") in self.errors else r for r in records]
         return {**(self.first_error.as_json() if self.first_error else {}), "claims": records}
 
-    def _repr_html_(self) -> str:
+    def table(self) -> Table:
+        """A line for each claim."""
         rows = [
             (v.formula.id if v.formula else "", v.formula or "", v.status, v.method, v.reason) for v in self.verdicts
         ]
-        return write_table(("claim", "formula", "verdict", "method", "ground"), rows)
+        return ("claim", "formula", "verdict", "method", "ground"), rows

@@ -9,7 +9,7 @@ from navsym.cli._progress import Progress
 from navsym.cli.output import emit, remark, table
 
 if TYPE_CHECKING:
-    from navsym.trajectory.conditioning import Conditions, MatrixCondition
+    from navsym.trajectory.conditioning import Conditions
 
 
 def command(*, n: int, tau: str = "0.2", rho: str = "1/6371000", digits: int = 30, json_: bool = False) -> None:
@@ -29,14 +29,6 @@ def command(*, n: int, tau: str = "0.2", rho: str = "1/6371000", digits: int = 3
 
 def as_text(found: Conditions) -> str:
     """The four enclosures beside double precision."""
-    rows = [(part.name, part.value.lower, part.value.upper, *double(part)) for part in found]
-    head = ("matrix", "at least", "at most", "double precision", "off by")
+    heads, rows = found.table()
     title = f"condition numbers, n = {found.n}, tau = {found.tau} s, rho = {found.rho} 1/m"
-    return f"{title}\n" + table(head, rows, right=head[1:])
-
-
-def double(part: MatrixCondition) -> tuple[str, str]:
-    """The value in double precision and its relative error."""
-    if part.double is None or part.relative_error is None:
-        return "overflow", ""
-    return f"{part.double:.6e}", f"{100 * part.relative_error:+.2g} %"
+    return f"{title}\n" + table(heads, rows, right=heads[1:])

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from navsym.cli.output import emit, table
 from navsym.core.errors import ExpressionSyntaxError
-
-if TYPE_CHECKING:
-    from navsym.export.differences import Differences
 
 
 def command(old: str, new: str, *, box: list[str] | None = None, json_: bool = False) -> int:
@@ -21,7 +16,7 @@ def command(old: str, new: str, *, box: list[str] | None = None, json_: bool = F
     import navsym as nav
 
     found = nav.diff(old, new, box=dict(read_range(text) for text in box or []))
-    emit(found.document(), as_json=json_, text=lambda: as_text(found))
+    emit(found.document(), as_json=json_, text=lambda: table(*found.table()))
     return 0 if found.equal else 1
 
 
@@ -32,16 +27,3 @@ def read_range(text: str) -> tuple[str, tuple[str, str]]:
     if not equals or len(parts) != 2:
         raise ExpressionSyntaxError(f"expected NAME=LOWER,UPPER; got {text[:60]!r}; correct it", where="--range")
     return name.strip(), (parts[0], parts[1])
-
-
-def as_text(found: Differences) -> str:
-    """One line for each formula: how it compares, and where it differs most."""
-    rows = []
-    for record in found:
-        point = ", ".join(f"{k} = {v}" for k, v in (record.worst or {}).items())
-        size = f"old - new = {record.difference.lower}…" if record.difference else ""
-        words = f"{size} at {point or 'every point'}" if size else record.why
-        if record.assumptions:
-            words += f"; where {', '.join(record.assumptions)}"
-        rows.append((record.name, record.status, words))
-    return table(("formula", "status", "where"), rows)

@@ -24,10 +24,6 @@ def command(*, json_: bool = False) -> int:
 
 def as_text(machine: Machine) -> str:
     """A table and one closing line."""
-    rows = [
-        (item.name, "yes" if item.found else "missing" if item.required else "no", item.version, item.advice)
-        for item in machine.findings
-    ]
     size = f", {machine.memory_bytes / 2**30:.1f} GiB of memory" if machine.memory_bytes else ""
     closing = "everything required is there" if machine.complete else "something required is missing"
-    return f"{table(['name', 'there', 'version', 'advice'], rows)}\n{machine.cores} cores{size}; {closing}\n"
+    return f"{table(*machine.table())}\n{machine.cores} cores{size}; {closing}\n"

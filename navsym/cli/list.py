@@ -34,8 +34,4 @@ def command(
 
 def as_text(listing: Listing) -> str:
     """A table with the number of claims below it."""
-    cells = [
-        (c.id, f"{c.status}{'' if c.record else ' (declared)'}", c.title, c.claim.slip or "") for c in listing.claims
-    ]
-    counted = f"{len(listing)} claim{'' if len(listing) == 1 else 's'}"
-    return table(("claim", "verdict", "what it says", "slip"), cells) + f"\n{counted}"
+    return f"{table(*listing.table())}\n{len(listing)} claim{'' if len(listing) == 1 else 's'}"

@@ -32,13 +32,6 @@ def command(
 
 def as_text(found: Fix) -> str:
     """The fix and its correction, after the hypothesis that gives them."""
-    (dx, dy), (dvx, dvy) = found.correction
-    rows = [
-        ("x", f"{found.x:.3f}", f"{dx:+.3f}"),
-        ("y", f"{found.y:.3f}", f"{dy:+.3f}"),
-        ("vx", f"{found.vx:.4f}", f"{dvx:+.4f}"),
-        ("vy", f"{found.vy:.4f}", f"{dvy:+.4f}"),
-    ]
     second = "none" if found.second_best is None else f"{found.second_best:.6g}"
     lines = [
         f"method {found.method}: hypothesis {list(found.position_index)}, "
@@ -56,4 +49,4 @@ def as_text(found: Fix) -> str:
     if found.t_G:
         low, high, middle = found.t_G
         lines.append(f"t_G from {low:.2f} to {high:.2f}, middle {middle:.2f} (measurements)")
-    return "\n".join([*lines, table(("", "fix", "correction"), rows, right=("fix", "correction"))])
+    return "\n".join([*lines, table(*found.table(), right=("fix", "correction"))])

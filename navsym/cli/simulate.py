@@ -28,7 +28,7 @@ def command(
 
     with called_options("simulate"), Progress("runs", resume=resume(journal, options_of(name))) as bar:
         found = nav.simulate(name, runs=runs, steps=steps, seed=seed, journal=journal, progress=bar.follow)
-    emit(found.document(), as_json=json_, text=lambda: table(*found.rows()))
+    emit(found.document(), as_json=json_, text=lambda: table(*found.table()))
 
 
 def resume(journal: Path | None, accepted: Container[str]) -> str:

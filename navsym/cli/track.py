@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from navsym.cli._options import called_options
+from navsym.cli._progress import Progress
 from navsym.cli.output import emit, remark, table
 
 if TYPE_CHECKING:
@@ -33,9 +34,17 @@ def command(
     """
     import navsym as nav
 
-    with called_options("track"):
+    with called_options("track"), Progress("steps") as bar:
         found = nav.track(
-            file, window=window, order=order, method=method, sigma=sigma, gate=gate, policy=policy, reference=reference
+            file,
+            window=window,
+            order=order,
+            method=method,
+            sigma=sigma,
+            gate=gate,
+            policy=policy,
+            reference=reference,
+            progress=bar.follow,
         )
     if out is not None:
         found.save(out)
@@ -43,7 +52,7 @@ def command(
         remark(f"warning: {line}")
     for line in found.repairs:
         remark(f"repaired: {line}")
-    emit(found.document(), as_json=json_, text=lambda: as_text(found))
+    emit(found.document() if json_ else None, as_json=json_, text=lambda: as_text(found))
 
 
 def as_text(found: Track) -> str:

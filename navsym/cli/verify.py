@@ -73,7 +73,7 @@ def as_text(ledger: Ledger, seconds: float) -> str:
     blocks.append(f"{counted(len(ledger), 'claim')} in {seconds:.1f} s: {statuses}")
     if unchecked := ledger.unchecked:
         told = f"{counted(len(unchecked), 'verdict')}, {unchecked[0].id} first"
-        blocks.append(f"unchecked, because the checker has no certificate of them: {told}")
+        blocks.append(f"unchecked, because the checker has no certificate of them: {told}; navsym show says why")
     return "\n".join([*blocks, compare_line(ledger), *unexpected_lines(ledger.unexpected)])
 
 

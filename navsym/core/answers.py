@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from navsym.core.errors import UnknownSymbolError
+from navsym.core.tables import Shown
 
 Part = TypeVar("Part")
 
@@ -36,7 +37,7 @@ def plain(value: Any) -> Any:
     return str(value) if isinstance(value, str | Path) else value
 
 
-class Answer:
+class Answer(Shown):
     """Base of the answers of the front door; each adds ``document`` and a ``__repr__`` of one line.
 
     Checking, exporting and plotting belong to rooms above the subjects; they are reached by their public names, so that

@@ -8,11 +8,12 @@ from difflib import get_close_matches
 from typing import Any, ClassVar, TypeVar
 
 from navsym.core.errors import UnknownSymbolError
+from navsym.core.tables import Shown
 
 Item = TypeVar("Item")
 
 
-class Catalogue(Mapping[str, Item]):
+class Catalogue(Mapping[str, Item], Shown):
     """A mapping with a name, a word for what a key is, and the way to a list of all of them."""
 
     name: ClassVar[str]

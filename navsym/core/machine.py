@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from navsym.core.answers import Answer, named
+from navsym.core.tables import Table
 
 SUPPORTED = ((3, 11), (3, 13))
 SECONDS = 60  # for one import or one "--version"
@@ -73,6 +74,14 @@ class Machine(Answer):
         """The JSON document of ``navsym doctor``."""
         head = named(self, "complete") | {"navsym": version_of("navsym")}
         return head | named(self, "platform cores memory_bytes findings missing")
+
+    def table(self) -> Table:
+        """What is there and what is not."""
+        words = {True: "yes", False: "no"}
+        return ("name", "there", "version", "advice"), [
+            (item.name, "missing" if item.required and not item.found else words[item.found], item.version, item.advice)
+            for item in self.findings
+        ]
 
     def __repr__(self) -> str:
         lacking = f"missing: {', '.join(self.missing)}" if self.missing else "everything required is there"

@@ -16,12 +16,13 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims import REFUTED, Bound, Equation, Record
-from navsym.claims.display import count_in_words, write_table
+from navsym.claims.display import count_in_words
 from navsym.claims.formula import Formula as Statement
 from navsym.core.answers import Answers, named
 from navsym.core.balls import enclose, hull
 from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, ShapeError
 from navsym.core.numbers import Number
+from navsym.core.tables import Table
 from navsym.export.parts import overlap
 from navsym.language.expression import parse, parse_noting, symbol
 from navsym.language.files import read_text
@@ -111,8 +112,17 @@ class Differences(Answers[Difference]):
         counts = Counter(found.status for found in self.differences)
         return f"<{count_in_words(len(self), 'formula')}: {', '.join(f'{n} {status}' for status, n in counts.items())}>"
 
-    def _repr_html_(self) -> str:
-        return write_table(("formula", "status", "why"), ((d.name, d.status, d.why) for d in self.differences))
+    def table(self) -> Table:
+        """One line for each formula: how it compares, and where it differs most."""
+        rows = []
+        for record in self:
+            point = ", ".join(f"{k} = {v}" for k, v in (record.worst or {}).items())
+            size = f"old - new = {record.difference.lower}…" if record.difference else ""
+            words = f"{size} at {point or 'every point'}" if size else record.why
+            if record.assumptions:
+                words += f"; where {', '.join(record.assumptions)}"
+            rows.append((record.name, record.status, words))
+        return ("formula", "status", "where"), rows
 
 
 def diff(old: Any, new: Any, *, box: Mapping[str, Any] | None = None, **ranges: Any) -> Differences:

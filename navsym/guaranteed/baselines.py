@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.claims.display import write_table
 from navsym.core.answers import Answer
+from navsym.core.tables import Table
 from navsym.guaranteed.convex import LP_SOLVERS, GridProblem, grid_problem, guaranteed_lp
 from navsym.guaranteed.problem import GuaranteedProblem
 
@@ -115,11 +115,11 @@ class Comparison(Answer):
         least, kalman = f"least squares {self.least_squares:.6g}", f"Kalman filter {self.kalman_white_noise:.6g}"
         return f"Comparison(optimum {self.optimum:.6g}, {least}, {kalman}, {len(self.solvers)} solvers)"
 
-    def _repr_html_(self) -> str:
-        """The table of ``--compare``, for notebooks."""
+    def table(self) -> Table:
+        """The table of ``--compare``."""
         rows = [("guaranteed", "", self.optimum), *self.rows()]
         heads = ("estimator", "status", "guaranteed deviation")
-        return write_table(heads, [(*row[:2], "" if row[2] is None else f"{row[2]:.6g}") for row in rows])
+        return heads, [(*row[:2], "" if row[2] is None else f"{row[2]:.6g}") for row in rows]
 
 
 def compare_estimators(

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.claims.display import write_table
 from navsym.core import arrays
 from navsym.core.answers import Answer, named
+from navsym.core.tables import Table
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.kalman import FORMS, Form, logs, normalise, residual, times, variances
 from navsym.multimodel.schemes import Scheme
@@ -285,10 +285,11 @@ class Estimates(Answer):
         total = self.log_likelihood[-1] if T else 0.0
         return f"<Estimates: {T} steps, {m} modes, {n} states, log-likelihood {total:.9g}, engine {self.engine}>"
 
-    def _repr_html_(self) -> str:
+    def table(self) -> Table:
+        """The first and the last ten steps."""
         rows = self.rows()
         shown = rows if len(rows) <= 20 else [*rows[:10], ("…",) * 4, *rows[-10:]]
-        return write_table(("step", "mode", "probability", "mean (standard deviation)"), shown)
+        return ("step", "mode", "probability", "mean (standard deviation)"), shown
 
 
 def run_in_numpy(rule: Scheme, models: Bank, z: Array, count: int, form: Form = FORMS["joseph"]) -> Estimates:

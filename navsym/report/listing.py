@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from navsym.claims import Claim, Record, Status
-from navsym.claims.display import write_table
 from navsym.core.answers import Answer, Answers, named
 from navsym.core.choice import one_of
+from navsym.core.tables import Table
 from navsym.report.formula.sides import latex
 from navsym.verification.ledger import sort_records, stored_ledger
 from navsym.verification.papers import list_changed, load_papers
@@ -104,8 +104,11 @@ class Listing(Answers[ListedClaim]):
         papers = ", ".join(dict.fromkeys(claim.paper for claim in self.claims))
         return f"<{len(self)} claim{'' if len(self) == 1 else 's'}{f' of {papers}' if papers else ''}>"
 
-    def _repr_html_(self) -> str:
-        return write_table(("claim", "verdict", "title"), ((c.id, str(c.status), c.title) for c in self.claims))
+    def table(self) -> Table:
+        """A line for each claim; a verdict that was not decided yet is the declared one."""
+        return ("claim", "verdict", "what it says", "slip"), [
+            (c.id, f"{c.status}{'' if c.record else ' (declared)'}", c.title, c.claim.slip or "") for c in self
+        ]
 
 
 def claims(*papers: str, status: str | Sequence[str] = (), slip: str | None = None, words: str = "") -> Listing:

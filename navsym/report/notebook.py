@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import io
 import os
+import sys
 import time
 from collections.abc import Callable
 from contextlib import nullcontext, redirect_stdout
@@ -114,7 +115,9 @@ def load_widgets() -> ModuleType:
 
 
 class ProgressBar:
-    """A bar in a notebook for every call with ``progress``, such as ``nav.verify(progress=nav.ProgressBar())``.
+    """A bar in a notebook, a line in a terminal, for every call with ``progress``.
+
+    ``nav.verify(progress=nav.ProgressBar())`` is one.
 
     It takes whatever such a call tells: how much is done, how much there is, what is being done. When all is done, the
     bar gives way to one line of text.
@@ -136,6 +139,7 @@ class ProgressBar:
 
     def __call__(self, *told: Any) -> None:
         """Show one step; several within a fifth of a second are shown once."""
+        from IPython import get_ipython
         from IPython.display import display
 
         words, now = self.tell(*told), time.monotonic()
@@ -144,6 +148,10 @@ class ProgressBar:
         if now - self.shown < BETWEEN_UPDATES and not is_over:
             return
         self.shown = now
+        if not hasattr(get_ipython(), "kernel"):  # a terminal: one line that is written again and again
+            sys.stderr.write(f"\r{words}\x1b[K" + "\n" * is_over)
+            sys.stderr.flush()
+            return
         bar = f'<progress value="{self.count}" max="{total}"></progress> ' if total else ""
         page = ("" if is_over else bar) + html.escape(words)
         shown = {"text/plain": words, "text/html": page}

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
-from navsym.claims.display import write_table
 from navsym.claims.paper import experiment_names, import_paper
 from navsym.core.answers import Answer
 from navsym.core.choice import one_of
@@ -34,17 +33,14 @@ class Experiment(Answer):
         """The JSON document of ``navsym simulate``."""
         return self.figures
 
-    def rows(self) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
         """Headings and rows of the table for people."""
         heads, lines = study_of(self.name).as_table(self.figures)
         return heads, lines
 
     def __repr__(self) -> str:
-        heads, lines = self.rows()
+        heads, lines = self.table()
         return f"<Experiment {self.name}: {len(lines)} rows of {len(heads)} columns>"
-
-    def _repr_html_(self) -> str:
-        return write_table(*self.rows())
 
 
 def simulate(

@@ -17,11 +17,11 @@ from typing import Any
 
 import msgspec
 
-from navsym.claims.display import write_table
 from navsym.claims.workspace import cache_file
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, MissingEngineError, NavsymError
 from navsym.core.store import code_digest, key_of
+from navsym.core.tables import Table
 from navsym.language.files import name_file
 from navsym.language.jsonfile import read_json
 from navsym.language.names import quote
@@ -139,9 +139,10 @@ class Study(Answer):
     def __repr__(self) -> str:
         return f"<Study {self.plan.kind}: {self.done} of {self.plan.jobs} jobs, {self.resumed} resumed>"
 
-    def _repr_html_(self) -> str:
+    def table(self) -> Table:
+        """The first fifty rows."""
         heads = list(self.rows[0]) if self.rows else []
-        return write_table(heads, [[row.get(name) for name in heads] for row in self.rows[:50]])
+        return heads, [[row.get(name) for name in heads] for row in self.rows[:50]]
 
 
 def sweep(

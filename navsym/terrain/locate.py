@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.claims.display import write_table
 from navsym.core.answers import Answer, named
 from navsym.core.errors import DomainError, NavsymError, OutsideMapError
+from navsym.core.tables import Table
 from navsym.language.files import name_file
 from navsym.language.jsonfile import read_json
 from navsym.language.names import quote
@@ -100,12 +100,11 @@ class Fix(Answer):
     def __repr__(self) -> str:
         return f"<Fix x {self.x:.6g}, y {self.y:.6g}: method {self.method}, criterion {self.criterion:.6g}>"
 
-    def _repr_html_(self) -> str:
+    def table(self) -> Table:
+        """The fix and its correction, in metres and metres per second."""
         moves = (float(value) for part in self.correction for value in part)
-        values = zip(("x", "y", "vx", "vy"), (self.x, self.y, self.vx, self.vy), moves, strict=True)
-        return write_table(
-            ("", "fix", "correction"), [(name, f"{at:.3f}", f"{move:+.3f}") for name, at, move in values]
-        )
+        values = zip(("x", "y", "vx", "vy"), (self.x, self.y, self.vx, self.vy), (3, 3, 4, 4), moves, strict=True)
+        return ("", "fix", "correction"), [(name, f"{at:.{n}f}", f"{move:+.{n}f}") for name, at, n, move in values]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -16,7 +16,6 @@ from typing import Any
 import flint
 import numpy as np
 
-from navsym.claims.display import shorten_digits, write_table
 from navsym.core.answers import Answer
 from navsym.core.errors import (
     DomainError,
@@ -28,6 +27,7 @@ from navsym.core.errors import (
 )
 from navsym.core.exact import to_fraction
 from navsym.core.numbers import Number
+from navsym.core.tables import Table
 from navsym.language.names import quote
 from navsym.models.earth import observability_rows, power_rows
 from navsym.trajectory.enclosure import Enclosure, exponent_of, square_root
@@ -429,9 +429,15 @@ class Conditions(Answer):
         values = ", ".join(f"{c.name} {float(c.value):.6g}" for c in self)
         return f"<Conditions n = {self.n}: {values}>"
 
-    def _repr_html_(self) -> str:
-        rows = [(c.name, shorten_digits(c.value.lower, 20), c.double, c.trustworthy) for c in self]
-        return write_table(("matrix", "condition number", "double precision", "trustworthy"), rows)
+    def table(self) -> Table:
+        """The four enclosures beside double precision, and its relative error."""
+        heads, rows = ("matrix", "at least", "at most", "double precision", "off by"), list[tuple[str, ...]]()
+        for c in self:
+            words = ("overflow", "")
+            if c.double is not None and c.relative_error is not None:
+                words = (f"{c.double:.6e}", f"{100 * c.relative_error:+.2g} %")
+            rows.append((c.name, c.value.lower, c.value.upper, *words))
+        return heads, rows
 
 
 def condition(

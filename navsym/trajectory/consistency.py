@@ -96,13 +96,12 @@ def consistency_of(normalised: Array) -> Consistency | None:
 def independent(errors: Array) -> float:
     """Independent squares that those of a series (N,) are worth: correlations up to the first that is not positive."""
     N, power = len(errors), float(errors @ errors)
-    total = 0.0
-    for k in range(1, N // 4):
-        rho = float(errors[:-k] @ errors[k:]) / power if power > 0.0 else 0.0
-        if rho <= 0.0:
-            break
-        total += rho**2
-    return N / (1.0 + 2.0 * total)
+    if power <= 0.0 or N < 8:
+        return float(N)
+    products = np.fft.irfft(np.abs(np.fft.rfft(errors, 2 * N)) ** 2, 2 * N)  # of all shifts at once
+    rho = products[1 : N // 4] / power
+    first = int(np.argmax(rho <= 0.0)) if (rho <= 0.0).any() else len(rho)
+    return N / (1.0 + 2.0 * float(rho[:first] @ rho[:first]))
 
 
 def band(count: float) -> tuple[float, float]:

@@ -22,6 +22,7 @@ from navsym.core.simplex import simplex, spread_rows
 from navsym.trajectory.kernels.tracks import DOUBTED, backward, forward
 from navsym.trajectory.tracks import (
     GAP,
+    LONGEST_FIT,
     PLAUSIBLE,
     Fit,
     Mask,
@@ -33,6 +34,7 @@ from navsym.trajectory.tracks import (
     first_spread,
     isolated_outliers,
     memory,
+    middle_rows,
     noise_of,
     shape_of,
     shaped,
@@ -139,10 +141,12 @@ def noise_points(
 ) -> list[tuple[float, Noise]]:
     """Points around the most likely noise with the covariance of its estimate, and weights that sum to one.
 
-    The first is the noise itself.
+    The first is the noise itself, and the only one on a track of more than ``LONGEST_FIT`` rows, which know it well.
 
     East and North share one pair of parameters, Up has its own; point k moves both.
     """
+    if len(track.t) > LONGEST_FIT:
+        return [(1.0, noise)]
     roots = [
         covariance_root(
             Fit(track, order, use, channels, gate, fixed_scale, shape_of(noise, channels[0])), noise, channels[0]
@@ -222,13 +226,25 @@ class Settings:
             raise DomainError(f"expected a number of standard deviations; got {self.gate}; 5 is usual", where="gate")
 
 
-def estimate(track: Positions, settings: Settings) -> tuple[TrackEstimate, Noise]:
+#: Told of a step: how many are done, of how many as far as is known, and what is done.
+Progress = Callable[[int, int, str], None]
+
+
+def tell_nobody(done: int, of: int, doing: str) -> None:
+    """Let a step pass in silence."""
+
+
+def estimate(track: Positions, settings: Settings, progress: Progress | None = None) -> tuple[TrackEstimate, Noise]:
     """Velocity and acceleration of a track, and the noise that was found in it."""
+    tell = progress or tell_nobody
     check_order(track, settings.order)
     use = np.ones(len(track.t), dtype=np.int64)
     if settings.gate > 0:
         use[isolated_outliers(track)] = 0
-    noise = noise_of(track, settings.order, use, gate=settings.gate, fixed_scale=settings.fixed_scale)
+    tell(0, 4, "noise")
+    here = middle_rows(track, use)
+    noise = noise_of(here[0], settings.order, here[1], gate=settings.gate, fixed_scale=settings.fixed_scale)
+    tell(1, 4, "outliers")
     # The filter stands for what can be known at the time; the others may look at the whole track.
     if settings.gate > 0 and settings.method != "filter":
         for _ in range(DEPARTURE_ROUNDS):
@@ -240,37 +256,53 @@ def estimate(track: Positions, settings: Settings) -> tuple[TrackEstimate, Noise
     if use.sum() < settings.order + 1:
         message = f"track: expected at least {settings.order + 1} rows that agree; got {use.sum()} of {len(use)}"
         raise ShapeError(f"{message}; lower the order, or set the gate to 0")
+    tell(2, 4, "coloured errors")
     noises = shaped(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
+    tell(3, 4, settings.method)
     if settings.method in ("filter", "smoother"):
-        return marginal(track, noises, settings, use), noises[0][1]
+        return marginal(track, noises, settings, use, tell), noises[0][1]
     return by_method(track, noises[0][1], settings, use), noises[0][1]
 
 
-def marginal(track: Positions, noises: list[tuple[Array, Noise]], settings: Settings, use: Rows) -> TrackEstimate:
+def marginal(
+    track: Positions, noises: list[tuple[Array, Noise]], settings: Settings, use: Rows, tell: Progress = tell_nobody
+) -> TrackEstimate:
     """Filter or smoother, averaged over what the noise may be; gains and flags are those of the likeliest.
 
     noises : with weights (3,) of their channels that sum to one, the likeliest first; each stands for all about it
 
     The noises of Up have nothing to do with those of East and North, the points about two noises move together.
+    Nothing but the means of a run is kept: on a track of a million rows its roots are half a gigabyte.
     """
-    wanted, values, variances = range(1, min(settings.order, 3)), list[Any](), list[Any]()
-    first = passed(track, noises[0][1], settings, use)
-    for _, noise in noises:
+    orders, N, done = range(1, min(settings.order, 3)), len(track.t), 3
+    within, values = np.zeros((len(orders), 3, N)), list[Any]()
+    for weights, noise in noises:
         points = noise_points(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
         factors = local_scales(track, noise, settings, use)
-        runs = [first if moved is noises[0][1] else passed(track, moved, settings, use) for _, moved in points]
-        values.append([[run.states[:, :, i] for i in wanted] for run in runs])
-        variances.append([[variance(run, i) * factors for i in wanted] for run in runs])
-    weights, shares = np.array([weight for weight, _ in noises]), np.array([share for share, _ in points])
-    mean, covariance = mixture(weights, shares, np.array(values), np.array(variances))
-    return from_states(track, first, words_of(use, first), settings.order, list(zip(mean, covariance, strict=True)))
+        values.append([])
+        for share, moved in points:
+            tell(done := done + 1, 4 + len(noises) * len(points), settings.method)
+            run = passed(track, moved, settings, use)
+            if done == 4:
+                words, gains = words_of(use, run), gains_of(run, settings.order)
+            values[-1].append([run.states[:, :, i].copy() for i in orders])
+            for i in orders:
+                within[i - 1] += (weights * share)[:, None] * variance(run, i) * factors
+            del run
+    shares, whole = np.array([share for share, _ in points]), np.array([weights for weights, _ in noises])
+    mean, covariance = np.empty_like(within), np.empty((len(orders), 3, 3, N))
+    for start in range(0, N, LONGEST_FIT):
+        part = slice(start, start + LONGEST_FIT)
+        block = np.array([[[value[:, part] for value in run] for run in runs] for runs in values])
+        mean[..., part], covariance[..., part] = mixture(whole, shares, block, within[..., part])
+    return turned(track, list(zip(mean, covariance, strict=True)), words, gains)
 
 
-def mixture(weights: Array, shares: Array, values: Array, variances: Array) -> tuple[Array, Array]:
+def mixture(weights: Array, shares: Array, values: Array, within: Array) -> tuple[Array, Array]:
     """Means (d, 3, N) and covariances (d, 3, 3, N) of d derivatives.
 
     weights : (I, 3) of noises in each channel ; shares : (K,) of the points about each noise
-    values, variances : (I, K, d, 3, N)
+    values : (I, K, d, 3, N) ; within : (d, 3, N) means of their variances
     """
     mean = np.einsum("ic,k,ikdcn->dcn", weights, shares, values)
     away = values - mean
@@ -279,7 +311,6 @@ def mixture(weights: Array, shares: Array, values: Array, variances: Array) -> t
     for group in (slice(0, 2), slice(2, 3)):
         own = away[:, :, :, group]
         covariance[:, group, group] = np.einsum("i,k,ikdcn,ikden->dcen", weights[:, group.start], shares, own, own)
-    within = np.einsum("ic,k,ikdcn->dcn", weights, shares, variances)
     return mean, covariance + on_diagonal(within)
 
 
@@ -369,7 +400,7 @@ def by_method(track: Positions, noise: Noise, settings: Settings, use: Rows) -> 
     words = words_of(use, run)
     if settings.method in ("filter", "smoother"):
         derivatives = [(run.states[:, :, i], on_diagonal(variance(run, i))) for i in range(1, min(settings.order, 3))]
-        return from_states(track, run, words, settings.order, derivatives)
+        return turned(track, derivatives, words, gains_of(run, settings.order))
     if settings.method == "differences":
         windows = nearest_windows(track, use, 3)
         return from_weights(track, noise, windows, settings.order, least_squares, words)
@@ -398,15 +429,9 @@ def passed(track: Positions, noise: Noise, settings: Settings, use: Rows) -> Fil
 
 
 def words_of(use: Rows, run: FilterRun) -> tuple[str, ...]:
-    """What happened to each row."""
-    return tuple(word(use[k], run.flags[k]) for k in range(len(use)))
-
-
-def word(used: int, flags: Rows) -> str:
-    """What happened to a row: ``outlier`` (left out), ``doubtful`` (believed less) or ``used``."""
-    if not used:
-        return "outlier"
-    return "doubtful" if (flags == DOUBTED).any() else "used"
+    """What happened to each row: ``outlier`` (left out), ``doubtful`` (believed less) or ``used``."""
+    doubted = (run.flags == DOUBTED).any(axis=1)
+    return tuple(np.where(use == 0, "outlier", np.where(doubted, "doubtful", "used")).tolist())
 
 
 # -- filter and smoother -----------------------------------------------------------------------------------
@@ -466,16 +491,10 @@ def variance(run: FilterRun, i: int) -> Array:
     return found
 
 
-def from_states(
-    track: Positions, run: FilterRun, words: tuple[str, ...], order: int, derivatives: list[tuple[Array, Array]]
-) -> TrackEstimate:
-    """The answer of a filter or smoother run with these derivatives.
-
-    The gains are those of the last row at which the first channel used its measurement.
-    """
+def gains_of(run: FilterRun, order: int) -> dict[str, list[float]]:
+    """Gains of the last row at which the first channel used its measurement."""
     last = int(np.flatnonzero((run.gains[0] != 0).any(axis=1))[-1])
-    gains = {name: run.gains[c, last, :order].tolist() for c, name in enumerate(CHANNELS)}
-    return turned(track, derivatives, words, gains)
+    return {name: run.gains[c, last, :order].tolist() for c, name in enumerate(CHANNELS)}
 
 
 def turned(

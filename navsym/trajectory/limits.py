@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from navsym.claims.display import write_table
 from navsym.core.answers import Answer, named
 from navsym.core.arrays import Array, as_array
 from navsym.core.errors import DomainError, TooLargeError
+from navsym.core.tables import Table
 from navsym.language.names import quote
 
 #: (derivative, order): factor of noise^(1 - d/m) bound^(d/m) in the least error.
@@ -125,9 +125,10 @@ class Limits(Answer):
         errors = ", ".join(f"{part.derivative} {part.rule.error:.6g} {part.unit}" for part in self.limits)
         return f"<Limits: {errors}>"
 
-    def _repr_html_(self) -> str:
+    def table(self) -> Table:
+        """What can be guaranteed of each derivative."""
         rows = [(part.derivative, f"{part.rule.error:.6g} {part.unit}", part.formula) for part in self.limits]
-        return write_table(("derivative", "least guaranteed error", "formula"), rows)
+        return ("derivative", "least guaranteed error", "formula"), rows
 
 
 def limits(

@@ -9,14 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from navsym.claims.display import write_table
 from navsym.core.answers import Answer, named, plain
 from navsym.core.arrays import Array, freeze
 from navsym.core.errors import DomainError, NavsymError
 from navsym.language.files import name_file, write_text
 from navsym.language.names import quote
 from navsym.trajectory.consistency import Consistency, compare, consistency_of
-from navsym.trajectory.estimate import Settings, estimate, filtered, gaps, largest_gap, window_of
+from navsym.trajectory.estimate import Progress, Settings, estimate, filtered, gaps, largest_gap, window_of
 from navsym.trajectory.reader import TrackFile, read_columns, read_track
 from navsym.trajectory.tracks import Noise, Positions, Rows, TrackEstimate, memory, project_positions, usual_step
 
@@ -93,17 +92,14 @@ class Track(Answer):
         if self.acceleration is not None and self.acceleration_sd is not None:
             names += ["ae", "an", "au", "sd_ae", "sd_an", "sd_au"]
             parts += [self.acceleration, self.acceleration_sd]
-        numbers = np.column_stack([self.t, *parts]).tolist()
-        rows = [",".join([*map(repr, row), flag]) for row, flag in zip(numbers, self.flags, strict=True)]
+        numbers = np.column_stack([self.t, *parts])
+        rows = [",".join([*map(repr, row.tolist()), flag]) for row, flag in zip(numbers, self.flags, strict=True)]
         write_text(path, "\n".join([",".join([*names, "row"]), *rows, ""]))
 
     def __repr__(self) -> str:
         fastest = float(np.sqrt((self.velocity**2).sum(axis=1)).max())
         used = sum(flag == "used" for flag in self.flags)
         return f"<Track: {len(self.t)} rows, {used} used, method {self.method}, up to {fastest:.4g} m/s>"
-
-    def _repr_html_(self) -> str:
-        return write_table(*self.table())
 
     def table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Heads and at most two dozen rows for people: what is estimated, with standard deviations."""
@@ -135,6 +131,7 @@ def track(
     gate: float = 5.0,
     policy: str = "strict",
     reference: Any = None,
+    progress: Progress | None = None,
 ) -> Track:
     """Velocity and acceleration of measured positions, with standard deviations.
 
@@ -149,9 +146,11 @@ def track(
     policy : ``strict`` refuses bad rows; ``repair`` mends or leaves them out, and lists them
     reference : velocities to compare with, a CSV file with columns t, ve, vn, vu (and sd_ve, sd_vn, sd_vu) or an array
              (M, 4 or 7), s and m/s; the answer then has their NEES
+    progress : called with the steps that are done, how many there are, and a word on the present one
 
     Positions go to axes fixed to the Earth. The noise of positions, white and coloured, and of a motion that may
-    forget its last derivative are found by maximum likelihood; the smoother is that of Rauch, Tung and Striebel.
+    forget its last derivative are found by maximum likelihood, in the 10,000 middle rows of a long track. The
+    smoother is that of Rauch, Tung and Striebel.
     Standard deviations know that the noise was only estimated and follow the innovations about each row.
 
     Returns :class:`Track`. Raises NavsymError: ``missing-file``, ``syntax``, ``shape``, ``not-finite``, ``domain``,
@@ -170,7 +169,7 @@ def track(
     try:
         given = read.sigma if sigma is None else sigma
         positions = project_positions(read.t - read.t[0], read.latitude, read.longitude, read.height, given)
-        found = describe_motion(read, positions, settings)
+        found = describe_motion(read, positions, settings, progress)
         if reference is None:
             return found
         return with_reference(found, reference)
@@ -203,9 +202,12 @@ def settings_of(method: str | None, window: float | None, order: int, gate: floa
     return Settings(chosen, order, window, gate, sigma is not None)  # type: ignore[arg-type]
 
 
-def describe_motion(read: TrackFile, positions: Positions, settings: Settings) -> Track:
+def describe_motion(
+    read: TrackFile, positions: Positions, settings: Settings, progress: Progress | None = None
+) -> Track:
     """The answer for a track as read and as projected."""
-    found, noise = estimate(positions, settings)
+    found, noise = estimate(positions, settings, progress)
+    nis = innovation_squares(positions, found, noise, settings)
     acceleration, acceleration_sd = found.derivatives[1] if len(found.derivatives) > 1 else (None, None)
     return Track(
         freeze(np.array(read.t)),
@@ -222,9 +224,9 @@ def describe_motion(read: TrackFile, positions: Positions, settings: Settings) -
         np.sqrt(np.median(noise.total(positions), axis=0)),
         memory(noise, positions.variance, settings.order),
         certificate(positions, found, noise, settings),
-        (*read.warnings, *remarks(positions, found, noise, settings, read.lines)),
+        (*read.warnings, *remarks(positions, found, settings, nis, read.lines)),
         read.repairs,
-        innovation_squares(positions, found, noise, settings),
+        nis,
     )
 
 
@@ -245,7 +247,9 @@ def window_in_use(track: Positions, noise: Noise, settings: Settings) -> float |
     return window_of(track, noise, settings)
 
 
-def remarks(track: Positions, found: TrackEstimate, noise: Noise, settings: Settings, lines: Rows) -> list[str]:
+def remarks(
+    track: Positions, found: TrackEstimate, settings: Settings, nis: Consistency | None, lines: Rows
+) -> list[str]:
     """What a person should know of a track, in sentences: gaps, rows left out or doubted, uneven steps, doubts.
 
     lines : (N,) number of the line of each row in its file
@@ -264,7 +268,7 @@ def remarks(track: Positions, found: TrackEstimate, noise: Noise, settings: Sett
     uneven = int(((np.abs(steps - usual) > JITTER * usual) & (steps < 5 * usual)).sum())
     if uneven:
         out.append(f"{uneven} steps differ from the usual {usual:.3g} s by more than half of it")
-    return out + doubts(track, found, noise, settings)
+    return out + doubts(nis)
 
 
 def innovation_squares(track: Positions, found: TrackEstimate, noise: Noise, settings: Settings) -> Consistency | None:
@@ -275,9 +279,8 @@ def innovation_squares(track: Positions, found: TrackEstimate, noise: Noise, set
     return consistency_of((run.innovations / np.sqrt(run.variances))[:, kept].T)
 
 
-def doubts(track: Positions, found: TrackEstimate, noise: Noise, settings: Settings) -> list[str]:
+def doubts(nis: Consistency | None) -> list[str]:
     """Whether the standard deviations can be believed: innovations should be as large as they say."""
-    nis = innovation_squares(track, found, noise, settings)
     if nis is None or CONSISTENT[0] <= nis.mean <= CONSISTENT[1] or not math.isfinite(nis.mean):
         return []
     side = "optimistic" if nis.mean > 1 else "pessimistic"

@@ -265,9 +265,12 @@ def running_median(values: Array, width: int) -> Array:
     """Median over a centred window of rows, (N, 3); NaN is left out."""
     half = width // 2
     padded = np.pad(values, ((half, half), (0, 0)), constant_values=np.nan)
-    windows = np.lib.stride_tricks.sliding_window_view(padded, width, axis=0)
-    filled = np.where(np.isnan(windows).all(axis=-1, keepdims=True), 0.0, windows)
-    median: Array = np.nanmedian(filled, axis=-1)
+    median = np.empty(values.shape)
+    for start in range(0, len(values), LONGEST_FIT):  # windows of all rows at once would be forty copies of a track
+        part = padded[start : start + LONGEST_FIT + width - 1]
+        windows = np.lib.stride_tricks.sliding_window_view(part, width, axis=0)
+        filled = np.where(np.isnan(windows).all(axis=-1, keepdims=True), 0.0, windows)
+        median[start : start + LONGEST_FIT] = np.nanmedian(filled, axis=-1)
     return median
 
 
@@ -387,8 +390,8 @@ def golden(f: Callable[[float], float], low: float, high: float, rounds: int) ->
 # -- coloured errors and a motion that forgets ------------------------------------------------------------
 
 
-#: Rows in which shapes are sought: the most central ones of a long track.
-LONGEST_FIT = 20_000
+#: Rows in which the noise is sought: the most central ones of a long track.
+LONGEST_FIT = 10_000
 #: Decimal logarithms that a shape may have: coloured variance over the given one, correlation time, rate; exponents.
 COLOURS, LONGEST_TAU, RATES, EXPONENTS, DRIFTS = (-6.0, 3.0), 2.5, (-4.0, 1.0), (0.0, 4.0), (-8.0, 3.0)
 #: First guesses of (coloured variance over white, tau over a step or in s, rate), and the first steps of the search.

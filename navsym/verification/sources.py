@@ -112,8 +112,9 @@ def property_of_target(path: Path, target: str) -> Property:
     except NotEstimableError as error:
         return Property(True, Finding(False, "null direction", PROVED, scope, evidence=error.message))
     evidence = f"guaranteed standard deviation {found.value} for measurements within their sigma"
-    method = "exact primal-dual certificate"
-    return Property(True, Finding(True, method, found.status, scope, (), evidence, found.certificate))
+    status = found.status if found.check().accepted else OPEN
+    finding = Finding(True, "exact primal-dual certificate", status, scope, (), evidence, found.certificate)
+    return Property(True, finding, unsaid="the checker grants the optimum, and reads no model")
 
 
 def claim_of_conventions(name: str, path: Path) -> Claim:

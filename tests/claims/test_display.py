@@ -92,3 +92,14 @@ def test_solutions_show_tables(file):
 def test_words_inside_formulas_cannot_command_latex():
     assert latex_of(r"\input{x} $ #") == r"\text{ input x     }"
     assert not re.search(r"[<>]", latex_of((sp.Symbol("x"), 2)))
+
+
+def test_what_is_no_verdict_shows_itself_as_a_table_too():
+    import navsym as nav
+
+    found = nav.book.search("skew-is-cross")
+    shown = [nav.doctor(), nav.diff("sin(2*a)", "2*sin(a)*cos(a)"), found, found[0], nav.book, nav.atlas]
+    for answer in [*shown, nav.atlas["INS: rest: position"]]:
+        heads, rows = answer.table()
+        assert answer._repr_html_().count("<tr>") == len(list(rows)) + 1 and heads
+    assert "cross(u, v)" in found._repr_html_() and "EQUAL" in shown[1]._repr_html_()

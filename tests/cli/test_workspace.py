@@ -101,6 +101,7 @@ def test_verify_decides_all_that_is_listed_from_any_folder_below(verified):
         "pendulum:2": "PROVED",
     }
     assert verified["models/alignment.toml:drift"].evidence.startswith("guaranteed standard deviation 5.82842712")
+    assert "reads no model" in verified["models/alignment.toml:drift"].evidence
 
 
 def test_a_verdict_is_the_one_of_prove_with_the_conditions_of_the_text(inside, verified, tmp_path):

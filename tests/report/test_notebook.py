@@ -75,6 +75,7 @@ def test_a_bar_understands_whatever_a_call_tells(steps, last):
 def test_a_bar_in_a_notebook_is_drawn_while_it_works_and_is_text_at_its_end(monkeypatch):
     InteractiveShell.clear_instance()
     InteractiveShell.instance(history_length=0).history_manager.enabled = False
+    InteractiveShell.instance().kernel = None  # what a notebook has and a terminal has not
     bar = nav.ProgressBar()
     with capture_output() as shown:
         ledger = nav.verify("alpha_beta_filter", progress=bar, jobs=1)
@@ -83,6 +84,14 @@ def test_a_bar_in_a_notebook_is_drawn_while_it_works_and_is_text_at_its_end(monk
     total = len(ledger.claims)
     assert "<progress" in pages[0] and "<progress" not in pages[-1] and pages[-1].startswith(f"{total} of {total}")
     assert not shown.stderr and len(pages) <= total
+
+
+def test_a_bar_in_a_terminal_is_one_line_that_ends_when_all_is_done(capsys):
+    bar = nav.ProgressBar()
+    for done in (1, 2):
+        bar(done, 2, "a")
+    shown = capsys.readouterr()
+    assert shown.err.endswith("\r2 of 2 a\x1b[K\n") and shown.err.count("\n") == 1 and not shown.out
 
 
 @pytest.mark.long

@@ -29,7 +29,7 @@ def test_the_documents_are_those_of_the_verbs(capsys: pytest.CaptureFixture[str]
 
 def test_an_experiment_has_figures_and_a_table() -> None:
     found = nav.simulate("multistructure", runs=2, steps=2, seed=3)
-    heads, rows = found.rows()
+    heads, rows = found.table()
     assert found.document()["seed"] == 3 and len(heads) == len(rows[0]) and "\n" not in repr(found)
 
 

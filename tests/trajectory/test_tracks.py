@@ -209,6 +209,19 @@ def test_points_of_the_noise_have_the_covariance_of_its_estimate():
     assert 0.02 < np.sqrt((root @ root.T)[0, 0]) < 0.06
 
 
+def test_a_long_track_takes_its_noise_from_the_middle_and_hardly_differs(monkeypatch):
+    t, truth, measured = simulated(4)
+    track, told = flat_track(t, measured), []
+    whole = estimate(track, Settings(order=3))[0]
+    for module in ("tracks", "estimate"):
+        monkeypatch.setattr(f"navsym.trajectory.{module}.LONGEST_FIT", 150)
+    found = estimate(track, Settings(order=3), lambda done, of, doing: told.append((done, of)))[0]
+    assert (np.abs(found.velocity - whole.velocity) < whole.velocity_sd).all()
+    assert 0.7 < np.median(found.velocity_sd / whole.velocity_sd) < 1.4
+    done = [step[0] for step in told]
+    assert done == sorted(set(done)) and told[-1][0] == told[-1][1] - 1
+
+
 @pytest.mark.parametrize("method", ["filter", "smoother"])
 @pytest.mark.parametrize("order", [2, 3])
 def test_with_known_noise_the_errors_lie_in_the_95_per_cent_range(method, order):

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from navsym.core.catalogue import Catalogue
+from navsym.core.tables import Shown, Table
 from navsym.language.printer import to_text
 from navsym.models.model import Model
 
@@ -18,7 +19,7 @@ KEPT = Path(__file__).with_name("atlas.json")
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class Cell(Shown):
     """An error model with an aiding along a manoeuvre, and what its measurements show over an interval.
 
     name         : "MODEL: MANOEUVRE: AIDING"
@@ -56,6 +57,12 @@ class Cell:
         """The cell as plain data."""
         return {**asdict(self), "unobservable": list(self.unobservable)}
 
+    def table(self) -> Table:
+        """What is shown and what is not, and where the rank drops."""
+        drops = [f"{condition}: {'' if rank is None else rank}" for condition, rank in self.drops.items()]
+        row = (self.name, f"{self.rank} of {self.size}", "; ".join(self.unobservable), "; ".join(drops))
+        return ("cell", "rank", "unobservable", "drops"), [row]
+
     def __repr__(self) -> str:
         return f"<{self.name}: rank {self.rank} of {self.size}>"
 
@@ -80,6 +87,10 @@ class Atlas(Catalogue[Cell]):
         return {
             name: Cell(name, **{**cell, "unobservable": tuple(cell["unobservable"])}) for name, cell in kept.items()
         }
+
+    def table(self) -> Table:
+        """All cells."""
+        return ("cell", "rank", "unobservable", "drops"), [row for cell in self.values() for row in cell.table()[1]]
 
     def __repr__(self) -> str:
         return f"<atlas: {len(self)} cells>"

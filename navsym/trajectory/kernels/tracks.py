@@ -200,19 +200,23 @@ def stack(U: Array, Phi: Array, root: Array, W: Array) -> None:
 @njit()
 def step_of(
     dt: float, last: float, model: Array, c: Array, w: Array, k: int, Phi: Array, root: Array, rows: Array, g: Array
-) -> None:
-    """Write Phi and root of the step dt from row k-1 to k, after one of length ``last``, whose motion may stay.
+) -> float:
+    """Write Phi and root of the step dt from row k-1 to k, and return the step that they are of.
+
+    They stay where that differs from ``last`` by less than a millionth, as steps of decimal times do.
 
     model : (q, rate, tau, lasting, fading); rows (ROWS, n) keeps the root at q = 1 from step to step, g (n,) is scratch
     """
     n = g.shape[0]
-    if dt != last:
+    if abs(dt - last) > 1e-6 * dt:
+        last = dt
         transition(dt, model[1], Phi, g)
         noise_root(dt, model[1], rows, g)
         for i in range(n):
             for j in range(n):
                 root[i, j] = np.sqrt(model[0]) * rows[i, j]
     colour(dt, model, c[k - 1], c[k], w[k - 1], w[k], n, Phi, root)
+    return last
 
 
 @njit()
@@ -315,10 +319,8 @@ def forward(
     last = -1.0
     for k in range(N):
         if k > 0:
-            dt = t[k] - t[k - 1]
-            step_of(dt, last, model, c, w, k, Phi, root, rows, g)
+            last = step_of(t[k] - t[k - 1], last, model, c, w, k, Phi, root, rows, g)
             predict(y, U, Phi, root, W)
-            last = dt
         before = U[0, 0] * U[0, 0]
         innovation = z[k] - y[0]
         innovations[k], variances[k], flags[k] = innovation, before + r[k], LEFT_OUT
@@ -360,9 +362,7 @@ def backward(t: Array, c: Array, w: Array, jumps: Array, n: int, states: Array, 
     W, V, ahead = np.empty((2 * m + 1, 2 * m)), np.empty((2 * m + 1, m)), np.empty(m)
     rows, g, last = np.empty((ROWS, n)), np.empty(n), -1.0
     for k in range(N - 2, -1, -1):
-        dt = t[k + 1] - t[k]
-        step_of(dt, last, model, c, w, k + 1, Phi, root, rows, g)
-        last = dt
+        last = step_of(t[k + 1] - t[k], last, model, c, w, k + 1, Phi, root, rows, g)
         if jumps[k + 1] > 0.0:
             fresh = np.sqrt(root[n, 0] ** 2 + jumps[k + 1])
             root[n, 0], root[n, n] = fresh, fresh
@@ -403,10 +403,8 @@ def misfit(
     logs, squares, count, seen, last = 0.0, 0.0, 0, 0, -1.0
     for k in range(t.shape[0]):
         if k > 0:
-            dt = t[k] - t[k - 1]
-            step_of(dt, last, model, c, w, k, Phi, root, rows, g)
+            last = step_of(t[k] - t[k - 1], last, model, c, w, k, Phi, root, rows, g)
             predict(y, U, Phi, root, W)
-            last = dt
         if use[k] == 0:
             continue
         before = U[0, 0] * U[0, 0]
