@@ -218,7 +218,7 @@ def choose_notation(symbols: Any, latex: Any, rates: Any) -> Notation:
             return notation
         merged = (dict(notation.spellings) | dict(latex or {}), dict(notation.rates) | dict(rates or {}))
         return build_notation(notation.written, *merged, "read")
-    return build_notation(symbols or {}, latex or {}, rates or {}, "read")
+    return build_notation(*({} if table is None else table for table in (symbols, latex, rates)), "read")
 
 
 def require_spellings_readable(notation: Notation) -> None:
