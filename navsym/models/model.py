@@ -405,7 +405,7 @@ def contents_of(
     twice = next((name for name in parameters if name in values), None)
     if twice is not None:
         raise DuplicateError(f"expected one value; got two of {twice}; give one", where=f"{where}: {twice}")
-    given = values | parameters
+    given = {**values, **parameters}
     try:
         if isinstance(model, str | os.PathLike):
             found = read_model(model, {name: write_value(value, f"--set {name}") for name, value in given.items()})
