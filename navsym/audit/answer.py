@@ -23,7 +23,7 @@ from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.answers import Answer, named
 from navsym.core.errors import ExpressionSyntaxError, NavsymError, ShapeError
 from navsym.language.files import name_file
-from navsym.language.names import expect_keys, join_place, quote
+from navsym.language.names import expect_keys, join_place, quote, require_path
 from navsym.language.printer import print_tree
 from navsym.language.schema import as_table, require_distinct, require_key
 from navsym.language.tomlfile import read_toml
@@ -241,7 +241,7 @@ def audit(path: str | os.PathLike[str], /, function: str | None = None) -> Audit
     >>> [entry.suggestion for entry in report["transition"].entries if entry.suggestion]
     ['-v * sinf(x[2]) * dt']
     """
-    where = Path(os.fspath(path))
+    where = require_path(path, "audit: path")
     if function is not None:
         unit = load_unit(where)
         source = Source("code", unit, find_function(unit, function, "audit: function"), Names(), {}, frozenset(), ())

@@ -25,7 +25,7 @@ from navsym.core.errors import (
 )
 from navsym.core.store import default_path
 from navsym.language.files import write_text
-from navsym.language.names import expect_keys, join_place, quote
+from navsym.language.names import expect_keys, join_place, quote, require_path
 from navsym.language.tomlfile import read_toml
 
 FILE = "navsym.toml"
@@ -211,7 +211,7 @@ def init(folder: str | os.PathLike[str] = ".") -> Workspace:
     >>> nav.init("drive")
     <workspace drive: claims/baro.toml, models/alignment.toml, audits/ekf.toml, pendulum>
     """
-    root = Path(folder).absolute()
+    root = require_path(folder, "init: folder").absolute()
     files = {**example_files(), **editor_files()}
     for name in files:
         if os.path.lexists(root / name):

@@ -10,7 +10,7 @@ from navsym.core.errors import DomainError
 
 def one_of(value: str, known: Iterable[str], where: str) -> str:
     """The value itself; raises DomainError, with the known word that comes closest, where it is none of them."""
-    words, given = list(known), str(value)
+    words, given = list(known), str(value) if isinstance(value, str) else type(value).__name__
     if given in words:
         return given
     close = difflib.get_close_matches(given[:60].lower(), [word.lower() for word in words], n=1)

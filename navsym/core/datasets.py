@@ -132,10 +132,8 @@ def data(*names: str) -> Datasets:
     """
     if not names:
         return Datasets(tuple(map(look_up, DATASETS.values())))
-    for name in names:
-        if name != "all":
-            one_of(str(name), DATASETS, "data get")
-    wanted = list(DATASETS) if "all" in names else names
+    wanted = [one_of(name, (*DATASETS, "all"), "data get") for name in names]
+    wanted = list(DATASETS) if "all" in wanted else wanted
     return Datasets(tuple(DatasetRow(DATASETS[name], fetch(name)) for name in wanted), fetched=True)
 
 

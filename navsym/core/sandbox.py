@@ -150,12 +150,24 @@ def run_many(
             stop_child(child)
 
 
-def require_limits(seconds: float, megabytes: int) -> None:
-    """Refuse a time that no child can have: nan, infinity, nothing, or more than the kernel counts."""
+def require_limits(seconds: Any, megabytes: int = 1, where: str = "") -> None:
+    """Refuse a time that no child can have: nan, infinity, nothing, more than the kernel counts, or no number."""
+    if not isinstance(seconds, int | float) or isinstance(seconds, bool):
+        got = type(seconds).__name__
+        raise DomainError(f"expected seconds as a number; got an object of type {got}; correct it", where=where)
     if not 0 < seconds <= MOST_SECONDS:
-        raise DomainError(f"expected seconds above 0 and at most {MOST_SECONDS:g}; got {seconds:g}; correct the limit")
+        got = f"{seconds:g}" if abs(seconds) < 1e300 else "more"
+        message = f"expected seconds above 0 and at most {MOST_SECONDS:g}; got {got}; correct the limit"
+        raise DomainError(message, where=where)
     if not 0 < megabytes <= MOST_MEGABYTES:
         raise DomainError(f"expected megabytes above 0 and at most {MOST_MEGABYTES}; got {megabytes}; correct it")
+
+
+def require_jobs(jobs: Any, where: str) -> None:
+    """Refuse a number of child processes that is none."""
+    if not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1:
+        got = jobs if isinstance(jobs, int) and jobs.bit_length() < 99 else f"an object of type {type(jobs).__name__}"
+        raise DomainError(f"expected a whole number of jobs from 1 on; got {got}; correct it", where=where)
 
 
 def start_child(places: list[int], function: Callable[[Any], Any], items: Sequence[Any], limits: Limits) -> Child:

@@ -168,7 +168,7 @@ def parts_of(item: Any, asked: Asked) -> list[Part]:
         message = f"expected a path, an answer or a certificate; got {quote(item)}; name one of these"
         raise DomainError(message, where="check")
     path = Path(item)
-    if not path.exists():
+    if not os.path.exists(path):  # False, too, of a name that no system takes
         message = "expected a file or folder that exists; got none of this name; correct it"
         raise NavsymError(message, where=str(path), kind="missing-file")
     if not path.is_dir():

@@ -25,12 +25,15 @@ from navsym.export.differences import exact_range
 from navsym.export.expression_graph import Graph
 from navsym.export.tracing import UntraceableError, trace, write_trace
 from navsym.language.names import quote
+from navsym.language.values import write_value
 from navsym.prove.formulas import prove
 from navsym.prove.grant import write_numerals
 from navsym.prove.rooms.goals import player
 
 BITS = 192
 POINTS = 400
+#: Most points: half a minute of a short function.
+MOST_POINTS = 1_000_000
 BOXES = 600
 ULPS = 4  # of a library function: the widest of what C libraries and numpy state
 ROUND = 120  # boxes after which the bound has to have fallen
@@ -76,7 +79,7 @@ class FunctionComparison(Answer):
 
 
 def compare(
-    function: Callable[..., Any], formula: str, /, *, points: int = POINTS, seconds: float = 20.0, **ranges: Any
+    function: Callable[..., Any], formula: Any, /, *, points: int = POINTS, seconds: float = 20.0, **ranges: Any
 ) -> FunctionComparison:
     """A function of doubles beside a formula: a bound of their difference, and the worst point that was seen.
 
@@ -86,7 +89,7 @@ def compare(
     or a table cannot be followed, and is sampled.
 
     function : of one number for each range; called by names where its signature has them all, else in their order
-    formula  : text in the language of files
+    formula  : text in the language of files, or an expression of sympy
     points   : number of points at which the function is called
     seconds  : limit of the search for a proof that the operations are the formula
     ranges   : name -> two finite ends, ``x=("0", "3")``, exact
@@ -106,8 +109,10 @@ def compare(
     if not callable(function):
         message = f"expected a function of numbers; got {type(function).__name__}; give a callable, such as math.sin"
         raise DomainError(message, where="compare: function")
-    if not isinstance(points, int) or isinstance(points, bool) or points < 2:
-        raise DomainError(f"expected 2 points or more; got {points!r}; correct it", where="compare: points")
+    if not isinstance(points, int) or isinstance(points, bool) or not 2 <= points <= MOST_POINTS:
+        message = f"expected 2 to {MOST_POINTS} points; got {quote(points)}; correct it"
+        raise DomainError(message, where="compare: points")
+    formula = write_value(formula, "compare: formula")
     prove(formula, "=", formula, seconds=seconds, **ranges)  # the reader's errors, and a range of no name of it
     try:
         term = player.parse(write_numerals(formula))

@@ -26,7 +26,7 @@ from navsym.core.tables import Table
 from navsym.export.parts import overlap
 from navsym.language.expression import parse, parse_noting, symbol
 from navsym.language.files import read_text
-from navsym.language.names import quote
+from navsym.language.names import quote, require_table
 from navsym.language.tokens import Source, tokenize
 from navsym.language.values import write_value
 from navsym.prove.claimfile import (
@@ -151,7 +151,7 @@ def diff(old: Any, new: Any, *, box: Mapping[str, Any] | None = None, **ranges: 
         raise ShapeError(message, where=str(sides[1])[:200])
     if kinds[0] == LEDGER:
         return compare_ledgers(*map(read_ledger, sides))
-    known = {name: exact_range(name, ends) for name, ends in {**(box or {}), **ranges}.items()}
+    known = {name: exact_range(name, ends) for name, ends in {**require_table(box, "diff: box"), **ranges}.items()}
     return compare_formulas(formulas_of(sides[0], known), formulas_of(sides[1], known))
 
 
@@ -161,11 +161,11 @@ def kind_of_text(text: str) -> str:
 
     if text.endswith(".toml"):
         return "a claim file" if "claim" in read_toml(Path(text)) else "a model file"
-    if Path(text).is_dir():
+    if os.path.isdir(text):
         return "a folder"
     if text.endswith(".json"):
         return LEDGER
-    if Path(text).exists():
+    if os.path.exists(text):
         expected = "a formula, a file named *.toml, an exported folder or a ledger"
         message = f"expected {expected}; got another file; name one of these"
         raise DomainError(message, where=text)
@@ -312,11 +312,10 @@ def formulas_of(text: str, ranges: Mapping[str, tuple[Any, Any]]) -> dict[str, F
     ranges : name -> (lower, upper), exact; symbols without a range are real
     Raises DomainError for a folder that is no export, and the errors of the readers of files and expressions.
     """
-    path = Path(text)
-    if path.is_dir():
-        return of_export(path)
+    if os.path.isdir(text):  # a long formula is no name of a file, which Path.is_dir does not bear
+        return of_export(Path(text))
     if text.endswith(".toml"):
-        return of_file(path)
+        return of_file(Path(text))
     return {"formula": of_claim(text) if ":" in text else of_text(text, ranges)}
 
 

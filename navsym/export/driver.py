@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from navsym.claims import Verdicts
-from navsym.core.errors import DomainError
+from navsym.core.errors import DomainError, EmptyError
 from navsym.export.languages.targets import find_targets
 from navsym.export.materials import functions_from
 from navsym.export.package import COUNT, LICENSE, Exported, Order, license_id, write_export
 from navsym.export.parts import ExportedFunction
 from navsym.export.ready import READY
 from navsym.export.streams import export_guard, guard_of
+from navsym.language.names import quote
 
 MOST_VECTORS = 100_000
 LONGEST_UNIT = 60
@@ -73,6 +74,8 @@ def export(
     for done, part in enumerate([] if guard else items, start=1):
         functions += functions_from(part, real=real, allow_confirmed=allow_confirmed, units=units)
         progress(done, total, part if isinstance(part, str) else "")
+    if not guard and not functions:
+        raise EmptyError("expected what to export; got an empty list; name a claim or give an answer", where="export")
     steps = iter(range(len(items) + 1, total + 1))
     words = tuple(command) or (f"navsym.export({', '.join(f.name for f in functions) or 'guard'})",)
     order = Order(targets, license, vectors, words, force, run, lambda language: progress(next(steps), total, language))
@@ -81,8 +84,8 @@ def export(
 
 def require_export_options(real: Any, license_: Any, vectors: Any, units: Any) -> None:
     """Refuse a type, licence, number of vectors or units that are none; raises DomainError."""
-    if real not in ("double", "float"):
-        raise DomainError(f"expected double or float; got {str(real)[:20]!r}; correct it", where="real")
+    if not isinstance(real, str) or real not in ("double", "float"):
+        raise DomainError(f"expected double or float; got {quote(real)}; correct it", where="real")
     if not isinstance(vectors, int) or isinstance(vectors, bool) or not 4 <= vectors <= MOST_VECTORS:
         raise DomainError(f"expected 4 to {MOST_VECTORS} vectors; got {vectors!r}; correct it", where="vectors")
     license_id(str(license_))

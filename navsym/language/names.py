@@ -6,12 +6,21 @@ Apart from :mod:`navsym.language.schema` because files of numbers need no reader
 from __future__ import annotations
 
 import difflib
+import os
 import re
 import unicodedata
 from collections.abc import Collection, Iterable, Mapping
+from pathlib import Path
 from typing import Any
 
-from navsym.core.errors import DuplicateError, ExpressionSyntaxError, TooLargeError, UnknownSymbolError
+from navsym.core.errors import (
+    DomainError,
+    DuplicateError,
+    ExpressionSyntaxError,
+    ShapeError,
+    TooLargeError,
+    UnknownSymbolError,
+)
 
 # Names that a file may declare, and how foreign text is quoted in a message.
 
@@ -70,7 +79,10 @@ def shorten_repr(value: object, limit: int) -> str:
         return f"of {value.bit_length()} bits"
     if isinstance(value, (list, tuple, dict)):
         return f"of {len(value)} entries"
-    return repr(value)[:limit]
+    try:
+        return repr(value)[:limit]
+    except Exception:  # an object of somebody else, which cannot say what it is
+        return "without a text"
 
 
 def describe_character(char: str) -> str:
@@ -85,7 +97,7 @@ def suggest_nearest(name: str, known: Iterable[str]) -> str:
     choices = sorted(known)
     if not choices:
         return "nothing is declared here"
-    close = difflib.get_close_matches(name[:NAME_LENGTH], choices[:5000], n=1, cutoff=0.6)
+    close = difflib.get_close_matches(str(name)[:NAME_LENGTH], choices[:5000], n=1, cutoff=0.6)
     if close:
         return f"did you mean {close[0]!r}?"
     rest = "" if len(choices) <= 8 else f" and {len(choices) - 8} more"
@@ -93,6 +105,27 @@ def suggest_nearest(name: str, known: Iterable[str]) -> str:
 
 
 Table = Mapping[str, Any]
+
+
+def require_table(value: Any, where: str, what: str = "values by name") -> dict[str, Any]:
+    """An argument that is a mapping, as a dict; an empty one for None. Raises ShapeError for all else."""
+    if not isinstance(value, Mapping | None):
+        raise ShapeError(f"expected {what}; got {quote(value)}; give a dict", where=where)
+    return dict(value or {})
+
+
+def require_path(value: Any, where: str) -> Path:
+    """An argument that is a path, as one. Raises DomainError for all else."""
+    if not isinstance(value, str | os.PathLike):
+        raise DomainError(f"expected a path; got {quote(value)}; give text or a Path", where=where)
+    return Path(value)
+
+
+def require_flag(value: Any, where: str) -> bool:
+    """An argument that is True or False. Raises ShapeError for all else."""
+    if not isinstance(value, int):
+        raise ShapeError(f"expected True or False; got {quote(value)}; give one of them", where=where)
+    return bool(value)
 
 
 def join_place(where: str, key: object) -> str:

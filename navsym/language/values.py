@@ -14,12 +14,14 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError
+from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, TooLargeError
 from navsym.language.algebra import float_error
 from navsym.language.declarations import SIGNS
 from navsym.language.names import join_place, quote
 from navsym.language.printer import to_text
 
+#: Longest whole number or fraction: Python itself refuses to write one of more than 4,300 digits.
+MOST_BITS = 12_000
 #: What a symbol of sympy without assumptions is taken for, and what stronger words include.
 STRONGER = {"positive": ("nonnegative", "nonzero", "real"), "nonnegative": ("real",), "nonzero": ("real",), "real": ()}
 
@@ -38,10 +40,12 @@ def write_value(value: Any, where: str) -> str:
         return write_expression(value, where)
     if isinstance(value, bool):
         raise ExpressionSyntaxError(f"expected an exact number; got {value}; write 0 or 1", where=where)
-    if isinstance(value, numbers.Integral):
-        return str(int(value))
     if isinstance(value, numbers.Rational):
-        return str(Fraction(int(value.numerator), int(value.denominator)))
+        exact = Fraction(int(value.numerator), int(value.denominator))
+        if exact.numerator.bit_length() + exact.denominator.bit_length() > MOST_BITS:
+            message = f"expected a number of at most {MOST_BITS} bits; got {quote(value)}; write it as a power"
+            raise TooLargeError(message, where=where)
+        return str(exact)
     if isinstance(value, Decimal) and value.is_finite():
         return f"{value:f}" if abs(value.adjusted()) < 100 else str(value)
     if isinstance(value, (numbers.Real, Decimal)):

@@ -17,7 +17,7 @@ from navsym.core.errors import DomainError, DuplicateError, EmptyError, NavsymEr
 from navsym.language.declarations import Parameter, read_parameters, symbols_of
 from navsym.language.expression import parse, symbol, to_text
 from navsym.language.files import name_file, write_text
-from navsym.language.names import join_place, quote
+from navsym.language.names import join_place, quote, require_path, require_table
 from navsym.language.tomlfile import read_toml, toml_text
 from navsym.language.values import read_assumptions, write_declaration, write_entries, write_value
 from navsym.language.vectors import is_wide
@@ -109,7 +109,8 @@ class Model:
         with places_of_arguments():
             names = name_list(states, "Model: states")
             formulas = (F, H, sigma, interval, targets, pieces, dynamics, rates, Phi, inputs)
-            declarations = declarations_of(parameters, declared, formulas, {*names, *(inputs or {}), "t"})
+            unknown = require_table(inputs, "Model: inputs")
+            declarations = declarations_of(parameters, declared, formulas, {*names, *unknown, "t"})
             document: dict[str, Any] = {"model": {"name": name, "states": names}}
             for key, value in (("F", F), ("Phi", Phi), ("dynamics", dynamics)):
                 if value is not None:
@@ -123,9 +124,12 @@ class Model:
                 ("ranges", write_entries, ranges),
             ):
                 if table is not None:
-                    document[key] = {name: write(value, f"Model: {key}.{name}") for name, value in table.items()}
+                    rows = require_table(table, f"Model: {key}").items()
+                    document[key] = {name: write(value, f"Model: {key}.{name}") for name, value in rows}
             linear = names if dynamics is None else None
             document["measurement"] = measurement_blocks(H, sigma, measurements, linear, declarations)
+            if not isinstance(blocks, list | tuple):
+                raise ShapeError(f"expected a list of tables; got {quote(blocks)}; give a list", where="Model: blocks")
             document["block"] = [block_table(block, f"Model: blocks[{k}]") for k, block in enumerate(blocks)]
             if pieces is not None:
                 document["piece"] = piece_blocks(pieces)
@@ -160,8 +164,7 @@ class Model:
 
         Raises NavsymError with the file and the key; kind ``missing-file`` where there is none.
         """
-        with error_of_call("Model.load: path", path):
-            document = read_toml(path)
+        document = read_toml(require_path(path, "Model.load: path"))
         return cls.from_document(document, os.fspath(path))
 
     @classmethod
@@ -259,9 +262,7 @@ class Model:
 
         Raises OutputError where the file cannot be written.
         """
-        with error_of_call("Model.save: path", path):
-            os.fspath(path)
-        write_text(path, toml_text(self._document))
+        write_text(require_path(path, "Model.save: path"), toml_text(self._document))
 
     def read(self, values: Mapping[str, Any] | None = None) -> ModelFile | BasisFile:
         """The exact contents, with values put in for some parameters.
@@ -400,10 +401,11 @@ def contents_of(
     values, parameters : parameter -> exact value; a name stands in one of them only
     where              : name of the function of the front door, for errors
     """
-    twice = next((name for name in parameters if name in (values or {})), None)
+    values = require_table(values, f"{where}: values")
+    twice = next((name for name in parameters if name in values), None)
     if twice is not None:
         raise DuplicateError(f"expected one value; got two of {twice}; give one", where=f"{where}: {twice}")
-    given = {**(values or {}), **parameters}
+    given = {**values, **parameters}
     try:
         if isinstance(model, str | os.PathLike):
             found = read_model(model, {name: write_value(value, f"--set {name}") for name, value in given.items()})
@@ -460,21 +462,13 @@ def places_of_arguments() -> Iterator[None]:
         raise
 
 
-@contextmanager
-def error_of_call(where: str, path: Any) -> Iterator[None]:
-    """A path of another type is refused in our words."""
-    if not isinstance(path, str | os.PathLike):
-        raise DomainError(f"expected the path of a file; got {quote(path)}; give text or a Path", where=where)
-    yield
-
-
 def name_list(names: Any, where: str) -> list[Any]:
     """Names from one text with blanks or commas between them, or from a list; symbols by their names."""
     if names is None:
         raise EmptyError('expected names; got none; write them in one text: "x v"', where=where)
     if isinstance(names, str):
         return names.replace(",", " ").split()
-    if not isinstance(names, list | tuple):
+    if not isinstance(names, list | tuple) or any(isinstance(name, list | dict) for name in names):
         raise ShapeError(f'expected names; got {quote(names)}; write them in one text: "x v"', where=where)
     return [item.name if isinstance(item, sp.Symbol) else item for item in names]
 

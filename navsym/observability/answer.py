@@ -16,7 +16,7 @@ from navsym.claims.statement import Box
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError
 from navsym.language.expression import parse, symbol
-from navsym.language.names import RESERVED, join_place, quote
+from navsym.language.names import RESERVED, join_place, quote, require_flag, require_table
 from navsym.language.values import write_entries, write_value
 from navsym.models.along import model_along_motion
 from navsym.models.linear import LinearModel, linear_row
@@ -318,6 +318,7 @@ def observe(
     >>> nav.observe(sensor, g=0).unobservable
     ('(x, b) = (1, -1)',)
     """
+    restore, candidates = require_flag(restore, "observe: restore"), require_table(candidates, "observe: candidates")
     with file_in_errors(model):
         contents = contents_of(model, values, parameters, "observe")
         if not isinstance(contents, ModelFile):
@@ -330,11 +331,10 @@ def observe(
         request = read_split(split) if split is not None else None
         many = len(contents.measurements) > 2
         polynomials = read_poles(poles, contents) if poles is not None and not many else ()
-        rows = read_candidate_rows(candidates or {}, contents) if restore or candidates else None
+        rows = read_candidate_rows(candidates, contents) if restore or candidates else None
         found = observe_linear(model_along_motion(contents), contents.name, request, polynomials, rows, contents.box)
         found = replace(found, contents=contents)
-        # A two-stage split is a statement on dx/dt = F x.
-        if contents.Phi is not None:
+        if contents.Phi is not None:  # a two-stage split is a statement on dx/dt = F x
             return replace(found, kind="discrete", splits=(), best_split=None, split=None)
         return replace(found, staged=found.stages(poles)) if poles is not None and many else found
 
@@ -459,6 +459,8 @@ def read_poles(value: Any, contents: ModelFile) -> tuple[sp.Expr, ...]:
         message = "expected p to be free for the variable of the polynomials; got a parameter p; rename the parameter"
         raise DuplicateError(message, where=where)
     texts = write_entries(value, where)
+    if isinstance(texts, list) and not all(isinstance(text, str) for text in texts):
+        raise ShapeError(f"expected polynomials in p; got {quote(value)}; give a list of texts", where=where)
     parts = [part for text in (texts if isinstance(texts, list) else [texts]) for part in text.split(";")]
     names = {name for part in parts for name in re.findall(r"[A-Za-z][A-Za-z0-9_]*", part)}
     names -= RESERVED | declared.keys() | {VARIABLE}
@@ -470,9 +472,6 @@ def read_poles(value: Any, contents: ModelFile) -> tuple[sp.Expr, ...]:
 
 def read_candidate_rows(candidates: Mapping[str, Any], contents: ModelFile) -> dict[str, list[sp.Expr]]:
     """Rows of exact coefficients, from formulas of the states or rows of entries."""
-    if not isinstance(candidates, Mapping):
-        message = f"expected name -> formula of the states; got {quote(candidates)}; give a dict"
-        raise ShapeError(message, where="observe: candidates")
     states = {name: symbol(name) for name in contents.states}
     known = {name: parameter.symbol for name, parameter in contents.parameters.items()}
     rows: dict[str, list[sp.Expr]] = {}

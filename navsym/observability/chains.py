@@ -10,20 +10,17 @@ a coupling of 1e-15 is not zero. The dimensions are generic: where they drop is 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import sympy as sp
-from flint import nmod_mat
 
 from navsym.core.errors import DomainError, EmptyError, TooLargeError, UnobservableError
 from navsym.core.rational_functions import Quotient, cancel_fraction, clear_denominators
 from navsym.models.linear import LinearModel
-from navsym.observability.directions import find_unobservable, independent_columns, is_closed
+from navsym.observability.directions import find_unobservable
 from navsym.observability.linear import (
-    PRIME,
     Matrix,
-    at_point,
     independent_places,
     linear_relation,
     null_vectors,
@@ -356,29 +353,6 @@ def observe_jointly(model: LinearModel) -> JointObservability:
         observed=observed_rows(chains),
         proved=chains.directions is not None,
     )
-
-
-def prove_by_guesses(found: JointObservability, guesses: Iterable[Sequence[sp.Expr]]) -> JointObservability:
-    """A rank that is known from below, proved from above where directions of a list are unobservable; else as it was.
-
-    guesses : directions (n,), such as symmetries of a scene; they are checked as identities
-    """
-    if found.proved:
-        return found
-    chains, n = found.chains, len(found.states)
-    motion, ring, rows = chains.motion, chains.ring, [chain.vectors[0] for chain in chains.chains]
-    known = {*ring.symbols, *(angle.symbol for angle in ring.angles)}
-    written = [sp.Matrix([guess]) for guess in guesses if any(guess) and sp.Matrix([guess]).free_symbols <= known]
-    point = motion.points(1)[0]
-    seen = nmod_mat(residue_chains(rows, motion, point), PRIME)
-    columns = [numerators([row], ring)[0][0] for row in written]
-    unseen = (c for c in columns if (seen * nmod_mat([[x] for x in at_point([c], point)[0]], PRIME)).rank() == 0)
-    chosen = independent_columns(unseen, motion, n - found.joint_dimension)
-    if len(chosen) < n - found.joint_dimension or not is_closed(rows, motion, chosen):
-        return found
-    space = sp.ImmutableMatrix(len(chosen), n, [ring.expression(x) for column in chosen for x in column])
-    chains = replace(chains, directions=chosen)
-    return replace(found, unobservable=space, observed=observed_rows(chains), proved=True, written=chains)
 
 
 def observed_rows(chains: Chains) -> sp.ImmutableMatrix:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import sympy as sp
@@ -230,23 +230,6 @@ def find_drops(found: JointObservability, box: Box | None = None) -> DropList:
         written = (conditions_on(system, ring) for system in join_half_angles(locus.passing, ring))
         drops += [view.make_drop(zeros, lasting=False) for zeros in written if zeros]
     return DropList(tuple(sorted(drops, key=lambda drop: not drop.lasting)), complete, left)
-
-
-def find_joint_drops(found: JointObservability, known: Iterable[sp.Symbol], nodes: int) -> DropList:
-    """The drops of what all measurements show together, by the tree alone, at points where some symbols do not vanish.
-
-    nodes : so many cases at most
-    """
-    chains = found.chains
-    ring = chains.ring
-    ring = ring.with_units([ring.context.gen(ring.places[s]) for s in known if s in ring.places])
-    motion, rows = replace(chains.motion, ring=ring), [chain.vectors[0] for chain in chains.chains]
-    cases = search_drops(rows, found.joint_dimension, ring, motion, nodes=nodes)
-    generic = leaf_on([], rows, ring, motion) if cases.drops else None
-    view = View("joint", rows, generic, motion, not cases.open, {})
-    drops = view.list_drops(closed_systems(cases.drops), 0, cases.drops)
-    left = tuple(join_conditions(conditions_on(system, ring)) for system in cases.open)
-    return DropList(tuple(drops), {"joint": not cases.open}, {"joint": left})
 
 
 @dataclass(frozen=True, slots=True, eq=False)

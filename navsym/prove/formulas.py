@@ -7,13 +7,13 @@ import os
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from types import NoneType
 from typing import TYPE_CHECKING, Any, overload
 
 from navsym.claims import Bound, Equation, Statement, Verdict, Verdicts
 from navsym.claims.formula import names_of, side_text
-from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
-from navsym.language.names import RESERVED, quote, suggest_nearest
+from navsym.core.errors import DomainError, ExpressionSyntaxError, UnknownSymbolError
+from navsym.core.sandbox import require_jobs, require_limits
+from navsym.language.names import RESERVED, quote, require_table, suggest_nearest
 from navsym.language.tomlfile import read_toml
 
 if TYPE_CHECKING:
@@ -103,13 +103,12 @@ def prove(
     Traceback (most recent call last):
     navsym.core.errors.DomainError: prove: left: expected an exact number; got the float 0.5; write "1/2" ...
     """
-    require_options(box, seconds, jobs)
-    beside = dict(box=box or {}, tolerance=tolerance, exists=exists, given=given, rates=rates or {}, order=order)
+    beside = dict(tolerance=tolerance, exists=exists, given=given) | read_options(box, rates, order, seconds, jobs)
     if relation is None and is_file(statement):
         refuse_declarations(symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())})
         return prove_file(statement, seconds, jobs, progress)
     sides = split_formula(statement, relation, right, symbols)
-    return prove_formula(sides, symbols, beside | {"order": choose_order(sides.order, order)}, seconds)
+    return prove_formula(sides, symbols, beside | {"order": choose_order(sides.order, beside["order"])}, seconds)
 
 
 def state_formula(
@@ -139,10 +138,9 @@ def state_formula(
     """
     from navsym.prove.claimfile import FileClaim, property_of_claim, statement_of, text_conditions
 
-    require_options(box, SECONDS, 1)
-    beside = dict(box=box or {}, tolerance=tolerance, exists=exists, given=given, rates=rates or {})
+    beside = dict(tolerance=tolerance, exists=exists, given=given) | read_options(box, rates, order, SECONDS, 1)
     sides = split_formula(statement, relation, right, symbols)
-    (claim,) = read_formula(sides, symbols, beside | {"order": choose_order(sides.order, order)}).claims
+    (claim,) = read_formula(sides, symbols, beside | {"order": choose_order(sides.order, beside["order"])}).claims
     if not isinstance(claim, FileClaim) or text_conditions(claim):
         return replace(property_of_claim(claim), is_whole=relation is None)
     found = statement_of(claim)
@@ -247,19 +245,12 @@ def list_moments(value: Any) -> list[str]:
     return [str(table[key]) for key in ("mean", "cov") if key in table] if isinstance(table, Mapping) else []
 
 
-def require_options(box: Any, seconds: Any, jobs: Any) -> None:
-    """Refuse ranges that are no mapping and limits that are no numbers."""
-    if not isinstance(box, (Mapping, NoneType)):
-        message = f'expected ranges by name; got {quote(box)}; write box={{"T": ("0", "1")}}'
-        raise ShapeError(message, where="prove: box")
-    if not isinstance(seconds, (int, float)) or isinstance(seconds, bool):
-        raise DomainError(f"expected seconds as a number; got {quote(seconds)}; correct it", where="prove: seconds")
-    if not seconds > 0:
-        raise DomainError(f"expected seconds above 0; got {seconds:g}; correct it", where="prove: seconds")
-    if not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1:
-        raise DomainError(
-            f"expected a whole number of jobs from 1 on; got {quote(jobs)}; correct it", where="prove: jobs"
-        )
+def read_options(box: Any, rates: Any, order: Any, seconds: Any, jobs: Any) -> dict[str, Any]:
+    """The tables beside a formula; refuses what is no mapping, and limits that are no numbers."""
+    require_limits(seconds, where="prove: seconds")
+    require_jobs(jobs, "prove: jobs")
+    tables = {"box": box, "rates": rates, "order": order}
+    return {key: require_table(table, f"prove: {key}") for key, table in tables.items()}
 
 
 def is_file(statement: Any) -> bool:

@@ -132,8 +132,8 @@ def claims(*papers: str, status: str | Sequence[str] = (), slip: str | None = No
     >>> nav.claims()["guaranteed_velocity:4.3.u2*"].latex
     ' - \\frac{\\sin^{2}\\left( T/4 \\right)}{\\cos\\left( T/2 \\right)}'
     """
-    given = [status] if isinstance(status, str) else status
-    statuses = {one_of(str(word).upper(), tuple(Status), "status") for word in given}
+    given: Any = status if isinstance(status, list | tuple | set | frozenset) else [status]
+    statuses = {one_of(word.upper() if isinstance(word, str) else word, tuple(Status), "status") for word in given}
     kind = None if slip is None else one_of(slip, SLIPS, "slip")
     ledger, modules, wanted = stored_ledger(), load_papers(papers), str(words).lower()
     changed = list_changed(ledger.papers, modules)

@@ -188,10 +188,14 @@ def with_reference(found: Track, reference: Any) -> Track:
 def settings_of(method: str | None, window: float | None, order: int, gate: float, sigma: float | None) -> Settings:
     """The settings of a call: a window asks for the sliding window, every other method has to be named."""
     for name, value in (("window", window), ("gate", gate), ("sigma", sigma)):
-        if value is not None and (isinstance(value, bool) or not isinstance(value, int | float | np.number)):
+        if value is None:
+            continue
+        if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not abs(value) < 1e300:
             raise DomainError(f"expected a number; got {quote(value)}; give one", where=f"track: {name}")
     if isinstance(order, bool) or not isinstance(order, int):
         raise DomainError(f"expected 2 to 6 states; got {quote(order)}; give a whole number", where="track: order")
+    if not isinstance(method, str | None):
+        raise DomainError(f"expected the name of a method; got {quote(method)}; give text", where="track: method")
     chosen = method or ("window" if window is not None else "smoother")
     if window is not None and chosen not in ("window", "guaranteed"):
         message = f"expected method window or guaranteed with it; got {chosen}; drop one"

@@ -10,8 +10,7 @@ from typing import Any
 import sympy as sp
 
 from navsym.claims import OPEN, Claim, Equation, Paper, Record, Statement, Verdict
-from navsym.core.errors import DomainError
-from navsym.core.sandbox import Exhausted, Failed, require_limits, run_limited, run_many
+from navsym.core.sandbox import Exhausted, Failed, require_jobs, require_limits, run_limited, run_many
 from navsym.prove.grant import write_statements
 from navsym.prove.ladder import decide
 from navsym.verification.certificates import Certificates, grant_entry, verdict_of
@@ -82,11 +81,9 @@ def verify(
 
 def require_workers(jobs: Any, seconds: Any) -> None:
     """Refuse numbers of jobs and limits of time that are none; raises DomainError."""
-    if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
-        raise DomainError(f"expected a whole number of jobs from 1 on; got {jobs!r}; correct it", where="jobs")
-    if not isinstance(seconds, (int, float)) or isinstance(seconds, bool):
-        raise DomainError(f"expected seconds as a number; got {seconds!r}; correct it", where="seconds")
-    require_limits(seconds, 1)
+    if jobs is not None:
+        require_jobs(jobs, "jobs")
+    require_limits(seconds, where="seconds")
 
 
 def decide_claim_of(wanted: str, seconds: float = SECONDS) -> tuple[Paper, Record]:

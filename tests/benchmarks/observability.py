@@ -25,7 +25,7 @@ from sympy.polys.matrices import DomainMatrix
 from navsym.models.linear import LinearModel, observability_matrix
 from navsym.observability.chains import chains_of, numerators, observe_jointly, prove_rank
 from navsym.observability.linear import null_columns, triangular_form
-from navsym.observability.rank_drops import chain_determinant, find_joint_drops
+from navsym.observability.rank_drops import chain_determinant
 from navsym.observability.ring import Ring
 from navsym_papers.joint_correction.inertial import FULL, full_model
 
@@ -125,7 +125,7 @@ def numerical_rank(model: LinearModel) -> int:
 def complete_set(name: str) -> int:
     """Number of conditions of the complete list of a triple of measurements; -1 where it is not complete."""
     from navsym.studies.atlas.scenes import error_model, parts_of
-    from tests.studies.atlas_cells import NODES, nonzero_symbols
+    from tests.studies.atlas_cells import NODES, find_joint_drops, nonzero_symbols
 
     scene, aiding = parts_of(name)
     found = find_joint_drops(observe_jointly(error_model(scene, aiding)), nonzero_symbols(scene), NODES)

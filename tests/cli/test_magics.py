@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import nbformat
 import pytest
 from IPython.core.error import UsageError
 from IPython.core.interactiveshell import InteractiveShell
-from nbclient import NotebookClient
 
 import navsym as nav
 from navsym.cli._magics import prove_cell
@@ -135,6 +133,9 @@ def test_a_wrong_cell_names_its_line(shell):
 @pytest.mark.long
 def test_a_notebook_runs_and_shows_rich_answers(tmp_path):
     cells = ["%load_ext navsym", "%prove sin(T) <= T --range T=0,pi", "%%claims mine\n" + CELL, "mine.holds"]
+    import nbformat  # slow to import, and this test is a long one
+    from nbclient import NotebookClient
+
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(text) for text in cells])
     NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute()
     shown = [output for cell in notebook.cells for output in cell.outputs]

@@ -10,6 +10,7 @@ from math import cos
 import casadi as ca
 import numpy as np
 import pytest
+import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
@@ -234,6 +235,18 @@ def test_bad_input_is_refused(formula, ranges, kind):
 def test_what_cannot_be_called_is_refused():
     with pytest.raises(nav.NavsymError, match="expected a function of numbers; got int; give a callable"):
         nav.compare(3, "x", x=("0", "1"))
+
+
+def test_a_formula_of_sympy_is_compared_like_its_text():
+    x = sp.Symbol("x", real=True)
+    found = [nav.compare(math.sin, side, x=("0", "1"), points=5) for side in (sp.sin(x), "sin(x)")]
+    assert found[0].how == "certified" and found[0].document() == found[1].document()
+    assert nav.compare(lambda x: x, x, x=("0", "1"), points=5).bound == "0"
+
+
+def test_more_points_than_anyone_waits_for_are_refused():
+    with pytest.raises(nav.NavsymError, match=r"expected 2 to 1000000 points; got .* of 1329 bits"):
+        nav.compare(math.sin, "sin(x)", points=10**400, x=("0", "1"))
 
 
 def test_the_answer_is_plain_data():

@@ -143,3 +143,8 @@ def test_formulas_differ_only_where_both_have_a_value() -> None:
     (found,) = nav.diff("exp(log(x)) + x", "x")
     assert found.status == "DIFFERENT" and sp.Rational(found.worst["x"]) > 0
     assert nav.diff("abs(x)/x + 0*log(x)", "1")[0].status != "DIFFERENT"
+
+
+def test_a_formula_longer_than_a_name_of_a_file_is_compared():
+    long = " + ".join(f"sin({k}*a)" for k in range(1, 60))
+    assert nav.diff(long, f"{long} + 0").equal

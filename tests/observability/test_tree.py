@@ -19,10 +19,11 @@ from navsym.observability.certificates import Certifier
 from navsym.observability.chains import chains_of, observe_jointly
 from navsym.observability.linear import PRIME, residue_rank
 from navsym.observability.motion import residue_chains
-from navsym.observability.rank_drops import find_drops, find_joint_drops
+from navsym.observability.rank_drops import find_drops
 from navsym.observability.tree import search_drops
 from navsym.studies.atlas.scenes import model_of
 from tests.sampling import thinned
+from tests.studies.atlas_cells import find_joint_drops
 
 a, b, c = sp.symbols("a b c", real=True)
 

@@ -5,11 +5,9 @@ from __future__ import annotations
 import random
 
 import matplotlib.pyplot as plt
-import nbformat
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
-from nbclient import NotebookClient
 
 import navsym as nav
 
@@ -96,6 +94,9 @@ def test_a_bar_in_a_terminal_is_one_line_that_ends_when_all_is_done(capsys):
 
 @pytest.mark.long
 def test_a_notebook_with_sliders_and_a_bar_runs_in_a_kernel_and_leaves_no_bar(tmp_path):
+    import nbformat  # slow to import, and this test is a long one
+    from nbclient import NotebookClient
+
     model = "m = nav.Model('x v', F=[['0', '1'], ['-w**2', '0']], H=['x'], interval='3', w=('1/2', '2'))"
     cells = [
         "import navsym as nav",

@@ -8,13 +8,19 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import sympy as sp
+from flint import nmod_mat
 
 from navsym.observability.certificates import Certifier
-from navsym.observability.chains import JointObservability, direction_names, observe_jointly, prove_by_guesses
+from navsym.observability.chains import JointObservability, direction_names, numerators, observe_jointly, observed_rows
+from navsym.observability.directions import independent_columns, is_closed
+from navsym.observability.linear import PRIME, at_point
+from navsym.observability.motion import residue_chains
 from navsym.observability.pieces import independent_rows, is_spanned
-from navsym.observability.rank_drops import find_joint_drops
+from navsym.observability.rank_drops import DropList, View, closed_systems, conditions_on, join_conditions
+from navsym.observability.tree import leaf_on, search_drops
 from navsym.studies.atlas.kept import KEPT, Cell, atlas
 from navsym.studies.atlas.scenes import ARM, Aiding, Scene, cell_names, error_model, g, list_columns, parts_of
 
@@ -45,6 +51,46 @@ def compute_cell(name: str) -> Cell:
         checked=sum(item is not None for item in granted),
         certificate=hashlib.sha256(json.dumps(granted, sort_keys=True).encode()).hexdigest()[:32],
     )
+
+
+def prove_by_guesses(found: JointObservability, guesses: Iterable[Sequence[sp.Expr]]) -> JointObservability:
+    """A rank that is known from below, proved from above where directions of a list are unobservable; else as it was.
+
+    guesses : directions (n,), such as symmetries of a scene; they are checked as identities
+    """
+    if found.proved:
+        return found
+    chains, n = found.chains, len(found.states)
+    motion, ring, rows = chains.motion, chains.ring, [chain.vectors[0] for chain in chains.chains]
+    known = {*ring.symbols, *(angle.symbol for angle in ring.angles)}
+    written = [sp.Matrix([guess]) for guess in guesses if any(guess) and sp.Matrix([guess]).free_symbols <= known]
+    point = motion.points(1)[0]
+    seen = nmod_mat(residue_chains(rows, motion, point), PRIME)
+    columns = [numerators([row], ring)[0][0] for row in written]
+    unseen = (c for c in columns if (seen * nmod_mat([[x] for x in at_point([c], point)[0]], PRIME)).rank() == 0)
+    chosen = independent_columns(unseen, motion, n - found.joint_dimension)
+    if len(chosen) < n - found.joint_dimension or not is_closed(rows, motion, chosen):
+        return found
+    space = sp.ImmutableMatrix(len(chosen), n, [ring.expression(x) for column in chosen for x in column])
+    chains = replace(chains, directions=chosen)
+    return replace(found, unobservable=space, observed=observed_rows(chains), proved=True, written=chains)
+
+
+def find_joint_drops(found: JointObservability, known: Iterable[sp.Symbol], nodes: int) -> DropList:
+    """The drops of what all measurements show together, by the tree alone, at points where some symbols do not vanish.
+
+    nodes : so many cases at most
+    """
+    chains = found.chains
+    ring = chains.ring
+    ring = ring.with_units([ring.context.gen(ring.places[s]) for s in known if s in ring.places])
+    motion, rows = replace(chains.motion, ring=ring), [chain.vectors[0] for chain in chains.chains]
+    cases = search_drops(rows, found.joint_dimension, ring, motion, nodes=nodes)
+    generic = leaf_on([], rows, ring, motion) if cases.drops else None
+    view = View("joint", rows, generic, motion, not cases.open, {})
+    drops = view.list_drops(closed_systems(cases.drops), 0, cases.drops)
+    left = tuple(join_conditions(conditions_on(system, ring)) for system in cases.open)
+    return DropList(tuple(drops), {"joint": not cases.open}, {"joint": left})
 
 
 def shorten(condition: str) -> str:

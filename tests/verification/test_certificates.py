@@ -5,12 +5,14 @@ from __future__ import annotations
 import contextlib
 import json
 import multiprocessing
+import signal
 import sqlite3
 import time
 
 import pytest
 
 import navsym as nav
+from navsym.checker import Refused
 from navsym.cli.main import run
 from navsym.verification import certificates, decide
 from navsym.verification.ledger import lock_folder
@@ -134,13 +136,24 @@ def test_a_refutation_at_another_point_than_its_certificate_is_searched_again(pa
     assert record.status == "REFUTED" and record.counterexample != {"x": "12345"} and searches() == 2
 
 
-def test_a_check_that_takes_long_leaves_time_for_the_search(tiny, searches, monkeypatch):
+def test_a_check_that_takes_long_leaves_time_for_the_search(tiny, searches, monkeypatch, tmp_path):
+    """The clock of the check is set to a third, and what it does at its end is done at once: nobody waits for it."""
+
     def check_for_ever(texts, certificate):
+        (tmp_path / "left").write_text(str(signal.getitimer(signal.ITIMER_PROF)[0]))
         while True:
-            time.process_time()
+            signal.raise_signal(signal.SIGPROF)
 
     monkeypatch.setattr(certificates, "grant", check_for_ever)
-    assert tiny.status(seconds=6) == "PROVED" and searches() == 1
+    assert tiny.status(seconds=90) == "PROVED" and searches() == 1
+    assert 0 < float((tmp_path / "left").read_text()) < 31  # a third, up to a tick of the clock
+
+
+def test_the_clock_of_a_check_ends_it():
+    with pytest.raises(Refused, match="more than"), certificates.limited_time(0.01):
+        while True:
+            time.process_time()
+    assert signal.getitimer(signal.ITIMER_PROF) == (0.0, 0.0)
 
 
 def test_a_property_is_computed_every_time_and_not_kept(papers, searches):

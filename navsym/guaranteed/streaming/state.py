@@ -19,7 +19,7 @@ from navsym.guaranteed.streaming.memory import MOST_ROWS, Row
 from navsym.guaranteed.streaming.numbers import read_exact, write_rational
 from navsym.language.files import name_file, write_text
 from navsym.language.jsonfile import check_document, read_json
-from navsym.language.names import quote
+from navsym.language.names import quote, require_path
 from navsym.models.model import Model
 
 if TYPE_CHECKING:
@@ -59,10 +59,7 @@ def write_state(guard: Guard, path: str | os.PathLike[str] | None) -> dict[str, 
         },
     }
     if path is not None:
-        if not isinstance(path, str | os.PathLike):
-            message = f"expected the path of a file; got {quote(path)}; give text or a Path"
-            raise DomainError(message, where="Guard.save: path")
-        write_text(path, json.dumps(document, separators=(",", ":")) + "\n")
+        write_text(require_path(path, "Guard.save: path"), json.dumps(document, separators=(",", ":")) + "\n")
     return document
 
 

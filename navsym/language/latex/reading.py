@@ -218,7 +218,8 @@ def choose_notation(symbols: Any, latex: Any, rates: Any) -> Notation:
             return notation
         merged = (dict(notation.spellings) | dict(latex or {}), dict(notation.rates) | dict(rates or {}))
         return build_notation(notation.written, *merged, "read")
-    return build_notation(symbols or {}, latex or {}, rates or {}, "read")
+    tables = [{} if table is None else table for table in (symbols, latex, rates)]
+    return build_notation(tables[0], tables[1], tables[2], "read")
 
 
 def require_spellings_readable(notation: Notation) -> None:
