@@ -22,6 +22,7 @@ from navsym.audit.values import (
     Scalar,
     Unread,
     Unreadable,
+    Unset,
     Value,
     Variable,
     add,
@@ -207,7 +208,7 @@ class Evaluator:
                 variable.shape = () if not place else None
                 variable.cells[place] = cell
             return cell
-        return Unread(line, f"{spell_entry(self.unit, variable.name, place)} has no value there")
+        return Unset(line, f"{spell_entry(self.unit, variable.name, place)} has no value there")
 
     def whole(self, part: Part) -> int:
         """A constant whole number."""
@@ -589,7 +590,7 @@ class Evaluator:
             variable = self.variable(inner.parts[0])
             if argument.shape is not None and variable.shape is None and not variable.cells:
                 variable.shape = tuple(self.whole(size) for size in argument.shape)
-            is_copy = not argument.shared and given.kind != "address" and may_write(function, argument.name)
+            is_copy = not argument.shared and given.kind != "address" and may_write(self.unit, function, argument.name)
             if argument.shared or ((variable.shape is None or variable.shape) and not is_copy):
                 return variable
             if is_copy and variable.shape is None:
@@ -599,7 +600,7 @@ class Evaluator:
         is_place = inner.kind == "index" or (inner.kind == "call" and inner.parts[0] in self.frame)
         if argument.shared and is_place:
             _, _, sides = self.targets(inner)
-            if sides and may_write(function, argument.name):
+            if sides and may_write(self.unit, function, argument.name):
                 raise Unreadable(given.line, f"a part of an array that {function.name} may change")
             if not sides and self.unit.language != "python":
                 return self.linked(inner, given)

@@ -13,7 +13,18 @@ from fractions import Fraction
 from typing import Any
 
 from navsym.audit.evaluate import CASES, Case, CellView, Condition, Evaluator, Failing, Inputs, Reading, Returning
-from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_return_view, names_in, walk
+from navsym.audit.form import (
+    Argument,
+    Function,
+    Part,
+    Unit,
+    called_in,
+    head_of,
+    may_return_view,
+    mentioned_in,
+    names_in,
+    walk,
+)
 from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, VIEWS, bare_name, does_take, is_method
 from navsym.audit.values import (
     CUT,
@@ -191,10 +202,11 @@ class Machine(Evaluator):
             elif part.kind == "unread":
                 targets.update(part.parts[1])
             elif part.kind == "address":
-                targets |= names_in(part)
+                targets |= mentioned_in(part)
             elif part.kind in ("call", "method") and not self.is_plain(part):
                 is_c = self.unit.language == "c"  # which gives a called function a copy of a number
-                targets |= {name for name in names_in(part) if not (is_c and self.variable_shape(name) == ())}
+                given = names_in(part) | (called_in(part) & {*self.frame})  # v(0) may be given as a reference
+                targets |= {name for name in given if not (is_c and self.variable_shape(name) == ())}
             may_leave = part.kind == "refused" and part.parts[3:] == (True,)
             name = part.parts[0] if part.kind == "call" else ""  # of a macro, or of what looks like one, with a return
             may_leave |= name in self.unit.macros
@@ -494,7 +506,7 @@ class Machine(Evaluator):
     def arrays_in(self, value: Part) -> list[Variable]:
         """The arrays that an expression names."""
         hidden = (part.parts[1] for part in walk(value) if part.kind == "refused" and len(part.parts) > 1)
-        return [self.variable(name) for name in names_in(value).union(*hidden) if self.variable_shape(name)]
+        return [self.variable(name) for name in mentioned_in(value).union(*hidden) if self.variable_shape(name)]
 
     def write(self, variable: Variable, value: Value, statement: Part) -> None:
         """A whole variable."""

@@ -149,14 +149,15 @@ def names_in(*parts: Any) -> set[str]:
     return {inner.parts[0] for inner in walk(*parts) if inner.kind == "name"}
 
 
-def may_write(function: Function, name: str) -> bool:
+def may_write(unit: Unit, function: Function, name: str) -> bool:
     """True for a function that may write to a parameter of its own; one that only reads it may share the caller's."""
+    kinds = ("name", "index", "call")  # v(0) may be given as a reference to a function of the file
     for part in walk(*function.body):
         is_link = part.kind == "declare" and part.parts[4]
         is_open = is_link or part.kind in ("do", "address", "refused", "unread")
         written = part.parts[:1] if part.kind == "assign" else (part,) if is_open else ()
-        given = (a for a in part.parts[1] if a.kind == "name") if part.kind == "call" else ()
-        if name in names_in(*given) | mentioned_in(*written):
+        many = kinds[: None if part.parts[0] in unit.functions else 1] if part.kind == "call" else ()
+        if name in mentioned_in(*(a for a in part.parts[1] if a.kind in many) if many else (), *written):
             return True
     return False
 

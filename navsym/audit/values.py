@@ -72,6 +72,10 @@ class Unread:
     why: str
 
 
+class Unset(Unread):
+    """A cell to which nothing is assigned."""
+
+
 Cell = Scalar | Unread
 
 
@@ -325,16 +329,17 @@ def invert(value: Value) -> Value:
 
 
 def cross_product(a: Value, b: Value) -> Value:
-    """The cross product of two vectors of three."""
+    """The cross product of two vectors of three; of two rows it is a row."""
     if not (isinstance(a, Array) and isinstance(b, Array) and len(a.cells) == len(b.cells) == 3):
         raise Unreadable(0, "a cross product of what are no three-vectors")
+    forbid(a.shape != b.shape and (1, 3) in (a.shape, b.shape), 0, "a cross product of a row and another vector")
 
     def cell(i: int) -> Cell:
         j, k = (i + 1) % 3, (i + 2) % 3
         parts = (a.cells[j], b.cells[k], a.cells[k], b.cells[j])
         return map_cell(lambda p, q, r, s: add(multiply(p, q), minus(multiply(r, s))), *parts)
 
-    return make_array((3,), cell)
+    return Array(a.shape if a.shape == b.shape else (3,), tuple(map(cell, range(3))))
 
 
 def quaternion_product(a: Quaternion, b: Quaternion) -> Quaternion:
