@@ -133,6 +133,7 @@ class Evaluator:
     decide: ClassVar[Any]
     decide_known: ClassVar[Any]
     choose: ClassVar[Any]
+    is_view: ClassVar[Any]
     write: ClassVar[Any]
 
     reading: Reading
@@ -357,6 +358,8 @@ class Evaluator:
         name = self.canonical(part.parts[0])
         if name not in self.frame and self.is_property(name):
             return self.inline(Part("call", part.line, (name.removeprefix("self."), ()), part.span), True)
+        if self.unit.language == "matlab" and name not in self.frame and name in self.unit.functions:
+            return self.inline(Part("call", part.line, (name, ()), part.span), True)
         if name not in self.frame and name in self.unit.macros:
             return self.macro(name, part.line)
         if (member := self.member_of_array(part)) is not None:
@@ -538,6 +541,7 @@ class Evaluator:
         if name in self.calls or len(self.calls) >= INLINED:
             raise Unreadable(part.line, f"the recursion of {name}" if name in self.calls else "calls nested too deep")
         function = candidates[0]
+        forbid(any(a.name.startswith("*") for a in function.arguments), part.line, f"{name} of any number of arguments")
         self.require_no_structure(function, arguments, part.line)
         frame = {a.name: self.bind(a, given, function) for a, given in zip(function.arguments, arguments, strict=True)}
         for output in function.outputs:
@@ -604,6 +608,9 @@ class Evaluator:
                 raise Unreadable(given.line, f"a part of an array that {function.name} may change")
             if not sides and self.unit.language != "python":
                 return self.linked(inner, given)
+        is_view = given.kind in ("method", "call", "choose") and self.is_view(given) and given.parts[1] != "copy"
+        if self.unit.language == "python" and is_view and may_write(self.unit, function, argument.name):
+            raise Unreadable(given.line, f"a view of an array that {function.name} may change")
         value = self.value(given)
         if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in cells_of(value)):
             raise Unreadable(given.line, f"an integer given to the template {function.name}, which may cut quotients")

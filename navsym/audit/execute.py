@@ -19,13 +19,14 @@ from navsym.audit.form import (
     Part,
     Unit,
     called_in,
+    has_effects,
     head_of,
     may_return_view,
     mentioned_in,
     names_in,
     walk,
 )
-from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, VIEWS, bare_name, does_take, is_method
+from navsym.audit.functions import CONSTANTS, HARMLESS, IN_PLACE, PURE, VIEWS, bare_name, does_take, is_known, is_method
 from navsym.audit.values import (
     CUT,
     LIMITS,
@@ -341,6 +342,7 @@ class Machine(Evaluator):
             return
         if number == "other" and any(name in table for table in self.shadows[:-1]):
             raise Unreadable(statement.line, "a structure that hides another of its name")
+        self.require_order(*([value] if value is not None else ()))
         sizes = () if shape is None else tuple(self.whole(size) for size in shape)
         result = None if value is None else self.value(value)
         if shape is None and isinstance(result, Array):
@@ -399,12 +401,16 @@ class Machine(Evaluator):
 
     def run_assign(self, target: Part, sign: str, value: Part, statement: Part) -> None:
         """An assignment, also of a whole array, a row or a block."""
+        self.require_order(value, *([target] if sign or target.kind != "name" else ()))
+        first = (
+            self.value(target) if sign and self.unit.language == "python" else None
+        )  # which reads the left side first
         result = self.fill_by_commas(target, value) if sign == "<<" else self.value(value)
         sign = sign.removesuffix("<<")
         if self.unit.language == "cpp" and b"Eigen" in self.unit.source and self.overlaps(value, target):
             raise Unreadable(statement.line, "a matrix that Eigen changes while a part of it is read; write .eval()")
         if sign:
-            before = self.value(target)
+            before = first or self.value(target)
             forbid(isinstance(before, List), statement.line, f"{sign}= of a list, which is no array")
             result = combine(self.unit, sign, before, result, statement.line)
         self.note_unread(result, statement)
@@ -567,6 +573,8 @@ class Machine(Evaluator):
 
     def does_go_on(self, test: Part) -> bool:
         """Whether a condition between whole numbers holds; others may be rounded, or depend on inputs."""
+        own = {*self.unit.functions} & called_in(test)
+        forbid(own, test.line, f"a loop whose condition calls {', '.join(own)}, which may write")
         choices, self.choices = self.choices, None
         leaves = [side for part in walk(test) if part.kind == "compare" for side in part.parts[1:]] or [test]
         try:
@@ -581,6 +589,7 @@ class Machine(Evaluator):
     def run_return(self, value: Part | None, statement: Part) -> None:
         if value is None:
             raise Returning(None)
+        self.require_order(value)
         is_tuple = self.unit.language == "python" and value.kind == "list"
         try:
             raise Returning(self.value(value))
@@ -596,6 +605,7 @@ class Machine(Evaluator):
 
     def run_do(self, call: Part, statement: Part) -> None:
         """A call for its effect."""
+        self.require_order(call)
         if call.kind == "method":
             base, name, arguments = call.parts
             if name in ("setZero", "zero", "setIdentity", "identity", "fill", "setAll"):
@@ -629,6 +639,23 @@ class Machine(Evaluator):
             self.reset(call.parts[1][0], "memset", call.parts[1][1:2], statement)
             return
         self.value(call, wants_value=False)
+
+    def require_order(self, *parts: Part) -> None:
+        """Refuse operands of C of which one call writes what another one reads: their order is open."""
+        own = self.unit.functions
+        writing = {n for n in called_in(*parts) & own.keys() if any(map(has_effects, own[n]))}
+        if self.unit.language not in ("c", "cpp") or not writing:
+            return
+        fixed = {*self.file_names, *self.unit.macros, *CONSTANTS}
+        for node in (Part("list", 0, parts), *walk(*parts)):
+            kinds = ("op", "compare", "call", "method", "index", "list")
+            sides = [p for x in node.parts for p in (x if isinstance(x, tuple) else (x,)) if isinstance(p, Part)]
+            for side in sides if node.kind in kinds else ():
+                given = [mentioned_in(*p.parts[1]) for p in walk(side) if p.kind == "call" and p.parts[0] in writing]
+                rest = mentioned_in(*(other for other in sides if other is not side)) - fixed if given else set()
+                shared = {*map(head_of, rest)} & {*map(head_of, set[str]().union(*given))}
+                others = {n for n in rest if n not in self.frame and not is_known(n, self.unit.language)}
+                forbid(shared or others, side.line, "a call that writes beside others, in an order that C leaves open")
 
     def is_own(self, name: str) -> bool:
         """True for an array that the function declares; a pointer has another size."""
@@ -671,6 +698,7 @@ class Machine(Evaluator):
         if test.kind == "not":
             return not self.decide(test.parts[0])
         forbid(test.kind in ("refused", "list"), test.line, "a condition outside the language of audit")
+        self.require_order(test)
         sign, *sides = test.parts if test.kind == "compare" else ("!=", test)
         is_size = sides[0].kind == "call" and sides[0].parts[0] in ("fabs", "fabsf")
         if is_size and sign == "<=" and self.unit.text(sides[1]) in ("DBL_MAX", "FLT_MAX"):

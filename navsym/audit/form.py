@@ -5,6 +5,7 @@ A part knows the bytes of the source from which it came. Nothing is evaluated he
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -160,6 +161,16 @@ def may_write(unit: Unit, function: Function, name: str) -> bool:
         if name in mentioned_in(*(a for a in part.parts[1] if a.kind in many) if many else (), *written):
             return True
     return False
+
+
+@functools.lru_cache(1024)
+def has_effects(function: Function) -> bool:
+    """True for a function that may write to what is not its own."""
+    parts = [*walk(*function.body)]
+    own = {a.name for a in function.arguments if not a.shared}
+    own |= {p.parts[0] for p in parts if p.kind == "for" or (p.kind == "declare" and not p.parts[4])}
+    targets = mentioned_in(*(p.parts[0] for p in parts if p.kind == "assign"))
+    return not targets <= own or any(p.kind in ("do", "moved", "unread", "jump", "refused") for p in parts)
 
 
 def called_in(*parts: Any) -> set[str]:

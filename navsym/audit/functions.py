@@ -71,7 +71,10 @@ PURE = {
 #: Names that are no real numbers: functions that MATLAB calls without parentheses, what is infinite or not a number.
 NAMED_CALLS = {
     "c": frozenset("NAN INFINITY HUGE_VAL HUGE_VALF".split()), "cpp": frozenset("NAN INFINITY HUGE_VAL".split()),
-    "matlab": frozenset("rand randn randi tic toc now clock cputime input NaN nan NA Inf inf i j".split()),
+    "matlab": frozenset(
+        "rand randn randi tic toc now clock cputime input NaN nan NA Inf inf i j I J e eps realmin realmax flintmax "
+        "ans zeros ones eye".split()
+    ),
     "python": frozenset(f"{m}.{name}" for m in ("np", "numpy", "math") for name in "nan NaN inf Inf".split()),
     "rust": frozenset(f"{f}::{name}" for f in ("f32", "f64") for name in "NAN INFINITY NEG_INFINITY".split()),
 }  # fmt: skip
