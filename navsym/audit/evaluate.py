@@ -229,6 +229,8 @@ class Evaluator:
             variable = self.variable(part.parts[0].parts[0])
             is_array = bool(variable.shape) or (variable.shape is None and any(variable.cells))
             return variable, [(0,) * max(len(variable.shape or ()), 1) if is_array else ()], ()
+        if part.kind == "method" and self.unit.language == "cpp" and part.parts[1] in self.unit.functions:
+            raise Unreadable(part.line, f"the method {part.parts[1]} of another object")
         if part.kind == "method" and part.parts[0].kind == "name" and part.parts[2] and self.unit.language == "cpp":
             part = Part("call", part.line, (f"{part.parts[0].parts[0]}.{part.parts[1]}", part.parts[2]), part.span)
         if part.kind == "method" and part.parts[0].kind == "name" and self.variable_shape(part.parts[0].parts[0]):
@@ -632,6 +634,7 @@ class Evaluator:
             return self.entries(self.component(part))
         if is_known_method:  # never an accessor: without its size nobody knows what it gives
             raise Unreadable(part.line, f"{name} of what has no known size; declare it under [code.symbols]")
+        forbid(name in self.unit.functions, part.line, f"the method {name} of another object")
         if base.kind == "name" and self.unit.language in ("c", "cpp"):
             return self.call(Part("call", part.line, (f"{base.parts[0]}.{name}", arguments), part.span), True)
         raise Unreadable(part.line, f"the method {name}")

@@ -220,6 +220,12 @@ class Reader(SourceReader):
                 return self.call(node)
         return None
 
+    def operate_alone(self, node: Any, sign: str, operand: Any) -> Part:
+        """``+v`` is a copy of an array, and no other name of it."""
+        zero = self.part("number", node, 0, "int")
+        copy = self.part("op", node, "+", zero, self.expression(operand)) if sign == "+" else None
+        return copy or SourceReader.operate_alone(self, node, sign, operand)
+
     def slice(self, node: Any) -> Part:
         colons = [child.start_byte for child in node.children if child.type == ":"]
         if len(colons) != 1:
