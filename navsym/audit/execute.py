@@ -5,29 +5,16 @@ from __future__ import annotations
 import contextlib
 import functools
 import math
-import operator
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from typing import Any
 
 from navsym.audit.evaluate import CASES, Case, CellView, Condition, Evaluator, Failing, Inputs, Reading, Returning
-from navsym.audit.form import (
-    Argument,
-    Function,
-    Part,
-    Unit,
-    called_in,
-    has_effects,
-    head_of,
-    may_return_view,
-    mentioned_in,
-    names_in,
-    walk,
-)
-from navsym.audit.functions import CONSTANTS, HARMLESS, IN_PLACE, PURE, VIEWS, bare_name, does_take, is_known, is_method
+from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_return_view, mentioned_in, names_in, walk
+from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, does_take, find_race, is_method, may_change, names_view
 from navsym.audit.values import (
+    COMPARE,
     CUT,
     LIMITS,
     Array,
@@ -46,6 +33,7 @@ from navsym.audit.values import (
     convert,
     does_fit,
     forbid,
+    is_integer,
     join,
     lose,
     lose_views,
@@ -206,7 +194,7 @@ class Machine(Evaluator):
                 targets |= mentioned_in(part)
             elif part.kind in ("call", "method") and not self.is_plain(part):
                 is_c = self.unit.language == "c"  # which gives a called function a copy of a number
-                given = names_in(part) | (called_in(part) & {*self.frame})  # v(0) may be given as a reference
+                given = names_in(part) | (mentioned_in(part) & {*self.frame})  # v(0) may be given as a reference
                 targets |= {name for name in given if not (is_c and self.variable_shape(name) == ())}
             may_leave = part.kind == "refused" and part.parts[3:] == (True,)
             name = part.parts[0] if part.kind == "call" else ""  # of a macro, or of what looks like one, with a return
@@ -333,7 +321,12 @@ class Machine(Evaluator):
         if is_link:
             self.frame[name] = self.linked(value, statement)
             owner = self.owner_of(value) if value is not None and not self.frame[name].shape else None
-            if number == "other" and owner is not None and is_link == "const" and not self.may_change(owner[0]):
+            if (
+                number == "other"
+                and owner is not None
+                and is_link == "const"
+                and not may_change(self.unit, self.reading.function, owner[0])
+            ):
                 return  # its members keep the names by which they are called here
             if number == "other" and owner is not None:
                 self.aliases[name] = owner
@@ -372,16 +365,6 @@ class Machine(Evaluator):
         lazy = ("op", "minus", "method", "index", *(("name",) if is_cpp else ()))
         if is_lazy and shape is None and sizes and value is not None and value.kind in lazy:
             share(variable, self.arrays_in(value))  # auto of Eigen, computed when it is used; of an array a pointer
-
-    def may_change(self, owner: str) -> bool:
-        """True for a structure that the function, or one that it calls, may write to."""
-        parts = [*walk(*self.reading.function.body)]
-        called = [f.body for p in parts if p.kind == "call" for f in self.unit.functions.get(p.parts[0], ())]
-        changing = ("assign", "moved", "address", "do", "unread", "jump", "refused")
-        changed = (p for p in [*parts, *walk(*called)] if p.kind in changing)
-        names = {n for p in changed for n in (names_in(p.parts[0]) if p.kind == "assign" else names_in(p))}
-        hidden = (p.parts[1] for p in parts if p.kind in ("unread", "jump", "refused") and len(p.parts) > 1)
-        return head_of(owner) in {*map(head_of, names)}.union(*hidden)
 
     def note_unread(self, value: Value, statement: Part) -> None:
         """Keep in mind an assignment of what is not read."""
@@ -507,7 +490,7 @@ class Machine(Evaluator):
         if value.kind != "call":
             return value.kind in ("index", "method", "choose")
         functions = self.unit.functions.get(value.parts[0], [])
-        return bare_name(value.parts[0]) in VIEWS or any(map(may_return_view, functions))
+        return names_view(value.parts[0]) or any(map(may_return_view, functions))
 
     def arrays_in(self, value: Part) -> list[Variable]:
         """The arrays that an expression names."""
@@ -573,7 +556,7 @@ class Machine(Evaluator):
 
     def does_go_on(self, test: Part) -> bool:
         """Whether a condition between whole numbers holds; others may be rounded, or depend on inputs."""
-        own = {*self.unit.functions} & called_in(test)
+        own = {*self.unit.functions} & mentioned_in(test)
         forbid(own, test.line, f"a loop whose condition calls {', '.join(own)}, which may write")
         choices, self.choices = self.choices, None
         leaves = [side for part in walk(test) if part.kind == "compare" for side in part.parts[1:]] or [test]
@@ -642,20 +625,10 @@ class Machine(Evaluator):
 
     def require_order(self, *parts: Part) -> None:
         """Refuse operands of C of which one call writes what another one reads: their order is open."""
-        own = self.unit.functions
-        writing = {n for n in called_in(*parts) & own.keys() if any(map(has_effects, own[n]))}
-        if self.unit.language not in ("c", "cpp") or not writing:
-            return
-        fixed = {*self.file_names, *self.unit.macros, *CONSTANTS}
-        for node in (Part("list", 0, parts), *walk(*parts)):
-            kinds = ("op", "compare", "call", "method", "index", "list")
-            sides = [p for x in node.parts for p in (x if isinstance(x, tuple) else (x,)) if isinstance(p, Part)]
-            for side in sides if node.kind in kinds else ():
-                given = [mentioned_in(*p.parts[1]) for p in walk(side) if p.kind == "call" and p.parts[0] in writing]
-                rest = mentioned_in(*(other for other in sides if other is not side)) - fixed if given else set()
-                shared = {*map(head_of, rest)} & {*map(head_of, set[str]().union(*given))}
-                others = {n for n in rest if n not in self.frame and not is_known(n, self.unit.language)}
-                forbid(shared or others, side.line, "a call that writes beside others, in an order that C leaves open")
+        if self.unit.language in ("c", "cpp") and (
+            call := find_race(self.unit, parts, {*self.frame}, {*self.file_names})
+        ):
+            raise Unreadable(call.line, "a call that writes beside others, in an order that C leaves open")
 
     def is_own(self, name: str) -> bool:
         """True for an array that the function declares; a pointer has another size."""
@@ -725,13 +698,3 @@ class Machine(Evaluator):
             self.other_ways.append([*(known.holds for known in self.conditions), False])
         self.conditions.append(replace(condition, holds=holds))
         return holds
-
-
-def is_integer(cell: Cell) -> bool:
-    """True for a cell that holds an integer of the source."""
-    return isinstance(cell, Scalar) and cell.number in LIMITS
-
-
-COMPARE: Mapping[str, Callable[[Fraction, Fraction], bool]] = {
-    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
-}  # fmt: skip

@@ -433,7 +433,7 @@ class Asking:
 
     def ask_inverse(self) -> list[Entry]:
         of, given = self.matrix("of"), self.matrix("is")
-        self.require_shapes((of, of.shape[0], of.shape[0]), (given, *of.shape))
+        self.require_shapes((of, of.shape[0], of.shape[0]), (given, of.shape[0], of.shape[0]))
         return self.pair(matrix_product(of, given), identity_array(*of.shape), "is")
 
     def ask_claim(self) -> list[Entry]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterator
+import operator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import product
@@ -32,6 +33,11 @@ CUT = "a real number cut to an integer"
 LIMITS = {
     "bool": (0, 1), "int8": (-(2**7), 2**7 - 1), "uint8": (0, 2**8 - 1), "int16": (-(2**15), 2**15 - 1),
     "uint16": (0, 2**16 - 1), "int": (-(2**31), 2**31 - 1), "unsigned": (0, 2**32 - 1),
+}  # fmt: skip
+
+
+COMPARE: Mapping[str, Callable[[Fraction, Fraction], bool]] = {
+    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
 }  # fmt: skip
 
 
@@ -107,6 +113,11 @@ class List(Array):
 
 
 Value = Scalar | Array | Unread
+
+
+def is_integer(cell: Cell) -> bool:
+    """True for a cell that holds an integer of the source."""
+    return isinstance(cell, Scalar) and cell.number in LIMITS
 
 
 def cells_of(value: Value) -> tuple[Cell, ...]:
