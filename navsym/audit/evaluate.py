@@ -22,6 +22,7 @@ from navsym.audit.values import (
     Scalar,
     Unread,
     Unreadable,
+    Unset,
     Value,
     Variable,
     add,
@@ -132,6 +133,7 @@ class Evaluator:
     decide: ClassVar[Any]
     decide_known: ClassVar[Any]
     choose: ClassVar[Any]
+    is_view: ClassVar[Any]
     write: ClassVar[Any]
 
     reading: Reading
@@ -207,7 +209,7 @@ class Evaluator:
                 variable.shape = () if not place else None
                 variable.cells[place] = cell
             return cell
-        return Unread(line, f"{spell_entry(self.unit, variable.name, place)} has no value there")
+        return Unset(line, f"{spell_entry(self.unit, variable.name, place)} has no value there")
 
     def whole(self, part: Part) -> int:
         """A constant whole number."""
@@ -227,6 +229,8 @@ class Evaluator:
             variable = self.variable(part.parts[0].parts[0])
             is_array = bool(variable.shape) or (variable.shape is None and any(variable.cells))
             return variable, [(0,) * max(len(variable.shape or ()), 1) if is_array else ()], ()
+        if part.kind == "method" and self.unit.language == "cpp" and part.parts[1] in self.unit.functions:
+            raise Unreadable(part.line, f"the method {part.parts[1]} of another object")
         if part.kind == "method" and part.parts[0].kind == "name" and part.parts[2] and self.unit.language == "cpp":
             part = Part("call", part.line, (f"{part.parts[0].parts[0]}.{part.parts[1]}", part.parts[2]), part.span)
         if part.kind == "method" and part.parts[0].kind == "name" and self.variable_shape(part.parts[0].parts[0]):
@@ -356,6 +360,8 @@ class Evaluator:
         name = self.canonical(part.parts[0])
         if name not in self.frame and self.is_property(name):
             return self.inline(Part("call", part.line, (name.removeprefix("self."), ()), part.span), True)
+        if self.unit.language == "matlab" and name not in self.frame and name in self.unit.functions:
+            return self.inline(Part("call", part.line, (name, ()), part.span), True)
         if name not in self.frame and name in self.unit.macros:
             return self.macro(name, part.line)
         if (member := self.member_of_array(part)) is not None:
@@ -537,6 +543,7 @@ class Evaluator:
         if name in self.calls or len(self.calls) >= INLINED:
             raise Unreadable(part.line, f"the recursion of {name}" if name in self.calls else "calls nested too deep")
         function = candidates[0]
+        forbid(any(a.name.startswith("*") for a in function.arguments), part.line, f"{name} of any number of arguments")
         self.require_no_structure(function, arguments, part.line)
         frame = {a.name: self.bind(a, given, function) for a, given in zip(function.arguments, arguments, strict=True)}
         for output in function.outputs:
@@ -589,7 +596,7 @@ class Evaluator:
             variable = self.variable(inner.parts[0])
             if argument.shape is not None and variable.shape is None and not variable.cells:
                 variable.shape = tuple(self.whole(size) for size in argument.shape)
-            is_copy = not argument.shared and given.kind != "address" and may_write(function, argument.name)
+            is_copy = not argument.shared and given.kind != "address" and may_write(self.unit, function, argument.name)
             if argument.shared or ((variable.shape is None or variable.shape) and not is_copy):
                 return variable
             if is_copy and variable.shape is None:
@@ -599,10 +606,13 @@ class Evaluator:
         is_place = inner.kind == "index" or (inner.kind == "call" and inner.parts[0] in self.frame)
         if argument.shared and is_place:
             _, _, sides = self.targets(inner)
-            if sides and may_write(function, argument.name):
+            if sides and may_write(self.unit, function, argument.name):
                 raise Unreadable(given.line, f"a part of an array that {function.name} may change")
             if not sides and self.unit.language != "python":
                 return self.linked(inner, given)
+        is_view = given.kind in ("method", "call", "choose") and self.is_view(given) and given.parts[1] != "copy"
+        if self.unit.language == "python" and is_view and may_write(self.unit, function, argument.name):
+            raise Unreadable(given.line, f"a view of an array that {function.name} may change")
         value = self.value(given)
         if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in cells_of(value)):
             raise Unreadable(given.line, f"an integer given to the template {function.name}, which may cut quotients")
@@ -624,6 +634,7 @@ class Evaluator:
             return self.entries(self.component(part))
         if is_known_method:  # never an accessor: without its size nobody knows what it gives
             raise Unreadable(part.line, f"{name} of what has no known size; declare it under [code.symbols]")
+        forbid(name in self.unit.functions, part.line, f"the method {name} of another object")
         if base.kind == "name" and self.unit.language in ("c", "cpp"):
             return self.call(Part("call", part.line, (f"{base.parts[0]}.{name}", arguments), part.span), True)
         raise Unreadable(part.line, f"the method {name}")

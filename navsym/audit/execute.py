@@ -5,17 +5,16 @@ from __future__ import annotations
 import contextlib
 import functools
 import math
-import operator
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from typing import Any
 
 from navsym.audit.evaluate import CASES, Case, CellView, Condition, Evaluator, Failing, Inputs, Reading, Returning
-from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_return_view, names_in, walk
-from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, VIEWS, bare_name, does_take, is_method
+from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_return_view, mentioned_in, names_in, walk
+from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, does_take, find_race, is_method, may_change, names_view
 from navsym.audit.values import (
+    COMPARE,
     CUT,
     LIMITS,
     Array,
@@ -34,6 +33,7 @@ from navsym.audit.values import (
     convert,
     does_fit,
     forbid,
+    is_integer,
     join,
     lose,
     lose_views,
@@ -191,10 +191,11 @@ class Machine(Evaluator):
             elif part.kind == "unread":
                 targets.update(part.parts[1])
             elif part.kind == "address":
-                targets |= names_in(part)
+                targets |= mentioned_in(part)
             elif part.kind in ("call", "method") and not self.is_plain(part):
                 is_c = self.unit.language == "c"  # which gives a called function a copy of a number
-                targets |= {name for name in names_in(part) if not (is_c and self.variable_shape(name) == ())}
+                given = names_in(part) | (mentioned_in(part) & {*self.frame})  # v(0) may be given as a reference
+                targets |= {name for name in given if not (is_c and self.variable_shape(name) == ())}
             may_leave = part.kind == "refused" and part.parts[3:] == (True,)
             name = part.parts[0] if part.kind == "call" else ""  # of a macro, or of what looks like one, with a return
             may_leave |= name in self.unit.macros
@@ -320,7 +321,12 @@ class Machine(Evaluator):
         if is_link:
             self.frame[name] = self.linked(value, statement)
             owner = self.owner_of(value) if value is not None and not self.frame[name].shape else None
-            if number == "other" and owner is not None and is_link == "const" and not self.may_change(owner[0]):
+            if (
+                number == "other"
+                and owner is not None
+                and is_link == "const"
+                and not may_change(self.unit, self.reading.function, owner[0])
+            ):
                 return  # its members keep the names by which they are called here
             if number == "other" and owner is not None:
                 self.aliases[name] = owner
@@ -329,6 +335,7 @@ class Machine(Evaluator):
             return
         if number == "other" and any(name in table for table in self.shadows[:-1]):
             raise Unreadable(statement.line, "a structure that hides another of its name")
+        self.require_order(*([value] if value is not None else ()))
         sizes = () if shape is None else tuple(self.whole(size) for size in shape)
         result = None if value is None else self.value(value)
         if shape is None and isinstance(result, Array):
@@ -359,16 +366,6 @@ class Machine(Evaluator):
         if is_lazy and shape is None and sizes and value is not None and value.kind in lazy:
             share(variable, self.arrays_in(value))  # auto of Eigen, computed when it is used; of an array a pointer
 
-    def may_change(self, owner: str) -> bool:
-        """True for a structure that the function, or one that it calls, may write to."""
-        parts = [*walk(*self.reading.function.body)]
-        called = [f.body for p in parts if p.kind == "call" for f in self.unit.functions.get(p.parts[0], ())]
-        changing = ("assign", "moved", "address", "do", "unread", "jump", "refused")
-        changed = (p for p in [*parts, *walk(*called)] if p.kind in changing)
-        names = {n for p in changed for n in (names_in(p.parts[0]) if p.kind == "assign" else names_in(p))}
-        hidden = (p.parts[1] for p in parts if p.kind in ("unread", "jump", "refused") and len(p.parts) > 1)
-        return head_of(owner) in {*map(head_of, names)}.union(*hidden)
-
     def note_unread(self, value: Value, statement: Part) -> None:
         """Keep in mind an assignment of what is not read."""
         unread = next((cell for cell in cells_of(value) if isinstance(cell, Unread)), None)
@@ -387,12 +384,16 @@ class Machine(Evaluator):
 
     def run_assign(self, target: Part, sign: str, value: Part, statement: Part) -> None:
         """An assignment, also of a whole array, a row or a block."""
+        self.require_order(value, *([target] if sign or target.kind != "name" else ()))
+        first = (
+            self.value(target) if sign and self.unit.language == "python" else None
+        )  # which reads the left side first
         result = self.fill_by_commas(target, value) if sign == "<<" else self.value(value)
         sign = sign.removesuffix("<<")
         if self.unit.language == "cpp" and b"Eigen" in self.unit.source and self.overlaps(value, target):
             raise Unreadable(statement.line, "a matrix that Eigen changes while a part of it is read; write .eval()")
         if sign:
-            before = self.value(target)
+            before = first or self.value(target)
             forbid(isinstance(before, List), statement.line, f"{sign}= of a list, which is no array")
             result = combine(self.unit, sign, before, result, statement.line)
         self.note_unread(result, statement)
@@ -489,12 +490,12 @@ class Machine(Evaluator):
         if value.kind != "call":
             return value.kind in ("index", "method", "choose")
         functions = self.unit.functions.get(value.parts[0], [])
-        return bare_name(value.parts[0]) in VIEWS or any(map(may_return_view, functions))
+        return names_view(value.parts[0]) or any(map(may_return_view, functions))
 
     def arrays_in(self, value: Part) -> list[Variable]:
         """The arrays that an expression names."""
         hidden = (part.parts[1] for part in walk(value) if part.kind == "refused" and len(part.parts) > 1)
-        return [self.variable(name) for name in names_in(value).union(*hidden) if self.variable_shape(name)]
+        return [self.variable(name) for name in mentioned_in(value).union(*hidden) if self.variable_shape(name)]
 
     def write(self, variable: Variable, value: Value, statement: Part) -> None:
         """A whole variable."""
@@ -555,6 +556,8 @@ class Machine(Evaluator):
 
     def does_go_on(self, test: Part) -> bool:
         """Whether a condition between whole numbers holds; others may be rounded, or depend on inputs."""
+        own = {*self.unit.functions} & mentioned_in(test)
+        forbid(own, test.line, f"a loop whose condition calls {', '.join(own)}, which may write")
         choices, self.choices = self.choices, None
         leaves = [side for part in walk(test) if part.kind == "compare" for side in part.parts[1:]] or [test]
         try:
@@ -569,6 +572,7 @@ class Machine(Evaluator):
     def run_return(self, value: Part | None, statement: Part) -> None:
         if value is None:
             raise Returning(None)
+        self.require_order(value)
         is_tuple = self.unit.language == "python" and value.kind == "list"
         try:
             raise Returning(self.value(value))
@@ -584,6 +588,7 @@ class Machine(Evaluator):
 
     def run_do(self, call: Part, statement: Part) -> None:
         """A call for its effect."""
+        self.require_order(call)
         if call.kind == "method":
             base, name, arguments = call.parts
             if name in ("setZero", "zero", "setIdentity", "identity", "fill", "setAll"):
@@ -617,6 +622,13 @@ class Machine(Evaluator):
             self.reset(call.parts[1][0], "memset", call.parts[1][1:2], statement)
             return
         self.value(call, wants_value=False)
+
+    def require_order(self, *parts: Part) -> None:
+        """Refuse operands of C of which one call writes what another one reads: their order is open."""
+        if self.unit.language in ("c", "cpp") and (
+            call := find_race(self.unit, parts, {*self.frame}, {*self.file_names})
+        ):
+            raise Unreadable(call.line, "a call that writes beside others, in an order that C leaves open")
 
     def is_own(self, name: str) -> bool:
         """True for an array that the function declares; a pointer has another size."""
@@ -659,6 +671,7 @@ class Machine(Evaluator):
         if test.kind == "not":
             return not self.decide(test.parts[0])
         forbid(test.kind in ("refused", "list"), test.line, "a condition outside the language of audit")
+        self.require_order(test)
         sign, *sides = test.parts if test.kind == "compare" else ("!=", test)
         is_size = sides[0].kind == "call" and sides[0].parts[0] in ("fabs", "fabsf")
         if is_size and sign == "<=" and self.unit.text(sides[1]) in ("DBL_MAX", "FLT_MAX"):
@@ -685,13 +698,3 @@ class Machine(Evaluator):
             self.other_ways.append([*(known.holds for known in self.conditions), False])
         self.conditions.append(replace(condition, holds=holds))
         return holds
-
-
-def is_integer(cell: Cell) -> bool:
-    """True for a cell that holds an integer of the source."""
-    return isinstance(cell, Scalar) and cell.number in LIMITS
-
-
-COMPARE: Mapping[str, Callable[[Fraction, Fraction], bool]] = {
-    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
-}  # fmt: skip

@@ -5,6 +5,7 @@ A part knows the bytes of the source from which it came. Nothing is evaluated he
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -149,16 +150,27 @@ def names_in(*parts: Any) -> set[str]:
     return {inner.parts[0] for inner in walk(*parts) if inner.kind == "name"}
 
 
-def may_write(function: Function, name: str) -> bool:
+def may_write(unit: Unit, function: Function, name: str) -> bool:
     """True for a function that may write to a parameter of its own; one that only reads it may share the caller's."""
+    kinds = ("name", "index", "call")  # v(0) may be given as a reference to a function of the file
     for part in walk(*function.body):
         is_link = part.kind == "declare" and part.parts[4]
         is_open = is_link or part.kind in ("do", "address", "refused", "unread")
         written = part.parts[:1] if part.kind == "assign" else (part,) if is_open else ()
-        given = (a for a in part.parts[1] if a.kind == "name") if part.kind == "call" else ()
-        if name in names_in(*given) | mentioned_in(*written):
+        many = kinds[: None if part.parts[0] in unit.functions else 1] if part.kind == "call" else ()
+        if name in mentioned_in(*(a for a in part.parts[1] if a.kind in many) if many else (), *written):
             return True
     return False
+
+
+@functools.lru_cache(1024)
+def has_effects(function: Function) -> bool:
+    """True for a function that may write to what is not its own."""
+    parts = [*walk(*function.body)]
+    own = {a.name for a in function.arguments if not a.shared}
+    own |= {p.parts[0] for p in parts if p.kind == "for" or (p.kind == "declare" and not p.parts[4])}
+    targets = mentioned_in(*(p.parts[0] for p in parts if p.kind == "assign"))
+    return not targets <= own or any(p.kind in ("do", "moved", "unread", "jump", "refused") for p in parts)
 
 
 def called_in(*parts: Any) -> set[str]:

@@ -26,12 +26,15 @@ class Reader(SourceReader):
 
     rebound : names of modules that the file uses for something else
     changed : names outside of functions that hold more than their one value
+    free, methods : the functions of the file, outside of classes and in them
     """
 
     HEAD, TAIL = "(", ")"
 
     rebound: set[str] = field(default_factory=set)
     changed: set[str] = field(default_factory=set)
+    free: set[str] = field(default_factory=set)
+    methods: set[str] = field(default_factory=set)
     OPERATORS = OPERATORS | {sign: ("op", sign) for sign in ("//", "@", "**")}
 
     @staticmethod
@@ -74,6 +77,7 @@ class Reader(SourceReader):
                         self.changed.add(bound[-1])
             elif node.type in ("function_definition", "class_definition"):
                 bound = [text_of(field_of(node, "name"))]
+                (self.methods if "class_definition" in list_above(node) else self.free).add(bound[0])
             elif node.type == "parameters":
                 bound = [*map(name_parameter, named(node))]
             elif node.type == "import_from_statement":
@@ -216,6 +220,12 @@ class Reader(SourceReader):
                 return self.call(node)
         return None
 
+    def operate_alone(self, node: Any, sign: str, operand: Any) -> Part:
+        """``+v`` is a copy of an array, and no other name of it."""
+        zero = self.part("number", node, 0, "int")
+        copy = self.part("op", node, "+", zero, self.expression(operand)) if sign == "+" else None
+        return copy or SourceReader.operate_alone(self, node, sign, operand)
+
     def slice(self, node: Any) -> Part:
         colons = [child.start_byte for child in node.children if child.type == ":"]
         if len(colons) != 1:
@@ -253,16 +263,28 @@ class Reader(SourceReader):
             if base in ("np", "numpy", "math", "np.linalg", "numpy.linalg"):
                 return self.part("call", node, name, tuple(arguments))
             method = text_of(field_of(function, "attribute"))
-            if base == "self" and method in ("abs", "max", "min") and f"def {method}(".encode() not in self.unit.source:
-                return self.refuse(node, f"the method {method}, which another file defines")
+            if base == "self" and not self.has_method(node, method):
+                return self.refuse(node, f"the method {method}, which another class or file defines")
             if base == "self":
                 return self.part("call", node, method, tuple(arguments))
             return self.part("method", node, self.expression(field_of(function, "object")), method, tuple(arguments))
+        if function.type == "identifier" and name in self.methods - self.free:
+            return self.refuse(node, f"the function {name}, which this file defines in a class only")
         if function.type == "identifier":
             return self.part("call", node, self.unit.imported.get(name, name), tuple(arguments))
         return self.refuse(node, "a call of an expression")
 
+    def has_method(self, node: Any, method: str) -> bool:
+        """True where the class around a call defines a method, or there is no class around it."""
+        while node is not None and node.type != "class_definition":
+            node = node.parent
+        inner = named(field_of(node, "body")) if node is not None else []
+        names = {text_of(field_of(field_of(n, "definition") or n, "name")) for n in inner}
+        return method in names or (node is None and (self.shift < 0 or method in self.free | self.methods))
+
 
 def name_parameter(node: Any) -> str:
-    """The name of a parameter, without its type and its default."""
+    """The name of a parameter, without its type and its default; of several at once with their star."""
+    if node.type.endswith("splat_pattern"):
+        return text_of(node)
     return text_of(node if node.type == "identifier" else field_of(node, "name") or next(iter(named(node)), node))

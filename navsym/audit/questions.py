@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -21,6 +22,7 @@ from navsym.audit.values import (
     Index,
     Scalar,
     Unread,
+    Unset,
     Value,
     Variable,
     add,
@@ -335,15 +337,13 @@ class Asking:
             is_, should = (v if isinstance(v, Unread) else Scalar(ONE) for v in (code, expected))
             return [Entry((1, 1), is_, should, self.conditions, asking=self, key=key)]
         shapes = [v.shape if isinstance(v, Array) else () for v in (code, expected)]
-        if isinstance(expected, Array) and isinstance(code, Array) and len(code.cells) == len(expected.cells):
-            shapes[1] = shapes[0]
-        if shapes[0] != shapes[1]:
+        if shapes[0] != shapes[1] and not (all(shapes) and is_alike(*shapes)):
             got = " and ".join(str(list(s)) if s else "a number" for s in shapes)
             raise ShapeError(f"expected two sides of one shape; got {got}; correct one", where=self.place(key))
         entries = []
         cells = zip(places_of(shapes[0]), cells_of(code), cells_of(expected), strict=True)
         for number, (place, is_, should) in enumerate(cells):
-            if upper and len(place) == 2 and place[0] > place[1] and isinstance(is_, Unread):
+            if upper and len(place) == 2 and place[0] > place[1] and isinstance(is_, Unset):
                 continue  # the lower half of a symmetric matrix, which the code leaves alone
             row = (place[0] + 1, place[1] + 1) if len(place) == 2 else (place[0] + 1, 1) if place else (1, 1)
             again = self.repeat(key, number, should)
@@ -374,6 +374,13 @@ class Asking:
 
         return source, again
 
+    def require_shapes(self, *wanted: tuple[Array, int, int]) -> None:
+        """Raise ShapeError for a matrix of another number of rows or columns."""
+        for matrix, *shape in wanted:
+            if [*matrix.shape] != shape:
+                message = f"expected a matrix of {shape}; got {list(matrix.shape)}; correct the question"
+                raise ShapeError(message, where=self.question.where)
+
     def side(self, key: str) -> Value:
         """The value of a key."""
         return self.resolve(self.question.keys[key], key)
@@ -386,7 +393,7 @@ class Asking:
         shape = (len(of), len(by))
         if isinstance(given, Unread):
             given = Array(shape, (given,) * (len(of) * len(by)))
-        if len(cells_of(given)) != len(of) * len(by):
+        if not is_alike(given.shape if isinstance(given, Array) else (1, 1), shape):
             got = list(given.shape) if isinstance(given, Array) else "a number"
             message = f"expected {len(of)} rows and {len(by)} columns; got {got}; correct of or by"
             raise ShapeError(message, where=self.place("is"))
@@ -396,6 +403,7 @@ class Asking:
     def ask_covariance(self) -> list[Entry]:
         F, Q, new = (self.matrix(key) for key in ("F", "Q", "is"))
         P = self.start_of("P", F.shape)
+        self.require_shapes((P, F.shape[1], F.shape[1]), (Q, F.shape[0], F.shape[0]))
         expected = whole = map_cells(add, matrix_product(matrix_product(F, P), transpose(F, True)), Q)
         if isinstance(whole, Array) and is_symmetric(P) and is_symmetric(Q):  # then F P F' + Q: one formula for both
             expected = make_array(whole.shape, lambda i, j: whole.at(min(i, j), max(i, j)))
@@ -412,11 +420,12 @@ class Asking:
 
     def ask_symmetric(self) -> list[Entry]:
         of = self.matrix("of")
-        return self.pair(of, transpose(of, True), "of")
+        self.require_shapes((of, of.shape[0], of.shape[0]))
+        return self.pair(of, make_array(of.shape, lambda i, j: of.at(j, i)), "of")
 
     def ask_orthogonal(self) -> list[Entry]:
         of = self.matrix("of")
-        return self.pair(matrix_product(of, transpose(of, True)), identity_array(of.shape[0], of.shape[0]), "of")
+        return self.pair(matrix_product(of, transpose(of, False)), identity_array(of.shape[0], of.shape[0]), "of")
 
     def ask_unit(self) -> list[Entry]:
         of = self.side("of")
@@ -424,7 +433,8 @@ class Asking:
 
     def ask_inverse(self) -> list[Entry]:
         of, given = self.matrix("of"), self.matrix("is")
-        return self.pair(matrix_product(of, given), identity_array(of.shape[0], given.shape[1]), "is")
+        self.require_shapes((of, of.shape[0], of.shape[0]), (given, of.shape[0], of.shape[0]))
+        return self.pair(matrix_product(of, given), identity_array(*of.shape), "is")
 
     def ask_claim(self) -> list[Entry]:
         side = read_claim_side(self.question.keys["claim"], self.question.folder, self.place("claim"))
@@ -453,6 +463,12 @@ class Asking:
         """A formula in the symbols of the code."""
         names, where = self.question.names, self.place(key)
         return Scalar(read_tree(names.translate(text, where), names.declarations, where=where))
+
+
+def is_alike(one: Index, two: Index) -> bool:
+    """True for shapes that have the same cells row by row: one of them is flat, or both differ by sides of one cell."""
+    tight = [tuple(n for n in shape if n != 1) for shape in (one, two)]
+    return math.prod(one) == math.prod(two) and (tight[0] == tight[1] or min(map(len, tight)) < 2)
 
 
 def is_symmetric(matrix: Array) -> bool:
@@ -495,7 +511,7 @@ def read_variable(source: Source, variable: Variable, place: Index, where: str) 
             return variable.cells[spot]
         if variable.is_input and (variable.name in source.shapes or not is_written):
             return Scalar(source.symbol(spell_entry(source.unit, variable.name, spot)))
-        return Unread(source.function.line, f"{source.function.name} does not assign it")
+        return Unset(source.function.line, f"{source.function.name} does not assign it")
 
     if (shape := variable.shape) is None and (spots := [spot for spot in variable.cells if spot]):
         shape = tuple(max(spot[k] for spot in spots) + 1 for k in range(len(spots[0])))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, names_in
-from navsym.audit.syntax import SourceReader, descend, field_of, line_of, named, text_of, whole_kind
+from navsym.audit.syntax import SourceReader, descend, field_of, line_of, list_above, named, text_of, whole_kind
 
 RULES = Rules(integer=True, matrix=True, entry=("{}[{}]", "{}[{}][{}]"))
 REAL = ("f32", "f64", "N", "T", "R", "Real", "Self")
@@ -51,12 +51,13 @@ def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
 
 @dataclass(slots=True, eq=False)
 class Reader(SourceReader):
-    """Walks the syntax tree of Rust; ``own`` are the functions of the file."""
+    """Walks the syntax tree of Rust; ``own`` are the functions of the file, ``methods`` those of a type."""
 
     HEAD = "const A: f64 = "
     OPEN = ("if_expression", "for_expression", "block", "expression_statement")
 
     own: set[str] = field(default_factory=set)
+    methods: set[str] = field(default_factory=set)
 
     @staticmethod
     def find_value(node: Any) -> Any:
@@ -65,7 +66,9 @@ class Reader(SourceReader):
     def read_file(self, root: Any) -> None:
         """Functions, constants and fields, also inside modules and implementations."""
         nodes = [*descend(root)]
-        self.own = {text_of(field_of(node, "name")) for node in nodes if node.type == "function_item"}
+        pairs = [(text_of(field_of(n, "name")), list_above(n)) for n in nodes if n.type == "function_item"]
+        self.own = {name for name, _ in pairs}
+        self.methods = {name for name, above in pairs if {"impl_item", "trait_item"} & {*above}}
         self.unit.variables |= {text_of(field_of(node, "name")) for node in nodes if node.type == "const_item"}
         for node in nodes:
             if node.type == "function_item":
@@ -260,6 +263,8 @@ class Reader(SourceReader):
             return self.method(node, function, arguments)
         name = re.sub(r"::<[^:]*>(?=::|$)|<[^:]*>(?=::|$)|\s", "", text_of(function))
         head, _, last = name.rpartition("::")
+        if not head and last in self.methods:
+            return self.refuse(node, f"the function {last}, which this file defines for a type")
         if not head or head == "Self":
             return arguments[0] if name in ("Ok", "Some") and arguments else self.part("call", node, last, arguments)
         if QUATERNION.fullmatch(head):
@@ -282,6 +287,8 @@ class Reader(SourceReader):
 
     def method(self, node: Any, function: Any, arguments: tuple[Part, ...]) -> Part:
         base, name = self.expression(field_of(function, "value")), text_of(field_of(function, "field"))
+        if base.kind == "name" and base.parts[0] == "self" and name in self.own - self.methods:
+            return self.refuse(node, f"the method {name}, which another file defines")
         if base.kind == "name" and base.parts[0] == "self":
             return self.part("call", node, name, arguments)
         if name in self.own or name in self.unit.functions:

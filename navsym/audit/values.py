@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterator
+import operator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import product
@@ -32,6 +33,11 @@ CUT = "a real number cut to an integer"
 LIMITS = {
     "bool": (0, 1), "int8": (-(2**7), 2**7 - 1), "uint8": (0, 2**8 - 1), "int16": (-(2**15), 2**15 - 1),
     "uint16": (0, 2**16 - 1), "int": (-(2**31), 2**31 - 1), "unsigned": (0, 2**32 - 1),
+}  # fmt: skip
+
+
+COMPARE: Mapping[str, Callable[[Fraction, Fraction], bool]] = {
+    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
 }  # fmt: skip
 
 
@@ -72,6 +78,10 @@ class Unread:
     why: str
 
 
+class Unset(Unread):
+    """A cell to which nothing is assigned."""
+
+
 Cell = Scalar | Unread
 
 
@@ -103,6 +113,11 @@ class List(Array):
 
 
 Value = Scalar | Array | Unread
+
+
+def is_integer(cell: Cell) -> bool:
+    """True for a cell that holds an integer of the source."""
+    return isinstance(cell, Scalar) and cell.number in LIMITS
 
 
 def cells_of(value: Value) -> tuple[Cell, ...]:
@@ -325,16 +340,17 @@ def invert(value: Value) -> Value:
 
 
 def cross_product(a: Value, b: Value) -> Value:
-    """The cross product of two vectors of three."""
+    """The cross product of two vectors of three; of two rows it is a row."""
     if not (isinstance(a, Array) and isinstance(b, Array) and len(a.cells) == len(b.cells) == 3):
         raise Unreadable(0, "a cross product of what are no three-vectors")
+    forbid(a.shape != b.shape and (1, 3) in (a.shape, b.shape), 0, "a cross product of a row and another vector")
 
     def cell(i: int) -> Cell:
         j, k = (i + 1) % 3, (i + 2) % 3
         parts = (a.cells[j], b.cells[k], a.cells[k], b.cells[j])
         return map_cell(lambda p, q, r, s: add(multiply(p, q), minus(multiply(r, s))), *parts)
 
-    return make_array((3,), cell)
+    return Array(a.shape if a.shape == b.shape else (3,), tuple(map(cell, range(3))))
 
 
 def quaternion_product(a: Quaternion, b: Quaternion) -> Quaternion:

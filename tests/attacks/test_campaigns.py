@@ -9,6 +9,7 @@ import sympy as sp
 
 from navsym.claims import Bound, Claim, Equation, Optimum, paper
 from navsym.cli.main import run
+from navsym.core.sandbox import run_limited
 from navsym.core.store import open_store
 from navsym.prove.certificates import identity_certificate
 from tests.attacks.campaigns import certificates as campaign_certificates
@@ -48,6 +49,15 @@ def claim():
 
 def counted(item):
     return {"counts": {"seen": item}, "wrong": [], "open": [], "kept": []}
+
+
+def counted_by_a_child(item):
+    return counted(run_limited(abs, (item,)))
+
+
+def test_a_judge_may_run_what_might_not_end_in_a_child_of_its_own():
+    found = run_campaign("children", [Batch("b", 3)], counted_by_a_child)
+    assert found["counts"] == {"seen": 3} and not found["stopped"]
 
 
 def test_a_second_run_takes_everything_from_the_store(tmp_path):

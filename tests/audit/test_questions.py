@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 
@@ -160,3 +161,36 @@ def test_formulas_of_a_function_are_listed_in_the_spelling_of_the_source(tmp_pat
     assert formulas["xn[0]"]["formula"] == "x[0] + x[1]*dt" and formulas["xn[0]"]["line"] == 5
     assert run(["audit", str(tmp_path / "code.c"), "--json"]) == 2
     assert "--function" in json.loads(capsys.readouterr().out)["error"]["message"]
+
+
+SHAPES = """void f(double a, double P[2][2], double N[2][2], double S[2][3], double T[3][2], double v[3]) {
+    S[0][0] = 1; S[0][1] = 1; S[0][2] = 0; S[1][0] = 1; S[1][1] = 0; S[1][2] = 0; v[0] = v[1] = v[2] = a;
+    T[0][0] = 1; T[0][1] = 1; T[1][0] = 0; T[1][1] = 1; T[2][0] = 0; T[2][1] = 0;
+    N[0][0] = P[0][0]; N[0][1] = P[0][1]; N[1][1] = P[1][1]; LOWER
+}
+"""
+ONES = '[["1", "0"], ["0", "1"]]'
+
+
+@pytest.mark.parametrize(
+    ("question", "words"),
+    [
+        ('kind = "equal"\nleft = "c:S"\nright = "c:T"', "[2, 3] and [3, 2]"),
+        ('kind = "symmetric"\nof = "c:S"', "[2, 2]; got [2, 3]"),
+        ('kind = "symmetric"\nof = "c:v"', "got [3, 1]"),
+        ('kind = "inverse"\nof = "c:S"\nis = "c:T"', "[2, 2]; got [2, 3]"),
+        (f'kind = "covariance"\nP = "c:P"\nF = "c:T"\nQ = {ONES}\nis = "c:N"', "[3, 3]; got [2, 2]"),
+        ('kind = "jacobian"\nof = ["c:S[0][0]", "c:S[0][1]"]\nby = "c:v"\nis = "c:T"', "2 rows and 3 columns"),
+    ],
+)
+def test_matrices_of_other_shapes_are_neither_equal_nor_symmetric_nor_inverse(question, words, tmp_path):
+    """Though they hold the same numbers one after the other."""
+    with pytest.raises(nav.NavsymError, match=re.escape(words)):
+        nav.audit(write(tmp_path, question, SHAPES.replace("LOWER", "")))
+
+
+def test_a_lower_half_may_be_left_alone_but_not_be_unread(tmp_path):
+    question = f'kind = "covariance"\nP = "c:P"\nF = {ONES}\nQ = [["0", "0"], ["0", "0"]]\nis = "c:N"'
+    for lower, status in (("", nav.PROVED), ("N[1][0] = abs(N[0][1]);", nav.OPEN)):
+        spec = write(tmp_path, question, SHAPES.replace("LOWER", lower))
+        assert nav.audit(spec)["q"].status == status

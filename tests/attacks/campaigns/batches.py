@@ -7,6 +7,7 @@ when any of them changes the batch is run again.
 
 from __future__ import annotations
 
+import multiprocessing
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -70,7 +71,7 @@ def run_campaign(
     todo = [place for place, key in enumerate(keys) if key not in known]
     results, stopped = [known[key] for key in keys if key in known], []
     unsaved: list[str] = []
-    for outcome in run_many(lambda place: judge(batches[place].items), todo, jobs, seconds):
+    for outcome in run_many(lambda place: judge_freely(judge, batches[place].items), todo, jobs, seconds):
         place = todo[outcome.place]
         name, value = batches[place].name, outcome.value
         if isinstance(value, (Exhausted, Failed)):
@@ -82,6 +83,12 @@ def run_campaign(
         progress(len(results) + len(stopped), len(batches))
     merged = {"campaign": campaign, "batches": len(batches), **merge_results(results)}
     return {**merged, "stopped": sorted(stopped), "resumed": len(known), "unsaved": unsaved}
+
+
+def judge_freely(judge: Callable[[Any], Result], items: Any) -> Result:
+    """Judge a batch in a worker, which may have children of its own, since what a judge runs may crash or never end."""
+    multiprocessing.current_process().daemon = False
+    return judge(items)
 
 
 def is_stored(store: Store, key: str, value: Result) -> bool:
