@@ -33,7 +33,7 @@ UNNAMED = {
 
 
 def fill_model(document: Mapping[str, Any], where: str = "") -> dict[str, Any]:
-    """A document without the card: it is what is known of a model with F, and else F, H, G and reset are derived.
+    """A document with F: its card is what is known, or the one from which F, H, G and the reset are derived here.
 
     Raises DomainError for a card that contradicts itself, EmptyError for one that says too little.
     """
@@ -58,29 +58,24 @@ def fill_model(document: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     matrices = {name: written for name in ("F", "H", "G", "reset") if (written := list_zeros(getattr(problem, name)))}
     write_blocks(problem, flow, formulas, lambda block: sign_of(card, block), matrices)
     require_names("card", *matrices.values())
-    return {**rest, "model": {**model, "states": list(problem.states), **matrices}}
+    return {**rest, "card": card.words(), "model": {**model, "states": list(problem.states), **matrices}}
 
 
 def empty_model(document: Mapping[str, Any], model: Mapping[str, Any]) -> dict[str, Any]:
     """The model with zeros where the card will write."""
-    roles = document.get("roles", {})
-    listed = (
-        [s for names in roles.values() if isinstance(names, list) for s in names] if isinstance(roles, dict) else []
-    )
-    states = model.get("states", listed)
-    n = len(states) if isinstance(states, list) else 0
+
+    def items(table: str) -> list[Any]:
+        places = document.get(table)
+        values = places.values() if isinstance(places, Mapping) else ()
+        return [k for v in values for k in (v if isinstance(v, list) else [v])]
 
     def count(table: str) -> int:
-        places = document.get(table, {})
-        rows = (
-            [k for v in places.values() for k in (v if isinstance(v, list) else [v])]
-            if isinstance(places, dict)
-            else []
-        )
-        return max([k for k in rows if isinstance(k, int) and k < 1000], default=0)
+        return max([k for k in items(table) if isinstance(k, int) and k < 1000], default=0)
 
+    states, given = model.get("states", items("roles")), document.get("quantities")
+    n = len(states) if isinstance(states, list) else 0
     shapes = {"F": (n, n), "H": (count("measured"), n), "G": (n, count("noises"))}
-    if any(f"{role}_correction" in document.get("quantities", {}) for role in CORRECTED):
+    if isinstance(given, Mapping) and any(f"{role}_correction" in given for role in CORRECTED):
         shapes["reset"] = (n, n)
     zeros = {name: [["0"] * width for _ in range(height)] for name, (height, width) in shapes.items() if height * width}
     for k, row in enumerate(zeros.get("reset", [])):

@@ -74,7 +74,7 @@ class Problem:
     F, H, G, reset : entries as trees, row by row; empty where they are not given
     roles      : role -> places of its three states; measured: what H shows -> its rows; noises: noise -> columns of G
     quantities : quantity -> its components as trees
-    known      : field of a card -> its value
+    known      : field of a card -> its value; own: the words of the card from which F was derived
     ranges     : name -> exact ends of an input of exported code
     unused     : tables of the file that were not looked at
     """
@@ -94,6 +94,7 @@ class Problem:
     measured: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     noises: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     ranges: Mapping[str, tuple[Any, Any]] = field(default_factory=dict)
+    own: Mapping[str, str] = field(default_factory=dict)
 
     def under(self, card: Card) -> Problem:
         """The problem with the rotation that the card makes of a quaternion."""
@@ -165,6 +166,7 @@ def read_problem(document: Table, where: str = "") -> Problem:
         known=read_known(document.get("known", {}), join_place(where, "known")),
         unused=tuple(name for name in UNUSED if name in document and not (name == "measurement" and "H" in more)),
         ranges=read_ranges(document, (*states, *parameters, STEP), where),
+        own=read_known(document.get("card", {}), join_place(where, "card")),
         **more,
     )
 

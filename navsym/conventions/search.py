@@ -341,15 +341,15 @@ TERMS = (
 )  # fmt: skip
 
 
-def keep_simplest(cards: Sequence[Card]) -> list[Card]:
-    """Of cards with the same conventions those that drop least: fewest blocks, then fewest terms."""
+def keep_simplest(cards: Sequence[Card], own: Mapping[str, str]) -> list[Card]:
+    """Of cards with the same conventions the own one of the model, or those that drop fewest blocks, then terms."""
 
     def convention(card: Card) -> Card:
         nothing: dict[str, Any] = dict.fromkeys((*TERMS, "arm_rate"))
         return replace(card, **nothing, dropped=())
 
-    def cost(card: Card) -> tuple[int, int]:
-        return len(card.dropped), sum(getattr(card, name) == DROPPED for name in TERMS)
+    def cost(card: Card) -> tuple[bool, int, int]:
+        return card.words() != own, len(card.dropped), sum(getattr(card, name) == DROPPED for name in TERMS)
 
     best: dict[Card, Card] = {}
     for card in cards:
@@ -373,9 +373,10 @@ def find_candidates(problem: Problem, comparison: Comparison) -> Findings:
         outcomes = list(examine(problem, comparison))
         blocks = list_blocks(problem)
         right = [o.card for o in outcomes if not o.mismatches and not o.impossible]
-        right = [card for card in right if has_evidence(card, comparison, blocks)]
+        own = problem.own
+        right = [card for card in right if card.words() == own or has_evidence(card, comparison, blocks)]
         wrong = tuple(o for o in outcomes if o.mismatches or o.impossible)
-        return Findings(tuple(keep_simplest(right)), wrong)
+        return Findings(tuple(keep_simplest(right, own)), wrong)
 
 
 def find_nearest(problem: Problem, comparison: Comparison) -> list[Outcome]:

@@ -24,7 +24,7 @@ from navsym.conventions.nilpotent import times
 from navsym.conventions.points import gradient_names, turn_about_pole
 from navsym.conventions.reading import Problem
 from navsym.core.exact import to_fmpq
-from navsym.core.rational_functions import Quotient, Ratio
+from navsym.core.rational_functions import Quotient, Ratio, cancel_fraction
 from navsym.language.expression import read_tree
 from navsym.language.printer import print_tree
 from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, Tree, build, fold_tree
@@ -40,6 +40,29 @@ GENERATORS = (
     *"sin cos east ahead turned straight wander_sin wander_cos".split(),
     *"h RN RE third mean slope rate gravity pull radius".split(),
 )
+
+
+#: Places of sines and cosines of one angle each.
+CIRCLES = [(k, k + 1) for k in range(GENERATORS.index("sin"), GENERATORS.index("h"), 2)]
+
+
+def reduce_circles(poly: Any) -> Any:
+    """The normal form of a polynomial modulo sin**2 + cos**2 = 1."""
+    degrees, context = poly.degrees(), poly.context()
+    for sine, cosine in CIRCLES:
+        if degrees[sine] > 1:
+            poly = divmod(poly, context.gen(sine) ** 2 + context.gen(cosine) ** 2 - 1)[1]
+    return poly
+
+
+class Entry(Ratio):
+    """A quotient whose top is in normal form modulo sin**2 + cos**2 = 1: products of rotations stay short."""
+
+    __slots__ = ()
+
+    def __init__(self, quotient: Quotient):
+        top = reduce_circles(quotient.top)
+        super().__init__(quotient if top == quotient.top else cancel_fraction(top, quotient.bottom))
 
 
 class Formulas:
@@ -75,7 +98,7 @@ class Formulas:
         poly, one = self.context.gen(GENERATORS.index(name)), self.context.constant(1)
         if text is not None and NUMERAL.fullmatch(text):
             poly = one * to_fmpq(Fraction(text))
-        return Ratio(Quotient(poly, one))
+        return Entry(Quotient(poly, one))
 
     def vector(self, name: str, quantity: str) -> list[Ratio]:
         """Three components of a quantity."""
@@ -194,12 +217,12 @@ class Formulas:
         """
         one = self.context.constant(1)
         places = {t: GENERATORS.index(name) for name, t in self.texts.items()}
-        known = {read_tree(t, None): Ratio(Quotient(self.context.gen(k), one)) for t, k in places.items()}
+        known = {read_tree(t, None): Entry(Quotient(self.context.gen(k), one)) for t, k in places.items()}
         known |= {read_tree(t, None): value for t, value in self.derived.items()}
 
         def step(part: Tree, inner: list[Any]) -> Any:
             if part.head == NUMBER:
-                return Ratio(Quotient(self.context.constant(to_fmpq(part.args[0])), one))
+                return Entry(Quotient(self.context.constant(to_fmpq(part.args[0])), one))
             if part in known:
                 return known[part]
             if part.head == "tan":
@@ -283,15 +306,9 @@ def rotation_rules() -> dict[Any, Terms]:
     return rules
 
 
-CIRCLES = (("sin", "cos"), ("east", "ahead"), ("turned", "straight"), ("wander_sin", "wander_cos"))
-
-
 def reduce_terms(poly: Any) -> Terms:
     """The normal form of a polynomial modulo the relations of a rotation and of sines and cosines."""
-    context = poly.context()
-    for pair in CIRCLES:
-        sine, cosine = (context.gen(GENERATORS.index(name)) for name in pair)
-        poly = divmod(poly, sine * sine + cosine * cosine - 1)[1]
+    poly = reduce_circles(poly)
     result: Terms = {}
     for powers, factor in poly.to_dict().items():
         exact, rest = as_fraction(factor), tuple(map(int, powers[9:]))
