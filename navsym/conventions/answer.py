@@ -8,12 +8,12 @@ from typing import Any
 
 from navsym.claims.verdict import PROVED, REFUTED
 from navsym.conventions.card import Card
-from navsym.conventions.converting import Conversion, convert, print_matrix
+from navsym.conventions.converting import Conversion, convert
 from navsym.conventions.generating import list_missing
 from navsym.conventions.measuring import RESET_MARK
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
-from navsym.conventions.reading import Problem, matrix_of
+from navsym.conventions.reading import HIDDEN, Problem, matrix_of, print_matrix
 from navsym.conventions.search import (
     SIGNS,
     Block,
@@ -25,7 +25,6 @@ from navsym.conventions.search import (
     list_blocks,
     plain_card,
 )
-from navsym.conventions.symbols import HIDDEN
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError

@@ -21,23 +21,21 @@ from navsym.conventions.frames import (
     change_frame,
     refuse,
     restore_terms,
-    rotate_vector,
-    values_of,
+    turn_body,
 )
 from navsym.conventions.generating import require_names, write_blocks
 from navsym.conventions.measuring import NOISE_MARK
 from navsym.conventions.mechanisation import ROLES, Mechanisation, unit_error
-from navsym.conventions.nilpotent import NOTHING, Grid, apply, constant, identity, transpose
+from navsym.conventions.nilpotent import NOTHING, Grid, apply, constant, transpose
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
-from navsym.conventions.reading import Problem, matrix_of
+from navsym.conventions.reading import HIDDEN, Problem, matrix_of, print_matrix
 from navsym.conventions.search import TERMS, Comparison, list_cards, plain_card
-from navsym.conventions.symbols import HIDDEN, Formulas
+from navsym.conventions.symbols import Formulas
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
 from navsym.language.names import quote
-from navsym.language.printer import print_tree
 
 #: What a conversion changes exactly: the definition of the errors, and where they are resolved.
 CONVERTED = (
@@ -198,17 +196,6 @@ class Converter:
         self.done += 1
         self.progress(self.done, max(self.done, self.steps))
 
-    def transformations(self, target: Card) -> list[tuple[list[list[str]], list[list[str]]]]:
-        """T and its inverse, each with its rate.
-
-        Axes of a body are arbitrary: here they are those of the frame at this time, and C stays out of all products.
-        """
-        world, C = self.formulas.world, self.rotation
-        turned = {name: rotate_vector(C, getattr(world, name)) for name in ("f", "w")}
-        flow = Mechanisation(plain_card(self.source), replace(world, C=values_of(identity()), **turned))
-        way = Passage(flow, carry_motion(flow, target))
-        return [self.transformation(way), self.transformation(way, back=True)]
-
     def transformation(self, way: Passage, back: bool = False) -> tuple[list[list[str]], list[list[str]]]:
         """T and its rate, or its inverse; states without a role stay as they are."""
         T = [["1" if i == j else "0" for j in range(self.n)] for i in range(self.n)]
@@ -339,7 +326,9 @@ def convert(
     converter = Converter(problem, whole, target, progress)
     flow = Mechanisation(plain_card(whole), converter.formulas.world)
     way = Passage(flow, carry_motion(flow, plain_card(target)))
-    (T, rate), (inverse, _) = converter.transformations(plain_card(target))
+    free = turn_body(flow)
+    apart = Passage(free, carry_motion(free, plain_card(target)))
+    (T, rate), (inverse, _) = converter.transformation(apart), converter.transformation(apart, back=True)
     with precision(BITS):
         F, H, G, reset = converter.matrices(way, inverse)
         exact = whole == source
@@ -355,8 +344,3 @@ def convert(
     frozen = (tuple(map(tuple, M)) for M in (T, inverse, rate, neglected, F, H, G, reset))
     said = converter.quantities(way.target), converter.is_proved(pairs), problem, tuple(converter.prover.certificates)
     return Conversion(source, target, *frozen, *said)  # type: ignore[call-arg,arg-type]
-
-
-def print_matrix(M: Sequence[Sequence[Any]]) -> list[list[str]]:
-    """A matrix of trees as texts."""
-    return [[print_tree(x) for x in row] for row in M]

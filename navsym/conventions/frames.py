@@ -171,6 +171,13 @@ def carry_motion(source: Mechanisation, card: Card) -> Mechanisation:
     return Mechanisation(card, replace(world, **same, earth_rate=rate, transport=None))
 
 
+def turn_body(flow: Mechanisation) -> Mechanisation:
+    """The motion in axes of the body that are now those of the frame: any will do, and C stays out of all products."""
+    C = flow.truth().attitude
+    f, w = (rotate_vector(C, v) for v in (flow.world.f, flow.world.w))
+    return Mechanisation(flow.card, replace(flow.world, C=values_of(identity()), f=f, w=w))
+
+
 def rotate_vector(A: Grid, v: Any) -> list[Any]:
     """A v in coefficients."""
     return [x.value for x in apply(A, constant(v))]
@@ -260,20 +267,11 @@ def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool,
     shape, lifted = "sphere" if radii == 1 else "ellipsoid", "R + h" if height else "R"
     vertical = lifted if hub.gravity_gradient == "central" else card.gravity_radius
     slope = None if shape == "sphere" else KEPT if hub.position_error else DROPPED
-    return replace(
-        hub,
-        frame=frame,
-        axes=words.get("axes", card.axes or "NED"),
-        azimuth=words.get("azimuth", NORTH),
-        angle=words.get("angle", card.angle or "phi"),
-        earth=shape,
-        gravity_gradient="vertical" if vertical else "none",
-        gravity_radius=vertical,
-        centrifugal=None,
-        transport_rate=KEPT,
-        height_variation=KEPT,
-        radius_variation=slope,
-    )
+    same = {"axes": card.axes or "NED", "azimuth": NORTH, "angle": card.angle or "phi"}
+    said = {name: words.get(name, word) for name, word in same.items()}
+    gravity = {"gravity_gradient": "vertical" if vertical else "none", "gravity_radius": vertical, "centrifugal": None}
+    kept: dict[str, Any] = {"transport_rate": KEPT, "height_variation": KEPT, "radius_variation": slope, **said}
+    return replace(hub, frame=frame, earth=shape, **gravity, **kept)  # type: ignore[arg-type]
 
 
 def refuse(wrong: bool, expected: str, got: str = "another card; convert it first, or its axes only") -> None:

@@ -15,9 +15,9 @@ from typing import Any
 from navsym.conventions.card import CHOICES, NORTH, Card
 from navsym.conventions.measuring import CORRECTED, MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
 from navsym.conventions.mechanisation import CONSTANTS, Mechanisation
-from navsym.conventions.reading import Problem, matrix_of, read_known, read_problem
+from navsym.conventions.reading import HIDDEN, Problem, matrix_of, print_matrix, read_known, read_problem
 from navsym.conventions.search import Block, list_cards, plain_card, sign_of
-from navsym.conventions.symbols import HIDDEN, Formulas
+from navsym.conventions.symbols import Formulas
 from navsym.core.errors import DomainError, EmptyError
 from navsym.language.names import join_place, quote
 from navsym.language.schema import as_table
@@ -55,7 +55,7 @@ def fill_model(document: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     card = choose_card(problem, words, place)
     formulas = Formulas(problem, plain_card(card))
     flow = Mechanisation(plain_card(card), formulas.world)
-    matrices = {name: written for name in ("F", "H", "G", "reset") if (written := list_zeros(getattr(problem, name)))}
+    matrices = {name: written for name in ("F", "H", "G", "reset") if (written := print_matrix(getattr(problem, name)))}
     write_blocks(problem, flow, formulas, lambda block: sign_of(card, block), matrices)
     require_names("card", *matrices.values())
     return {**rest, "card": card.words(), "model": {**model, "states": list(problem.states), **matrices}}
@@ -83,11 +83,6 @@ def empty_model(document: Mapping[str, Any], model: Mapping[str, Any]) -> dict[s
     return {**model, "states": states, **zeros}
 
 
-def list_zeros(M: Sequence[Sequence[Any]]) -> list[list[str]]:
-    """A matrix of zeros and ones as texts."""
-    return [["1" if repr(cell) == "<1>" else "0" for cell in row] for row in M]
-
-
 def require_known(problem: Problem, where: str) -> None:
     """Refuse known words that no card has together."""
     if next(list_cards(problem, problem.known), None) is None:
@@ -95,10 +90,11 @@ def require_known(problem: Problem, where: str) -> None:
 
 
 def choose_card(problem: Problem, words: Mapping[str, str], where: str) -> Card:
-    """The one card that says these words."""
+    """The one card that says these words, or says no others."""
     right = list(list_cards(problem, words))
-    if len(right) == 1:
-        return right[0]
+    whole = right if len(right) == 1 else [card for card in right if card.words() == words]
+    if len(whole) == 1:
+        return whole[0]
     for name in (f.name for f in fields(Card) if f.name in CHOICES):
         near = right or list(list_cards(problem, {k: w for k, w in words.items() if k != name}))
         found = list(dict.fromkeys(str(getattr(card, name)) for card in near))

@@ -422,15 +422,7 @@ def plus_height(radius: Any, height: Any) -> Any:
 
 def flat_card(card: Card) -> Card:
     """The same errors over a flat Earth that does not turn; its zeros are where a term may be dropped."""
-    return replace(
-        card,
-        earth="none",
-        earth_rate=None if card.earth_rate is None else DROPPED,
-        transport_rate=None if card.transport_rate is None else DROPPED,
-        gravity_gradient="none",
-        gravity_radius=None,
-        centrifugal=None,
-        height_variation=None,
-        radius_variation=None,
-        position_error=None if card.position_error is None else "metres",
-    )
+    dropped = {name: getattr(card, name) and DROPPED for name in ("earth_rate", "transport_rate")}
+    terms = dict.fromkeys(("gravity_radius", "centrifugal", "height_variation", "radius_variation"))
+    metres = card.position_error and "metres"
+    return replace(card, earth="none", gravity_gradient="none", position_error=metres, **dropped, **terms)  # type: ignore[arg-type]

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from navsym.conventions.card import BACKWARD, CHOICES, Card
-from navsym.conventions.measuring import MEASURED, MEASURED_MARK, NOISE_MARK, NOISES, RESET_MARK
+from navsym.conventions.measuring import CORRECTED, MEASURED, MEASURED_MARK, NOISE_MARK, NOISES, RESET_MARK
 from navsym.conventions.mechanisation import ROLES
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, ShapeError, UnknownSymbolError
 from navsym.language.declarations import Parameter, read_parameters
 from navsym.language.expression import read_tree
 from navsym.language.names import Table, check_name, join_place, quote, suggest_nearest
+from navsym.language.printer import print_tree
 from navsym.language.schema import (
     as_formula,
     as_list,
@@ -29,33 +30,18 @@ from navsym.models.modelfile import BESIDE, STEP, TABLES, read_ranges
 
 #: Quantities -> the numbers of components that they may have.
 QUANTITIES: Mapping[str, tuple[int, ...]] = {
-    "specific_force": (3,),
-    "specific_force_body": (3,),
-    "angular_rate": (3,),
-    "rotation": (9,),
-    "quaternion": (4,),
-    "velocity": (3,),
-    "position": (3,),
-    "latitude": (1,),
-    "longitude": (1,),
-    "earth_angle": (1,),
-    "wander_angle": (1,),
-    "height": (1,),
-    "earth_rate": (1, 3),
-    "transport_rate": (3,),
-    "gravity": (1, 3),
+    **dict.fromkeys("specific_force specific_force_body angular_rate velocity position transport_rate".split(), (3,)),
+    **dict.fromkeys("latitude longitude earth_angle wander_angle height radius_slope".split(), (1,)),
+    **dict.fromkeys(("lever_arm", "known_vector", *(f"{role}_correction" for role in CORRECTED)), (3,)),
+    **{"rotation": (9,), "quaternion": (4,), "earth_rate": (1, 3), "gravity": (1, 3), "radii": (1, 2, 3)},
     "gravitational_parameter": (1,),
-    "radii": (1, 2, 3),
-    "radius_slope": (1,),
-    "lever_arm": (3,),
-    "known_vector": (3,),
-    "attitude_correction": (3,),
-    "velocity_correction": (3,),
-    "position_correction": (3,),
 }
 
 #: Tables of a model file that say nothing about the error dynamics.
 UNUSED = tuple(name for name in TABLES if name not in ("model", "parameters"))
+
+#: Names of quantities that the user has not given begin like this.
+HIDDEN = "unnamed_"
 
 Grid = tuple[tuple[Tree, ...], ...]
 
@@ -152,6 +138,9 @@ def read_problem(document: Table, where: str = "") -> Problem:
     items = as_list(require_key(model, "states", place), spot, "a list of names")
     states = tuple(check_name(item, where=join_place(spot, k)) for k, item in enumerate(items))
     require_distinct((*parameters, *states), spot)
+    if taken := [name for name in (*parameters, *states) if name.startswith(HIDDEN)]:
+        message = f"expected names without {HIDDEN}, which is for quantities without a name; got {quote(taken[0])}"
+        raise DomainError(f"{message}; rename it", where=join_place(where, "parameters"))
     n = len(states)
     F = read_grid(require_key(model, "F", place), parameters, join_place(place, "F"), n, n)
     more = read_more(document, model, parameters, n, where)
@@ -307,3 +296,8 @@ def read_known(value: Any, where: str) -> dict[str, str]:
             message = f"expected one of {', '.join(CHOICES[name])}; got {quote(text)}; correct it"
             raise DomainError(message, where=place)
     return dict(table)
+
+
+def print_matrix(M: Sequence[Sequence[Tree]]) -> list[list[str]]:
+    """A matrix of trees as texts."""
+    return [[print_tree(x) for x in row] for row in M]

@@ -22,15 +22,12 @@ from navsym.conventions.measuring import CORRECTED, full_column
 from navsym.conventions.mechanisation import AXES, Mechanisation, World, add_centrifugal, axes_rows
 from navsym.conventions.nilpotent import times
 from navsym.conventions.points import gradient_names, turn_about_pole
-from navsym.conventions.reading import Problem
+from navsym.conventions.reading import HIDDEN, Problem
 from navsym.core.exact import to_fmpq
 from navsym.core.rational_functions import Quotient, Ratio, cancel_fraction
 from navsym.language.expression import read_tree
 from navsym.language.printer import print_tree
 from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, Tree, build, fold_tree
-
-#: Names of quantities that the user has not given begin like this.
-HIDDEN = "unnamed_"
 
 NUMERAL = re.compile(r"-?\d+(/\d+)?")
 
@@ -72,7 +69,7 @@ class Formulas:
         self.problem, self.card = problem.under(card), card
         self.context = fmpq_mpoly_ctx.get(GENERATORS, "lex")
         self.texts: dict[str, str] = {}
-        self.derived: dict[str, Ratio] = {}
+        self.derived: dict[str, Any] = {}
         self.world = self.build()
         self.columns = cache(self.compute_columns)
 
@@ -332,6 +329,3 @@ def normal_form(powers: tuple[int, ...]) -> Terms:
         for key, y in normal_form(lowered).items():
             result[key] = result.get(key, Fraction(0)) + x * y
     return result
-
-
-__all__ = ["HIDDEN", "Formulas", "Ratio", "reduce_terms", "rotation_rules"]
