@@ -9,20 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import Any
 
 from navsym.claims.verdict import PROVED
 from navsym.conventions.card import CHOICES, KEPT, Card
-from navsym.conventions.frames import (
-    LEVEL,
-    OTHERS,
-    Passage,
-    carry_motion,
-    change_frame,
-    refuse,
-    restore_terms,
-    turn_body,
-)
+from navsym.conventions.frames import LEVEL, OTHERS, Passage, carry_motion, change_frame, refuse, restore_terms
 from navsym.conventions.generating import require_names, write_blocks
 from navsym.conventions.measuring import NOISE_MARK
 from navsym.conventions.mechanisation import ROLES, Mechanisation, unit_error
@@ -160,19 +152,10 @@ def transform(way: Passage, role: str, component: int, C: Grid | None = None) ->
     truth = way.source.truth()
     later = truth.advance(way.source.rate(truth))
     given = unit_error(role, component)
-    if C and is_in_body(way.source, role):
-        given[role] = apply(C, given[role])
+    given = way.source.turn_errors(C, given) if C else given
     error = way.target.compare(*way.carry(way.source.estimate(later, given), later))
-    return {
-        name: apply(transpose(C), error[name]) if C and is_in_body(way.target, name) else error[name] for name in ROLES
-    }
-
-
-def is_in_body(flow: Mechanisation, role: str) -> bool:
-    """True where a card resolves the error in the body, constants of the sensors apart."""
-    if role == "attitude":
-        return flow.card.attitude_error == "body"
-    return flow.card.vector_error == "body" and (role == "velocity" or (role == "position" and not flow.is_geodetic))
+    error = way.target.turn_errors(transpose(C), error) if C else error
+    return {name: error[name] for name in ROLES}
 
 
 class Converter:
@@ -232,29 +215,24 @@ class Converter:
     def quantities(self, flow: Mechanisation) -> dict[str, Any]:
         """The quantities of the target in the names of the file; those that need others are left out."""
         given: dict[str, Any] = {name: print_matrix([trees])[0] for name, trees in self.problem.quantities.items()}
-        vectors: dict[str, Sequence[Any]] = {}
         if self.moves:
             whole = Mechanisation(replace(flow.card, earth_rate=KEPT, transport_rate=KEPT), flow.world)
             x, world, level = whole.truth(), flow.world, flow.card.frame == LEVEL
-            vectors = {
-                "velocity": x.velocity,
-                "known_vector": constant(world.seen),
-                "transport_rate": (),
-                "position": (),
-            }
-            vectors["specific_force"] = apply(x.attitude, constant(world.f))
-            vectors["transport_rate" if level else "position"] = whole.transport_rate(x) if level else constant(world.r)
-            if len(given.get("earth_rate", ())) == 3:
-                vectors["earth_rate"] = whole.earth_rate(x)
+            gravity = constant(world.gravity)
             if len(given.get("gravity", ())) == 3 and self.source.frame == LEVEL == flow.card.frame:
-                vectors["gravity"] = apply(whole.turn(x), [NOTHING, NOTHING, *constant(world.gravity)])
-            elif self.source.frame != flow.card.frame:
-                vectors["gravity"] = constant(world.gravity)
-            vectors = {name: v for name, v in vectors.items() if name in given or name == "gravity"}
+                gravity = apply(whole.turn(x), [NOTHING, NOTHING, *gravity])
+            vectors = {"velocity": x.velocity, "known_vector": constant(world.seen)}
+            vectors["earth_rate"] = whole.earth_rate(x) if level else constant(world.earth_rate)
+            vectors |= {"specific_force": apply(x.attitude, constant(world.f)), "gravity": gravity}
+            there = (whole.transport_rate(x), []) if level else ([], constant(world.r))
+            vectors |= zip(("transport_rate", "position"), there, strict=True)
+            vectors = {name: v for name, v in vectors.items() if len(given.get(name, "")) == 3 or name == "gravity"}
+            if self.source.frame == flow.card.frame and len(given.get("gravity", "")) < 3:
+                del vectors["gravity"]
             if {"rotation", "quaternion"} & set(given):
                 vectors["rotation"] = [entry for row in x.attitude for entry in row]
-                given.pop("quaternion", None)
-        given |= {name: [self.formulas.write(x.value) for x in vector] for name, vector in vectors.items()}
+            given |= {name: [self.formulas.write(x.value) for x in vector] for name, vector in vectors.items()}
+            given.pop("quaternion", None)
         if "rotation" in given:
             given["rotation"] = [given["rotation"][k : k + 3] for k in (0, 3, 6)]
         return {name: texts for name, texts in given.items() if texts and HIDDEN not in repr(texts)}
@@ -264,9 +242,8 @@ class Converter:
         n, F = range(self.n), print_matrix(self.problem.F)
         whole = [list(row) for row in F]
         flow = Mechanisation(plain_card(self.source), self.formulas.world)
-        write_blocks(
-            self.problem, flow, self.formulas, lambda b: self.comparison.block_sign(self.source, b), {"F": whole}
-        )
+        sign = partial(self.comparison.block_sign, self.source)
+        write_blocks(self.problem, flow, self.formulas, sign, {"F": whole})
         return [[self.subtract(whole[i][j], F[i][j]) for j in n] for i in n]
 
     def subtract(self, x: str, y: str) -> str:
@@ -326,7 +303,7 @@ def convert(
     converter = Converter(problem, whole, target, progress)
     flow = Mechanisation(plain_card(whole), converter.formulas.world)
     way = Passage(flow, carry_motion(flow, plain_card(target)))
-    free = turn_body(flow)
+    free = flow.turn_body()
     apart = Passage(free, carry_motion(free, plain_card(target)))
     (T, rate), (inverse, _) = converter.transformation(apart), converter.transformation(apart, back=True)
     with precision(BITS):

@@ -13,10 +13,10 @@ from functools import cache
 from typing import Any
 
 from navsym.conventions.card import CHOICES, NORTH, Card
-from navsym.conventions.measuring import CORRECTED, MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
+from navsym.conventions.measuring import CORRECTED, RESET_MARK, full_column
 from navsym.conventions.mechanisation import CONSTANTS, Mechanisation
 from navsym.conventions.reading import HIDDEN, Problem, matrix_of, print_matrix, read_known, read_problem
-from navsym.conventions.search import Block, list_cards, plain_card, sign_of
+from navsym.conventions.search import Block, list_blocks, list_cards, plain_card, sign_of
 from navsym.conventions.symbols import Formulas
 from navsym.core.errors import DomainError, EmptyError
 from navsym.language.names import join_place, quote
@@ -117,15 +117,9 @@ def write_blocks(
     matrices: Mapping[str, list[list[str]]],
 ) -> None:
     """Write the blocks of a mechanisation into those of F, H, G and the reset that are given."""
-    sides = list(problem.roles)
-    blocks = [(row, column) for row in sides for column in sides if not {row, column} <= {*CONSTANTS}]
-    blocks += [(MEASURED_MARK + kind, column) for kind in problem.measured for column in sides]
-    blocks += [(row, NOISE_MARK + noise) for row in sides for noise in problem.noises]
-    both = [role for role in CORRECTED if role in sides and problem.reset]
-    blocks += [(RESET_MARK + row, column) for row in both for column in both]
     columns = cache(lambda column: [full_column(flow, column, k) for k in range(3)])
-    for row, column in blocks:
-        if (name := matrix_of((row, column))) not in matrices:
+    for row, column in list_blocks(problem):
+        if (name := matrix_of((row, column))) not in matrices or {row, column} <= {*CONSTANTS}:
             continue
         matrix, factor = matrices[name], sign((row, column))
         for i, place in enumerate(problem.places(row)):

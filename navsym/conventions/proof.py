@@ -17,7 +17,7 @@ from navsym.conventions.card import DROPPED, KEPT, Card
 from navsym.conventions.measuring import MEASURED_MARK, RESET_MARK
 from navsym.conventions.mechanisation import CONSTANTS, Mechanisation
 from navsym.conventions.points import BITS, Sampler, evaluate
-from navsym.conventions.reading import HIDDEN, Problem
+from navsym.conventions.reading import HIDDEN, Problem, print_matrix
 from navsym.conventions.search import Block, narrow_card
 from navsym.conventions.symbols import Formulas
 from navsym.core.balls import precision
@@ -68,13 +68,9 @@ class Prover:
             card = Card("inertial", **{name: getattr(card, name) for name in names}, **card.quaternion())
         return self.formulas(narrow_card(card, block[1])).block(*block, sign)
 
-    def written(self, block: Block) -> list[list[str]]:
-        """The user's block."""
-        return [[print_tree(tree) for tree in row] for row in self.problem.block(*block)]
-
     def is_right(self, card: Card, block: Block, sign: int) -> bool:
         """True where the prover grants that the blocks are equal."""
-        written = self.written(block)
+        written = print_matrix(self.problem.block(*block))
         if {*block} <= {*CONSTANTS}:  # a constant may decay; it depends on no other one
             own = block[0] == block[1]
             pairs = [(cell, "0") for i, row in enumerate(written) for j, cell in enumerate(row) if i != j or not own]

@@ -96,10 +96,8 @@ class Problem:
     @property
     def is_placed(self) -> bool:
         """True where latitude, longitude, radii, and the height above an ellipsoid, tell the position."""
-        needed = {"latitude", "longitude", "radii"} | (
-            {"height"} if len(self.quantities.get("radii", ())) > 1 else set()
-        )
-        return needed <= set(self.quantities)
+        lifted = "height" in self.quantities or len(self.quantities.get("radii", ())) < 2
+        return lifted and {"latitude", "longitude", "radii"} <= set(self.quantities)
 
     def places(self, side: str) -> tuple[int, ...]:
         """The rows or columns of a side of a block."""
@@ -262,10 +260,12 @@ def read_quantities(value: Any, names: Mapping[str, Any], where: str) -> dict[st
     for name, items in table.items():
         place, sizes = join_place(where, name), QUANTITIES[name]
         cells = list_cells(items, place)
-        if len(cells) not in sizes or (name == "rotation" and not is_grid(items)):
-            wanted = (
-                "three rows of three entries" if name == "rotation" else " or ".join(map(str, sizes)) + " components"
-            )
+        rows = (
+            [isinstance(row, list) and len(row) for row in items] if name == "rotation" and len(cells) == 9 else [3] * 3
+        )
+        if len(cells) not in sizes or rows != [3, 3, 3]:
+            wanted = f"{' or '.join(map(str, sizes))} components"
+            wanted = "three rows of three entries" if name == "rotation" else wanted
             raise ShapeError(f"expected {wanted}; got {len(cells)} entries; correct {name}", where=place)
         quantities[name] = tuple(read_cell(cell, names, spot) for cell, spot in cells)
     if {"rotation", "quaternion"} <= set(quantities):
@@ -278,11 +278,6 @@ def list_cells(items: Any, where: str) -> list[tuple[Any, str]]:
     if not isinstance(items, list):
         return [(items, where)]
     return [cell for k, item in enumerate(as_list(items, where)) for cell in list_cells(item, join_place(where, k))]
-
-
-def is_grid(items: Any) -> bool:
-    """True for three rows of three."""
-    return isinstance(items, list) and len(items) == 3 and all(isinstance(r, list) and len(r) == 3 for r in items)
 
 
 def read_known(value: Any, where: str) -> dict[str, str]:

@@ -55,8 +55,6 @@ def reduce_circles(poly: Any) -> Any:
 class Entry(Ratio):
     """A quotient whose top is in normal form modulo sin**2 + cos**2 = 1: products of rotations stay short."""
 
-    __slots__ = ()
-
     def __init__(self, quotient: Quotient):
         top = reduce_circles(quotient.top)
         super().__init__(quotient if top == quotient.top else cancel_fraction(top, quotient.bottom))
@@ -71,11 +69,8 @@ class Formulas:
         self.texts: dict[str, str] = {}
         self.derived: dict[str, Any] = {}
         self.world = self.build()
-        self.columns = cache(self.compute_columns)
-
-    def compute_columns(self, role: str) -> list[dict[str, list[Any]]]:
-        """Three columns of F with every sign plus."""
-        return [full_column(Mechanisation(self.card, self.world), role, k) for k in range(3)]
+        flow = Mechanisation(card, self.world)
+        self.columns = cache(lambda role: [full_column(flow, role, k) for k in range(3)])  # of F, every sign plus
 
     def block(self, row: str, column: str, sign: int = 1) -> list[list[str]]:
         """A block of F as texts, times a sign."""
