@@ -8,12 +8,12 @@ from typing import Any
 
 from navsym.claims.verdict import PROVED, REFUTED
 from navsym.conventions.card import Card
-from navsym.conventions.converting import Conversion, convert, print_matrix
+from navsym.conventions.converting import Conversion, convert
 from navsym.conventions.generating import list_missing
 from navsym.conventions.measuring import RESET_MARK
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
-from navsym.conventions.reading import Problem, matrix_of
+from navsym.conventions.reading import HIDDEN, Problem, matrix_of, print_matrix
 from navsym.conventions.search import (
     SIGNS,
     Block,
@@ -25,7 +25,6 @@ from navsym.conventions.search import (
     list_blocks,
     plain_card,
 )
-from navsym.conventions.symbols import HIDDEN
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
@@ -254,7 +253,7 @@ def state_conflict(outcome: Outcome, mismatch: Mismatch, comparison: Comparison,
     with precision(BITS):
         sign = comparison.block_sign(card, block)
     expected = prover.block_texts(plain_card(card), block, sign)
-    written = prover.written(block)
+    written = print_matrix(prover.problem.block(*block))
     places = [(rows.index(i), columns.index(j)) for i, j in mismatch.entries]
     verdicts = (prover.compare(plain_card(card), written[i][j], expected[i][j]).status for i, j in places)
     granted = all(status == REFUTED for status in verdicts)  # with a point of the relations at which they differ
@@ -286,19 +285,15 @@ def describe_change(
         return all(prover.compare(plain_card(card), *pair).status == PROVED for pair in pairs)
 
     words = "write"
-    for sign, turned, text in (
-        ("-", False, "change the sign"),
-        ("", True, "transpose"),
-        ("-", True, "transpose and change the sign"),
-    ):
+    ways = ("-", False, "change the sign"), ("", True, "transpose"), ("-", True, "transpose and change the sign")
+    for sign, turned, text in ways:
         if agrees(sign, turned):
             words = f"{text}: write"
             break
     rows = [[diagonal * (i == j) + x for j, x in enumerate(row)] for i, row in enumerate(expected)]
     rows = [[rows[i][j] for j in order[1]] for i in order[0]]
-    missing = "".join(
-        f"; {HIDDEN}{name} is {word}, which [quantities] lacks" for name, word in list_missing(rows).items()
-    )
+    lacking = list_missing(rows).items()
+    missing = "".join(f"; {HIDDEN}{name} is {word}, which [quantities] lacks" for name, word in lacking)
     return f"{words} [{', '.join('[' + ', '.join(row) + ']' for row in rows)}]".replace("1 + 0", "1") + missing
 
 
@@ -308,9 +303,8 @@ def find_neighbours(cards: Sequence[Card], outcomes: Sequence[Outcome], comparis
     names = [f.name for f in fields(Card) if f.name != "dropped"]
     for outcome in outcomes:
         for card in cards:
-            other = (
-                outcome.card if outcome.count == 1 else replace(outcome.card, **{k: getattr(card, k) for k in SIGNS})
-            )
+            signs: dict[str, Any] = {} if outcome.count == 1 else {k: getattr(card, k) for k in SIGNS}
+            other = replace(outcome.card, **signs)
             different = [name for name in names if getattr(card, name) != getattr(other, name)]
             if len(different) == 1 and other not in neighbours:
                 neighbours[other] = exclude(replace(outcome, card=other), different[0], comparison)

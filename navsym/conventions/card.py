@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import product
 from typing import Any
@@ -204,26 +204,21 @@ def list_radii(shape: str, radii: int, height: bool) -> list[str | None]:
 
 def list_curved(flat: Card, radii: int, height: bool) -> Iterator[Card]:
     """The ways to keep and to drop terms over a curved Earth."""
-    rates = product((KEPT, DROPPED), repeat=2)
     has_position = flat.position_error is not None
     gradients = [("vertical" if name else "none", name) for name in list_radii(flat.earth, radii, height)]
-    gradients = gradients if has_position else gradients[:1]
-    both = (KEPT, DROPPED) if has_position else (KEPT,)
-    slopes: tuple[str | None, ...] = (None,)
-    if flat.earth == "ellipsoid":
-        slopes = CHOICES["radius_variation"] if has_position else (DROPPED,)
-    positions = CHOICES["position_error"] if has_position else (None,)
-    for (earth, transport), (gradient, by), lift, slope, position in product(rates, gradients, both, slopes, positions):
-        yield replace(
-            flat,
-            earth_rate=earth,
-            transport_rate=transport,
-            gravity_gradient=gradient,
-            gravity_radius=by,
-            height_variation=lift,
-            radius_variation=slope,
-            position_error=position,
-        )
+    slopes = CHOICES["radius_variation"] if has_position else (DROPPED,)
+    ways: dict[str, Sequence[Any]] = {
+        "earth_rate": (KEPT, DROPPED),
+        "transport_rate": (KEPT, DROPPED),
+        "gravity": gradients if has_position else gradients[:1],
+        "height_variation": (KEPT, DROPPED) if has_position else (KEPT,),
+        "radius_variation": slopes if flat.earth == "ellipsoid" else (None,),
+        "position_error": CHOICES["position_error"] if has_position else (None,),
+    }
+    for words in product(*ways.values()):
+        said: dict[str, Any] = dict(zip(ways, words, strict=True))
+        gradient, by = said.pop("gravity")
+        yield replace(flat, gravity_gradient=gradient, gravity_radius=by, **said)
 
 
 # For people

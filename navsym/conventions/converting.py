@@ -9,24 +9,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import Any
 
 from navsym.claims.verdict import PROVED
-from navsym.conventions.card import CHOICES, Card
+from navsym.conventions.card import CHOICES, KEPT, Card
 from navsym.conventions.frames import LEVEL, OTHERS, Passage, carry_motion, change_frame, refuse, restore_terms
 from navsym.conventions.generating import require_names, write_blocks
 from navsym.conventions.measuring import NOISE_MARK
 from navsym.conventions.mechanisation import ROLES, Mechanisation, unit_error
+from navsym.conventions.nilpotent import NOTHING, Grid, apply, constant, transpose
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
-from navsym.conventions.reading import Problem, matrix_of
+from navsym.conventions.reading import HIDDEN, Problem, matrix_of, print_matrix
 from navsym.conventions.search import TERMS, Comparison, list_cards, plain_card
 from navsym.conventions.symbols import Formulas
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
 from navsym.language.names import quote
-from navsym.language.printer import print_tree
 
 #: What a conversion changes exactly: the definition of the errors, and where they are resolved.
 CONVERTED = (
@@ -48,6 +49,7 @@ class Conversion(Answer):
                      terms are dropped, F + neglected is converted; zeros where the conversion is exact
     F, H, G, reset : of the target; empty where the model has none; Q and R stay. In other axes or another frame a
                      measurement stays as it was resolved; the corrections of the reset are those of the target
+    quantities     : those of the target in the names of the file, such as the rotation to the new axes
     problem        : the model that was converted; ``export`` writes T and its inverse as code
     proofs         : certificates of the entries that the checker granted; longer ones are decided by exact algebra
     proved         : True where F_to = T (F + neglected) + T', T inverse = E, H_to T = H and G_to = T G: each entry
@@ -64,6 +66,7 @@ class Conversion(Answer):
     H: Texts
     G: Texts
     reset: Texts
+    quantities: Mapping[str, Any]
     proved: bool
     problem: Problem
     proofs: tuple[Mapping[str, Any], ...] = ()
@@ -76,7 +79,8 @@ class Conversion(Answer):
         """The conversion as JSON data."""
         names = ("T", "inverse", "rate", "neglected", "F", "H", "G", "reset")
         matrices = {name: [list(row) for row in getattr(self, name)] for name in names}
-        return {"from": self.source.document(), "to": self.target.document(), **matrices, "proved": self.proved}
+        cards = {"from": self.source.document(), "to": self.target.document()}
+        return {**cards, **matrices, "quantities": dict(self.quantities), "proved": self.proved}
 
     def __repr__(self) -> str:
         changed = [f.name for f in fields(Card) if getattr(self.source, f.name) != getattr(self.target, f.name)]
@@ -140,11 +144,17 @@ def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> t
     return target, whole
 
 
-def transform(way: Passage, role: str, component: int) -> dict[str, list[Any]]:
-    """A column of T and of its rate with every sign plus: role -> nilpotents whose error and mixed part they are."""
+def transform(way: Passage, role: str, component: int, C: Grid | None = None) -> dict[str, list[Any]]:
+    """A column of T and of its rate with every sign plus: role -> nilpotents whose error and mixed part they are.
+
+    C : rotation from the body to the axes that the way has for its body
+    """
     truth = way.source.truth()
     later = truth.advance(way.source.rate(truth))
-    error = way.target.compare(*way.carry(way.source.estimate(later, unit_error(role, component)), later))
+    given = unit_error(role, component)
+    given = way.source.turn_errors(C, given) if C else given
+    error = way.target.compare(*way.carry(way.source.estimate(later, given), later))
+    error = way.target.turn_errors(transpose(C), error) if C else error
     return {name: error[name] for name in ROLES}
 
 
@@ -161,6 +171,9 @@ class Converter:
         roles = len(problem.roles)  # columns of T and its inverse, blocks of F, rows of what is proved
         self.progress, self.done, self.steps = progress, 0, 6 * roles + roles * roles + 2 * self.n
 
+        self.rotation = [constant(row) for row in self.formulas.world.C]
+        self.moves = any(getattr(source, n) != getattr(target, n) for n in ("frame", "axes", "azimuth"))
+
     def step(self) -> None:
         """One more step is done."""
         self.done += 1
@@ -175,7 +188,7 @@ class Converter:
         for column, places in self.problem.roles.items():
             for k, j in enumerate(places):
                 self.step()
-                parts = transform(way, column, k)
+                parts = transform(way, column, k, self.rotation)
                 for row, rows in self.problem.roles.items():
                     sign = signs[not back][row] * signs[back][column]
                     for i, part in zip(rows, parts[row], strict=True):
@@ -186,7 +199,6 @@ class Converter:
         """F, H, G and the reset of the target."""
         problem, signs, own = self.problem, self.target.signs(), self.source.signs()
         matrices = {name: print_matrix(getattr(problem, name)) for name in ("F", "H", "G", "reset")}
-        moves = any(getattr(self.source, n) != getattr(self.target, n) for n in ("frame", "axes", "azimuth"))
 
         def sign(block: tuple[str, str]) -> int:
             self.step()
@@ -194,20 +206,44 @@ class Converter:
                 return signs[block[0]] * own[block[0]] * self.comparison.block_sign(self.source, block)
             return self.comparison.block_sign(self.target, block)
 
-        if moves:
+        if moves := self.moves:
             matrices["H"] = multiply_texts(matrices["H"], inverse)
         kept = {name: M for name, M in matrices.items() if M and (name != "H" or not moves)}
         write_blocks(problem, way.target, self.formulas, sign, kept)
         return list(matrices.values())
+
+    def quantities(self, flow: Mechanisation) -> dict[str, Any]:
+        """The quantities of the target in the names of the file; those that need others are left out."""
+        given: dict[str, Any] = {name: print_matrix([trees])[0] for name, trees in self.problem.quantities.items()}
+        if self.moves:
+            whole = Mechanisation(replace(flow.card, earth_rate=KEPT, transport_rate=KEPT), flow.world)
+            x, world, level = whole.truth(), flow.world, flow.card.frame == LEVEL
+            gravity = constant(world.gravity)
+            if len(given.get("gravity", ())) == 3 and self.source.frame == LEVEL == flow.card.frame:
+                gravity = apply(whole.turn(x), [NOTHING, NOTHING, *gravity])
+            vectors = {"velocity": x.velocity, "known_vector": constant(world.seen)}
+            vectors["earth_rate"] = whole.earth_rate(x) if level else constant(world.earth_rate)
+            vectors |= {"specific_force": apply(x.attitude, constant(world.f)), "gravity": gravity}
+            there = (whole.transport_rate(x), []) if level else ([], constant(world.r))
+            vectors |= zip(("transport_rate", "position"), there, strict=True)
+            vectors = {name: v for name, v in vectors.items() if len(given.get(name, "")) == 3 or name == "gravity"}
+            if self.source.frame == flow.card.frame and len(given.get("gravity", "")) < 3:
+                del vectors["gravity"]
+            if {"rotation", "quaternion"} & set(given):
+                vectors["rotation"] = [entry for row in x.attitude for entry in row]
+            given |= {name: [self.formulas.write(x.value) for x in vector] for name, vector in vectors.items()}
+            given.pop("quaternion", None)
+        if "rotation" in given:
+            given["rotation"] = [given["rotation"][k : k + 3] for k in (0, 3, 6)]
+        return {name: texts for name, texts in given.items() if texts and HIDDEN not in repr(texts)}
 
     def neglected(self) -> list[list[str]]:
         """F of the source with all its terms less F of the model."""
         n, F = range(self.n), print_matrix(self.problem.F)
         whole = [list(row) for row in F]
         flow = Mechanisation(plain_card(self.source), self.formulas.world)
-        write_blocks(
-            self.problem, flow, self.formulas, lambda b: self.comparison.block_sign(self.source, b), {"F": whole}
-        )
+        sign = partial(self.comparison.block_sign, self.source)
+        write_blocks(self.problem, flow, self.formulas, sign, {"F": whole})
         return [[self.subtract(whole[i][j], F[i][j]) for j in n] for i in n]
 
     def subtract(self, x: str, y: str) -> str:
@@ -267,7 +303,9 @@ def convert(
     converter = Converter(problem, whole, target, progress)
     flow = Mechanisation(plain_card(whole), converter.formulas.world)
     way = Passage(flow, carry_motion(flow, plain_card(target)))
-    (T, rate), (inverse, _) = converter.transformation(way), converter.transformation(way, back=True)
+    free = flow.turn_body()
+    apart = Passage(free, carry_motion(free, plain_card(target)))
+    (T, rate), (inverse, _) = converter.transformation(apart), converter.transformation(apart, back=True)
     with precision(BITS):
         F, H, G, reset = converter.matrices(way, inverse)
         exact = whole == source
@@ -281,11 +319,5 @@ def convert(
     if G:
         pairs.append((G, multiply_texts(T, print_matrix(problem.G))))
     frozen = (tuple(map(tuple, M)) for M in (T, inverse, rate, neglected, F, H, G, reset))
-    is_proved = converter.is_proved(pairs)
-    proofs = tuple(converter.prover.certificates)
-    return Conversion(source, target, *frozen, is_proved, problem, proofs)  # type: ignore[call-arg,arg-type]
-
-
-def print_matrix(M: Sequence[Sequence[Any]]) -> list[list[str]]:
-    """A matrix of trees as texts."""
-    return [[print_tree(x) for x in row] for row in M]
+    said = converter.quantities(way.target), converter.is_proved(pairs), problem, tuple(converter.prover.certificates)
+    return Conversion(source, target, *frozen, *said)  # type: ignore[call-arg,arg-type]

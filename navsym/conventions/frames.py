@@ -25,10 +25,12 @@ from navsym.conventions.nilpotent import (
     identity,
     multiply,
     negate,
+    rotate,
     skew,
     subtract,
     times,
     transpose,
+    values_of,
 )
 from navsym.core.errors import DomainError
 
@@ -44,26 +46,21 @@ class Passage:
     target: Mechanisation
 
     @property
-    def card(self) -> Card:
-        """The card of the target."""
-        return self.target.card
-
-    @property
     def stays(self) -> bool:
         """True where only the names of the axes of a local level change, or nothing."""
-        wander = [card.azimuth == WANDER for card in (self.source.card, self.card)]
-        return self.source.card.frame == self.card.frame and wander[0] == wander[1]
+        wander = [card.azimuth == WANDER for card in (self.source.card, self.target.card)]
+        return self.source.card.frame == self.target.card.frame and wander[0] == wander[1]
 
     def turn(self) -> Grid:
         """Rotation from the axes of the source to those of the card."""
-        if self.card.frame != LEVEL:
+        if self.target.card.frame != LEVEL:
             return identity()
-        target, source = ([constant(row) for row in AXES[card.axes]] for card in (self.card, self.source.card))
+        target, source = ([constant(row) for row in AXES[card.axes]] for card in (self.target.card, self.source.card))
         return multiply(target, transpose(source))
 
     def spin(self) -> Any:
         """The rate of the Earth; 0 where both cards drop it."""
-        if KEPT not in (self.source.card.earth_rate, self.card.earth_rate):
+        if KEPT not in (self.source.card.earth_rate, self.target.card.earth_rate):
             return 0
         world = self.source.world
         if self.source.card.frame != LEVEL:
@@ -113,9 +110,9 @@ class Passage:
 
     def from_earth(self, estimate: State, x: State) -> tuple[State, State]:
         """Estimate and truth in the frame of the card."""
-        if self.card.frame == "earth":
+        if self.target.card.frame == "earth":
             return estimate, x
-        if self.card.frame == "inertial":
+        if self.target.card.frame == "inertial":
             R = rotate_about_pole(self.source.world.angle, self.spin())
             speeds = [add_vectors(s.velocity, cross(self.pole(), s.position)) for s in (estimate, x)]
             return tuple(  # type: ignore[return-value]
@@ -149,10 +146,10 @@ def carry_motion(source: Mechanisation, card: Card) -> Mechanisation:
         return way.target
     out = transpose(axes_of(way.target)) if moves else identity()
     A = multiply(out, axes_of(source)) if moves else way.turn()
-    same: dict[str, Any] = {"C": values_of(multiply(A, source.truth().attitude)), "seen": rotate_vector(A, world.seen)}
+    same: dict[str, Any] = {"C": values_of(multiply(A, source.truth().attitude)), "seen": rotate(A, world.seen)}
     if not moves:
-        transport = None if world.transport is None else rotate_vector(A, world.transport)
-        same |= {"v": rotate_vector(A, world.v), "r": rotate_vector(A, world.r), "transport": transport}
+        transport = None if world.transport is None else rotate(A, world.transport)
+        same |= {"v": rotate(A, world.v), "r": rotate(A, world.r), "transport": transport}
         return Mechanisation(card, replace(world, **same))
     _, truth = way.to_earth(source.truth(), source.truth())
     at, velocity = ([Nilpotent(x.value) for x in vector] for vector in (truth.position, truth.velocity))
@@ -169,16 +166,6 @@ def carry_motion(source: Mechanisation, card: Card) -> Mechanisation:
     names = {"v": apply(out, velocity), "r": apply(out, at), "gravity": gravity}
     same |= {name: [x.value for x in vector] for name, vector in names.items()}
     return Mechanisation(card, replace(world, **same, earth_rate=rate, transport=None))
-
-
-def rotate_vector(A: Grid, v: Any) -> list[Any]:
-    """A v in coefficients."""
-    return [x.value for x in apply(A, constant(v))]
-
-
-def values_of(A: Grid) -> list[list[Any]]:
-    """A matrix without infinitesimals."""
-    return [[x.value for x in row] for row in A]
 
 
 def axes_of(flow: Mechanisation) -> Grid:
@@ -235,9 +222,8 @@ def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool,
     frame = words["frame"]
     moves = frame != card.frame and LEVEL in (frame, card.frame)
     refuse(moves and radii > 1 and not height, "height beside two radii: those that contain it tell no centre", OTHERS)
-    refuse(
-        alone, "position among the roles: its errors drive those of velocity in another frame", "none; add its states"
-    )
+    place = "position among the roles: its errors drive those of velocity in another frame"
+    refuse(alone, place, "none; add its states")
     refuse(card.frame == LEVEL and card.earth == "none", "a curved Earth: a flat one has no centre to go to")
     hub = replace(card, frame="earth", axes=None, azimuth=None, angle=None, transport_rate=None, height_variation=None)
     hub = replace(hub, radius_variation=None, position_error=card.position_error and "metres", arm_rate=None)
@@ -260,20 +246,11 @@ def change_frame(card: Card, words: Mapping[str, str], radii: int, height: bool,
     shape, lifted = "sphere" if radii == 1 else "ellipsoid", "R + h" if height else "R"
     vertical = lifted if hub.gravity_gradient == "central" else card.gravity_radius
     slope = None if shape == "sphere" else KEPT if hub.position_error else DROPPED
-    return replace(
-        hub,
-        frame=frame,
-        axes=words.get("axes", card.axes or "NED"),
-        azimuth=words.get("azimuth", NORTH),
-        angle=words.get("angle", card.angle or "phi"),
-        earth=shape,
-        gravity_gradient="vertical" if vertical else "none",
-        gravity_radius=vertical,
-        centrifugal=None,
-        transport_rate=KEPT,
-        height_variation=KEPT,
-        radius_variation=slope,
-    )
+    same = {"axes": card.axes or "NED", "azimuth": NORTH, "angle": card.angle or "phi"}
+    said = {name: words.get(name, word) for name, word in same.items()}
+    gravity = {"gravity_gradient": "vertical" if vertical else "none", "gravity_radius": vertical, "centrifugal": None}
+    kept: dict[str, Any] = {"transport_rate": KEPT, "height_variation": KEPT, "radius_variation": slope, **said}
+    return replace(hub, frame=frame, earth=shape, **gravity, **kept)  # type: ignore[arg-type]
 
 
 def refuse(wrong: bool, expected: str, got: str = "another card; convert it first, or its axes only") -> None:

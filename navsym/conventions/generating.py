@@ -13,11 +13,11 @@ from functools import cache
 from typing import Any
 
 from navsym.conventions.card import CHOICES, NORTH, Card
-from navsym.conventions.measuring import CORRECTED, MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
+from navsym.conventions.measuring import CORRECTED, RESET_MARK, full_column
 from navsym.conventions.mechanisation import CONSTANTS, Mechanisation
-from navsym.conventions.reading import Problem, matrix_of, read_known, read_problem
-from navsym.conventions.search import Block, list_cards, plain_card, sign_of
-from navsym.conventions.symbols import HIDDEN, Formulas
+from navsym.conventions.reading import HIDDEN, Problem, matrix_of, print_matrix, read_known, read_problem
+from navsym.conventions.search import Block, list_blocks, list_cards, plain_card, sign_of
+from navsym.conventions.symbols import Formulas
 from navsym.core.errors import DomainError, EmptyError
 from navsym.language.names import join_place, quote
 from navsym.language.schema import as_table
@@ -33,7 +33,7 @@ UNNAMED = {
 
 
 def fill_model(document: Mapping[str, Any], where: str = "") -> dict[str, Any]:
-    """A document without the card: it is what is known of a model with F, and else F, H, G and reset are derived.
+    """A document with F: its card is what is known, or the one from which F, H, G and the reset are derived here.
 
     Raises DomainError for a card that contradicts itself, EmptyError for one that says too little.
     """
@@ -55,42 +55,32 @@ def fill_model(document: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     card = choose_card(problem, words, place)
     formulas = Formulas(problem, plain_card(card))
     flow = Mechanisation(plain_card(card), formulas.world)
-    matrices = {name: written for name in ("F", "H", "G", "reset") if (written := list_zeros(getattr(problem, name)))}
+    matrices = {name: written for name in ("F", "H", "G", "reset") if (written := print_matrix(getattr(problem, name)))}
     write_blocks(problem, flow, formulas, lambda block: sign_of(card, block), matrices)
     require_names("card", *matrices.values())
-    return {**rest, "model": {**model, "states": list(problem.states), **matrices}}
+    return {**rest, "card": card.words(), "model": {**model, "states": list(problem.states), **matrices}}
 
 
 def empty_model(document: Mapping[str, Any], model: Mapping[str, Any]) -> dict[str, Any]:
     """The model with zeros where the card will write."""
-    roles = document.get("roles", {})
-    listed = (
-        [s for names in roles.values() if isinstance(names, list) for s in names] if isinstance(roles, dict) else []
-    )
-    states = model.get("states", listed)
-    n = len(states) if isinstance(states, list) else 0
+
+    def items(table: str) -> list[Any]:
+        places = document.get(table)
+        values = places.values() if isinstance(places, Mapping) else ()
+        return [k for v in values for k in (v if isinstance(v, list) else [v])]
 
     def count(table: str) -> int:
-        places = document.get(table, {})
-        rows = (
-            [k for v in places.values() for k in (v if isinstance(v, list) else [v])]
-            if isinstance(places, dict)
-            else []
-        )
-        return max([k for k in rows if isinstance(k, int) and k < 1000], default=0)
+        return max([k for k in items(table) if isinstance(k, int) and k < 1000], default=0)
 
+    states, given = model.get("states", items("roles")), document.get("quantities")
+    n = len(states) if isinstance(states, list) else 0
     shapes = {"F": (n, n), "H": (count("measured"), n), "G": (n, count("noises"))}
-    if any(f"{role}_correction" in document.get("quantities", {}) for role in CORRECTED):
+    if isinstance(given, Mapping) and any(f"{role}_correction" in given for role in CORRECTED):
         shapes["reset"] = (n, n)
     zeros = {name: [["0"] * width for _ in range(height)] for name, (height, width) in shapes.items() if height * width}
     for k, row in enumerate(zeros.get("reset", [])):
         row[k] = "1"
     return {**model, "states": states, **zeros}
-
-
-def list_zeros(M: Sequence[Sequence[Any]]) -> list[list[str]]:
-    """A matrix of zeros and ones as texts."""
-    return [["1" if repr(cell) == "<1>" else "0" for cell in row] for row in M]
 
 
 def require_known(problem: Problem, where: str) -> None:
@@ -100,10 +90,11 @@ def require_known(problem: Problem, where: str) -> None:
 
 
 def choose_card(problem: Problem, words: Mapping[str, str], where: str) -> Card:
-    """The one card that says these words."""
+    """The one card that says these words, or says no others."""
     right = list(list_cards(problem, words))
-    if len(right) == 1:
-        return right[0]
+    whole = right if len(right) == 1 else [card for card in right if card.words() == words]
+    if len(whole) == 1:
+        return whole[0]
     for name in (f.name for f in fields(Card) if f.name in CHOICES):
         near = right or list(list_cards(problem, {k: w for k, w in words.items() if k != name}))
         found = list(dict.fromkeys(str(getattr(card, name)) for card in near))
@@ -126,15 +117,9 @@ def write_blocks(
     matrices: Mapping[str, list[list[str]]],
 ) -> None:
     """Write the blocks of a mechanisation into those of F, H, G and the reset that are given."""
-    sides = list(problem.roles)
-    blocks = [(row, column) for row in sides for column in sides if not {row, column} <= {*CONSTANTS}]
-    blocks += [(MEASURED_MARK + kind, column) for kind in problem.measured for column in sides]
-    blocks += [(row, NOISE_MARK + noise) for row in sides for noise in problem.noises]
-    both = [role for role in CORRECTED if role in sides and problem.reset]
-    blocks += [(RESET_MARK + row, column) for row in both for column in both]
     columns = cache(lambda column: [full_column(flow, column, k) for k in range(3)])
-    for row, column in blocks:
-        if (name := matrix_of((row, column))) not in matrices:
+    for row, column in list_blocks(problem):
+        if (name := matrix_of((row, column))) not in matrices or {row, column} <= {*CONSTANTS}:
             continue
         matrix, factor = matrices[name], sign((row, column))
         for i, place in enumerate(problem.places(row)):

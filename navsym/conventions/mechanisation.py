@@ -30,11 +30,13 @@ from navsym.conventions.nilpotent import (
     identity,
     multiply,
     negate,
+    rotate,
     skew,
     subtract,
     times,
     total,
     transpose,
+    values_of,
 )
 
 #: Columns: north, east, down in the axes.
@@ -372,10 +374,30 @@ class Mechanisation:
 
         role, component : the state whose error is eps
         """
-        truth = self.truth()
-        estimate = self.estimate(truth, unit_error(role, component))
-        after = self.compare(estimate.advance(self.rate(estimate)), truth.advance(self.rate(truth)))
+        flow, error = self, unit_error(role, component)
+        plain = (
+            self.card.attitude_error == "frame" and self.card.vector_error != "body"
+        )  # then C stands beside C' alone
+        if plain and not role.endswith("_scale"):  # which belongs to an axis of the body
+            flow, error = self.turn_body(), self.turn_errors([constant(row) for row in self.world.C], error)
+        truth = flow.truth()
+        estimate = flow.estimate(truth, error)
+        after = flow.compare(estimate.advance(flow.rate(estimate)), truth.advance(flow.rate(truth)))
         return {name: [part.mixed for part in vector] for name, vector in after.items()}
+
+    def turn_body(self) -> Mechanisation:
+        """The motion in axes of the body that are now those of the frame: any will do, and C stays out of products."""
+        C = [constant(row) for row in self.world.C]
+        f, w = (rotate(C, v) for v in (self.world.f, self.world.w))
+        return Mechanisation(self.card, replace(self.world, C=values_of(identity()), f=f, w=w))
+
+    def turn_errors(self, A: Grid, errors: Mapping[str, Vector]) -> dict[str, Vector]:
+        """Errors in other axes of the body, where they are resolved in it."""
+        roles = {"attitude"} if self.card.attitude_error == "body" else set()
+        roles |= {"gyro_bias", "accelerometer_bias"}
+        if self.card.vector_error == "body":
+            roles |= {"velocity"} if self.is_geodetic else {"velocity", "position"}
+        return {name: apply(A, v) if name in roles else v for name, v in errors.items()}
 
 
 def unit_error(role: str, component: int) -> dict[str, Vector]:
@@ -422,15 +444,7 @@ def plus_height(radius: Any, height: Any) -> Any:
 
 def flat_card(card: Card) -> Card:
     """The same errors over a flat Earth that does not turn; its zeros are where a term may be dropped."""
-    return replace(
-        card,
-        earth="none",
-        earth_rate=None if card.earth_rate is None else DROPPED,
-        transport_rate=None if card.transport_rate is None else DROPPED,
-        gravity_gradient="none",
-        gravity_radius=None,
-        centrifugal=None,
-        height_variation=None,
-        radius_variation=None,
-        position_error=None if card.position_error is None else "metres",
-    )
+    dropped = {name: getattr(card, name) and DROPPED for name in ("earth_rate", "transport_rate")}
+    terms = dict.fromkeys(("gravity_radius", "centrifugal", "height_variation", "radius_variation"))
+    metres = card.position_error and "metres"
+    return replace(card, earth="none", gravity_gradient="none", position_error=metres, **dropped, **terms)  # type: ignore[arg-type]

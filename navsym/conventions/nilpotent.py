@@ -157,3 +157,13 @@ def add_vectors(*vectors: Vector) -> Vector:
 def negate(v: Vector) -> Vector:
     """-v."""
     return [-x for x in v]
+
+
+def rotate(A: Grid, v: Sequence[Any]) -> list[Any]:
+    """A v in coefficients."""
+    return values_of([apply(A, constant(v))])[0]
+
+
+def values_of(A: Grid) -> list[list[Any]]:
+    """A matrix without infinitesimals."""
+    return [[x.value for x in row] for row in A]

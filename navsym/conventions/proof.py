@@ -17,11 +17,13 @@ from navsym.conventions.card import DROPPED, KEPT, Card
 from navsym.conventions.measuring import MEASURED_MARK, RESET_MARK
 from navsym.conventions.mechanisation import CONSTANTS, Mechanisation
 from navsym.conventions.points import BITS, Sampler, evaluate
-from navsym.conventions.reading import Problem
+from navsym.conventions.reading import HIDDEN, Problem, print_matrix
 from navsym.conventions.search import Block, narrow_card
-from navsym.conventions.symbols import HIDDEN, Formulas
+from navsym.conventions.symbols import Formulas
 from navsym.core.balls import precision
+from navsym.core.errors import NavsymError
 from navsym.language.expression import read_tree
+from navsym.language.names import quote
 from navsym.language.printer import print_tree
 from navsym.language.tokens import LENGTH
 from navsym.language.tree import SYMBOL, Tree, build_symbol, list_names
@@ -66,13 +68,9 @@ class Prover:
             card = Card("inertial", **{name: getattr(card, name) for name in names}, **card.quaternion())
         return self.formulas(narrow_card(card, block[1])).block(*block, sign)
 
-    def written(self, block: Block) -> list[list[str]]:
-        """The user's block."""
-        return [[print_tree(tree) for tree in row] for row in self.problem.block(*block)]
-
     def is_right(self, card: Card, block: Block, sign: int) -> bool:
         """True where the prover grants that the blocks are equal."""
-        written = self.written(block)
+        written = print_matrix(self.problem.block(*block))
         if {*block} <= {*CONSTANTS}:  # a constant may decay; it depends on no other one
             own = block[0] == block[1]
             pairs = [(cell, "0") for i, row in enumerate(written) for j, cell in enumerate(row) if i != j or not own]
@@ -110,7 +108,11 @@ class Prover:
         names = list_names(read_tree(left, None), read_tree(right, None))
         declared = {name: self.problem.declared.get(name, "real") for name in names}
         document = {"symbols": declared, "claim": [{"id": "entry", "left": left, "right": right}]}
-        claim = claims_from(document).claims[0]
+        try:
+            claim = claims_from(document).claims[0]
+        except NavsymError as error:
+            error.where = f"model: entry {quote(left)}"
+            raise
         # Equality is what is expected: a proof is looked for before a counterexample.
         verdict = grant_verdict(statement_of(claim), Verdict(OPEN, "none"))
         verdict = verdict if verdict.status == PROVED else decide_claim(claim)

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from navsym.conventions.card import BACKWARD, CHOICES, Card
-from navsym.conventions.measuring import MEASURED, MEASURED_MARK, NOISE_MARK, NOISES, RESET_MARK
+from navsym.conventions.measuring import CORRECTED, MEASURED, MEASURED_MARK, NOISE_MARK, NOISES, RESET_MARK
 from navsym.conventions.mechanisation import ROLES
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, ShapeError, UnknownSymbolError
 from navsym.language.declarations import Parameter, read_parameters
 from navsym.language.expression import read_tree
 from navsym.language.names import Table, check_name, join_place, quote, suggest_nearest
+from navsym.language.printer import print_tree
 from navsym.language.schema import (
     as_formula,
     as_list,
@@ -29,33 +30,18 @@ from navsym.models.modelfile import BESIDE, STEP, TABLES, read_ranges
 
 #: Quantities -> the numbers of components that they may have.
 QUANTITIES: Mapping[str, tuple[int, ...]] = {
-    "specific_force": (3,),
-    "specific_force_body": (3,),
-    "angular_rate": (3,),
-    "rotation": (9,),
-    "quaternion": (4,),
-    "velocity": (3,),
-    "position": (3,),
-    "latitude": (1,),
-    "longitude": (1,),
-    "earth_angle": (1,),
-    "wander_angle": (1,),
-    "height": (1,),
-    "earth_rate": (1, 3),
-    "transport_rate": (3,),
-    "gravity": (1, 3),
+    **dict.fromkeys("specific_force specific_force_body angular_rate velocity position transport_rate".split(), (3,)),
+    **dict.fromkeys("latitude longitude earth_angle wander_angle height radius_slope".split(), (1,)),
+    **dict.fromkeys(("lever_arm", "known_vector", *(f"{role}_correction" for role in CORRECTED)), (3,)),
+    **{"rotation": (9,), "quaternion": (4,), "earth_rate": (1, 3), "gravity": (1, 3), "radii": (1, 2, 3)},
     "gravitational_parameter": (1,),
-    "radii": (1, 2, 3),
-    "radius_slope": (1,),
-    "lever_arm": (3,),
-    "known_vector": (3,),
-    "attitude_correction": (3,),
-    "velocity_correction": (3,),
-    "position_correction": (3,),
 }
 
 #: Tables of a model file that say nothing about the error dynamics.
 UNUSED = tuple(name for name in TABLES if name not in ("model", "parameters"))
+
+#: Names of quantities that the user has not given begin like this.
+HIDDEN = "unnamed_"
 
 Grid = tuple[tuple[Tree, ...], ...]
 
@@ -74,7 +60,7 @@ class Problem:
     F, H, G, reset : entries as trees, row by row; empty where they are not given
     roles      : role -> places of its three states; measured: what H shows -> its rows; noises: noise -> columns of G
     quantities : quantity -> its components as trees
-    known      : field of a card -> its value
+    known      : field of a card -> its value; own: the words of the card from which F was derived
     ranges     : name -> exact ends of an input of exported code
     unused     : tables of the file that were not looked at
     """
@@ -94,6 +80,7 @@ class Problem:
     measured: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     noises: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     ranges: Mapping[str, tuple[Any, Any]] = field(default_factory=dict)
+    own: Mapping[str, str] = field(default_factory=dict)
 
     def under(self, card: Card) -> Problem:
         """The problem with the rotation that the card makes of a quaternion."""
@@ -109,10 +96,8 @@ class Problem:
     @property
     def is_placed(self) -> bool:
         """True where latitude, longitude, radii, and the height above an ellipsoid, tell the position."""
-        needed = {"latitude", "longitude", "radii"} | (
-            {"height"} if len(self.quantities.get("radii", ())) > 1 else set()
-        )
-        return needed <= set(self.quantities)
+        lifted = "height" in self.quantities or len(self.quantities.get("radii", ())) < 2
+        return lifted and {"latitude", "longitude", "radii"} <= set(self.quantities)
 
     def places(self, side: str) -> tuple[int, ...]:
         """The rows or columns of a side of a block."""
@@ -151,6 +136,9 @@ def read_problem(document: Table, where: str = "") -> Problem:
     items = as_list(require_key(model, "states", place), spot, "a list of names")
     states = tuple(check_name(item, where=join_place(spot, k)) for k, item in enumerate(items))
     require_distinct((*parameters, *states), spot)
+    if taken := [name for name in (*parameters, *states) if name.startswith(HIDDEN)]:
+        message = f"expected names without {HIDDEN}, which is for quantities without a name; got {quote(taken[0])}"
+        raise DomainError(f"{message}; rename it", where=join_place(where, "parameters"))
     n = len(states)
     F = read_grid(require_key(model, "F", place), parameters, join_place(place, "F"), n, n)
     more = read_more(document, model, parameters, n, where)
@@ -165,6 +153,7 @@ def read_problem(document: Table, where: str = "") -> Problem:
         known=read_known(document.get("known", {}), join_place(where, "known")),
         unused=tuple(name for name in UNUSED if name in document and not (name == "measurement" and "H" in more)),
         ranges=read_ranges(document, (*states, *parameters, STEP), where),
+        own=read_known(document.get("card", {}), join_place(where, "card")),
         **more,
     )
 
@@ -271,10 +260,12 @@ def read_quantities(value: Any, names: Mapping[str, Any], where: str) -> dict[st
     for name, items in table.items():
         place, sizes = join_place(where, name), QUANTITIES[name]
         cells = list_cells(items, place)
-        if len(cells) not in sizes or (name == "rotation" and not is_grid(items)):
-            wanted = (
-                "three rows of three entries" if name == "rotation" else " or ".join(map(str, sizes)) + " components"
-            )
+        rows = (
+            [isinstance(row, list) and len(row) for row in items] if name == "rotation" and len(cells) == 9 else [3] * 3
+        )
+        if len(cells) not in sizes or rows != [3, 3, 3]:
+            wanted = f"{' or '.join(map(str, sizes))} components"
+            wanted = "three rows of three entries" if name == "rotation" else wanted
             raise ShapeError(f"expected {wanted}; got {len(cells)} entries; correct {name}", where=place)
         quantities[name] = tuple(read_cell(cell, names, spot) for cell, spot in cells)
     if {"rotation", "quaternion"} <= set(quantities):
@@ -289,11 +280,6 @@ def list_cells(items: Any, where: str) -> list[tuple[Any, str]]:
     return [cell for k, item in enumerate(as_list(items, where)) for cell in list_cells(item, join_place(where, k))]
 
 
-def is_grid(items: Any) -> bool:
-    """True for three rows of three."""
-    return isinstance(items, list) and len(items) == 3 and all(isinstance(r, list) and len(r) == 3 for r in items)
-
-
 def read_known(value: Any, where: str) -> dict[str, str]:
     """The parts of the card that are certain."""
     table = as_table(value, where)
@@ -305,3 +291,8 @@ def read_known(value: Any, where: str) -> dict[str, str]:
             message = f"expected one of {', '.join(CHOICES[name])}; got {quote(text)}; correct it"
             raise DomainError(message, where=place)
     return dict(table)
+
+
+def print_matrix(M: Sequence[Sequence[Tree]]) -> list[list[str]]:
+    """A matrix of trees as texts."""
+    return [[print_tree(x) for x in row] for row in M]

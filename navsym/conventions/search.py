@@ -25,7 +25,7 @@ from navsym.conventions.card import (
 )
 from navsym.conventions.measuring import MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
 from navsym.conventions.mechanisation import CONSTANTS, ROLES, Mechanisation, flat_card
-from navsym.conventions.points import BITS, ImpossibleError, Point, draw_point, evaluate
+from navsym.conventions.points import BITS, ImpossibleError, draw_point, evaluate
 from navsym.conventions.reading import Problem
 from navsym.core.balls import precision
 from navsym.language.tree import list_names
@@ -97,17 +97,13 @@ class Comparison:
 
     def __init__(self, problem: Problem):
         self.problem = problem
-        self.point = cache(self.draw)
+        self.point = cache(lambda key, number: draw_point(problem, key, number + 1))
         self.computed = cache(self.compute_columns)
         self.entries = cache(self.evaluate_block)
         self.signs = cache(self.compare)
         self.is_small = cache(self.has_small_terms)
         self.is_zero = cache(self.has_zeros)
         self.noise_sign = cache(self.compare_noise)
-
-    def draw(self, key: Card, number: int) -> Point:
-        """A point for cards of this kind."""
-        return draw_point(self.problem, key, number + 1)
 
     def columns(self, card: Card, role: str, number: int) -> list[dict[str, list[Any]]]:
         """Three columns of F of a card with every sign plus."""
@@ -237,10 +233,8 @@ def list_signs(problem: Problem, known: Mapping[str, str] = NOTHING_KNOWN) -> It
     """The signs that a card may have beside known words; those of states that the model does not have say nothing."""
     errors = (ESTIMATE, TRUTH) if {"velocity", "position"} & set(problem.roles) else (ESTIMATE,)
     attitudes: tuple[str | None, ...] = ("+", "-") if "attitude" in problem.roles else (None,)
-    biases, scales = (
-        (ESTIMATE, TRUTH) if any(role.endswith(kind) for role in problem.roles) else (None,)
-        for kind in ("bias", "scale")
-    )
+    has = (any(role.endswith(kind) for role in problem.roles) for kind in ("bias", "scale"))
+    biases, scales = ((ESTIMATE, TRUTH) if some else (None,) for some in has)
     shown: tuple[str | None, ...] = CHOICES["innovation"] if problem.measured else (None,)
     for words in product(errors, attitudes, biases, scales, shown):
         if all(known.get(name, word) == word for name, word in zip(SIGNS, words, strict=True)):
@@ -341,15 +335,15 @@ TERMS = (
 )  # fmt: skip
 
 
-def keep_simplest(cards: Sequence[Card]) -> list[Card]:
-    """Of cards with the same conventions those that drop least: fewest blocks, then fewest terms."""
+def keep_simplest(cards: Sequence[Card], own: Mapping[str, str]) -> list[Card]:
+    """Of cards with the same conventions the own one of the model, or those that drop fewest blocks, then terms."""
 
     def convention(card: Card) -> Card:
         nothing: dict[str, Any] = dict.fromkeys((*TERMS, "arm_rate"))
         return replace(card, **nothing, dropped=())
 
-    def cost(card: Card) -> tuple[int, int]:
-        return len(card.dropped), sum(getattr(card, name) == DROPPED for name in TERMS)
+    def cost(card: Card) -> tuple[bool, int, int]:
+        return card.words() != own, len(card.dropped), sum(getattr(card, name) == DROPPED for name in TERMS)
 
     best: dict[Card, Card] = {}
     for card in cards:
@@ -373,9 +367,10 @@ def find_candidates(problem: Problem, comparison: Comparison) -> Findings:
         outcomes = list(examine(problem, comparison))
         blocks = list_blocks(problem)
         right = [o.card for o in outcomes if not o.mismatches and not o.impossible]
-        right = [card for card in right if has_evidence(card, comparison, blocks)]
+        own = problem.own
+        right = [card for card in right if card.words() == own or has_evidence(card, comparison, blocks)]
         wrong = tuple(o for o in outcomes if o.mismatches or o.impossible)
-        return Findings(tuple(keep_simplest(right)), wrong)
+        return Findings(tuple(keep_simplest(right, own)), wrong)
 
 
 def find_nearest(problem: Problem, comparison: Comparison) -> list[Outcome]:

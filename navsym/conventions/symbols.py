@@ -22,15 +22,12 @@ from navsym.conventions.measuring import CORRECTED, full_column
 from navsym.conventions.mechanisation import AXES, Mechanisation, World, add_centrifugal, axes_rows
 from navsym.conventions.nilpotent import times
 from navsym.conventions.points import gradient_names, turn_about_pole
-from navsym.conventions.reading import Problem
+from navsym.conventions.reading import HIDDEN, Problem
 from navsym.core.exact import to_fmpq
-from navsym.core.rational_functions import Quotient, Ratio
+from navsym.core.rational_functions import Quotient, Ratio, cancel_fraction
 from navsym.language.expression import read_tree
 from navsym.language.printer import print_tree
 from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, Tree, build, fold_tree
-
-#: Names of quantities that the user has not given begin like this.
-HIDDEN = "unnamed_"
 
 NUMERAL = re.compile(r"-?\d+(/\d+)?")
 
@@ -42,6 +39,27 @@ GENERATORS = (
 )
 
 
+#: Places of sines and cosines of one angle each.
+CIRCLES = [(k, k + 1) for k in range(GENERATORS.index("sin"), GENERATORS.index("h"), 2)]
+
+
+def reduce_circles(poly: Any) -> Any:
+    """The normal form of a polynomial modulo sin**2 + cos**2 = 1."""
+    degrees, context = poly.degrees(), poly.context()
+    for sine, cosine in CIRCLES:
+        if degrees[sine] > 1:
+            poly = divmod(poly, context.gen(sine) ** 2 + context.gen(cosine) ** 2 - 1)[1]
+    return poly
+
+
+class Entry(Ratio):
+    """A quotient whose top is in normal form modulo sin**2 + cos**2 = 1: products of rotations stay short."""
+
+    def __init__(self, quotient: Quotient):
+        top = reduce_circles(quotient.top)
+        super().__init__(quotient if top == quotient.top else cancel_fraction(top, quotient.bottom))
+
+
 class Formulas:
     """The world of a problem in symbols, with a text for each of them."""
 
@@ -49,13 +67,10 @@ class Formulas:
         self.problem, self.card = problem.under(card), card
         self.context = fmpq_mpoly_ctx.get(GENERATORS, "lex")
         self.texts: dict[str, str] = {}
-        self.derived: dict[str, Ratio] = {}
+        self.derived: dict[str, Any] = {}
         self.world = self.build()
-        self.columns = cache(self.compute_columns)
-
-    def compute_columns(self, role: str) -> list[dict[str, list[Any]]]:
-        """Three columns of F with every sign plus."""
-        return [full_column(Mechanisation(self.card, self.world), role, k) for k in range(3)]
+        flow = Mechanisation(card, self.world)
+        self.columns = cache(lambda role: [full_column(flow, role, k) for k in range(3)])  # of F, every sign plus
 
     def block(self, row: str, column: str, sign: int = 1) -> list[list[str]]:
         """A block of F as texts, times a sign."""
@@ -75,7 +90,7 @@ class Formulas:
         poly, one = self.context.gen(GENERATORS.index(name)), self.context.constant(1)
         if text is not None and NUMERAL.fullmatch(text):
             poly = one * to_fmpq(Fraction(text))
-        return Ratio(Quotient(poly, one))
+        return Entry(Quotient(poly, one))
 
     def vector(self, name: str, quantity: str) -> list[Ratio]:
         """Three components of a quantity."""
@@ -194,12 +209,12 @@ class Formulas:
         """
         one = self.context.constant(1)
         places = {t: GENERATORS.index(name) for name, t in self.texts.items()}
-        known = {read_tree(t, None): Ratio(Quotient(self.context.gen(k), one)) for t, k in places.items()}
+        known = {read_tree(t, None): Entry(Quotient(self.context.gen(k), one)) for t, k in places.items()}
         known |= {read_tree(t, None): value for t, value in self.derived.items()}
 
         def step(part: Tree, inner: list[Any]) -> Any:
             if part.head == NUMBER:
-                return Ratio(Quotient(self.context.constant(to_fmpq(part.args[0])), one))
+                return Entry(Quotient(self.context.constant(to_fmpq(part.args[0])), one))
             if part in known:
                 return known[part]
             if part.head == "tan":
@@ -283,15 +298,9 @@ def rotation_rules() -> dict[Any, Terms]:
     return rules
 
 
-CIRCLES = (("sin", "cos"), ("east", "ahead"), ("turned", "straight"), ("wander_sin", "wander_cos"))
-
-
 def reduce_terms(poly: Any) -> Terms:
     """The normal form of a polynomial modulo the relations of a rotation and of sines and cosines."""
-    context = poly.context()
-    for pair in CIRCLES:
-        sine, cosine = (context.gen(GENERATORS.index(name)) for name in pair)
-        poly = divmod(poly, sine * sine + cosine * cosine - 1)[1]
+    poly = reduce_circles(poly)
     result: Terms = {}
     for powers, factor in poly.to_dict().items():
         exact, rest = as_fraction(factor), tuple(map(int, powers[9:]))
@@ -315,6 +324,3 @@ def normal_form(powers: tuple[int, ...]) -> Terms:
         for key, y in normal_form(lowered).items():
             result[key] = result.get(key, Fraction(0)) + x * y
     return result
-
-
-__all__ = ["HIDDEN", "Formulas", "Ratio", "reduce_terms", "rotation_rules"]

@@ -105,13 +105,13 @@ class Ratio:
     def lift(self, other: Any) -> Ratio:
         """A number as a quotient."""
         top, bottom = self.quotient
-        return other if isinstance(other, Ratio) else Ratio(Quotient(top * 0 + other, bottom * 0 + 1))
+        return other if isinstance(other, Ratio) else type(self)(Quotient(top * 0 + other, bottom * 0 + 1))
 
     def __add__(self, other: Any) -> Ratio:
-        return Ratio(add_fractions(self.quotient, self.lift(other).quotient))
+        return type(self)(add_fractions(self.quotient, self.lift(other).quotient))
 
     def __mul__(self, other: Any) -> Ratio:
-        return Ratio(multiply_fractions(self.quotient, self.lift(other).quotient))
+        return type(self)(multiply_fractions(self.quotient, self.lift(other).quotient))
 
     __radd__, __rmul__ = __add__, __mul__
 
@@ -123,7 +123,7 @@ class Ratio:
 
     def __truediv__(self, other: Any) -> Ratio:
         top, bottom = self.lift(other).quotient
-        return Ratio(multiply_fractions(self.quotient, cancel_fraction(bottom, top)))
+        return type(self)(multiply_fractions(self.quotient, cancel_fraction(bottom, top)))
 
     def __rtruediv__(self, other: Any) -> Ratio:
         return self.lift(other) / self

@@ -82,6 +82,24 @@ def test_every_card_of_a_problem_is_chosen_by_its_own_words():
         assert choose_card(problem, card.words(), "card") == card
 
 
+def test_a_card_that_leaves_a_term_out_is_chosen_by_its_own_words_beside_those_that_have_it():
+    quantities = ABROAD | {"radii": ["RN", "RE", "R3"]}
+    problem = read_problem(models.document("pvagb", {}, quantities, **models.declared(quantities)))
+    cards = [c for c in list_cards(problem, {"frame": "earth", "gravity_gradient": "normal"}) if not c.gravity_radius]
+    assert cards and all(choose_card(problem, card.words(), "card") == card for card in cards[:4])
+
+
+def test_the_card_of_a_file_is_its_first_answer_where_a_flat_earth_has_the_same_model():
+    quantities = {name: PLACED[name] for name in ("rotation", "specific_force_body", "radii", "earth_rate", "latitude")}
+    document = models.document("vag", {}, quantities, **models.declared(quantities))
+    card = replace(LEVEL, earth_rate="dropped", transport_rate="dropped", gravity_gradient="none")
+    card = replace(card, gravity_radius=None, position_error=None)
+    del document["model"], document["known"]
+    found = nav.conventions({**document, "card": card.words()})
+    assert found.complete and found.cards[0] == card
+    assert {other.earth for other in found.cards[1:]} == {"none"}
+
+
 @pytest.mark.parametrize(
     ("change", "kind", "named"),
     [

@@ -16,11 +16,12 @@ from navsym.conventions.card import CHOICES, Card
 from navsym.conventions.converting import CONVERTED, Converter, transform
 from navsym.conventions.frames import Passage, carry_motion, change_frame, restore_terms
 from navsym.conventions.mechanisation import ROLES, Mechanisation, World
-from navsym.conventions.points import BITS, draw_point
+from navsym.conventions.points import BITS, draw_point, evaluate
 from navsym.conventions.reading import read_problem
 from navsym.conventions.search import key_of_points
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
+from navsym.language.expression import read_tree
 from tests.conventions import models
 from tests.conventions.reference import AXES, STEP, Flight, exp, push, skew, stack, vec
 from tests.conventions.test_generator import EXACT, ball, full_problem, random_card, world_of
@@ -189,6 +190,39 @@ def test_from_psi_to_phi_and_back_is_the_same_model():
     converter = Converter(read_problem(document), card, found.cards[0])
     rows = [list(row) for row in back.F]
     assert converter.is_proved([(rows, document["model"]["F"])])
+
+
+QUANTITIES = {
+    "specific_force": ["u1", "u2", "u3"], "specific_force_body": models.F_B, "rotation": models.C, "latitude": "L",
+    "velocity": ["v1", "v2", "v3"], "height": "h", "radii": ["R"], "longitude": "lon", "earth_angle": "th",
+    "earth_rate": "W", "gravity": ["0", "0", "g"], "transport_rate": ["t1", "t2", "t3"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "changes", [{"frame": "earth"}, {"frame": "inertial"}, {"axes": "ENU"}, {"error": "truth - estimate"}]
+)
+def test_quantities_of_the_target_are_those_of_the_motion_there(changes):
+    card = Card("local-level", "NED", "north", earth="sphere", earth_rate="kept", transport_rate="kept")
+    target, flight = replace(card, **changes), Flight(card, 4)
+    values = {"L": flight.L, "h": flight.h, "lon": mp.mpf(0.4), "th": ANGLE, "W": flight.rate, "R": flight.a, "g": 3}
+    vectors = {"specific_force": flight.C * flight.f, "specific_force_body": flight.f, "velocity": flight.v}
+    values |= {n: x for name, v in vectors.items() for n, x in zip(QUANTITIES[name], v, strict=True)}
+    values |= {n: flight.C[i, j] for i, row in enumerate(models.C) for j, n in enumerate(row)}
+    problem = read_problem(models.document("pva", {}, QUANTITIES))
+    converter = Converter(problem, card, target)
+    flow = carry_motion(Mechanisation(card, converter.formulas.world), target)
+    found, moved = converter.quantities(flow), carry(flight, target, flight.truth())
+    expected = {"rotation": moved["C"], "velocity": moved["velocity"], "specific_force": moved["C"] * flight.f}
+    if target.frame == "earth":
+        expected["gravity"] = moved["C"] * flight.C.T * vec(0, 0, 3)
+    with precision(BITS):
+        balls = {name: ball(mp.mpf(x)) for name, x in values.items()}
+        for name, wanted in expected.items():
+            texts = [x for row in found[name] for x in (row if isinstance(row, list) else [row])]
+            for text, number_of in zip(texts, wanted, strict=True):
+                assert abs(number(evaluate(read_tree(text, None), balls)) - number_of) < 1e-30, (name, text)
+    assert ("transport_rate" in found) == (target.frame == card.frame) and found["latitude"] == ["L"]
 
 
 def test_a_wrong_conversion_is_not_granted():

@@ -9,6 +9,7 @@ import pytest
 
 import navsym as nav
 from navsym.cli.main import run
+from navsym.language.tomlfile import read_toml
 from tests.conventions import models
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "conventions.toml"
@@ -61,6 +62,7 @@ BAD = [
     ({"quantities": {"rotation": [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "2"]]}}, "domain", "quantities"),
     ({"known": {"frame": "moon"}}, "domain", "known.frame"),
     ({"known": {"frames": "earth"}}, "syntax", "known"),
+    ({"parameters": {"unnamed_c00": "real"}}, "domain", "parameters"),
 ]
 
 
@@ -78,6 +80,23 @@ def test_a_matrix_of_another_size_is_refused():
     document["model"]["F"].pop()
     with pytest.raises(nav.NavsymError, match="one per state"):
         nav.conventions(document)
+
+
+@pytest.mark.parametrize("entry", ["10**10**10", "asin(2)"])
+def test_an_entry_without_a_value_is_named(entry):
+    document = models.sola_local()
+    document["model"]["F"][3][7] = entry
+    with pytest.raises(nav.NavsymError) as caught:
+        nav.conventions(document)
+    assert entry[:5] in caught.value.where.replace("(10", "10") and "claim" not in caught.value.where
+
+
+@pytest.mark.parametrize("value", [None, 5, True, "x"])
+@pytest.mark.parametrize("table", ["roles", "quantities", "measured", "noises", "card", "known"])
+def test_a_card_file_with_something_else_for_a_table_is_refused(table, value):
+    with pytest.raises(nav.NavsymError) as caught:
+        nav.conventions({**read_toml(EXAMPLE.parent / "card.toml"), table: value})
+    assert caught.value.expected and caught.value.remedy
 
 
 def test_bad_input_with_json_has_status_two(tmp_path, capsys):
