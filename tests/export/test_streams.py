@@ -240,7 +240,7 @@ def test_rounding_is_part_of_the_radius():
         ("model_goal_guard.c", "(value / f->ratio)", "value * 1.01"),
         ("model_goal_guard.c", "state->newest + 1) < NV_N", "state->newest + 2) < NV_N"),
         ("model_goal_guard.c", "best = k;", "best = 0;"),
-        ("model_goal_guard.c", "const double sure = ", "const double sure = 0.5 * "),
+        ("model_goal_guard.c", "*sure = root", "*sure = 0.5 * root"),
     ],
 )
 def test_spoiled_code_fails_on_its_vectors(exported, tmp_path, place, old, new):
