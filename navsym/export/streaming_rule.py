@@ -19,6 +19,8 @@ SMALLEST, LARGEST = 2.0**-1022, 1.7976931348623157e308
 MOST_EXCHANGES = 60
 #: The search over balls is for a target that differs from the true one by this part of its cost.
 NEAR = 1e-11
+#: A search from the last support that leaves the bounds further apart than this part of them begins anew.
+FAR = 1e-6
 
 Row = Sequence[float]
 Matrix = list[list[float]]
@@ -98,7 +100,7 @@ class StreamingRule:
                 return INVALID, *NOTHING
         self.epochs = [(values, bounds), *self.epochs[: self.lags - 1]]
         answer = self.certify(self.exchange()) if self.keep() else None
-        if answer is None:
+        if answer is None or answer[1] - answer[2] > FAR * answer[1]:
             if not self.spread():
                 self.support[0] = (-1, 0, [])
                 return NOT_ESTIMABLE, *NOTHING

@@ -229,7 +229,7 @@ def write_exclusion(why: Exclusion) -> dict[str, Any] | None:
         known = not any(None in numbers for numbers in table)
         if known:  # rows may show less than the state: each contradiction then takes rows of weight zero
             entries = zip(why.rows, table, strict=True)
-            lines = [(fmpq_mat([factors]) * fmpq_mat(lines)).entries() for (_, factors, _), lines in entries]
+            lines = [(fmpq_mat([factors]) * fmpq_mat(own)).entries() for (_, factors, _), own in entries]  # type: ignore[arg-type]
             columns, contradictions = pivot_columns(lines), [complete(places, lines) for places in contradictions]
         for (members, factors, sigma), numbers in zip(why.rows, table, strict=True):
             texts = [flow.row_text(row.j, row.t, why.now) for row in members] if not known else numbers
