@@ -24,7 +24,7 @@ from navsym.export.functions import RefusedError
 from navsym.export.languages.writer import environment
 from navsym.export.package import Exported, Order, license_id, manifest, write_verified
 from navsym.export.roundtrip import MANIFEST, sealed
-from navsym.export.streaming_rule import MOST_EXCHANGES, StreamingRule
+from navsym.export.streaming_rule import MOST_EXCHANGES, NEAR, Group, StreamingRule
 from navsym.guaranteed.streaming.flow import BITS, Flow
 from navsym.guaranteed.streaming.guard import Guard
 from navsym.guaranteed.streaming.numbers import to_float, write_rational
@@ -72,6 +72,23 @@ class Rule:
         with precision(BITS):
             return Flow(self.guard.model.read(), self.guard.target, "export")
 
+    @cached_property
+    def groups(self) -> list[Group]:
+        """Measurements that are bounded together, and those by themselves; see StreamingRule."""
+        blocks = {block.members[0]: block for block in self.flow.blocks}
+        inside = {j for block in self.flow.blocks for j in block.members[1:]}
+        found: list[Group] = []
+        for j in sorted(set(range(len(self.flow.names))) - inside):
+            block = blocks.get(j)
+            if block is None or block.norm == "l1":
+                found.append((block.members if block else (j,), (), 1.0))
+                continue
+            inverse, size = block.shape.inv(), range(len(block.members))
+            with precision(BITS):
+                reach = upward(to_fraction(max(arb(inverse[k, k]).sqrt().upper() for k in size)))
+            found.append((block.members, [[to_float(block.shape[i, k]) for k in size] for i in size], reach))
+        return found
+
     @property
     def pace(self) -> fmpq:
         """The time between epochs."""
@@ -113,9 +130,16 @@ class Rule:
             bounds = [self.flow.sigma(j, fmpq(0))[0] for j in range(len(self.flow.names))]
             return [upward(to_fraction(s.upper())) for s in bounds]
 
+    @property
+    def twin(self) -> StreamingRule:
+        """The rule in Python."""
+        table, functional, tiny = self.numbers
+        return StreamingRule(table, functional, self.sigma, tiny, self.guard.length or 0, self.groups)
+
     def words(self, license_: str, gap: str = "") -> dict[str, Any]:
         """What the templates are filled with."""
         table, functional, tiny = self.numbers
+        wide, blank = self.twin.wide, [0] * self.twin.wide
         return {
             "license": license_,
             "name": self.name,
@@ -128,7 +152,18 @@ class Rule:
             "law": LAWS[self.guard.bound],
             "names": [plain(name) for name in self.flow.names],
             "size": self.flow.size,
-            "most": MOST_EXCHANGES,
+            "wide": wide,
+            "near": repr(self.twin.near),
+            "perturbed": repr(NEAR),
+            "most": MOST_EXCHANGES * wide**2,
+            "members": [[*members, *blank][:wide] for members, *_ in self.groups],
+            "counts": [len(members) for members, *_ in self.groups],
+            "shapes": [
+                [[*map(repr, row), *blank][:wide] for row in [*shape, *([blank] * wide)][:wide]]
+                for _, shape, _ in self.groups
+            ],
+            "balls": [int(bool(shape)) for _, shape, _ in self.groups],
+            "reaches": [repr(reach) for *_, reach in self.groups],
             "table": [[repr(x) for x in row] for row in table],
             "functional": [repr(x) for x in functional],
             "sigma": [repr(x) for x in self.sigma],
@@ -172,12 +207,15 @@ def draw_stream(rule: Rule, count: int) -> list[dict[str, Any]]:
     with precision(BITS):
         size = len(flow.functional)
         middle = arb_mat([[arb(generator.randint(-3, 3))] for _ in range(size)])
-        rows = []
+        rows, share = [], [1.0] * len(flow.names)
+        for members, _, reach in rule.groups:
+            for j in members:
+                share[j] = 1.0 / (len(members) * reach)  # such errors keep the bound that they have together
         for k in range(total):
             state = (flow.systems[0] * arb(step * (k - total // 2))).exp() * middle
             z: list[float | None] = []
             sigma = [s * generator.choice((1.0, 1.0, 1.0, 0.5, 4.0)) for s in rule.sigma]
-            for j, bound in enumerate(sigma):
+            for j, bound in enumerate(s * p for s, p in zip(sigma, share, strict=True)):
                 true = (flow.row(j, fmpq(0)) * state)[0, 0]
                 noisy = float((true + arb(bound) * arb(fmpq(generator.randint(-1000, 1000), 1000))).mid())
                 kept = abs(arb(noisy) - true) <= arb(bound) and generator.random() < 0.8
@@ -194,10 +232,9 @@ def expect(rule: Rule, rows: list[dict[str, Any]]) -> float:
 
     Raises RefusedError where the twin has no bounds, or where they are far apart.
     """
-    table, functional, tiny = rule.numbers
-    twin = StreamingRule(table, functional, rule.sigma, tiny, rule.guard.length or 0)
+    twin = rule.twin
     guard = Guard(
-        rule.guard.model, rule.guard.target, "variance", memory=rule.guard.length, step=write_rational(rule.pace)
+        rule.guard.model, rule.guard.target, rule.guard.bound, memory=rule.guard.length, step=write_rational(rule.pace)
     )
     widest = 0.0
     for row in rows:
@@ -224,13 +261,14 @@ def write_twin(rule: Rule, license_: str) -> str:
     words = rule.words(license_)
     rows = "\n".join(f"    ({', '.join(row)},)," for row in words["table"])
     functional, sigma = (", ".join(words[key]) for key in ("functional", "sigma"))
+    groups = "".join(f"    {group!r},\n" for group in rule.groups)
     about = f"{words['about']} from the last {words['epochs']} epochs, each {words['step']} after the one before"
     text = Path(streaming_rule.__file__).read_text(encoding="utf-8")
     return (
         f"# {license_}\n# {about}\n# measurements: {', '.join(words['names'])}\n{text}"
-        f"\n\nTABLE = (\n{rows}\n)\n\n\ndef new_guard() -> StreamingRule:\n"
+        f"\n\nTABLE = (\n{rows}\n)\nGROUPS = (\n{groups})\n\n\ndef new_guard() -> StreamingRule:\n"
         f'    """A guard with an empty memory."""\n'
-        f"    return StreamingRule(TABLE, ({functional},), ({sigma},), {words['tiny']}, {words['epochs']})\n"
+        f"    return StreamingRule(TABLE, ({functional},), ({sigma},), {words['tiny']}, {words['epochs']}, GROUPS)\n"
     )
 
 

@@ -231,6 +231,7 @@ def test_a_target_that_is_seen_beside_an_unseen_state_has_the_range_of_all_sets_
             assert estimate.value == pytest.approx((low + high) / 2, abs=1e-9)
             assert float(estimate.radius.upper) == pytest.approx((high - low) / 2, abs=1e-9)
             assert set(estimate.excluded) == set(map(float, excluded))
+            assert (estimate.certificate is not None) == bool(excluded) and (not excluded or estimate.check().accepted)
 
 
 def test_a_state_with_measurements_that_contradict_each_other_gives_no_estimate():

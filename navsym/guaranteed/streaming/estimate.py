@@ -14,7 +14,7 @@ from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.exact import decimal, lower_end, to_fmpq, upper_end
 from navsym.core.numbers import Number
-from navsym.guaranteed.streaming.flow import BITS, Flow
+from navsym.guaranteed.streaming.flow import BITS, Flow, pivot_columns
 from navsym.guaranteed.streaming.memory import Row, group_rows, list_cones
 from navsym.guaranteed.streaming.numbers import NUMBER, middle, read_exact, to_float, write_rational
 from navsym.language.names import quote
@@ -76,7 +76,7 @@ class Exclusion:
     """Why no set of at most ``most`` epochs explains the data without those excluded.
 
     rows           : measurements that contradict each other: those of one epoch with factors, and the bound of the sum
-    contradictions : places among them: m independent rows, and one that depends on these
+    contradictions : places among them: independent rows, and one that depends on these
     excluded       : times of the epochs
     """
 
@@ -222,14 +222,16 @@ def enclose_radius(low: arb, high: arb) -> Number:
 
 
 def write_exclusion(why: Exclusion) -> dict[str, Any] | None:
-    """The certificate of kind exclusion; None where a regressor has no formula, or rows do not determine the state."""
-    flow, rows = why.flow, []
-    if any(len(places) != len(why.columns) + 1 for places in why.contradictions):
-        return None
+    """The certificate of kind exclusion; None where a regressor has no formula."""
+    flow, rows, columns, contradictions = why.flow, [], why.columns, why.contradictions
     with precision(BITS):
-        exact = [[flow.exact_row(row.j, row.t, why.now) for row in members] for members, *_ in why.rows]
-        known = not any(None in numbers for numbers in exact)
-        for (members, factors, sigma), numbers in zip(why.rows, exact, strict=True):
+        table = [[flow.exact_row(row.j, row.t, why.now) for row in members] for members, *_ in why.rows]
+        known = not any(None in numbers for numbers in table)
+        if known:  # rows may show less than the state: each contradiction then takes rows of weight zero
+            entries = zip(why.rows, table, strict=True)
+            lines = [(fmpq_mat([factors]) * fmpq_mat(own)).entries() for (_, factors, _), own in entries]  # type: ignore[arg-type]
+            columns, contradictions = pivot_columns(lines), [complete(places, lines) for places in contradictions]
+        for (members, factors, sigma), numbers in zip(why.rows, table, strict=True):
             texts = [flow.row_text(row.j, row.t, why.now) for row in members] if not known else numbers
             if None in texts:
                 return None
@@ -237,7 +239,7 @@ def write_exclusion(why: Exclusion) -> dict[str, Any] | None:
             rows.append(
                 {
                     "epoch": write_rational(members[0].t),
-                    "H": [combine_entries(factors, [line[k] for line in texts]) for k in why.columns],  # type: ignore[index]
+                    "H": [combine_entries(factors, [line[k] for line in texts]) for k in columns],  # type: ignore[index]
                     "z": combine_entries(factors, [row.z for row in members]),
                     "sigma": upper_end(sigma, DIGITS) if own is None else write_rational(own),
                 }
@@ -247,10 +249,16 @@ def write_exclusion(why: Exclusion) -> dict[str, Any] | None:
         "rows": rows,
         "most": why.most,
         "excluded": [write_rational(t) for t in why.excluded],
-        "contradictions": [list(places) for places in why.contradictions],
+        "contradictions": [list(places) for places in contradictions],
         "bits": BITS + 64,
-        "cells": min(len(why.excluded) * len(why.columns) ** why.most + 1000, 20_000),
+        "cells": min(len(why.excluded) * len(columns) ** why.most + 1000, 20_000),
     }
+
+
+def complete(places: Sequence[int], lines: Sequence[Sequence[fmpq]]) -> list[int]:
+    """Independent rows with others that make them a basis of all rows, and the last row."""
+    order = [*places[:-1], *range(len(lines))]
+    return [order[k] for k in pivot_columns(list(zip(*(lines[i] for i in order), strict=True)))] + [places[-1]]
 
 
 def combine_entries(factors: Sequence[fmpq], entries: Sequence[Any]) -> str:

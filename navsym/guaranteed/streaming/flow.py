@@ -72,7 +72,7 @@ class Flow:
             self.h = [m.h for m in contents.measurements]
             self.sigmas = tuple(m.sigma for m in contents.measurements)
         self.names = name_measurements(contents)
-        self.blocks = list_blocks(contents, self.names, where)
+        self.blocks = list_blocks(contents, self.names)
         self.need_values(where)
         n = len(self.functional)
         self.columns, self.size = list(range(n)), n
@@ -351,13 +351,9 @@ def name_measurements(contents: ModelFile | BasisFile) -> tuple[str, ...]:
     return tuple(m.name for m in contents.measurements)
 
 
-def list_blocks(contents: ModelFile | BasisFile, names: Sequence[str], where: str) -> list[Together]:
-    """Measurements of a model that are bounded together; bounds of each alone are left out. Raises DomainError."""
+def list_blocks(contents: ModelFile | BasisFile, names: Sequence[str]) -> list[Together]:
+    """Measurements of a model that are bounded together; bounds of each alone are left out."""
     found = [b for b in getattr(contents, "blocks", ()) if b.norm != "linf" and len(b.names) > 1]
-    if found and where != "Guard":
-        message = f"expected measurements that are bounded one by one; got a [[block]] with {quote(found[0].norm)}"
-        why = "combinations of these join the search without a bound of their number"
-        raise DomainError(f"{message}: {why}; drop it, or ask nav.Guard", where=f"{where}: model")
     shapes = [fmpq_mat([[to_fmpq(e) for e in row] for row in b.shape.tolist()]) for b in found]
     return [Together(tuple(map(names.index, b.names)), b.norm, shape) for b, shape in zip(found, shapes, strict=True)]
 
