@@ -6,7 +6,7 @@ from navsym.claims import PROVED, Bound, Equation, Finding, claim, fact, state
 from navsym.language.expression import to_text
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import numerators
-from navsym.observability.linear import linear_relation, pivot_rows
+from navsym.observability.linear import linear_relation, triangular_form
 from navsym.observability.ring import Ring
 from navsym.observability.splits import companion
 from navsym_papers.joint_correction import section1_systems
@@ -50,7 +50,7 @@ def rank_of(rows: sp.MatrixBase) -> int:
     """Exact generic rank: pivots of a fraction-free elimination."""
     ring = Ring.of(rows)
     entries, _ = numerators([rows[r, :] for r in range(rows.rows)], ring)
-    return len(pivot_rows(entries, ring).rows)
+    return len(triangular_form(entries, ring).rows)
 
 
 def characteristic(matrix: sp.MatrixBase) -> list[sp.Expr]:
