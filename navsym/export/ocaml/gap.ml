@@ -306,7 +306,8 @@ let check_piece problem piece =
     in
     List.iter check_panel rows
   in
-  let whole = { low = of_int (-1); length = of_int 2; start = Z.zero; level = 0 } in
+  let ends = if Q.sign piece.half > 0 then 1 else 0 in (* a piece that is a point has s = 0 *)
+  let whole = { low = of_int (-ends); length = of_int (2 * ends); start = Z.zero; level = 0 } in
   (* a cell fails for one reason at a time: where no half of it can do better, the reason is that of the whole *)
   let attempt cell = try settled cell; true with Refused _ | No_value when Q.sign piece.half > 0 -> false in
   bisect ~cells:40 ~names:[ along ] ~settled:attempt (Map_of_names.singleton along whole)

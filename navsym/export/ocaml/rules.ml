@@ -118,7 +118,7 @@ and prove_side goal value =
   match rule_keys value [ "sign"; "proof" ] with
   | [ sign; proof ] ->
       require goal [ Unequal ];
-      let sign = if get_integer "sign" (-1) 1 sign = 1 then 1 else -1 in
+      let sign = get_sign "sign" sign in
       prove (remember goal (signed sign goal.tree) Above) proof
   | _ -> assert false
 
