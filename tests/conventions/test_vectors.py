@@ -226,9 +226,16 @@ SMALL = {
 
 
 def test_a_card_that_is_neither_proved_nor_excluded_is_none_of_the_cards():
-    tiny = "[[f[1]/10**300, 0, 0], [0, 0, 0], [0, 0, 0]]"  # below every ball
-    answer = nav.conventions({**SMALL, "model": {**SMALL["model"], "F": [["0", "-skew(f)"], ["0", tiny]]}})
+    near = "-skew(f)*(1 + 1/10**300)"  # closer than every ball
+    answer = nav.conventions({**SMALL, "model": {**SMALL["model"], "F": [["0", near], ["0", "0"]]}})
     assert not answer.cards and not answer.complete and answer.undecided and not answer.conflicts
+
+
+def test_an_entry_that_should_be_zero_is_seen_however_small_it_is():
+    tiny = "[[f[1]/10**300, 0, 0], [0, 0, 0], [0, 0, 0]]"
+    answer = nav.conventions({**SMALL, "model": {**SMALL["model"], "F": [["0", "-skew(f)"], ["0", tiny]]}})
+    (conflict,) = answer.conflicts
+    assert not answer.cards and answer.complete and conflict.status == "PROVED" and conflict.entries == ((4, 4),)
 
 
 REFUSED = [

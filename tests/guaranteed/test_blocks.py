@@ -468,7 +468,6 @@ def test_what_is_no_block_of_a_model_is_an_error_of_one_line(block):
     [
         lambda model: nav.Guard(plane("l1"), "x", "variance"),
         lambda model: nav.design(model, "x", times=range(3), budget=3),
-        lambda model: nav.export(nav.Guard(model, "x", memory=4, step=1), to=["c"], out="nowhere"),
         lambda model: nav.solve(nav.Model(**PLANE, interval="1", blocks=[{"measurements": "z1 z2"}]), "x"),
         lambda model: nav.phases(
             nav.Model(**PLANE, interval="T", T=("1", "2"), blocks=[{"measurements": "z1 z2"}]), "x"

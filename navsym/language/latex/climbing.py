@@ -398,7 +398,7 @@ class Climber(ClusterReader):
         if self.look().isdigit():
             number = self.numeral()
             self.open_braces()
-            following = self.look()
+            following = self.look() if number.head != "frac" else ""  # degrees end the argument
             named = following[:1].isalpha() or following[1:] in GREEK or following == r"\pi"
             if self.is_end() or following in MARKS or not (named or self.has_arguments(following)):
                 return Part("call", (name, power, False, number), at)

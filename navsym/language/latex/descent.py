@@ -273,7 +273,7 @@ class Descent(SymbolReader):
         if following is not None and following.kind == "sym" and following.value.isdigit():
             factors = [self.number()]
             noad_behind = self.noad
-            if self.ends() or noad_behind is None or not self.starts_name(noad_behind):
+            if self.ends() or noad_behind is None or factors[0].head == "frac" or not self.starts_name(noad_behind):
                 return Part("call", (name, power, False, factors[0]), noad.at)
             factors.append("")
         if following is None or self.ends():

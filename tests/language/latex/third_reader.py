@@ -444,6 +444,7 @@ class Third:
             if (
                 digits
                 and behind < len(units)
+                and not (units[behind - 1].sup and show(units[behind - 1].sup) == r"\circ")
                 and (
                     self.is_name(units[behind]) or units[behind].base == r"\pi" or isinstance(units[behind].base, tuple)
                 )
