@@ -50,7 +50,7 @@ def fill_model(document: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     if "F" in model:
         return {**rest, "known": {**known, **words}}
     if words.get("azimuth") == NORTH and "wander_angle" in as_table(rest.get("quantities", {}), where):
-        rest["known"] = {"azimuth": NORTH}  # the angle is for conversions
+        rest["known"] = {**known, "azimuth": NORTH}  # the angle is for conversions
     problem = read_problem({**rest, "model": empty_model(rest, model)}, where)
     card = choose_card(problem, words, place)
     formulas = Formulas(problem, plain_card(card))

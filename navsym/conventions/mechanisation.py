@@ -375,10 +375,8 @@ class Mechanisation:
         role, component : the state whose error is eps
         """
         flow, error = self, unit_error(role, component)
-        plain = (
-            self.card.attitude_error == "frame" and self.card.vector_error != "body"
-        )  # then C stands beside C' alone
-        if plain and not role.endswith("_scale"):  # which belongs to an axis of the body
+        plain = self.card.attitude_error == "frame" and self.card.vector_error != "body"
+        if plain and not role.endswith("_scale"):  # C stands beside C' alone; a scale belongs to an axis of the body
             flow, error = self.turn_body(), self.turn_errors([constant(row) for row in self.world.C], error)
         truth = flow.truth()
         estimate = flow.estimate(truth, error)

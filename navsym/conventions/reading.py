@@ -260,9 +260,7 @@ def read_quantities(value: Any, names: Mapping[str, Any], where: str) -> dict[st
     for name, items in table.items():
         place, sizes = join_place(where, name), QUANTITIES[name]
         cells = list_cells(items, place)
-        rows = (
-            [isinstance(row, list) and len(row) for row in items] if name == "rotation" and len(cells) == 9 else [3] * 3
-        )
+        rows = [isinstance(row, list) and len(row) for row in items] if len(cells) == 9 else [3, 3, 3]
         if len(cells) not in sizes or rows != [3, 3, 3]:
             wanted = f"{' or '.join(map(str, sizes))} components"
             wanted = "three rows of three entries" if name == "rotation" else wanted

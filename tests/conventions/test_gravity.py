@@ -11,6 +11,7 @@ import pytest
 import sympy as sp
 
 import navsym as nav
+from navsym.conventions.generating import fill_model
 from navsym.conventions.measuring import full_column
 from navsym.conventions.mechanisation import ROLES, Mechanisation
 from navsym.conventions.points import BITS, draw_point, evaluate
@@ -174,6 +175,12 @@ def test_a_named_wander_angle_serves_axes_to_the_north_for_conversions(azimuth):
     assert (there.source.azimuth, there.target.azimuth) == (azimuth, other)
     assert there.proved and not there.neglected_entries() and nav.check(there).accepted
     assert attitude_rows(there) == rows_of_wander(-1 if azimuth == "wander" else 1)
+
+
+def test_what_is_known_beside_a_card_to_the_north_stays_known_with_a_wander_angle():
+    document = document_of({**LEVEL, "azimuth": "north"}, radii="R", earth_rate="W", wander_angle="longitude")
+    document["known"] = {"error": "estimate - truth"}
+    assert fill_model(document)["known"] == {"error": "estimate - truth", "azimuth": "north"}
 
 
 def attitude_rows(conversion):
