@@ -365,9 +365,10 @@ class Asking:
         def again(case: Case) -> tuple[Cell, Cell]:
             asking = Asking(self.question, {**self.cases, source.name: case}, ())
             if is_direct:
-                cells = cells_of(asking.output(source, name, self.question.where))
-                spot = number if len(listed) == 1 else 0
-                return (cells[spot] if spot < len(cells) else Unread(0, "another shape")), expected
+                before, now = (a.output(source, name, self.question.where) for a in (self, asking))
+                if getattr(before, "shape", ()) != getattr(now, "shape", ()):
+                    return Unread(0, "another shape"), expected
+                return cells_of(now)[number if len(listed) == 1 else 0], expected
             entries: list[Entry] = getattr(asking, f"ask_{self.question.kind}")()
             entry = entries[number] if number < len(entries) else None
             return (entry.code, entry.expected) if entry else (Unread(0, "another shape"), expected)
@@ -413,9 +414,11 @@ class Asking:
         """A matrix of the code before the code has changed it."""
         source, name = self.split(self.question.keys[key], self.place(key)) or (None, "")
         variable = self.cases[source.name].variables.get(name) if source is not None else None
-        if source is None or variable is None or not variable.is_input:
+        if source is None or variable is None:
             return self.matrix(key)
-        size = variable.shape or (shape[1], shape[1])
+        if not variable.is_input and name not in {argument.name for argument in source.function.arguments}:
+            return self.matrix(key)
+        size = source.shapes.get(name) or variable.shape or (shape[1], shape[1])
         return make_array(size, lambda *p: Scalar(source.symbol(spell_entry(source.unit, name, p))))
 
     def ask_symmetric(self) -> list[Entry]:

@@ -8,7 +8,7 @@ import random
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -59,6 +59,8 @@ class Formula:
 
     outside : its text when the language of files cannot say it; it is then compared as text only
     noted   : divisors, radicands and arguments of logarithms of its text, also where the algebra has cancelled them
+    right   : for the left side of a claim, its right side
+    stated  : for a claim, its relation and its tolerance
     """
 
     name: str
@@ -66,6 +68,8 @@ class Formula:
     box: Mapping[sp.Symbol, tuple[Any, Any]]
     outside: str = ""
     noted: Noted = ((), (), ())
+    right: sp.Expr | None = None
+    stated: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,7 +207,22 @@ def compare_formulas(old: Mapping[str, Formula], new: Mapping[str, Formula]) -> 
     """What came of every name on either side; raises EmptyError when there is nothing to compare."""
     if not old and not new:
         raise EmptyError("expected formulas; got none on either side; name files that hold some")
-    return Differences(tuple(compare_pair(name, old.get(name), new.get(name)) for name in dict.fromkeys([*old, *new])))
+    names = dict.fromkeys([*old, *new])
+    return Differences(tuple(compare_claims(name, old.get(name), new.get(name)) for name in names))
+
+
+def compare_claims(name: str, old: Formula | None, new: Formula | None) -> Difference:
+    """What came of two formulas of one name; of two claims, of both sides, relation and tolerance."""
+    found = compare_pair(name, old, new)
+    if old is None or new is None or found.status != "EQUAL":
+        return found
+    if old.right is not None and new.right is not None and old.right != in_terms_of(new.right, old):
+        right = compare_pair(name, replace(old, expression=old.right), replace(new, expression=new.right))
+        if right.status != "EQUAL":
+            return replace(right, why=f"right side: {right.why}")
+    if old.stated != new.stated:
+        return Difference(name, "DIFFERENT", f"{' '.join(old.stated)} has become {' '.join(new.stated)}")
+    return found
 
 
 def compare_pair(name: str, old: Formula | None, new: Formula | None) -> Difference:
@@ -350,7 +369,7 @@ def noted_in(text: Any) -> Noted:
 
 
 def of_file(path: Path) -> dict[str, Formula]:
-    """Left sides of a claim file, or the entries of a model's F and H."""
+    """Claims of a claim file, or the entries of a model's F and H."""
     from navsym.language.tomlfile import read_toml
 
     document = read_toml(path)
@@ -361,12 +380,17 @@ def of_file(path: Path) -> dict[str, Formula]:
 
 
 def entries_by_place(claim: FileClaim) -> dict[str, Formula]:
-    """The left side of a claim, or its entries by their places."""
+    """Both sides of a claim, or of its entries by their places."""
     name, side = claim.id, claim.left
-    found = {name: side}
+    found = {name: (side, claim.right)}
     if isinstance(side, sp.MatrixBase):
-        found = {f"{name}[{i + 1},{j + 1}]": side[i, j] for i in range(side.rows) for j in range(side.cols)}
-    return {label: Formula(label, e, claim.box, noted=noted_in(claim)) for label, e in found.items()}
+        places = [(i, j) for i in range(side.rows) for j in range(side.cols)]
+        found = {f"{name}[{i + 1},{j + 1}]": (side[i, j], claim.right[i, j]) for i, j in places}
+    stated = (claim.relation, *([] if claim.tolerance is None else [f"within {claim.tolerance}"]))
+    return {
+        label: Formula(label, left, claim.box, noted=noted_in(claim), right=right, stated=stated)
+        for label, (left, right) in found.items()
+    }
 
 
 def of_model(path: Path) -> dict[str, Formula]:

@@ -194,3 +194,31 @@ def test_a_lower_half_may_be_left_alone_but_not_be_unread(tmp_path):
     for lower, status in (("", nav.PROVED), ("N[1][0] = abs(N[0][1]);", nav.OPEN)):
         spec = write(tmp_path, question, SHAPES.replace("LOWER", lower))
         assert nav.audit(spec)["q"].status == status
+
+
+OVERWRITTEN = {
+    "py": "def f(P, F, Q):\n    P = F @ P @ F.T + Q\n    return P\n",
+    "m": "function P = f(P, F, Q)\nP = F*P*F' + Q;\nend\n",
+}
+
+
+@pytest.mark.parametrize("language", OVERWRITTEN)
+def test_a_covariance_that_is_overwritten_whole_starts_with_what_the_caller_gave(language, tmp_path):
+    head = f'[[code]]\nname = "c"\nfile = "code.{language}"\nfunction = "f"\n[code.symbols]\n'
+    sizes = "".join(f"{name} = {{ matrix = [2, 2] }}\n" for name in "PFQ")
+    question = '[[question]]\nname = "q"\nkind = "covariance"\nP = "c:P"\nF = "c:F"\nQ = "c:Q"\nis = "c:P"\n'
+    (tmp_path / "spec.toml").write_text(head + sizes + question)
+    for spoil, status in (("P", nav.PROVED), ("Q", nav.REFUTED)):
+        code = OVERWRITTEN[language]
+        (tmp_path / f"code.{language}").write_text(code.replace("F @ P", f"F @ {spoil}").replace("F*P", f"F*{spoil}"))
+        assert nav.audit(tmp_path / "spec.toml")["q"].status == status
+
+
+def test_no_mend_changes_the_shape_of_a_matrix(tmp_path):
+    code = "def f(x, dt):\n    F = np.eye(4)\n    F[2, 3] = dt\n    xn = x * 1\n    return xn, F\n"
+    (tmp_path / "code.py").write_text(f"import numpy as np\n{code}")
+    spec = '[[code]]\nname = "c"\nfile = "code.py"\nfunction = "f"\n[code.symbols]\nx = { vector = 4 }\n'
+    question = '[[question]]\nname = "q"\nkind = "jacobian"\nof = "c:xn"\nby = "c:x"\nis = "c:F"\n'
+    (tmp_path / "spec.toml").write_text(spec + question)
+    (entry,) = (e for e in nav.audit(tmp_path / "spec.toml")["q"].entries if e.status == nav.REFUTED)
+    assert "eye" not in (entry.suggestion or "") and entry.line == 4

@@ -40,6 +40,22 @@ def test_claim_files_are_compared_claim_by_claim(capsys, tmp_path: Path) -> None
     assert {r["name"]: r["status"] for r in found["differences"]} == {"one": "EQUAL", "two": "ONLY-NEW"}
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "status"),
+    [
+        ('right = "2*sin(a)*cos(a)"', 'right = "2*sin(a)*cos(a)**2"', "DIFFERENT"),
+        ('right = "2*sin(a)*cos(a)"', 'right = "(sin(a) + cos(a))**2 - 1"', "EQUAL"),
+        ('right = "2"\nrelation = "<="', 'right = "2"\nrelation = ">="', "DIFFERENT"),
+        ('right = "2"\ntolerance = "3"', 'right = "2"\ntolerance = "1"', "DIFFERENT"),
+    ],
+)
+def test_two_claims_are_equal_only_with_their_right_sides_and_relations(tmp_path: Path, old, new, status) -> None:
+    for name, text in (("old", old), ("new", new)):
+        claim = f'[symbols]\na = "real"\n[[claim]]\nid = "c"\nleft = "sin(2*a)"\n{text}\n'
+        (tmp_path / f"{name}.toml").write_text(claim)
+    assert nav.diff(tmp_path / "old.toml", tmp_path / "new.toml")[0].status == status
+
+
 def test_exports_are_compared_by_their_formulas(capsys, tmp_path: Path) -> None:
     for name in ("a", "b"):
         words = ["export", f"weight=guaranteed_velocity:4.12.Phi3{'1' if name == 'a' else '2'}", "--no-run"]
