@@ -11,6 +11,7 @@ from navsym.cli import audit as audit_verb
 from navsym.cli import prove as prove_verb
 from navsym.cli.diff import read_range
 from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError
+from navsym.language.names import quote
 
 if TYPE_CHECKING:
     from navsym.audit.answer import Audit
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 FUNCTION = re.compile(r"\s+--function\s+")
 RANGE = re.compile(r"\s+--range\s+")
+OPTION = re.compile(r"[<>=].*\s(--[A-Za-z]\S*)")
 #: A cell with a line that begins like this is a claim file; any other has a formula on each line.
 TABLE = re.compile(r"^\s*\[+\s*(symbols|claim|rates)\b", re.M)
 
@@ -38,9 +40,12 @@ def register_magics(shell: Any) -> None:
 
     def claims(line: str, cell: str) -> Verdicts:
         """Decide a cell of TOML, of a formula a line, or of LaTeX; ``%%claims name`` keeps the verdicts by a name."""
+        name = line.strip()
+        if name and not name.isidentifier():
+            raise UsageError(f"syntax: %%claims: expected nothing or one name; got {quote(name)}; correct it")
         verdicts = refuse_shortly(prove_cell, cell)
-        if line.strip():
-            shell.push({line.strip(): verdicts})
+        if name:
+            shell.push({name: verdicts})
         return verdicts
 
     def audit(line: str) -> Audit:
@@ -59,6 +64,9 @@ def prove_line(line: str) -> Verdict:
     import navsym as nav
 
     formula, *texts = RANGE.split(line.strip())
+    if option := OPTION.search(formula):
+        got = quote(option[1])
+        raise ExpressionSyntaxError(f"expected --range NAME=LOWER,UPPER; got {got}; leave it out", where="prove")
     ranges: dict[str, Any] = dict(map(read_range, texts))
     return nav.prove(formula, **ranges)
 

@@ -132,6 +132,8 @@ class Differences(Answers[Difference]):
 def diff(old: Any, new: Any, *, box: Mapping[str, Any] | None = None, **ranges: Any) -> Differences:
     """Two formulas, claim files, models, exported folders or ledgers compared exactly, formula by formula.
 
+    Claims are EQUAL where both sides, the relation and the tolerance are.
+
     old, new : formulas (text, sympy, or the id of a claim for what it prints), paths of claim or model files (TOML)
                or of ledgers (JSON), or exported folders; both of one kind
     box      : ranges of symbols, ``{"T": ("0", "2*pi")}``; the same as ``T=("0", "2*pi")``. Others are real

@@ -49,6 +49,12 @@ def test_a_cell_of_claims_is_decided_and_kept_by_its_name(shell):
     assert prove_cell(CELL).document() == verdicts.document()
 
 
+@pytest.mark.parametrize("line", ["--range x=0,1", "not a name"])
+def test_a_cell_of_claims_refuses_what_is_no_name(shell, line):
+    with pytest.raises(UsageError, match="expected nothing or one name"):
+        shell.run_cell_magic("claims", line, "x >= 0")
+
+
 def test_a_shell_without_pages_shows_what_is_wrong_and_where(shell):
     """The text of an answer names the refuted line with its point, and the entry of the code with its mend."""
 
@@ -73,7 +79,14 @@ def test_a_cell_of_formulas_as_printed_is_decided_line_by_line(shell):
 
 
 @pytest.mark.parametrize(
-    ("line", "hint"), [("", "expected a relation"), ("x = x --range x", "LOWER,UPPER"), ("x", "relation")]
+    ("line", "hint"),
+    [
+        ("", "expected a relation"),
+        ("x = x --range x", "LOWER,UPPER"),
+        ("x", "relation"),
+        ("x**2 >= 0 --json", "got '--json'"),
+        ("x <= 1 --rnge x=0,1", "got '--rnge'"),
+    ],
 )
 def test_a_wrong_line_is_an_error_without_a_traceback(shell, line, hint):
     with pytest.raises(UsageError, match=hint):

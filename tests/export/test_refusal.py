@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import random
+import re
 from pathlib import Path
 
 import pytest
@@ -249,6 +250,18 @@ def test_a_function_is_not_called_like_one_that_a_language_has() -> None:
     for name in ("sum", "main", "printf", "test_vectors", "size", "value", "AUX", "step"):
         assert function_name(name) == f"{name}_"
     assert function_name("drift") == "drift" and function_name("navsym_numbers") == "navsym_numbers_"
+
+
+def test_no_function_bears_the_name_of_a_variable_of_its_test_program(tmp_path: Path) -> None:
+    nav.export("guaranteed_velocity:4.12.Phi31", to=["c", "cpp", "fortran", "rust"], out=tmp_path, vectors=4, run=False)
+    programs = "c/test_main.c", "cpp/test_main.cpp", "rust/test_main.rs"
+    texts = [(tmp_path / name).read_text() for name in programs]
+    found = {name for text in texts for name in re.findall(r"\b(?:let(?: mut)?|int|double|for) (\w+)", text)}
+    lists = re.findall(r":: (.*)", (tmp_path / "fortran" / "test_vectors.f90").read_text())
+    found |= {name for line in lists for name in re.findall(r"[a-z_]\w*", re.sub(r"\(.*?\)|=.*", "", line))}
+    names = {name for name in found if not name.startswith("test_guaranteed_velocity")} - {"only"}
+    assert {"v", "k", "line", "worst", "lower"} <= names
+    assert [name for name in sorted(names) if function_name(name) == name] == []
 
 
 def test_a_function_is_not_called_like_one_of_its_arguments() -> None:
