@@ -330,6 +330,14 @@ class Follower:
             return [*lines, "lra."]
         if rule == "product":
             return self.split(proof["factors"], checker.list_factors(term), term, relation)
+        if squared := complete_square(term) if rule == "cones" else None:
+            scale, root, rest = squared
+            factors = checker.list_factors(rest)
+            entries = [None if factor[0] == "^" else (1, proof) for factor in factors]
+            text = write_term(root, self.names)
+            lines = [f"assert ({self.say(rest, relation)}).", "{", *self.split(entries, factors, rest, relation), "}"]
+            lines += self.change(("*", scale, term), ("+", ("^", root, checker.number(2)), rest), ["ring."])[:-1]
+            return [*lines, f"assert (Q := pow2_ge_0 ({text})). lra."]
         return prove_bound(self.box, self.names, rule == "balls")
 
     def split(self, entries: Iterable[Any], factors: list[Term], term: Term, relation: str) -> list[str]:
@@ -347,6 +355,31 @@ class Follower:
         if signed != factors and relation != "!=":
             lines += self.change(term, ("*", *signed), ["first [ solve [unfold Rdiv; ring] | field; nonzero ]."])
         return [*lines, "first [ solve [ positive ] | solve [ nonzero ] ]."]
+
+
+def complete_square(term: Term) -> tuple[Term, Term, Term] | None:
+    """4 a, 2 a x + b and 4 a c - b^2 in squares and a factor, for a term a x^2 + b x + c with a number a > 0."""
+    generators = [*dict.fromkeys(checker.list_generators(term))]
+    ring = fmpq_mpoly_ctx.get([f"x{k}" for k in range(len(generators))] or ["x0"])
+    top, bottom = checker.to_quotient(term, dict(zip(generators, ring.gens(), strict=False)), ring)
+
+    def write(polynomial: fmpq_mpoly) -> Term:
+        rows = ((q, zip(generators, map(int, powers), strict=False)) for powers, q in polynomial.terms())
+        return checker.make_sum(
+            *(("*", checker.number(q), *(("^", x, checker.number(k)) for x, k in row if k)) for q, row in rows)
+        )
+
+    for k in range(len(generators) if bottom == 1 else 0):
+        slope = top.derivative(k)
+        double = slope.derivative(k)
+        if double.is_constant() and double != 0 and double.leading_coefficient() > 0:
+            rest = top.discriminant(k) * -1
+            squares = [(factor, power // 2 * 2) for factor, power in rest.factor()[1] if power > 1]
+            for factor, power in squares:
+                rest //= factor**power
+            roots = [("^", write(factor), checker.number(power)) for factor, power in squares]
+            return checker.number(2 * double.leading_coefficient()), write(slope), ("*", *roots, write(rest))
+    return None
 
 
 def factor_roots(proof: Mapping[str, Any], term: Term) -> Mapping[str, Any]:
