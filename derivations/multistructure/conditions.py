@@ -8,8 +8,6 @@ from navsym.multimodel.schemes import scheme
 from navsym_papers.multistructure import examples
 from navsym_papers.multistructure.moments import mixture
 
-#: Equal models have equal densities, and nothing else is needed of (18): any function of the residual will do.
-ANY_DENSITY = Kit(density=lambda distance, determinant, p: 1 / (determinant * (1 + distance)), tidy=sp.cancel)
 SERIES = ([[3], [1]], [[3], [5]])
 MODELS, SWITCHING = [[examples.CALM, examples.JUMP]], [examples.STICKY]
 
@@ -60,7 +58,7 @@ next_covariance_printed = claim(
 @claim("18.next*")
 def covariance_of_the_step():
     """Below (18): (12) and (13) at step k give P(k): it does not depend on Y(k+1) (1 or 5 after 3, any density)."""
-    first, second = (covariance_at(1, series, ANY_DENSITY) for series in SERIES)
+    first, second = (covariance_at(1, series, examples.ANY_DENSITY) for series in SERIES)
     return Equation(first, second)
 
 
@@ -77,6 +75,11 @@ def equal_models_are_one():
         mean, variance = mean + gain * (measured - mean), (1 - gain) * ahead
         printed += [mean, variance]
     steps = run_exactly(
-        scheme("pulsating", None), [[one, one]] * 2, [chain] * 2, examples.common_start(0, 1), SERIES[0], ANY_DENSITY
+        scheme("pulsating", None),
+        [[one, one]] * 2,
+        [chain] * 2,
+        examples.common_start(0, 1),
+        SERIES[0],
+        examples.ANY_DENSITY,
     )
     return Equation(printed, [x for step in steps for x in (step.mean[0], step.covariance[0][0])])

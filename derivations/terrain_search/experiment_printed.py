@@ -178,11 +178,7 @@ def accuracy_is_that_of_the_grid():
     """A grid of 1 m/s by itself leaves errors of 0.41 m/s and, 250 s from the middle of 500 s, 102 m."""
     # A uniform error in a cell has the variance 1/12 on an axis; the end is half of 500 s from the middle.
     deviation = sp.sqrt(2 * sp.Rational(1, 12))
-    return Equation(
-        [sp.Rational("0.41"), sp.Integer(102)],
-        [deviation, deviation * sp.Rational(1000, 2) / 2],
-        tolerance=sp.Rational(1, 10),
-    )
+    return Equation([41, 102], [100 * deviation, deviation * 250], tolerance=sp.Rational(1, 2))
 
 
 velocity_error_of_the_accelerometers = claim(
