@@ -65,8 +65,7 @@ def covariance_of_the_step():
 @claim("17.same")
 def equal_models_are_one():
     """If all models are the same the pulsating filter is the Kalman filter, whatever p^ij is (2 steps, 2 modes)."""
-    leave, back = sp.symbols("p21 p12", positive=True)
-    chain = [[1 - leave, leave], [back, 1 - back]]
+    chain = [list(sp.symbols(f"p{i}1 p{i}2", positive=True)) for i in (1, 2)]
     one = examples.scalar(1, 2, 1, 3)
     variance, mean, printed = sp.Integer(1), sp.Integer(0), []
     for (measured,) in SERIES[0]:
