@@ -42,9 +42,9 @@ def three_parts_fill_the_run():
 
 heading = claim(
     "experiment.heading",
-    "The printed heading leaves the straight course by a jump of 0.87 degrees at 1000 and at 2080 s: three periods.",
+    "The printed heading leaves the straight course by a jump of 5 cos(80°) degrees at 1000 and 2080 s: three periods.",
     lambda: Equation(
-        [5 * sp.cos(14 * sp.pi / 9)] * 2 + [3],
+        [5 * sp.cos(4 * sp.pi / 9)] * 2 + [3],
         [*[5 * sp.cos(2 * sp.pi * sp.Integer(t) / 360) for t in (1000, 2080)], sp.Rational(2080 - 1000, 360)],
     ),
 )
