@@ -75,6 +75,12 @@ def test_a_fault_in_a_model_does_not_stay_silent():
     require_noticed(outcomes("alpha_beta_filter", 10))
 
 
+def test_a_fault_that_a_paper_refuses_on_import_does_not_stay_silent():
+    place = ("navsym_papers.trajectory.model", 1)
+    seen = Watched({place: {"import": None}}, {place: "n + 1 -> n - 1"})
+    assert plant("trajectory", place, seen).fell == "the whole paper"
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("paper", FIVE)
 def test_twelve_faults_in_a_paper_do_not_stay_silent(paper):
