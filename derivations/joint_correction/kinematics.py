@@ -31,11 +31,6 @@ W_C = sp.Matrix(sp.symbols("w_xc1 w_xc2", real=True))
 W_M = sp.Matrix(sp.symbols("w_M1 w_M2", real=True))
 
 
-def skew(v: sp.Matrix) -> sp.Matrix:
-    """[v x], so that ``skew(v) * a = v x a``."""
-    return sp.Matrix([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-
-
 def unskew(matrix: sp.Matrix) -> sp.Matrix:
     """The vector of a skew matrix; ArithmeticError when the matrix is not skew."""
     if any(sp.expand(x) != 0 for x in matrix + matrix.T):
@@ -56,8 +51,8 @@ def rotation_rate(theta: sp.Matrix, excess: sp.Matrix, rate: sp.Matrix) -> sp.Ma
     equation C' = C [rate x] - [(rate + excess) x] C; the terms of first order are
     theta' = excess + theta x rate.
     """
-    C = sp.eye(3) - SMALL * skew(theta)
-    right = C * skew(rate) - skew(rate + SMALL * excess) * C
+    C = sp.eye(3) - SMALL * theta.hat()
+    right = C * rate.hat() - (rate + SMALL * excess).hat() * C
     return unskew(-first_order(right))
 
 
@@ -67,9 +62,9 @@ def specific_force(rate: sp.Matrix, rate_derivative: sp.Matrix, climb: sp.Expr =
     V = R' + rate x R; the attraction is ``-omega_0^2 R`` and the climb R' is constant.
     """
     position, velocity_up = sp.Matrix([0, 0, RADIUS]), sp.Matrix([0, 0, climb])
-    velocity = velocity_up + skew(rate) * position
-    inside = skew(rate_derivative) * position + skew(rate) * velocity_up
-    return (inside + skew(rate) * velocity + SCHULER**2 * position).applyfunc(sp.expand)
+    velocity = velocity_up + rate.cross(position)
+    inside = rate_derivative.cross(position) + rate.cross(velocity_up)
+    return (inside + rate.cross(velocity) + SCHULER**2 * position).applyfunc(sp.expand)
 
 
 def mechanisation(force: sp.Matrix, rate: sp.Matrix, climb: sp.Expr = sp.S.Zero) -> sp.Matrix:
@@ -102,7 +97,7 @@ def error_equations(climb: sp.Expr = sp.S.Zero) -> ErrorEquations:
     The gyroscopes give the platform rate with the error nu, the accelerometers the force with the
     error R omega_0^2 epsilon; dp is defined by alpha' = dp + nu in the horizontal axes.
     """
-    excess = DELTA_P - horizontal(skew(ALPHA) * OMEGA_X)  # error of the computed rate, from dp
+    excess = DELTA_P - horizontal(ALPHA.cross(OMEGA_X))  # error of the computed rate, from dp
     computed = sp.Matrix([*excess, 0])  # the third computed rate is exactly 0
     alpha_rate = rotation_rate(ALPHA, computed + NU_X, OMEGA_X)
     beta_rate = rotation_rate(BETA, NU_X, OMEGA_X)
@@ -110,7 +105,7 @@ def error_equations(climb: sp.Expr = sp.S.Zero) -> ErrorEquations:
         **dict(zip(ALPHA[:2], alpha_rate[:2], strict=True)),
         **dict(zip(DELTA_P, momentum_rate(computed, alpha_rate, climb), strict=True)),
         **dict(zip(BETA, beta_rate, strict=True)),
-        **dict(zip(EARTH_X, (-skew(OMEGA_X) * EARTH_X).applyfunc(sp.expand), strict=True)),
+        **dict(zip(EARTH_X, EARTH_X.cross(OMEGA_X).applyfunc(sp.expand), strict=True)),
     }
     gamma = ALPHA - BETA
     return ErrorEquations(
@@ -124,10 +119,10 @@ def momentum_rate(computed: sp.Matrix, alpha_rate: sp.Matrix, climb: sp.Expr) ->
     """Derivative of dp = (error of the computed rate + alpha x omega), horizontal part."""
     force = specific_force(OMEGA_X, OMEGA_X_RATE, climb)
     error = sp.Matrix([*EPSILON, 0]) * RADIUS * SCHULER**2
-    measured = force + SMALL * (error - skew(ALPHA) * force)  # axes of the platform
+    measured = force + SMALL * (error - ALPHA.cross(force))  # axes of the platform
     rate = OMEGA_X + SMALL * computed
     excess_rate = first_order(mechanisation(measured, rate, climb))
-    turning = skew(alpha_rate) * OMEGA_X + skew(ALPHA) * OMEGA_X_RATE
+    turning = alpha_rate.cross(OMEGA_X) + ALPHA.cross(OMEGA_X_RATE)
     return (excess_rate + horizontal(turning)).applyfunc(sp.expand)
 
 
@@ -138,9 +133,9 @@ def velocity_information(computed: sp.Matrix, climb: sp.Expr) -> tuple[sp.Expr, 
     V = (omega - u) x R + R' is measured in the axes of the platform and given as a rate.
     """
     gamma = ALPHA - BETA
-    inertial = computed + skew(gamma) * EARTH_X
-    velocity = skew(OMEGA_X - EARTH_X) * sp.Matrix([0, 0, RADIUS]) + sp.Matrix([0, 0, climb])
-    seen = -skew(ALPHA) * velocity
+    inertial = computed + gamma.cross(EARTH_X)
+    velocity = (OMEGA_X - EARTH_X).cross(sp.Matrix([0, 0, RADIUS])) + sp.Matrix([0, 0, climb])
+    seen = velocity.cross(ALPHA)
     measured = sp.Matrix([-seen[1], seen[0]]) / RADIUS
     sigma = horizontal(inertial) - measured + W_C
     return sp.expand(sigma[0]), sp.expand(sigma[1])

@@ -107,10 +107,10 @@ position_errors = claim(
 
 def turn_of_the_computed_frame() -> sp.Matrix:
     """gamma' for a frame that turns with the computed rate, with gamma = alpha - beta put in."""
-    from navsym_papers.joint_correction.kinematics import horizontal, rotation_rate, skew
+    from navsym_papers.joint_correction.kinematics import horizontal, rotation_rate
 
     gamma = sp.Matrix(sp.symbols("gamma_1:4", real=True))
-    computed = sp.Matrix([*(kinematics.DELTA_P - horizontal(skew(kinematics.ALPHA) * kinematics.OMEGA_X)), 0])
+    computed = sp.Matrix([*(kinematics.DELTA_P - horizontal(kinematics.ALPHA.cross(kinematics.OMEGA_X))), 0])
     return rotation_rate(gamma, computed, kinematics.OMEGA_X).subs(
         dict(zip(gamma, kinematics.ALPHA - kinematics.BETA, strict=True))
     )

@@ -39,6 +39,12 @@ PAPER = Paper(
         "near.* accumulate.all"
     ),
     beyond="10.forgets* 10.error* 17.error* K.exact K.fold K.longer",
+    scopes={
+        "19": "3 modes",
+        **dict.fromkeys(
+            ("8.joseph", "8.posterior", "18.exponent", "18.normaliser"), "(states, measurements) (1,1), (2,1), (1,2)"
+        ),
+    },
     left_out={
         "(18), exponent: v^T/(2D) v": "a division by a matrix, read as the inverse",
         "above (4): S(psi, 0, 0) = 0": "the definition of an error model: what is shown less what is true",

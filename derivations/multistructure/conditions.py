@@ -8,8 +8,6 @@ from navsym.multimodel.schemes import scheme
 from navsym_papers.multistructure import examples
 from navsym_papers.multistructure.moments import mixture
 
-#: Equal models have equal densities, and nothing else is needed of (18): any function of the residual will do.
-ANY_DENSITY = Kit(density=lambda distance, determinant, p: 1 / (determinant * (1 + distance)), tidy=sp.cancel)
 SERIES = ([[3], [1]], [[3], [5]])
 MODELS, SWITCHING = [[examples.CALM, examples.JUMP]], [examples.STICKY]
 
@@ -60,15 +58,14 @@ next_covariance_printed = claim(
 @claim("18.next*")
 def covariance_of_the_step():
     """Below (18): (12) and (13) at step k give P(k): it does not depend on Y(k+1) (1 or 5 after 3, any density)."""
-    first, second = (covariance_at(1, series, ANY_DENSITY) for series in SERIES)
+    first, second = (covariance_at(1, series, examples.ANY_DENSITY) for series in SERIES)
     return Equation(first, second)
 
 
 @claim("17.same")
 def equal_models_are_one():
     """If all models are the same the pulsating filter is the Kalman filter, whatever p^ij is (2 steps, 2 modes)."""
-    leave, back = sp.symbols("p21 p12", positive=True)
-    chain = [[1 - leave, leave], [back, 1 - back]]
+    chain = [list(sp.symbols(f"p{i}1 p{i}2", positive=True)) for i in (1, 2)]
     one = examples.scalar(1, 2, 1, 3)
     variance, mean, printed = sp.Integer(1), sp.Integer(0), []
     for (measured,) in SERIES[0]:
@@ -77,6 +74,11 @@ def equal_models_are_one():
         mean, variance = mean + gain * (measured - mean), (1 - gain) * ahead
         printed += [mean, variance]
     steps = run_exactly(
-        scheme("pulsating", None), [[one, one]] * 2, [chain] * 2, examples.common_start(0, 1), SERIES[0], ANY_DENSITY
+        scheme("pulsating", None),
+        [[one, one]] * 2,
+        [chain] * 2,
+        examples.common_start(0, 1),
+        SERIES[0],
+        examples.ANY_DENSITY,
     )
     return Equation(printed, [x for step in steps for x in (step.mean[0], step.covariance[0][0])])

@@ -164,12 +164,11 @@ def inertial_rate():
 
 
 FREE = [None, None, []]
-LEVEL = {tilt: (-sp.Rational(3, 2), sp.Rational(3, 2))}
 
 
 @claim("1.inertial")
 def inertial_is_nonlinear():
-    """Below (1): an inertial system obeys an equation of type (1), nonlinear in its tilt and zero without errors."""
+    """Below (1): one axis of an inertial system obeys an equation of type (1), nonlinear in tilt, 0 without errors."""
     rate = inertial_rate()
     at_rest = {tilt: 0, df: 0}
     level = re.sub(rf"\b({tilt}|{df})\b", "0", to_text(rate))
@@ -196,11 +195,6 @@ def inertial_linearised():
     return Equation(df + gravity * tilt, sum(rate.diff(s).subs(at_rest) * s for s in (tilt, df)))
 
 
-def latitude_rates(heading):
-    """Rates of the latitude error per constant sensor error at unit speed and one heading, radius 1, height 0."""
-    return [sp.expand(entry.subs(UNIT | {model.heading: heading})) for entry in RECKONING.linear_parts()[1].row(0)]
-
-
 @claim(
     "2.growth.every",
     slip="paper",
@@ -209,19 +203,20 @@ def latitude_rates(heading):
 )
 def every_sensor_error_grows_on_every_course():
     """Below (2), for every course: after a turn at constant rate a constant sensor error is left in the latitude."""
-    # cos and sin of the course, from the rates due north and due east; their integrals over a turn
-    over_turn = [
-        north * (sp.sin(2 * sp.pi) - sp.sin(0)) - east * (sp.cos(2 * sp.pi) - sp.cos(0))
-        for north, east in zip(latitude_rates(sp.Integer(0)), latitude_rates(sp.pi / 2), strict=True)
-    ]
+    rates = RECKONING.linear_parts()[1].row(0).subs(UNIT)
+    over_turn = [sp.integrate(rate, (model.heading, 0, 2 * sp.pi)) for rate in rates]
     return Bound(sum(value**2 for value in over_turn), ">", sp.Integer(0))
 
 
 @claim("2.growth.every*")
 def every_sensor_error_grows_on_a_straight_course():
-    """Below (2): north-east at constant speed each constant sensor error gives latitude a constant rate, not zero."""
-    half = sp.sqrt(2) / 2
-    return Equation([half, -half, -half, -half], latitude_rates(sp.pi / 4))
+    """Below (2): on a straight course at the speed v sensor errors displace at 1, 1, v and v/(R + h) times them.
+
+    These are the sensors in the order of (1). What displaces is (R + h) (dphi, cos(phi) dlambda), from zero.
+    """
+    r, v, S2 = model.radius + model.height, sp.sqrt(model.vy**2 + model.vx**2), RECKONING.linear_parts()[1]
+    north, east = r * S2.row(0), r * sp.cos(model.latitude) * S2.row(1)
+    return Equation([1, 1, v**2, v**2 / r**2], [a**2 + b**2 for a, b in zip(north, east, strict=True)], SPHERE)
 
 
 t, drift = sp.symbols("t epsilon_p", real=True)

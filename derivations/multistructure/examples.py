@@ -1,8 +1,5 @@
 """One small switching model, run exactly: scalar state, two modes, expressions in place of numbers."""
 
-from decimal import Context, Decimal
-from fractions import Fraction
-
 import sympy as sp
 from flint import arb, ctx, fmpq
 
@@ -18,34 +15,14 @@ EXPRESSIONS = Kit(
 )
 
 
+#: For what needs nothing of (18), since equal models have equal densities: any function of the residual will do.
+ANY_DENSITY = Kit(density=lambda distance, determinant, p: 1 / (determinant * (1 + distance)), tidy=sp.cancel)
+
 #: The same in balls, for what only has to be told apart.
 BALLS = Kit(
     density=lambda distance, determinant, p: (-distance / 2).exp() / determinant.sqrt(), tidy=lambda value: value
 )
 BITS = 400
-#: Digits that :func:`fractions_kit` keeps of exponentials, roots and merged moments.
-DIGITS = 60
-
-
-def fractions_kit() -> Kit:
-    """Fractions; densities and merged moments rounded to sixty digits."""
-    context = Context(prec=DIGITS, Emin=-(10**9), Emax=10**9)
-    two_pi = Decimal("6.283185307179586476925286766559005768394338798750211641949889184615632812572")
-
-    def density(distance: Fraction, determinant: Fraction, p: int) -> Fraction:
-        exponent = context.exp(as_decimal(-distance / 2, context))
-        root = context.sqrt(context.multiply(as_decimal(determinant, context), context.power(two_pi, p)))
-        return Fraction(context.divide(exponent, root))
-
-    def tidy(value: Fraction) -> Fraction:
-        return Fraction(as_decimal(value, context))
-
-    return Kit(density, tidy)
-
-
-def as_decimal(value: Fraction, context: Context) -> Decimal:
-    """A fraction to the digits of the context."""
-    return context.divide(Decimal(value.numerator), Decimal(value.denominator))
 
 
 def ball(value) -> arb:
@@ -84,30 +61,11 @@ def enclosures(method, models, transitions, measurements, *, depth=None) -> list
         ctx.prec = before
 
 
-def run(method, models, transitions, measurements, *, depth=None, roots=None) -> list[ExactStep]:
+def run(method, models, transitions, measurements, *, depth=None, kit=EXPRESSIONS) -> list[ExactStep]:
     """Steps of a method, exactly."""
-    return run_exactly(
-        scheme(method, depth), models, transitions, roots or common_start(0, 1), measurements, EXPRESSIONS
-    )
+    return run_exactly(scheme(method, depth), models, transitions, common_start(0, 1), measurements, kit)
 
 
 STICKY = [[sp.Rational(9, 10), sp.Rational(1, 10)], [sp.Rational(1, 10), sp.Rational(9, 10)]]
 #: Nominal against a jump of the state.
 CALM, JUMP = scalar(1, 0, 1, 1), scalar(1, 25, 1, 1)
-
-
-def in_fractions(method, models, transitions, measurements, *, depth=None) -> list[ExactStep]:
-    """Steps of a method in fractions, the densities to sixty digits."""
-    half = Fraction(1, 2)
-    return run_exactly(
-        scheme(method, depth),
-        [[Model(*map(fractions, (m.F, m.Q, m.H, m.R))) for m in row] for row in models],
-        [fractions(matrix) for matrix in transitions],
-        [Leaf((half, half), [Fraction(0)], [[Fraction(1)]])],
-        [[Fraction(value) for value in row] for row in measurements],
-        fractions_kit(),
-    )
-
-
-def fractions(matrix):
-    return [[Fraction(int(value.numerator), int(value.denominator)) for value in row] for row in matrix]

@@ -76,7 +76,7 @@ def the_three_chains():
 
 @claim("17.error")
 def one_wrong_likelihood():
-    """(17): with likelihoods known within exp(+-c), g^i errs by tanh(c/2) less a square over a positive number.
+    """(17): the likelihood of i exp(c) too large, the others as much too small: g^i errs by tanh(c/2) less a square.
 
     For any number of modes: the others together are one, and their common likelihood is known within the same factor.
     The worst case is that of a factor exp(c) for i and exp(-c) for the others.

@@ -152,7 +152,7 @@ def sum_is_gaussian():
 
 @claim("15.gaussian*")
 def part_is_gaussian():
-    """Before (14): pi^i[x(k)] is Gaussian: the logarithm of likelihood times prior has a constant second derivative."""
-    x = sp.Symbol("x", real=True)
+    """Before (14): pi^i[x(k)] is Gaussian with Kalman's X^i, P^i, by its logarithm's slope (1 state, 1 measurement)."""
+    x, spread = sp.Symbol("x", real=True), H**2 * P + R
     logarithm = -((Y - H * x) ** 2 / R + (x - mean) ** 2 / P) / 2
-    return Equation([-1 / (P * R / (H**2 * P + R)), 0], [logarithm.diff(x, 2), logarithm.diff(x, 3)])
+    return Equation(-(x - mean - P * H / spread * (Y - H * mean)) / (P * R / spread), logarithm.diff(x))

@@ -119,7 +119,7 @@ def follows_printed():
 
 @claim("14.follows*")
 def follows():
-    """Before (14): after the Gaussian approximation the mode is predicted by the sum of p^ij g^j(k-1)."""
+    """Before (14): after the Gaussian approximation the sum of p^ij g^j(k-1) predicts the mode (2 to 4 modes)."""
     for size in (2, 3, 4):
         modes = range(size)
         start, switch, seen = free("s", size), [free(f"p{j}", size) for j in modes], free("rho", size)

@@ -1,14 +1,12 @@
 """Equations (20)-(21): modes that never switch, and the polygaussian filter."""
 
-from fractions import Fraction
-
 import sympy as sp
 
 from navsym.claims import PROVED, Equation, claim, fact
-from navsym.multimodel.exact import Leaf, Model, run_exactly
+from navsym.multimodel.exact import ExactStep, Leaf, Model, run_exactly
 from navsym.multimodel.schemes import scheme
 from navsym_papers.multistructure import finite, pulsating
-from navsym_papers.multistructure.examples import fractions_kit
+from navsym_papers.multistructure.examples import ANY_DENSITY, scalar
 from navsym_papers.multistructure.finite import Step, step
 from navsym_papers.multistructure.recursion import UNIT
 
@@ -81,34 +79,38 @@ def mixture():
         )
 
 
-def polygaussian_and_exact(steps: int):
-    """Mode probabilities, mean and variance of both filters, with the identity for p^ij and a Gaussian per mode."""
-    models = [[Model([[F]], [[Q]], [[Fraction(1)]], [[R]]) for F, Q, R in MODES]] * steps
-    identity = [[[Fraction(int(i == j)) for j in range(len(MODES))] for i in range(len(MODES))]] * steps
-    third = Fraction(1, len(MODES))
-    roots = [
-        Leaf(tuple(third if i == j else Fraction(0) for j in range(len(MODES))), [Fraction(i)], [[Fraction(i + 1)]])
-        for i in range(len(MODES))
-    ]
-    series = [[Fraction(value)] for value in (2, -1, 3)][:steps]
-    return [
-        run_exactly(scheme(method), models, identity, roots, series, fractions_kit())
-        for method in ("polygaussian", "exact")
-    ]
+MODES = [scalar(1, 0, 1, 1), scalar(sp.Rational(1, 2), 1, 1, 1), scalar(1, 4, 1, 9)]
 
 
-MODES = [
-    (Fraction(1), Fraction(0), Fraction(1)),
-    (Fraction(1, 2), Fraction(1), Fraction(1)),
-    (Fraction(1), Fraction(4), Fraction(9)),
-]
+def in_mode(i: int, modes: int, weight: sp.Rational, mean: int, variance: int) -> Leaf:
+    """A Gaussian of one mode."""
+    weights = tuple(weight * int(i == j) for j in range(modes))
+    return Leaf(weights, [sp.Integer(mean)], [[sp.Integer(variance)]])
+
+
+def without_switching(method: str, modes: list[Model], roots: list[Leaf], series: tuple[int, ...]) -> list[ExactStep]:
+    """Steps of a filter with the identity for p^ij."""
+    k = len(series)
+    measurements = [[sp.Integer(value)] for value in series]
+    return run_exactly(scheme(method), [modes] * k, [sp.eye(len(modes)).tolist()] * k, roots, measurements, ANY_DENSITY)
+
+
+def polygaussian_and_exact() -> list[list[ExactStep]]:
+    """Three steps of both filters from a Gaussian for each of three modes."""
+    roots = [in_mode(i, 3, sp.Rational(1, 3), i, i + 1) for i in range(3)]
+    return [without_switching(method, MODES, roots, (2, 1, 3)) for method in ("polygaussian", "exact")]
+
+
+def living(step: ExactStep) -> list[Leaf]:
+    """Hypotheses of positive weight."""
+    return [leaf for leaf in step.leaves if sum(leaf.weights) != 0]
 
 
 @claim("19.count")
 def living_sequences():
     """Under (19) only I of the I^(k+1) sequences have a positive probability, at every step (I = 3, k to 3)."""
-    _, exact = polygaussian_and_exact(3)
-    alive = tuple(sum(1 for leaf in step.leaves if sum(leaf.weights) > 0) for step in exact)
+    _, exact = polygaussian_and_exact()
+    alive = tuple(len(living(step)) for step in exact)
     return fact(
         (3, 3, 3), alive, "leaves of positive weight counted", PROVED, scope="one model, I = 3, k = 1..3", unsaid=RUN
     )
@@ -117,18 +119,10 @@ def living_sequences():
 @claim("21.optimal")
 def optimal():
     """Below (21): with a Gaussian for every mode the bank of Kalman filters gives exactly the living hypotheses."""
-    bank, exact = polygaussian_and_exact(3)
-    equal = True
-    for ours, theirs in zip(bank, exact, strict=True):
-        living = [leaf for leaf in theirs.leaves if sum(leaf.weights) > 0]
-        equal = equal and sorted(map(gaussian, ours.leaves)) == sorted(map(gaussian, living))
-    method = "Gaussians of both compared as rationals"
+    bank, exact = polygaussian_and_exact()
+    equal = all(list(ours.leaves) == living(theirs) for ours, theirs in zip(bank, exact, strict=True))
+    method = "weights (a function of the residual for each density), means and variances compared"
     return fact(True, equal, method, PROVED, scope="one model, I = 3, three steps", unsaid=RUN)
-
-
-def gaussian(leaf: Leaf):
-    """Mode, mean and variance of a leaf."""
-    return [weight != 0 for weight in leaf.weights].index(True), leaf.mean[0], leaf.covariance[0][0]
 
 
 prior = claim(
@@ -145,15 +139,9 @@ prior = claim(
 )
 
 
-def different_gaussians(summands: int):
-    """Gaussians after one step without switching, from a prior of several Gaussians common to two modes."""
-    share = Fraction(1, 2 * summands)
-    roots = [
-        Leaf(tuple(share if i == j else Fraction(0) for j in (0, 1)), [Fraction(number)], [[Fraction(1)]])
-        for number in range(summands)
-        for i in (0, 1)
-    ]
-    models = [[Model([[F]], [[Q]], [[Fraction(1)]], [[R]]) for F, Q, R in MODES[:2]]]
-    identity = [[[Fraction(1), Fraction(0)], [Fraction(0), Fraction(1)]]]
-    (step,) = run_exactly(scheme("exact"), models, identity, roots, [[Fraction(2)]], fractions_kit())
-    return {gaussian(leaf) for leaf in step.leaves if sum(leaf.weights) > 0}
+def different_gaussians(summands: int) -> set[tuple[sp.Expr, ...]]:
+    """Gaussians (weights, mean, variance) after one step, from a prior of several ones common to two modes."""
+    weight = sp.Rational(1, 2 * summands)
+    roots = [in_mode(i, 2, weight, number, 1) for number in range(summands) for i in (0, 1)]
+    (step,) = without_switching("exact", MODES[:2], roots, (2,))
+    return {(*leaf.weights, leaf.mean[0], leaf.covariance[0][0]) for leaf in living(step)}

@@ -124,7 +124,7 @@ table_full_time = claim(
     "table.full*",
     "Table 1 has a factor of 20 between the joint and the position search, where the count has 121.",
     lambda: Equation(
-        [sp.Integer(20), sp.Integer(121)], [FULL_SECONDS / POSITION_SECONDS, MV**2], tolerance=sp.Rational(3, 5)
+        [sp.Integer(20), sp.Integer(121)], [FULL_SECONDS / POSITION_SECONDS, MV**2], tolerance=sp.Rational(1, 2)
     ),
     expect=CERTIFIED,
 )

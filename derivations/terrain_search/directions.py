@@ -80,10 +80,9 @@ def crossing_depends_on_the_direction():
 
 
 def say_least(points: list, way: tuple, crossing: int) -> tuple[dict, ...]:
-    """That the criterion is least at one crossing, and larger at the one a unit away."""
-    value, least, away = (to_text(sp.sympify(misfit(points, way, at))) for at in (t, crossing, 1 - crossing))
-    positive, real = {step.name: ["0", None, ["open-low"]]}, {t.name: [None, None, []]}
-    return state(value, ">=", least, positive | real), state(away, ">", least, positive)
+    """That the criterion, over slopes of one and zero, is a square of t less one crossing: least there alone."""
+    symbols = {step.name: ["0", None, ["open-low"]], t.name: [None, None, []]}
+    return (state(to_text(misfit(points, way, t)), "=", f"({step}*({t} - {crossing}))**2", symbols),)
 
 
 # Equations (12) and (13): the sums, entry by entry

@@ -3,6 +3,8 @@
 import sympy as sp
 
 from navsym.claims import CERTIFIED, Bound, Equation, claim
+from navsym_papers.terrain_search.model import n
+from navsym_papers.terrain_search.problem import count_of
 
 POSITION, FULL, SEQUENTIAL = sp.Rational("152.2"), sp.Rational("92.7"), sp.Rational("97.0")
 FULL_SPEED, SEQUENTIAL_SPEED = sp.Rational("0.48"), sp.Rational("0.55")
@@ -42,14 +44,14 @@ def errors(count):
     return [(sp.Symbol(f"e{m}", positive=True), sp.Symbol(f"f{m}", positive=True)) for m in range(count)]
 
 
-def printed_measure(runs, n):
-    """sqrt(sum sqrt(e^2 + f^2) / (n - 1))."""
-    return sp.sqrt(sum(sp.sqrt(e**2 + f**2) for e, f in runs) / (n - 1))
+def printed_measure(runs, count):
+    """sqrt(sum sqrt(e^2 + f^2) / (n - 1)) of n runs."""
+    return sp.sqrt(sum(sp.sqrt(e**2 + f**2) for e, f in runs) / (count - 1))
 
 
-def mean_square_measure(runs, n):
-    """sqrt(sum (e^2 + f^2) / n)."""
-    return sp.sqrt(sum(e**2 + f**2 for e, f in runs) / n)
+def mean_square_measure(runs, count):
+    """sqrt(sum (e^2 + f^2) / n) of n runs."""
+    return sp.sqrt(sum(e**2 + f**2 for e, f in runs) / count)
 
 
 def scales(measure, count):
@@ -83,15 +85,13 @@ velocity_unit = claim(
 @claim("sigma.count", slip="paper", reason="the sum i = 0…n has n + 1 terms for n experiments")
 def count_as_printed():
     """The sum over i = 0…n has as many terms as there are experiments, n."""
-    sizes = range(2, 6)
-    return Equation([sp.Integer(n) for n in sizes], [sp.Integer(len(range(n + 1))) for n in sizes])
+    return Equation(n, count_of(0, n))
 
 
 @claim("sigma.count*")
 def count():
     """The sum over i = 1…n has n terms."""
-    sizes = range(2, 6)
-    return Equation([sp.Integer(n) for n in sizes], [sp.Integer(len(range(1, n + 1))) for n in sizes])
+    return Equation(n, count_of(1, n))
 
 
 def largest_error():
@@ -178,11 +178,7 @@ def accuracy_is_that_of_the_grid():
     """A grid of 1 m/s by itself leaves errors of 0.41 m/s and, 250 s from the middle of 500 s, 102 m."""
     # A uniform error in a cell has the variance 1/12 on an axis; the end is half of 500 s from the middle.
     deviation = sp.sqrt(2 * sp.Rational(1, 12))
-    return Equation(
-        [sp.Rational("0.41"), sp.Integer(102)],
-        [deviation, deviation * sp.Rational(1000, 2) / 2],
-        tolerance=sp.Rational(1, 10),
-    )
+    return Equation([41, 102], [100 * deviation, deviation * 250], tolerance=sp.Rational(1, 2))
 
 
 velocity_error_of_the_accelerometers = claim(

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from navsym.claims import OPEN, PROVED, UNDECIDED, Bound, Equation, Finding, Property, claim, fact, state
+from navsym.claims import OPEN, PROVED, UNDECIDED, Bound, Equation, claim, fact, state
 from navsym_papers.terrain_search.directions import quotient, say_least
 from navsym_papers.terrain_search.model import beta_x, beta_y, crossing_time, inverse, moment, slopes, symmetric
 
@@ -63,24 +63,17 @@ def roots_of_the_quadratic():
     return Equation([sp.Integer(0)] * 2 + [root**2], [*value, A1**2 - 4 * A2 * A0])
 
 
-def example():
-    """A track with one slope along x at the start and one along y at the end."""
-    points = [(1, 0), (0, 1)]
-    return form_sums(moment(points, 0), moment(points, 1))
-
-
 @claim("roots.both")
 def two_directions():
-    """The directions (beta_x : beta_y) that solve it are two, here the axes, with t_G = 1 and 0."""
-    A2, A1, A0 = example()
-    ways = [(u, v) for u, v in ((1, 0), (0, 1)) if A2 * u * u + A1 * u * v + A0 * v * v == 0]
-    values = sorted(int(crossing_time([(1, 0), (0, 1)], way)) for way in ways)
-    finding = Finding(tuple(values), "exact example: slopes (1, 0) and (0, 1)", PROVED)
+    """The directions (beta_x : beta_y) that solve it are two: here the axes, with t_G = 0 and 1."""
+    points, axes = [(1, 0), (0, 1)], ((1, 0), (0, 1))
+    A2, A1, A0 = form_sums(moment(points, 0), moment(points, 1))
+    found = (A2, A0, *(crossing_time(points, way) for way in axes))
     form, off_axes = f"{A2}*u**2 + {A1}*u*v + {A0}*v**2", {name: [None, None, ["nonzero"]] for name in "uv"}
-    axes = [(form.replace("u", x).replace("v", y), "=", "0") for x, y in ("10", "01")]
-    points = [(1, 0), (0, 1)]
-    least = (*say_least(points, (1, 0), 0), *say_least(points, (0, 1), 1))
-    return Property((0, 1), finding, (*(state(*axis) for axis in axes), state(form, "!=", "0", off_axes), *least))
+    least = (text for crossing, way in enumerate(axes) for text in say_least(points, way, crossing))
+    meaning = (state(str(A2), "=", "0"), state(str(A0), "=", "0"), state(form, "!=", "0", off_axes), *least)
+    method = "A_2 and A_0, the form on the axes, and t_G there: slopes (1, 0) and (0, 1)"
+    return fact((0, 0, 0, 1), tuple(map(int, found)), method, PROVED, meaning=meaning)
 
 
 @claim("roots.values")

@@ -31,8 +31,8 @@ measurements = claim("2.count*", "The criterion sums n + 1 measurements.", lambd
 
 
 def count_of(first, last):
-    """Number of integers from first to last."""
-    return last - first + 1
+    """Number of terms of a sum from first to last."""
+    return sp.summation(1, (sp.Symbol("k"), first, last))
 
 
 @claim("1.height")

@@ -108,14 +108,14 @@ def sequential_normal(t):
     return matrix, right
 
 
-def list_criteria(start: Fraction, velocity: Fraction) -> tuple[list[Fraction], list[Fraction]]:
-    """(6) about t_G of (10), and (4), of all hypotheses: two measurements over ground of slope one, grids -1, 0, 1."""
+def list_criteria(start: Fraction, velocity: Fraction) -> tuple[list[tuple], list[tuple]]:
+    """(6) about t_G of (10), and (4), with every hypothesis: two measurements over slopes of one, grids -1, 0, 1."""
     grid, times = (-1, 0, 1), (0, 1)
-    error = [start + velocity * k for k in times]
-    joint = [sum((e - i - w * k) ** 2 for k, e in zip(times, error, strict=True)) for i in grid for w in grid]
-    coarse = min(grid, key=lambda i: sum((e - i) ** 2 for e in error))
+    error = {k: start + velocity * k for k in times}
+    joint = [(sum((e - i - w * k) ** 2 for k, e in error.items()), i, w) for i in grid for w in grid]
+    coarse = min(grid, key=lambda i: sum((e - i) ** 2 for e in error.values()))
     turn = Fraction(sum(times), len(times))  # equal slopes
-    second = [sum((e - coarse - w * (k - turn)) ** 2 for k, e in zip(times, error, strict=True)) for w in grid]
+    second = [(sum((e - coarse - w * (k - turn)) ** 2 for k, e in error.items()), w) for w in grid]
     return second, joint
 
 
@@ -128,10 +128,11 @@ def say_least(values: list[Fraction], least: Fraction) -> list[dict]:
 @claim("sequential.below")
 def sequential_search_may_fit_better():
     """Least (6) may be below least (4) on one grid: here 0 and 1/2, since (6) turns about t_G, off the grid of (4)."""
-    found = list_criteria(Fraction(-1, 2), Fraction(1))
-    printed = Fraction(0), Fraction(1, 2)
-    scope = "heights h(x) = x, n = 1, steps of one, errors -1/2 of the position and 1 of the velocity"
-    meaning = [text for values, least in zip(found, printed, strict=True) for text in say_least(values, least)]
+    found = list_criteria(Fraction(1, 2), Fraction(1))
+    printed = (Fraction(0), 1), (Fraction(1, 2), 0, 1)
+    scope = "heights h(x) = x, n = 1, steps of one, errors 1/2 of the position and 1 of the velocity"
+    pairs = zip(found, printed, strict=True)
+    meaning = [text for of_all, (least, *_) in pairs for text in say_least([value for value, *_ in of_all], least)]
     return fact(printed, tuple(map(min, found)), "all hypotheses counted", PROVED, scope=scope, meaning=meaning)
 
 

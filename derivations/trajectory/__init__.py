@@ -36,6 +36,12 @@ PAPER = Paper(
             f"experiment.{name}": "experiment.gain" for name in ("sigma_phi.gain", "sigma_v.yaw.100", "sigma_a.yaw.100")
         },
     },
+    scopes={
+        "1.row*": "n = 8",
+        "1.general": "n = 8",
+        "algorithm.J.still": "n = 5",
+        "experiment.straight.*": "n = 3, three steps",
+    },
     left_out={
         "lambda = lambda^e": "one meridian plane: true whatever the meridian is",
         "(5): N_pN = N_p D^-1 is the observability matrix of (5), with columns of unit length": "what x^q = D x means",

@@ -325,10 +325,12 @@ def matrix_is_not_the_covariance():
     State x' = x without noise, tuned with q > 0: P tends to K R, K the steady gain, while the error, driven by
     the measurement noise alone, tends to K R/(2 - K): smaller for every 0 < K < 1.
     """
-    root = sp.Symbol("K", positive=True)  # steady gain, 0 < K < 1
-    matrix = root * R  # P = K R for H = 1
+    root = sp.Symbol("K", positive=True)  # steady gain
+    matrix, ahead = root * R, root * R / (1 - root)  # P and P^- = P + q, q = K^2 R/(1 - K)
     error = root * R / (2 - root)  # E e^2 = (1 - K)^2 E e^2 + K^2 R
     return Equation(
-        [R * root * (1 - root) / (2 - root), sp.Integer(0)],
-        [matrix - error, error - (1 - root) ** 2 * error - root**2 * R],
+        [R * root * (1 - root) / (2 - root), sp.Integer(0), root, matrix],
+        [matrix - error, error - (1 - root) ** 2 * error - root**2 * R, ahead / (ahead + R), (1 - root) * ahead],
+        {root: (0, 1)},
+        nonzero=(1 - root,),
     )

@@ -127,7 +127,7 @@ position_on_own_axes = claim(
 
 def rotation_part() -> sp.Matrix:
     omega = sp.Matrix([-RATES[0], RATES[1] * sp.cos(LATITUDE), RATES[1] * sp.sin(LATITUDE)])
-    return ellipsoid.cross(omega, sp.Matrix([0, 0, RADIUS]))
+    return omega.cross(sp.Matrix([0, 0, RADIUS]))  # e_ikj omega_k r_j
 
 
 velocity_printed = claim(

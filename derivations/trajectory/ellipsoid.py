@@ -96,10 +96,3 @@ def angular_velocity(symbols: dict[str, sp.Symbol]) -> sp.Matrix:
     rate = axes.diff(latitude) * symbols["latitude_rate"] + axes.diff(longitude) * symbols["longitude_rate"]
     skew = -rate * axes.T
     return sp.Matrix([skew[2, 1], skew[0, 2], skew[1, 0]])
-
-
-def cross(omega: sp.Matrix, r: sp.Matrix) -> sp.Matrix:
-    """sum over k, j of e_ikj omega_k r_j, (3, 1), written out with the Levi-Civita symbol."""
-    return sp.Matrix(
-        3, 1, lambda i, _: sum(sp.LeviCivita(i, k, j) * omega[k] * r[j] for k in range(3) for j in range(3))
-    )

@@ -11,9 +11,9 @@ import flint
 import sympy as sp
 
 from navsym.claims import CERTIFIED, OPEN, UNDECIDED, Equation, Finding, Property, claim, fact
-from navsym_papers.trajectory.experiment.stability import gain_stability, harmonic_lag, stationary_covariance
-from navsym_papers.trajectory.experiment_printed import TAU, ball
-from navsym_papers.trajectory.gain import PERIOD, gain_in_f
+from navsym_papers.trajectory.experiment.stability import exact, gain_stability, harmonic_lag, stationary_covariance
+from navsym_papers.trajectory.experiment_printed import TAU
+from navsym_papers.trajectory.gain import GAIN, PERIOD, in_f
 from navsym_papers.trajectory.model import pascal_rows
 
 BESSEL = "Bessel functions are outside the language"
@@ -27,14 +27,9 @@ WITNESSES = {
 HARMONICS = 5
 
 
-def in_f(metric: tuple[Fraction, ...]) -> list[Fraction]:
-    """A metric gain in the variables f."""
-    return [k * TAU**j / math.factorial(j) for j, k in enumerate(metric)]
-
-
 def speed_noise(gain: list[Fraction]) -> flint.arb:
     """Variance of V_2 under white noise of 1 m, (m/s)^2."""
-    return ball(stationary_covariance(gain)[1][1] / TAU**2)
+    return exact(stationary_covariance(gain)[1][1] / TAU**2)
 
 
 def speed_lag(gain: list[Fraction], speed: int) -> flint.arb:
@@ -56,7 +51,7 @@ def two_figures(speed: int) -> Finding:
     if gain_stability(gain, [Fraction(0)] * len(gain)).stable is not True:
         return Finding("unstable", "Routh's column in balls", CERTIFIED)
     noise, lag = speed_noise(gain), speed_lag(gain, speed)
-    position = ball(stationary_covariance(gain)[0][0]).sqrt()
+    position = exact(stationary_covariance(gain)[0][0]).sqrt()
     return Finding(
         (hundredths(noise.sqrt()), hundredths((noise + lag).sqrt()), hundredths(position)),
         "exact stationary covariance, response to five harmonics in balls",
@@ -70,7 +65,7 @@ def hundredths(value: flint.arb) -> str:
     """A ball rounded to two decimals, when that is decided."""
     text = f"{float(value.mid()):.2f}"
     half = flint.arb(flint.fmpq(1, 200))
-    assert abs(value - ball(Fraction(text))) < half, "the rounding is not decided"
+    assert abs(value - exact(Fraction(text))) < half, "the rounding is not decided"
     return text
 
 
@@ -96,19 +91,19 @@ def sample_scatter(count: int) -> tuple[flint.arb, flint.arb]:
 
     For Gaussian noise the mean square of correlated errors has the variance 2/N^2 sum over i, j of r(i - j)^2.
     """
-    gain = gain_in_f()
+    gain = in_f(GAIN)
     n, Phi = len(gain), pascal_rows(len(gain))
     # Balls grow by a factor of less than eight at a step, and the precision outlasts that.
     with flint.ctx.workprec(3 * count + 200):
-        C = flint.arb_mat(n, n, [ball(Phi[i][j] - gain[i]) for i in range(n) for j in range(n)])
+        C = flint.arb_mat(n, n, [exact(Phi[i][j] - gain[i]) for i in range(n) for j in range(n)])
         P = stationary_covariance(gain)
-        column = flint.arb_mat(n, 1, [ball(P[i][1]) for i in range(n)])
+        column = flint.arb_mat(n, 1, [exact(P[i][1]) for i in range(n)])
         total = count * column[1, 0] ** 2
         for lag in range(1, count):
             column = C * column
             total += 2 * (count - lag) * column[1, 0] ** 2
-        factor = ball(1 / TAU**2)
-        return factor * ball(P[1][1]), factor * (2 * total).sqrt() / count
+        factor = exact(1 / TAU**2)
+        return factor * exact(P[1][1]), factor * (2 * total).sqrt() / count
 
 
 @claim("experiment.sigma_v.straight.100.noise", expect=CERTIFIED)
@@ -116,7 +111,7 @@ def straight_speed_error_is_not_noise_alone():
     """|V| = 100 m/s, straight course: 0.019 m/s is not within three standard deviations of what noise alone gives."""
     steps = int((1000 - Fraction("168.8")) / TAU)
     variance, scatter = sample_scatter(steps)
-    away = (ball(Fraction("0.019")) ** 2 - variance) / scatter
+    away = (exact(Fraction("0.019")) ** 2 - variance) / scatter
     method = "exact covariances of the error at all lags, balls"
     scope = "printed gain in D_p variables, first straight course after the tuning, Gaussian noise of 1 m"
     evidence = (
@@ -129,7 +124,7 @@ def straight_speed_error_is_not_noise_alone():
 @claim("experiment.sigma_v.yaw.100.full", expect=CERTIFIED)
 def yawing_speed_error_in_full():
     """|V| = 100 m/s while yawing, printed gain: 0.81 m/s by five harmonics, and 0.81 m/s with the noise of 1 m."""
-    noise, lag = speed_noise(gain_in_f()), speed_lag(gain_in_f(), 100)
+    noise, lag = speed_noise(in_f(GAIN)), speed_lag(in_f(GAIN), 100)
     found = hundredths(lag.sqrt()), hundredths((noise + lag).sqrt())
     scope = "printed gain in D_p variables, steady yawing, noise of 1 m"
     return fact(("0.81", "0.81"), found, "five harmonics in balls", CERTIFIED, scope=scope, unsaid=BESSEL)
@@ -176,9 +171,9 @@ def least_position_error(speed: int, yawing: str, acceleration: str) -> flint.ar
     A gain is at most the error that it lets in, |K_j|^2 <= P_jj; rows 2 and 3 of experiment.together.rows are errors
     of the first harmonic, of amplitude sqrt(2) times their root mean square. What the true y leave there is added.
     """
-    rms, rms_rate = ball(Fraction(yawing)), ball(Fraction(acceleration))
-    tau, root = ball(TAU), flint.arb(2).sqrt()
-    a = 2 * flint.arb.pi() * tau / ball(PERIOD)
+    rms, rms_rate = exact(Fraction(yawing)), exact(Fraction(acceleration))
+    tau, root = exact(TAU), flint.arb(2).sqrt()
+    a = 2 * flint.arb.pi() * tau / exact(PERIOD)
     zeta = flint.acb(a.cos(), a.sin())
     swing = speed * root * (flint.arb.pi() / 36).bessel_j(1)  # amplitude of V_2; a |x| = tau swing
     lag, bend = root * rms / swing, root * rms_rate * tau / (2 * swing)
@@ -195,7 +190,7 @@ def figures_of_a_hundred_metres_do_not_fit():
     """|V| = 100 m/s: a stable constant gain with the printed errors while yawing has 0.086 m or more, not 0.06 m."""
     least = least_position_error(100, "0.0905", "0.015")
     text = f"{math.floor(1000 * float(least.lower())) / 1000:.3f}"
-    assert least > ball(Fraction(text)), "the rounding is not decided"
+    assert least > exact(Fraction(text)), "the rounding is not decided"
     method = "mean of log |S|^2 over the unit circle, ball arithmetic"
     scope = (
         "n = 5, tau = 0.2 s, every stable gain, white noise of 1 m, steady yawing: errors of V_2 up to 0.0905 "

@@ -7,6 +7,7 @@ import flint
 
 from navsym.claims import CERTIFIED, UNDECIDED, Finding, Property, claim, state
 from navsym_papers.trajectory.experiment.stability import (
+    exact,
     gain_stability,
     harmonic_lag,
     metric_scale,
@@ -15,7 +16,7 @@ from navsym_papers.trajectory.experiment.stability import (
     stationary_covariance,
     write_half_plane,
 )
-from navsym_papers.trajectory.experiment_printed import TAU, ball
+from navsym_papers.trajectory.experiment_printed import TAU
 from navsym_papers.trajectory.hurwitz import say_signs
 from navsym_papers.trajectory.model import pascal_rows
 from navsym_papers.trajectory.scaling import write_rows
@@ -77,22 +78,22 @@ constant_gain_in_metric_variables = claim(
 )
 
 
-def gain_in_f() -> list[Fraction]:
-    """The printed gain, read in D_p variables, in the variables f."""
-    return [k * TAU**j / math.factorial(j) for j, k in enumerate(GAIN)]
+def in_f(metric: tuple[Fraction, ...]) -> list[Fraction]:
+    """A gain in D_p variables, as the printed one is read, in the variables f."""
+    return [k * TAU**j / math.factorial(j) for j, k in enumerate(metric)]
 
 
 def stationary_deviation(state: int, digits: int) -> Finding:
     """Standard deviation of state 1 (m), 2 (m/s) or 3 (m/s^2) under white noise of 1 m, as text."""
     factor = Fraction(math.factorial(state - 1)) / TAU ** (state - 1)
-    variance = stationary_covariance(gain_in_f())[state - 1][state - 1] * factor**2
+    variance = stationary_covariance(in_f(GAIN))[state - 1][state - 1] * factor**2
     scope = "stationary error under white noise of 1 m, printed gain in D_p variables, straight course"
     return Finding(root_decimal(variance, digits), "exact solution of P = C P C^T + K K^T", CERTIFIED, scope=scope)
 
 
 def say_stationary(low: str, high: str) -> tuple[dict, ...]:
     """That P is stationary, P = C P C' + K K', and the root of its first entry lies between two numbers."""
-    gain = gain_in_f()
+    gain = in_f(GAIN)
     P, Phi = stationary_covariance(gain), pascal_rows(len(gain))
     C = write_rows([[entry - k for entry in row] for row, k in zip(Phi, gain, strict=True)])
     K, deviation = write_rows([[k] for k in gain]), f"sqrt({P[0][0]})"
@@ -107,8 +108,8 @@ def yawing_lag(state: int, digits: int) -> Finding:
     whole periods its harmonics are orthogonal, so that the first one bounds the whole from below.
     """
     swing = 100 * flint.arb(2).sqrt() * (flint.arb.pi() / 36).bessel_j(1)
-    omega = 2 * flint.arb.pi() / ball(PERIOD)
-    size = swing * omega ** (state - 2) * harmonic_lag(gain_in_f(), TAU, PERIOD, state) / flint.arb(2).sqrt()
+    omega = 2 * flint.arb.pi() / exact(PERIOD)
+    size = swing * omega ** (state - 2) * harmonic_lag(in_f(GAIN), TAU, PERIOD, state) / flint.arb(2).sqrt()
     text = f"{float(size.mid()):.{digits}f}"
     half = flint.arb(10) ** (-digits) / 2
     assert abs(size - flint.arb(text)) < half, "the rounding is not decided"

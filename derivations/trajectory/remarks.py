@@ -99,7 +99,7 @@ def gains_at_least(factor: Fraction, cases) -> Finding:
     """Whether normalisation lowers the condition number by a factor in every case (n, rho, tau)."""
     ratios = {case: ratio(*case) for case in cases}
     undecided = [case for case, (low, high) in ratios.items() if low < factor <= high]
-    worst = min(ratios, key=lambda case: ratios[case][0])
+    worst = min(ratios, key=ratios.__getitem__)
     n, rho, tau = worst
     return Finding(
         UNDECIDED if undecided else ratios[worst][0] >= factor,

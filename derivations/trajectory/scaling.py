@@ -1,6 +1,7 @@
 """Equations 5 and 6: normalised variables in one stage and in two, and why both end at the same place."""
 
 from functools import lru_cache
+from itertools import product
 from math import comb
 
 import sympy as sp
@@ -202,8 +203,7 @@ def reached(allowed) -> int:
         size = len(known)
         known |= {
             (i + 1, j + 1)
-            for i in range(PRINTED - 1)
-            for j in range(PRINTED - 1)
+            for i, j in product(range(PRINTED - 1), repeat=2)
             if allowed(i, j) and {(i, j), (i + 1, j)} <= known
         }
     return sum(j > i for i, j in known)

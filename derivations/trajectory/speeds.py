@@ -6,6 +6,7 @@ in proportion to the speed, and a mean square cannot fall while the speed grows.
 """
 
 from fractions import Fraction
+from itertools import pairwise
 
 import sympy as sp
 
@@ -29,13 +30,12 @@ def noises() -> list[sp.Symbol]:
 
 
 def run(truth: list[sp.Matrix], start_error: sp.Matrix) -> tuple[list[sp.Expr], list[sp.Matrix]]:
-    """Innovations and estimates of ``STEPS`` steps of the algorithm with free gains and noise."""
-    estimate, innovations, estimates = truth[0] + start_error, [], []
+    """Innovations and estimates of ``STEPS`` steps of the algorithm with free gains and noise, the first one before."""
+    innovations, estimates = [], [truth[0] + start_error]
     for true, gain, noise in zip(truth[1:], gains(), noises(), strict=True):
-        predicted = PHI * estimate
+        predicted = PHI * estimates[-1]
         innovations.append(sp.expand((H * (true - predicted))[0] + noise))
-        estimate = (predicted + gain * innovations[-1]).applyfunc(sp.expand)
-        estimates.append(estimate)
+        estimates.append((predicted + gain * innovations[-1]).applyfunc(sp.expand))
     return innovations, estimates
 
 
@@ -57,7 +57,7 @@ def the_tuning_does_not_see_the_speed():
         truth = straight(speed)
         innovations, estimates = run(truth, error)
         side += innovations
-        for before, after, true in zip([truth[0] + error, *estimates], estimates, truth[1:], strict=False):
+        for (before, after), true in zip(pairwise(estimates), truth[1:], strict=True):
             side += [*(after - true), *(after - before)[1:]]
     return Equation([sp.expand(x) for x in printed], [sp.expand(x) for x in derived])
 

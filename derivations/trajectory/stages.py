@@ -35,7 +35,7 @@ def said(n: int, column: str, step: str = "tau1") -> Said:
 def say_order(pairs: Iterable[tuple[Said, Said]], more: Iterable[tuple[Fraction, str, Fraction]] = ()):
     """That the first condition number of each pair is larger than the second, and relations of the ends beside."""
     chosen = [*pairs]
-    enclosed = {id(item[0]): item[0] for pair in chosen for item in pair}
+    enclosed = {id(condition): condition for pair in chosen for condition, *_ in pair}
     return say_comparison(enclosed.values(), [*((large[1], ">", small[2]) for large, small in chosen), *more])
 
 

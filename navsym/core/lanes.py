@@ -1,7 +1,7 @@
 """Eight doubles as one value inside compiled loops.
 
 The loop vectoriser gives up on the short, many-array loops of a bank of filters, so the bank is written with
-a value of eight lanes: one hypothesis, or one Monte-Carlo run, in each. The compiler maps it to whatever
+a value of eight lanes, one hypothesis in each. The compiler maps it to whatever
 vectors the machine has. Lanes know ``+ - * /``, :func:`load_lanes`, :func:`store_lanes` and :func:`spread_lanes`;
 products and sums may be fused, so results agree with scalar code to rounding and not bit by bit.
 """

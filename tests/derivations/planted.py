@@ -231,7 +231,7 @@ def plant(paper: str, place: Place, seen: Watched, most: int = 5) -> Outcome:
             # an equation falls at a point, the quickest
             tried = sorted(moved.values(), key=lambda pair: not isinstance(pair[1], Equation | None))[:most]
             fell = fell or next((claim.number for claim, statement in tried if falls(claim, statement)), "")
-    except (ValueError, ArithmeticError, LookupError, TypeError, AttributeError):
+    except (NavsymError, ValueError, ArithmeticError, LookupError, TypeError, AttributeError):
         return Outcome(place, seen.lines[place], "the whole paper", (), ())  # it cannot even be imported
     return Outcome(place, seen.lines[place], fell, tuple(moved), tuple(silent))
 

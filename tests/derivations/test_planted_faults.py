@@ -32,25 +32,14 @@ SAME: dict[tuple[str, str], str] = {
         "h1 + names[2] * h2 + names[3] * h3 -> h1 + names[2] * h2 - names[3] * h3",
     ): "it asks which names occur",
     ("terrain_search:6.rest", "tk - tG -> tk + tG"): "without a velocity the time since the fix moves nothing",
-    (
-        "multistructure:2.growth.every",
-        "sp.sin(2 * sp.pi) - sp.sin(0) -> sp.sin(2 * sp.pi) + sp.sin(0)",
-    ): "the sine of 0 is 0: after a whole turn the course is the same",
     ("joint_correction:1.6.gain_unique", "G - K * row -> G + K * row"): "what is unique in -K is so in K",
     ("joint_correction:3.3.y1", "x[1]: 1 -> 0"): "none of the four rows holds y_4, for which x_2 stands",
     ("multistructure:17.memory", "made.means[0]: 0 -> 1"): "all modes start alike, and numbers are counted",
     ("multistructure:near.cumulant", "-mean -> mean"): "only its second and fourth powers enter",
-    ("terrain_search:sequential.below", "e - i -> e + i"): "the grid of the position is symmetric",
     ("terrain_search:sequential.below", "-1 -> 1"): "the best hypotheses lie at 0 and 1",
-    (
-        "terrain_search:roots.both",
-        "A2 * u * u + A1 * u * v -> A2 * u * u - A1 * u * v",
-    ): "u v = 0 along the axes, where the roots are",
+    ("terrain_search:offset", "x + height -> x - height"): "a constant error of either sign",
+    ("multistructure:12", "self.past[0]: 0 -> 1"): "every mode has as many values of the state",
     ("terrain_search:interval.whole", "-1 -> 1"): "two slopes of different directions serve as well",
-    (
-        "terrain_search:sequential.below",
-        "e - coarse - w * (k - turn) -> e - coarse + w * (k - turn)",
-    ): "the grid of the velocity is symmetric",
     **{
         ("trajectory:table.curse.first", end): "the ends of an enclosure rise alike; the proof compares its own"
         for end in ("a[1]: 1 -> 0", "b[0]: 0 -> 1")
@@ -84,6 +73,12 @@ def require_noticed(found: list[Outcome]) -> None:
 
 def test_a_fault_in_a_model_does_not_stay_silent():
     require_noticed(outcomes("alpha_beta_filter", 10))
+
+
+def test_a_fault_that_a_paper_refuses_on_import_does_not_stay_silent():
+    place = ("navsym_papers.trajectory.model", 1)
+    seen = Watched({place: {"import": None}}, {place: "n + 1 -> n - 1"})
+    assert plant("trajectory", place, seen).fell == "the whole paper"
 
 
 @pytest.mark.long

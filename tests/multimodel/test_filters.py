@@ -13,16 +13,10 @@ from navsym.multimodel.bank import Bank
 from navsym.multimodel.exact import Leaf, Model, run_exactly
 from navsym.multimodel.filters import read_bank, run_filter
 from navsym.multimodel.schemes import SCHEMES, filters_at, scheme
-from navsym_papers.multistructure.examples import fractions_kit
+from tests.multimodel.fractions_of_banks import fractions_kit, rational
 
 METHODS = tuple(SCHEMES)
 FIELDS = ("probabilities", "mean", "covariance", "log_likelihood")
-
-
-def rational(rng, *shape):
-    """Small random fractions as an object array."""
-    numerators, denominators = rng.integers(-6, 7, shape), rng.integers(1, 5, shape)
-    return np.vectorize(lambda a, b: Fraction(int(a), int(b)), otypes=[object])(numerators, denominators)
 
 
 def rational_spd(rng, n):

@@ -15,16 +15,10 @@ from navsym.multimodel.exact import Leaf, Model, run_exactly
 from navsym.multimodel.filters import run_filter
 from navsym.multimodel.kalman import FORMS
 from navsym.multimodel.schemes import SCHEMES, scheme
-from navsym_papers.multistructure.examples import fractions_kit
 from navsym_papers.multistructure.experiment.batch import run_batch
+from tests.multimodel.fractions_of_banks import fractions_kit, rational
 
 STEPS = 3
-
-
-def rational(rng, *shape):
-    """Small random fractions as an object array."""
-    numerators, denominators = rng.integers(-6, 7, shape), rng.integers(1, 5, shape)
-    return np.vectorize(lambda a, b: Fraction(int(a), int(b)), otypes=[object])(numerators, denominators)
 
 
 def spd(rng, n):

@@ -1,9 +1,7 @@
 """Monte-Carlo batches: many series of measurements through one bank."""
 
-import os
 import warnings
 from collections.abc import Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -11,22 +9,19 @@ from numpy.typing import NDArray
 
 from navsym.core.errors import NotFiniteError, ShapeError
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.compiled import run_compiled, scalar_models
+from navsym.multimodel.compiled import run_compiled
 from navsym.multimodel.doubt import ROUNDING, disagreements, in_units, moments, other_units
 from navsym.multimodel.engine import Estimates
 from navsym.multimodel.filters import UNUSED, run_filter
-from navsym.multimodel.kalman import logs
 from navsym.multimodel.schemes import require_room, scheme
 
 Array = NDArray[np.floating[Any]]
 #: mean (runs, T, n), covariance (runs, T, n, n), probabilities (runs, T, m), cumulative log-likelihood (runs, T)
 Batch = tuple[Array, Array, Array, Array]
 
-IN_LANES = {"pulsating": 0, "imm": 1, "polygaussian": 2}
-
 
 def run_batch(models: Bank, measurements: Any, method: str = "imm", *, depth: int | None = None) -> Batch:
-    """Filter ``measurements`` (runs, T, p) without gaps; any method, eight runs at a time where lanes fit.
+    """Filter ``measurements`` (runs, T, p) without gaps, by any method.
 
     Runs at which doubles lose their digits are filtered one by one, with a hundred digits where that is possible and
     a warning where it is not.
@@ -49,9 +44,6 @@ def run_batch(models: Bank, measurements: Any, method: str = "imm", *, depth: in
     units, out, twin = other_units(models), empty(z, models), empty(z, models)
 
     def run(bank: Bank, series: Array, target: Batch) -> NDArray[np.bool_]:
-        fits = method in IN_LANES and (method != "pulsating" or models.common)
-        if fits and in_lanes(bank, series, IN_LANES[method], target):
-            return np.full(len(series), True)
         found = [run_compiled(rule, bank, row, count) for row in series]
         put(target, found, range(len(found)))
         return np.array([not estimate.singular for estimate in found])
@@ -76,18 +68,6 @@ def empty(z: Array, models: Bank) -> Batch:
     runs, T, _ = z.shape
     n, m = models.states, models.modes
     return np.empty((runs, T, n)), np.empty((runs, T, n, n)), np.empty((runs, T, m)), np.empty((runs, T))
-
-
-def in_lanes(models: Bank, z: Array, branching: int, out: Batch) -> bool:
-    """Fill ``out`` by the compiled loops, eight runs at a time on all cores; False when a run had to stop."""
-    from navsym_papers.multistructure.experiment.lanes import run_eight
-
-    H, r, U, rotated = scalar_models(models)
-    bank = (models.F, models.Q, H, r, U, rotated, models.mode_transition)
-    start = (logs(models.probabilities), models.means, models.covariances)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:  # the loops hold no lock of the interpreter
-        fine = pool.map(lambda first: run_eight(first, branching, bank, start, z, out), range(0, len(z), 8))
-        return all(list(fine))
 
 
 def put(out: Batch, found: Sequence[Estimates], rows: Iterable[int]) -> None:
