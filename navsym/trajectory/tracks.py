@@ -457,7 +457,7 @@ SHORTEST_FIT, LONGEST_STEP = 1e-3, 100.0
 
 
 def student(rows: int, order: int, sigma_known: bool) -> Array:
-    """(3,) factors on deviations: Student's 97.5 % quantile over the normal one, by what is left to know the noise from.
+    """(3,) factors on deviations: Student's 97.5 % quantile over the normal one, by what tells of the noise.
 
     Each channel has as many rows more than states; East and North know theirs together. One where sigma is given.
     """
