@@ -119,7 +119,9 @@ def split_regimes(text: str) -> list[str]:
     found: list[str] = []
     for part in re.split(r"\+(?=[^+:]+:)", text):
         path, _, start = found[-1].partition(".toml:") if found else ("", "", "")
-        whole = start and f"{start}+{part}" in {claim.number for claim in load_papers([f"{path}.toml"])[0].claims}
+        whole = start and f"{start}+{part}" in {
+            claim.number for claim in load_papers([f"{path}.toml"], go_on=True)[0].claims
+        }
         found[-1:] = [f"{found[-1]}+{part}"] if whole else [*found[-1:], part]
     return found
 
@@ -162,7 +164,11 @@ def material_from_paper(module: str, number: str, allow_confirmed: bool) -> Mate
 def material_from_file(name: str, wanted: str, allow_confirmed: bool) -> Material:
     """A claim of a claim file, decided now."""
     path = file_of_source(name)
-    claims = {claim.id: claim for claim in read_claims(path).claims}
+    file = read_claims(path, go_on=True)
+    for unreadable in file.undefined:
+        if unreadable.id == wanted:
+            raise unreadable.error
+    claims = {claim.id: claim for claim in file.claims}
     if wanted not in claims:
         raise unknown_claim(wanted, list(claims), path.name)
     claim = claims[wanted]
