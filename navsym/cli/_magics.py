@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from navsym.cli import audit as audit_verb
 from navsym.cli import prove as prove_verb
-from navsym.cli.diff import read_range
+from navsym.cli.diff import read_ranges
 from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError
 
 if TYPE_CHECKING:
@@ -59,8 +59,7 @@ def prove_line(line: str) -> Verdict:
     import navsym as nav
 
     formula, *texts = RANGE.split(line.strip())
-    ranges: dict[str, Any] = dict(map(read_range, texts))
-    return nav.prove(formula, **ranges)
+    return nav.prove(formula, **read_ranges(texts))
 
 
 def audit_line(line: str) -> Audit:

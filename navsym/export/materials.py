@@ -196,7 +196,8 @@ def material_of(claim: FileClaim | TextClaim, verdict: Verdict, label: str, **ab
     flat = {name: tuple(e for row in rows for e in row) for name, (_, rows) in claim.kinds.items()}
     # A symmetric matrix has entries twice: they stay single numbers.
     arrays = {n: names for n, names in flat.items() if used & {*names} and len({*names}) == len(names)}
-    return replace(part, arrays=arrays)
+    whole = frozenset(name for name, ends in claim.documents[0]["symbols"].items() if "integer" in ends[2])
+    return replace(part, arrays=arrays, whole=whole)
 
 
 ENTRY = re.compile(r"(\w+)\[(\d+(?:,\d+)*)\]", re.ASCII)

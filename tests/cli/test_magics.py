@@ -73,7 +73,13 @@ def test_a_cell_of_formulas_as_printed_is_decided_line_by_line(shell):
 
 
 @pytest.mark.parametrize(
-    ("line", "hint"), [("", "expected a relation"), ("x = x --range x", "LOWER,UPPER"), ("x", "relation")]
+    ("line", "hint"),
+    [
+        ("", "expected a relation"),
+        ("x = x --range x", "LOWER,UPPER"),
+        ("x = x --range x=0,1 --range x=0,9", "got 0,1 and 0,9"),
+        ("x", "relation"),
+    ],
 )
 def test_a_wrong_line_is_an_error_without_a_traceback(shell, line, hint):
     with pytest.raises(UsageError, match=hint):

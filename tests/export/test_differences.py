@@ -30,6 +30,11 @@ def test_a_lost_sign_is_shown_where_it_costs_most(capsys) -> None:
     assert record["worst"] == {"x": "pi/2"} and float(record["difference"][0]) == pytest.approx(2)
 
 
+def test_two_ranges_of_one_symbol_are_refused_and_both_named(capsys) -> None:
+    assert run(["diff", "x", "x", "--range", "x=0,1", "--range", "x=1,2"]) == 2
+    assert "got 0,1 and 1,2" in capsys.readouterr().err
+
+
 def test_claim_files_are_compared_claim_by_claim(capsys, tmp_path: Path) -> None:
     text = '[symbols]\na = "real"\n[[claim]]\nid = "one"\nleft = "{}"\nright = "a"\n'
     old, new = tmp_path / "old.toml", tmp_path / "new.toml"
