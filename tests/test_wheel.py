@@ -48,6 +48,8 @@ def call(folder, *words, status=0, where="work Ö"):
 @pytest.mark.long
 def test_the_wheel_alone_is_enough_for_a_workspace(elsewhere):
     call(elsewhere, "navsym", "init", "work Ö", where=".")
+    call(elsewhere, "navsym", "init", "--examples", where=".")
+    assert "REFUTED" in call(elsewhere, "navsym", "prove", "examples/formulas.toml", status=1, where=".")
     work = elsewhere / "work Ö"
     (work / "claims" / "angles.claims.toml").write_text(CLAIMS)
     places = "import navsym, navsym_papers as p; print(navsym.__file__, *p.__path__, sep='\\n')"

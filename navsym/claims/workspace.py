@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import shutil
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -32,6 +33,8 @@ FILE = "navsym.toml"
 #: What a workspace lists, and how the names of these files end.
 ENDINGS = {"claims": ".toml", "models": ".toml", "audits": ".toml", "papers": ".py"}
 SCHEMAS = Path(__file__).parent.parent / "schemas"
+#: The examples of the documentation: in the wheel, and in a checkout.
+EXAMPLES = (SCHEMAS.parent / "examples", SCHEMAS.parent.parent / "examples")
 WILD = re.compile(r"[*?\[]")
 
 
@@ -200,10 +203,25 @@ def editor_files() -> dict[str, str]:
     return {**texts, ".taplo.toml": "\n".join(blocks)}
 
 
-def init(folder: str | os.PathLike[str] = ".") -> Workspace:
+def copy_examples(root: Path) -> Workspace:
+    """The examples of the documentation in a new folder, which lists nothing."""
+    source = next(place for place in EXAMPLES if place.is_dir())
+    try:
+        shutil.copytree(source, root)
+    except FileExistsError:
+        message = "expected a folder without examples; got one that is there; choose another or remove it"
+        raise DuplicateError(message, where=str(root)) from None
+    except OSError as error:
+        message = f"expected a folder that can be written; got '{error.strerror}'; choose another"
+        raise OutputError(message, where=str(root)) from error
+    return Workspace(root, dict.fromkeys(ENDINGS, ()))
+
+
+def init(folder: str | os.PathLike[str] = ".", *, examples: bool = False) -> Workspace:
     """Make a workspace: ``navsym.toml``, and folders for claims, models, audits and papers with a small example each.
 
-    folder : made when it is not there; files of other names in it stay
+    folder   : made when it is not there; files of other names in it stay
+    examples : make no workspace, and copy the examples of the documentation into ``examples`` of the folder
 
     Raises DuplicateError where a file of the workspace is there already, and OutputError where none can be written.
 
@@ -212,6 +230,8 @@ def init(folder: str | os.PathLike[str] = ".") -> Workspace:
     <workspace drive: claims/baro.toml, models/alignment.toml, audits/ekf.toml, pendulum>
     """
     root = require_path(folder, "init: folder").absolute()
+    if examples:
+        return copy_examples(root / "examples")
     files = {**example_files(), **editor_files()}
     for name in files:
         if os.path.lexists(root / name):

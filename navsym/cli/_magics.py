@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from navsym.cli import audit as audit_verb
 from navsym.cli import prove as prove_verb
-from navsym.cli.diff import read_range
+from navsym.cli.diff import read_ranges
 from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError
 from navsym.language.names import quote
 
@@ -67,8 +67,7 @@ def prove_line(line: str) -> Verdict:
     if option := OPTION.search(formula):
         got = quote(option[1])
         raise ExpressionSyntaxError(f"expected --range NAME=LOWER,UPPER; got {got}; leave it out", where="prove")
-    ranges: dict[str, Any] = dict(map(read_range, texts))
-    return nav.prove(formula, **ranges)
+    return nav.prove(formula, **read_ranges(texts))
 
 
 def audit_line(line: str) -> Audit:

@@ -12,7 +12,7 @@ def values_of(
     option: str = "--set",
     form: str = "NAME=VALUE",
     example: str = "--set T=5/2",
-    twice: str = "expected one value of {}; got two; give one",
+    twice: str = "expected one value of {}; got {} and {}; give one",
 ) -> dict[str, str]:
     """NAME=VALUE settings of an option as a mapping.
 
@@ -25,6 +25,6 @@ def values_of(
             message = f"expected {form}; got {setting[:40]!r}; write {example}"
             raise ExpressionSyntaxError(message, where=option)
         if name in values:
-            raise DuplicateError(twice.format(name[:40]), where=option)
+            raise DuplicateError(twice.format(name[:40], values[name][:40], value[:40]), where=option)
         values[name] = value
     return values

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
+from navsym.cli._settings import values_of
 from navsym.cli.output import emit, table
 from navsym.core.errors import ExpressionSyntaxError
 
@@ -15,15 +19,18 @@ def command(old: str, new: str, *, box: list[str] | None = None, json_: bool = F
     """
     import navsym as nav
 
-    found = nav.diff(old, new, box=dict(read_range(text) for text in box or []))
+    found = nav.diff(old, new, box=read_ranges(box))
     emit(found.document(), as_json=json_, text=lambda: table(*found.table()))
     return 0 if found.equal else 1
 
 
-def read_range(text: str) -> tuple[str, tuple[str, str]]:
-    """``"T=0,2*pi"`` as a name and the text of two ends."""
-    name, equals, ends = text.partition("=")
-    parts = ends.split(",")
-    if not equals or len(parts) != 2:
-        raise ExpressionSyntaxError(f"expected NAME=LOWER,UPPER; got {text[:60]!r}; correct it", where="--range")
-    return name.strip(), (parts[0], parts[1])
+def read_ranges(texts: Sequence[str] | None) -> dict[str, Any]:
+    """``"T=0,2*pi"``, each with another name, as names and the texts of two ends; raises NavsymError for others."""
+    found: dict[str, Any] = {}
+    for name, ends in values_of(texts, "--range", "NAME=LOWER,UPPER", "--range T=0,2*pi").items():
+        lower, comma, upper = ends.partition(",")
+        if not comma or "," in upper:
+            message = f"expected NAME=LOWER,UPPER; got {f'{name}={ends}'[:60]!r}; write --range {name}=0,1"
+            raise ExpressionSyntaxError(message, where="--range")
+        found[name] = (lower, upper)
+    return found

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
+from navsym.cli._settings import values_of
 from navsym.cli.output import emit, table
-from navsym.core.errors import DomainError
 
 if TYPE_CHECKING:
     from navsym.export.package import Exported
@@ -36,7 +36,7 @@ def command(
     """
     import navsym as nav
 
-    units = dict(read_unit(text) for text in unit or [])
+    units = values_of(unit, "--unit", "NAME=UNIT in ASCII", "--unit T=s")
     words = ["navsym", "export", *claims, "--to", to, "--real", real, "--license", license_, "--vectors", str(vectors)]
     words += ["--allow-confirmed"] if allow_confirmed else []
     words += [word for text in unit or [] for word in ("--unit", text)]
@@ -57,14 +57,6 @@ def command(
         )
     emit(exported.document(), as_json=json_, text=lambda: as_text(exported))
     return 0
-
-
-def read_unit(text: str) -> tuple[str, str]:
-    """``"T=s"`` as a name and a unit."""
-    name, equals, words = (part.strip() for part in text.partition("="))
-    if not (name and equals and words):
-        raise DomainError(f"expected NAME=UNIT in ASCII; got {text[:60]!r}; correct it", where="--unit")
-    return name, words
 
 
 def as_text(exported: Exported) -> str:

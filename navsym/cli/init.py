@@ -11,15 +11,16 @@ if TYPE_CHECKING:
     from navsym.claims.workspace import Workspace
 
 
-def command(folder: Path = Path("."), *, json_: bool = False) -> None:
+def command(folder: Path = Path("."), *, examples: bool = False, json_: bool = False) -> None:
     """Make a workspace. Inside it, or below, every verb knows what navsym.toml lists.
 
     Example: navsym init drive
     """
     import navsym as nav
 
-    workspace = nav.init(folder)
-    emit(workspace.document(), as_json=json_, text=lambda: as_text(workspace, folder))
+    workspace = nav.init(folder, examples=examples)
+    said = f"{workspace.root}; the documentation says what to try" if examples else ""
+    emit(workspace.document(), as_json=json_, text=lambda: said or as_text(workspace, folder))
 
 
 def as_text(workspace: Workspace, folder: Path) -> str:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from navsym.cli._settings import values_of
-from navsym.cli.diff import read_range
+from navsym.cli.diff import read_ranges
 from navsym.cli.output import emit
 from navsym.language.tomlfile import parse_toml
 
@@ -47,7 +47,7 @@ def command(
         formula=formula,
         relation=relation,
         given=given or [],
-        symbols=dict(map(read_range, ranges or [])) | read_words(declare or []),
+        symbols=read_ranges(ranges) | read_words(declare or []),
         title=title,
         positive=positive,
         tolerance=tolerance,

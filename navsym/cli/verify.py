@@ -23,6 +23,7 @@ RESUME = "the certificates so far are kept: the same command (without --fresh) g
 def command(
     modules: list[str] | None = None,
     *,
+    workspace: bool = False,
     write: bool = False,
     jobs: int | None = None,
     seconds: float = 90.0,
@@ -38,8 +39,12 @@ def command(
     Example: navsym verify guaranteed_velocity
     """
     import navsym as nav
+    from navsym.claims.workspace import FILE, find_workspace
     from navsym.verification.ledger import ledger_file
 
+    if workspace and find_workspace() is None:
+        message = "expected a workspace; got a folder without one; run navsym init here, or name files to verify"
+        raise NavsymError(message, where=FILE, kind="missing-file")
     started = time.monotonic()
     with Progress("claims", resume=RESUME) as bar:
         ledger = nav.verify(

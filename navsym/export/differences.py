@@ -39,6 +39,7 @@ from navsym.prove.claimfile import (
     text_conditions,
 )
 from navsym.prove.ladder import decide
+from navsym.prove.relations.judge import TextClaim
 from navsym.prove.sampling.points import range_of
 from navsym.prove.wording import decimal_ends, expression_text
 from navsym.verification.ledger import Ledger, read_ledger
@@ -57,7 +58,8 @@ Noted = tuple[tuple[sp.Expr, ...], ...]
 class Formula:
     """A named formula with the ranges of its symbols.
 
-    outside : its text when the language of files cannot say it; it is then compared as text only
+    outside : its text when it is no formula between numbers; it is then compared as text only
+    unread  : why it was not compared, where its text cannot be read or is not all of it
     noted   : divisors, radicands and arguments of logarithms of its text, also where the algebra has cancelled them
     right   : for the left side of a claim, its right side
     stated  : for a claim, its relation and its tolerance
@@ -70,6 +72,7 @@ class Formula:
     noted: Noted = ((), (), ())
     right: sp.Expr | None = None
     stated: tuple[str, ...] = ()
+    unread: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,10 +234,12 @@ def compare_pair(name: str, old: Formula | None, new: Formula | None) -> Differe
     """What came of two formulas of one name, or of one without a counterpart."""
     if old is None or new is None:
         return Difference(name, "ONLY-NEW" if old is None else "ONLY-OLD", "no counterpart")
+    if unread := old.unread or new.unread:
+        return Difference(name, "OPEN", f"not compared: {unread}")
     if old.outside or new.outside:
         if old.outside == new.outside and not different_ranges(old, new):
             return Difference(name, "EQUAL", "the same text")
-        return Difference(name, "OPEN", "outside the language of files")
+        return Difference(name, "OPEN", "not compared: no formula between numbers, and the texts are not the same")
     claim = claim_of(old, new)
     verdict = decide(statement_of(claim))
     if verdict.status.holds:
@@ -345,7 +350,7 @@ def of_claim(wanted: str) -> Formula:
     module, _, label = split_id(wanted)
     _, claim = find_claim(wanted)
     if module.endswith(".toml") and not is_model(path := file_of_source(module)):
-        found = next(require_numbers(c) for c in read_claims(path).claims if c.id == label)
+        found = next(require_numbers(c) for c in read_claims(path, go_on=True).claims if c.id == label)
         return Formula("formula", found.left, found.box, noted=noted_in(found))
     statement = claim.derive()
     printed = getattr(statement, "printed", None)
@@ -376,14 +381,19 @@ def of_file(path: Path) -> dict[str, Formula]:
 
     document = read_toml(path)
     if "claim" in document:
-        claims = claims_from(document, str(path)).claims
-        return {name: found for c in claims for name, found in entries_by_place(require_numbers(c)).items()}
+        file = claims_from(document, str(path), go_on=True)
+        unread = {c.id: Formula(c.id, sp.S.Zero, {}, unread=str(c.error)) for c in file.undefined}
+        return {name: found for c in file.claims for name, found in entries_by_place(c).items()} | unread
     return of_model(path)
 
 
-def entries_by_place(claim: FileClaim) -> dict[str, Formula]:
-    """Both sides of a claim, or of its entries by their places."""
-    name, side = claim.id, claim.left
+def entries_by_place(claim: FileClaim | TextClaim) -> dict[str, Formula]:
+    """Both sides of a claim, or of its entries by their places; the text of one of the whole language."""
+    name = claim.id
+    if isinstance(claim, TextClaim):
+        text = json.dumps([claim.documents, claim.formula.document()], sort_keys=True)
+        return {name: Formula(name, sp.S.Zero, {}, outside=text)}
+    side = claim.left
     found = {name: (side, claim.right)}
     if isinstance(side, sp.MatrixBase):
         places = [(i, j) for i in range(side.rows) for j in range(side.cols)]

@@ -143,7 +143,8 @@ def function_of(
     """
     name = name or function_name("_then_".join(part.claim for part in parts))
     parts, switch_symbol = in_order(parts)
-    layout = replace(layout, arrays={**layout.arrays, **parts[0].arrays})
+    whole = frozenset[str]().union(*(part.whole for part in parts))
+    layout = replace(layout, arrays={**layout.arrays, **parts[0].arrays}, whole=whole)
     needed = needed_symbols(parts) | ({switch_symbol} if switch_symbol is not None else set())
     symbols = with_whole_arrays(sorted(needed, key=str), layout)
     box = parts[0].box

@@ -57,7 +57,8 @@ def with_layout(made: Input, layout: Layout, real: str = "double") -> Input:
     unit = layout.units.get(made.symbol.name) or layout.units.get(array, "")
     low, high = layout.tests.get(made.symbol.name) or layout.tests.get(array, (made.test_low, made.test_high))
     low, high = inner(max(low, made.low), 1, real), inner(min(high, made.high), -1, real)
-    return replace(made, unit=unit, test_low=low, test_high=high)
+    around = f"{made.around}, {{0}} whole" if made.symbol.name in layout.whole else made.around
+    return replace(made, unit=unit, test_low=low, test_high=high, around=around)
 
 
 def inner(end: float, direction: int, real: str) -> float:

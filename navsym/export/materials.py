@@ -119,7 +119,9 @@ def split_regimes(text: str) -> list[str]:
     found: list[str] = []
     for part in re.split(r"\+(?=[^+:]+:)", text):
         path, _, start = found[-1].partition(".toml:") if found else ("", "", "")
-        whole = start and f"{start}+{part}" in {claim.number for claim in load_papers([f"{path}.toml"])[0].claims}
+        whole = start and f"{start}+{part}" in {
+            claim.number for claim in load_papers([f"{path}.toml"], go_on=True)[0].claims
+        }
         found[-1:] = [f"{found[-1]}+{part}"] if whole else [*found[-1:], part]
     return found
 
@@ -162,7 +164,11 @@ def material_from_paper(module: str, number: str, allow_confirmed: bool) -> Mate
 def material_from_file(name: str, wanted: str, allow_confirmed: bool) -> Material:
     """A claim of a claim file, decided now."""
     path = file_of_source(name)
-    claims = {claim.id: claim for claim in read_claims(path).claims}
+    file = read_claims(path, go_on=True)
+    for unreadable in file.undefined:
+        if unreadable.id == wanted:
+            raise unreadable.error
+    claims = {claim.id: claim for claim in file.claims}
     if wanted not in claims:
         raise unknown_claim(wanted, list(claims), path.name)
     claim = claims[wanted]
@@ -190,7 +196,8 @@ def material_of(claim: FileClaim | TextClaim, verdict: Verdict, label: str, **ab
     flat = {name: tuple(e for row in rows for e in row) for name, (_, rows) in claim.kinds.items()}
     # A symmetric matrix has entries twice: they stay single numbers.
     arrays = {n: names for n, names in flat.items() if used & {*names} and len({*names}) == len(names)}
-    return replace(part, arrays=arrays)
+    whole = frozenset(name for name, ends in claim.documents[0]["symbols"].items() if "integer" in ends[2])
+    return replace(part, arrays=arrays, whole=whole)
 
 
 ENTRY = re.compile(r"(\w+)\[(\d+(?:,\d+)*)\]", re.ASCII)

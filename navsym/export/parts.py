@@ -87,12 +87,14 @@ class Layout:
     order  : arguments that come first, in this order; the others follow in alphabetical order
     tests  : symbol -> range of vectors and of the rounding bound, where it is narrower than the accepted one
     units  : symbol, array or output -> unit
+    whole  : symbols that stand for whole numbers, as the text of an argument says
     """
 
     arrays: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     order: tuple[str, ...] = ()
     tests: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
+    whole: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -218,6 +220,7 @@ class Material:
     source: Source
     lets: tuple[tuple[sp.Symbol, sp.Expr], ...] = ()
     arrays: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    whole: frozenset[str] = frozenset()
 
 
 def inside(end: Any, direction: int, real: str = "double") -> float:

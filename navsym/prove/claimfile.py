@@ -20,7 +20,7 @@ from navsym.core.sandbox import Exhausted, Failed, run_many
 from navsym.language.advice import advise_on_relation
 from navsym.language.arithmetic import sign_of_constant
 from navsym.language.declarations import Parameter, box_of, read_parameters, read_range, require_positive, symbols_of
-from navsym.language.expression import ZERO, Expr, Matrix, Parsed, Symbol
+from navsym.language.expression import ZERO, Expr, Matrix, Parsed, Symbol, parse
 from navsym.language.files import name_file
 from navsym.language.names import quote
 from navsym.language.schema import (
@@ -46,7 +46,7 @@ from navsym.prove.grant import write_statements
 from navsym.prove.ladder import decide
 from navsym.prove.relations.judge import TROUBLE, TextClaim, decide_text
 from navsym.prove.relations.reading import is_text_claim, limit_scalar, read_shapes, read_text_claim
-from navsym.prove.rooms.goals import write_term
+from navsym.prove.rooms.goals import player, write_term
 from navsym.prove.sampling.points import ranges_of, write_range
 from navsym.prove.wording import expression_text, scope_of
 
@@ -421,10 +421,13 @@ def close_claim(claim: FileClaim | TextClaim) -> FileClaim:
     for side in ("left", "right") if is_equation and not {"matrices", "random"} & {*document} else ():
         if entries := list_closed_entries(document, side):
             used = {name for text in list_texts(entries) for name in re.findall(r"[A-Za-z]\w*", text)}
-            symbols = {n: declare_limits(*limits) for n, limits in document["symbols"].items() if n in used}
+            limits = {name: ends for name, ends in document["symbols"].items() if name in used}
+            symbols = {name: declare_limits(*ends) for name, ends in limits.items()}
             block = {"id": claim.id, "left": entries, "right": entries}
-            return require_numbers(claims_from({"symbols": symbols, "claim": [block]}, claim.id).claims[0])
-    expected = "one exact equation with a side without integrals, limits, cases and random numbers, of known size"
+            closed = require_numbers(claims_from({"symbols": symbols, "claim": [block]}, claim.id).claims[0])
+            ends = {s: [end and parse(end, {}) for end in limits[s.name][:2]] for s in closed.symbols or ()}
+            return replace(closed, box={**closed.box, **{s: (low, high) for s, (low, high) in ends.items()}})
+    expected = "one exact equation with a side without integrals, limits, cases, floors and chances, of known size"
     raise DomainError(f"expected {expected}; got {quote(str(formula))}; write one so", where=claim.id)
 
 
@@ -438,9 +441,9 @@ def list_closed_entries(document: Mapping[str, Any], side: str) -> Any:
         cases, _, answers = read_with_answers({**document, "left": document[side], "right": zero})
     except TROUBLE:
         return None
-    if len(cases) != 1 or answers:
-        return None
     texts = [write_term(goal.term) for goal in cases[0].goals]
+    if len(cases) != 1 or answers or any(player.FRACTION in text for text in texts):
+        return None
     if size is None:
         return texts[0]
     columns = int(size[1])
@@ -448,10 +451,10 @@ def list_closed_entries(document: Mapping[str, Any], side: str) -> Any:
 
 
 def declare_limits(low: str | None, high: str | None, flags: Sequence[str]) -> Any:
-    """Limits in the words of the checker as a declaration; a number that is whole is a real one here."""
+    """Limits in the words of the checker as a declaration, without ends; a number that is whole is a real one here."""
     if (low, high) == ("0", None) and "open-low" in flags:
         return "positive"
-    return ("nonzero" if "nonzero" in flags else "real") if low is high is None else [low or "-oo", high or "oo"]
+    return "nonzero" if "nonzero" in flags else "real"
 
 
 def statement_of(claim: FileClaim | TextClaim) -> Statement:

@@ -12,8 +12,10 @@ from contextlib import nullcontext, redirect_stdout
 from types import ModuleType
 from typing import Any, cast
 
-from navsym.core.errors import DomainError, MissingEngineError, NavsymError
+from navsym.core.choice import one_of
+from navsym.core.errors import DomainError, MissingEngineError, NavsymError, ShapeError
 from navsym.language.declarations import read_range
+from navsym.language.names import quote
 from navsym.language.printer import to_text
 from navsym.models.model import Model
 from navsym.report.plots import plot
@@ -44,6 +46,10 @@ def explore(what: Model | str | os.PathLike[str] | Callable[..., Any], target: s
         what = Model.load(what)
     if isinstance(what, Model):
         return explore_model(what, target or next(iter(what.targets)), ranges)
+    for name, ends in ranges.items():
+        if not (isinstance(ends, list | tuple) and len(ends) == 3 and ends[0] <= ends[2] <= ends[1] != ends[0]):
+            message = f"expected (lowest, highest, start); got {quote(ends)}; write {name}=(0.0, 2.0, 1.0)"
+            raise ShapeError(message, where=f"explore: {name}")
     start = {name: middle for name, (_, _, middle) in ranges.items()}
     for name, (low, high, _) in ranges.items():
         for end in (low, high):
@@ -59,6 +65,8 @@ def explore(what: Model | str | os.PathLike[str] | Callable[..., Any], target: s
 def explore_model(model: Model, target: str, ranges: dict[str, Any]) -> Any:
     """The estimator of a target with a slider for each parameter."""
     from navsym.guaranteed.solver import solve
+
+    one_of(target, model.targets, "explore: target")
 
     def draw(**values: str) -> Any:
         try:
@@ -92,8 +100,11 @@ def read_ends(model: Model, ranges: dict[str, Any]) -> dict[str, tuple[Any, Any]
     found = {}
     for name, parameter in model.parameters.items():
         if name in ranges:
-            ends = ranges[name]
-            found[name] = read_range([*ends] if isinstance(ends, tuple) else ends, f"explore: {name}")
+            where, ends = f"explore: {name}", ranges[name]
+            if not isinstance(ends, list | tuple) or len(ends) != 2:
+                remedy = f'write {name}=("1", "6"), or nav.solve(model, {name}="5") for one value'
+                raise ShapeError(f"expected two ends of a slider; got {quote(ends)}; {remedy}", where=where)
+            found[name] = read_range([*ends], where)
         elif parameter.lower is None or parameter.upper is None:
             message = f'expected two ends of {name}; got {parameter.kind}; write {name}=("1/2", "2")'
             raise DomainError(message, where="explore")

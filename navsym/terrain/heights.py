@@ -17,6 +17,8 @@ from navsym.core.errors import DomainError, NoDataError, OutsideMapError, ShapeE
 
 #: Sizes that no map, track or step in any unit has; within them no sum of squares overflows.
 LARGEST, SMALLEST = 1e15, 1e-12
+#: What stands for no height in many maps, and for one in hardly any.
+MARKS = (-9999.0, -32767.0, -32768.0, -99999.0)
 
 
 def put(owner: Any, name: str, value: Any) -> None:
@@ -46,6 +48,9 @@ def with_voids(heights: Any, nodata: float | None) -> Array:
     if min(array.shape) < 2:
         raise ShapeError(f"heights: expected at least 2 x 2 nodes; got {array.shape}; give more")
     if nodata is None:
+        for row, column in np.argwhere(np.isin(array, MARKS)).tolist():
+            message = f"heights: expected heights; got {array[row, column]:g} at {row, column}, a usual mark of none"
+            raise NoDataError(f"{message}; say which number is none with nodata")
         return in_range("heights", array)
     voids = voids_in(np.asarray(heights), nodata)
     in_range("heights", np.where(voids, 0.0, array))

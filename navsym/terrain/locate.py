@@ -31,6 +31,8 @@ Array = NDArray[np.float64]
 
 METHODS = ("position", "full", "sequential", "refined")
 FEET = 0.3048
+#: Times the usual departure from the map beyond which a height is named, and the least that is usual, m.
+GROSS, GRAIN = 20.0, 0.1
 #: Share by which the misfit must fall before feet, or a misplaced datum, are suspected.
 MUCH_BETTER = 0.25
 
@@ -313,7 +315,14 @@ def remarks(
     found = []
     x, y = corrected(track, answer)
     mapped, flags = terrain.sample(x, y)
-    if (flags == ON_MAP).all() and not offset_free and looks_like_feet(track.h, mapped):
+    away = np.abs(track.h - mapped - (np.median(track.h - mapped) if offset_free else 0.0))
+    worst, usual = int(np.argmax(away)), max(float(np.median(away)), GRAIN)
+    if (flags == ON_MAP).all() and away[worst] > GROSS * usual:
+        found.append(
+            f"the height at t = {track.t[worst]:g} departs from the map by {away[worst]:.3g} m, "
+            f"{away[worst] / usual:.0f} times as far as the others: leave it out if it is a gross error"
+        )
+    elif (flags == ON_MAP).all() and not offset_free and looks_like_feet(track.h, mapped):
         found.append("the measured heights fit the map far better as feet; expected metres")
     ends = (*grid.half_count, *grid.velocity_half_count)
     if any(n > 0 and abs(k) == n for k, n in zip(answer.index, ends, strict=True)):

@@ -38,6 +38,7 @@ from navsym.trajectory.tracks import (
     noise_of,
     shape_of,
     shaped,
+    student,
     usual_step,
 )
 
@@ -237,7 +238,7 @@ def tell_nobody(done: int, of: int, doing: str) -> None:
 def estimate(track: Positions, settings: Settings, progress: Progress | None = None) -> tuple[TrackEstimate, Noise]:
     """Velocity and acceleration of a track, and the noise that was found in it."""
     tell = progress or tell_nobody
-    check_order(track, settings.order)
+    check_order(len(track.t), settings.order)
     use = np.ones(len(track.t), dtype=np.int64)
     if settings.gate > 0:
         use[isolated_outliers(track)] = 0
@@ -260,8 +261,12 @@ def estimate(track: Positions, settings: Settings, progress: Progress | None = N
     noises = shaped(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
     tell(3, 4, settings.method)
     if settings.method in ("filter", "smoother"):
-        return marginal(track, noises, settings, use, tell), noises[0][1]
-    return by_method(track, noises[0][1], settings, use), noises[0][1]
+        found = marginal(track, noises, settings, use, tell)
+    else:
+        found = by_method(track, noises[0][1], settings, use)
+    factors = student(int(use.sum()), settings.order, settings.fixed_scale)
+    found = replace(found, derivatives=[(value, spread * factors) for value, spread in found.derivatives])
+    return found, noises[0][1]
 
 
 def marginal(

@@ -17,12 +17,24 @@ from navsym.language.names import quote
 from navsym.trajectory.consistency import Consistency, compare, consistency_of
 from navsym.trajectory.estimate import Progress, Settings, estimate, filtered, gaps, largest_gap, window_of
 from navsym.trajectory.reader import TrackFile, read_columns, read_track
-from navsym.trajectory.tracks import Noise, Positions, Rows, TrackEstimate, memory, project_positions, usual_step
+from navsym.trajectory.tracks import (
+    Noise,
+    Positions,
+    Rows,
+    TrackEstimate,
+    check_order,
+    memory,
+    project_positions,
+    student,
+    usual_step,
+)
 
 #: Mean squared normalised innovation outside this range makes the standard deviations doubtful.
 CONSISTENT = (0.5, 2.0)
 #: Steps whose lengths differ by more than this part of the usual step are jitter worth a remark.
 JITTER = 0.5
+#: Rows more than states below which a remark says how roughly the noise is known.
+FEW = 10
 #: Rows of the table for people.
 SHOWN = 12
 
@@ -167,6 +179,7 @@ def track(
     read = read_track(data, policy) if isinstance(data, str | os.PathLike) else read_columns(data, policy)
     place = name_file(data) if isinstance(data, str | os.PathLike) else "track"
     try:
+        check_order(len(read.t), settings.order)
         given = read.sigma if sigma is None else sigma
         positions = project_positions(read.t - read.t[0], read.latitude, read.longitude, read.height, given)
         found = describe_motion(read, positions, settings, progress)
@@ -266,7 +279,15 @@ def remarks(
         where = [int(lines[k]) for k, flag in enumerate(found.flags) if flag == name]
         if where:
             listed = ", ".join(map(str, where[:20])) + (", ..." if len(where) > 20 else "")
-            out.append(f"{len(where)} rows were {text} ({name}): lines {listed}")
+            rows, place = ("1 row was", "line") if len(where) == 1 else (f"{len(where)} rows were", "lines")
+            out.append(f"{rows} {text} ({name}): {place} {listed}")
+    spare = len(lines) - found.flags.count("outlier") - settings.order
+    if spare < FEW and not settings.fixed_scale:
+        level, _, up = student(spare + settings.order, settings.order, False)
+        out.append(
+            f"{spare + settings.order} rows for {settings.order} states tell little of the noise: standard deviations "
+            f"are rough, and {level:.3g} (level) and {up:.3g} (up) times as large as those of a noise that is known"
+        )
     steps = np.diff(track.t)
     usual = usual_step(track.t)
     uneven = int(((np.abs(steps - usual) > JITTER * usual) & (steps < 5 * usual)).sum())

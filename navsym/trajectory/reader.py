@@ -38,6 +38,7 @@ Policy = Literal["strict", "repair"]
 
 LARGEST_ROWS = 2_000_000
 MOST_PROBLEMS = 1_000  # after so many a strict reading gives up: the file is something else
+LONG_STEP = 100.0  # seconds, at which a remark asks for the unit: 5 Hz in milliseconds are 200
 GPS_EPOCH = datetime(1980, 1, 6, tzinfo=UTC)
 
 #: Column -> names that mean it, lower case, without the unit in brackets.
@@ -409,7 +410,10 @@ def in_order(rows: list[Row], log: Log) -> list[Row]:
 def sanity(rows: Sequence[Row], log: Log) -> None:
     """What is possible but unlikely."""
     heights = [row.h for row in rows]
-    _, lat, lon, h = (unit.name for unit in log.units)
+    t, lat, lon, h = (unit.name for unit in log.units)
+    step = float(np.median(np.diff([row.t for row in rows]))) if len(rows) > 1 else 0.0
+    if not t and step >= LONG_STEP:
+        log.warnings.append(f"the usual step is {step:.4g} s: are the times in milliseconds or less?")
     if not h and max(heights) > 9000 and slow(rows):
         log.warnings.append(f"heights reach {max(heights):.0f} m at the speed of a car or ship: are they in feet?")
     small = (abs(row.lat) <= math.radians(math.pi / 2) and abs(row.lon) <= math.radians(math.pi) for row in rows)

@@ -180,9 +180,8 @@ def project_positions(
 
     Raises EmptyError for fewer than two rows and DomainError for angles off the Earth.
     """
-    if np.size(t) < 2:
-        raise EmptyError(f"track: expected at least 2 rows; got {np.size(t)}; record a longer track")
-    N = np.size(t)
+    if (N := np.size(t)) < 2:
+        raise EmptyError(f"track: expected at least 2 rows; got {N}; record a longer track")
     columns = {"latitude": latitude, "longitude": longitude, "height": height}
     lat, lon, h = (as_array(name, value, (N,), "one entry per row") for name, value in columns.items())
     if (np.abs(lat) > np.pi / 2 + 1e-12).any() or (np.abs(lon) > 2 * np.pi + 1e-12).any():
@@ -209,15 +208,14 @@ def usual_step(t: Array) -> float:
     return float(np.median(t[reach:] - t[:-reach])) / reach
 
 
-def check_order(track: Positions, order: int) -> None:
-    """DomainError for an order that is not offered, ShapeError for a track too short for it."""
+def check_order(rows: int, order: int) -> None:
+    """DomainError for an order that is not offered; ShapeError, EmptyError below 2 rows, for too few rows for it."""
     if not 2 <= order <= LARGEST_ORDER:
         raise DomainError(f"order: expected 2 to {LARGEST_ORDER} states; got {order}; 3 is usual")
-    if len(track.t) < order + 1:
-        raise ShapeError(
-            f"track: expected at least {order + 1} rows for {order} states; got {len(track.t)}; "
-            "lower the order or record a longer track"
-        )
+    if rows < order + 1:
+        message = f"track: expected at least {order + 1} rows for {order} states; got {rows}"
+        remedy = "lower the order or record a longer track" if rows > 2 else "record a longer track"
+        raise (ShapeError if rows > 1 else EmptyError)(f"{message}; {remedy}")
 
 
 # -- isolated outliers ---------------------------------------------------------------------------------
@@ -294,7 +292,7 @@ def noise_of(track: Positions, order: int, use: Rows, *, gate: float = 0.0, fixe
     gate        : innovations beyond so many standard deviations count as if they were at it; 0 for none
     fixed_scale : take the given variances as they are
     """
-    check_order(track, order)
+    check_order(len(track.t), order)
     pairs = [Fit(track, order, use, c, gate, fixed_scale).best() for c in ((0, 1), (2,))]
     scale, density = (np.array([pairs[0][i], pairs[0][i], pairs[1][i]]) for i in (0, 1))
     return Noise(freeze(scale), freeze(density))
@@ -456,6 +454,17 @@ def explanations(fit: Fit, own: Array) -> list[tuple[float, Array]]:
 
 #: Usual steps, s, for which the bounds of a shape make sense.
 SHORTEST_FIT, LONGEST_STEP = 1e-3, 100.0
+
+
+def student(rows: int, order: int, sigma_known: bool) -> Array:
+    """(3,) factors on deviations: Student's 97.5 % quantile over the normal one, by what tells of the noise.
+
+    Each channel has as many rows more than states; East and North know theirs together. One where sigma is given.
+    """
+    from scipy.special import stdtrit
+
+    spare = np.array([2, 2, 1]) * max(rows - order, 1)
+    return np.ones(3) if sigma_known else np.asarray(stdtrit(spare, 0.975) / 1.959963984540054)
 
 
 def middle_rows(track: Positions, use: Rows) -> tuple[Positions, Rows]:

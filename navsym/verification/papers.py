@@ -63,11 +63,11 @@ def text_digest(module: ModuleType) -> str:
     return key_of(*(part for file in files for part in (file.name, file.read_bytes().hex())))
 
 
-def load_papers(names: Iterable[str] = ()) -> list[PaperModule]:
+def load_papers(names: Iterable[str] = (), *, go_on: bool = False) -> list[PaperModule]:
     """The papers and files of these names, in this order, or all; raises DomainError for a name that is none.
 
     Inside a workspace all are what it lists; outside, the papers that come with navsym. By name, these and any claim or
-    model file are known everywhere.
+    model file are known everywhere. With ``go_on`` the claims of a file are those of it that can be read.
     """
     workspace = find_workspace()
     listed: dict[str, Path | None] = dict.fromkeys(paper_names()) if workspace is None else {**workspace.names()}
@@ -75,7 +75,7 @@ def load_papers(names: Iterable[str] = ()) -> list[PaperModule]:
         message = "expected files that a pattern names; got none; write one, or correct the patterns"
         raise EmptyError(message, where=str(workspace.root / FILE))
     wanted = [name_source(str(name), listed) for name in names] or [*listed]
-    return [load_source(name, listed) for name in dict.fromkeys(wanted)]
+    return [load_source(name, listed, go_on) for name in dict.fromkeys(wanted)]
 
 
 def name_source(name: str, listed: Mapping[str, Path] | Mapping[str, Path | None]) -> str:
@@ -99,7 +99,7 @@ def is_model(path: Path) -> bool:
     return not {"model", "basis"}.isdisjoint(read_toml(path))
 
 
-def load_source(name: str, listed: Mapping[str, Path | None]) -> PaperModule:
+def load_source(name: str, listed: Mapping[str, Path | None], go_on: bool) -> PaperModule:
     """The claims of a name: a file of the workspace or another one, or a paper that comes with navsym."""
     path = listed.get(name) or (Path(name) if name.endswith(".toml") else None)
     if path is None:
@@ -113,7 +113,7 @@ def load_source(name: str, listed: Mapping[str, Path | None]) -> PaperModule:
         return paper_module(own_module(path))
     card = Paper(name, f"Formulas of {name}", (), None, name, "", ())  # it numbers no equations: none is missing
     digest = key_of(*(file.read_bytes().hex() for file in files_of_source(path)))
-    return PaperModule(name, card, claims_of_file(name, path), digest)
+    return PaperModule(name, card, claims_of_file(name, path, go_on), digest)
 
 
 def summarise_paper(module: PaperModule) -> PaperSummary:
@@ -143,10 +143,11 @@ def find_claim(wanted: str) -> tuple[PaperModule, Claim]:
         whole = " or ".join(f"{name}:{wanted}" for name in known)
         message = f"expected the id of a claim, MODULE:NUMBER; got {wanted[:80]}; take {whole}"
         raise DomainError(message, where="claim")
-    (paper,) = load_papers([module])
+    (paper,) = load_papers([module], go_on=True)
     for claim in paper.claims:
         if claim.number == number:
             return paper, claim
+    load_papers([module])  # says why one of the others cannot be read
     ids = [claim.id for claim in paper.claims]
     close = [known for known in ids if known.startswith(wanted)] if number else ids
     if not close:
@@ -167,7 +168,7 @@ def claim_ids(wanted: str) -> list[str]:
     module, colon, number = split_id(wanted)
     if not colon:
         return [wanted]
-    (paper,) = load_papers([module])
+    (paper,) = load_papers([module], go_on=True)
     numbers, equations = [claim.number for claim in paper.claims], paper.paper.equations
     if number in numbers or number not in equations:
         return [wanted]

@@ -28,11 +28,11 @@ DIGITS = 12  # of the values of targets
 OWN = "navsym_workspace"  # before the name of an imported module
 
 
-def claims_of_file(name: str, path: Path) -> tuple[Claim, ...]:
+def claims_of_file(name: str, path: Path, go_on: bool = False) -> tuple[Claim, ...]:
     """The claims of a claim file, one for each target of a model file or question of an audit; raises NavsymError."""
     document = read_toml(path)
     if "claim" in document:
-        return tuple(claim_of_block(name, path, claim) for claim in read_claims(path).claims)
+        return tuple(claim_of_block(name, path, claim) for claim in read_claims(path, go_on=go_on).claims)
     whose = (claim_of_conventions(name, path),) if "roles" in document else ()
     if whose and "targets" not in document:
         return whose

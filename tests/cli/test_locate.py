@@ -286,6 +286,14 @@ def test_feet_for_metres_are_suspected(tmp_path, capsys):
     assert "feet" in captured.err and any("feet" in remark for remark in json.loads(captured.out)["remarks"])
 
 
+def test_a_gross_height_is_named_and_feet_are_not_suspected_for_it():
+    document = config()
+    document["track"]["h"] = [h + (9000.0 if k == 2 else 0.0) for k, h in enumerate(document["track"]["h"])]
+    (named,) = (remark for remark in locate(document).remarks if "gross error" in remark)
+    assert f"at t = {document['track']['t'][2]:g} departs" in named
+    assert not any("gross" in remark or "feet" in remark for remark in locate(config()).remarks)
+
+
 def test_the_edge_of_the_grid_is_remarked():
     found = locate(config(position={"step": [30, 30], "half_count": [1, 4]}))
     assert any("edge of the grid" in remark for remark in found.remarks)

@@ -86,6 +86,7 @@ def test_a_cell_of_formulas_as_printed_is_decided_line_by_line(shell):
         ("x", "relation"),
         ("x**2 >= 0 --json", "got '--json'"),
         ("x <= 1 --rnge x=0,1", "got '--rnge'"),
+        ("x = x --range x=0,1 --range x=0,9", "got 0,1 and 0,9"),
     ],
 )
 def test_a_wrong_line_is_an_error_without_a_traceback(shell, line, hint):

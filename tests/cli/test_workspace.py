@@ -376,3 +376,25 @@ def test_a_note_of_a_claim_is_checked(tmp_path, capsys, line, kind):
     file.write_text(f'[[claim]]\nid = "one"\nleft = "1"\nright = "1"\n{line}\n')
     status, answer = document(capsys, "show", f"{file}:one")
     assert status == 2 and answer["error"]["kind"] == kind
+
+
+def test_the_examples_of_the_documentation_come_with_the_library_and_replace_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert run(["init", "--examples"]) == 0 and find_workspace() is None
+    ours = Path(__file__).resolve().parents[2] / "examples"
+    for path in ours.rglob("*.*"):
+        assert (tmp_path / "examples" / path.relative_to(ours)).read_bytes() == path.read_bytes()
+    assert run(["init", "--examples"]) == 2 and "a folder without examples" in capsys.readouterr().err
+
+
+def test_hook_and_workflow_outside_a_workspace_say_so_and_decide_no_paper_of_ours(tmp_path, monkeypatch, capsys):
+    root = Path(__file__).resolve().parents[2]
+    assert "entry: navsym verify --workspace" in (root / ".pre-commit-hooks.yaml").read_text(encoding="utf-8")
+    assert "navsym verify ${CLAIMS:---workspace}" in (root / "action.yml").read_text(encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert run(["verify", "--workspace", "--json"]) == 2
+    error = json.loads(capsys.readouterr().out)["error"]
+    assert error["kind"] == "missing-file" and "run navsym init" in error["message"]
+    (tmp_path / "navsym.toml").write_text('[workspace]\nclaims = ["*.claims.toml"]\n', encoding="utf-8")
+    (tmp_path / "a.claims.toml").write_text(CLAIMS, encoding="utf-8")
+    assert run(["verify", "--workspace", "--json"]) == 0

@@ -30,6 +30,11 @@ def test_a_lost_sign_is_shown_where_it_costs_most(capsys) -> None:
     assert record["worst"] == {"x": "pi/2"} and float(record["difference"][0]) == pytest.approx(2)
 
 
+def test_two_ranges_of_one_symbol_are_refused_and_both_named(capsys) -> None:
+    assert run(["diff", "x", "x", "--range", "x=0,1", "--range", "x=1,2"]) == 2
+    assert "got 0,1 and 1,2" in capsys.readouterr().err
+
+
 def test_claim_files_are_compared_claim_by_claim(capsys, tmp_path: Path) -> None:
     text = '[symbols]\na = "real"\n[[claim]]\nid = "one"\nleft = "{}"\nright = "a"\n'
     old, new = tmp_path / "old.toml", tmp_path / "new.toml"
@@ -54,6 +59,57 @@ def test_two_claims_are_equal_only_with_their_right_sides_and_relations(tmp_path
         claim = f'[symbols]\na = "real"\n[[claim]]\nid = "c"\nleft = "sin(2*a)"\n{text}\n'
         (tmp_path / f"{name}.toml").write_text(claim)
     assert nav.diff(tmp_path / "old.toml", tmp_path / "new.toml")[0].status == status
+
+
+MIXED = """
+[symbols]
+a = "real"
+b = "positive"
+u = { vector = 3 }
+[[claim]]
+id = "numbers"
+left = "sin(2*a)"
+right = "2*sin(a)*cos(a)"
+[[claim]]
+id = "vectors"
+left = "u"
+right = "1*u"
+[[claim]]
+id = "given"
+left = "a*b"
+right = "1"
+given = ["a = 1/b"]
+[[claim]]
+id = "unreadable"
+left = "foo(a)"
+right = "1"
+"""
+
+
+def test_one_claim_that_is_not_compared_is_named_and_the_others_are_compared(tmp_path: Path) -> None:
+    """A condition, a declaration or a side that has changed is never EQUAL where no proof was tried."""
+    for name, old, new in (("given", "1/b", "2/b"), ("given", '"positive"', '"nonzero"'), ("vectors", "1*u", "2*u")):
+        (tmp_path / "old.toml").write_text(MIXED)
+        (tmp_path / "new.toml").write_text(MIXED.replace(old, new))
+        found = {d.name: d for d in nav.diff(tmp_path / "old.toml", tmp_path / "new.toml")}
+        other = {"given": "vectors", "vectors": "given"}[name]
+        assert found["numbers"].status == "EQUAL" and (found[other].status, found[other].why) == (
+            "EQUAL",
+            "the same text",
+        )
+        assert found[name].status == found["unreadable"].status == "OPEN"
+        assert found[name].why.startswith("not compared") and "claim[3].left" in found["unreadable"].why
+        assert not nav.diff(tmp_path / "old.toml", tmp_path / "old.toml").equal
+
+
+def test_an_unreadable_claim_does_not_keep_others_of_its_file_from_export(tmp_path: Path) -> None:
+    (tmp_path / "mixed.toml").write_text(MIXED)
+    found = nav.export(f"{tmp_path}/mixed.toml:numbers", to=["python"], out=tmp_path / "code")
+    assert found.document()["functions"]
+    assert nav.show(f"{tmp_path}/mixed.toml:numbers")[0].status == "PROVED"
+    for call in (nav.show, lambda claim: nav.export(claim, to=["python"], out=tmp_path / "none")):
+        with pytest.raises(nav.NavsymError, match="got 'foo'"):
+            call(f"{tmp_path}/mixed.toml:unreadable")
 
 
 def test_exports_are_compared_by_their_formulas(capsys, tmp_path: Path) -> None:

@@ -86,12 +86,22 @@ def test_the_code_of_a_closed_side_has_its_value(name, tmp_path):
         ("sin(x)", "x", "=", "order = { x = 3 }", "expected one exact equation .*; got 'sin"),
         ("integral(s, s, 0, T)", "T**2", "=", "", "which is refuted; correct it first"),
         ("where(x > 0, x, -x)", "max(x, -x)", "=", "", "a side without"),
+        ("x - floor(x)", "-(floor(x) - x)", "=", "", "a side without .*floors.*got 'x - floor"),
     ],
 )
 def test_what_has_no_closed_side_is_refused_with_its_claim_and_a_remedy(tmp_path, left, right, relation, more, message):
     with pytest.raises(NavsymError, match=message) as caught:
         nav.export(written(tmp_path, left, right, relation, more), to=["python"], out=tmp_path / "code")
     assert "; " in str(caught.value) and not (tmp_path / "code").exists()
+
+
+def test_a_whole_number_and_a_range_without_an_end_leave_as_declared(tmp_path):
+    """The code of a sum up to n names n as whole and takes none below 1; it was refused, or a function of any n."""
+    text = '[symbols]\nn = { integer = ["1", "oo"] }\nx = { range = ["-oo", "3"] }\n[[claim]]\nid = "it"\n'
+    (tmp_path / "it.toml").write_text(text + 'left = "x*sum(k, k, 1, n)"\nright = "x*n*(n + 1)/2"\n', encoding="utf-8")
+    nav.export(f"{tmp_path}/it.toml:it", to=["python"], out=tmp_path / "code")
+    source = (tmp_path / "code" / "python" / "navsym_functions.py").read_text(encoding="utf-8")
+    assert "n: 1 <= n, n whole; accepted from 1.0 on" in source and "x: x <= 3; accepted up to 3.0" in source
 
 
 def test_a_verdict_of_vectors_leaves_as_its_file_would(tmp_path):

@@ -44,8 +44,8 @@ def test_a_stop_without_an_estimator_says_why():
     ("ranges", "kind", "hint"),
     [
         ({}, "domain", "write T="),
-        ({"T": ("1",)}, "shape", "both ends"),
-        ({"T": 3}, "shape", "range of two numbers"),
+        ({"T": ("1",)}, "shape", "two ends of a slider"),
+        ({"T": 3}, "shape", r"got 3; .*T=\(.*nav.solve"),
         ({"T": ("2", "1")}, "domain", "swap"),
         ({"T": ("1", "2"), "u": ("1", "2")}, "domain", "got u"),
     ],
@@ -54,6 +54,14 @@ def test_a_parameter_without_two_ends_is_asked_for(ranges, kind, hint):
     with pytest.raises(nav.NavsymError, match=hint) as caught:
         nav.explore(swing(w=("1/2", "2"), T="positive"), **ranges)
     assert caught.value.kind == kind and caught.value.where.startswith("explore")
+
+
+def test_a_function_without_three_numbers_and_a_target_of_no_name_are_refused():
+    for ends in (5, (1, 2), (3, 1, 2), (0.0, float("nan"), 1.0)):
+        with pytest.raises(nav.NavsymError, match="lowest, highest, start"):
+            nav.explore(lambda T: None, T=ends)
+    with pytest.raises(nav.NavsymError, match="did you mean speed"):
+        nav.explore(swing(w=("1/2", "2"), T=("1", "2")), "sped")
 
 
 @pytest.mark.parametrize(

@@ -79,6 +79,7 @@ def test_an_exchange_of_axes_is_suspected():
         ({"heights": []}, EmptyError, "no entries"),
         ({"heights": [1.0, 2.0]}, ShapeError, r"expected shape \(any, any\)"),
         ({"heights": [[5, 5], [5, 5]], "nodata": 5}, NoDataError, "only voids"),
+        ({"heights": [[1, 2], [-32768, 4]]}, NoDataError, r"got -32768 at \(1, 0\), a usual mark of none; .* nodata"),
     ],
 )
 def test_a_wrong_map_is_refused(changes, error, message):

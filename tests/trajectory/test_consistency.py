@@ -75,6 +75,28 @@ def test_the_deviation_of_a_shift_is_that_of_many_estimates() -> None:
         assert 0.6 < np.mean(np.square(scores)) < 1.6
 
 
+@pytest.mark.parametrize("method", ["smoother", "filter"])
+def test_deviations_of_few_rows_know_that_their_noise_is_hardly_known(method: str) -> None:
+    """White errors of one metre on a line at 45 degrees: six rows gave a NEES of 2, and said nothing."""
+    squares = []
+    for seed in range(60):
+        noise = np.random.default_rng(seed).normal(size=(6, 3)) / (6388838.3 * np.cos(np.pi / 4), 6367381.8, 1.0)
+        east, north, up = (noise * (180 / np.pi, 180 / np.pi, 1.0)).T
+        found = nav.track(np.column_stack([np.arange(6.0), 45 + north, 10 + east, 100 + up]), method=method)
+        squares.append(np.mean((found.velocity / found.velocity_sd) ** 2))
+    assert 0.3 < np.mean(squares) < 1.5
+    assert any("6 rows for 3 states tell little" in line for line in found.warnings)
+
+
+def test_one_row_left_out_is_one_row_and_a_short_track_hears_how_many_it_needs() -> None:
+    rows = [(k, 45 + 1e-4 * k, 10.0, 100.0 + (400.0 if k == 15 else 0.0)) for k in range(40)]
+    assert any(line.startswith("1 row was left out (outlier): line ") for line in nav.track(rows).warnings)
+    for length, kind in ((1, "empty"), (3, "shape")):
+        with pytest.raises(NavsymError, match="at least 4 rows for 3 states") as caught:
+            nav.track(rows[:length])
+        assert caught.value.kind == kind
+
+
 def test_the_answer_has_nees_and_the_csv_all_rows(tmp_path: Path) -> None:
     drive = nav.track("examples/drive.csv", sigma=0.5)
     reference = tmp_path / "reference.csv"

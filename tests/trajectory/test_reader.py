@@ -245,6 +245,12 @@ def test_heights_of_an_airliner_at_the_speed_of_a_ship_are_doubted(tmp_path):
     assert any("feet" in w for w in track.warnings)
 
 
+def test_steps_of_many_minutes_are_asked_for_their_unit_and_milliseconds_in_the_head_are_not(tmp_path):
+    rows = "".join(f"{1000 * k},45,10,100\n" for k in range(5))
+    assert any("1000 s: are the times in milliseconds" in w for w in read_track(write(tmp_path, rows)).warnings)
+    assert read_track(write(tmp_path, "t (ms),lat,lon,height\n" + rows)).warnings == ()
+
+
 def test_an_unknown_policy_is_refused(tmp_path):
     with pytest.raises(DomainError, match="policy"):
         read_track(write(tmp_path, GOOD), "guess")
