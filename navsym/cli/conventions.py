@@ -65,9 +65,12 @@ def as_text(data: Mapping[str, Any]) -> str:
         ]
         rows = [*dict.fromkeys(rows)]  # neighbours of several cards may differ alike
         blocks.append(table(["neighbour with another", "namely", "is excluded", "at"], rows))
-    others = f"{data['examined']} cards examined"
+    others = "one card examined" if data["examined"] == 1 else f"{data['examined']} cards examined"
     left = f"{len(data['undecided'])} more cards are undecided: they are neither proved nor excluded"
-    proved = "each card is proved, each other one excluded at a point" if data["complete"] else left
+    proved = (
+        "each card is proved, each other one excluded at a point" if data["cards"] else "each is excluded at a point"
+    )
+    proved = proved if data["complete"] else left
     unused = f"; not looked at: {', '.join(data['unused'])}" if data["unused"] else ""
     return "\n\n".join([*blocks, f"{others}; {proved}{unused}"]) + "\n"
 

@@ -82,7 +82,7 @@ class Conventions(Answer):
     conflicts    : with no card: the blocks that must change for ``nearest``, one of the cards that ask for the fewest
     alternatives : other sets of as few blocks
     excluded     : the neighbours of the cards, with what excludes them; ``examined`` counts all cards
-    unused       : tables of the file that say nothing about the error dynamics
+    unused       : tables of the file that say nothing about the error dynamics, and states without a role
     problem      : the model and what was said about it
     undecided    : cards that no point excludes and that are not proved; they are none of ``cards``
     proofs       : certificates of the entries that agree with a card or differ from it; ``navsym check`` replays them

@@ -153,7 +153,7 @@ def list_structures(
         dict(zip(names, words, strict=True)) for words in product(*(CHOICES[name] for name in names))
     ]
     vectors = CHOICES["vector_error"] if {"attitude", "velocity"} <= roles else ("difference",)
-    sides = CHOICES["attitude_error"] if "attitude" in roles else ("frame",)
+    sides: Sequence[str | None] = CHOICES["attitude_error"] if "attitude" in roles else (None,)
     for frame in frames:
         level = frame == "local-level"
         cards = list(

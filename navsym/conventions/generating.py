@@ -100,7 +100,7 @@ def choose_card(problem: Problem, words: Mapping[str, str], where: str) -> Card:
         found = list(dict.fromkeys(str(getattr(card, name)) for card in near))
         if right and len(found) > 1 and name not in words:
             known = ", ".join(word for word in found if word != "None")
-            message = f"expected {name}, one of {known}; got none; add it to the card"
+            message = f"expected {name}, one of {known}; got no such key; add it to the card"
             raise EmptyError(message, where=join_place(where, name))
         if not right and near and name in words:
             wanted = f"no {name}" if found == ["None"] else f"{name} {' or '.join(found)}"

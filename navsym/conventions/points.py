@@ -22,9 +22,13 @@ from navsym.core.balls import exact_ball
 from navsym.core.errors import DomainError
 from navsym.language.declarations import Parameter
 from navsym.language.domains import flatten
-from navsym.language.tree import SYMBOL, Tree, list_names
+from navsym.language.names import quote
+from navsym.language.printer import print_tree
+from navsym.language.tree import NUMBER, POWER, SYMBOL, Tree, list_names, list_parts
 
 BITS = 256
+TRIES = 20  # random points before one is taken that leaves the declared ranges
+BRANCHED = ("sqrt", "abs", "log", "asin", "acos", "atan2")  # equal on a range does not mean equal beyond it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,6 +56,7 @@ class Sampler:
         self.random = random.Random(seed)
         self.rows: list[list[Any]] = []
         self.values: dict[str, Any] = {}
+        self.outside: set[str] = set()
         if not free:
             self.draw_quaternion()
             self.draw_rotation()
@@ -69,7 +74,7 @@ class Sampler:
             x, y, z = (fmpq(self.random.randint(1, 9) * self.random.choice((-1, 1)), 7) for _ in range(3))
             n = 1 + x * x + y * y + z * z
             for tree, part in zip(trees, (1 - 2 / n, 2 * x / n, 2 * y / n, 2 * z / n), strict=False):
-                self.values[tree.args[0]] = arb(part)
+                self.assign(tree.args[0], arb(part))
 
     def draw_rotation(self) -> None:
         """A rotation by Cayley's formula, where its entries are nine names: other quantities may be written by them."""
@@ -87,6 +92,16 @@ class Sampler:
         start, end = fmpq(round(low * 10**6), 10**6), fmpq(round(high * 10**6), 10**6)
         return arb(start + (end - start) * fmpq(share, 1000))
 
+    def assign(self, name: str, value: Any) -> None:
+        """Give a name its value, and note where that leaves its range."""
+        self.values[name], said = value, self.problem.parameters[name]
+        if said.lower is not None and said.upper is not None:
+            is_inside = not (value < exact_ball(said.lower) or value > exact_ball(said.upper))
+        else:
+            zero = value.contains(0)
+            is_inside = {"positive": value > 0, "nonnegative": not value < 0, "nonzero": not zero}.get(said.kind, True)
+        self.outside |= set() if is_inside else {name}
+
     def settle(self, name: str, wanted: Sequence[Any] | None = None, low: float = -2.0, high: float = 2.0) -> list[Any]:
         """The components of a quantity: what its expressions say, else ``wanted``, else random ones.
 
@@ -99,7 +114,7 @@ class Sampler:
         for k, tree in enumerate(trees):
             if tree.head == SYMBOL and tree.args[0] not in self.values:
                 value = wanted[k] if wanted is not None else self.pick(self.problem.parameters[tree.args[0]], low, high)
-                self.values[tree.args[0]] = value
+                self.assign(tree.args[0], value)
             result.append(evaluate(tree, self.values))
             if not result[-1].is_finite():
                 message = f"expected quantities that have values; got a {name} that has none; correct its range"
@@ -120,7 +135,8 @@ class Sampler:
         C = [flat[3 * k : 3 * k + 3] for k in range(3)]
         if not all((dot(C[i], C[j]) - int(i == j)).contains(0) for i in range(3) for j in range(3)):
             message = "expected a rotation, C C' = E for all values of its names; got another matrix; "
-            raise DomainError(message + "write it by angles or by nine names", where="quantities: rotation")
+            message += "write it by angles, by nine names, or as a quaternion of four names"
+            raise DomainError(message, where="quantities: rotation")
         if not arb_mat(C).det() > 0:
             message = "expected a rotation, det C = 1; got a reflection; correct the sign or the order of an axis"
             raise DomainError(message, where="quantities: rotation")
@@ -285,5 +301,22 @@ def gradient_names(RN: Any, RE: Any, h: Any, third: Any, mean: Any) -> dict[str,
 
 
 def draw_point(problem: Problem, card: Card, seed: int) -> Point:
-    """A point of the card's relations; ImpossibleError where the quantities contradict them."""
-    return Sampler(problem, card, seed).draw()
+    """A point of the card's relations; ImpossibleError where the quantities contradict them.
+
+    It lies in the declared ranges where one of some tries does. Another one serves formulas that are analytic: two of
+    them that agree on the ranges agree there as well. Raises DomainError where other formulas have its names.
+    """
+    for attempt in range(TRIES):
+        sampler = Sampler(problem, card, seed + 100 * attempt)
+        point = sampler.draw()
+        if not sampler.outside:
+            return point
+    cells = [x for M in (problem.F, problem.H, problem.G, problem.reset) for row in M for x in row]
+    for part in list_parts(*cells, *(tree for trees in problem.quantities.values() for tree in trees)):
+        is_root = part.head == POWER and (part.args[1].head != NUMBER or part.args[1].args[0].denominator != 1)
+        if (is_root or part.head in BRANCHED) and (names := sampler.outside & {*list_names(part)}):
+            message = f"expected ranges that the relations of the quantities allow; got others for {', '.join(names)}"
+            raise DomainError(
+                f"{message}; widen them, or write {quote(print_tree(part))} otherwise", where="parameters"
+            )
+    return point

@@ -62,7 +62,7 @@ class Problem:
     quantities : quantity -> its components as trees
     known      : field of a card -> its value; own: the words of the card from which F was derived
     ranges     : name -> exact ends of an input of exported code
-    unused     : tables of the file that were not looked at
+    unused     : tables of the file that were not looked at, and states without a role
     """
 
     name: str
@@ -142,16 +142,18 @@ def read_problem(document: Table, where: str = "") -> Problem:
     n = len(states)
     F = read_grid(require_key(model, "F", place), parameters, join_place(place, "F"), n, n)
     more = read_more(document, model, parameters, n, where)
+    roles = read_roles(require_key(document, "roles", where), states, join_place(where, "roles"))
+    free = [f"state {name}" for k, name in enumerate(states) if not any(k in places for places in roles.values())]
     return Problem(
         name=as_title(model.get("name", "model"), join_place(place, "name")),
         states=states,
         F=F,
         parameters=parameters,
         declared=declared,
-        roles=read_roles(require_key(document, "roles", where), states, join_place(where, "roles")),
+        roles=roles,
         quantities=read_quantities(document.get("quantities", {}), parameters, join_place(where, "quantities")),
         known=read_known(document.get("known", {}), join_place(where, "known")),
-        unused=tuple(name for name in UNUSED if name in document and not (name == "measurement" and "H" in more)),
+        unused=(*(name for name in UNUSED if name in document and not (name == "measurement" and "H" in more)), *free),
         ranges=read_ranges(document, (*states, *parameters, STEP), where),
         own=read_known(document.get("card", {}), join_place(where, "card")),
         **more,

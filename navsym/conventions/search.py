@@ -231,7 +231,8 @@ def list_blocks(problem: Problem) -> list[Block]:
 
 def list_signs(problem: Problem, known: Mapping[str, str] = NOTHING_KNOWN) -> Iterator[dict[str, Any]]:
     """The signs that a card may have beside known words; those of states that the model does not have say nothing."""
-    errors = (ESTIMATE, TRUTH) if {"velocity", "position"} & set(problem.roles) else (ESTIMATE,)
+    has_vectors = {"velocity", "position"} & set(problem.roles)
+    errors = (ESTIMATE, TRUTH) if has_vectors else (known.get("error", ESTIMATE),)  # that of the whole filter
     attitudes: tuple[str | None, ...] = ("+", "-") if "attitude" in problem.roles else (None,)
     has = (any(role.endswith(kind) for role in problem.roles) for kind in ("bias", "scale"))
     biases, scales = ((ESTIMATE, TRUTH) if some else (None,) for some in has)

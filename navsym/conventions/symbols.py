@@ -249,7 +249,9 @@ class Formulas:
 
     def write_terms(self, terms: Mapping[tuple[int, ...], Fraction]) -> str:
         """A polynomial as text."""
-        parts = [self.write_term(powers, factor) for powers, factor in sorted(terms.items(), reverse=True) if factor]
+        zero = [k for k, name in enumerate(GENERATORS) if self.texts.get(name) == "0"]  # a rule of rotations has them
+        terms = {powers: factor for powers, factor in terms.items() if factor and not any(powers[k] for k in zero)}
+        parts = [self.write_term(powers, factor) for powers, factor in sorted(terms.items(), reverse=True)]
         return " + ".join(parts).replace("+ -", "- ") or "0"
 
     def write_term(self, powers: Sequence[int], factor: Fraction) -> str:

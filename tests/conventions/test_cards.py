@@ -348,3 +348,14 @@ def test_blocks_in_latex_are_the_blocks_of_the_model_again():
 def test_a_card_in_latex_is_its_definition_of_errors(changes, lines):
     text = replace(LEVEL, **changes)._repr_latex_()
     assert all(line in text for line in lines)
+
+
+def test_a_zero_of_the_rotation_is_no_factor_of_an_entry():
+    heading = [["cos(y)", "-sin(y)", "0"], ["sin(y)", "cos(y)", "0"], ["0", "0", "1"]]
+    document = read_toml(CARD)
+    roles = {**document["roles"], "gyro_scale": ["k1", "k2", "k3"]}
+    quantities = {**document["quantities"], "rotation": heading, "angular_rate": models.W_B}
+    parameters = {**document["parameters"], **dict.fromkeys(("y", *models.W_B), "real")}
+    card = {**document["card"], "scale_sign": "truth - estimate"}
+    F = nav.conventions({"card": card, "roles": roles, "quantities": quantities, "parameters": parameters}).model()["F"]
+    assert not [x for row in F for x in row if "*0" in x or "0*" in x]

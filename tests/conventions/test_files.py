@@ -99,6 +99,15 @@ def test_a_card_file_with_something_else_for_a_table_is_refused(table, value):
     assert caught.value.expected and caught.value.remedy
 
 
+def test_states_without_a_role_are_named(tmp_path, capsys):
+    file = tmp_path / "part.toml"
+    file.write_text(EXAMPLE.read_text().replace('accelerometer_bias = ["ba1", "ba2", "ba3"]\n', ""))
+    assert run(["conventions", str(file)]) == 0
+    assert "not looked at: measurement, ranges, state ba1, state ba2, state ba3" in " ".join(
+        capsys.readouterr().out.split()
+    )
+
+
 def test_bad_input_with_json_has_status_two(tmp_path, capsys):
     file = tmp_path / "bad.toml"
     file.write_text('[model]\nstates = ["a"]\nF = [["0"]]\n')

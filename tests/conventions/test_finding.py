@@ -7,6 +7,7 @@ import re
 from typing import Any
 
 import pytest
+from flint import arb
 
 import navsym as nav
 from navsym.conventions.card import CHOICES, Card, list_structures
@@ -179,9 +180,9 @@ def list_mutants(document: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def is_zero(text: str) -> bool:
-    """True for what is zero however it is written, such as -(-(0)): its sign is no mutant."""
+    """True for what is zero however it is written, such as (0)*x: its sign is no mutant."""
     tree = read_tree(text, None)
-    return not list_names(tree) and evaluate(tree, {}) == 0
+    return evaluate(tree, {name: arb(k + 3) / 7 for k, name in enumerate(list_names(tree))}).contains(0)
 
 
 def swap_frame(F: Any, a: int, b: int) -> None:
@@ -319,3 +320,22 @@ def test_a_quantity_without_a_name_is_named_beside_the_mended_rows():
     del document["quantities"]["angular_rate"]
     (conflict,) = nav.conventions(document).conflicts
     assert "unnamed_w0 is angular_rate, which [quantities] lacks" in conflict.change
+
+
+def test_points_lie_in_the_declared_ranges_where_a_formula_has_another_branch():
+    document = models.sola_local()
+    document["model"]["F"][3][9] = document["model"]["F"][3][9].replace("c11", "sqrt(c11**2)")
+    document["parameters"]["c11"] = "positive"
+    assert nav.conventions(document).cards == nav.conventions(models.sola_local()).cards
+    document["parameters"]["c11"] = ["2", "3"]
+    with pytest.raises(nav.NavsymError, match="widen them"):
+        nav.conventions(document)
+
+
+def test_what_is_known_of_the_whole_filter_may_say_nothing_of_a_part():
+    part = {"states": ["a1", "a2", "a3"], "F": [["0", "w3", "-w2"], ["-w3", "0", "w1"], ["w2", "-w1", "0"]]}
+    document = {
+        "model": part, "parameters": dict.fromkeys(models.W_B, "real"), "roles": {"attitude": part["states"]},
+        "quantities": {"angular_rate": models.W_B}, "known": {"frame": "inertial", "error": MINUS},
+    }  # fmt: skip
+    assert {card.attitude_error for card in nav.conventions(document).cards} == {"body"}

@@ -16,7 +16,7 @@ def test_the_page_shows_the_card_and_what_excludes_each_neighbour():
     answer = nav.conventions(models.sola_local())
     page = conventions_page(answer)
     assert "C_est = C (E + [p x])" in page
-    assert answer.excluded
+    assert answer.excluded and "<td>1, 2</td>" in page  # the other card of the pair has the same neighbour
     for exclusion in answer.excluded:
         assert exclusion.why.replace("'", "&#39;") in page
 
@@ -24,6 +24,7 @@ def test_the_page_shows_the_card_and_what_excludes_each_neighbour():
 def test_a_page_without_a_card_shows_what_must_change():
     page = conventions_page(nav.conventions(models.lins_before()))
     assert "No card is right" in page and "attitude by attitude" in page and "change the sign" in page
+    assert "Each is excluded at a point" in page and "Each card is proved" not in page
 
 
 def test_a_title_is_a_word_and_no_markup():
