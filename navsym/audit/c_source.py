@@ -38,6 +38,8 @@ ROUNDS = 6  # in which names are told from types; a cast that is left is refused
 DYNAMIC = re.compile(r"(?:Eigen::)?(?:Matrix|Vector)X[fd]")  # whose size is that of its value
 #: Of Eigen, whose coefficients are x, y, z, w; other libraries have other orders.
 QUATERNION = re.compile(r"Quaternion[fd]|(Eigen::)Quaternion([fd]|<\w+>)")
+#: What stands between two parts of a name and is no plain number: a call with arguments, or an index.
+COMPUTED = re.compile(r"\(\s*[^)\s]|\[(?!(0|[1-9]\d*)\])")
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
 
 
@@ -65,6 +67,8 @@ class Reader(SourceReader):
 
     locals : the names that the function being read declares
     pointers : those of them that are pointers
+    scopes : name of a function -> the namespaces and classes in which the file defines it
+    opened : classes and namespaces whose names are taken elsewhere, too
     hidden : first byte of a name that stands in the tree as a number, since the grammar would take it for a type
     """
 
@@ -74,6 +78,8 @@ class Reader(SourceReader):
     locals: set[str] = field(default_factory=set)
     pointers: set[str] = field(default_factory=set)
     hidden: dict[int, str] = field(default_factory=dict)
+    scopes: dict[str, set[tuple[str, ...]]] = field(default_factory=dict)
+    opened: set[str] = field(default_factory=set)
 
     def parse(self, source: bytes) -> Any:
         """The tree of a source in which no variable is taken for a type, as ``b`` is in ``a*(b) - c``."""
@@ -104,6 +110,12 @@ class Reader(SourceReader):
         inner = (n for n in descend(root) if n.type == "identifier" and n.parent.type in (*DECLARING, "enumerator"))
         heads = ((n, field_of(n.parent, "declarator") or field_of(n.parent, "name")) for n in inner)
         others = {text_of(n) for n, head in heads if head is None or head.id == n.id}
+        for node in descend(root) if self.unit.language == "cpp" else ():
+            if node.type == "function_definition" and (head := head_of_function(node)) is not None:
+                name = text_of(field_of(head, "declarator")).split("::")[-1]
+                self.scopes.setdefault(name, set()).add(scope_of(node))
+            elif node.type in ("base_class_clause", "using_declaration"):
+                self.opened |= {*re.findall(r"\w+", text_of(node))}
         for node in descend(root):
             if node.id in dropped or (node.parent is not None and node.parent.id in dropped):
                 dropped.add(node.id)
@@ -170,15 +182,13 @@ class Reader(SourceReader):
         meaning: Part | str = "a macro without a value" if not body else Reader.read_text(body, self.unit)
         if isinstance(meaning, Part) and meaning.kind == "refused":
             meaning = "a macro that is no expression"
-        if isinstance(meaning, Part) and meaning.kind not in ("number", "name", "call", "minus") and body[0] != "(":
+        twice = Reader.read_text(f"2*{body}", self.unit) if isinstance(meaning, Part) else None  # (a)+(b) falls apart
+        if twice is not None and (twice.parts[0] != "*" or twice.parts[1].span != (0, 1)):
             meaning = "a macro whose operators have no parentheses around them"
         self.unit.macros[name] = "a macro with two definitions" if name in self.unit.macros else meaning
 
     def read_function(self, node: Any) -> None:
-        declarator = field_of(node, "declarator")
-        while declarator is not None and declarator.type != "function_declarator":
-            declarator = field_of(declarator, "declarator") or next(iter(named(declarator)), None)
-        body = field_of(node, "body")
+        declarator, body = head_of_function(node), field_of(node, "body")
         if declarator is None or body is None:
             return
         name = text_of(field_of(declarator, "declarator")).split("::")[-1]
@@ -422,11 +432,14 @@ class Reader(SourceReader):
                 return self.call(node)
             case "field_expression":
                 owner = text_of(field_of(node, "argument"))
-                if not re.fullmatch(r"[\w.:\[\]()>\- ]*", owner) or re.search(r"\(\s*[^)\s]|\[[^\]\d]", owner):
+                if not re.fullmatch(r"[\w.:\[\]()>\- ]*", owner) or COMPUTED.search(owner):
                     return self.refuse(node, "a member of an expression")
                 name = re.sub(r"\s", "", text_of(node))
                 if self.unit.overlaid & {*re.findall(r"\w+", name)}:
                     return self.refuse(node, "a member of a union, which shares its place with others")
+                first = re.match(r"(\w+)\[0\]\.", name)
+                if first and re.search(rf"\b{first[1]}\s*->".encode(), self.unit.source):
+                    return self.refuse(node, f"{name} beside {first[1]}->, which is the same")
                 member = name.removeprefix("this->")
                 is_alone = self.shift < 0  # of a mend nobody knows what is local
                 if member != name and (is_alone or re.match(r"\w+", member)[0] in self.locals):  # type: ignore[index]
@@ -474,7 +487,7 @@ class Reader(SourceReader):
         if function.type == "field_expression":
             base, method = self.expression(field_of(function, "argument")), text_of(field_of(function, "field"))
             if base.kind == "name" and base.parts[0] == "this":
-                return self.part("call", node, method, arguments)
+                return self.own_call(node, method, arguments)
             if method == "noalias" and not arguments:  # says how Eigen computes, not what
                 return base
             if (found := re.fullmatch(r"(?:template)?at<(\d+)>", re.sub(r"\s", "", method))) and not arguments:
@@ -504,8 +517,15 @@ class Reader(SourceReader):
                 return self.part("index", node, owner, arguments)
             return self.part("call", node, name, arguments)
         if found or function.type in ("identifier", "qualified_identifier", "template_function"):
-            return self.part("call", node, name, arguments)
+            return self.own_call(node, name, arguments)
         return self.refuse(node, "a call of an expression")
+
+    def own_call(self, node: Any, name: str, arguments: tuple[Part, ...]) -> Part:
+        """A call; a function that the file defines in a namespace or class is known there only."""
+        around, known = scope_of(node), self.scopes.get(name, set())
+        if self.shift < 0 or not known or any(s == around[: len(s)] or s[-1] in self.opened for s in known):
+            return self.part("call", node, name, arguments)
+        return self.refuse(node, f"the function {name}, which this file defines in another place")
 
     def block_of(self, node: Any, base: Part, method: str, arguments: tuple[Part, ...]) -> Part | None:
         """``M.block<p, q>(i, j)``, ``M.block(i, j, p, q)``, ``M.row(i)`` and the like as slices; None for others."""
@@ -539,6 +559,28 @@ class Reader(SourceReader):
             return self.refuse(node, "a number of cells that is no number")
         low = self.part("minus", node, size) if is_last else None
         return self.part("slice", node, low, None if is_last else size)
+
+
+def head_of_function(node: Any) -> Any:
+    """The name of a function with its parameters; None where there is none."""
+    head = field_of(node, "declarator")
+    while head is not None and head.type != "function_declarator":
+        head = field_of(head, "declarator") or next(iter(named(head)), None)
+    return head
+
+
+def scope_of(node: Any) -> tuple[str, ...]:
+    """The namespaces and classes around a node, those before the name of the function among them."""
+    names = list[str]()
+    while node is not None:
+        text = ""
+        if node.type == "function_definition":
+            text = text_of(field_of(head_of_function(node), "declarator")).rpartition("::")[0]
+        elif node.type in ("namespace_definition", "struct_specifier", "class_specifier"):
+            text = text_of(field_of(node, "name"))
+        names[:0] = re.findall(r"\w+", re.sub(r"<.*>", "", text))
+        node = node.parent
+    return tuple(names)
 
 
 def list_types(root: Any) -> dict[str, str]:

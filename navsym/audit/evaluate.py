@@ -42,6 +42,7 @@ from navsym.audit.values import (
     promote,
     require_fit,
     require_no_wrap,
+    share,
     total,
 )
 from navsym.language.tree import Tree, build_call, build_number
@@ -134,6 +135,7 @@ class Evaluator:
     decide_known: ClassVar[Any]
     choose: ClassVar[Any]
     is_view: ClassVar[Any]
+    arrays_in: ClassVar[Any]
     write: ClassVar[Any]
 
     reading: Reading
@@ -243,6 +245,8 @@ class Evaluator:
             indices = [*part.parts[1], *indices]
             part = part.parts[0]
         if part.kind == "call":
+            is_own = part.parts[0] in self.unit.functions and part.parts[0] not in self.frame
+            forbid(is_own, part.line, f"the call of {part.parts[0]} where a variable is needed")
             indices = [*part.parts[1], *indices]
             self.require_entries(part.parts[0], part.line)
             if self.unit.language == "cpp" and self.variable(part.parts[0]).number == "quaternion":
@@ -452,6 +456,8 @@ class Evaluator:
     def rows(self, part: Part) -> Value:
         """The brackets of MATLAB: rows of numbers, or of blocks, in which a vector is a column."""
         rows = [[self.value(cell) for cell in row.parts[0]] for row in part.parts[0]]
+        if (unread := find_unread(*itertools.chain(*rows))) is not None:
+            return unread  # which may be a block of any size
         if any(isinstance(cell, Array) for row in rows for cell in row):
             return join(*(join(*row, across=True) for row in rows), across=False)
         return self.stack([self.stack(row, part.line) for row in rows], part.line)
@@ -594,6 +600,8 @@ class Evaluator:
         inner = given.parts[0] if given.kind == "address" else given
         if inner.kind == "name" and (argument.shared or given.kind == "address" or argument.shape is not None):
             variable = self.variable(inner.parts[0])
+            if self.is_other_type(argument, variable):
+                return self.bind(replace(argument, shared=False), given, function)
             if argument.shape is not None and variable.shape is None and not variable.cells:
                 variable.shape = tuple(self.whole(size) for size in argument.shape)
             is_copy = not argument.shared and given.kind != "address" and may_write(self.unit, function, argument.name)
@@ -609,7 +617,9 @@ class Evaluator:
             if sides and may_write(self.unit, function, argument.name):
                 raise Unreadable(given.line, f"a part of an array that {function.name} may change")
             if not sides and self.unit.language != "python":
-                return self.linked(inner, given)
+                link = self.linked(inner, given)
+                return self.bind(replace(argument, shared=False), given, function) if self.is_other_type(
+                    argument, link) else link  # fmt: skip
         is_view = given.kind in ("method", "call", "choose") and self.is_view(given) and given.parts[1] != "copy"
         if self.unit.language == "python" and is_view and may_write(self.unit, function, argument.name):
             raise Unreadable(given.line, f"a view of an array that {function.name} may change")
@@ -622,7 +632,14 @@ class Evaluator:
             variable.all_unread = value
             return variable
         self.write(variable, value, given)
+        if self.unit.language == "python" and variable.shape and (is_place or is_view):
+            share(variable, self.arrays_in(given))
         return variable
+
+    def is_other_type(self, argument: Argument, variable: Variable) -> bool:
+        """True where ``const double &`` of C++ stands for a copy of an integer."""
+        is_number = argument.shared and argument.number == "real" and not argument.shape and not variable.shape
+        return self.unit.language == "cpp" and is_number and variable.number in LIMITS
 
     def method(self, part: Part) -> Value:
         """``M.transpose()`` and the like; an accessor without arguments is a name."""

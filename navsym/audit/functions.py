@@ -84,6 +84,8 @@ EXTREMES = {
     "c": r"fm(ax|in)f?", "cpp": r"(std::|::|matrix::|Eigen::)?fm(ax|in)f?|std::m(ax|in)", "matlab": r"m(ax|in)",
     "python": r"((math|np|numpy)\.)?m(ax|in)imum|m(ax|in)", "rust": r"fm(ax|in)",
 }  # fmt: skip
+#: With one of these ``abs`` of C++ is that of real numbers, too.
+ABS_OF_REALS = re.compile(rb"using\s+(namespace\s+std|std::abs)\s*;|<math\.h>|<stdlib\.h>|<Eigen/")
 Known = Callable[..., Value]
 MAKE = re.compile(r"(?:^|::)Mat(?:rix)?(?:(\d)[fd]?|<\w+,(\d+),(\d+)>|X[fd]?)::(Zero|Identity)$")
 
@@ -150,6 +152,8 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
     """The value of a known function."""
     if (unread := find_unread(*values)) is not None:
         return unread
+    if unit.language == "cpp" and name == "abs" and ABS_OF_REALS.search(unit.source) is None:
+        raise Unreadable(line, "abs, which cuts to an integer beside <cmath>; std::abs does not")
     values = [Array(value.shape, value.cells) if isinstance(value, List) else value for value in values]
     if (known := KNOWN.get((bare_name(name), len(values)))) is not None:
         return known(unit, *values)

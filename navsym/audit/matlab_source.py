@@ -16,6 +16,7 @@ from navsym.audit.syntax import (
     field_of,
     find_body,
     line_of,
+    list_above,
     named,
     read_decimal,
     sign_of,
@@ -55,7 +56,12 @@ class Reader(SourceReader):
         output, given, body = (children.get(kind) for kind in ("function_output", "function_arguments", "block"))
         arguments = tuple(Argument(text_of(n)) for n in named(given))
         outputs = () if output is None else tuple(re.findall(r"\w+", text_of(output)))
-        function = Function(name, line_of(node), arguments, self.block(body), outputs)
+        inner = any(child.type == "function_definition" for child in descend(node) if child.id != node.id)
+        if inner or "function_definition" in list_above(node):
+            statements = (self.part("jump", node, "a function in another one, which share their names", ()),)
+        else:
+            statements = self.block(body)
+        function = Function(name, line_of(node), arguments, statements, outputs)
         self.unit.functions.setdefault(name, []).append(function)
 
     def read_statement(self, node: Any) -> tuple[Part, ...] | None:
@@ -128,8 +134,9 @@ class Reader(SourceReader):
             case "number":
                 value = read_decimal(text_of(node))
                 return self.literal(node, text_of(node), value is not None and value.denominator != 1)
-            case "binary_operator" if sign_of(node) in POWERS:
-                return self.power(node)
+            case "binary_operator":
+                sign = whole_sign(node)
+                return self.power(node) if sign in POWERS else self.operate(node, sign, *named(node))
             case "postfix_operator":
                 return self.part("method", node, self.expression(field_of(node, "operand")), "T", ())
             case "matrix":
@@ -181,10 +188,17 @@ class Reader(SourceReader):
         return self.expression(node)
 
 
+def whole_sign(node: Any) -> str:
+    """The operator of two operands: the point of ``2./M`` belongs to it, and not to the number as in the grammar."""
+    left = named(node)[0]
+    is_dotted = text_of(left).endswith(".") and left.next_sibling.start_byte == left.end_byte
+    return "." * is_dotted + sign_of(node)
+
+
 def list_powers(node: Any, signs: list[str]) -> list[Any]:
     """The operands of a tower of powers as they stand in the text, and the operators between them into ``signs``."""
-    if node.type != "binary_operator" or sign_of(node) not in POWERS:
+    if node.type != "binary_operator" or whole_sign(node) not in POWERS:
         return [node]
     left = list_powers(field_of(node, "left"), signs)
-    signs.append(sign_of(node))
+    signs.append(whole_sign(node))
     return [*left, *list_powers(field_of(node, "right"), signs)]

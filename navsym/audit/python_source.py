@@ -17,6 +17,8 @@ PLAIN_DECORATORS = re.compile(
 )  # fmt: skip
 MODULES = {"numpy": "np.", "math": "math.", "numpy.linalg": "np.linalg."}
 NUMERIC = ("numpy", "math", "autograd.numpy", "jax.numpy")
+#: Names with a meaning of their own, which a file may use for something else.
+NAMES = ("np", "numpy", "math", "abs", "max", "min", "float", "range")
 AGAIN = "a function whose name stands for something else later"
 
 
@@ -24,8 +26,9 @@ AGAIN = "a function whose name stands for something else later"
 class Reader(SourceReader):
     """Walks the syntax tree of Python.
 
-    rebound : names of modules that the file uses for something else
+    rebound : names of modules and of their functions that the file uses for something else
     changed : names outside of functions that hold more than their one value
+    given   : names that another name is assigned to, which may write to the same list
     free, methods : the functions of the file, outside of classes and in them
     """
 
@@ -33,6 +36,7 @@ class Reader(SourceReader):
 
     rebound: set[str] = field(default_factory=set)
     changed: set[str] = field(default_factory=set)
+    given: set[str] = field(default_factory=set)
     free: set[str] = field(default_factory=set)
     methods: set[str] = field(default_factory=set)
     OPERATORS = OPERATORS | {sign: ("op", sign) for sign in ("//", "@", "**")}
@@ -55,9 +59,6 @@ class Reader(SourceReader):
                 for child in node.children_by_field_name("name"):
                     own = field_of(child, "alias") or child
                     self.unit.imported[text_of(own)] = MODULES[module] + text_of(field_of(child, "name") or child)
-        for node in nodes:
-            if node.type in ("function_definition", "class_definition"):
-                self.unit.imported.pop(text_of(field_of(node, "name")), None)
 
     def read_changes(self, root: Any) -> None:
         """Note the names that are written by parts, by more than one assignment, or as ``global``."""
@@ -66,7 +67,9 @@ class Reader(SourceReader):
             if node.type == "global_statement":
                 self.changed |= {text_of(name) for name in named(node)}
             elif node.type in ("assignment", "augmented_assignment", "for_statement"):
-                left = field_of(node, "left")
+                left, right = field_of(node, "left"), field_of(node, "right")
+                if right is not None and right.type in ("identifier", "subscript"):
+                    self.given.add(re.match(r"\w*", text_of(right))[0])  # type: ignore[index]
                 for target in named(left) if left.type.endswith(("_list", "_pattern")) else [left]:
                     bound.append(re.match(r"\w*", text_of(target))[0])  # type: ignore[index]
                     above = list_above(node)
@@ -81,11 +84,14 @@ class Reader(SourceReader):
             elif node.type == "parameters":
                 bound = [*map(name_parameter, named(node))]
             elif node.type == "import_from_statement":
-                names = node.children_by_field_name("name")
-                bound = [text_of(name) for name in names if name.type == "dotted_name" and text_of(name) != "numpy"]
+                is_known = node.parent.type == "module" and text_of(field_of(node, "module_name")) in MODULES
+                names = () if is_known else node.children_by_field_name("name")
+                bound = [text_of(field_of(n, "alias") or n) for n in names if text_of(n) != "numpy"]
+            elif node.type in ("named_expression", "as_pattern_target"):
+                bound = [text_of(named(node)[0])] if named(node) else []
             elif node.type == "aliased_import" and text_of(field_of(node, "name")) not in NUMERIC:
                 bound = [text_of(field_of(node, "alias"))]
-            self.rebound |= {*bound} & {"np", "numpy", "math"}
+            self.rebound |= {*bound} & {*NAMES, *self.unit.imported}
 
     def read_body(self, nodes: list[Any], is_class: bool = False) -> None:
         """Functions and methods, and names of the module that are assigned once, to numbers."""
@@ -107,7 +113,8 @@ class Reader(SourceReader):
                     if statement.parts[0].kind == "name":
                         assigned.setdefault(statement.parts[0].parts[0], []).append(statement)
         for name, many in assigned.items():
-            if len(many) == 1 and not is_class and not many[0].parts[1] and name not in self.changed:
+            is_open = name in self.changed or (name in self.given and many[0].parts[2].kind in ("list", "call"))
+            if len(many) == 1 and not is_class and not many[0].parts[1] and not is_open:
                 self.unit.constants += many
             for function in self.unit.functions.get(name, []):
                 self.unit.functions[name] = [replace(function, body=(self.part("jump", nodes[0], AGAIN, ()),))]
@@ -254,7 +261,9 @@ class Reader(SourceReader):
                 return self.refuse(node, "an argument by keyword")
             arguments.append(self.expression(child))
         name = "".join(text_of(function).split())
-        if function.type == "identifier" and name == "float" and len(arguments) == 1:
+        if function.type == "identifier" and name in self.rebound - self.free:
+            return self.refuse(node, f"{name}, which this file uses for something else")
+        if function.type == "identifier" and name == "float" and name not in self.free and len(arguments) == 1:
             return self.part("cast", node, "real", arguments[0])
         if function.type == "attribute":
             base = text_of(field_of(function, "object"))
@@ -271,7 +280,8 @@ class Reader(SourceReader):
         if function.type == "identifier" and name in self.methods - self.free:
             return self.refuse(node, f"the function {name}, which this file defines in a class only")
         if function.type == "identifier":
-            return self.part("call", node, self.unit.imported.get(name, name), tuple(arguments))
+            meaning = name if name in self.free else self.unit.imported.get(name, name)
+            return self.part("call", node, meaning, tuple(arguments))
         return self.refuse(node, "a call of an expression")
 
     def has_method(self, node: Any, method: str) -> bool:

@@ -7,7 +7,17 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, names_in
-from navsym.audit.syntax import SourceReader, descend, field_of, line_of, list_above, named, text_of, whole_kind
+from navsym.audit.syntax import (
+    SourceReader,
+    descend,
+    field_of,
+    identifiers_in,
+    line_of,
+    list_above,
+    named,
+    text_of,
+    whole_kind,
+)
 
 RULES = Rules(integer=True, matrix=True, entry=("{}[{}]", "{}[{}][{}]"))
 REAL = ("f32", "f64", "N", "T", "R", "Real", "Self")
@@ -51,13 +61,20 @@ def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
 
 @dataclass(slots=True, eq=False)
 class Reader(SourceReader):
-    """Walks the syntax tree of Rust; ``own`` are the functions of the file, ``methods`` those of a type."""
+    """Walks the syntax tree of Rust.
+
+    own, methods : the functions of the file, and those of a type
+    places       : each with the modules around it and its type
+    pointers     : references that the function being read declares
+    """
 
     HEAD = "const A: f64 = "
     OPEN = ("if_expression", "for_expression", "block", "expression_statement")
 
     own: set[str] = field(default_factory=set)
     methods: set[str] = field(default_factory=set)
+    places: set[tuple[str, tuple[str, ...], str]] = field(default_factory=set)
+    pointers: set[str] = field(default_factory=set)
 
     @staticmethod
     def find_value(node: Any) -> Any:
@@ -69,6 +86,9 @@ class Reader(SourceReader):
         pairs = [(text_of(field_of(n, "name")), list_above(n)) for n in nodes if n.type == "function_item"]
         self.own = {name for name, _ in pairs}
         self.methods = {name for name, above in pairs if {"impl_item", "trait_item"} & {*above}}
+        for node in (node for node in nodes if node.type == "function_item"):
+            modules, owners = place_of(node)
+            self.places.add((text_of(field_of(node, "name")), modules, owners[0] if owners else ""))
         self.unit.variables |= {text_of(field_of(node, "name")) for node in nodes if node.type == "const_item"}
         for node in nodes:
             if node.type == "function_item":
@@ -86,6 +106,9 @@ class Reader(SourceReader):
 
     def read_function(self, node: Any) -> None:
         name, arguments = text_of(field_of(node, "name")), []
+        given = (n for n in descend(node) if n.type in ("parameter", "let_declaration"))
+        links = (n for n in given if "reference" in getattr(field_of(n, "type") or field_of(n, "value"), "type", ""))
+        self.pointers = {text_of(field_of(n, "pattern")).removeprefix("mut ") for n in links}
         for child in [child for child in named(field_of(node, "parameters")) if child.type == "parameter"]:
             kind = text_of(field_of(child, "type"))
             number, shape = type_of(kind)
@@ -125,6 +148,8 @@ class Reader(SourceReader):
     def effect(self, node: Any) -> tuple[Part, ...]:
         """What an expression that stands alone does."""
         match node.type:
+            case "assignment_expression" if (moved := text_of(field_of(node, "left"))) in self.pointers:
+                return (self.part("moved", node, moved, "a reference that is set again", identifiers_in(node)),)
             case "assignment_expression" | "compound_assignment_expr" if text_of(field_of(node, "operator")) in SIGNS:
                 left, right = (self.expression(field_of(node, side)) for side in ("left", "right"))
                 return (self.part("assign", node, left, text_of(field_of(node, "operator"))[:-1], right),)
@@ -263,8 +288,8 @@ class Reader(SourceReader):
             return self.method(node, function, arguments)
         name = re.sub(r"::<[^:]*>(?=::|$)|<[^:]*>(?=::|$)|\s", "", text_of(function))
         head, _, last = name.rpartition("::")
-        if not head and last in self.methods:
-            return self.refuse(node, f"the function {last}, which this file defines for a type")
+        if head in ("", "Self") and not self.is_here(node, last, bool(head)):
+            return self.refuse(node, f"the function {last}, which this file defines in another place")
         if not head or head == "Self":
             return arguments[0] if name in ("Ok", "Some") and arguments else self.part("call", node, last, arguments)
         if QUATERNION.fullmatch(head):
@@ -285,10 +310,17 @@ class Reader(SourceReader):
             return self.part("call", node, NUMBERS[last] or last, arguments)
         return self.part("call", node, name, arguments)
 
+    def is_here(self, node: Any, name: str, is_method: bool) -> bool:
+        """True where a call means a function of the file: of the type around it, or of the module around it."""
+        modules, owners = place_of(node)
+        known = {(place, owner) for own, place, owner in self.places if own == name}
+        fits = any(owner in owners for _, owner in known) if is_method else (modules, "") in known
+        return not known or fits or self.shift < 0
+
     def method(self, node: Any, function: Any, arguments: tuple[Part, ...]) -> Part:
         base, name = self.expression(field_of(function, "value")), text_of(field_of(function, "field"))
-        if base.kind == "name" and base.parts[0] == "self" and name in self.own - self.methods:
-            return self.refuse(node, f"the method {name}, which another file defines")
+        if base.kind == "name" and base.parts[0] == "self" and not self.is_here(node, name, True):
+            return self.refuse(node, f"the method {name}, which this file defines in another place")
         if base.kind == "name" and base.parts[0] == "self":
             return self.part("call", node, name, arguments)
         if name in self.own or name in self.unit.functions:
@@ -300,6 +332,18 @@ class Reader(SourceReader):
         if name in NUMBERS and len(arguments) < 2:
             return self.part("call", node, NUMBERS[name] or name, (base, *arguments))
         return self.part("method", node, base, name, arguments)
+
+
+def place_of(node: Any) -> tuple[tuple[str, ...], list[str]]:
+    """The modules around a node, and the type and the trait around it."""
+    modules, owners = list[str](), list[str]()
+    while (node := node.parent) is not None:
+        if node.type == "mod_item":
+            modules.append(text_of(field_of(node, "name")))
+        elif node.type in ("impl_item", "trait_item"):
+            nodes = (field_of(node, key) for key in ("type", "trait", "name"))
+            owners += [re.split(r"[<\s]", text_of(n))[0] for n in nodes if n is not None]
+    return tuple(modules), owners
 
 
 LOOPS = ("for_expression", "while_expression", "loop_expression", "match_expression", "block", "unsafe_block")
