@@ -412,6 +412,9 @@ class Descent(SymbolReader):
     def limit(self, noad: Noad) -> Part:
         """A limit of all factors behind it."""
         pieces = split_noads(noad.sub or [], "to" if any(n.is_command("to") for n in noad.sub or ()) else "rightarrow")
+        ends = [n for n in (noad.sub or [])[-1:] if n.sup and len(n.sup) == 1 and n.sup[0].is_sign("+", "-")]
+        if ends or any(n.is_command("downarrow", "uparrow") for n in noad.sub or ()):
+            raise Refusal(noad.at, "a limit from both sides", "one from one side", r"write 1/x, and x \to \infty")
         if len(pieces) != 2 or not pieces[0] or noad.sup or any(n.is_sign("^", "+", "-") for n in pieces[0]):
             raise Refusal(noad.at, r"a limit with its point, such as \lim_{x \to 0}", "another", "write the point")
         kept, moving = self.bound, pieces[0][0]

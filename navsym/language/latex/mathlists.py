@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, lru_cache
+from itertools import accumulate
 from typing import Any
 
 from navsym.core.errors import MissingEngineError
@@ -196,11 +197,15 @@ class Builder:
         done: list[Noad] = []
         before: tuple[list[Noad] | None, list[Noad] | None] | None = None
         start = 0
-        for noad in noads:
+        for place, noad in enumerate(noads):
             if noad.kind == "group" and not (noad.args and noad.args[0]):
                 if noad.has_scripts:
                     before, start = (noad.sub, noad.sup), noad.at
                 continue
+            if noad.kind == "group" and is_sum(noad.args[0]):
+                behind = [n for n in noads[place + 1 :] if n.kind != "group" or n.args[0]]
+                if not (stands_apart(done[-1:], "open", "+") and stands_apart(behind[:1], "close", "+-")):
+                    raise Refusal(noad.at, "a sum in parentheses", "braces, which are not printed", "write parentheses")
             for inner in self.unwrap(noad):
                 if before is not None:
                     if not takes_script(inner) or inner.kind in ("close", "bar"):
@@ -352,6 +357,17 @@ def takes_script(noad: Noad) -> bool:
     if noad.kind in ("open", "side") or noad.is_sign(*"+-=<>/,;*:"):
         return False
     return not noad.is_command("cdot", "times", "otimes", "circ", "odot", "div", "pm", "mp")
+
+
+def is_sum(noads: list[Noad]) -> bool:
+    """Whether a + or - stands between symbols, outside of brackets."""
+    depth = [0, *accumulate((n.kind == "open") - (n.kind == "close") for n in noads)]
+    return any(n.is_sign("+", "-") and not depth[place] for place, n in enumerate(noads) if place)
+
+
+def stands_apart(beside: list[Noad], bracket: str, signs: str) -> bool:
+    """Whether a symbol, if there is one, is such a bracket, a bar, a relation or one of these signs."""
+    return all(n.kind in (bracket, "bar") or n.is_sign(*signs, *"=<>,;.") for n in beside)
 
 
 def closes_early(noads: list[Noad]) -> bool:
