@@ -68,7 +68,7 @@ def test_a_root_that_exists_does_not_make_its_number_positive():
     ],
 )
 def test_real_symbols_have_the_sign_that_the_text_gives_them(left, right):
-    verdict = nav.prove(f"{left} = {right}")
+    verdict = nav.prove(f"{left} = {right}", seconds=60)
     assert verdict.status == PROVED and {"g >= 0", "g > 0"} & {*verdict.assumptions}
     assert nav.prove(f"{left} = {right} + 1e-20").status != PROVED
 
