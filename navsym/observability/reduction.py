@@ -127,6 +127,8 @@ def two_squares(f: Poly, ring: Ring) -> tuple[int, Poly, Poly, Poly] | None:
     second = {k: f.derivative(k).derivative(k) for k, degree in enumerate(f.degrees()) if degree == 2}
     for place, twice in sorted(second.items(), key=lambda item: not ring.is_unit(item[1])):
         slope = f.derivative(place)
+        if any(slope(*point) ** 2 > 2 * twice(*point) * f(*point) for point in small_points(len(f.degrees()))):
+            continue  # it is positive there, and need not be factored
         content, factors = factor_exactly(slope**2 - 2 * twice * f)
         if content < 0 and all(power % 2 == 0 or is_sum_of_squares(base) for base, power in factors):
             rest = prod((base for base, _ in factors), start=ring.constant(1))
