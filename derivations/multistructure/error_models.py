@@ -195,6 +195,11 @@ def inertial_linearised():
     return Equation(df + gravity * tilt, sum(rate.diff(s).subs(at_rest) * s for s in (tilt, df)))
 
 
+def sensor_part() -> sp.Matrix:
+    """S2 of (3), (2, 4)."""
+    return RECKONING.linear_parts()[1]
+
+
 @claim(
     "2.growth.every",
     slip="paper",
@@ -203,7 +208,7 @@ def inertial_linearised():
 )
 def every_sensor_error_grows_on_every_course():
     """Below (2), for every course: after a turn at constant rate a constant sensor error is left in the latitude."""
-    rates = RECKONING.linear_parts()[1].row(0).subs(UNIT)
+    rates = sensor_part().row(0).subs(UNIT)
     over_turn = [sp.integrate(rate, (model.heading, 0, 2 * sp.pi)) for rate in rates]
     return Bound(sum(value**2 for value in over_turn), ">", sp.Integer(0))
 
@@ -214,7 +219,7 @@ def every_sensor_error_grows_on_a_straight_course():
 
     These are the sensors in the order of (1). What displaces is (R + h) (dphi, cos(phi) dlambda), from zero.
     """
-    r, v, S2 = model.radius + model.height, sp.sqrt(model.vy**2 + model.vx**2), RECKONING.linear_parts()[1]
+    r, v, S2 = model.radius + model.height, sp.sqrt(model.vy**2 + model.vx**2), sensor_part()
     north, east = r * S2.row(0), r * sp.cos(model.latitude) * S2.row(1)
     return Equation([1, 1, v**2, v**2 / r**2], [a**2 + b**2 for a, b in zip(north, east, strict=True)], SPHERE)
 

@@ -49,7 +49,7 @@ velocity_errors_below_a_step = claim(
 )
 the_search_hardly_improves_the_velocity = claim(
     "table.bias.gain",
-    "Of 0.61 m/s the sequential search leaves 0.55 m/s: table 1 shows a velocity improved by less than a tenth.",
+    "Of 0.61 m/s the sequential search leaves 0.55 m/s by the printed digits: a gain of less than a tenth.",
     lambda: Bound(SEQUENTIAL_SPEED, ">", sp.Rational(9, 10) * velocity_behind(POSITION, HALF_RUN)),
 )
 in_a_thousand_seconds_the_search_would_harm = claim(
@@ -111,6 +111,6 @@ the_difference_in_position_is_within_chance = claim(
 )
 the_difference_in_velocity_is_not = claim(
     "table.runs.velocity",
-    "The 14.6 per cent between 0.55 and 0.48 m/s are more than two standard deviations: the velocity is worse.",
+    "The 14.6 per cent between 0.55 and 0.48 m/s are, by the printed digits, more than two standard deviations.",
     lambda: Bound(SEQUENTIAL_SPEED / FULL_SPEED - 1, ">", 2 * sp.sqrt(2) * relative_deviation(RUNS)),
 )

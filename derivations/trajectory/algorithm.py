@@ -286,10 +286,10 @@ def unit(*factors: tuple[tuple[int, int], int]) -> tuple[int, int]:
     return (sum(u[0] * p for u, p in factors), sum(u[1] * p for u, p in factors))
 
 
-def units_of_terms(speed_power: int, acceleration_power: int) -> set[tuple[int, int]]:
-    """Units of the three terms of J, the last two weighted by these powers of tau."""
+def units_of_terms(speed_power: int, acceleration_power: int) -> tuple[tuple[int, int], ...]:
+    """Different units of the three terms of J, the last two weighted by these powers of tau."""
     speed, acceleration = (TIME, speed_power), (TIME, acceleration_power)
-    return {unit((POSITION, 2)), unit((SPEED, 2), speed), unit((ACCELERATION, 2), acceleration)}
+    return tuple(sorted({unit((POSITION, 2)), unit((SPEED, 2), speed), unit((ACCELERATION, 2), acceleration)}))
 
 
 def say_units(speed_power: int, acceleration_power: int, relation: str) -> list[dict]:
@@ -309,8 +309,8 @@ criterion_units = claim(
     "algorithm.J.units",
     "The terms of J have three units as printed (m^2, m^2/s, m^2/s^2), and one when weighted by tau^2 and tau^4.",
     lambda: fact(
-        (3, 1),
-        (len(units_of_terms(1, 2)), len(units_of_terms(2, 4))),
+        (((2, -2), (2, -1), (2, 0)), ((2, 0),)),
+        (units_of_terms(1, 2), units_of_terms(2, 4)),
         "exponents of metre and second",
         PROVED,
         meaning=(*say_units(1, 2, ">"), *say_units(2, 4, "=")),

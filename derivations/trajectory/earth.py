@@ -97,6 +97,7 @@ def rotation_is_orthogonal():
 POSITION, MOVING, VELOCITY = ellipsoid.moving_position()
 LATITUDE, RADIUS = MOVING["latitude"], MOVING["radius"]
 RATES = [MOVING["latitude_rate"], MOVING["longitude_rate"], MOVING["radius_rate"]]
+OMEGA = sp.Matrix([-RATES[0], RATES[1] * sp.cos(LATITUDE), RATES[1] * sp.sin(LATITUDE)])
 SHELL = {LATITUDE: LATITUDES, RADIUS: (sp.Integer(1), sp.Integer(10))}
 
 
@@ -112,9 +113,7 @@ def rates_from_velocity() -> list[sp.Expr]:
 angular_velocity_of_the_trihedron = claim(
     "kinematics.omega",
     "Angular velocity of the geocentric trihedron relative to the Earth, on its own axes.",
-    lambda: Equation(
-        [-RATES[0], RATES[1] * sp.cos(LATITUDE), RATES[1] * sp.sin(LATITUDE)], list(ellipsoid.angular_velocity(MOVING))
-    ),
+    lambda: Equation(list(OMEGA), list(ellipsoid.angular_velocity(MOVING))),
 )
 position_on_own_axes = claim(
     "kinematics.position",
@@ -126,8 +125,8 @@ position_on_own_axes = claim(
 
 
 def rotation_part() -> sp.Matrix:
-    omega = sp.Matrix([-RATES[0], RATES[1] * sp.cos(LATITUDE), RATES[1] * sp.sin(LATITUDE)])
-    return omega.cross(sp.Matrix([0, 0, RADIUS]))  # e_ikj omega_k r_j
+    """e_ikj omega_k r_j."""
+    return OMEGA.cross(sp.Matrix([0, 0, RADIUS]))
 
 
 velocity_printed = claim(

@@ -13,7 +13,7 @@ import sympy as sp
 from navsym.claims import CERTIFIED, OPEN, UNDECIDED, Equation, Finding, Property, claim, fact
 from navsym_papers.trajectory.experiment.stability import exact, gain_stability, harmonic_lag, stationary_covariance
 from navsym_papers.trajectory.experiment_printed import TAU
-from navsym_papers.trajectory.gain import GAIN, PERIOD, in_f
+from navsym_papers.trajectory.gain import GAIN, PERIOD, decimals, in_f
 from navsym_papers.trajectory.model import pascal_rows
 
 BESSEL = "Bessel functions are outside the language"
@@ -23,8 +23,8 @@ WITNESSES = {
     2: tuple(map(Fraction, ("0.813", "0.0585", "0.00418", "2.6e-5", "1.31e-6"))),
     300: tuple(map(Fraction, ("0.352", "0.0596", "0.00551", "2.1e-4", "1.26e-5"))),
 }
-#: Harmonics of the yawing that are summed; the sixth is below 1e-10 of the swing.
-HARMONICS = 5
+#: The harmonics of the yawing below this one are summed; it is below 1e-10 of the swing.
+HARMONICS = 6
 
 
 def speed_noise(gain: list[Fraction]) -> flint.arb:
@@ -39,7 +39,7 @@ def speed_lag(gain: list[Fraction], speed: int) -> flint.arb:
     """
     swing = flint.arb.pi() / 36
     total = flint.arb(0)
-    for m in range(1, HARMONICS + 1):
+    for m in range(1, HARMONICS):
         amplitude = speed * flint.arb(2).sqrt() * swing.bessel_j(m)
         total += (amplitude * harmonic_lag(gain, TAU, PERIOD / m, 2)) ** 2 / 2
     return total
@@ -53,20 +53,12 @@ def two_figures(speed: int) -> Finding:
     noise, lag = speed_noise(gain), speed_lag(gain, speed)
     position = exact(stationary_covariance(gain)[0][0]).sqrt()
     return Finding(
-        (hundredths(noise.sqrt()), hundredths((noise + lag).sqrt()), hundredths(position)),
+        (decimals(noise.sqrt(), 2), decimals((noise + lag).sqrt(), 2), decimals(position, 2)),
         "exact stationary covariance, response to five harmonics in balls",
         CERTIFIED,
         scope=f"|V| = {speed} m/s, noise of 1 m, tau = 0.2 s, gain {', '.join(map(str, WITNESSES[speed]))}",
         evidence=f"{float(noise.sqrt()):.4f} and {float((noise + lag).sqrt()):.4f} m/s",
     )
-
-
-def hundredths(value: flint.arb) -> str:
-    """A ball rounded to two decimals, when that is decided."""
-    text = f"{float(value.mid()):.2f}"
-    half = flint.arb(flint.fmpq(1, 200))
-    assert abs(value - exact(Fraction(text))) < half, "the rounding is not decided"
-    return text
 
 
 speed_errors_at_two_metres = claim(
@@ -125,7 +117,7 @@ def straight_speed_error_is_not_noise_alone():
 def yawing_speed_error_in_full():
     """|V| = 100 m/s while yawing, printed gain: 0.81 m/s by five harmonics, and 0.81 m/s with the noise of 1 m."""
     noise, lag = speed_noise(in_f(GAIN)), speed_lag(in_f(GAIN), 100)
-    found = hundredths(lag.sqrt()), hundredths((noise + lag).sqrt())
+    found = decimals(lag.sqrt(), 2), decimals((noise + lag).sqrt(), 2)
     scope = "printed gain in D_p variables, steady yawing, noise of 1 m"
     return fact(("0.81", "0.81"), found, "five harmonics in balls", CERTIFIED, scope=scope, unsaid=BESSEL)
 

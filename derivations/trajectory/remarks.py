@@ -102,7 +102,7 @@ def gains_at_least(factor: Fraction, cases) -> Finding:
     worst = min(ratios, key=ratios.__getitem__)
     n, rho, tau = worst
     return Finding(
-        UNDECIDED if undecided else ratios[worst][0] >= factor,
+        UNDECIDED if undecided else all(low >= factor for low, _ in ratios.values()),
         "certified condition numbers",
         CERTIFIED,
         scope=f"{len(ratios)} cases",

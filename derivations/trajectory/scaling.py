@@ -170,7 +170,7 @@ def recurrence_holds(row_step: int) -> Property:
     def target(i: int) -> int:
         return 2 * i + 1 if row_step == 0 else i + 1
 
-    rows, columns = [i for i in range(LARGEST - 1) if target(i) < LARGEST], range(LARGEST - 1)
+    rows, columns = [i for i in range(LARGEST) if target(i) < LARGEST], range(LARGEST - 1)
     found = all(Phi[target(i), j + 1] == Phi[i, j] + Phi[i + 1, j] for i in rows for j in columns)
 
     def say(i: int) -> dict:

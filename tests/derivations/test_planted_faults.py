@@ -35,6 +35,10 @@ SAME: dict[tuple[str, str], str] = {
     ("joint_correction:1.6.gain_unique", "G - K * row -> G + K * row"): "what is unique in -K is so in K",
     ("joint_correction:3.3.y1", "x[1]: 1 -> 0"): "none of the four rows holds y_4, for which x_2 stands",
     ("multistructure:17.memory", "made.means[0]: 0 -> 1"): "all modes start alike, and numbers are counted",
+    (
+        "trajectory:algorithm.J.still",
+        "ahead + gain * (measured - ahead[0]) -> ahead - gain * (measured - ahead[0])",
+    ): "changes enter J squared, and the prediction changes neither speed nor acceleration",
     ("multistructure:near.cumulant", "-mean -> mean"): "only its second and fourth powers enter",
     ("terrain_search:sequential.below", "-1 -> 1"): "the best hypotheses lie at 0 and 1",
     ("terrain_search:offset", "x + height -> x - height"): "a constant error of either sign",
