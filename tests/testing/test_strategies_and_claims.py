@@ -48,7 +48,7 @@ def test_what_a_text_or_an_id_does_not_take_is_refused_and_not_ignored():
         ("guaranteed_velocity:4.3.u2*", {"T": ("0", "1")}),
         ("guaranteed_velocity:4.3.u2*", {"tolerance": "1/2"}),
     ):
-        with pytest.raises(DomainError, match="write it there|leave it out"):
+        with pytest.raises(DomainError, match=r"write it there|leave it out"):
             assert_claim(claim, **more)
 
 
