@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from navsym.claims import Verdict, Verdicts
 
 FUNCTION = re.compile(r"\s+--function\s+")
-RANGE = re.compile(r"\s+--range\s+")
+RANGE = re.compile(r"\s+--range[\s=]+")
 OPTION = re.compile(r"[<>=].*\s(--[A-Za-z]\S*)")
 #: A cell with a line that begins like this is a claim file; any other has a formula on each line.
 TABLE = re.compile(r"^\s*\[+\s*(symbols|claim|rates)\b", re.M)

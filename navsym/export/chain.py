@@ -183,9 +183,6 @@ def kept(title: str, names: Sequence[str], layout: Layout, box: Mapping[str, tup
     return Chain(title, tuple(links), entries, Layout(arrays, order, tests, units), box or {})
 
 
-# -- what the algorithms share ---------------------------------------
-
-
 def real(name: str) -> sp.Symbol:
     """A real symbol."""
     return sp.Symbol(name, real=True)
@@ -199,9 +196,6 @@ def symmetric(upper: Sequence[sp.Expr]) -> sp.Matrix:
 def units_of(names: Mapping[str, str]) -> dict[str, str]:
     """Name -> unit, from the names of every unit in one text."""
     return {name: unit for unit, text in names.items() for name in text.split()}
-
-
-# -- programs ---------------------------------------
 
 
 @dataclass(frozen=True, slots=True)

@@ -329,9 +329,6 @@ def random_in(s: sp.Symbol, box: Mapping[Any, Any], generator: random.Random) ->
     return high if limits.open_lower and share == 0 else value
 
 
-# -- what can be compared ---------------------------------------
-
-
 def formulas_of(text: str, ranges: Mapping[str, tuple[Any, Any]]) -> dict[str, Formula]:
     """Formulas of an argument: an export's folder, a claim or model file, or the text of one formula.
 

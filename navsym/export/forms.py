@@ -77,9 +77,6 @@ def partners(term: sp.Expr) -> list[tuple[sp.Expr, sp.Expr]]:
     return found
 
 
-# -- nicer forms, as candidates ---------------------------------------
-
-
 def factored(expression: sp.Expr) -> sp.Expr | None:
     """A candidate form of a rational function of sines and cosines of multiples of one angle.
 

@@ -40,9 +40,6 @@ class RefusedError(NavsymError):
     kind = "refused"
 
 
-# -- refusal ---------------------------------------
-
-
 def require_exportable(claim: str, verdict: Verdict, correction: str | None, allow_confirmed: bool) -> None:
     """Raise RefusedError unless the verdict allows code; a refuted claim names what corrects it."""
     if verdict.status.holds or (verdict.status == CONFIRMED and allow_confirmed):
@@ -56,9 +53,6 @@ def require_exportable(claim: str, verdict: Verdict, correction: str | None, all
     raise RefusedError(
         f"expected a proved claim; got {claim}, which is {verdict.status} ({verdict.evidence[:160]}); prove it first"
     )
-
-
-# -- results of a statement ---------------------------------------
 
 
 def results_of(statement: Statement, claim: str) -> list[tuple[Output, list[sp.Expr]]]:
@@ -87,9 +81,6 @@ def entries(side: Any, name: str) -> tuple[Output, list[sp.Expr]]:
     if not 0 < len(flat) <= MOST_OUTPUTS:
         raise ShapeError(f"expected 1 to {MOST_OUTPUTS} results; got {len(flat)}; export a part")
     return Output(name, shape), flat
-
-
-# -- the function ---------------------------------------
 
 
 def material(
@@ -251,9 +242,6 @@ def accepted_box(
 def cells_for(graph: Graph) -> int:
     """Cells of the uniform bound: fewer for a long graph, whose bound is rarely uniform."""
     return max(2, min(CELLS, WORK // (len(graph.nodes) + 1)))
-
-
-# -- regimes that follow each other in one parameter ---------------------------------------
 
 
 def in_order(parts: Sequence[Material]) -> tuple[list[Material], sp.Symbol | None]:

@@ -112,9 +112,6 @@ def filled_part(x: sp.Expr, q: sp.Expr, part: sp.Expr, v: int) -> sp.Expr:
     return q**v * filled(sp.Lambda(T, part), sp.Integer(v), q * x)
 
 
-# -- products ---------------------------------------
-
-
 def product(factors: sp.Expr, ranges: Ranges) -> sp.Expr:
     """The product with what vanishes above and below the line at the same place divided out."""
     for x, place in zeros_below(factors, ranges):
@@ -175,9 +172,6 @@ def divided(whole: sp.Expr, x: sp.Symbol, place: sp.Expr) -> sp.Expr | None:
             made.append(filled_part(at, *known) ** exponent)
     result = sp.Mul(*made) * at**power
     return result if place == 0 else result.xreplace({at: x - place})
-
-
-# -- sums ---------------------------------------
 
 
 def total(whole: sp.Expr, ranges: Ranges) -> sp.Expr:

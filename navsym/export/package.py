@@ -85,9 +85,6 @@ def license_id(text: str) -> str:
     return text
 
 
-# -- certificates ---------------------------------------
-
-
 def certificate_texts(function: ExportedFunction) -> dict[str, str]:
     """The claim's own certificates, and those that the code graph equals the claim's formula.
 
@@ -110,9 +107,6 @@ def ties_of(piece: Piece) -> list[dict[str, Any]]:
         return []
     found = {(left, right): identity_certificate(left, right) for left, right in piece.equals if left != right}
     return [dict(part) for part in found.values() if part is not None]
-
-
-# -- manifest ---------------------------------------
 
 
 def manifest(

@@ -89,9 +89,6 @@ def words(text: str) -> str:
     return "; ".join(lines)[:300]
 
 
-# -- a whole export ---------------------------------------
-
-
 def check_export(folder: Path) -> list[dict[str, Any]]:
     """Rows ``{"path", "kind", "status", "why"}`` for the code of an exported folder.
 
@@ -111,9 +108,6 @@ def check_export(folder: Path) -> list[dict[str, Any]]:
     rows = [row(folder / MANIFEST, "manifest", trouble or hash_trouble(folder, files))]
     rows += [language_row(folder, name, list(files)) for name in languages]
     return rows + ([misra_row(folder / "c")] if "c" in languages and (folder / "c").is_dir() else [])
-
-
-# -- the manifest ---------------------------------------
 
 
 def sealed(manifest: Mapping[str, Any]) -> str:

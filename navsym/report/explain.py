@@ -207,9 +207,6 @@ def entries_of(text: str) -> list[str]:
     return [entry for part in parts for entry in entries_of(part)]
 
 
-# -- numbers in words -------------------------------------------------------------------------
-
-
 def ended(sentence: str) -> str:
     """The sentence with its full stop; cut digits end with an ellipsis already."""
     return sentence if sentence.endswith(("…", ".")) else sentence + "."

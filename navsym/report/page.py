@@ -132,9 +132,6 @@ class PaperView:
     unexpected: tuple[str, ...]
 
 
-# -- the site --------------------------------------------------------------------------------
-
-
 def pages(
     ledger: Ledger,
     words: Mapping[str, Words] | None = None,
@@ -215,9 +212,6 @@ def visible(value: Any) -> Any:
     if not isinstance(value, str) or isinstance(value, Markup) or value.isprintable():
         return value
     return "".join(c if c.isprintable() or c in "\n\t" else repr(c)[1:-1] for c in value)
-
-
-# -- one paper -------------------------------------------------------------------------------
 
 
 def paper_view(

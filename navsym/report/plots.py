@@ -367,6 +367,7 @@ class RefutedCurves:
     x: Array
     sides: tuple[Array, Array]
     marks: tuple[float, float]
+    names: tuple[str, str]
 
     def words(self) -> str:
         """What the picture shows, for those who do not see it."""
@@ -376,7 +377,8 @@ class RefutedCurves:
             "" if not others else f" with {values}" if len(others) <= 4 else " with the others as in the counterexample"
         )
         at = f"at {self.along} = {self.point[self.along]:.4g} they are {self.marks[0]:.6g} and {self.marks[1]:.6g}"
-        return f"Printed side (dashed) and derived side (solid) along {self.along}{held}; {at}. Units are the paper's."
+        one, other = (name if "side" in name else f"{name} side" for name in self.names)
+        return f"{one.capitalize()} (dashed) and {other} (solid) along {self.along}{held}; {at}. Units are the paper's."
 
 
 def refutation_svg(record: Record) -> str:
@@ -397,12 +399,10 @@ def refutation_plot(curves: RefutedCurves) -> Figure:
     made.patch.set_alpha(0)
     axes.patch.set_alpha(0)
     for name, style, colour, y, mark in zip(
-        ("printed", "derived"), ("--", "-"), COLOURS[1::-1], curves.sides, curves.marks, strict=True
+        curves.names, ("--", "-"), COLOURS[1::-1], curves.sides, curves.marks, strict=True
     ):
         axes.plot(curves.x, y, style, color=colour, label=name)
-        axes.plot(
-            curves.point[curves.along], mark, "o", color=colour, fillstyle="none" if name == "printed" else "full"
-        )
+        axes.plot(curves.point[curves.along], mark, "o", color=colour, fillstyle="none" if style == "--" else "full")
     values = np.sort(np.concatenate([y[np.isfinite(y)] for y in curves.sides]))
     low, high = values[len(values) // 20], values[-1 - len(values) // 20]  # poles are cut off
     low, high = min(low, *curves.marks), max(high, *curves.marks)
@@ -435,7 +435,8 @@ def refuted_curves(record: Record) -> RefutedCurves | None:
     marks = tuple(side.at(held) for side in sides)
     if any(np.isfinite(y).sum() < POINTS // 4 for y in curves) or not all(np.isfinite(marks)):
         return None
-    return RefutedCurves(along, held, x, curves, marks)  # type: ignore[arg-type]
+    names = ("one side", "other side") if record.paper.endswith(".toml") else ("printed", "derived")
+    return RefutedCurves(along, held, x, curves, marks, names)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

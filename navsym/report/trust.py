@@ -78,6 +78,8 @@ def backing_words(record: Record) -> str:
         return "; ".join([f"{kinds}, {size:,} bytes, {judge}", *(outcome_words(name, parts) for name in JUDGES)])
     if record.status in ("CONFIRMED", "OPEN"):
         return "none: nothing is proved"
+    if UNCHECKED not in record.evidence:
+        return "beside the ledger, in certificates.json, and not in this report: make one without --from"
     return "none: unchecked, the verdict rests on the code that computes it"
 
 

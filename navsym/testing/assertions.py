@@ -8,7 +8,7 @@ from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any
 
 from navsym.claims import CONFIRMED, Bound, Equation, Verdict
-from navsym.core.errors import EmptyError
+from navsym.core.errors import DomainError, EmptyError
 from navsym.prove.formulas import RELATION, prove
 from navsym.prove.ladder import decide_within
 from navsym.verification.certificates import verdict_of
@@ -57,6 +57,10 @@ def assert_claim(
     __tracebackhide__ = True  # pytest shows the line of the test
     limit = BUDGET.get() if seconds is None else seconds
     if right is None and isinstance(left, str):
+        if relation != "=":
+            raise DomainError(
+                f"expected the relation in the text; got {relation!r:.20}; write it there", where="relation"
+            )
         return assert_text(left, limit, sampled, {"box": box, "tolerance": tolerance, **symbols})
     if relation == "=":
         verdict = decide_within(Equation(left, right, box or {}, tolerance), limit)
@@ -105,6 +109,8 @@ def assert_text(text: str, seconds: float, sampled: bool, options: Mapping[str, 
     __tracebackhide__ = True
     if ":" not in text or RELATION.search(text):
         return require_holds(prove(text, seconds=seconds, **options), text, sampled)
+    if beside := [name for name, value in options.items() if value is not None]:
+        raise DomainError(f"expected an id alone; got {beside[0]} beside it; leave it out", where="assert_claim")
     record = decide_claim_of(text, seconds)[1]
     verdict = verdict_of(record)
     if record.is_expected:

@@ -14,9 +14,6 @@ from navsym.models.linear import LinearModel
 Strategy = st.SearchStrategy[Any]
 
 
-# -- exact values ----------------------------------------------------------------------------
-
-
 def rationals(lowest: int = -5, highest: int = 5, denominator: int = 12) -> Strategy:
     """Exact rational numbers of sympy between two integers."""
     numbers = st.fractions(lowest, highest, max_denominator=denominator)
@@ -51,9 +48,6 @@ def model_of(F: list[list[Any]], H: list[list[Any]]) -> LinearModel:
     exact = [[[sp.Rational(str(entry)) for entry in row] for row in rows] for rows in (F, H)]
     states = tuple(f"x{i + 1}" for i in range(len(F)))
     return LinearModel(F=exact[0], H=exact[1], states=states, measurements=tuple(f"z{j + 1}" for j in range(len(H))))
-
-
-# -- arrays ----------------------------------------------------------------------------------
 
 
 def covariances(size: int = 3, smallest: float = 1e-3) -> Strategy:

@@ -350,9 +350,6 @@ def check_request(n: int, rho: Fraction, tau: Fraction) -> None:
         raise DomainError("expected a nonzero number; got 0; the columns of N_p would vanish", where=name)
 
 
-# -- double precision beside it --------------------------------------------------------------------
-
-
 def column_norms(matrix: np.ndarray) -> np.ndarray:
     """Norms with the largest entry taken out, so that squares neither overflow nor vanish."""
     scale = np.abs(matrix).max(axis=0)
@@ -370,8 +367,6 @@ def double_condition(rows: Rows, equilibrate: bool = False) -> float:
     values = np.linalg.svd(matrix, compute_uv=False)
     return float(values[0] / values[-1]) if values[-1] > 0 else math.inf
 
-
-# -- the verb --------------------------------------------------------------------------------------
 
 #: A decimal or a fraction of two: nothing else and nothing huge.
 DECIMAL = r"\d{1,60}(?:\.\d{0,60})?(?:[eE][+-]?\d{1,3})?"

@@ -439,9 +439,6 @@ def words_of(use: Rows, run: FilterRun) -> tuple[str, ...]:
     return tuple(np.where(use == 0, "outlier", np.where(doubted, "doubtful", "used")).tolist())
 
 
-# -- filter and smoother -----------------------------------------------------------------------------------
-
-
 @dataclass(slots=True, eq=False)
 class FilterRun:
     """Arrays of a run, channel first: states, gains (3, N, m), roots of covariances (3, N, m, m), flags (N, 3).
@@ -527,9 +524,6 @@ def axes_of(track: Positions, words: tuple[str, ...]) -> Array:
     waits = [np.abs(track.t[believed[near]] - track.t) for near in (before, after)]
     axes: Array = track.turn[believed[np.where(waits[0] < waits[1], before, after)]]
     return axes
-
-
-# -- windows -----------------------------------------------------------------------------------------------
 
 
 def nearest_windows(track: Positions, use: Rows, count: int) -> list[Rows]:

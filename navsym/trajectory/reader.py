@@ -158,9 +158,6 @@ def checked_track(rows: Iterable[Row], log: Log) -> TrackFile:
     return assembled(kept, log)
 
 
-# -- columns -------------------------------------------------------------------------------------------
-
-
 def read_columns(data: Any, policy: Policy | str = "strict") -> TrackFile:
     """A track from a DataFrame or mapping with columns as a CSV names them, or from an array (N, 4).
 
@@ -190,9 +187,6 @@ def columns_in(data: Any, log: Log) -> list[Any]:
     return list(as_array("data", data, (None, 4), "rows of t, lat, lon, height").T)
 
 
-# -- text ----------------------------------------------------------------------------------------------
-
-
 def text_of(data: bytes, log: Log) -> str:
     """UTF-8 text; when repairing also from latin-1."""
     if not data.strip():
@@ -205,9 +199,6 @@ def text_of(data: bytes, log: Log) -> str:
                 log.repairs.append("line 1: text read as latin-1, because it is not UTF-8")
                 return data.decode("latin-1")
     return decode(data, log.where)
-
-
-# -- RTKLIB --------------------------------------------------------------------------------------------
 
 
 def rtklib_rows(text: str, log: Log) -> Iterator[Row]:
@@ -282,9 +273,6 @@ def rtklib_sigma(fields: Sequence[str], line: int, log: Log) -> tuple[float, flo
     return east, north, up
 
 
-# -- CSV -----------------------------------------------------------------------------------------------
-
-
 def csv_rows(text: str, log: Log) -> Iterator[Row]:
     """Rows of a CSV; the separator is a comma, a semicolon or a tab."""
     lines = list(read_rows(text, len(NAMES)))
@@ -351,9 +339,6 @@ def decimal_comma(text: str) -> float | None:
 def too_long(log: Log) -> NavsymError:
     """The error of a file with more than :data:`LARGEST_ROWS` rows."""
     return TooLargeError(f"expected at most {LARGEST_ROWS} rows; got more; split the file", where=log.where)
-
-
-# -- rows ----------------------------------------------------------------------------------------------
 
 
 def row_of(

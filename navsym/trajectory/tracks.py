@@ -218,9 +218,6 @@ def check_order(rows: int, order: int) -> None:
         raise (ShapeError if rows > 1 else EmptyError)(f"{message}; {remedy}")
 
 
-# -- isolated outliers ---------------------------------------------------------------------------------
-
-
 def isolated_outliers(track: Positions) -> Mask:
     """(N,) True where a position departs from the cubic through its four neighbours and they do not.
 
@@ -270,9 +267,6 @@ def running_median(values: Array, width: int) -> Array:
         filled = np.where(np.isnan(windows).all(axis=-1, keepdims=True), 0.0, windows)
         median[start : start + LONGEST_FIT] = np.nanmedian(filled, axis=-1)
     return median
-
-
-# -- noise by maximum likelihood -------------------------------------------------------------------------
 
 
 def first_spread(track: Positions, order: int, density: float = 0.0, rate: float = 0.0) -> Array:
@@ -383,9 +377,6 @@ def golden(f: Callable[[float], float], low: float, high: float, rounds: int) ->
             b = low + ratio * (high - low)
             fb = f(b)
     return float((low + high) / 2)
-
-
-# -- coloured errors and a motion that forgets ------------------------------------------------------------
 
 
 #: Rows in which the noise is sought: the most central ones of a long track.

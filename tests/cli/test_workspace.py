@@ -218,6 +218,10 @@ def test_report_writes_its_pages_and_the_erratum_of_a_claim_file_into_the_worksp
     assert site.out == inside / "report"
     (sheet,) = [name for name in site.files if name.endswith("erratum.html")]
     assert "the double product is missing" in (site.out / sheet).read_text().lower()
+    page = (site.out / sheet.replace(".erratum", "")).read_text()
+    assert "derived from the model" not in page and "<h2>Equations" not in page and "(dashed) and other side" in page
+    assert page.count("the other side, as the file states it") == 3
+    assert page.count("beside the ledger, in certificates.json") == 4 and "none: unchecked" not in page
 
 
 def test_diff_takes_ids_of_claims_and_two_ledgers(inside, capsys, tmp_path):

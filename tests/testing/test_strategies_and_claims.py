@@ -7,6 +7,7 @@ import pytest
 import sympy as sp
 from hypothesis import given, settings
 
+from navsym.core.errors import DomainError
 from navsym.testing import (
     ClaimFailedError,
     angles,
@@ -39,6 +40,16 @@ def test_bounds_and_numerals():
     assert_claim(sp.Rational("3.14"), sp.pi, tolerance=sp.Rational("0.005"))
     with pytest.raises(ClaimFailedError):
         assert_claim(sp.Rational("3.15"), sp.pi, tolerance=sp.Rational("0.005"))
+
+
+def test_what_a_text_or_an_id_does_not_take_is_refused_and_not_ignored():
+    for claim, more in (
+        ("sin(a) <= a", {"relation": "<", "a": ("0", "1")}),
+        ("guaranteed_velocity:4.3.u2*", {"T": ("0", "1")}),
+        ("guaranteed_velocity:4.3.u2*", {"tolerance": "1/2"}),
+    ):
+        with pytest.raises(DomainError, match=r"write it there|leave it out"):
+            assert_claim(claim, **more)
 
 
 def test_what_is_only_sampled_passes_only_when_it_is_asked_for():

@@ -94,9 +94,6 @@ def continuation(part: Part, real: str) -> Continuation:
     raise DomainError(f"{wanted}; keep zero out of the range")
 
 
-# -- the polynomial and its remainder ---------------------------------------
-
-
 def at_switch(part: Part, switch: float, arithmetic: Arithmetic) -> Continuation | None:
     """The branches with this switch; None when the remainder takes too many terms."""
     v, reach = part.order, arb(switch) * MARGIN
@@ -172,9 +169,6 @@ def proved(
     )
 
 
-# -- code ---------------------------------------
-
-
 def polynomial_graph(polynomial: Sequence[fmpq], power: int) -> Graph:
     """t^power P(t) by Horner's rule, in t^2 where only even powers occur."""
     builder = Builder((T,))
@@ -242,9 +236,6 @@ def filled_bounds(part: Part, a: Bounded, arithmetic: Arithmetic) -> Bounded:
     return tightened(value, sane(carried + absolute), sane(passed + relative * (1 + passed)), INFINITE)
 
 
-# -- which branch ---------------------------------------
-
-
 @dataclass(frozen=True, slots=True)
 class Zones:
     """The parts of a ball on which the polynomial may be used, and those on which the plain form may."""
@@ -267,9 +258,6 @@ def zones(known: Continuation, t: arb) -> Zones:
     return Zones((inside,), tuple(outside))
 
 
-# -- below the switch ---------------------------------------
-
-
 def inside_rounding(known: Continuation, t: arb, arithmetic: Arithmetic) -> tuple[arb, arb]:
     """(absolute, relative) rounding error of the polynomial's code; powers of t may underflow."""
     relative, value = known.near * arithmetic.unit(), known.value(t)
@@ -290,9 +278,6 @@ def relative_inside(known: Continuation, a: Bounded) -> arb:
         return INFINITE
     inner = known.slope * a.absolute / known.least
     return sane((1 + a.relative) ** known.power * (1 + inner) - 1)
-
-
-# -- above it ---------------------------------------
 
 
 def outside_bounds(known: Continuation, t: arb, arithmetic: Arithmetic) -> Bounded:

@@ -193,8 +193,6 @@ def ratio(error: arb, value: arb) -> arb:
     return sane(error / least) if least > 0 else INFINITE
 
 
-# -- values ---------------------------------------
-
 ARITHMETIC_VALUES: dict[str, Callable[..., arb]] = {
     "add": lambda x, y: x + y,
     "sub": lambda x, y: x - y,
@@ -239,9 +237,6 @@ def exact_value(node: Node, args: list[Bounded]) -> arb:
     if node.op in ARITHMETIC_VALUES:
         return arb(ARITHMETIC_VALUES[node.op](*balls))
     return arb(getattr(balls[0], node.op)())
-
-
-# -- errors of the arguments carried through ---------------------------------------
 
 
 def propagated(node: Node, args: list[Bounded], value: arb) -> tuple[arb, arb]:
@@ -358,9 +353,6 @@ def relative_through(op: str, a: Bounded, wide: arb) -> arb:
     if op == "exp" and a.absolute.is_finite():
         return arb(a.absolute.expm1())
     return INFINITE
-
-
-# -- the numbers in the code ---------------------------------------
 
 
 def literals_of(graph: Graph, arithmetic: Arithmetic) -> tuple[float | None, ...]:

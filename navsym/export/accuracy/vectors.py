@@ -142,9 +142,6 @@ def piece_at(function: ExportedFunction, point: Sequence[float]) -> Piece:
     return function.pieces[-1]
 
 
-# -- points ---------------------------------------
-
-
 def points(function: ExportedFunction, count: int) -> Iterator[tuple[float, ...]]:
     """Points of the domain: every edge first, then near-singular and random ones."""
     generator = random.Random(function.name)

@@ -140,9 +140,6 @@ def undecided(claim: str) -> Material:
     raise DomainError(f"expected formulas of the model; got the claim {claim}; report this")
 
 
-# -- F, Phi, H, Qd ---------------------------------------
-
-
 def matrices_of(plant: Plant) -> Iterator[tuple[str, sp.MatrixBase | list[sp.Expr], Statement | None, str]]:
     """Name, entries, the statement that makes them right (None: they are the model's own), and a title."""
     F, Phi, dt, n = plant.F, plant.Phi, plant.dt, plant.n
@@ -194,9 +191,6 @@ def free_letter(plant: Plant, letter: str) -> str:
     while any(re.fullmatch(rf"{letter}[\d_]*", name) for name in plant.ranges):
         letter += "_"
     return letter
-
-
-# -- chains ---------------------------------------
 
 
 class Steps:
@@ -332,9 +326,6 @@ def scalar_product(a: Iterable[sp.Expr], b: Iterable[sp.Expr]) -> sp.Expr:
     return sum(x * y for x, y in zip(a, b, strict=True))
 
 
-# -- Joseph's form ---------------------------------------
-
-
 def predict(steps: Steps) -> Chain:
     """``x <- Phi x``, ``P <- Phi P Phi' + Q``."""
     n = steps.plant.n
@@ -383,9 +374,6 @@ def joseph(P: sp.Matrix, h: Sequence[sp.Expr], r: sp.Expr, K: Sequence[sp.Expr])
     code = M - (M * row.T) * gain.T + gain * r * gain.T
     L = sp.eye(P.rows) - gain * row
     return Equation(printed=upper(code), derived=upper(L * P * L.T + gain * r * gain.T))
-
-
-# -- UD form ---------------------------------------
 
 
 def factor_outputs(U: Mapping[tuple[int, int], sp.Expr], D: Sequence[sp.Expr], n: int) -> dict[str, list[sp.Expr]]:

@@ -259,9 +259,6 @@ def split_root(q: fmpq) -> tuple[fmpq, list[int]]:
     return fmpq(times * whole, q.q), primes + rest
 
 
-# -- Inequalities and counterexamples ----------------------------------
-
-
 def prove_bound(box: Mapping[str, Range], names: Mapping[str, str], by_balls: bool) -> list[str]:
     """A bound on a box by bisection and Taylor models; a symbol with one value is that value."""
     wide = [names[name] for name, limit in box.items() if limit.low is None or limit.low != limit.high]

@@ -74,8 +74,6 @@ def function_name(claim_id: str) -> str:
     return f"{name}_" if name.lower() in FUNCTIONS else name
 
 
-# -- parts with a hole at zero, functions of their own in code ---------------------------------------
-
 LONGEST_NAME = 24
 #: What people call some of them.
 NAMES = {

@@ -58,9 +58,6 @@ def compiled(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector
         return (Path(folder) / "module.wasm").read_bytes()
 
 
-# -- what the page knows ---------------------------------------
-
-
 def record(function: ExportedFunction, tests: Sequence[Vector]) -> dict[str, Any]:
     """One function as data of the page."""
     u = 2.0**function.arithmetic.u

@@ -147,9 +147,6 @@ class Writer:
         return found
 
 
-# -- what is read by test programs ---------------------------------------
-
-
 def vectors_json(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]]) -> str:
     """All vectors as JSON; numbers that JSON does not have are strings."""
 
