@@ -47,6 +47,7 @@ def main() -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(AttributeError, ValueError):
             stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
+    gc.set_threshold(200_000)  # a tenth of the time of loading the algebra went into looking for cycles in its modules
     status = run(sys.argv[1:])
     gc.freeze()  # at the end nobody looks for cycles in all modules: a third of the time of a short command
     sys.exit(status)

@@ -37,7 +37,10 @@ EQUATIONS = (
         "algebra one_angle cofactors elimination modulus values values_of_constants inverse factors_of_roots "
         "exponents equal_squares known_signs"
     ),
-    choose("roots_of_symbols sums_of_hypotheses logarithms_of_products empty_case sides_of_zero gradient"),
+    choose(
+        "roots_of_symbols sums_of_hypotheses logarithms_of_products empty_case bounds_that_meet integers "
+        "sides_of_zero gradient"
+    ),
 )
 SIGNS = (
     choose(
@@ -46,7 +49,7 @@ SIGNS = (
     ),
     choose(
         "constant known_signs cofactors hypothesis cases quadratic roots_of_symbols substitution slope "
-        "contacts modulus logarithms empty_case"
+        "contacts modulus logarithms empty_case integers"
     ),
     choose("concavity many_balls"),
 )

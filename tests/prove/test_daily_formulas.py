@@ -35,3 +35,43 @@ def test_each_has_an_error_with_a_place(text):
 
 def test_a_power_zero_asks_for_a_base_that_is_not_zero():
     assert nav.prove("x**0 = 1", x="real").assumptions == ("x != 0",)
+
+
+WHOLE, FROM_FIVE, FEW = {"integer": ["-oo", "oo"]}, {"integer": ["5", "oo"]}, {"integer": ["0", "6"]}
+
+
+@pytest.mark.parametrize(
+    ("text", "n", "holds"),
+    [
+        ("n*(n - 1) >= 0", WHOLE, True),  # between whole numbers it is below 0
+        ("(n - 1)*(n - 2)*(n - 3)*(n - 4) >= 0", WHOLE, True),
+        ("2*n != 7", WHOLE, True),
+        ("2**n > n**2", FROM_FIVE, True),
+        ("sin(pi*n) = 0", FEW, True),
+        ("(n - 1)*(n - 3) >= 0", WHOLE, False),
+        ("n*(n - 1) > 0", WHOLE, False),
+        ("cos(pi*n) = 1", FEW, False),
+    ],
+)
+def test_whole_numbers_are_taken_one_by_one_where_real_ones_would_fail(text, n, holds):
+    assert nav.prove(text, n=n).holds is holds
+
+
+@pytest.mark.parametrize(
+    ("text", "declarations", "status"),
+    [
+        ("where(p > 0, 1, 2) = 1", {"p": "positive"}, "PROVED"),  # the other case has no point
+        ("where(p > 0, 1, 2) = 1", {"p": "nonnegative"}, "REFUTED"),
+        ("p = 0", {"p": "nonnegative", "given": "p <= 0"}, "PROVED"),
+        ("p = 1", {"p": ("0", "1"), "given": "p >= 1"}, "PROVED"),
+        ("p = 1", {"p": ("0", "2"), "given": "p >= 1"}, "REFUTED"),
+        ("p = q", {"given": ["p <= q", "p >= q"]}, "PROVED"),
+    ],
+)
+def test_an_empty_case_and_two_bounds_that_meet_are_seen(text, declarations, status):
+    assert nav.prove(text, **declarations).status.name == status
+
+
+def test_a_root_alone_is_one_new_number():
+    assert nav.prove("acos(1 - 2*h) = 2*asin(sqrt(h))").status.name == "PROVED"
+    assert nav.prove("acos(1 - 2*h) = asin(sqrt(h))").status.name == "REFUTED"

@@ -40,9 +40,9 @@ take_sign, player.ask_sign = player.ask_sign, guess_sign
 class Search(player.Answers):  # type: ignore[misc,name-defined]
     """Answers that are sought when they are asked for; those that were found stay for the next case."""
 
-    def __init__(self, point: Mapping[str, Any] | None = None):
+    def __init__(self, point: Mapping[str, Any] | None = None, seconds: float = SECONDS):
         super().__init__([], None if point is None else dict(point))
-        self.deadline, self.found, self.known = time.process_time() + SECONDS, list[Any](), dict[Any, Any]()
+        self.deadline, self.found, self.known = time.process_time() + seconds, list[Any](), dict[Any, Any]()
 
     def settle(self, question: Any, goal: Any) -> Any:
         """The value of a question with the first candidate that its rule accepts."""
@@ -78,9 +78,9 @@ def play(make: Callable[[], Any], question: Any, goal: Any, seconds: float) -> t
     return None if value is None else (plain(tried[-1]), value)
 
 
-def read_with_answers(document: Document, point: Mapping[str, Any] | None = None) -> Any:
+def read_with_answers(document: Document, point: Mapping[str, Any] | None = None, seconds: float = SECONDS) -> Any:
     """The cases of a statement, its box and the answers of its questions; raises Refused."""
-    answers, before = Search(point), ctx.prec
+    answers, before = Search(point, seconds), ctx.prec
     ctx.prec = BITS[0]  # as the checker will read it
     try:
         cases, box = player.read_statement(document, answers)

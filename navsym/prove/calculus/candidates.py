@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 from sympy.concrete.gosper import gosper_term
-from sympy.simplify.fu import TR8
+from sympy.simplify.fu import TR1, TR2, TR8
 
 from navsym.core.errors import NavsymError
 from navsym.prove.calculus.exponentials import list_exponentials
@@ -83,11 +83,11 @@ def make_integral(cuts: list[Any], forms: tuple[str, ...], ways: Any, plain: boo
 
 def list_ways(pairs: list[Any]) -> Iterator[list[tuple[int, int]]]:
     """For each piece whether its ends are taken by limits: at infinity always, elsewhere where values fail."""
-    for first, last in product((0, 1), repeat=2):
-        ways = [[int(player.is_infinite(end)) for end in pair] for pair in pairs]
-        ways[0][0], ways[-1][1] = ways[0][0] or first, ways[-1][1] or last
-        if (first and player.is_infinite(pairs[0][0])) or (last and player.is_infinite(pairs[-1][1])):
-            continue
+    far = [[int(player.is_infinite(end)) for end in pair] for pair in pairs]
+    inside, *outside = len(pairs) == 1, far[0][0], far[-1][1]
+    for inner, first, last in product(*((0, 1)[: 2 - known] for known in (inside, *outside))):
+        ways = [[end or inner for end in pair] for pair in far]
+        ways[0][0], ways[-1][1] = outside[0] or first, outside[1] or last
         yield [(low, high) for low, high in ways]
 
 
@@ -106,7 +106,8 @@ def list_cuts(question: Any, goal: Any) -> Iterator[list[Any]]:
         range_of_x = sp.Interval(*sorted((to_sympy(question.low), to_sympy(question.high)), key=float))
     zeros: set[Any] = set()
     for bend in list_bends(question):
-        found = sp.solveset(to_sympy(bend), x, range_of_x)
+        u = to_sympy(bend)
+        found = sp.solveset(u, x, range_of_x if u.free_symbols == {x} else sp.S.Reals)
         zeros |= set(found) if isinstance(found, sp.FiniteSet) else set()
     inside = [z for z in zeros if lies_between(z, question)]
     if inside:
@@ -401,7 +402,7 @@ def list_limits(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
     if far:
         yield lambda: {"signs": Signs()}
         f = f.subs(x, 1 / x if question.low == player.INFINITY else -1 / x)
-    top, bottom = sp.fraction(sp.together(f))
+    top, bottom = sp.fraction(sp.together(TR2(TR1(f))))  # tan as sin/cos
     a = sp.Integer(0) if far else to_sympy(question.low)
     around = [
         t for _, t in player.set_union(map(player.conditions, (question.term, *question.needs)))

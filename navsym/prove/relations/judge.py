@@ -69,7 +69,7 @@ def decide_text(claim: TextClaim, seconds: float) -> Verdict:
     certificates, assumptions, rules = [], dict[str, None](), set[str]()
     for document in claim.documents:
         try:
-            cases, box, answers = read_with_answers(document)
+            cases, box, answers = read_with_answers(document, seconds=seconds)
         except TROUBLE as error:
             refuted = refute_at_points(claim, document)
             why = f"the checker does not read it: {error}"

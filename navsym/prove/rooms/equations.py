@@ -33,7 +33,7 @@ def by_algebra(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     yield {"rule": "identity"}
 
 
-MOST_ZEROS = 2
+MOST_ZEROS, MOST_INTEGERS = 2, 16
 
 
 def by_empty_case(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -44,6 +44,40 @@ def by_empty_case(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         if k < len(goal.given):
             proof = {"rule": "equal", "to": to_text(-to_sympy(h)), "defined": Holes(), "proof": proof}
         yield {"rule": "empty", "hypothesis": k, "proof": proof}
+
+
+def by_bounds_that_meet(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Not above 0 and not below, by hypotheses and ranges."""
+    if goal.given and goal.term[0] != "number":
+        yield {"rule": "between", "proofs": Holes()}
+
+
+def by_integers(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A whole number one by one: all there are, or those around the places between them where the term fails."""
+    for name in sorted(n for n, limit in goal.box.items() if limit.integer):
+        low, high = (None if end is None else int(player.find_whole(end)[1]) for end in goal.box[name][:2])
+        if low is not None and high is not None and high - low <= MOST_INTEGERS:
+            yield count_integers(name, low, high)
+        elif player.symbols_of(goal.term) == {name} and goal.relation != "=":
+            first = low if low is not None else -MOST_INTEGERS if high is None else high - 2 * MOST_INTEGERS
+            places = [first + fmpq(k, 4) for k in range(8 * MOST_INTEGERS)]
+            values = [player.value_of(goal.term, {name: player.Jet(arb(place))}) for place in places]
+            signs = [(v > 0) - (v < 0) for v in values]
+            changes = [s != t if goal.relation == "!=" else s < 0 for s, t in zip(signs, signs[1:], strict=False)]
+            if bad := [place for place, fails in zip(places, changes, strict=False) if fails]:
+                start, end = int(bad[0].floor()), int(bad[-1].floor()) + 1
+                below = split_at(name, end, [count_integers(name, start, end), Hole()])
+                yield split_at(name, start, [Hole(), below])
+
+
+def count_integers(name: str, low: int, high: int) -> Proof:
+    """The rule that takes whole numbers one by one."""
+    return {"rule": "integers", "symbol": name, "from": low, "proofs": [Hole() for _ in range(low, high + 1)]}
+
+
+def split_at(name: str, at: int, proofs: list[Any]) -> Proof:
+    """The rule that takes the two sides of a number."""
+    return {"rule": "split", "symbol": name, "at": str(at), "proofs": proofs}
 
 
 def by_values(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -255,7 +289,7 @@ def by_sides_of_zero(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     if len(names) == 1 and any(is_root(part) for part in subterms(goal.term)):
         limit = goal.box[names[0]]
         if player.is_inside(player.ZERO, limit._replace(open_low=True, open_high=True, nonzero=False)):
-            yield {"rule": "split", "symbol": names[0], "at": "0", "proofs": Holes()}
+            yield split_at(names[0], 0, Holes())
 
 
 SMOOTH = ("asin", "acos", "atan", "atan2", "log", "erf")

@@ -19,7 +19,8 @@ from navsym.prove.signs.products import as_product
 
 #: Digits of a number up to which polynomials are factored.
 MOST_DIGITS = 40
-Form = tuple[sp.Expr, sp.Expr, str | None, sp.Expr | None]
+Form = tuple[sp.Expr, sp.Expr, tuple[str | None, str | None], sp.Expr | None]
+FREE, UPWARD = (None, None), ("0", None)
 
 
 def by_forms(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -83,7 +84,7 @@ def by_one_angle(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         angles = {node.args[0] for node in expression.atoms(sp.sin, sp.cos, sp.tan, sp.cot) if node.has(x)}
         shares = {sp.expand(angle / x) for angle in angles}
         if len(shares) > 1 and all(share.is_Rational for share in shares):
-            d = sp.ilcm(*(share.q for share in shares))
+            d = sp.ilcm(1, *(share.q for share in shares))
             form = sp.expand_trig(expression.subs(x, d * x)).subs(x, x / d)
             form = form.replace(sp.cot, lambda u: sp.cos(u) / sp.sin(u)).replace(
                 sp.tan, lambda u: sp.sin(u) / sp.cos(u)
@@ -100,9 +101,9 @@ def by_substitution(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         name += "u"
     new = symbol(name)
     for make in (by_exponentials, by_root, by_tangent, by_lonely_parts):
-        for term, form, low, dense in make(expression, u):
+        for term, form, ends, dense in make(expression, u):
             to = to_text(factor(form.xreplace({u: new})))
-            body = abstract({name: to_text(term)}, {name: [low, None, []]}, to)
+            body = abstract({name: to_text(term)}, {name: [*ends, []]}, to)
             if dense is None:
                 yield body
             elif goal.relation == ">=":
@@ -117,7 +118,7 @@ def by_exponentials(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
     x, step, turns = count_steps(hyper.atoms(sp.exp))
     form = hyper.xreplace({node: u**n for node, n in turns.items()})
     if turns and not form.has(x):
-        yield sp.exp(x * step), form, "0", None
+        yield sp.exp(x * step), form, UPWARD, None
 
 
 def count_steps(nodes: set[Any]) -> tuple[sp.Symbol | None, Any, dict[Any, int]]:
@@ -127,19 +128,21 @@ def count_steps(nodes: set[Any]) -> tuple[sp.Symbol | None, Any, dict[Any, int]]
     shares = {node: sp.expand(node.args[0] / x) for node in nodes} if len(symbols) == 1 else {}
     if not shares or not all(s.is_Rational for s in shares.values()):
         return x, 1, {}
-    d = sp.ilcm(*(s.q for s in shares.values()))
-    step = sp.Rational(sp.igcd(*(int(s * d) for s in shares.values())), d)
+    d = sp.ilcm(1, *(s.q for s in shares.values()))
+    step = sp.Rational(sp.igcd(0, *(int(s * d) for s in shares.values())), d)
     return x, step, {node: int(s / step) for node, s in shares.items()}
 
 
 def by_lonely_parts(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
-    """u = a square or an absolute value, or the sum of which a function is, whose symbols stand nowhere else."""
-    squares = [p for p in expression.atoms(sp.Pow, sp.Abs) if p.func is sp.Abs or p.exp == 2]
-    sums = [f.args[0] for f in expression.atoms(sp.Function) if f.args[0].is_Add and f.func is not sp.Abs]
-    for part in sorted(squares + sums, key=str):
+    """u = a square or an absolute value, or what a function is taken of, whose symbols stand nowhere else."""
+    parts = {p: UPWARD for p in expression.atoms(sp.Pow, sp.Abs) if p.func is sp.Abs or p.exp == 2}
+    parts |= {f.args[0]: FREE for f in expression.atoms(sp.Function) if f.args[0].is_Add and f.func is not sp.Abs}
+    parts |= {f.args[0]: ("0", "1") for f in expression.atoms(sp.asin)}
+    for part, ends in sorted(parts.items(), key=str):
         form = expression.xreplace({part: u})
-        if part.free_symbols and not part.args[0].is_Symbol and not form.free_symbols & part.free_symbols:
-            yield part, form, "0" if part in squares else None, None
+        is_plain = part.is_Symbol or (ends is UPWARD and part.args[0].is_Symbol)
+        if part.free_symbols and not is_plain and not form.free_symbols & part.free_symbols:
+            yield part, form, ends, None
 
 
 def by_root(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
@@ -153,10 +156,10 @@ def by_root(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
     if len(symbols) != 1 or not base.is_polynomial() or sp.degree(base) != 1:
         return
     (x,) = symbols
-    q = sp.ilcm(*(p.exp.q for p in roots))
+    q = sp.ilcm(1, *(p.exp.q for p in roots))
     a, b = base.subs(x, 0), sp.diff(base, x)
     form = expression.xreplace({p: u ** (p.exp * q) for p in roots}).subs(x, (u**q - a) / b)
-    yield sp.Pow(base, sp.Rational(1, q)), form, "0", None
+    yield sp.Pow(base, sp.Rational(1, q)), form, UPWARD, None
 
 
 def by_tangent(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
@@ -170,7 +173,7 @@ def by_tangent(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
     form = expression.xreplace(values)
     if not form.has(x):
         half = x * step / 2
-        yield sp.tan(half), form, None, sp.cos(half)
+        yield sp.tan(half), form, FREE, sp.cos(half)
 
 
 def by_roots_of_symbols(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -179,7 +182,7 @@ def by_roots_of_symbols(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     roots = [p for p in expression.atoms(sp.Pow) if p.exp.is_Rational and p.exp.q > 1 and p.base.free_symbols]
     if not roots or not all(part.is_Symbol for p in roots for part in p.base.as_powers_dict()):
         return
-    q, terms, ranges, new = sp.ilcm(*(p.exp.q for p in roots)), {}, {}, {}
+    q, terms, ranges, new = sp.ilcm(1, *(p.exp.q for p in roots)), {}, {}, {}
     for v in sorted(set().union(*(p.base.free_symbols for p in roots)), key=str):
         limit, name = goal.box[v.name], f"{v.name}_root"
         if limit.low is None or name in goal.box or player.value_of(limit.low, {}) < 0:

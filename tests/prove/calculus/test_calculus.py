@@ -159,6 +159,20 @@ def test_the_variable_of_an_integral_is_bound():
     assert nav.prove("integral(integral(x*y, x, 0, y), y, 0, 1) = 1/8").status == PROVED
 
 
+@pytest.mark.parametrize(
+    ("text", "value", "false", "a"),
+    [
+        ("integral(abs(x - a), x, 0, 1)", "a**2 - a + 1/2", "a**2 + a + 1/2", ("1/10", "9/10")),
+        ("integral(max(x, a), x, 0, 1)", "(a**2 + 1)/2", "a**2 + 1/2", ("1/10", "9/10")),
+        ("integral(log(abs(x)), x, -1, 1) + a", "a - 2", "a", "real"),  # a limit at the cut
+        ("limit((x - pi/2)*tan(x), x, pi/2) + a", "a - 1", "a + 1", "real"),
+    ],
+)
+def test_a_cut_at_a_symbol_or_with_a_limit_and_a_pole_of_the_tangent_are_taken(text, value, false, a):
+    assert nav.prove(f"{text} = {value}", a=a).holds
+    assert nav.prove(f"{text} = {false}", a=a).status == REFUTED
+
+
 def test_cuts_are_found_at_absolute_values():
     assert nav.prove("integral(abs(x - 1), x, -1, 2) = 5/2").status in (PROVED, CERTIFIED)
     assert nav.prove("integral(abs(x - 1), x, -1, 2) = 3/2").status == REFUTED
