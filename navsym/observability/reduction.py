@@ -127,13 +127,20 @@ def two_squares(f: Poly, ring: Ring) -> tuple[int, Poly, Poly, Poly] | None:
     second = {k: f.derivative(k).derivative(k) for k, degree in enumerate(f.degrees()) if degree == 2}
     for place, twice in sorted(second.items(), key=lambda item: not ring.is_unit(item[1])):
         slope = f.derivative(place)
-        if any(slope(*point) ** 2 > 2 * twice(*point) * f(*point) for point in small_points(len(f.degrees()))):
-            continue  # it is positive there, and need not be factored
-        content, factors = factor_exactly(slope**2 - 2 * twice * f)
+        gap = slope**2 - 2 * twice * f
+        if gap == 0 or is_somewhere_positive(gap):
+            continue
+        content, factors = factor_exactly(gap)
         if content < 0 and all(power % 2 == 0 or is_sum_of_squares(base) for base, power in factors):
             rest = prod((base for base, _ in factors), start=ring.constant(1))
             return place, twice, slope - twice * ring.context.gen(place), rest
     return None
+
+
+def is_somewhere_positive(f: Poly) -> bool:
+    """True where a degree, or the first or last term in the order of terms, is that of no f <= 0: a quick look."""
+    ends = [(f.coefficient(k), f.monomial(k)) for k in (0, len(f) - 1)]
+    return any(int(e) % 2 for e in f.degrees()) or any(c > 0 or any(int(e) % 2 for e in powers) for c, powers in ends)
 
 
 def is_sum_of_squares(f: Poly) -> bool:
