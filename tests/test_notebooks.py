@@ -30,7 +30,9 @@ def test_the_notebook_runs(path):
         notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(FOLDER.parent)}}
     )
     client.execute()
-    assert any(cell.get("outputs") for cell in notebook.cells if cell.cell_type == "code")
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    pictures = [data for output in outputs if "<Figure" in (data := output.get("data", {})).get("text/plain", "")]
+    assert outputs and all("image/png" in data for data in pictures)
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

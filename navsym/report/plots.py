@@ -43,6 +43,15 @@ Array = np.ndarray
 Rows = Sequence[Mapping[str, Any]]
 
 
+class Picture(Figure):
+    """A figure that shows itself in a notebook, also where pyplot is not imported."""
+
+    def _repr_png_(self) -> bytes:
+        buffer = io.BytesIO()
+        self.savefig(buffer, format="png")
+        return buffer.getvalue()
+
+
 def figure(width: float = 7.0, height: float = 3.5) -> tuple[Figure, Axes]:
     """An empty figure with one pair of axes, without a frame on the right and above."""
     made, (axes,) = panels((1,), height, width)
@@ -59,7 +68,7 @@ def svg(picture: Figure) -> str:
 
 def panels(ratios: Sequence[float], height: float, width: float = 7.0) -> tuple[Figure, list[Axes]]:
     """Axes one above the other over one abscissa, without a frame on the right and above."""
-    made = Figure(figsize=(width, height), layout="constrained")
+    made = Picture(figsize=(width, height), layout="constrained")
     found = list(made.subplots(len(ratios), 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0])
     for axes in found:
         axes.spines[["top", "right"]].set_visible(False)
@@ -107,7 +116,7 @@ def verdict_matrix(papers: Sequence[tuple[str, Sequence[tuple[str, str]]]], *, c
     """
     lines = [max(1, -(-len(equations) // columns)) for _, equations in papers]
     height = sum(lines) + 0.75 * len(papers) + 1.4
-    made = Figure(figsize=(9.2, 0.34 * height + 0.2), layout="constrained")
+    made = Picture(figsize=(9.2, 0.34 * height + 0.2), layout="constrained")
     axes = made.add_subplot()
     axes.set(xlim=(-0.1, columns), ylim=(height, -0.1), aspect="auto")
     axes.set_axis_off()
