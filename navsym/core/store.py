@@ -76,11 +76,6 @@ def version(name: str) -> str:
         return f"{name} none"
 
 
-def is_intact(key: str, value: bytes | None, digest: bytes | None) -> bool:
-    """True when the checksum fits the entry."""
-    return value is not None and key_of(key, value.decode("utf-8", "replace")).encode() == digest
-
-
 class Store:
     """Key -> plain JSON data.
 
@@ -106,7 +101,7 @@ class Store:
         try:
             for key in keys:
                 row = self.connection.execute(READ, (key,)).fetchone()
-                if row is not None and is_intact(key, *row):
+                if row and row[0] is not None and key_of(key, row[0].decode("utf-8", "replace")).encode() == row[1]:
                     found[key] = json.loads(row[0])
         except TROUBLE as error:
             raise self.trouble("read", error) from error

@@ -79,7 +79,8 @@ def evaluate(
     for part in list_parts(tree):
         inner = [values[argument] for argument in parts_of(part)]
         try:
-            roots += root_bits(part, inner)
+            is_root = part.head == "sqrt" or (part.head == POWER and inner[1].is_integer is not True)
+            roots += number_bits(inner[0]) if is_root else 0  # the algebra factors these, again in every product
             if roots > ROOT_TOTAL:
                 got = f"more, with {roots} bits"
                 raise Refusal(TooLargeError, f"at most {ROOT_TOTAL} bits under roots", got, "split the expression")
@@ -123,12 +124,6 @@ def evaluate_freely(tree: Tree, values: dict[Tree, sp.Expr]) -> sp.Expr:
             value = sp.Rational(*part.args[0].as_integer_ratio()) if part.head == NUMBER else None
             values[part] = value if value is not None else steps[part.head](*(values[inner] for inner in part.args))
     return values[tree]
-
-
-def root_bits(part: Tree, inner: list[sp.Expr]) -> int:
-    """Size of the numbers under a root: the algebra factors them, again in every product."""
-    is_root = part.head == "sqrt" or (part.head == POWER and inner[1].is_integer is not True)
-    return number_bits(inner[0]) if is_root else 0
 
 
 # -- from sympy ---------------------------------------------------------------------

@@ -15,9 +15,8 @@ from navsym.claims import OPEN, PROVED, REFUTED, Bound, Equation, Finding, State
 from navsym.claims.formula import Formula, Side, names_of
 from navsym.claims.statement import Worded, Written
 from navsym.core.choice import one_of
-from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, ShapeError, TooLargeError
+from navsym.core.errors import DomainError, EmptyError, NavsymError, ShapeError, TooLargeError
 from navsym.core.sandbox import Exhausted, Failed, run_many
-from navsym.language.advice import advise_on_relation
 from navsym.language.arithmetic import sign_of_constant
 from navsym.language.declarations import Parameter, box_of, read_parameters, read_range, require_positive, symbols_of
 from navsym.language.expression import ZERO, Expr, Matrix, Parsed, Symbol, parse
@@ -45,12 +44,11 @@ from navsym.prove.calculus.answers import read_with_answers
 from navsym.prove.grant import write_statements
 from navsym.prove.ladder import decide
 from navsym.prove.relations.judge import TROUBLE, TextClaim, decide_text
-from navsym.prove.relations.reading import is_text_claim, limit_scalar, read_shapes, read_text_claim
+from navsym.prove.relations.reading import is_text_claim, limit_scalar, read_relation, read_shapes, read_text_claim
 from navsym.prove.rooms.goals import player, write_term
 from navsym.prove.sampling.points import ranges_of, write_range
 from navsym.prove.wording import expression_text, scope_of
 
-RELATIONS = ("=", "!=", "<", "<=", ">", ">=")
 CLAIMS = 2_000
 
 Box = dict[Symbol, tuple[Expr, Expr]]
@@ -80,7 +78,8 @@ class Symbols:
         box, exists, given = block.get("box", {}), tuple(map(str, block.get("exists", ()))), block.get("given", ())
         chain, names = block.get("chain"), set(box)
         names = names.union(*map(names_of, (*sides, *exists, *map(str, given), *([chain] if chain else []))))
-        rates = {name: text for name, text in self.rates.items() if is_derived((*sides, chain or ""))}
+        is_derived = any({"diff", "dot_"} & names_of(side) for side in (*sides, chain or ""))
+        rates = {name: text for name, text in self.rates.items() if is_derived}
         order = block.get("order", {})
         names = names.union(rates, order, *map(names_of, rates.values()))
         symbols = {name: value for name, value in self.written.items() if name in names}
@@ -103,11 +102,6 @@ def widen_range(value: Any) -> Any:
         return value
     word = {"0 oo": "nonnegative", "-oo oo": "real"}.get(" ".join(map(str, value)))
     return word or {"range": [*value]}
-
-
-def is_derived(sides: tuple[Side, ...]) -> bool:
-    """Whether a derivative stands in a text."""
-    return any({"diff", "dot_"} & names_of(side) for side in sides)
 
 
 def side_as_written(value: Any) -> Side:
@@ -224,11 +218,7 @@ def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim | TextClai
         return replace(claim, notes=notes)
     expect_keys(table, ("id", "left", "right", "relation", "box", "tolerance", "exists"), where)
     as_label(require_key(table, "id", where), join_place(where, "id"))
-    relation = as_text(table.get("relation", "="), join_place(where, "relation"), "a relation")
-    if relation not in RELATIONS:
-        hint = advise_on_relation(relation, RELATIONS)
-        message = f"expected one of {' '.join(RELATIONS)}; got {quote(relation)}; correct it: {hint}"
-        raise ExpressionSyntaxError(message, where=join_place(where, "relation"))
+    relation = read_relation(table, where)
     known = symbols_of(symbols.parameters)
     left, left_cells = read_side(require_key(table, "left", where), known, join_place(where, "left"))
     right, right_cells = read_side(require_key(table, "right", where), known, join_place(where, "right"))

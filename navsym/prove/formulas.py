@@ -108,7 +108,10 @@ def prove(
         refuse_declarations(symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())})
         return prove_file(statement, seconds, jobs, progress)
     sides = split_formula(statement, relation, right, symbols)
-    return prove_formula(sides, symbols, beside | {"order": choose_order(sides.order, beside["order"])}, seconds)
+    claims = read_formula(sides, symbols, beside | {"order": choose_order(sides.order, beside["order"])})
+    from navsym.prove.claimfile import decide_claims
+
+    return decide_claims(claims, seconds=seconds)[0]
 
 
 def state_formula(
@@ -180,13 +183,6 @@ def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress
     from navsym.prove.claimfile import decide_claims, read_claims
 
     return decide_claims(read_claims(path, go_on=True), jobs=jobs, seconds=seconds, progress=progress)
-
-
-def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any], seconds: float) -> Verdict:
-    """The verdict of one formula."""
-    from navsym.prove.claimfile import decide_claims
-
-    return decide_claims(read_formula(sides, given, beside), seconds=seconds)[0]
 
 
 def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any]) -> ClaimFile:

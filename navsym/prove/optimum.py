@@ -46,10 +46,11 @@ def decide_optimum(statement: Optimum) -> Verdict:
         )
     names = ("constraints", "instants inside", "dual feasible", "equal values")
     words = ", ".join(f"{name}: {part.status}" for name, part in zip(names, parts, strict=True))
+    sides = sp.Tuple(*statement.regressors, *statement.interval, *statement.dual, statement.value)
     return replace(
         verdict,
         method=f"exact primal-dual pair ({verdict.method})",
-        scope=scope_of(without_variable(statement), statement.box),
+        scope=scope_of(sides.subs(statement.variable, statement.interval[0]), statement.box),
         evidence=f"{words}. {verdict.evidence}",
     )
 
@@ -78,12 +79,6 @@ def fixed_parts(statement: Optimum) -> sp.Basic:
         *statement.interval,
         statement.value,
     )
-
-
-def without_variable(statement: Optimum) -> sp.Basic:
-    """Everything but the variable that the statement is about, for the words of its scope."""
-    sides = sp.Tuple(*statement.regressors, *statement.interval, *statement.dual, statement.value)
-    return sides.subs(statement.variable, statement.interval[0])
 
 
 def decide_constraints(statement: Optimum) -> Verdict:

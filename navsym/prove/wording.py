@@ -69,7 +69,7 @@ def write_decimal(end: arb, digits: int, direction: int) -> str:
         return write_power_of_ten(size, numerator > 0, direction)
     places = max(0, digits - int(size * 0.30103) - 1)
     scaled = numerator * 10**places
-    whole = scaled << power if power >= 0 else shift_rounding(scaled, -power, direction)
+    whole = scaled << power if power >= 0 else scaled >> -power if direction < 0 else -(-scaled >> -power)
     text = str(abs(whole)).rjust(places + 1, "0")
     head, tail = (text[:-places], text[-places:]) if places else (text, "")
     sign = "-" if whole < 0 else ""
@@ -85,11 +85,6 @@ def write_power_of_ten(size: int, positive: bool, direction: int) -> str:
     two = size if away else size - 1
     ends = (two * 30102 // 10**5, two * 30103 // 10**5)
     return f"{'' if positive else '-'}1e{max(ends) + 1 if away else min(ends)}"
-
-
-def shift_rounding(value: int, bits: int, direction: int) -> int:
-    """value / 2**bits rounded down or up."""
-    return value >> bits if direction < 0 else -((-value) >> bits)
 
 
 def refute_at_point(point: Point, difference: arb, exact: bool = False) -> Verdict:

@@ -75,3 +75,8 @@ def test_an_empty_case_and_two_bounds_that_meet_are_seen(text, declarations, sta
 def test_a_root_alone_is_one_new_number():
     assert nav.prove("acos(1 - 2*h) = 2*asin(sqrt(h))").status.name == "PROVED"
     assert nav.prove("acos(1 - 2*h) = asin(sqrt(h))").status.name == "REFUTED"
+
+
+def test_a_power_that_meets_a_number_is_refuted_at_its_root():
+    assert nav.prove("x**3 != -2/3").counterexample == {"x": "-2**(1/3)*3**(2/3)/3"}
+    assert nav.prove("x**3 != 2", x=("-1", "5/4")).holds

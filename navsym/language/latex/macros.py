@@ -78,7 +78,8 @@ def expand_macros(text: str, macros: Mapping[str, Macro]) -> tuple[str, list[int
                 raise Refusal(places[found.start()], f"{macro.count} arguments of {found[0]}", "fewer", "write them")
             given.append(text[stop + 1 : close] if text[stop] == "{" else text[stop])
             stop = close + 1
-        body = fill_arguments(macro.body, given)
+        filled = {str(place): argument for place, argument in enumerate(given, 1)}  # one that is not given is empty
+        body = re.sub("#([1-9])", lambda found, filled=filled: filled.get(found[1], ""), macro.body)
         body = f"{body} " if body[-1:].isalpha() and text[stop : stop + 1].isalpha() else body
         count += 1
         if count > EXPANSIONS or len(text) + len(body) > LENGTH:
@@ -87,9 +88,3 @@ def expand_macros(text: str, macros: Mapping[str, Macro]) -> tuple[str, list[int
         text = text[: found.start()] + body + text[stop:]
         start = found.start()
     return text, places
-
-
-def fill_arguments(body: str, given: list[str]) -> str:
-    """The body of a macro with its arguments in place of ``#1``; one that is not given is empty."""
-    filled = {str(place): text for place, text in enumerate(given, 1)}
-    return re.sub("#([1-9])", lambda found: filled.get(found[1], ""), body)

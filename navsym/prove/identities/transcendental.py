@@ -103,8 +103,10 @@ def expand_argument(argument: sp.Expr, is_positive: Test) -> sp.Expr:
 
 def logarithm_of_factor(factor: sp.Expr, is_positive: Test) -> sp.Expr | None:
     """Logarithm of a positive number, or of a power of something positive; None without a proof."""
-    if isinstance(factor, sp.Rational):
-        return rational_logarithm(factor) if factor > 0 else None
+    if isinstance(factor, sp.Rational):  # by primes, so that logarithms become combinations of independent ones
+        parts = ((int(factor.p), 1), (int(factor.q), -1)) if factor > 0 else ()
+        logs = [sign * k * sp.log(prime) for n, sign in parts for prime, k in sp.factorint(n).items()]
+        return sp.Add(*logs) if factor > 0 else None
     base, exponent = factor.as_base_exp()
     if base is sp.E:
         return exponent
@@ -115,12 +117,6 @@ def logarithm_of_factor(factor: sp.Expr, is_positive: Test) -> sp.Expr | None:
         if inner is not None:
             return exponent * inner
     return None
-
-
-def rational_logarithm(number: sp.Rational) -> sp.Expr:
-    """By primes, so that logarithms of rationals become combinations of independent ones."""
-    parts = ((int(number.p), 1), (int(number.q), -1))
-    return sp.Add(*(sign * k * sp.log(prime) for n, sign in parts for prime, k in sp.factorint(n).items()))
 
 
 def factor_exactly(argument: sp.Expr) -> sp.Expr:

@@ -160,7 +160,7 @@ def solve_modulo(
     entries = [[0] * (len(keys) + 1) for _ in monomials]
     for j, table in enumerate((*columns.values(), wanted)):
         for m, c in table.items():
-            entries[rows[m]][j] = to_residue(c)
+            entries[rows[m]][j] = int(c.p) * pow(int(c.q), -1, PRIME) % PRIME
     reduced, rank = nmod_mat(entries, PRIME).rref()
     solution, pivot = dict[tuple[int, Exponents], Any](), -1
     for i in range(rank):
@@ -177,11 +177,6 @@ def solve_modulo(
         rest = (solution[key] * columns[key].get(m, 0) for key in [*solution][1:])
         solution[keys[0]] = (wanted.get(m, fmpq(0)) - sum(rest, fmpq(0))) / divisor
     return solution
-
-
-def to_residue(c: fmpq) -> int:
-    """The fraction modulo the prime."""
-    return int(c.p) * pow(int(c.q), -1, PRIME) % PRIME
 
 
 def guess_fraction(residue: int) -> fmpq | None:

@@ -33,7 +33,8 @@ def draw_special_points(
         if not zeros:
             drawn = {n: draw_number(r, generator) for n, r in box.items()}
             if k % 4 == 2:  # near 0, where hypotheses such as |u| <= 1 hold
-                drawn = {n: v / 16 if is_whole_line(box[n]) else v for n, v in drawn.items()}
+                lines = {n for n, r in box.items() if r.low is r.high is None and not r.integer}
+                drawn = {n: v / 16 if n in lines else v for n, v in drawn.items()}
             yield plain[k] if k < len(plain) and k % 2 else drawn
             continue
         point = dict(plain[k % len(plain)]) if plain and k % 2 == 0 else {}
@@ -72,11 +73,6 @@ def draw_corner_points(box: Mapping[str, Any], kinds: Mapping[str, tuple[str, Ro
                 far = place + 1 if kind == "vector" and value == 2 else value or 1  # 2: one behind the other on a line
                 point.update({name: fmpq(far * (k == (value < 0))) for k, name in enumerate(entries)})
         yield point
-
-
-def is_whole_line(limit: Any) -> bool:
-    """Whether all real numbers are in a range."""
-    return limit.low is None and limit.high is None and not limit.integer
 
 
 def draw_number(limit: Any, generator: random.Random) -> fmpq:

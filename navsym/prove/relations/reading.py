@@ -12,6 +12,7 @@ from typing import Any
 
 from navsym.claims.formula import Formula, names_of, side_text
 from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
+from navsym.language.advice import advise_on_relation
 from navsym.language.declarations import read_range
 from navsym.language.dimensions import infer_units
 from navsym.language.frames import infer_frames
@@ -269,11 +270,7 @@ def read_links(block: Table, where: str) -> list[tuple[str, str, str]]:
     """Left side, relation and right side of each link of a chain, or of the one relation."""
     if "chain" not in block:
         sides = [side_text(require_key(block, key, where)) for key in ("left", "right")]
-        relation = as_text(block.get("relation", "="), join_place(where, "relation"), "a relation")
-        if relation not in RELATIONS:
-            message = f"expected one of {' '.join(RELATIONS)}; got {quote(relation)}; correct it"
-            raise ExpressionSyntaxError(message, where=join_place(where, "relation"))
-        return [(sides[0], relation, sides[1])]
+        return [(sides[0], read_relation(block, where), sides[1])]
     place = join_place(where, "chain")
     for key in ("left", "right", "relation"):
         if key in block:
@@ -286,6 +283,16 @@ def read_links(block: Table, where: str) -> list[tuple[str, str, str]]:
     ends = [0, *(end for mark in marks for end in (mark.start(), mark.end())), len(text)]
     sides = [text[a:b].strip() for a, b in zip(ends[::2], ends[1::2], strict=True)]
     return [(sides[k], mark[0], sides[k + 1]) for k, mark in enumerate(marks)]
+
+
+def read_relation(block: Table, where: str) -> str:
+    """The relation of a claim."""
+    relation = as_text(block.get("relation", "="), join_place(where, "relation"), "a relation")
+    if relation not in RELATIONS:
+        hint = advise_on_relation(relation, RELATIONS)
+        message = f"expected one of {' '.join(RELATIONS)}; got {quote(relation)}; correct it: {hint}"
+        raise ExpressionSyntaxError(message, where=join_place(where, "relation"))
+    return relation
 
 
 def list_relations(text: str) -> list[re.Match[str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import Any
 
 import sympy as sp
@@ -15,7 +15,6 @@ from navsym.prove.rooms.goals import (
     Hole,
     Holes,
     Proof,
-    Term,
     factor,
     is_below,
     is_root,
@@ -63,7 +62,7 @@ def by_integers(goal: Any, sample: list[arb]) -> Iterator[Proof]:
             places = [first + fmpq(k, 4) for k in range(8 * MOST_INTEGERS)]
             values = [player.value_of(goal.term, {name: player.Jet(arb(place))}) for place in places]
             signs = [(v > 0) - (v < 0) for v in values]
-            changes = [s != t if goal.relation == "!=" else s < 0 for s, t in zip(signs, signs[1:], strict=False)]
+            changes = [s != t if goal.relation == "!=" else s < 0 for s, t in pairwise(signs)]
             if bad := [place for place, fails in zip(places, changes, strict=False) if fails]:
                 start, end = int(bad[0].floor()), int(bad[-1].floor()) + 1
                 below = split_at(name, end, [count_integers(name, start, end), Hole()])
@@ -82,14 +81,9 @@ def split_at(name: str, at: int, proofs: list[Any]) -> Proof:
 
 def by_values(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """An absolute value by its two cases; two that are compared have squares, which take no cases."""
-    if goal.relation == "=" or not is_comparison(goal.term):
+    terms = player.list_terms(goal.term)
+    if goal.relation == "=" or len(terms) != 2 or not all(any(map(is_root, player.list_factors(t))) for t in terms):
         yield from by_cases(goal, sample)
-
-
-def is_comparison(term: Term) -> bool:
-    """Whether a term is a root or an absolute value less another one."""
-    terms = player.list_terms(term)
-    return len(terms) == 2 and all(any(map(is_root, player.list_factors(t))) for t in terms)
 
 
 def by_cases(goal: Any, sample: list[arb]) -> Iterator[Proof]:

@@ -81,11 +81,12 @@ def real_factors(converter: Converter, polynomial: fmpq_mpoly) -> list[sp.Expr] 
 def real_form(converter: Converter, factor: fmpq_mpoly) -> sp.Expr | None:
     """A factor divided by its middle power: a sum of cosines, or i times a sum of sines."""
     terms = {tuple(int(e) for e in k): to_fraction(c) for k, c in factor.to_dict().items()}
-    if len(terms) == 1 and is_phase(converter, next(iter(terms))):
-        return sp.Integer(1)
+    places = angle_places(converter)
+    if len(terms) == 1 and all(p in places or p == len(k) - 1 for k in terms for p, e in enumerate(k) if e):
+        return sp.Integer(1)  # of modulus one: only z and the root of unity occur
     if any(exponents[-1] for exponents in terms):
         return None  # a root of unity inside the factor
-    centre = middle_power(converter, terms)
+    centre = {p: Fraction(min(k[p] for k in terms) + max(k[p] for k in terms), 2) for p in places}
     for parity in (1, -1):
         if is_symmetric(converter, terms, centre, parity):
             return rebuild_product(converter, terms, centre, parity)
@@ -95,17 +96,6 @@ def real_form(converter: Converter, factor: fmpq_mpoly) -> sp.Expr | None:
 def angle_places(converter: Converter) -> range:
     start = len(converter.found.symbols)
     return range(start, start + len(converter.found.angles))
-
-
-def is_phase(converter: Converter, exponents: Exponents) -> bool:
-    """True for a monomial of modulus one: only z and the root of unity occur."""
-    phases = {*angle_places(converter), len(exponents) - 1}
-    return all(place in phases for place, e in enumerate(exponents) if e)
-
-
-def middle_power(converter: Converter, terms: Mapping[Exponents, Fraction]) -> dict[int, Fraction]:
-    places = angle_places(converter)
-    return {p: Fraction(min(k[p] for k in terms) + max(k[p] for k in terms), 2) for p in places}
 
 
 def is_symmetric(

@@ -141,10 +141,12 @@ def isolate_roots(factor: fmpz_poly, bits: int) -> list[tuple[fmpq, fmpq]] | Non
 
 
 def surd(factor: fmpz_poly, lower: fmpq, upper: fmpq) -> sp.Expr | None:
-    """The root of a quadratic factor between two numbers as a formula; None for a higher degree."""
-    if factor.degree() != 2:
+    """The root of a quadratic factor, or of a x**n + c, between two numbers as a formula; None for others."""
+    n, (c, b, *_, a) = factor.degree(), [sp.Integer(int(k)) for k in factor.coeffs()]
+    if not any(factor.coeffs()[1:-1]):
+        return (1 if lower + upper > 0 else -1) * sp.root(abs(c / a), n)
+    if n != 2:
         return None
-    c, b, a = (sp.Integer(int(factor[k])) for k in range(3))
     middle = sp.Rational(-b, 2 * a)
     right = lower + upper > 2 * to_fmpq(middle)
     return middle + (1 if right else -1) * sp.sqrt(b**2 - 4 * a * c) / (2 * sp.Abs(a))

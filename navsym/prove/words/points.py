@@ -50,17 +50,12 @@ def draw_sized_points(document: Document) -> Iterator[tuple[Document, bool]]:
         point = draw_point(document, size, generator, special=k >= len(SIZES))
         if point is None:
             continue
-        written = write_sized_point(point)
+        matrices = {name: [[str(e) for e in row] for row in x.tolist()] for name, x in point["matrices"].items()}
+        written = {**point, "matrices": matrices}  # as certificates have it
         try:
             yield written, player.Sized(document, written).evaluate()
         except (player.Refused, ZeroDivisionError):
             continue
-
-
-def write_sized_point(point: Document) -> Document:
-    """A point as certificates have it."""
-    matrices = {name: [[str(e) for e in row] for row in x.tolist()] for name, x in point["matrices"].items()}
-    return {**point, "matrices": matrices}
 
 
 def draw_point(
