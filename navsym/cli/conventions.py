@@ -10,7 +10,7 @@ from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
 from navsym.cli.derive import aligned
 from navsym.cli.output import emit, table
-from navsym.conventions.card import HEADINGS, attitude_formula
+from navsym.conventions.card import HEADINGS, attitude_formula, list_neighbours
 
 
 def command(
@@ -54,17 +54,7 @@ def as_text(data: Mapping[str, Any]) -> str:
     """The cards in words and what excludes their neighbours, or what must change."""
     blocks = [cards_text(data["cards"])] if data["cards"] else [conflicts_text(data)]
     if data["excluded"]:
-        rows = [
-            (
-                HEADINGS[item["field"]],
-                str(item["card"][item["field"]]),
-                item["why"],
-                ", ".join(f"{k} = {v}" for k, v in item["point"].items()),
-            )
-            for item in data["excluded"]
-        ]
-        rows = [*dict.fromkeys(rows)]  # neighbours of several cards may differ alike
-        blocks.append(table(["neighbour with another", "namely", "is excluded", "at"], rows))
+        blocks.append(table(["neighbour with another", "namely", "is excluded", "at"], [*list_neighbours(data)]))
     others = "one card examined" if data["examined"] == 1 else f"{data['examined']} cards examined"
     left = f"{len(data['undecided'])} more cards are undecided: they are neither proved nor excluded"
     proved = (

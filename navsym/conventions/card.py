@@ -14,33 +14,37 @@ HAMILTON, FORWARD, BACKWARD = "Hamilton", "body to frame", "frame to body"
 SENSORS = ("gyro", "accelerometer")
 MEASURED_LESS, PREDICTED_LESS = "measurement - prediction", "prediction - measurement"
 
-#: Words that the fields of a card may have; None where a field says nothing.
-CHOICES: Mapping[str, tuple[str, ...]] = {
-    "frame": ("inertial", "earth", "local-level"),
-    "axes": ("NED", "ENU", "NWU"),
-    "azimuth": (NORTH, WANDER),
-    "error": (ESTIMATE, TRUTH),
-    "attitude_error": ("frame", "body"),
-    "angle": ("phi", "psi"),
-    "rotation_sign": ("+", "-"),
-    "bias_sign": (ESTIMATE, TRUTH),
-    "scale_sign": (ESTIMATE, TRUTH),
-    "earth": ("none", "sphere", "ellipsoid"),
-    "earth_rate": (KEPT, DROPPED),
-    "transport_rate": (KEPT, DROPPED),
-    "gravity_gradient": ("none", "central", "radial", "normal", "vertical"),
-    "gravity_radius": tuple(n + h for n in ("R", "RN", "RE", "sqrt(RN*RE)", "third radius") for h in (" + h", "")),
-    "centrifugal": (KEPT, DROPPED),
-    "height_variation": (KEPT, DROPPED),
-    "radius_variation": (KEPT, "position", DROPPED),
-    "position_error": ("metres", "geodetic"),
-    "vector_error": ("difference", "rotated", "body"),
-    "innovation": (MEASURED_LESS, PREDICTED_LESS),
-    "arm_rate": (KEPT, "value", DROPPED),
-    "quaternion_algebra": (HAMILTON, "JPL"),
-    "quaternion_direction": (FORWARD, BACKWARD),
-    "quaternion_order": ("scalar first", "scalar last"),
+RADII = tuple(n + h for n in ("R", "RN", "RE", "sqrt(RN*RE)", "third radius") for h in (" + h", ""))
+
+#: Field -> its heading in tables, and the words that it may have; None where a field says nothing.
+FIELDS: Mapping[str, tuple[str, tuple[str, ...]]] = {
+    "frame": ("frame", ("inertial", "earth", "local-level")),
+    "axes": ("axes", ("NED", "ENU", "NWU")),
+    "azimuth": ("azimuth of the axes", (NORTH, WANDER)),
+    "error": ("error of velocity and position", (ESTIMATE, TRUTH)),
+    "attitude_error": ("attitude error in the", ("frame", "body")),
+    "rotation_sign": ("sign of its rotation", ("+", "-")),
+    "angle": ("angle", ("phi", "psi")),
+    "bias_sign": ("error of the biases", (ESTIMATE, TRUTH)),
+    "scale_sign": ("error of the scale factors", (ESTIMATE, TRUTH)),
+    "vector_error": ("vector errors", ("difference", "rotated", "body")),
+    "position_error": ("position error", ("metres", "geodetic")),
+    "innovation": ("innovation", (MEASURED_LESS, PREDICTED_LESS)),
+    "arm_rate": ("Earth rate of lever arms", (KEPT, "value", DROPPED)),
+    "quaternion_algebra": ("algebra of the quaternion", (HAMILTON, "JPL")),
+    "quaternion_direction": ("which turns vectors from", (FORWARD, BACKWARD)),
+    "quaternion_order": ("its order", ("scalar first", "scalar last")),
+    "earth": ("Earth", ("none", "sphere", "ellipsoid")),
+    "earth_rate": ("Earth rate", (KEPT, DROPPED)),
+    "transport_rate": ("transport rate", (KEPT, DROPPED)),
+    "gravity_gradient": ("gravity gradient", ("none", "central", "radial", "normal", "vertical")),
+    "gravity_radius": ("its radius", RADII),
+    "centrifugal": ("centrifugal term", (KEPT, DROPPED)),
+    "height_variation": ("change of radii with height", (KEPT, DROPPED)),
+    "radius_variation": ("change of radii with latitude", (KEPT, "position", DROPPED)),
 }
+HEADINGS: Mapping[str, str] = {name: heading for name, (heading, _) in FIELDS.items()}
+CHOICES: Mapping[str, tuple[str, ...]] = {name: words for name, (_, words) in FIELDS.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,36 +227,19 @@ def list_curved(flat: Card, radii: int, height: bool) -> Iterator[Card]:
 
 # For people
 
-#: Field -> its heading in the table of cards; fields that say the same for all cards stand above the table.
-HEADINGS: Mapping[str, str] = {
-    "frame": "frame",
-    "axes": "axes",
-    "azimuth": "azimuth of the axes",
-    "error": "error of velocity and position",
-    "attitude_error": "attitude error in the",
-    "rotation_sign": "sign of its rotation",
-    "angle": "angle",
-    "bias_sign": "error of the biases",
-    "scale_sign": "error of the scale factors",
-    "vector_error": "vector errors",
-    "position_error": "position error",
-    "innovation": "innovation",
-    "arm_rate": "Earth rate of lever arms",
-    "quaternion_algebra": "algebra of the quaternion",
-    "quaternion_direction": "which turns vectors from",
-    "quaternion_order": "its order",
-    "earth": "Earth",
-    "earth_rate": "Earth rate",
-    "transport_rate": "transport rate",
-    "gravity_gradient": "gravity gradient",
-    "gravity_radius": "its radius",
-    "centrifugal": "centrifugal term",
-    "height_variation": "change of radii with height",
-    "radius_variation": "change of radii with latitude",
-}
-
 
 def attitude_formula(card: Mapping[str, Any]) -> str:
     """The definition of the attitude error of a card as JSON data."""
     small = f"(E {card['rotation_sign']} [p x])"
     return f"C_est = {small} C" if card["attitude_error"] == "frame" else f"C_est = C {small}"
+
+
+def list_neighbours(data: Mapping[str, Any]) -> dict[tuple[str, str, str, str], list[int]]:
+    """Of an answer as JSON data: heading, word, reason and point of an excluded neighbour -> numbers of its cards."""
+    found: dict[tuple[str, str, str, str], list[int]] = {}  # neighbours of several cards may differ alike
+    for item in data["excluded"]:
+        name, point = item["field"], ", ".join(f"{k} = {v}" for k, v in item["point"].items())
+        near = {k: v for k, v in item["card"].items() if k not in (name, "dropped")}.items()
+        line = HEADINGS[name], str(item["card"][name] or "none"), item["why"], point
+        found.setdefault(line, []).extend(k for k, card in enumerate(data["cards"], 1) if near <= card.items())
+    return found

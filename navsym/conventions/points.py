@@ -16,7 +16,8 @@ from flint import arb, arb_mat, fmpq
 from navsym.conventions.card import KEPT, Card
 from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED
-from navsym.conventions.mechanisation import Mechanisation, World, add_centrifugal, axes_rows
+from navsym.conventions.mechanisation import Mechanisation, World, add_centrifugal, axes_rows, rotate_about_pole
+from navsym.conventions.nilpotent import rotate
 from navsym.conventions.reading import Problem
 from navsym.core.balls import exact_ball
 from navsym.core.errors import DomainError
@@ -182,10 +183,10 @@ class Sampler:
         h: Any = self.settle("height", None, 0.25, 1.0)[0] if "height" in given else 0
         RN, RE, third = self.radii()
         meridian, angle = self.circle("longitude"), self.circle("earth_angle")
-        turn = angle if card.frame == "inertial" else (arb(0), arb(1))
-        normal = turn_about_pole(turn, (-cosine * meridian[1], -cosine * meridian[0], -sine))
+        turn = rotate_about_pole(angle if card.frame == "inertial" else (0, 1))
+        normal = rotate(turn, (-cosine * meridian[1], -cosine * meridian[0], -sine))
         if self.problem.is_placed and not level:
-            r = self.settle("position", turn_about_pole(turn, locate(sine, cosine, meridian, h, RN, RE)))
+            r = self.settle("position", rotate(turn, locate(sine, cosine, meridian, h, RN, RE)))
         else:
             r = self.vector("position")
         radius = dot(r, r).sqrt()
@@ -285,12 +286,6 @@ class Sampler:
 def dot(u: Sequence[Any], v: Sequence[Any]) -> Any:
     """The sum of u_k v_k in balls."""
     return sum((x * y for x, y in zip(u, v, strict=True)), arb(0))
-
-
-def turn_about_pole(angle: Sequence[Any], u: Sequence[Any]) -> list[Any]:
-    """A vector of the Earth in the inertial frame, by sine and cosine of the angle between them."""
-    sine, cosine = angle
-    return [cosine * u[0] - sine * u[1], sine * u[0] + cosine * u[1], u[2]]
 
 
 def gradient_names(RN: Any, RE: Any, h: Any, third: Any, mean: Any) -> dict[str, Any]:

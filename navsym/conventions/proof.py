@@ -155,19 +155,11 @@ class Prover:
             vectors["position"] = flow.truth().position
             if card.gravity_gradient == "normal":
                 vectors["gravity"] = [row[2].value * formulas.symbol("gravity", None) for row in flow.normal_axes()]
+        if card.gravity_gradient == "central" and "position" in texts:
+            vectors["gravity"] = formulas.world.gravity
         for name, vector in vectors.items():
             if len(given.get(name, ())) == 3:
                 bind(name, [formulas.write(getattr(x, "value", x)) for x in vector])
-        if card.gravity_gradient == "central" and len(given.get("gravity", ())) == 3 and "position" in texts:
-            r = [result.get(x, x) for x in texts["position"]]
-            spin = [result.get(x, x) for x in texts.get("earth_rate", [HIDDEN + "rate"])]
-            spin = spin if len(spin) == 3 else ["0", "0", *spin]
-            turn, along = (" + ".join(f"({x})*({y})" for x, y in zip(spin, u, strict=True)) for u in (spin, r))
-            whirl = [
-                f" + ({x})*({turn}) - ({w})*({along})" * (card.centrifugal == KEPT)
-                for x, w in zip(r, spin, strict=True)
-            ]
-            bind("gravity", [f"-{HIDDEN}pull*({x}){part}" for x, part in zip(r, whirl, strict=True)])
         return result
 
     def free_motion(self, card: Card) -> tuple[Mechanisation, Formulas]:
@@ -175,7 +167,7 @@ class Prover:
         shape = "ellipsoid" if len(self.problem.quantities.get("radii", ())) > 1 else "sphere"
         earth = card.earth if card.earth != "none" else shape
         whole = replace(card, earth=earth, earth_rate=KEPT, transport_rate=KEPT)
-        following = ("earth_rate", "transport_rate", "gravity", "position")
+        following = ("earth_rate", "transport_rate", "gravity") if card.frame == "local-level" else ()
         given = self.problem.quantities.items()
         free = {name: trees for name, trees in given if name not in following or len(trees) == 1}
         formulas = Formulas(replace(self.problem, quantities=free), whole)

@@ -163,11 +163,12 @@ def read_problem(document: Table, where: str = "") -> Problem:
 def read_more(document: Table, model: Table, names: Mapping[str, Any], n: int, where: str) -> dict[str, Any]:
     """H, G and the reset, and what their rows and columns are."""
     place, found = join_place(where, "model"), dict[str, Any]()
-    labels: list[Any] = []
     if "measured" in document:
-        blocks = document.get("measurement", [])
-        labels = [block.get("name") for block in blocks] if "H" not in model else []
-        rows = require_key(model, "H", place) if not labels else [require_key(b, "h", "measurement") for b in blocks]
+        beside, spot = "measurement" in document and "H" not in model, join_place(where, "measurement")
+        blocks = as_list(document["measurement"], spot) if beside else []
+        tables = [(as_table(block, join_place(spot, k)), join_place(spot, k)) for k, block in enumerate(blocks)]
+        labels = [block.get("name") for block, _ in tables]
+        rows = [require_key(block, "h", at) for block, at in tables] if beside else require_key(model, "H", place)
         found["H"] = read_grid(rows, names, join_place(place, "H"), None, n)
         spot = join_place(where, "measured")
         found["measured"] = read_places(document["measured"], MEASURED, labels, len(found["H"]), spot)
@@ -187,21 +188,30 @@ def read_more(document: Table, model: Table, names: Mapping[str, Any], n: int, w
 def read_places(
     value: Any, sizes: Mapping[str, int], labels: Sequence[Any], most: int, where: str
 ) -> dict[str, tuple[int, ...]]:
-    """Kind -> places of its rows or columns, which count from 1 in the file, or have names there."""
-    table, found, taken = as_table(value, where), dict[str, tuple[int, ...]](), set[int]()
+    """Kind -> places of its states, rows or columns: by labels, or by numbers from 1 to ``most``; each has one kind."""
+    table, found, taken = as_table(value, where), dict[str, tuple[int, ...]](), dict[int, str]()
     expect_keys(table, tuple(sizes), where)
     for kind, items in table.items():
-        spot = join_place(where, kind)
-        listed = as_list(items if isinstance(items, list) else [items], spot, "a list of rows or columns")
-        places = [labels.index(item) + 1 if item in labels else item for item in listed]
-        whole = all(isinstance(k, int) and not isinstance(k, bool) and 1 <= k <= most for k in places)
-        if len(places) != sizes[kind] or not whole:
-            message = f"expected {sizes[kind]} numbers from 1 to {most}; got {quote(str(items))}; correct it"
-            raise ShapeError(message, where=spot)
-        if len({*places} - taken) < len(places):
-            raise DuplicateError(f"expected each row or column once; got {places} again; drop one", where=spot)
-        taken |= {*places}
-        found[kind] = tuple(k - 1 for k in places)
+        spot, places = join_place(where, kind), list[int]()
+        listed = as_list(items if isinstance(items, list) else [items], spot, "a list of names or numbers")
+        if len(listed) != sizes[kind]:
+            raise ShapeError(f"expected {sizes[kind]} of them; got {len(listed)}; give one for each axis", where=spot)
+        for k, item in enumerate(listed):
+            at = join_place(spot, k)
+            if item in labels:
+                places.append(labels.index(item))
+            elif isinstance(item, int) and not isinstance(item, bool) and 1 <= item <= most:
+                places.append(item - 1)
+            elif most:
+                raise ShapeError(f"expected a number from 1 to {most}; got {quote(item)}; correct it", where=at)
+            else:
+                near = suggest_nearest(as_text(item, at, "the name of a state"), labels)
+                raise UnknownSymbolError(f"expected a state; got {quote(item)}; correct it: {near}", where=at)
+            if places[-1] in taken:
+                message = f"expected each once; got {quote(item)} in {taken[places[-1]]} and {kind}; drop one"
+                raise DuplicateError(message, where=at)
+            taken[places[-1]] = kind
+        found[kind] = tuple(places)
     return found
 
 
@@ -228,26 +238,7 @@ def read_grid(value: Any, names: Mapping[str, Any], where: str, height: int | No
 
 def read_roles(value: Any, states: Sequence[str], where: str) -> dict[str, tuple[int, ...]]:
     """Role -> places of its three states; no state has two roles."""
-    table = as_table(value, where)
-    expect_keys(table, ROLES, where)
-    roles: dict[str, tuple[int, ...]] = {}
-    taken: dict[str, str] = {}
-    for role, items in table.items():
-        place = join_place(where, role)
-        names = as_list(items, place, "three names of states")
-        if len(names) != 3:
-            raise ShapeError(f"expected three states; got {len(names)}; give one for each axis", where=place)
-        for k, name in enumerate(names):
-            spot = join_place(place, k)
-            as_text(name, spot, "the name of a state")
-            if name not in states:
-                message = f"expected a state; got {quote(name)}; correct it: {suggest_nearest(name, states)}"
-                raise UnknownSymbolError(message, where=spot)
-            if name in taken:
-                message = f"expected one role for each state; got {quote(name)} in {taken[name]} and {role}; drop one"
-                raise DuplicateError(message, where=spot)
-            taken[name] = role
-        roles[role] = tuple(states.index(name) for name in names)
+    roles = read_places(value, dict.fromkeys(ROLES, 3), states, 0, where)
     if not {"velocity", "attitude", "position"} & set(roles):
         message = "expected velocity, attitude or position; got none of them; say which states they are"
         raise EmptyError(message, where=where)

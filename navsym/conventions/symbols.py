@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import product
-from math import prod
+from math import lcm, prod
 from typing import Any
 
 from flint import Ordering, fmpq_mpoly_ctx, fmpz_mpoly_ctx, fmpz_mpoly_vec
@@ -19,9 +19,9 @@ from flint import Ordering, fmpq_mpoly_ctx, fmpz_mpoly_ctx, fmpz_mpoly_vec
 from navsym.conventions.card import Card
 from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED, full_column
-from navsym.conventions.mechanisation import AXES, Mechanisation, World, add_centrifugal, axes_rows
-from navsym.conventions.nilpotent import times
-from navsym.conventions.points import gradient_names, turn_about_pole
+from navsym.conventions.mechanisation import AXES, Mechanisation, World, add_centrifugal, axes_rows, rotate_about_pole
+from navsym.conventions.nilpotent import rotate, times
+from navsym.conventions.points import gradient_names
 from navsym.conventions.reading import HIDDEN, Problem
 from navsym.core.exact import to_fmpq
 from navsym.core.rational_functions import Quotient, Ratio, cancel_fraction
@@ -112,10 +112,11 @@ class Formulas:
         circles = self.circle("longitude", "east", "ahead"), self.circle("earth_angle", "turned", "straight")
         angle = self.text("wander_angle") or HIDDEN + "wander_angle"  # of this card, or of one that it goes to
         wander = self.symbol("wander_sin", f"sin({angle})"), self.symbol("wander_cos", f"cos({angle})")
+        spin = rotate_about_pole(circles[1] if card.frame == "inertial" else (0, 1))
         r = self.vector("r", "position")
         if self.problem.is_placed and card.frame != "local-level":
             u = locate(sine, cosine, circles[0], h, RN, RE)
-            r = [a * 1 for a in (turn_about_pole(circles[1], u) if card.frame == "inertial" else u)]
+            r = rotate(spin, u)
             self.derived = {self.texts[f"r{k}"]: r[k] for k in range(3)}
         squares = " + ".join(f"({self.texts[f'r{k}']})**2" for k in range(3))
         radius = self.symbol("radius", f"sqrt({squares})")
@@ -123,8 +124,7 @@ class Formulas:
             radius = RN + h
         earth = self.earth_rate(sine, cosine, axes_rows(card, *wander))
         east, ahead = circles[0]
-        spin = circles[1] if card.frame == "inertial" else (0, 1)
-        normal = turn_about_pole(spin, [cosine * ahead * -1, cosine * east * -1, sine * -1])
+        normal = rotate(spin, [cosine * ahead * -1, cosine * east * -1, sine * -1])
         pull, gravity = self.gravitation(r, radius, normal)
         gravity = add_centrifugal(card, gravity, earth, r)
         mean = self.symbol("mean", f"sqrt(({self.texts['RN']})*({self.texts.get('RE', self.texts['RN'])}))")
@@ -244,7 +244,7 @@ class Formulas:
         above = self.write_terms({e: c * sign for e, c in terms.items()})
         if above == "0" or bottom == 1:
             return above
-        below = self.write_terms({tuple(map(int, e)): as_fraction(c) for e, c in bottom.to_dict().items()})
+        below = self.write_terms({tuple(map(int, e)): Fraction(str(c)) for e, c in bottom.to_dict().items()})
         return f"({above})/({below})"
 
     def write_terms(self, terms: Mapping[tuple[int, ...], Fraction]) -> str:
@@ -269,60 +269,32 @@ def protect(text: str) -> str:
     return text if simple else f"({text})"
 
 
-def as_fraction(number: Any) -> Fraction:
-    """A fraction from flint's."""
-    return Fraction(int(number.p), int(number.q))
-
-
 Terms = dict[tuple[int, ...], Fraction]
+WHOLE = fmpz_mpoly_ctx.get((*GENERATORS, "unit"), Ordering.degrevlex)
+UNIT = (*(0 for _ in GENERATORS), 1)
 
 
 @cache
-def rotation_rules() -> dict[Any, Terms]:
-    """A Groebner basis of the relations of a rotation: pair of entries -> what its product is.
-
-    C C' = E, C' C = E and cofactors = C. Every rule follows from the relations, so the reduction is sound.
-    """
-    context = fmpz_mpoly_ctx.get(GENERATORS[:9], Ordering.degrevlex)
-    C = [[context.gen(3 * i + j) for j in range(3)] for i in range(3)]
+def list_rules() -> Any:
+    """A Groebner basis of the relations of a rotation, C C' = E, C' C = E, cofactors = C, and of sines and cosines."""
+    C = [[WHOLE.gen(3 * i + j) for j in range(3)] for i in range(3)]
     pairs = [(i, j, rows) for rows in (C, [*zip(*C, strict=True)]) for i in range(3) for j in range(i, 3)]
     relations = [sum(x * y for x, y in zip(rows[i], rows[j], strict=True)) - int(i == j) for i, j, rows in pairs]
     relations += [
         C[i - 2][j - 2] * C[i - 1][j - 1] - C[i - 2][j - 1] * C[i - 1][j - 2] - C[i][j]
         for i, j in product(range(3), repeat=2)
     ]
-    rules: dict[Any, Terms] = {}
-    generators: Any = fmpz_mpoly_vec(relations, context)
-    for poly in generators.buchberger_naive().autoreduction(groebner=True):
-        terms = [(tuple(k for k in range(9) for _ in range(powers[k])), int(c)) for powers, c in poly.to_dict().items()]
-        (first, factor), *rest = terms
-        rules[first] = {monomial: Fraction(-c, factor) for monomial, c in rest}
-    return rules
+    relations += [WHOLE.gen(sine) ** 2 + WHOLE.gen(cosine) ** 2 - 1 for sine, cosine in CIRCLES]
+    generators: Any = fmpz_mpoly_vec(relations, WHOLE)
+    return generators.buchberger_naive().autoreduction(groebner=True)
 
 
 def reduce_terms(poly: Any) -> Terms:
-    """The normal form of a polynomial modulo the relations of a rotation and of sines and cosines."""
-    poly = reduce_circles(poly)
-    result: Terms = {}
-    for powers, factor in poly.to_dict().items():
-        exact, rest = as_fraction(factor), tuple(map(int, powers[9:]))
-        for first, x in normal_form(tuple(map(int, powers[:9]))).items():
-            result[first + rest] = result.get(first + rest, Fraction(0)) + exact * x
-    return {e: c for e, c in result.items() if c}
-
-
-@cache
-def normal_form(powers: tuple[int, ...]) -> Terms:
-    """A product of entries of a rotation modulo its relations."""
-    rules = rotation_rules()
-    places = [k for k in range(9) for _ in range(powers[k])]
-    pairs = ((places[i], places[j]) for i in range(len(places)) for j in range(i + 1, len(places)))
-    rule = next((pair for pair in pairs if pair in rules), None)
-    if rule is None:
-        return {powers: Fraction(1)}
-    result: Terms = {}
-    for monomial, x in rules[rule].items():
-        lowered = tuple(n - rule.count(k) + monomial.count(k) for k, n in enumerate(powers))
-        for key, y in normal_form(lowered).items():
-            result[key] = result.get(key, Fraction(0)) + x * y
-    return result
+    """The normal form of a polynomial modulo the relations; a unit beside it tells by what the reduction scales."""
+    terms = poly.to_dict()
+    common = lcm(*(int(x.q) for x in terms.values()))
+    whole = {(*map(int, powers), 0): int(x * common) for powers, x in terms.items()}
+    rest: Any = WHOLE.from_dict({**whole, UNIT: common})
+    reduced = {tuple(map(int, e)): int(x) for e, x in rest.reduction_primitive_part(list_rules()).to_dict().items()}
+    scale = reduced.pop(UNIT)
+    return {powers[:-1]: Fraction(x, scale) for powers, x in reduced.items()}

@@ -161,7 +161,7 @@ class Inference:
         names = [
             f"the unit of {key[1]}" + ("" if n == 1 else f"^{n}") for key, n in reduced.items() if key[0] == "name"
         ]
-        return " ".join([print_unit(powers), *names])
+        return " ".join([print_unit(powers), *names]) + " times the base unit" * self.scales
 
     def total(self, cells: Iterable[tuple[Cell, Tree]], what: str) -> Cell:
         """The unit of a sum."""

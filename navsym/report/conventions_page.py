@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from navsym.conventions.card import HEADINGS, attitude_formula
+from navsym.conventions.card import HEADINGS, attitude_formula, list_neighbours
 from navsym.report.page import MARKS, environment
 
 if TYPE_CHECKING:
@@ -31,13 +31,5 @@ def conventions_page(answer: Conventions) -> str:
     formulas = [attitude_formula(card) if card["rotation_sign"] else None for card in cards[:MOST]]
     if any(formulas):
         rows.append(("that is", formulas))
-    neighbours: dict[tuple[str, ...], list[int]] = {}  # neighbours of several cards may differ alike
-    for item in data["excluded"]:
-        name, point = item["field"], ", ".join(f"{k} = {v}" for k, v in item["point"].items())
-        near = {k: v for k, v in item["card"].items() if k not in (name, "dropped")}.items()
-        line = (HEADINGS[name], str(item["card"][name] or "none"), item["why"], point)
-        neighbours.setdefault(line, []).extend(k for k, card in enumerate(cards, 1) if near <= card.items())
-    template = environment().get_template("conventions.html")
-    return template.render(
-        title=answer.name, data=data, cards=cards, rows=rows, most=MOST, neighbours=neighbours, marks=MARKS
-    )
+    said = {"title": answer.name, "data": data, "neighbours": list_neighbours(data), "marks": MARKS}
+    return environment().get_template("conventions.html").render(cards=cards, rows=rows, most=MOST, **said)

@@ -268,6 +268,9 @@ def test_one_wrong_sign_is_found_in_its_block(matrix, entry, block):
     assert conflict.status == "PROVED" and conflict.entries == ((i + 1, j + 1),)
 
 
+WITHOUT_H = {key: value for key, value in sola()["model"].items() if key != "H"}
+
+
 @pytest.mark.parametrize(
     ("changes", "kind"),
     [
@@ -276,6 +279,8 @@ def test_one_wrong_sign_is_found_in_its_block(matrix, entry, block):
         ({"measured": {"position": [1, 2, 3], "vector": [3, 4, 5]}}, "duplicate"),
         ({"measured": {"odour": [1, 2, 3]}}, "syntax"),
         ({"noises": {"gyro": "one"}}, "shape"),
+        ({"model": {**sola()["model"], "H": None}}, "shape"),
+        *(({"model": WITHOUT_H, "measurement": value}, "shape") for value in (5, None, ["x"])),
     ],
 )
 def test_rows_that_do_not_exist_are_refused(changes, kind):
