@@ -11,7 +11,7 @@ from typing import Any
 
 from navsym.audit.decide import Decision, Scope, decide_entry, decide_together, measure
 from navsym.audit.evaluate import Case
-from navsym.audit.form import spell_entry
+from navsym.audit.form import spell_alike, spell_entry
 from navsym.audit.mend import Budget, suggest
 from navsym.audit.names import Names
 from navsym.audit.questions import SENSES, Entry, Question, list_entries, read_question
@@ -353,7 +353,8 @@ def write_answer(question: Question, entry: Entry, scope: Scope, decision: Decis
         line = entry.code.line or entry.expected.line or (entry.source.function.line if entry.source else 0)
     point, suggestion, why = None, None, decision.why
     if decision.status == REFUTED:
-        point = {question.names.spellings.get(n, n): value for n, value in (decision.point or {}).items()}
+        spelled = question.names.spellings
+        point = {spell_alike(unit, spelled.get(n, n)): value for n, value in (decision.point or {}).items()}
         if (mend := suggest(entry, scope, budget)) is not None:
             line, suggestion = mend.line, mend.text
         why = "; ".join(filter(None, (describe_case(entry), why)))

@@ -6,6 +6,7 @@ A part knows the bytes of the source from which it came. Nothing is evaluated he
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -209,3 +210,11 @@ def spell_entry(unit: Unit, name: str, place: tuple[int, ...]) -> str:
     if len(numbers) < 3:
         return (one if len(numbers) == 1 else two).format(name, *numbers)
     return f"{name}[{', '.join(map(str, numbers))}]"
+
+
+def spell_alike(unit: Unit, spelling: str) -> str:
+    """An entry that a mapping writes in its own way, ``P[1, 2]``, as the source writes it."""
+    name, _, rest = spelling.partition("[")
+    if (found := re.fullmatch(r"\d+(?:(?:, *|\]\[)\d+)?\]", rest)) is None:
+        return spelling
+    return spell_entry(unit, name, tuple(int(n) - unit.rules.first for n in re.findall(r"\d+", found[0])))

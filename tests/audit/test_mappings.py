@@ -151,3 +151,12 @@ def test_a_decimal_stands_for_a_number_that_is_the_same_to_its_last_digits(tmp_p
     (tmp_path / "spec.toml").write_text((code + question).replace('"pi/180"', '"pi/181"'))
     with pytest.raises(nav.NavsymError, match="to its last digit"):
         nav.audit(tmp_path / "spec.toml")
+
+
+def test_a_counterexample_spells_all_entries_as_the_source_does(tmp_path):
+    (tmp_path / "f.m").write_text("function y = f(P)\n  y = P(1,1)*P(1,2);\nend\n")
+    head = '[[code]]\nname = "m"\nfile = "f.m"\nfunction = "f"\n[code.symbols]\n'
+    head += 'P = { matrix = [2, 2] }\n"P[1, 1]" = "positive"\n'
+    (tmp_path / "q.toml").write_text(f'{head}[[question]]\nkind = "equal"\nleft = "m:y"\nright = "P[1, 1]"\n')
+    (entry,) = nav.audit(tmp_path / "q.toml").questions[0].entries
+    assert {*entry.counterexample} == {"P(1,1)", "P(1,2)"}
