@@ -14,6 +14,7 @@ from typing import Any
 
 import sympy as sp
 from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
+from flint.utils.flint_exceptions import DomainError as InexactError
 from sympy.functions.elementary.trigonometric import TrigonometricFunction
 
 from navsym.core.errors import DomainError, TooLargeError
@@ -195,8 +196,8 @@ class Ring:
         """The polynomial without its factors that vanish nowhere; with the same zeros in the domain of the model."""
         for unit in self.units:
             while value != 0 and len(value) >= len(unit):
-                quotient, rest = divmod(value, unit)
-                if rest != 0:
+                quotient = divide(value, unit)
+                if quotient is None:
                     break
                 value = quotient
         return value
@@ -329,7 +330,15 @@ def is_odd(value: Poly, cosine: int) -> bool:
 
 def is_divisor(bottom: Poly, top: Poly) -> bool:
     """True when the division leaves no remainder."""
-    return divmod(top, bottom)[1] == 0
+    return divide(top, bottom) is not None
+
+
+def divide(top: Poly, bottom: Poly) -> Poly | None:
+    """The quotient; None where a remainder is left, which is seen long before it is known."""
+    try:
+        return top / bottom
+    except InexactError:
+        return None
 
 
 def gcd_all(values: Iterable[Poly], zero: Poly) -> Poly:

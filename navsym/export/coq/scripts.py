@@ -328,13 +328,13 @@ class Follower:
         if rule == "product":
             return self.split(proof["factors"], checker.list_factors(term), term, relation)
         if squared := complete_square(term) if rule == "cones" else None:
-            scale, root, rest = squared
-            factors = checker.list_factors(rest)
+            scale, root, other = squared
+            factors = checker.list_factors(other)
             entries = [None if factor[0] == "^" else (1, proof) for factor in factors]
-            text = write_term(root, self.names)
-            lines = [f"assert ({self.say(rest, relation)}).", "{", *self.split(entries, factors, rest, relation), "}"]
-            lines += self.change(("*", scale, term), ("+", ("^", root, checker.number(2)), rest), ["ring."])[:-1]
-            return [*lines, f"assert (Q := pow2_ge_0 ({text})). lra."]
+            lines = [f"assert ({self.say(other, relation)}).", "{"]
+            lines += [*self.split(entries, factors, other, relation), "}"]
+            lines += self.change(("*", scale, term), ("+", ("^", root, checker.number(2)), other), ["ring."])[:-1]
+            return [*lines, f"assert (Q := pow2_ge_0 ({write_term(root, self.names)})). lra."]
         return prove_bound(self.box, self.names, rule == "balls")
 
     def split(self, entries: Iterable[Any], factors: list[Term], term: Term, relation: str) -> list[str]:
