@@ -261,12 +261,12 @@ def estimate(track: Positions, settings: Settings, progress: Progress | None = N
     noises = shaped(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
     tell(3, 4, settings.method)
     if settings.method in ("filter", "smoother"):
-        found = marginal(track, noises, settings, use, tell)
+        answer = marginal(track, noises, settings, use, tell)
     else:
-        found = by_method(track, noises[0][1], settings, use)
+        answer = by_method(track, noises[0][1], settings, use)
     factors = student(int(use.sum()), settings.order, settings.fixed_scale)
-    found = replace(found, derivatives=[(value, spread * factors) for value, spread in found.derivatives])
-    return found, noises[0][1]
+    derivatives = [(value, spread * factors) for value, spread in answer.derivatives]
+    return replace(answer, derivatives=derivatives), noises[0][1]
 
 
 def marginal(
