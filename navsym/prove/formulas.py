@@ -107,11 +107,7 @@ def prove(
     if relation is None and is_file(statement):
         refuse_declarations(symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())})
         return prove_file(statement, seconds, jobs, progress)
-    sides = split_formula(statement, relation, right, symbols)
-    claims = read_formula(sides, symbols, beside | {"order": choose_order(sides.order, beside["order"])})
-    from navsym.prove.claimfile import decide_claims
-
-    return decide_claims(claims, seconds=seconds)[0]
+    return prove_formula(split_formula(statement, relation, right, symbols), symbols, beside, seconds)
 
 
 def state_formula(
@@ -142,8 +138,7 @@ def state_formula(
     from navsym.prove.claimfile import FileClaim, property_of_claim, statement_of, text_conditions
 
     beside = dict(tolerance=tolerance, exists=exists, given=given) | read_options(box, rates, order, SECONDS, 1)
-    sides = split_formula(statement, relation, right, symbols)
-    (claim,) = read_formula(sides, symbols, beside | {"order": choose_order(sides.order, beside["order"])}).claims
+    (claim,) = read_formula(split_formula(statement, relation, right, symbols), symbols, beside).claims
     if not isinstance(claim, FileClaim) or text_conditions(claim):
         return replace(property_of_claim(claim), is_whole=relation is None)
     found = statement_of(claim)
@@ -185,6 +180,13 @@ def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress
     return decide_claims(read_claims(path, go_on=True), jobs=jobs, seconds=seconds, progress=progress)
 
 
+def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any], seconds: float) -> Verdict:
+    """The verdict of one formula."""
+    from navsym.prove.claimfile import decide_claims
+
+    return decide_claims(read_formula(sides, given, beside), seconds=seconds)[0]
+
+
 def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any]) -> ClaimFile:
     """One formula as a claim file, with the box, tolerance and existing expressions beside it."""
     from navsym.language.values import (
@@ -196,7 +198,7 @@ def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, An
     )
     from navsym.prove.claimfile import ClaimFile, Symbols, read_claim
 
-    left, right = sides.chain, ""
+    left, right, order = sides.chain, "", choose_order(sides.order, beside["order"])
     if not sides.chain:
         left, right = write_entries(sides.left, "prove: left"), write_entries(sides.right, "prove: right")
     existing = beside["exists"] if isinstance(beside["exists"], (list, tuple)) else [beside["exists"]]
@@ -206,7 +208,7 @@ def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, An
     texts = (left, right, exists, *map(str, hypotheses), *slopes.values())
     dimensions = {side for value in given.values() for side in list_dimensions(value)} - given.keys()
     moments = [text for value in given.values() for text in list_moments(value)]
-    known = dict(given) | dict.fromkeys(beside["order"] or ())
+    known = dict(given) | dict.fromkeys(order or ())
     words = dict.fromkeys(sorted((symbols_in((*texts, *moments), known) - dimensions) | slopes.keys()), "real")
     words |= read_assumptions((sides.left, sides.right, *existing), "prove")
     declared = {name: write_declaration(value, f"prove: {name}") for name, value in given.items()}
@@ -221,7 +223,7 @@ def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, An
     block |= {"chain": left} if sides.chain else {"left": left, "relation": sides.relation, "right": right}
     block |= {"exists": exists} if exists else {}
     block |= {"given": hypotheses} if hypotheses else {}
-    block |= {"order": beside["order"]} if beside["order"] else {}
+    block |= {"order": order} if order else {}
     if beside["tolerance"] is not None:
         block["tolerance"] = write_value(beside["tolerance"], "prove: tolerance")
     symbols = Symbols.read(table, "prove", slopes)

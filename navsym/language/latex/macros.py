@@ -78,8 +78,9 @@ def expand_macros(text: str, macros: Mapping[str, Macro]) -> tuple[str, list[int
                 raise Refusal(places[found.start()], f"{macro.count} arguments of {found[0]}", "fewer", "write them")
             given.append(text[stop + 1 : close] if text[stop] == "{" else text[stop])
             stop = close + 1
-        filled = {str(place): argument for place, argument in enumerate(given, 1)}  # one that is not given is empty
-        body = re.sub("#([1-9])", lambda found, filled=filled: filled.get(found[1], ""), macro.body)
+        filled = [*given, *[""] * 9]  # one that is not given is empty
+        pieces = re.split("#([1-9])", macro.body)
+        body = "".join(filled[int(piece) - 1] if k % 2 else piece for k, piece in enumerate(pieces))
         body = f"{body} " if body[-1:].isalpha() and text[stop : stop + 1].isalpha() else body
         count += 1
         if count > EXPANSIONS or len(text) + len(body) > LENGTH:
