@@ -145,11 +145,8 @@ class Reader(SourceReader):
         """A member of a structure, or a variable of the file; one name with two types is left open."""
         kind = number_of(self.type_of(node))
         kind = kind if kind in LIMITS else "real"
-        for child in (
-            node.children_by_field_name("declarator")
-            if "function_definition" not in list_above(node) or "field" in node.type
-            else ()
-        ):
+        is_inside = "function_definition" in list_above(node) and "field" not in node.type
+        for child in node.children_by_field_name("declarator") if not is_inside else ():
             name, members = self.declared(field_of(child, "declarator") or child)[0], self.unit.members
             members[name] = (kind if members.get(name, (kind,))[0] == kind else "other", None)
 

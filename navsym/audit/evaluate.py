@@ -598,10 +598,11 @@ class Evaluator:
     def bind(self, argument: Argument, given: Part, function: Function) -> Variable:
         """A parameter of an inlined function: the caller's own variable, or a copy of a value."""
         inner = given.parts[0] if given.kind == "address" else given
+        is_number = argument.shared and self.unit.language == "cpp" and argument.number == "real"
+        if is_number and given is inner and self.kind_of(inner) in LIMITS:
+            argument = replace(argument, shared=False)  # const double & is a copy of an integer
         if inner.kind == "name" and (argument.shared or given.kind == "address" or argument.shape is not None):
             variable = self.variable(inner.parts[0])
-            if self.is_other_type(argument, variable):
-                return self.bind(replace(argument, shared=False), given, function)
             if argument.shape is not None and variable.shape is None and not variable.cells:
                 variable.shape = tuple(self.whole(size) for size in argument.shape)
             is_copy = not argument.shared and given.kind != "address" and may_write(self.unit, function, argument.name)
@@ -617,9 +618,7 @@ class Evaluator:
             if sides and may_write(self.unit, function, argument.name):
                 raise Unreadable(given.line, f"a part of an array that {function.name} may change")
             if not sides and self.unit.language != "python":
-                link = self.linked(inner, given)
-                return self.bind(replace(argument, shared=False), given, function) if self.is_other_type(
-                    argument, link) else link  # fmt: skip
+                return self.linked(inner, given)
         is_view = given.kind in ("method", "call", "choose") and self.is_view(given) and given.parts[1] != "copy"
         if self.unit.language == "python" and is_view and may_write(self.unit, function, argument.name):
             raise Unreadable(given.line, f"a view of an array that {function.name} may change")
@@ -635,11 +634,6 @@ class Evaluator:
         if self.unit.language == "python" and variable.shape and (is_place or is_view):
             share(variable, self.arrays_in(given))
         return variable
-
-    def is_other_type(self, argument: Argument, variable: Variable) -> bool:
-        """True where ``const double &`` of C++ stands for a copy of an integer."""
-        is_number = argument.shared and argument.number == "real" and not argument.shape and not variable.shape
-        return self.unit.language == "cpp" and is_number and variable.number in LIMITS
 
     def method(self, part: Part) -> Value:
         """``M.transpose()`` and the like; an accessor without arguments is a name."""

@@ -321,15 +321,9 @@ class Machine(Evaluator):
         if is_link:
             self.frame[name] = self.linked(value, statement)
             owner = self.owner_of(value) if value is not None and not self.frame[name].shape else None
-            if (
-                number == "other"
-                and owner is not None
-                and is_link == "const"
-                and not may_change(self.unit, self.reading.function, owner[0])
-            ):
-                return  # its members keep the names by which they are called here
             if number == "other" and owner is not None:
-                self.aliases[name] = owner
+                if is_link != "const" or may_change(self.unit, self.reading.function, owner[0]):
+                    self.aliases[name] = owner  # else its members keep the names by which they are called here
             elif number == "other" and (is_link != "const" or self.frame[name].shape):
                 raise Unreadable(statement.line, "a reference or pointer to a structure that is no name")
             return
@@ -341,15 +335,10 @@ class Machine(Evaluator):
         if shape is None and isinstance(result, Array):
             forbid(number == "other", statement.line, "a structure made of a list")
             sizes = result.shape  # auto
-        elif (
-            isinstance(result, Array)
-            and len(sizes) == 2
-            and not (
-                sizes in (self.fill(result, sizes).shape, result.shape[1:])  # type: ignore[union-attr]
-                or (len(result.shape) == 1 and value is not None and value.kind == "list")
-            )
-        ):
-            raise Unreadable(statement.line, f"{name}, a matrix made of a row of numbers, which may be its columns")
+        elif isinstance(result, Array) and len(sizes) == 2:
+            is_list = len(result.shape) == 1 and value is not None and value.kind == "list"
+            fits = is_list or sizes in (self.fill(result, sizes).shape, result.shape[1:])  # type: ignore[union-attr]
+            forbid(not fits, statement.line, f"{name}, a matrix made of a row of numbers, which may be its columns")
         elif number == "matrix" and isinstance(result, Scalar):
             raise Unreadable(statement.line, f"{name}, a matrix of unknown size")
         is_lazy = number != "matrix"
@@ -385,9 +374,7 @@ class Machine(Evaluator):
     def run_assign(self, target: Part, sign: str, value: Part, statement: Part) -> None:
         """An assignment, also of a whole array, a row or a block."""
         self.require_order(value, *([target] if sign or target.kind != "name" else ()))
-        first = (
-            self.value(target) if sign and self.unit.language == "python" else None
-        )  # which reads the left side first
+        first = self.value(target) if sign and self.unit.language == "python" else None  # read before the right side
         result = self.fill_by_commas(target, value) if sign == "<<" else self.value(value)
         sign = sign.removesuffix("<<")
         if self.unit.language == "cpp" and b"Eigen" in self.unit.source and self.overlaps(value, target):

@@ -56,11 +56,10 @@ class Reader(SourceReader):
         output, given, body = (children.get(kind) for kind in ("function_output", "function_arguments", "block"))
         arguments = tuple(Argument(text_of(n)) for n in named(given))
         outputs = () if output is None else tuple(re.findall(r"\w+", text_of(output)))
+        statements = self.block(body)
         inner = any(child.type == "function_definition" for child in descend(node) if child.id != node.id)
         if inner or "function_definition" in list_above(node):
             statements = (self.part("jump", node, "a function in another one, which share their names", ()),)
-        else:
-            statements = self.block(body)
         function = Function(name, line_of(node), arguments, statements, outputs)
         self.unit.functions.setdefault(name, []).append(function)
 
