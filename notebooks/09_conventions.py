@@ -32,8 +32,8 @@ assert answer.complete and {card.attitude_error for card in answer.cards} == {"b
 # entry of F at a point.
 
 # %%
-for exclusion in answer.excluded[:6]:
-    print(f"{exclusion.field}: {exclusion.why}")
+for line in dict.fromkeys(f"{exclusion.field}: {exclusion.why}" for exclusion in answer.excluded):
+    print(line)
 
 # %% [markdown]
 # The feedback tells the rest: this filter adds its corrections to the estimate, so an error is truth minus estimate.
