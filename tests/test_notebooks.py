@@ -22,7 +22,8 @@ def as_parameter(path):
 
 @pytest.mark.parametrize("path", [as_parameter(path) for path in NOTEBOOKS])
 @pytest.mark.filterwarnings("ignore")
-def test_the_notebook_runs(path):
+def test_the_notebook_runs(path, monkeypatch):
+    monkeypatch.delenv("MPLBACKEND", raising=False)  # a kernel has its own, which shows pictures
     jupytext = pytest.importorskip("jupytext")
     nbclient = pytest.importorskip("nbclient")
     notebook = jupytext.read(path)

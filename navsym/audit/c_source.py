@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules, names_in, walk
+from navsym.audit.form import NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED, Argument, Function, Part, Rules, names_in, walk
 from navsym.audit.functions import METHODS
 from navsym.audit.syntax import (
     SourceReader,
@@ -129,7 +129,7 @@ class Reader(SourceReader):
             elif node.type == "preproc_function_def":
                 self.unit.macros[text_of(field_of(node, "name"))] = "a macro with arguments"
             elif node.type == "preproc_call" and text_of(node).startswith("#undef"):
-                self.unit.macros[text_of(named(node)[-1]).strip()] = "a macro that is undefined again"
+                self.unit.macros[text_of(named(node)[-1]).strip()] = UNDEFINED
             elif node.type == "enumerator_list":
                 self.read_enumerators(node)
             elif node.type in ("field_declaration", "declaration"):
@@ -177,12 +177,12 @@ class Reader(SourceReader):
         name, value = text_of(field_of(node, "name")), field_of(node, "value")
         body = "" if value is None else re.sub(r"//.*|/\*.*?\*/", "", text_of(value)).strip()
         meaning: Part | str = "a macro without a value" if not body else Reader.read_text(body, self.unit)
-        if isinstance(meaning, Part) and meaning.kind == "refused":
-            meaning = "a macro that is no expression"
+        if isinstance(meaning, Part) and any(part.kind == "refused" for part in walk(meaning)):
+            meaning = NO_EXPRESSION
         twice = Reader.read_text(f"2*{body}", self.unit) if isinstance(meaning, Part) else None  # (a)+(b) falls apart
         if twice is not None and (twice.parts[0] != "*" or twice.parts[1].span != (0, 1)):
             meaning = "a macro whose operators have no parentheses around them"
-        self.unit.macros[name] = "a macro with two definitions" if name in self.unit.macros else meaning
+        self.unit.macros[name] = TWO_DEFINITIONS if name in self.unit.macros else meaning
 
     def read_function(self, node: Any) -> None:
         declarator, body = head_of_function(node), field_of(node, "body")
@@ -401,6 +401,8 @@ class Reader(SourceReader):
                 return tuple(s for child in named(node) for s in self.effect(child))
             case "call_expression":
                 return (self.part("do", node, self.expression(node)),)
+            case "identifier":
+                return (self.part("jump", node, "a name alone, as of a macro that holds statements", ()),)
         return (self.unread(node, "an expression without an assignment"),)
 
     def comma_list(self, node: Any) -> Part | None:

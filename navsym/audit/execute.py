@@ -11,7 +11,18 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from navsym.audit.evaluate import CASES, Case, CellView, Condition, Evaluator, Failing, Inputs, Reading, Returning
-from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_return_view, mentioned_in, names_in, walk
+from navsym.audit.form import (
+    HIDDEN_MACROS,
+    Argument,
+    Function,
+    Part,
+    Unit,
+    head_of,
+    may_return_view,
+    mentioned_in,
+    names_in,
+    walk,
+)
 from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, does_take, find_race, is_method, may_change, names_view
 from navsym.audit.values import (
     COMPARE,
@@ -178,6 +189,9 @@ class Machine(Evaluator):
         self.reading.refused.setdefault(unread.line, unread.why)
         self.reading.refused_spans.add(statement.span)
         targets: set[str] = set()
+        hidden = (part.parts[1] for part in walk(statement) if part.kind in ("unread", "refused") and part.parts[1:])
+        if any(self.may_write_by_macro(word, ()) for word in names_in(statement).union(*hidden)):
+            self.stop(unread)
         for part in walk(statement):
             if part.kind == "assign" and not (part is statement and self.lose_entries(part, unread)):
                 targets |= self.root_names(part.parts[0])
@@ -220,6 +234,14 @@ class Machine(Evaluator):
             self.frame[variable.name] = variable
         if any(part.kind == "return" for part in walk(statement)):
             self.stop(unread)
+
+    def may_write_by_macro(self, word: str, around: tuple[str, ...]) -> bool:
+        """True for a macro whose text may write to something or leave the function."""
+        meaning = self.unit.macros.get(word, "") if word not in (*self.frame, *around) else ""
+        if isinstance(meaning, str):
+            return meaning in HIDDEN_MACROS
+        writes = any(part.kind in ("refused", "address") or self.has_effect(part) for part in walk(meaning))
+        return writes or any(self.may_write_by_macro(inner, (*around, word)) for inner in names_in(meaning))
 
     def lose_entries(self, statement: Part, unread: Unread) -> bool:
         """True where an assignment that is not read can only write known entries, which are unread now."""

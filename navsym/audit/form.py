@@ -14,6 +14,11 @@ from typing import Any
 
 from navsym.language.tree import Tree
 
+#: Macros whose text is not known as an expression: it may write to anything, or leave the function.
+NO_EXPRESSION, TWO_DEFINITIONS = "a macro that is no expression", "a macro with two definitions"
+UNDEFINED = "a macro that is undefined again"
+HIDDEN_MACROS = (NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
