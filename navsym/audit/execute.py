@@ -190,8 +190,7 @@ class Machine(Evaluator):
         self.reading.refused_spans.add(statement.span)
         targets: set[str] = set()
         hidden = (part.parts[1] for part in walk(statement) if part.kind in ("unread", "refused") and part.parts[1:])
-        if any(self.may_write_by_macro(word, ()) for word in names_in(statement).union(*hidden)):
-            self.stop(unread)
+        is_hidden = any(self.may_write_by_macro(word, ()) for word in names_in(statement).union(*hidden))
         for part in walk(statement):
             if part.kind == "assign" and not (part is statement and self.lose_entries(part, unread)):
                 targets |= self.root_names(part.parts[0])
@@ -232,7 +231,7 @@ class Machine(Evaluator):
             variable = Variable(statement.parts[0].parts[0], all_unread=unread)  # it may be a view
             share(variable, self.arrays_in(statement.parts[2]))
             self.frame[variable.name] = variable
-        if any(part.kind == "return" for part in walk(statement)):
+        if is_hidden or any(part.kind == "return" for part in walk(statement)):
             self.stop(unread)
 
     def may_write_by_macro(self, word: str, around: tuple[str, ...]) -> bool:
