@@ -12,13 +12,13 @@ from typing import Any
 
 from navsym.audit.evaluate import CASES, Case, CellView, Condition, Evaluator, Failing, Inputs, Reading, Returning
 from navsym.audit.form import (
-    HIDDEN_MACROS,
     Argument,
     Function,
     Part,
     Unit,
     head_of,
     may_return_view,
+    may_write_by_macro,
     mentioned_in,
     names_in,
     walk,
@@ -181,8 +181,7 @@ class Machine(Evaluator):
         try:
             getattr(self, f"run_{statement.kind}")(*statement.parts, statement=statement)
         except Unreadable as refusal:
-            line = refusal.line or statement.line
-            self.refuse(statement, Unread(line, refusal.why))
+            self.refuse(statement, Unread(refusal.line or statement.line, refusal.why))
 
     def refuse(self, statement: Part, unread: Unread) -> None:
         """Leave unread what a statement may write."""
@@ -190,7 +189,8 @@ class Machine(Evaluator):
         self.reading.refused_spans.add(statement.span)
         targets: set[str] = set()
         hidden = (part.parts[1] for part in walk(statement) if part.kind in ("unread", "refused") and part.parts[1:])
-        is_hidden = any(self.may_write_by_macro(word, ()) for word in names_in(statement).union(*hidden))
+        words = names_in(statement).union(*hidden) - {*self.frame}
+        is_hidden = any(may_write_by_macro(self.unit, word, self.has_effect) for word in words)
         for part in walk(statement):
             if part.kind == "assign" and not (part is statement and self.lose_entries(part, unread)):
                 targets |= self.root_names(part.parts[0])
@@ -233,14 +233,6 @@ class Machine(Evaluator):
             self.frame[variable.name] = variable
         if is_hidden or any(part.kind == "return" for part in walk(statement)):
             self.stop(unread)
-
-    def may_write_by_macro(self, word: str, around: tuple[str, ...]) -> bool:
-        """True for a macro whose text may write to something or leave the function."""
-        meaning = self.unit.macros.get(word, "") if word not in (*self.frame, *around) else ""
-        if isinstance(meaning, str):
-            return meaning in HIDDEN_MACROS
-        writes = any(part.kind in ("refused", "address") or self.has_effect(part) for part in walk(meaning))
-        return writes or any(self.may_write_by_macro(inner, (*around, word)) for inner in names_in(meaning))
 
     def lose_entries(self, statement: Part, unread: Unread) -> bool:
         """True where an assignment that is not read can only write known entries, which are unread now."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -177,6 +177,15 @@ def has_effects(function: Function) -> bool:
     own |= {p.parts[0] for p in parts if p.kind == "for" or (p.kind == "declare" and not p.parts[4])}
     targets = mentioned_in(*(p.parts[0] for p in parts if p.kind == "assign"))
     return not targets <= own or any(p.kind in ("do", "moved", "unread", "jump", "refused") for p in parts)
+
+
+def may_write_by_macro(unit: Unit, word: str, has_effect: Callable[[Part], bool], around: tuple[str, ...] = ()) -> bool:
+    """True for a macro whose text may write to something or leave the function."""
+    meaning = unit.macros.get(word, "") if word not in around else ""
+    if isinstance(meaning, str):
+        return meaning in HIDDEN_MACROS
+    writes = any(part.kind in ("refused", "address") or has_effect(part) for part in walk(meaning))
+    return writes or any(may_write_by_macro(unit, inner, has_effect, (*around, word)) for inner in names_in(meaning))
 
 
 def called_in(*parts: Any) -> set[str]:
