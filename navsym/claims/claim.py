@@ -36,6 +36,7 @@ class Claim:
     reason   : one sentence: what is wrong and how one can tell
     place    : file and line of a claim that no Python states; empty for others
     complete : what is added to a verdict, such as the conditions that only the text shows
+    latex    : the formula as a document printed it; empty where none is known
     either   : True when ``expect`` only says that it holds: PROVED and CERTIFIED are both as declared
     """
 
@@ -50,6 +51,7 @@ class Claim:
     place: str = ""
     complete: Callable[[Verdict], Verdict] | None = None
     either: bool = False
+    latex: str = ""
 
     @property
     def id(self) -> str:

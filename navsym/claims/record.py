@@ -25,6 +25,7 @@ class Record:
     id, paper, number, title, expect, corrects, slip, reason : as in :class:`Claim`; ``corrects`` is a whole id
     status, method, scope, assumptions, evidence, counterexample, difference, certificate : as in :class:`Verdict`
     printed, derived : the sides in the language of files; empty when deriving them was stopped
+    latex            : the formula as a document printed it; empty, and in no document, where none is known
     seconds          : how long deriving and deciding took
     kind             : as in :class:`Paper`: a printed formula, a sentence beside one, a remark, or beyond the paper
     cause            : id of the claim whose slip a refuted one only repeats
@@ -63,6 +64,7 @@ class Record:
     cause: str | None = None
     certificate: Mapping[str, Any] | None = None
     seconds: float = 0.0
+    latex: str = ""
     statement: str = ""
 
     def __repr__(self) -> str:
@@ -87,8 +89,8 @@ class Record:
     def to_json(self) -> dict[str, Any]:
         """The entry of ``claims`` in the document of ``navsym verify``."""
         ends = self.difference and [self.difference.lower, self.difference.upper]
-        names = " ".join(field.name for field in fields(self) if field.name != "statement")
-        return named(self, names) | {"difference": ends}
+        names = " ".join(field.name for field in fields(self) if field.name not in ("statement", "latex"))
+        return named(self, names) | {"difference": ends} | ({"latex": self.latex} if self.latex else {})
 
     def ledger_json(self) -> dict[str, Any]:
         """The entry of a ledger: nothing that varies from run to run."""

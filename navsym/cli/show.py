@@ -27,9 +27,9 @@ def command(claim: str, *, seconds: float = 90.0, json_: bool = False) -> int:
 
 def as_text(record: Record) -> str:
     """A few lines, the verdict first."""
-    lines = [f"{record.id}  {record.status}", record.title, f"  printed  {record.printed}"]
-    facts = (("derived", record.derived), ("scope", record.scope), ("method", record.method))
-    lines += [f"  {name:<9}{words}" for name, words in (*facts, ("evidence", record.evidence)) if words]
+    lines = [f"{record.id}  {record.status}", record.title]
+    facts = [(name, getattr(record, name)) for name in "latex printed derived scope method evidence".split()]
+    lines += [f"  {name:<9}{words}" for name, words in facts if words or name == "printed"]
     if record.assumptions:
         lines.append(f"  assuming {'; '.join(record.assumptions)}")
     if record.counterexample:

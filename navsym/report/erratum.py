@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from navsym.claims import Paper, Record, equation_of
 from navsym.report.explain import arithmetic, ball_words, ended
-from navsym.report.formula.sides import Formula, coordinates, formula, only_truth
+from navsym.report.formula.sides import Formula, as_printed, coordinates, formula, only_truth
 from navsym.report.wording import Wording, Words, pattern_of
 
 MOST_COORDINATES = 6  # more than that nobody inserts by hand
@@ -34,7 +34,7 @@ class Check:
     """Arithmetic that a reader can repeat: both sides at a point (the whole line where there is none).
 
     entry : which entry of a matrix or a list is meant, from 1; 0 where the sides are single
-    whole : the printed statement is a whole equation, and these are its two sides
+    whole : the printed statement is a whole equation, as in every claim file, and these are its two sides
     """
 
     at: tuple[Formula, ...]
@@ -52,7 +52,8 @@ class Entry:
     place  : where in the paper, in words
     slip   : "paper", "scan" or "undecidable"
     words  : wording for an editor, or None
-    wrong, right : as printed, and as it should read, made from the claims (None without a proved correction)
+    wrong, right : as printed, and as it should read, made from the claims (empty without a proved correction);
+                   where a document was read, its own formula, then what was decided
     rows   : figures, for a correction of several
     reason : what is wrong
     check  : how to convince oneself, where numbers can
@@ -64,8 +65,8 @@ class Entry:
     slip: str
     words: Wording | None
     what: str
-    wrong: Formula
-    right: Formula | None
+    wrong: tuple[Formula, ...]
+    right: tuple[Formula, ...]
     right_words: str
     rows: tuple[Row, ...]
     reason: str
@@ -83,7 +84,7 @@ class Erratum:
     @property
     def is_of_file(self) -> bool:
         """True for a claim file, whose corrections are decided and not derived."""
-        return self.paper.module.endswith(".toml")
+        return is_file(self.paper.module)
 
     def of(self, slip: str) -> tuple[Entry, ...]:
         """Slips of the paper itself, of the scan that was read, or "undecidable" between the two."""
@@ -110,7 +111,7 @@ def slip_of(paper: Paper, record: Record) -> str:
     """Who slipped: as declared; else the file, or nobody can tell who; empty for remarks of others on a paper."""
     if record.slip:
         return record.slip
-    if paper.module.endswith(".toml"):
+    if is_file(paper.module):
         return "paper"
     return "undecidable" if equation_of(record.number, paper.equations) else ""
 
@@ -140,8 +141,8 @@ def entry(paper: Paper, group: Sequence[Record], corrections: Mapping[str, Recor
         slip=slip_of(paper, record),
         words=words,
         what=record.title,
-        wrong=printed_side(record),
-        right=printed_side(correction) if holds and correction is not None else None,
+        wrong=printed_sides(record),
+        right=printed_sides(correction) if holds and correction is not None else (),
         right_words=correction.title if holds and correction is not None else "",
         rows=tuple(row(*pair) for pair in zip(group, fixed, strict=True)) if len(group) > 1 else (),
         reason=ended(capital(words.why if words and words.why else record.reason or "the statement is refuted")),
@@ -153,7 +154,7 @@ def entry(paper: Paper, group: Sequence[Record], corrections: Mapping[str, Recor
 def row(record: Record, correction: Record | None) -> Row:
     """One line of a group: what it is about, as printed, and the correction."""
     what = re.sub(r", as .*$", "", record.title).rstrip(".")
-    return Row(what, record.printed, correction.printed if correction is not None else "none proved")
+    return Row(what, printed_text(record), printed_text(correction) if correction is not None else "none proved")
 
 
 def capital(sentence: str) -> str:
@@ -161,12 +162,28 @@ def capital(sentence: str) -> str:
     return sentence[:1].upper() + sentence[1:]
 
 
+def printed_sides(record: Record) -> tuple[Formula, ...]:
+    """The formula of the document that was read, where there is one, and the printed side."""
+    return tuple(filter(None, (as_printed(record.latex), printed_side(record))))
+
+
 def printed_side(record: Record) -> Formula:
     """The printed formula; a statement in words, which is only said to hold or not, is its title."""
     if only_truth(record.printed):
         ending = " (does not hold)" if record.printed == "False" else ""
         return Formula(record.title + ending, None, None, words=True)
-    return formula(record.printed)
+    return formula(printed_text(record))
+
+
+def printed_text(record: Record) -> str:
+    """What is printed: the side of the paper, or in a claim file, where people wrote both sides, the equation."""
+    both = is_file(record.paper) and record.derived and not only_truth(record.printed)
+    return f"{record.printed} = {record.derived}" if both else record.printed
+
+
+def is_file(module: str) -> bool:
+    """True for a claim file, False for a paper."""
+    return module.endswith(".toml")
 
 
 def place_of(paper: Paper, number: str) -> str:
@@ -185,4 +202,4 @@ def check_of(record: Record) -> Check | None:
     if line is None or len(point) > MOST_COORDINATES or (not point and line.entry):
         return None
     printed, derived = ball_words(line.printed), ball_words(line.derived)
-    return Check(coordinates(point), line.entry, printed, derived, whole=not record.derived)
+    return Check(coordinates(point), line.entry, printed, derived, whole=not record.derived or is_file(record.paper))

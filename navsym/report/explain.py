@@ -280,7 +280,9 @@ def side_steps(record: Record) -> list[Step]:
     """Both sides; "derived" is said only of a side that a derivation has made."""
     if record.paper.endswith(".toml"):
         right = [Step("What it is compared with", "The other side, as the file states it:", record.derived)]
-        return [Step("What the file states", record.title, record.printed), *(right if record.derived else [])]
+        latex = [Step("What is printed", "In the LaTeX of the document:", record.latex)] if record.latex else []
+        states = Step("What the file states", record.title, record.printed)
+        return [*latex, states, *(right if record.derived else [])]
     derived = Step("What follows from the model", "Derived without looking at the printed side:", record.derived)
     whole = Step("What follows from the model", "The statement itself was derived and then examined.")
     heading = "What replaces it" if record.corrects else WORDS["opening"][record.kind]

@@ -25,7 +25,7 @@ from navsym.claims.display import MARKS as MARKS
 from navsym.report.erratum import Erratum, erratum_of, printed_side
 from navsym.report.explain import WORDS, Step, ball_words, ended, steps
 from navsym.report.formula.latex import sentence_html, sentence_latex
-from navsym.report.formula.sides import Formula, coordinates, formula, only_truth
+from navsym.report.formula.sides import Formula, as_printed, coordinates, formula, only_truth
 from navsym.report.names import latex_escape
 from navsym.report.plots import refutation_svg
 from navsym.report.trust import backing_words, trust_of
@@ -95,6 +95,7 @@ class ClaimView:
     """A record with everything that its card shows."""
 
     record: Record
+    source: Formula | None
     printed: Formula
     derived: Formula
     story: tuple[tuple[Step, Formula | None], ...]
@@ -270,6 +271,7 @@ def claim_view(record: Record, correction: Record | None, corrected: Record | No
     story = tuple((step, formula(step.formula) if step.formula else None) for step in steps(record))
     return ClaimView(
         record=record,
+        source=as_printed(record.latex),
         printed=side(record.printed),
         derived=side(record.derived),
         story=story,

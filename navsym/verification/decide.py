@@ -224,5 +224,6 @@ def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict
         difference=verdict.difference,
         certificate=verdict.certificate,
         kind=paper.kind_of(claim.number),
+        latex=claim.latex,
         cause=f"{paper.module}:{cause}" if (cause := paper.causes.get(claim.number)) else None,
     )

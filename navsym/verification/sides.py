@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
@@ -15,16 +15,15 @@ from navsym.prove.wording import expression_text
 
 
 def sides(statement: Statement) -> tuple[str, str]:
-    """Printed and derived side in the language of files."""
-    if isinstance(statement, Equation):
-        tail = (
-            ""
-            if statement.tolerance is None
-            else f" +- {expression_text(sp.sympify(statement.tolerance, strict=True))}"
-        )
-        return side_text(statement.printed) + tail, side_text(statement.derived)
-    if isinstance(statement, Bound):
-        return f"{side_text(statement.printed)} {statement.relation} {side_text(statement.derived)}", ""
+    """Printed and derived side in the language of files: as their author wrote them, where that is known."""
+    if isinstance(statement, Equation | Bound):
+        written = statement.written
+        left = side_text(statement.printed, written and written.left)
+        right = side_text(statement.derived, written and written.right)
+        if isinstance(statement, Bound):
+            return f"{left} {statement.relation} {right}", ""
+        limit = written.tolerance if written else statement.tolerance
+        return left if limit is None else f"{left} +- {limit if written else side_text(limit)}", right
     if isinstance(statement, Optimum):
         return optimum_text(statement)
     if isinstance(statement, Worded):
@@ -33,14 +32,17 @@ def sides(statement: Statement) -> tuple[str, str]:
     return value_text(statement.printed), value_text(statement.derived.value)
 
 
-def side_text(side: Any) -> str:
-    """One side of a statement as text: a matrix by rows, a tuple, or one expression."""
+def side_text(side: Any, written: Sequence[str] | None = None) -> str:
+    """One side of a statement as text: a matrix by rows, a tuple, or one expression.
+
+    written : text of each entry, where it is known
+    """
+    is_list = isinstance(side, sp.MatrixBase | tuple | list)
+    texts = written or [expression_text(sp.sympify(entry, strict=True)) for entry in (side if is_list else [side])]
     if isinstance(side, sp.MatrixBase):
-        rows = ["[" + ", ".join(expression_text(entry) for entry in side.row(i)) + "]" for i in range(side.rows)]
-        return "[" + ", ".join(rows) + "]"
-    if isinstance(side, (tuple, list)):
-        return "(" + ", ".join(expression_text(sp.sympify(entry, strict=True)) for entry in side) + ")"
-    return expression_text(sp.sympify(side, strict=True))
+        rows = [", ".join(texts[k : k + side.cols]) for k in range(0, len(texts), side.cols or 1)]
+        return f"[{', '.join(f'[{row}]' for row in rows)}]"
+    return f"({', '.join(texts)})" if is_list else texts[0]
 
 
 def value_text(value: Any) -> str:

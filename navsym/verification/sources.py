@@ -81,6 +81,7 @@ def claim_of_notes(
         place,
         completed,
         "expect" not in notes,
+        notes.get("printed", ""),
     )
 
 

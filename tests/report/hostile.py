@@ -68,6 +68,7 @@ def record(number: str, words: str, **changes: object) -> Record:
         "assumptions": [words],
         "printed": words,
         "derived": words,
+        "latex": words,
         "corrects": None,
         "slip": "paper",
         "reason": words,

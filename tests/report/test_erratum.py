@@ -14,7 +14,8 @@ from xml.dom import minidom
 
 import pytest
 
-from navsym.claims import Paper, claims_of
+import navsym as nav
+from navsym.claims import Paper, Record, claims_of
 from navsym.core.errors import NavsymError
 from navsym.report.erratum import erratum_of
 from navsym.report.formula.latex import mathml, sentence_html, sentence_latex
@@ -270,6 +271,46 @@ def test_a_sheet_without_wording_and_one_without_entries_compile(files, card, tm
     assert compiled(files["sample.erratum.tex"], tmp_path) == 1
     tex = site(ledger([], card))
     assert compiled(tex["sample.erratum.tex"], tmp_path) == 1
+
+
+DOCUMENT = """
+[symbols]
+a = {vector = 3}
+b = {vector = 3}
+x = "positive"
+[[claim]]
+id = "order"
+left = "cross(a, b)"
+right = "cross(b, a)"
+printed = '\\mathbf{a} \\times \\mathbf{b} = \\mathbf{b} \\times \\mathbf{a}'
+expect = "REFUTED"
+[[claim]]
+id = "order*"
+corrects = "order"
+left = "cross(a, b)"
+right = "-cross(b, a)"
+[[claim]]
+id = "typed"
+left = "(x + 2) - 1"
+right = "1*x"
+printed = '\\input{elsewhere} x + 2 - 1'
+expect = "REFUTED"
+"""
+
+
+def test_a_sheet_of_a_file_shows_formulas_as_they_are_printed_and_typed(tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text(DOCUMENT)
+    ledger = nav.verify(str(path))
+    first, second = erratum_of(ledger.cards[str(path)], list(ledger)).entries
+    assert [side.text for side in first.wrong] == [
+        r"\mathbf{a} \times \mathbf{b} = \mathbf{b} \times \mathbf{a}", "cross(a, b) = cross(b, a)",
+    ]  # fmt: skip
+    assert [side.text for side in first.right] == ["cross(a, b) = -cross(b, a)"]
+    assert [side.text for side in second.wrong] == ["(x + 2) - 1 = 1*x"]  # a command that reads files is not handed on
+    sheets = [text for name, text in site(ledger).items() if name.endswith(".erratum.tex")]
+    assert len(sheets) == 1 and r"\mathbf{a}" in sheets[0] and r"\input{" not in sheets[0]
+    assert Record.from_json(ledger[f"{path}:typed"].ledger_json()).latex == r"\input{elsewhere} x + 2 - 1"
 
 
 @needs_latex

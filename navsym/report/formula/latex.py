@@ -25,13 +25,14 @@ TOKEN = re.compile(
 )
 FUNCTIONS = frozenset("sin cos tan cot exp log ln max min det arctan diag tr".split())
 ACCENTS = {"dot": "˙", "ddot": "¨", "hat": "^", "tilde": "~", "bar": "¯", "overline": "¯"}
+BOLD = frozenset(("mathbf", "boldsymbol", "vec"))
 UPRIGHT = frozenset(("mathrm", "text", "operatorname"))
 SIGNS = frozenset(
     "cdot times le ge ne ll gg approx pm to in ldots colon | circ sum int iint { } % top mid forall dots cdots".split()
 )
 LETTERS = frozenset({*GREEK, "varphi", "varepsilon", "ell", "partial", "infty"})
 SPACES = frozenset((",", ";", " ", "quad", "qquad"))
-KNOWN = FUNCTIONS | UPRIGHT | SIGNS | LETTERS | SPACES | ACCENTS.keys()
+KNOWN = FUNCTIONS | BOLD | UPRIGHT | SIGNS | LETTERS | SPACES | ACCENTS.keys()
 KNOWN |= {"frac", "sqrt", "left", "right", "displaystyle", "\\"}
 MATRICES = frozenset(("pmatrix", "bmatrix", "matrix"))
 RELATIONS = frozenset(("=", "<", ">", "le", "ge", "ne", "ll", "gg", "approx"))

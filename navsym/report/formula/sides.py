@@ -6,6 +6,7 @@ its owner shows the plain text.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import re
 from collections.abc import Mapping
@@ -13,6 +14,8 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from navsym.core.errors import ExpressionSyntaxError
+from navsym.report.formula.latex import mathml as set_latex
 from navsym.report.formula.notation import LATEX, MATHML
 from navsym.report.formula.reader import read_formula
 from navsym.report.formula.writer import write
@@ -40,6 +43,16 @@ def formula(text: str, inline: bool = False) -> Formula:
     """A side of a claim, set in type where it can be; in a line of words simple quotients are T/4."""
     written = mathml(text, inline) if text not in ("", "True", "False") else None
     return Formula(text, None, None) if written is None else Formula(text, Markup(written), latex(text, inline))
+
+
+def as_printed(source: str) -> Formula | None:
+    """LaTeX as a document prints it; None where there is none, or where it has a command that is not on the whitelist.
+
+    What is on the list is safe to be handed to LaTeX again.
+    """
+    with contextlib.suppress(ExpressionSyntaxError):
+        return Formula(source, set_latex(source, display=True), source) if source else None
+    return None
 
 
 def only_truth(text: str) -> bool:
