@@ -57,6 +57,8 @@ PAIRS = [
         "integral(exp(-(x - m)**2/(2*s**2))/(s*sqrt(pi)), x, -oo, oo) = 1",
         {"s": "positive"},
     ),
+    ("log(exp(x) + exp(y)) > x", "log(exp(x) + exp(y)) > x + 1", {}),
+    ("log(1 + exp(x)) <= log(2) + x", "log(1 + exp(x)) <= log(2) + x/3", {"x": ("0", "oo")}),
     ("log(1 + x) <= x", "log(1 + x) <= x/2", {"x": ("0", "oo")}),
     ("1/x <= 1", "1/x < 1", {"x": ("1", "oo")}),
 ]  # fmt: skip

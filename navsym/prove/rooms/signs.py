@@ -381,9 +381,17 @@ def by_contacts(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def by_logarithms(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """A sum of logarithms by its exponential."""
-    if any(p[0] == "log" for p in subterms(goal.term)) and not any(p[0] == "exp" for p in subterms(goal.term)):
+    """A sum of logarithms by its exponential, where exponentials stand in logarithms only."""
+    outside = list_outside(goal.term)
+    if any(p[0] == "log" for p in outside) and not any(p[0] == "exp" for p in outside):
         yield {"rule": "exponential", "proof": Hole()}
+
+
+def list_outside(term: Term) -> list[Term]:
+    """The parts of a term, but for those inside logarithms."""
+    return (
+        [term] if term[0] == "log" else [term, *(p for x in term[1:] if isinstance(x, tuple) for p in list_outside(x))]
+    )
 
 
 POWER: Proof = {"rule": "product", "factors": [None]}  # a whole power of even exponent, or an exponential
