@@ -16,7 +16,7 @@ from flint import arb, arb_series, fmpq
 from navsym.claims import PROVED, Equation
 from navsym.core.balls import UnsupportedError, enclose, precision, series_terms
 from navsym.core.errors import NavsymError, NotEstimableError
-from navsym.core.exact import decimal, to_fmpq, to_rational
+from navsym.core.exact import decimal, rational_near
 from navsym.guaranteed.certificate.enclosure import interval_ball, joint_tape, series_coefficients
 from navsym.guaranteed.problem import GuaranteedProblem
 from navsym.guaranteed.search.exchange import independent_rows
@@ -252,10 +252,7 @@ def prove_relation(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) ->
 
 def recognised(x: arb) -> sp.Rational | None:
     """The rational number with a small denominator next to x, or None."""
-    value = to_fmpq(x)
-    number = to_rational(value)
-    best = number.limit_denominator(10**9)
-    return best if abs(best - number) < sp.Rational(1, 10**40) else None
+    return rational_near(x, 10**9, sp.Rational(1, 10**40))
 
 
 def solve_at_times(problem: GuaranteedProblem, k: int, involved: list[int]) -> Relation | None:

@@ -19,7 +19,7 @@ from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from navsym.claims import PROVED, Equation
 from navsym.core.balls import enclose, precision
-from navsym.core.exact import to_fmpq, to_rational
+from navsym.core.exact import EIGHT, rational_near, to_fmpq, to_rational
 from navsym.guaranteed.certificate.basis import Basis, unit_fraction
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem, Touch, prove_panel_bound
 from navsym.guaranteed.certificate.fixed import flatten_contacts
@@ -28,7 +28,6 @@ from navsym.guaranteed.search.exchange import Contacts, add_places, independent_
 from navsym.prove.ladder import decide
 
 BITS = 256
-NEAR = sp.Rational(1, 10**8)
 NOTHING = arb(2) ** -200
 SAMPLES = 12
 
@@ -40,14 +39,6 @@ class ContactPlace:
     panel: int
     at: fmpq
     sign: int
-
-
-def recognised(x: arb) -> sp.Rational | None:
-    """The rational with a small denominator next to a ball."""
-    value = to_fmpq(x)
-    number = to_rational(value)
-    best = number.limit_denominator(720)
-    return best if abs(best - number) <= NEAR * max(1, abs(number)) else None
 
 
 def exact_places(problem: PanelProblem, contacts: Contacts, x: Sequence[sp.Rational]) -> list[ContactPlace] | None:
@@ -244,7 +235,7 @@ class Pin:
 
 def is_only_optimum(problem: PanelProblem, basis: Basis, contacts: Contacts, dual: Sequence[arb]) -> bool | None:
     """True when the optimal estimator is proved to be the only one, False when another is, else None."""
-    simple = [c for c in map(recognised, dual) if c is not None]
+    simple = [c for x in dual if (c := rational_near(x, LARGEST, EIGHT)) is not None]
     exact = (exact_places(problem, contacts, simple) if len(simple) == len(dual) else None) or []
     used = largest_support(*signed_columns(problem, exact)) if exact else []
     if used and has_interior_weights(problem, [exact[i] for i in used]):

@@ -76,11 +76,6 @@ class RangeProof:
     pieces: tuple[RangePiece, ...]
     documents: tuple[dict[str, Any], ...]
 
-    @property
-    def ends(self) -> tuple[fmpq, fmpq] | None:
-        """What is covered, or None."""
-        return (self.pieces[0].lower, self.pieces[-1].upper) if self.pieces else None
-
 
 def range_document(problem: PanelProblem, parameter: str, pieces: Sequence[RangePiece]) -> dict[str, Any]:
     """The certificate of pieces that lie next to each other."""

@@ -18,7 +18,7 @@ from navsym.core.errors import DomainError
 from navsym.core.exact import to_rational
 from navsym.guaranteed.certificate.basis import Basis, DependentError, make_basis
 from navsym.guaranteed.phases.family import Family
-from navsym.guaranteed.search.exchange import NEGLIGIBLE, Contacts, Panels, find_contacts, regressor_rows
+from navsym.guaranteed.search.exchange import NEGLIGIBLE, Contacts, Panels, find_contacts, pick_contacts, regressor_rows
 from navsym.guaranteed.search.kernels import Array, Ints
 
 # Where several estimators are optimal: the one with a given pattern, if it is among them.
@@ -177,17 +177,7 @@ def order_contacts(found: Contacts, panels: Panels | None = None) -> Contacts:
     touches = zip(found.panel[idle].tolist(), found.u[idle].tolist(), strict=True)
     order = np.lexsort((found.u, found.panel))
     order = order[~idle[order]]
-    return Contacts(
-        found.panel[order],
-        found.u[order],
-        found.inner[order],
-        found.sign[order],
-        found.weights[order],
-        found.dual,
-        found.excess,
-        (*found.touching, *touches),
-        found.value,
-    )
+    return pick_contacts(found, order, (*found.touching, *touches))
 
 
 def scan_patterns(

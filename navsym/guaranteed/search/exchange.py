@@ -216,17 +216,16 @@ def add_places(panels: Panels, found: Contacts, more: Sequence[tuple[int, float]
     extra = np.array([v for _, v in more])
     panel = np.concatenate([found.panel, np.array([k for k, _ in more], dtype=np.int64)])
     u = np.concatenate([found.u, extra])
-    return Contacts(
-        panel,
-        u,
-        np.concatenate([found.inner, (np.abs(extra) < 1.0).astype(np.int64)]),
-        np.sign(regressor_rows(panels.coefficients, panel, u) @ found.dual),
-        np.concatenate([found.weights, np.zeros(extra.size)]),
-        found.dual,
-        found.excess,
-        (),
-        found.value,
-    )
+    inner = np.concatenate([found.inner, (np.abs(extra) < 1.0).astype(np.int64)])
+    sign = np.sign(regressor_rows(panels.coefficients, panel, u) @ found.dual)
+    weights = np.concatenate([found.weights, np.zeros(extra.size)])
+    return replace(found, panel=panel, u=u, inner=inner, sign=sign, weights=weights, touching=())
+
+
+def pick_contacts(found: Contacts, chosen: Ints, touching: tuple[tuple[int, float], ...]) -> Contacts:
+    """Some of the contacts, in the order chosen, and the places that touch beside them."""
+    names = ("panel", "u", "inner", "sign", "weights")
+    return replace(found, touching=touching, **{name: getattr(found, name)[chosen] for name in names})
 
 
 def dual_face(G: Array, p: Array) -> tuple[Ints, Array]:
