@@ -20,11 +20,12 @@ from flint import arb, arb_mat, fmpq, fmpq_mat
 from navsym.claims import PROVED, Equation
 from navsym.core.balls import enclose, precision
 from navsym.core.exact import EIGHT, rational_near, to_fmpq, to_rational
+from navsym.core.simplex import independent_rows
 from navsym.guaranteed.certificate.basis import Basis, unit_fraction
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem, Touch, prove_panel_bound
 from navsym.guaranteed.certificate.fixed import flatten_contacts
 from navsym.guaranteed.estimability import is_zero_matrix
-from navsym.guaranteed.search.exchange import Contacts, add_places, independent_rows, interior_dual
+from navsym.guaranteed.search.exchange import Contacts, add_places, interior_dual
 from navsym.prove.ladder import decide
 
 BITS = 256
@@ -208,7 +209,7 @@ def most_interior_weights(N: np.ndarray, P: np.ndarray) -> np.ndarray | None:
 
 def independent_first(N: np.ndarray, m: int) -> list[int] | None:
     """Columns ordered so that the first m are independent; None when there are no m of them."""
-    chosen = independent_rows(N.T, m, 1e-8)
+    chosen = independent_rows(N.T, m, 1e-8).tolist()
     return None if len(chosen) < m else chosen + [i for i in range(N.shape[1]) if i not in chosen]
 
 
