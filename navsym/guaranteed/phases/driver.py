@@ -206,7 +206,7 @@ def locate_changes(
     family: Family, spans: Sequence[PatternInterval], closed: Sequence[ClosedForm | None], limit: Budget
 ) -> tuple[Boundary, ...]:
     """The changes from each span to the next, as exactly as they are had within the limit."""
-    shares = (limit.share(1 / (len(spans) - 1 - k)) for k in range(len(spans)))
+    shares = (limit.share(1 / (len(spans) - 1 - k)) for k in range(len(spans) - 1))
     return tuple(
         locate_change(family, left, right, part, *forms) or unlocated_boundary(left.upper)
         for part, (left, right), forms in zip(shares, pairwise(spans), pairwise(closed), strict=False)
