@@ -183,9 +183,9 @@ def test_a_constraint_makes_the_weights_blind_to_a_drift():
 
 @pytest.mark.parametrize(("relation", "bound"), [("=", 1), (">=", 1), ("<=", -1)])
 def test_a_target_of_zeros_beside_a_constraint_that_zero_weights_break_is_answered(relation, bound):
-    blocks, factors = [nav.Block([["1"]])] * 3, [["1"], ["2"], ["3"]]
+    blocks, factors, side = [nav.Block([["1"]])] * 3, [["1"], ["2"], ["3"]], bound
     found = nav.solve_blocks(blocks, ["0"], constraints=[(factors, relation, bound)])  # weights of zero mean
-    assert float(found.value.lower) == pytest.approx(1) and [w[0] for w in found.weights] == [-bound / 2, 0, bound / 2]
+    assert float(found.value.lower) == pytest.approx(1) and [2 * w[0] for w in found.weights] == [-side, 0, side]
     assert nav.check(found)[0].status == "ACCEPTED"
     with pytest.raises(nav.NavsymError, match="every estimate of it is free"):
         nav.solve_blocks(blocks, ["0"], constraints=[(factors, relation, -bound if relation != "=" else 0)])
