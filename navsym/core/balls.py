@@ -81,20 +81,23 @@ class Tape:
 
 def tape(expression: sp.Expr) -> Tape:
     """Flatten an expression of the language; raises :class:`UnsupportedError` outside it."""
+    return Tape(expression, flatten([expression])[0])
+
+
+def flatten(expressions: Sequence[sp.Expr]) -> tuple[tuple[Instruction, ...], tuple[int, ...]]:
+    """The steps of some expressions, shared parts once, and the places of their values."""
     steps: list[Instruction] = []
     place: dict[sp.Basic, int] = {}
 
     def visit(node: sp.Basic) -> int:
-        if node in place:
-            return place[node]
-        operation, arguments, constant = read_instruction(node)
-        step = Instruction(operation, tuple(visit(argument) for argument in arguments), constant)
-        steps.append(step)
-        place[node] = len(steps) - 1
+        if node not in place:
+            operation, arguments, constant = read_instruction(node)
+            steps.append(Instruction(operation, tuple(map(visit, arguments)), constant))
+            place[node] = len(steps) - 1
         return place[node]
 
-    visit(sp.sympify(expression, strict=True))  # strict: an object of ours, never a string
-    return Tape(expression, tuple(steps))
+    outputs = tuple(visit(sp.sympify(e, strict=True)) for e in expressions)  # strict: objects of ours, never strings
+    return tuple(steps), outputs
 
 
 SAME_NAME = "sin cos tan cot sec csc exp log asin acos atan atan2 sinh cosh tanh sign".split()

@@ -10,6 +10,8 @@ import sympy as sp
 from flint import arb, fmpq, fmpz
 
 ONE = fmpz(1)
+#: One unit of the eighth digit.
+EIGHT = sp.Rational(1, 10**8)
 Factor = TypeVar("Factor")
 
 
@@ -47,6 +49,16 @@ def to_fraction(x: Any) -> Fraction:
     """A fraction of Python, from whatever :func:`to_fmpq` takes."""
     x = to_fmpq(x) if isinstance(x, arb) else x
     return Fraction(int(x.numerator), int(x.denominator))
+
+
+def rational_near(x: Any, most: int, room: sp.Rational) -> sp.Rational | None:
+    """The rational with a denominator of at most ``most`` next to x, or None: nothing rests on it.
+
+    room : how far it may be, as a part of x where that is above one
+    """
+    value = to_rational(x)
+    best = value.limit_denominator(most)
+    return best if abs(best - value) < room * max(1, abs(value)) else None
 
 
 def decimal(x: Any, digits: int, direction: int = 0) -> str:

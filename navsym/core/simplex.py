@@ -41,23 +41,21 @@ def vector_dot(x: Array, y: Array) -> float:
     return total
 
 
-@kernel
-def spread_rows(G: Array) -> Ints:
-    """m rows of G (n, m) that are far from dependent: Gram-Schmidt with the largest row first."""
-    n, m = G.shape
-    rest = np.ascontiguousarray(G.T).copy()
-    chosen = np.empty(m, dtype=np.int64)
-    for k in range(m):
-        sizes = np.zeros(n)
-        for j in range(m):
-            sizes += rest[j] * rest[j]
-        at = np.argmax(sizes)
-        chosen[k] = at
-        row = rest[:, at] / np.sqrt(max(sizes[at], 1e-300))
-        along = times_rows(rest, row)
-        for j in range(m):
-            rest[j] -= row[j] * along
-    return chosen
+def independent_rows(rows: Array, count: int, least: float = -1.0, near: float = 1.0) -> Ints:
+    """Rows that are far from dependent, at most so many: each time the first whose rest is about the longest left.
+
+    least, near : rests of no more than the first are zero, those above the second part of the longest about as long
+    """
+    rest, chosen = np.ascontiguousarray(np.transpose(rows)), list[int]()
+    while len(chosen) < count:
+        sizes = np.sqrt((rest * rest).sum(axis=0))
+        best = int(np.argmax(sizes >= near * sizes.max()))
+        if not sizes[best] > least:
+            break
+        chosen.append(best)
+        unit = rest[:, best] / max(sizes[best], 1e-300)
+        rest = rest - np.outer(unit, unit @ rest)
+    return np.array(chosen, dtype=np.int64)
 
 
 @part

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from navsym.core.answers import Answer
 from navsym.core.tables import Table
-from navsym.guaranteed.convex import LP_SOLVERS, GridProblem, grid_problem, guaranteed_lp
+from navsym.guaranteed.convex import LP_SOLVERS, GridProblem, grid_problem, guaranteed_lp, sampled_problem
 from navsym.guaranteed.problem import GuaranteedProblem
 
 if TYPE_CHECKING:
@@ -30,16 +30,7 @@ def sample_regressors(problem: GuaranteedProblem, count: int = 4000) -> GridProb
     nodes, weights = np.polynomial.legendre.leggauss(4)
     cells = count // 4
     v = ((np.arange(cells)[:, None] + (nodes + 1) / 2) / cells).ravel()
-    share = np.tile(weights / 2 / cells, cells)
-    panels = problem.exact().panels
-    parts = [panel.numbers(v) for panel in panels]
-    lengths = [float(end - start) for start, end, _ in (panel.edges() for panel in panels)]
-    return GridProblem(
-        np.hstack([H for _, H, _ in parts]),
-        np.array([float(p) for p in problem.functional]),
-        np.concatenate([np.full(v.size, sigma) for _, _, sigma in parts]),
-        np.concatenate([length * share for length in lengths]),
-    )
+    return sampled_problem(problem, v, np.tile(weights / 2 / cells, cells))
 
 
 def quadratic_estimator(samples: GridProblem, trust: Array) -> Array:

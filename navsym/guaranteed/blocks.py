@@ -240,7 +240,8 @@ def solve_blocks(
                   "=", which (c, d) means, too. The times of a drift and 0 make the estimate blind to it; ones and 0
                   give weights of zero mean; ``>= 0`` for one weight forbids that it is negative
 
-    Unknowns that nobody asks for are nuisance parameters: their entry of P is 0. Raises NotEstimableError, ShapeError,
+    Unknowns that nobody asks for are nuisance parameters: their entry of P is 0. All may be, where weights of zero do
+    not keep the constraints. Raises NotEstimableError, ShapeError,
     EmptyError and DomainError.
 
     >>> import navsym as nav
@@ -367,20 +368,21 @@ def state_problem(
     P = [read_exact(p, "solve_blocks: target") for p in as_list(target, "solve_blocks: target")]
     if not blocks or not P:
         raise EmptyError("expected blocks and a target; got none; give at least one of each", where="solve_blocks")
-    if not any(P):
-        raise DomainError("expected a target that is not zero; got zeros; every estimate of it is free", where="target")
-    parts, left = [block.part for block in blocks], {}
+    parts, left, free = [block.part for block in blocks], {}, not any(P)
     for part in parts:
         if part.H.ncols() != len(P):
             message = f"expected {len(P)} unknowns in each block; got {part.H.ncols()}; complete the rows"
             raise ShapeError(message, where="solve_blocks: blocks")
     for constraint in constraints:
         columns, relation, bound = read_constraint(constraint, [int(part.H.nrows()) for part in parts])
+        free = free and (bound == 0 or relation == ("<=" if bound > 0 else ">="))
         parts = [part._replace(H=add_column(part.H, c)) for part, c in zip(parts, columns, strict=True)]
         if relation != "=":
             largest = max((abs(e) for c in columns for e in c), default=fmpq(0)) or fmpq(1)
             left[len(P)] = fmpq(1 if relation == "<=" else -1) * largest
         P.append(bound)
+    if free:
+        raise DomainError("expected a target that is not zero; got zeros; every estimate of it is free", where="target")
     far = FAR * max(to_fmpq(e.upper()) for part in parts for e in part.reach())
     for k, sign in left.items():
         row = fmpq_mat(1, len(P), [sign if j == k else fmpq(0) for j in range(len(P))])

@@ -68,16 +68,21 @@ def grid_problem(problem: GuaranteedProblem, count: int = 201) -> GridProblem:
     """
     if not 2 <= count <= MOST_TIMES:
         raise DomainError(f"grid: expected 2 to {MOST_TIMES} times; got {count}; choose a number between")
-    v = np.linspace(0.0, 1.0, count)
     share = np.full(count, 1.0 / (count - 1))
     share[[0, -1]] /= 2
-    parts = [panel.numbers(v) for panel in problem.exact().panels]
+    return sampled_problem(problem, np.linspace(0.0, 1.0, count), share)
+
+
+def sampled_problem(problem: GuaranteedProblem, v: Array, share: Array) -> GridProblem:
+    """The problem at fractions v (n,) of every measurement and piece, each of which stands for a share (n,) of it."""
+    panels = problem.exact().panels
+    parts = [(panel.numbers(v), [float(e.mid()) for e in panel.edges()]) for panel in panels]
     return GridProblem(
-        np.hstack([H for _, H, _ in parts]),
+        np.hstack([H for (_, H, _), _ in parts]),
         np.array([float(p) for p in problem.functional]),
-        np.concatenate([np.full(count, sigma) for _, _, sigma in parts]),
-        np.concatenate([(times[-1] - times[0]) * share for times, _, _ in parts]),
-        np.concatenate([times for times, _, _ in parts]),
+        np.concatenate([np.full(v.size, sigma) for (_, _, sigma), _ in parts]),
+        np.concatenate([(end - start) * share for _, (start, end, _) in parts]),
+        np.concatenate([times for (times, _, _), _ in parts]),
     )
 
 

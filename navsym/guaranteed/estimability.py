@@ -16,10 +16,10 @@ from flint import arb, arb_series, fmpq
 from navsym.claims import PROVED, Equation
 from navsym.core.balls import UnsupportedError, enclose, precision, series_terms
 from navsym.core.errors import NavsymError, NotEstimableError
-from navsym.core.exact import decimal, to_fmpq, to_rational
+from navsym.core.exact import decimal, rational_near
+from navsym.core.simplex import independent_rows
 from navsym.guaranteed.certificate.enclosure import interval_ball, joint_tape, series_coefficients
 from navsym.guaranteed.problem import GuaranteedProblem
-from navsym.guaranteed.search.exchange import independent_rows
 from navsym.guaranteed.time_varying import rational_end
 from navsym.language.expression import to_text
 from navsym.models.modelfile import ModelFile, Piece
@@ -252,10 +252,7 @@ def prove_relation(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) ->
 
 def recognised(x: arb) -> sp.Rational | None:
     """The rational number with a small denominator next to x, or None."""
-    value = to_fmpq(x)
-    number = to_rational(value)
-    best = number.limit_denominator(10**9)
-    return best if abs(best - number) < sp.Rational(1, 10**40) else None
+    return rational_near(x, 10**9, sp.Rational(1, 10**40))
 
 
 def solve_at_times(problem: GuaranteedProblem, k: int, involved: list[int]) -> Relation | None:
@@ -281,7 +278,7 @@ def rows_of_full_rank(values: np.ndarray, count: int) -> list[int] | None:
     if not np.isfinite(values).all():
         return None
     scaled = values[:, :count] / np.maximum(np.abs(values[:, :count]).max(axis=0), 1e-300)
-    chosen = independent_rows(scaled, count, 1e-6, 0.5)  # the simplest of the good ones
+    chosen = independent_rows(scaled, count, 1e-6, 0.5).tolist()  # the simplest of the good ones
     return chosen if len(chosen) == count else None
 
 

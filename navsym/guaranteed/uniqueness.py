@@ -19,35 +19,34 @@ from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from navsym.claims import PROVED, Equation
 from navsym.core.balls import enclose, precision
-from navsym.core.exact import to_fmpq, to_rational
+from navsym.core.exact import EIGHT, rational_near, to_fmpq, to_rational
+from navsym.core.simplex import independent_rows
 from navsym.guaranteed.certificate.basis import Basis, unit_fraction
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem, Touch, prove_panel_bound
 from navsym.guaranteed.certificate.fixed import flatten_contacts
 from navsym.guaranteed.estimability import is_zero_matrix
-from navsym.guaranteed.search.exchange import Contacts, add_places, independent_rows, interior_dual
+from navsym.guaranteed.search.exchange import Contacts, add_places, interior_dual
 from navsym.prove.ladder import decide
 
 BITS = 256
-NEAR = sp.Rational(1, 10**8)
 NOTHING = arb(2) ** -200
 SAMPLES = 12
 
 
 @dataclass(frozen=True, slots=True)
 class ContactPlace:
-    """An exact place where the dual polynomial is ``sign * sigma``."""
+    """An exact place where the dual polynomial is ``sign * sigma``, and whether it is flat there."""
 
     panel: int
     at: fmpq
     sign: int
+    flat: bool = False
 
-
-def recognised(x: arb) -> sp.Rational | None:
-    """The rational with a small denominator next to a ball."""
-    value = to_fmpq(x)
-    number = to_rational(value)
-    best = number.limit_denominator(720)
-    return best if abs(best - number) <= NEAR * max(1, abs(number)) else None
+    @property
+    def touch(self) -> Touch:
+        """The same for a proof over the panel."""
+        inside = self.flat or 0 < self.at < 1
+        return Touch(self.at, self.sign, True, "no" if inside else "from" if self.at == 0 else "to")
 
 
 def exact_places(problem: PanelProblem, contacts: Contacts, x: Sequence[sp.Rational]) -> list[ContactPlace] | None:
@@ -59,11 +58,12 @@ def exact_places(problem: PanelProblem, contacts: Contacts, x: Sequence[sp.Ratio
         if sign:
             places += [ContactPlace(k, fmpq(j, SAMPLES), sign) for j in range(SAMPLES + 1)]
             continue
-        mine = [place for place in guess_places(contacts, k, panel, f) if is_contact(panel, f, place)]
-        touches = [Touch(p.at, p.sign, True, "no" if has_zero_slope(panel, f, p) else end_label(p.at)) for p in mine]
+        reached = [place for place in guess_places(contacts, k, panel, f) if is_reached(panel, f, place)]
+        known = [replace(place, flat=has_zero_slope(panel, f, place)) for place in reached]
+        mine = [place for place in known if place.flat or place.at in (0, 1)]
         with precision(BITS):
             balls = [enclose(c, bits=BITS) for c in x]
-            if prove_panel_bound(panel, balls, touches) is None:
+            if prove_panel_bound(panel, balls, [place.touch for place in mine]) is None:
                 return None
         places += mine
     return places
@@ -85,14 +85,13 @@ def guess_places(contacts: Contacts, k: int, panel: Panel, f: sp.Expr) -> list[C
         best = to_rational(share).limit_denominator(60)
         value = f.subs(panel.variable, panel.start + (panel.end - panel.start) * best)
         found[to_fmpq(best)] = 1 if bool(enclose(value) > 0) else -1
-    return [ContactPlace(k, at_, sign) for at_, sign in found.items()]
+    return [ContactPlace(k, share, sign) for share, sign in found.items()]
 
 
-def is_contact(panel: Panel, f: sp.Expr, place: ContactPlace) -> bool:
-    """The bound is reached there exactly, with a slope of zero inside the panel."""
+def is_reached(panel: Panel, f: sp.Expr, place: ContactPlace) -> bool:
+    """The bound is reached there exactly."""
     value = f.subs(panel.variable, exact_time(panel, place))
-    reached = decide(Equation(value, place.sign * panel.sigma)).status is PROVED
-    return reached and (end_label(place.at) != "no" or has_zero_slope(panel, f, place))
+    return decide(Equation(value, place.sign * panel.sigma)).status is PROVED
 
 
 def has_zero_slope(panel: Panel, f: sp.Expr, place: ContactPlace) -> bool:
@@ -104,11 +103,6 @@ def has_zero_slope(panel: Panel, f: sp.Expr, place: ContactPlace) -> bool:
 def exact_time(panel: Panel, place: ContactPlace) -> sp.Expr:
     """The exact instant of a place, whose share of the panel is from 0 to 1."""
     return panel.start + (panel.end - panel.start) * to_rational(place.at)
-
-
-def end_label(at: fmpq) -> str:
-    """The end of a panel at which a share lies: ``from`` at 0, ``to`` at 1, ``no`` inside."""
-    return "from" if at == 0 else "to" if at == 1 else "no"
 
 
 def has_interior_weights(problem: PanelProblem, places: Sequence[ContactPlace]) -> bool:
@@ -217,7 +211,7 @@ def most_interior_weights(N: np.ndarray, P: np.ndarray) -> np.ndarray | None:
 
 def independent_first(N: np.ndarray, m: int) -> list[int] | None:
     """Columns ordered so that the first m are independent; None when there are no m of them."""
-    chosen = independent_rows(N.T, m, 1e-8)
+    chosen = independent_rows(N.T, m, 1e-8).tolist()
     return None if len(chosen) < m else chosen + [i for i in range(N.shape[1]) if i not in chosen]
 
 
@@ -234,17 +228,9 @@ def independent_first(N: np.ndarray, m: int) -> list[int] | None:
 LARGEST, CLOSE, MOST = 720, 1e-6, 6
 
 
-@dataclass(frozen=True, slots=True)
-class Pin:
-    """An exact place, and whether the dual is flat there."""
-
-    place: ContactPlace
-    flat: bool
-
-
 def is_only_optimum(problem: PanelProblem, basis: Basis, contacts: Contacts, dual: Sequence[arb]) -> bool | None:
     """True when the optimal estimator is proved to be the only one, False when another is, else None."""
-    simple = [c for c in map(recognised, dual) if c is not None]
+    simple = [c for x in dual if (c := rational_near(x, LARGEST, EIGHT)) is not None]
     exact = (exact_places(problem, contacts, simple) if len(simple) == len(dual) else None) or []
     used = largest_support(*signed_columns(problem, exact)) if exact else []
     if used and has_interior_weights(problem, [exact[i] for i in used]):
@@ -258,7 +244,7 @@ def is_only_optimum(problem: PanelProblem, basis: Basis, contacts: Contacts, dua
         pins = guess_pins(places)
         x = None if pins is None else interior_dual(basis.panels, places)
         if pins is not None and x is not None and touches_only_at(problem, basis, pins, x):
-            return decide_weights(problem, [pin.place for pin in pins])
+            return decide_weights(problem, pins)
     return decide_by_simple_dual(problem, exact, simple)
 
 
@@ -282,7 +268,7 @@ def is_strictly_below(panel: Panel, dual: Sequence[arb]) -> bool:
     return prove_panel_bound(replace(panel, sigma=panel.sigma * (1 - sp.Rational(1, 10**9))), dual, []) is not None
 
 
-def guess_pins(contacts: Contacts) -> list[Pin] | None:
+def guess_pins(contacts: Contacts) -> list[ContactPlace] | None:
     """The contacts at shares with a small denominator; None where one has none."""
     pins = []
     for k, u, inner, sign in zip(contacts.panel, contacts.u, contacts.inner, contacts.sign, strict=True):
@@ -291,25 +277,26 @@ def guess_pins(contacts: Contacts) -> list[Pin] | None:
         best = exact.limit_denominator(LARGEST)
         if abs(best - exact) > CLOSE:
             return None
-        pins.append(Pin(ContactPlace(int(k), to_fmpq(best), int(sign)), bool(inner)))
+        pins.append(ContactPlace(int(k), to_fmpq(best), int(sign), bool(inner)))
     return pins
 
 
-def touches_only_at(problem: PanelProblem, basis: Basis, pins: Sequence[Pin], x: np.ndarray) -> bool:
+def touches_only_at(problem: PanelProblem, basis: Basis, pins: Sequence[ContactPlace], x: np.ndarray) -> bool:
     """A dual next to x meets its bound at the pins, flat where they say so, and is proved to stay below elsewhere."""
     with precision(BITS):
         dual = exact_pinned_dual(problem, basis, pins, x)
         if dual is None:
             return False
         for k, panel in enumerate(problem.panels):
-            mine = [pin for pin in pins if pin.place.panel == k]
-            touches = [Touch(p.place.at, p.place.sign, True, "no" if p.flat else end_label(p.place.at)) for p in mine]
+            touches = [pin.touch for pin in pins if pin.panel == k]
             if not (is_strictly_below(panel, dual) if not touches else prove_panel_bound(panel, dual, touches)):
                 return False
     return True
 
 
-def exact_pinned_dual(problem: PanelProblem, basis: Basis, pins: Sequence[Pin], x: np.ndarray) -> list[arb] | None:
+def exact_pinned_dual(
+    problem: PanelProblem, basis: Basis, pins: Sequence[ContactPlace], x: np.ndarray
+) -> list[arb] | None:
     """Balls around a dual that meets the conditions of the pins exactly: some entries rational, the others follow."""
     rows, right = pin_conditions(problem, pins)
     near = (basis.transform.transpose() * arb_mat([[arb(float(c))] for c in x])).entries()
@@ -331,21 +318,23 @@ def exact_pinned_dual(problem: PanelProblem, basis: Basis, pins: Sequence[Pin], 
     return [found[j] for j in range(len(near))]
 
 
-def pin_conditions(problem: PanelProblem, pins: Sequence[Pin]) -> tuple[list[list[arb]], list[arb]]:
+def pin_conditions(problem: PanelProblem, pins: Sequence[ContactPlace]) -> tuple[list[list[arb]], list[arb]]:
     """Values, and slopes where flat, as rows for the dual, and what they must be."""
     rows, right = [], []
     for pin in pins:
-        panel = problem.panels[pin.place.panel]
-        series = panel.series(arb(pin.place.at), arb(1), int(pin.flat))
+        panel = problem.panels[pin.panel]
+        series = panel.series(arb(pin.at), arb(1), int(pin.flat))
         rows.append([h[0] for h in series])
-        right.append(pin.place.sign * panel.bound())
+        right.append(pin.sign * panel.bound())
         if pin.flat:
             rows.append([h[1] for h in series])
             right.append(arb(0))
     return rows, right
 
 
-def conditions_follow(problem: PanelProblem, pins: Sequence[Pin], chosen: Sequence[int], others: Sequence[int]) -> bool:
+def conditions_follow(
+    problem: PanelProblem, pins: Sequence[ContactPlace], chosen: Sequence[int], others: Sequence[int]
+) -> bool:
     """The conditions left out follow from the others: each is one of them exactly (a period later), or is empty."""
     if not others:
         return True
@@ -357,12 +346,12 @@ def conditions_follow(problem: PanelProblem, pins: Sequence[Pin], chosen: Sequen
     return all(is_zero_matrix(exact[i]) or any(is_same(exact[i], exact[j]) for j in chosen) for i in others)
 
 
-def exact_conditions(problem: PanelProblem, pins: Sequence[Pin]) -> list[tuple[sp.Expr, ...]]:
+def exact_conditions(problem: PanelProblem, pins: Sequence[ContactPlace]) -> list[tuple[sp.Expr, ...]]:
     """The rows of the conditions with their right sides, exactly; slopes are with respect to the share."""
     rows: list[tuple[sp.Expr, ...]] = []
     for pin in pins:
-        panel, at = problem.panels[pin.place.panel], exact_time(problem.panels[pin.place.panel], pin.place)
-        rows.append((*(h.subs(panel.variable, at) for h in panel.functions), pin.place.sign * panel.sigma))
+        panel, at = problem.panels[pin.panel], exact_time(problem.panels[pin.panel], pin)
+        rows.append((*(h.subs(panel.variable, at) for h in panel.functions), pin.sign * panel.sigma))
         if pin.flat:
             slopes = (h.diff(panel.variable) * (panel.end - panel.start) for h in panel.functions)
             rows.append((*(h.subs(panel.variable, at) for h in slopes), sp.S.Zero))

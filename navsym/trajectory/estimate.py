@@ -18,7 +18,7 @@ import numpy as np
 
 from navsym.core.arrays import Array, freeze
 from navsym.core.errors import DomainError, ShapeError
-from navsym.core.simplex import simplex, spread_rows
+from navsym.core.simplex import independent_rows, simplex
 from navsym.trajectory.kernels.tracks import DOUBTED, backward, forward
 from navsym.trajectory.tracks import (
     GAP,
@@ -621,7 +621,7 @@ def minimum_sum_solution(dt: Array, sigma: Array, order: int, derivative: int) -
     functional = np.linalg.solve(R.T, target)
     scale = float(np.abs(functional).max())
     rows = np.ascontiguousarray(Q / sigma[:, None])
-    basis, found, dual, count = simplex(rows, functional / scale, spread_rows(rows), 50 * order)
+    basis, found, dual, count = simplex(rows, functional / scale, independent_rows(rows, order), 50 * order)
     if count < 0:
         w, _ = least_squares(dt, sigma, order, derivative)
         return w, float(np.abs(w * sigma).sum()), [], np.zeros(order)

@@ -18,7 +18,7 @@ import highspy
 import numpy as np
 import sympy as sp
 
-from navsym.core.simplex import simplex, spread_rows
+from navsym.core.simplex import simplex
 from navsym.guaranteed.certificate.basis import cached_basis, make_basis
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
 from navsym.guaranteed.certificate.fixed import certify
@@ -217,7 +217,7 @@ def compare_lengths(count, grid):
 
 def main(count=10_000, rounds=3, lengths=1000, compiled=False):
     if compiled:
-        for loop in (find_alternance, contact_system, grid_values, lagrangian, local_maxima, simplex, spread_rows):
+        for loop in (find_alternance, contact_system, grid_values, lagrangian, local_maxima, simplex):
             loop.compiled()
         follow_lengths.compiled()
     for name, case in PROBLEMS.items():

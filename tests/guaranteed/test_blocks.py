@@ -181,6 +181,16 @@ def test_a_constraint_makes_the_weights_blind_to_a_drift():
     assert float(found.value.lower) >= float(free.value.lower) and found.check()
 
 
+@pytest.mark.parametrize(("relation", "bound"), [("=", 1), (">=", 1), ("<=", -1)])
+def test_a_target_of_zeros_beside_a_constraint_that_zero_weights_break_is_answered(relation, bound):
+    blocks, factors, side = [nav.Block([["1"]])] * 3, [["1"], ["2"], ["3"]], bound
+    found = nav.solve_blocks(blocks, ["0"], constraints=[(factors, relation, bound)])  # weights of zero mean
+    assert float(found.value.lower) == pytest.approx(1) and [2 * w[0] for w in found.weights] == [-side, 0, side]
+    assert nav.check(found)[0].status == "ACCEPTED"
+    with pytest.raises(nav.NavsymError, match="every estimate of it is free"):
+        nav.solve_blocks(blocks, ["0"], constraints=[(factors, relation, -bound if relation != "=" else 0)])
+
+
 def bounded_sums(rng, plain):
     """Bounds of sums of weights, and of single weights; about half of them bind."""
     sizes = [H.shape[0] for H, *_ in plain]

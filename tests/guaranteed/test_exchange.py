@@ -46,12 +46,8 @@ def test_the_leading_chebyshev_coefficient_is_bounded_by_the_alternance(m):
 def test_the_compiled_loops_give_the_bits_of_the_interpreted_ones():
     rng = np.random.default_rng(0)
     G, p = rng.standard_normal((40, 3)), rng.standard_normal(3)
-    start = simplex.spread_rows.py_func(G)
-    pairs = [
-        (simplex.spread_rows, (G,)),
-        (simplex.simplex, (G, p, start, 500)),
-        (local_maxima, (rng.standard_normal((2, 9)), chebyshev_nodes(101))),
-    ]
+    start = simplex.independent_rows(G, 3)
+    pairs = [(simplex.simplex, (G, p, start, 500)), (local_maxima, (rng.standard_normal((2, 9)), chebyshev_nodes(101)))]
     for loop, arguments in pairs:
         fast, slow = compile_loop(loop.py_func)(*arguments), loop.py_func(*arguments)
         for a, b in zip(fast, slow, strict=True):
@@ -88,7 +84,7 @@ def test_the_grid_simplex_reaches_the_optimum_of_a_general_solver(seed):
     rng = np.random.default_rng(seed)
     m, n = int(rng.integers(1, 7)), 60
     G, p = rng.standard_normal((n, m)), rng.standard_normal(m)
-    _, weights, x, count = simplex.simplex(G, p, simplex.spread_rows(G), 2000)
+    _, weights, x, count = simplex.simplex(G, p, simplex.independent_rows(G, m), 2000)
     reference = linprog(np.ones(2 * n), A_eq=np.hstack([G.T, -G.T]), b_eq=p)
     assert count >= 0
     assert np.abs(weights).sum() == pytest.approx(reference.fun, rel=1e-7)

@@ -1,4 +1,4 @@
-"""The fast tests of an optimum beside their slow twins: one polynomial for a panel, tapes; and Krawczyk's test."""
+"""The fast tests of an optimum beside their slow twins: one polynomial for a panel, tapes; the box of Newton's method."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def polished(case, sigma=1):
 
 
 @pytest.mark.parametrize("case", FULL)
-def test_krawczyks_image_contains_the_solution_of_a_smaller_box(case):
+def test_the_image_of_newtons_method_contains_the_solution_of_a_smaller_box(case):
     made, found = polished(FULL[case], R(2, 3))
     with precision(256):
         centre = [c.mid() for c in solution_unknowns(found)]

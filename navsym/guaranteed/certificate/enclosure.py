@@ -19,7 +19,7 @@ import sympy as sp
 from flint import arb, arb_mat, arb_poly, arb_series, ctx, fmpq
 from numpy.typing import NDArray
 
-from navsym.core.balls import OPERATIONS, Instruction, multiply_all, read_instruction, series_terms
+from navsym.core.balls import OPERATIONS, Instruction, flatten, multiply_all, series_terms
 from navsym.core.exact import to_fmpq
 
 # Several expressions as one tape: shared parts once, constants once for each precision, run over balls and series.
@@ -92,18 +92,7 @@ def step_call(step: Instruction) -> tuple[Callable[..., Any], Any, int | None]:
 
 def joint_tape(expressions: Sequence[sp.Expr]) -> JointTape:
     """Flatten expressions; raises :class:`~navsym.core.balls.UnsupportedError` outside the language."""
-    steps: list[Instruction] = []
-    place: dict[sp.Basic, int] = {}
-
-    def visit(node: sp.Basic) -> int:
-        if node not in place:
-            operation, arguments, constant = read_instruction(node)
-            steps.append(Instruction(operation, tuple(visit(a) for a in arguments), constant))
-            place[node] = len(steps) - 1
-        return place[node]
-
-    outputs = tuple(visit(sp.sympify(e, strict=True)) for e in expressions)
-    return JointTape(tuple(steps), outputs)
+    return JointTape(*flatten(expressions))
 
 
 FLOATS: dict[str, Any] = {

@@ -2,7 +2,7 @@
 
 Weak duality: if ``|x . H| <= sigma`` everywhere and ``sum w_i H(t_i) = P`` then
 ``x . P <= optimum <= sum sigma |w_i|``. A gap certificate names x and the places t_i, both exact,
-and nothing has to touch. A touch certificate names a small box in which Krawczyk's test finds an
+and nothing has to touch. A touch certificate names a small box in which Newton's method for intervals finds an
 exact solution of the optimality system; then both sides are equal and known to any digits.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 from flint import arb, arb_mat, ctx, fmpq
 
 from navsym.core.balls import precision
-from navsym.core.exact import decimal, from_decimal, lower_end, to_fmpq, to_fraction, upper_end
+from navsym.core.exact import EIGHT, decimal, from_decimal, lower_end, rational_near, to_fmpq, upper_end
 from navsym.guaranteed.certificate.basis import Basis, make_basis, unit_fraction
 from navsym.guaranteed.certificate.enclosure import (
     Panel,
@@ -26,7 +26,6 @@ from navsym.guaranteed.certificate.enclosure import (
     dot_product,
     prove_panel_bound,
 )
-from navsym.guaranteed.certificate.krawczyk import krawczyk
 from navsym.guaranteed.certificate.polish import ContactSolution, pin_dual, sharpen_contacts
 from navsym.guaranteed.search.exchange import (
     Contacts,
@@ -230,11 +229,21 @@ def box_radii(problem: PanelProblem, basis: Basis, found: ContactSolution, place
 def solution_box(
     problem: PanelProblem, found: ContactSolution, centre: Sequence[arb], radius: Sequence[arb]
 ) -> list[arb] | None:
-    """Balls around the exact solution of the optimality system, by Krawczyk's test."""
+    """Balls around the only solution of the optimality system in a box, or None, by Newton's method for intervals.
+
+    With F' enclosed over the box Z the set ``z - F'(Z)^-1 F(z)`` contains every zero in Z; when it lies inside Z a zero
+    exists and is the only one. Neumaier, Interval Methods for Systems of Equations, section 5.1.
+    """
     box = [c + r * arb(0, 1) for c, r in zip(centre, radius, strict=True)]
     value, _ = optimality_system(problem, found, centre)
     _, jacobian = optimality_system(problem, found, box)
-    return krawczyk(centre, radius, value, jacobian)
+    try:
+        moves = jacobian.solve(arb_mat([[f] for f in value]), algorithm="precond").entries()
+    except ZeroDivisionError:
+        return None
+    # A ball that is not finite lies nowhere.
+    inside = all(bool(abs(d) < r) for d, r in zip(moves, radius, strict=True))
+    return [c - d for c, d in zip(centre, moves, strict=True)] if inside else None
 
 
 def optimality_system(problem: PanelProblem, found: ContactSolution, z: Sequence[arb]) -> tuple[list[arb], arb_mat]:
@@ -361,25 +370,12 @@ def ball_support(found: ContactSolution, z: Sequence[arb]) -> tuple[tuple[int, a
 
 
 def certify_gap(
-    problem: PanelProblem,
-    basis: Basis,
-    contacts: Contacts,
-    found: ContactSolution,
-    digits: int,
-    bits: int,
-    carriers: Contacts | None = None,
+    problem: PanelProblem, basis: Basis, contacts: Contacts, found: ContactSolution, digits: int, bits: int
 ) -> CertifiedOptimum:
-    """The two-sided certificate; the dual is shrunk until nothing above the bound is left.
-
-    carriers : what carries the weights; by default the contacts
-    """
+    """The two-sided certificate; the dual is shrunk until nothing above the bound is left."""
     places = digits + basis.loss + 12
     with precision(bits):
-        if carriers is None:
-            at = [from_decimal(decimal(v, places)) for v in found.v]
-            support = complete_support(basis, contacts, at)
-        else:
-            support = complete_support(basis, carriers, [unit_fraction(float(u)) for u in carriers.u])
+        support = complete_support(basis, contacts, [from_decimal(decimal(v, places)) for v in found.v])
         costs = balance_weights(problem, support)
         upper = upper_end(sum(map(abs, costs), arb(0)), digits + 6)
         x, cells, touches = best_dual(problem, basis, contacts, found, digits, from_decimal(upper))
@@ -437,7 +433,8 @@ def dual_attempts(
     # More touches than unknowns are places of a dual that is near its bound along a part of a panel.
     found = found if few else replace(found, touching=())
     if not found.regular:
-        yield [round_number(c) for c in base], digits + 3, found
+        rounded = [rational_near(c, 720, EIGHT) for c in base]  # guesses to be proved
+        yield [c if r is None else to_fmpq(r) for c, r in zip(base, rounded, strict=True)], digits + 3, found
         full, v = contacts, found.v
         if few:
             full = add_places(basis.panels, contacts, contacts.touching)
@@ -458,14 +455,6 @@ def dual_attempts(
 def flatten_contacts(places: Contacts) -> Contacts:
     """The same, taken to be flat at ends as well: so are duals that must touch at places which belong together."""
     return replace(places, inner=np.ones_like(places.inner))
-
-
-def round_number(x: fmpq) -> fmpq:
-    """The rational with a small denominator that agrees with x to eight digits, or x itself: a guess to be proved."""
-    best = to_fraction(x).limit_denominator(720)
-    near = to_fmpq(best)
-    room = max(fmpq(1), abs(x)) / 10**8
-    return near if abs(near - x) < room else x
 
 
 def near_touches(problem: PanelProblem, found: ContactSolution, places: int) -> list[list[Touch]]:

@@ -198,25 +198,14 @@ def pin_dual(
 
 
 def pseudo_inverse(basis: Basis, contacts: Contacts) -> tuple[np.ndarray, bool]:
-    C = basis.panels.coefficients
-    _, J = contact_system(
-        C,
-        *basis.panels.derivatives,
-        basis.panels.functional,
-        contacts.panel,
-        contacts.u,
-        contacts.inner,
-        contacts.sign,
-        contacts.dual,
-        contacts.weights,
-    )
-    if J.shape[0] == J.shape[1] and (inverse := regular_inverse(J)) is not None:
+    made, c = basis.panels, contacts
+    C, (C1, C2) = made.coefficients, made.derivatives
+    _, J = contact_system(C, C1, C2, made.functional, c.panel, c.u, c.inner, c.sign, c.dual, c.weights)
+    square = J.shape[0] == J.shape[1]
+    if square and (inverse := regular_inverse(J)) is not None:
         return inverse, True
-    U, s, Vt = np.linalg.svd(J)
-    keep = s > 1e-9 * s.max()
-    regular = J.shape[0] == J.shape[1] and bool(keep.all())
-    r = int(keep.sum())
-    return (Vt[:r].T / s[:r]) @ U[:, :r].T, regular
+    regular = square and bool(np.linalg.matrix_rank(J, tol=1e-9 * np.linalg.norm(J, 2)) == len(J))
+    return np.linalg.pinv(J, rcond=1e-9), regular
 
 
 def regular_inverse(J: np.ndarray) -> np.ndarray | None:

@@ -1,4 +1,4 @@
-"""Exact contacts for every value of a parameter in a range: Krawczyk's test along a moving centre.
+"""Exact contacts for every value of a parameter in a range: Newton's method for intervals along a moving centre.
 
 In a piece of the range the solution is followed by polynomials z(s), ``p = middle + half s``. The optimality
 system at the moving centre, ``F(s) = F(z(s), p(s))``, and its derivative are enclosed as power series in s with
@@ -75,11 +75,6 @@ class RangeProof:
 
     pieces: tuple[RangePiece, ...]
     documents: tuple[dict[str, Any], ...]
-
-    @property
-    def ends(self) -> tuple[fmpq, fmpq] | None:
-        """What is covered, or None."""
-        return (self.pieces[0].lower, self.pieces[-1].upper) if self.pieces else None
 
 
 def range_document(problem: PanelProblem, parameter: str, pieces: Sequence[RangePiece]) -> dict[str, Any]:
@@ -229,7 +224,7 @@ def dot(x: Sequence[Any], y: Sequence[Any]) -> Any:
 def find_box(
     moving: MovingProblem, pattern: Pattern, curves: Sequence[Sequence[fmpq]]
 ) -> tuple[dict[int, arb], arb] | None:
-    """Radii of a box about the curves in which Krawczyk's test holds for all s, and the value there; or None."""
+    """Radii of a box about the curves in which Newton's method holds for all s, and the value there; or None."""
     z = [list(map(arb, c)) for c in curves]
     free = free_unknowns(pattern, moving.size)
     residual = enclose_series(lambda s: moving_system(moving, pattern, z, {}, s)[0])

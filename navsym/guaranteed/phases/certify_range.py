@@ -33,7 +33,6 @@ from navsym.guaranteed.certificate.range import (
     never,
     range_document,
     short_decimal,
-    value_bounds,
     verify_piece,
 )
 from navsym.guaranteed.phases.closed_forms import sharp_member
@@ -175,31 +174,14 @@ def scaled_certificate(family: Family, form: Echelon, pieces: Sequence[RangePiec
 
     ``sin_k(x)`` is sin(x) less its Taylor polynomial of degree below k, divided by x**k, and so for the others.
     """
-    m, T = len(family.functional), family.parameter
-    v = "v" if T.name != "v" else "place"
-    panels, ties = [], []
-    for k, row in enumerate(family.rows):
-        texts = [scaled_row_text(form, i, row, T.name, v) for i in range(m)]
-        sigma = to_text(family.sigma[k])
-        panels.append({"measurement": k, "from": "0", "to": "1", "sigma": sigma, "H": texts})
-        ties += [tie_identity(form, i, row, text, T, v) for i, text in enumerate(texts)]
+    m, T = len(family.functional), family.parameter.name
+    v = "v" if T != "v" else "place"
+    document = plain_certificate(family, pieces)
+    for row, panel in zip(family.rows, document["panels"], strict=True):
+        panel |= {"from": "0", "to": "1", "H": [scaled_row_text(form, i, row, T, v) for i in range(m)]}
     unit = [[str(int(i == j)) for j in range(m)] for i in range(m)]
-    lower, upper = value_bounds(pieces)
-    found = {
-        "kind": "range",
-        "variable": v,
-        "panels": panels,
-        "functional": scaled_functional(family, form),
-        "bits": BITS,
-        "cells": sum(p.cells for p in pieces),
-        "parameter": T.name,
-        "from": pieces[0].row["from"],
-        "to": pieces[-1].row["to"],
-        "lower": lower,
-        "upper": upper,
-        "pieces": [p.row | {"basis": unit} for p in pieces],
-    }
-    return {"kind": "all", "of": [found, *ties]}
+    own = {"functional": scaled_functional(family, form), "pieces": [p.row | {"basis": unit} for p in pieces]}
+    return tie_certificate(family, form, document | own | {"variable": v})
 
 
 def rescale_family(family: Family, form: Echelon) -> Family:

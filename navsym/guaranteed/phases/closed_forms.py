@@ -18,7 +18,7 @@ import sympy as sp
 from navsym.claims import OPEN, Equation, Optimum, Verdict
 from navsym.claims.statement import Box
 from navsym.core.balls import UnsupportedError, enclose
-from navsym.core.exact import to_fraction, to_rational
+from navsym.core.exact import rational_near, to_fraction, to_rational
 from navsym.core.sandbox import Exhausted, run_limited
 from navsym.guaranteed.certificate.fixed import dual_attempts
 from navsym.guaranteed.certificate.polish import ContactSolution, sharpen_contacts
@@ -41,14 +41,9 @@ from navsym.prove.signs.products import as_product
 # a polynomial in c_i with rational coefficients, whatever algebraic number c_i is.
 
 
-NEAR = sp.Rational(1, 10**35)
-
-
-def rational_near(x: sp.Expr, size: int = 10**7) -> sp.Rational | None:
-    """The rational with a small denominator within 1e-35 of a number with many digits."""
-    value = sp.Rational(str(sp.N(x, 70)))
-    best = value.limit_denominator(size)
-    return best if abs(best - value) < NEAR * max(1, abs(value)) else None
+def short_rational(x: sp.Expr) -> sp.Rational | None:
+    """The rational with a small denominator within 1e-35 of a number with many digits, or None."""
+    return rational_near(sp.Rational(str(sp.N(x, 70))), 10**7, sp.Rational(1, 10**35))
 
 
 def monomial_weights(family: Family, places: Sequence[sp.Expr]) -> tuple[sp.Expr, ...] | None:
@@ -63,7 +58,7 @@ def monomial_weights(family: Family, places: Sequence[sp.Expr]) -> tuple[sp.Expr
     slope = [k * c for k, c in enumerate(omega)][1:]
     weights = []
     for c in shares:
-        below = rational_near(sum(a * sp.N(c, 90) ** k for k, a in enumerate(slope)))
+        below = short_rational(sum(a * sp.N(c, 90) ** k for k, a in enumerate(slope)))
         if below is None:
             return None
         terms = [
@@ -82,7 +77,7 @@ def rational_product(shares: Sequence[sp.Expr]) -> list[sp.Rational] | None:
         value = sp.Rational(str(sp.N(share, 90)))
         shifted = [sp.S.Zero, *c]
         c = [a - value * b for a, b in zip(shifted, [*c, sp.S.Zero], strict=True)]
-    found = [rational_near(a) for a in c]
+    found = [short_rational(a) for a in c]
     return None if any(a is None for a in found) else [a for a in found if a is not None]
 
 
@@ -92,7 +87,7 @@ def power_law_dual(
     """Dual ``x_k = d_k / T**k`` with rational d_k, agreed on by all samples."""
     T, found = family.parameter, []
     for k in range(len(family.functional)):
-        values = [rational_near(x[k] * t**k) for x, t in zip(duals, lengths, strict=True)]
+        values = [short_rational(x[k] * t**k) for x, t in zip(duals, lengths, strict=True)]
         if values[0] is None or any(v != values[0] for v in values):
             return None
         found.append(values[0] / T**k)

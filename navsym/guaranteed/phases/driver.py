@@ -206,13 +206,11 @@ def locate_changes(
     family: Family, spans: Sequence[PatternInterval], closed: Sequence[ClosedForm | None], limit: Budget
 ) -> tuple[Boundary, ...]:
     """The changes from each span to the next, as exactly as they are had within the limit."""
-    found = []
-    for k, (left, right) in enumerate(pairwise(spans)):
-        part = limit.share(1 / (len(spans) - 1 - k))
-        found.append(
-            locate_change(family, left, right, part, closed[k], closed[k + 1]) or unlocated_boundary(left.upper)
-        )
-    return tuple(found)
+    shares = (limit.share(1 / (len(spans) - 1 - k)) for k in range(len(spans) - 1))
+    return tuple(
+        locate_change(family, left, right, part, *forms) or unlocated_boundary(left.upper)
+        for part, (left, right), forms in zip(shares, pairwise(spans), pairwise(closed), strict=False)
+    )
 
 
 def locate_change(
@@ -270,9 +268,8 @@ def relocate_changes(
     found = []
     for k, b in enumerate(changes):
         if b.at is not None and not (is_same_form(rest[k], forms[k]) and is_same_form(rest[k + 1], forms[k + 1])):
-            b = locate_change(family, spans[k], spans[k + 1], limit, forms[k], forms[k + 1]) or unlocated_boundary(
-                spans[k].upper
-            )
+            left, right = spans[k : k + 2]
+            b = locate_change(family, left, right, limit, *forms[k : k + 2]) or unlocated_boundary(left.upper)
         found.append(b)
     return found
 

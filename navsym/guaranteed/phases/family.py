@@ -232,16 +232,13 @@ def model_family(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], s
             "F: expected matrices without the time; got F(t), whose regressors are polynomials with an error of which "
             "only a bound is known, so that no contact is exact; solve for single values instead"
         )
-    return (
-        backward_family(found, name, functional, symbol)
-        if len(found.pieces) == 1
-        else (forward_family(found, name, functional, symbol))
-    )
+    make = backward_family if len(found.pieces) == 1 else forward_family
+    return make(found, name, functional, symbol)
 
 
 def backward_family(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
     """One F: the regressors depend on the time before the end."""
-    (stretch,), T = exact_pieces(found), interval_length(found)
+    (stretch,), T = exact_pieces(found), found.T or sp.S.Zero
     rows = tuple(tuple(sp.expand(h).subs(found.time, T - U) for h in row) for row in stretch.rows)
     rows = tuple(tuple(expand_arguments(h, T, symbol) for h in row) for row in rows)
     names = tuple(m.name for m in found.measurements)
@@ -249,18 +246,12 @@ def backward_family(found: ModelFile, name: str, functional: tuple[sp.Expr, ...]
     return Family(rows, functional, sigma, symbol, True, names, name, sp.S.Zero, T)
 
 
-def interval_length(found: ModelFile) -> sp.Expr:
-    """The length of the interval, which the file has."""
-    assert found.T is not None
-    return found.T
-
-
 def forward_family(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
     """F in pieces: regressors in time, stretch by stretch, and families of their own for shorter lengths.
 
     Raises DomainError when the pieces end at a length that depends on the parameter otherwise than by being it.
     """
-    T, last, n = interval_length(found), found.pieces[-1], len(found.pieces)
+    T, last, n = found.T or sp.S.Zero, found.pieces[-1], len(found.pieces)
     stretches = exact_pieces(found)
     rows = tuple(
         tuple(expand_arguments(h.subs(found.time, U), T, symbol) for h in row) for s in stretches for row in s.rows
@@ -270,15 +261,11 @@ def forward_family(found: ModelFile, name: str, functional: tuple[sp.Expr, ...],
     moved = symbol in T.free_symbols and not any(symbol in cut.free_symbols for cut in cuts)
     if moved and symbol != T:
         raise DomainError(f"interval: expected the length {symbol} itself where F comes in pieces; got {T}; rename it")
-    shorter = model_family(drop_last_piece(found), name, functional, symbol) if moved else None
+    *before, end = found.pieces[:-1]
+    without = replace(found, pieces=(*before, replace(end, end=found.T)))  # the last piece
+    shorter = model_family(without, name, functional, symbol) if moved else None
     least = last.start if moved else sp.S.Zero
     return Family(rows, functional, sigma, symbol, False, names, name, sp.S.Zero, T, (), cuts, shorter, least)
-
-
-def drop_last_piece(found: ModelFile) -> ModelFile:
-    """The model whose last piece is the one before."""
-    *before, end = found.pieces[:-1]
-    return replace(found, pieces=(*before, replace(end, end=found.T)))
 
 
 def expand_arguments(h: sp.Expr, T: sp.Expr, symbol: sp.Symbol) -> sp.Expr:

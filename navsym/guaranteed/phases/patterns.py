@@ -18,8 +18,16 @@ from navsym.core.errors import DomainError
 from navsym.core.exact import to_rational
 from navsym.guaranteed.certificate.basis import Basis, DependentError, make_basis
 from navsym.guaranteed.phases.family import Family
-from navsym.guaranteed.search.exchange import NEGLIGIBLE, Contacts, Panels, find_contacts, regressor_rows
-from navsym.guaranteed.search.kernels import Array, Ints
+from navsym.guaranteed.search.exchange import (
+    NEGLIGIBLE,
+    Contacts,
+    Panels,
+    add_places,
+    find_contacts,
+    pick_contacts,
+    regressor_rows,
+)
+from navsym.guaranteed.search.kernels import Array
 
 # Where several estimators are optimal: the one with a given pattern, if it is among them.
 #
@@ -36,40 +44,30 @@ AT_END = 1e-9
 
 def contact_pattern(found: Contacts) -> Pattern:
     """Panel, kind of place and sign of every contact."""
-    return pattern_marks(found.panel, np.where(found.inner == 1, 0.0, np.sign(found.u)), found.sign)
-
-
-def pattern_marks(panel: Ints, end: Array, sign: Array) -> Pattern:
-    """The pattern of contacts, all (l,): panel, kind of place, sign; end is -1, 1 at an end of the panel, 0 inside."""
+    ends = np.where(found.inner == 1, 0.0, np.sign(found.u))
     kinds = {-1: "from", 0: "no", 1: "to"}
-    return tuple((int(k), kinds[int(e)], int(s)) for k, e, s in zip(panel, end, sign, strict=True))
+    return tuple((int(k), kinds[int(e)], int(s)) for k, e, s in zip(found.panel, ends, found.sign, strict=True))
 
 
 def match_pattern(panels: Panels, found: Contacts, pattern: Pattern) -> Contacts | None:
     """Contacts of the pattern with the same dual, the earliest places first; None when there are none."""
     if not found.touching:
         return None
-    panel, u = all_touches(found)
-    rows = regressor_rows(panels.coefficients, panel, u)
-    sign = np.sign(rows @ found.dual)
-    here = pattern_marks(panel, np.where(np.abs(u) > 1.0 - AT_END, np.sign(u), 0.0), sign)
+    every = add_places(panels, found, found.touching)
+    every = pick_contacts(every, np.lexsort((every.u, every.panel)), ())
+    every = replace(every, inner=(np.abs(every.u) <= 1.0 - AT_END).astype(np.int64))
+    rows, here = regressor_rows(panels.coefficients, every.panel, every.u), contact_pattern(every)
     choices = combinations([i for i, mark in enumerate(here) if mark in pattern], len(pattern))
     for choice in islice(choices, MOST_CHOICES):
         if tuple(here[i] for i in choice) != pattern:
             continue
         chosen = np.array(choice)
         weights = solve_balance(rows[chosen], panels.functional)
-        if weights is not None and (weights * sign[chosen] > NEGLIGIBLE * np.abs(weights).sum()).all():
-            return replace_contacts(found, panel, u, sign, chosen, weights)
+        if weights is not None and (weights * every.sign[chosen] > NEGLIGIBLE * np.abs(weights).sum()).all():
+            pairs = zip(every.panel.tolist(), every.u.tolist(), strict=True)
+            left = tuple(pair for i, pair in enumerate(pairs) if i not in choice)
+            return replace(pick_contacts(every, chosen, left), weights=weights)
     return None
-
-
-def all_touches(found: Contacts) -> tuple[Ints, Array]:
-    """Contacts and further touches in order."""
-    panel = np.concatenate([found.panel, np.array([k for k, _ in found.touching], dtype=np.int64)])
-    u = np.concatenate([found.u, np.array([v for _, v in found.touching])])
-    order = np.lexsort((u, panel))
-    return panel[order], u[order]
 
 
 def solve_balance(rows: Array, functional: Array) -> Array | None:
@@ -77,21 +75,6 @@ def solve_balance(rows: Array, functional: Array) -> Array | None:
     weights: Array = np.linalg.lstsq(rows.T, functional, rcond=1e-11)[0].astype(np.float64)
     rest = np.abs(weights @ rows - functional).max()
     return weights if rest <= BALANCED * np.abs(functional).max() else None
-
-
-def replace_contacts(found: Contacts, panel: Ints, u: Array, sign: Array, chosen: Ints, weights: Array) -> Contacts:
-    """The same dual with other contacts; the places left over are touches."""
-    left = [(int(panel[i]), float(u[i])) for i in range(panel.size) if i not in chosen]
-    at = u[chosen]
-    return replace(
-        found,
-        panel=panel[chosen],
-        u=at,
-        inner=(np.abs(at) <= 1.0 - AT_END).astype(np.int64),
-        sign=sign[chosen],
-        weights=weights,
-        touching=tuple(left),
-    )
 
 
 COUNT = 72
@@ -177,17 +160,7 @@ def order_contacts(found: Contacts, panels: Panels | None = None) -> Contacts:
     touches = zip(found.panel[idle].tolist(), found.u[idle].tolist(), strict=True)
     order = np.lexsort((found.u, found.panel))
     order = order[~idle[order]]
-    return Contacts(
-        found.panel[order],
-        found.u[order],
-        found.inner[order],
-        found.sign[order],
-        found.weights[order],
-        found.dual,
-        found.excess,
-        (*found.touching, *touches),
-        found.value,
-    )
+    return pick_contacts(found, order, (*found.touching, *touches))
 
 
 def scan_patterns(

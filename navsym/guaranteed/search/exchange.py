@@ -16,7 +16,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from navsym.core.arrays import as_array
-from navsym.core.simplex import simplex, spread_rows
+from navsym.core.simplex import independent_rows, simplex
 from navsym.guaranteed.search.alternance import SAME, find_alternance, fine_count, lagrangian, local_maxima
 from navsym.guaranteed.search.kernels import Array, Ints, contact_system, differentiation, grid_values
 
@@ -80,7 +80,7 @@ class Panels:
         nodes = search_nodes(self)
         grid = grid_values(self.coefficients, nodes)
         fine = chebyshev_nodes(fine_count(self.coefficients.shape[1]))
-        return SearchGrid(nodes, grid, spread_rows(grid), fine)
+        return SearchGrid(nodes, grid, independent_rows(grid, grid.shape[1]), fine)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -216,17 +216,16 @@ def add_places(panels: Panels, found: Contacts, more: Sequence[tuple[int, float]
     extra = np.array([v for _, v in more])
     panel = np.concatenate([found.panel, np.array([k for k, _ in more], dtype=np.int64)])
     u = np.concatenate([found.u, extra])
-    return Contacts(
-        panel,
-        u,
-        np.concatenate([found.inner, (np.abs(extra) < 1.0).astype(np.int64)]),
-        np.sign(regressor_rows(panels.coefficients, panel, u) @ found.dual),
-        np.concatenate([found.weights, np.zeros(extra.size)]),
-        found.dual,
-        found.excess,
-        (),
-        found.value,
-    )
+    inner = np.concatenate([found.inner, (np.abs(extra) < 1.0).astype(np.int64)])
+    sign = np.sign(regressor_rows(panels.coefficients, panel, u) @ found.dual)
+    weights = np.concatenate([found.weights, np.zeros(extra.size)])
+    return replace(found, panel=panel, u=u, inner=inner, sign=sign, weights=weights, touching=())
+
+
+def pick_contacts(found: Contacts, chosen: Ints, touching: tuple[tuple[int, float], ...]) -> Contacts:
+    """Some of the contacts, in the order chosen, and the places that touch beside them."""
+    names = ("panel", "u", "inner", "sign", "weights")
+    return replace(found, touching=touching, **{name: getattr(found, name)[chosen] for name in names})
 
 
 def dual_face(G: Array, p: Array) -> tuple[Ints, Array]:
@@ -237,7 +236,7 @@ def dual_face(G: Array, p: Array) -> tuple[Ints, Array]:
     random = np.random.default_rng(7)
     size = 1e-9 * np.abs(p).max()
     limit = 80 * p.size + 400
-    basis, _, x, _ = simplex(G, p + size * random.standard_normal(p.size), spread_rows(G), limit)
+    basis, _, x, _ = simplex(G, p + size * random.standard_normal(p.size), independent_rows(G, p.size), limit)
     first, vertices = basis, [x]
     for _ in range(VERTICES):
         basis, _, x, _ = simplex(G, p + 100 * size * random.standard_normal(p.size), basis, limit)
@@ -338,23 +337,6 @@ def drop_dependent_contacts(rows: Array, weights: Array) -> tuple[Ints, Array]:
         weights = np.delete(weights - forward[drop] * n, drop)
         kept = np.delete(kept, drop)
     return kept, weights
-
-
-def independent_rows(rows: Array, count: int, least: float, near: float = 1.0) -> list[int]:
-    """Rows that are far from dependent, at most so many: each time the first whose rest is about the longest left.
-
-    least, near : rests below the first are zero, those above the second as a part of the longest about as long
-    """
-    rest, chosen = np.array(rows), list[int]()
-    while len(chosen) < count:
-        sizes = np.linalg.norm(rest, axis=1)
-        best = int(np.argmax(sizes >= near * sizes.max()))
-        if not sizes[best] > least:
-            break
-        chosen.append(best)
-        unit = rest[best] / sizes[best]
-        rest = rest - np.outer(rest @ unit, unit)
-    return chosen
 
 
 def inner_flags(C1: Array, panel: Ints, u: Array, sign: Array, x: Array) -> Ints:

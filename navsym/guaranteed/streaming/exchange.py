@@ -19,9 +19,8 @@ import numpy as np
 from flint import arb, arb_mat
 from numpy.typing import NDArray
 
-from navsym.core.simplex import spread_rows
+from navsym.core.simplex import independent_rows
 from navsym.guaranteed.search.cones import Cone, largest, solve_touching
-from navsym.guaranteed.search.exchange import independent_rows
 
 Array = NDArray[np.float64]
 
@@ -103,7 +102,7 @@ class Cloud:
         size = np.abs(rows).max(axis=0)
         rows = rows / np.where(size > 0.0, size, 1.0)
         rows = rows / np.maximum(np.abs(rows).max(axis=1), 1e-300)[:, None]
-        return [int(places[k]) + self.first for k in spread_rows(rows)]
+        return [int(places[k]) + self.first for k in independent_rows(rows, m)]
 
     def suspects(self, x: Array, radii: Array) -> list[int]:
         """Rows whose bound is not seen to be kept in doubles by all vectors of a ball, the worst first."""
@@ -251,7 +250,7 @@ def complete_basis(cloud: Cloud, lines: Array, near: Sequence[int]) -> list[int]
         chosen = independent_rows(rest - rest @ turn @ turn.T, lack, 1e-9 * size)
         if len(chosen) == lack:
             break
-    return [places[k] for k in chosen]
+    return [places[int(k)] for k in chosen]
 
 
 def cut_cones(cloud: Cloud, found: Optimum) -> bool:
@@ -304,14 +303,13 @@ def rehearse(cloud: Cloud, target: Array, basis: list[int], signs: list[int]) ->
     """The same exchange in doubles: a better start, or the same where doubles do not see the way."""
     rows, first = cloud.scaled, cloud.first
     places = np.array(basis) - first
-    side = np.array(signs or [1] * len(basis), dtype=float)
     try:
         inverse = np.linalg.inv(rows[places])
     except np.linalg.LinAlgError:
         return basis, signs
+    weights = target @ inverse
+    side = np.where(weights == 0.0, signs or 1.0, np.sign(weights))
     for _ in range(4 * len(basis) + 8):
-        weights = target @ inverse
-        side = np.where(weights == 0.0, side, np.sign(weights))
         f = rows @ (inverse @ (side if cloud.shifted is None else side + cloud.shifted[places]))
         if cloud.shifted is not None:
             f -= cloud.shifted
@@ -323,14 +321,15 @@ def rehearse(cloud: Cloud, target: Array, basis: list[int], signs: list[int]) ->
             break
         along, towards = rows[enter] @ inverse, 1.0 if f[enter] > 0.0 else -1.0
         slopes = side * along * towards
-        rising = slopes > 1e-9
-        if not rising.any():
+        steps = np.where(slopes > 1e-9, np.abs(weights), np.inf) / np.maximum(slopes, 1e-9)
+        leave = int(steps.argmin())
+        if steps[leave] == np.inf:
             break
-        leave = int(np.where(rising, np.abs(weights) / np.where(rising, slopes, 1.0), np.inf).argmin())
-        pivot = along[leave]
+        column = inverse[:, leave] / along[leave]
         along[leave] -= 1.0
-        inverse -= np.outer(inverse[:, leave] / pivot, along)  # Sherman and Morrison
+        inverse -= column[:, None] * along  # Sherman and Morrison
         places[leave], side[leave] = enter, towards
+        weights = target @ inverse
     return [int(k) + first for k in places], [int(s) for s in side]
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from flint import arb, arb_mat, fmpq
 
-from navsym.guaranteed.search.exchange import independent_rows
+from navsym.core.simplex import independent_rows
 from navsym.guaranteed.streaming.estimate import Plan
 from navsym.guaranteed.streaming.exchange import Cloud, bounds_of, exchange
 from navsym.guaranteed.streaming.flow import Flow, in_row_space, pivot_columns
