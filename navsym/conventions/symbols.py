@@ -19,9 +19,16 @@ from flint import Ordering, fmpq_mpoly_ctx, fmpz_mpoly_ctx, fmpz_mpoly_vec
 from navsym.conventions.card import Card
 from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED, full_column
-from navsym.conventions.mechanisation import AXES, Mechanisation, World, add_centrifugal, axes_rows, rotate_about_pole
+from navsym.conventions.mechanisation import (
+    AXES,
+    Mechanisation,
+    World,
+    add_centrifugal,
+    axes_rows,
+    plus_height,
+    rotate_about_pole,
+)
 from navsym.conventions.nilpotent import rotate, times
-from navsym.conventions.points import gradient_names
 from navsym.conventions.reading import HIDDEN, Problem
 from navsym.core.exact import to_fmpq
 from navsym.core.rational_functions import Quotient, Ratio, cancel_fraction
@@ -58,6 +65,12 @@ class Entry(Ratio):
     def __init__(self, quotient: Quotient):
         top = reduce_circles(quotient.top)
         super().__init__(quotient if top == quotient.top else cancel_fraction(top, quotient.bottom))
+
+
+def gradient_names(RN: Any, RE: Any, h: Any, third: Any, mean: Any) -> dict[str, Any]:
+    """Words of a card -> the radius of its gradient of gravity; ``mean`` is sqrt(RN RE)."""
+    bare = {"R": RN, "RN": RN, "RE": RE, "sqrt(RN*RE)": mean, "third radius": third}
+    return {**bare, **{f"{name} + h": plus_height(value, h) for name, value in bare.items()}, "radial": third}
 
 
 class Formulas:

@@ -12,10 +12,10 @@ from flint import arb
 
 from navsym.conventions.card import CHOICES, NORTH, WANDER, Card, list_structures
 from navsym.conventions.mechanisation import ROLES, Mechanisation, World
-from navsym.conventions.points import BITS, draw_point, evaluate, gradient_names
+from navsym.conventions.points import BITS, draw_point, evaluate
 from navsym.conventions.reading import read_problem
 from navsym.conventions.search import key_of_points, narrow_card
-from navsym.conventions.symbols import CIRCLES, Formulas, list_rules
+from navsym.conventions.symbols import CIRCLES, Formulas, gradient_names, list_rules
 from navsym.core.balls import precision
 from navsym.language.expression import read_tree
 from tests.conventions import models, reference
