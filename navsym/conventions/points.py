@@ -168,7 +168,7 @@ def pick(source: random.Random, said: Parameter | None, low: float, high: float)
     elif said is not None and said.kind in ("positive", "nonnegative"):
         low, high = max(low, 0.25), max(high, 3.0)
     start, end = fmpq(round(low * 10**6), 10**6), fmpq(round(high * 10**6), 10**6)
-    return arb(start + (end - start) * fmpq(source.randint(101, 899), 1000))
+    return arb(start + (end - start) * fmpq(source.randint(101, 899), 1009))
 
 
 def is_outside(value: Any, said: Parameter) -> bool:

@@ -7,6 +7,7 @@ a rotation by three angles, the force in the frame by that in the body, the rate
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from functools import cache
 from itertools import chain
 from typing import Any
@@ -41,7 +42,7 @@ class Prover:
             self.free_values = draw_values(problem, 99)
         self.certificates: list[Mapping[str, Any]] = []
 
-    def block_texts(self, card: Card, block: Block, sign: int) -> list[list[str]]:
+    def block_texts(self, card: Card, block: Block, sign: Fraction) -> list[list[str]]:
         """The card's block in the user's names."""
         still = card.earth == "none" and card.earth_rate in (None, DROPPED) and card.vector_error != "rotated"
         # Without gravity among the terms a flat Earth that does not turn is an inertial frame.
@@ -50,7 +51,7 @@ class Prover:
             card = Card("inertial", **{name: getattr(card, name) for name in names}, **card.quaternion())
         return self.formulas(narrow_card(card, block[1])).block(*block, sign)
 
-    def is_right(self, card: Card, block: Block, sign: int) -> bool:
+    def is_right(self, card: Card, block: Block, sign: Fraction) -> bool:
         """True where the prover grants that the blocks are equal."""
         written = print_matrix(self.problem.block(*block))
         if {*block} <= {*CONSTANTS}:  # a constant may decay; it depends on no other one

@@ -85,7 +85,7 @@ class Formulas:
         flow = Mechanisation(card, self.world)
         self.columns = cache(lambda role: [full_column(flow, role, k) for k in range(3)])  # of F, every sign plus
 
-    def block(self, row: str, column: str, sign: int = 1) -> list[list[str]]:
+    def block(self, row: str, column: str, sign: Fraction = Fraction(1)) -> list[list[str]]:
         """A block of F as texts, times a sign."""
         parts = self.columns(column)
         return [[self.write(parts[j][row][i], sign) for j in range(3)] for i in range(len(parts[0][row]))]
@@ -248,7 +248,7 @@ class Formulas:
         pair = self.read(left), self.read(right)
         return None not in pair and self.write(pair[0] - pair[1]) == "0"
 
-    def write(self, value: Any, sign: int = 1) -> str:
+    def write(self, value: Any, sign: Fraction = Fraction(1)) -> str:
         """A coefficient in the user's names."""
         if type(value) is int:
             return str(sign * value)

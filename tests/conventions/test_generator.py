@@ -37,7 +37,7 @@ EXACT = [
 
 def random_card(pick: random.Random, cards: list[Card]) -> Card:
     """A card with random signs."""
-    names = ("error", "rotation_sign", "bias_sign")
+    names = ("error", "rotation_sign", "attitude_size", "bias_sign")
     return replace(pick.choice(cards), **{name: pick.choice(CHOICES[name]) for name in names})
 
 
@@ -76,7 +76,7 @@ def worst_difference(flight: reference.Flight) -> Any:
             for i in range(15):
                 value = column[ROLES[i // 3]][i % 3]
                 number = mp.mpf(value) if isinstance(value, int) else mp.mpf(value.str(40, radius=False))
-                sign = signs[ROLES[i // 3]] * signs[ROLES[j // 3]]
+                sign = signs[ROLES[i // 3]] / signs[ROLES[j // 3]]
                 worst = max(worst, abs(sign * number - expected[i, j]))
     return worst
 
