@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
+from fractions import Fraction
 from typing import Any
 
 from navsym.claims.verdict import PROVED, REFUTED
-from navsym.conventions.card import Card
+from navsym.conventions.card import HALF, Card
 from navsym.conventions.converting import Conversion, convert
 from navsym.conventions.generating import list_missing
 from navsym.conventions.measuring import RESET_MARK
@@ -114,7 +115,7 @@ class Conventions(Answer):
         card     : one of ``cards``; the first one unless it is given, which is that of the file where it has one
         progress : called with (steps done, all steps)
         changes  : fields that define the errors, such as ``attitude_error="frame"``: also error, rotation_sign,
-                   bias_sign, angle, position_error, vector_error; everything else stays
+                   attitude_size, bias_sign, angle, position_error, vector_error; everything else stays
 
         Raises DomainError for another field, for a model without a card or with dropped blocks.
 
@@ -123,6 +124,8 @@ class Conventions(Answer):
         >>> found.convert(attitude_error="body").T[3][3:6]
         ('c11', 'c21', 'c31')
         """
+        if not callable(progress):
+            raise DomainError(f"expected a function of two numbers; got {progress!r}; leave it out", where="progress")
         if not self.cards or (card is not None and card not in self.cards):
             message = "expected a card of the model; got none; mend the conflicts first, or take one of cards"
             raise DomainError(message, where="convert: card")
@@ -236,13 +239,15 @@ def rank_outcome(outcome: Outcome) -> tuple[Any, ...]:
     biased = -sum(m.block == ("velocity", "accelerometer_bias") for m in outcome.mismatches)
     gyros = -sum(m.block == ("attitude", "gyro_bias") for m in outcome.mismatches)
     card = outcome.card
-    plain = card.vector_error != "difference", card.error != "estimate - truth"
+    plain = card.vector_error != "difference", card.attitude_size == HALF, card.error != "estimate - truth"
     return biased, gyros, entries, len(card.dropped), *plain
 
 
 def has_names(outcome: Outcome, prover: Prover) -> bool:
     """True where the file names all quantities in the blocks of the card that must change."""
-    blocks = (prover.block_texts(plain_card(outcome.card), mismatch.block, 1) for mismatch in outcome.mismatches)
+    blocks = (
+        prover.block_texts(plain_card(outcome.card), mismatch.block, Fraction(1)) for mismatch in outcome.mismatches
+    )
     return not any(list_missing(block) for block in blocks)
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from fractions import Fraction
 from itertools import product
 from typing import Any
 
 ESTIMATE, TRUTH = "estimate - truth", "truth - estimate"
 KEPT, DROPPED = "kept", "dropped"
+WHOLE, HALF = "angle", "half angle"
 NORTH, WANDER = "north", "wander"
 HAMILTON, FORWARD, BACKWARD = "Hamilton", "body to frame", "frame to body"
 SENSORS = ("gyro", "accelerometer")
@@ -24,6 +26,7 @@ FIELDS: Mapping[str, tuple[str, tuple[str, ...]]] = {
     "error": ("error of velocity and position", (ESTIMATE, TRUTH)),
     "attitude_error": ("attitude error in the", ("frame", "body")),
     "rotation_sign": ("sign of its rotation", ("+", "-")),
+    "attitude_size": ("its size", (WHOLE, HALF)),
     "angle": ("angle", ("phi", "psi")),
     "bias_sign": ("error of the biases", (ESTIMATE, TRUTH)),
     "scale_sign": ("error of the scale factors", (ESTIMATE, TRUTH)),
@@ -58,6 +61,8 @@ class Card:
     attitude_error   : ``frame``: C_est = (E +- [p x]) C; ``body``: C_est = C (E +- [p x]); C leads from body to frame
     angle            : ``phi``: beside the true local level; ``psi``: beside the local level at the estimated position
     rotation_sign    : the sign of [p x] above
+    attitude_size    : ``angle``: p above is the state; ``half angle``: p is two times the state, which is the vector
+                       part of the error quaternion, or Rodrigues' parameters
     bias_sign        : sign of the errors of both sensors' biases; a sensor shows (1 + scale) truth + bias
     scale_sign       : the same of their scale factors; None without them
     earth            : shape; ``none`` is flat, with constant gravity
@@ -83,6 +88,7 @@ class Card:
     attitude_error: str | None = "frame"
     angle: str | None = None
     rotation_sign: str | None = "+"
+    attitude_size: str | None = "angle"
     bias_sign: str | None = ESTIMATE
     scale_sign: str | None = None
     earth: str = "none"
@@ -126,11 +132,16 @@ class Card:
         order = {"quaternion_order": self.quaternion_order}
         return {"quaternion_algebra": HAMILTON, "quaternion_direction": FORWARD if same else BACKWARD, **order}
 
-    def signs(self) -> dict[str, int]:
-        """Role -> +1 where the state is estimate minus truth (for an attitude: the sign of its rotation), else -1."""
-        error, bias, scale = (-1 if w == TRUTH else 1 for w in (self.error, self.bias_sign, self.scale_sign))
+    def signs(self) -> dict[str, Fraction]:
+        """Role -> +1 where the state is estimate minus truth (for an attitude: the sign of its rotation), else -1.
+
+        Of a state that is half of the angle it is a half.
+        """
+        words = self.error, self.bias_sign, self.scale_sign
+        error, bias, scale = (Fraction(-1 if w == TRUTH else 1) for w in words)
+        attitude = Fraction(1 if self.rotation_sign == "+" else -1, 2 if self.attitude_size == HALF else 1)
         sensors = {f"{name}_{kind}": x for kind, x in (("bias", bias), ("scale", scale)) for name in SENSORS}
-        return {"velocity": error, "position": error, "attitude": 1 if self.rotation_sign == "+" else -1, **sensors}
+        return {"velocity": error, "position": error, "attitude": attitude, **sensors}
 
 
 def list_structures(
@@ -230,7 +241,7 @@ def list_curved(flat: Card, radii: int, height: bool) -> Iterator[Card]:
 
 def attitude_formula(card: Mapping[str, Any]) -> str:
     """The definition of the attitude error of a card as JSON data."""
-    small = f"(E {card['rotation_sign']} [p x])"
+    small = f"(E {card['rotation_sign']} {'2 ' * (card['attitude_size'] == HALF)}[p x])"
     return f"C_est = {small} C" if card["attitude_error"] == "frame" else f"C_est = C {small}"
 
 

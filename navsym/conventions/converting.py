@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -31,8 +32,8 @@ from navsym.language.names import quote
 
 #: What a conversion changes exactly: the definition of the errors, and where they are resolved.
 CONVERTED = (
-    "error", "attitude_error", "angle", "rotation_sign", "bias_sign", "scale_sign", "position_error", "vector_error",
-    "axes", "azimuth", "frame",
+    "error", "attitude_error", "angle", "rotation_sign", "attitude_size", "bias_sign", "scale_sign", "position_error",
+    "vector_error", "axes", "azimuth", "frame",
 )  # fmt: skip
 LONG = 400  # letters of a statement that are too many for the checker
 Texts = tuple[tuple[str, ...], ...]
@@ -190,7 +191,7 @@ class Converter:
                 self.step()
                 parts = transform(way, column, k, self.rotation)
                 for row, rows in self.problem.roles.items():
-                    sign = signs[not back][row] * signs[back][column]
+                    sign = signs[not back][row] / signs[back][column]
                     for i, part in zip(rows, parts[row], strict=True):
                         T[i][j], rate[i][j] = (self.formulas.write(x, sign) for x in (part.error, part.mixed))
         return T, rate
@@ -200,10 +201,10 @@ class Converter:
         problem, signs, own = self.problem, self.target.signs(), self.source.signs()
         matrices = {name: print_matrix(getattr(problem, name)) for name in ("F", "H", "G", "reset")}
 
-        def sign(block: tuple[str, str]) -> int:
+        def sign(block: tuple[str, str]) -> Fraction:
             self.step()
             if block[1].startswith(NOISE_MARK):  # the sign of a noise is that of the model as it was
-                return signs[block[0]] * own[block[0]] * self.comparison.block_sign(self.source, block)
+                return signs[block[0]] / own[block[0]] * self.comparison.block_sign(self.source, block)
             return self.comparison.block_sign(self.target, block)
 
         if moves := self.moves:

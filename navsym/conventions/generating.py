@@ -9,14 +9,15 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
+from fractions import Fraction
 from functools import cache
 from typing import Any
 
-from navsym.conventions.card import CHOICES, NORTH, Card
+from navsym.conventions.card import CHOICES, NORTH, WHOLE, Card
 from navsym.conventions.measuring import CORRECTED, RESET_MARK, full_column
 from navsym.conventions.mechanisation import CONSTANTS, Mechanisation
 from navsym.conventions.reading import HIDDEN, Problem, matrix_of, print_matrix, read_known, read_problem
-from navsym.conventions.search import Block, list_blocks, list_cards, plain_card, sign_of
+from navsym.conventions.search import Block, list_blocks, list_cards, list_sizes, plain_card, sign_of
 from navsym.conventions.symbols import Formulas
 from navsym.core.errors import DomainError, EmptyError
 from navsym.language.names import join_place, quote
@@ -91,6 +92,8 @@ def require_known(problem: Problem, where: str) -> None:
 
 def choose_card(problem: Problem, words: Mapping[str, str], where: str) -> Card:
     """The one card that says these words, or says no others."""
+    if WHOLE in list_sizes(problem):
+        words = {"attitude_size": WHOLE, **words}
     right = list(list_cards(problem, words))
     whole = right if len(right) == 1 else [card for card in right if card.words() == words]
     if len(whole) == 1:
@@ -113,7 +116,7 @@ def write_blocks(
     problem: Problem,
     flow: Mechanisation,
     formulas: Formulas,
-    sign: Callable[[Block], int],
+    sign: Callable[[Block], Fraction],
     matrices: Mapping[str, list[list[str]]],
 ) -> None:
     """Write the blocks of a mechanisation into those of F, H, G and the reset that are given."""

@@ -1,7 +1,7 @@
-"""Points of a motion: values of the user's parameters that satisfy the relations of the quantities, in balls.
+"""Points of a motion: the relations that bind the names of its quantities, and values that satisfy them, in balls.
 
-A rotation satisfies C C' = E, the specific force in the frame is C times that in the body, the rates of the Earth and
-of the local level follow from latitude, velocity and radii. What no relation binds is a random rational.
+A rotation is written by three angles, the specific force in the frame by that in the body, the rates of the Earth and
+of the local level by latitude, velocity and radii. What no relation binds is free: at a point it is a random rational.
 """
 
 from __future__ import annotations
@@ -9,34 +9,44 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 from flint import arb, arb_mat, fmpq
 
 from navsym.conventions.card import KEPT, Card
-from navsym.conventions.frames import locate
-from navsym.conventions.measuring import CORRECTED
-from navsym.conventions.mechanisation import Mechanisation, World, add_centrifugal, axes_rows, rotate_about_pole
-from navsym.conventions.nilpotent import rotate
-from navsym.conventions.reading import Problem
+from navsym.conventions.mechanisation import Mechanisation
+from navsym.conventions.nilpotent import NOTHING, apply, constant, transpose
+from navsym.conventions.reading import HIDDEN, Problem
+from navsym.conventions.symbols import GENERATORS, Formulas
 from navsym.core.balls import exact_ball
 from navsym.core.errors import DomainError
 from navsym.language.declarations import Parameter
 from navsym.language.domains import flatten
+from navsym.language.expression import read_tree
 from navsym.language.names import quote
 from navsym.language.printer import print_tree
-from navsym.language.tree import NUMBER, POWER, SYMBOL, Tree, list_names, list_parts
+from navsym.language.tree import NUMBER, POWER, SYMBOL, Tree, build_symbol, list_names, list_parts
+from navsym.language.tree import replace as replace_parts
 
 BITS = 256
 TRIES = 20  # random points before one is taken that leaves the declared ranges
 BRANCHED = ("sqrt", "abs", "log", "asin", "acos", "atan2")  # equal on a range does not mean equal beyond it
+ANGLES = tuple(f"{HIDDEN}a{k}" for k in (1, 2, 3))
+
+#: Quantities, and symbols of those that the file lacks -> where their names lie unless they are declared otherwise.
+LIMITS: Mapping[str, tuple[float, float]] = {
+    **{"latitude": (-1.2, 1.2), "height": (0.25, 1.0), **dict.fromkeys(("radii", "RN", "RE"), (3.0, 6.0))},
+    **{"gravity": (0.5, 3.0), "gravitational_parameter": (0.5, 3.0), "pull": (0.5, 3.0)},
+    **dict.fromkeys(("earth_rate", "rate"), (0.5, 2.0)),
+}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Point:
     """A world in balls, and the value of every parameter in it."""
 
-    world: World
+    world: Any
     values: Mapping[str, Any]
 
 
@@ -49,250 +59,124 @@ def evaluate(tree: Tree, values: Mapping[str, Any]) -> Any:
     return flatten(tree).run(values)
 
 
-class Sampler:
-    """One random point; the quantities are settled one after the other, each bound to those before it."""
-
-    def __init__(self, problem: Problem, card: Card, seed: int, free: bool = False):
-        self.problem, self.card = problem.under(card), card
-        self.random = random.Random(seed)
-        self.rows: list[list[Any]] = []
-        self.values: dict[str, Any] = {}
-        self.outside: set[str] = set()
-        if not free:
-            self.draw_quaternion()
-            self.draw_rotation()
-        bound = [tree for trees in self.problem.quantities.values() for tree in trees if tree.head != SYMBOL]
-        for name in list_names(*bound):
-            self.values.setdefault(name, self.pick(problem.parameters[name]))
-        if free:
-            for name, parameter in problem.parameters.items():
-                self.values.setdefault(name, self.pick(parameter))
-
-    def draw_quaternion(self) -> None:
-        """A unit quaternion with rational components, where they are names."""
-        trees = self.problem.quantities.get("quaternion", ())
-        if all(tree.head == SYMBOL for tree in trees):
-            x, y, z = (fmpq(self.random.randint(1, 9) * self.random.choice((-1, 1)), 7) for _ in range(3))
-            n = 1 + x * x + y * y + z * z
-            for tree, part in zip(trees, (1 - 2 / n, 2 * x / n, 2 * y / n, 2 * z / n), strict=False):
-                self.assign(tree.args[0], arb(part))
-
-    def draw_rotation(self) -> None:
-        """A rotation by Cayley's formula, where its entries are nine names: other quantities may be written by them."""
-        trees = self.problem.quantities.get("rotation", ())
-        if len({*trees}) == 9 and all(tree.head == SYMBOL for tree in trees):
-            self.settle("rotation", [x for row in self.cayley() for x in row])
-
-    def pick(self, parameter: Parameter | None, low: float = -2.0, high: float = 2.0) -> Any:
-        """A random rational in the declared range."""
-        if parameter is not None and parameter.lower is not None and parameter.upper is not None:
-            low, high = float(exact_ball(parameter.lower).mid()), float(exact_ball(parameter.upper).mid())
-        elif parameter is not None and parameter.kind in ("positive", "nonnegative"):
-            low, high = 0.25, 3.0
-        share = self.random.randint(101, 899)
-        start, end = fmpq(round(low * 10**6), 10**6), fmpq(round(high * 10**6), 10**6)
-        return arb(start + (end - start) * fmpq(share, 1000))
-
-    def assign(self, name: str, value: Any) -> None:
-        """Give a name its value, and note where that leaves its range."""
-        self.values[name], said = value, self.problem.parameters[name]
-        if said.lower is not None and said.upper is not None:
-            is_inside = not (value < exact_ball(said.lower) or value > exact_ball(said.upper))
-        else:
-            zero = value.contains(0)
-            is_inside = {"positive": value > 0, "nonnegative": not value < 0, "nonzero": not zero}.get(said.kind, True)
-        self.outside |= set() if is_inside else {name}
-
-    def settle(self, name: str, wanted: Sequence[Any] | None = None, low: float = -2.0, high: float = 2.0) -> list[Any]:
-        """The components of a quantity: what its expressions say, else ``wanted``, else random ones.
-
-        Raises ImpossibleError where an expression contradicts ``wanted``.
-        """
-        trees = self.problem.quantities.get(name)
-        if trees is None:
-            return list(wanted) if wanted is not None else [self.pick(None, low, high)]
-        result = []
-        for k, tree in enumerate(trees):
-            if tree.head == SYMBOL and tree.args[0] not in self.values:
-                value = wanted[k] if wanted is not None else self.pick(self.problem.parameters[tree.args[0]], low, high)
-                self.assign(tree.args[0], value)
-            result.append(evaluate(tree, self.values))
-            if not result[-1].is_finite():
-                message = f"expected quantities that have values; got a {name} that has none; correct its range"
-                raise DomainError(message, where=f"quantities: {name}")
-            if wanted is not None and not result[-1].overlaps(wanted[k]):
-                raise ImpossibleError(name)
-        return result
-
-    def vector(self, name: str) -> list[Any]:
-        """Three components without a relation."""
-        found = self.settle(name)
-        return found if len(found) == 3 else [self.pick(None) for _ in range(3)]
-
-    def rotation(self) -> list[list[Any]]:
-        """The rotation that the file says, or one by Cayley's formula."""
-        known = "rotation" in self.problem.quantities
-        flat = self.settle("rotation", None if known else [x for row in self.cayley() for x in row])
-        C = [flat[3 * k : 3 * k + 3] for k in range(3)]
-        if not all((dot(C[i], C[j]) - int(i == j)).contains(0) for i in range(3) for j in range(3)):
-            message = "expected a rotation, C C' = E for all values of its names; got another matrix; "
-            message += "write it by angles, by nine names, or as a quaternion of four names"
-            raise DomainError(message, where="quantities: rotation")
-        if not arb_mat(C).det() > 0:
-            message = "expected a rotation, det C = 1; got a reflection; correct the sign or the order of an axis"
-            raise DomainError(message, where="quantities: rotation")
-        return C
-
-    def cayley(self) -> list[list[Any]]:
-        """A rotation with rational entries."""
-        q = [fmpq(self.random.randint(1, 9) * self.random.choice((-1, 1)), 7) for _ in range(4)]
-        a, b, c, d = q
-        n = a * a + b * b + c * c + d * d
-        rows = [
-            [a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)],
-            [2 * (b * c + a * d), a * a - b * b + c * c - d * d, 2 * (c * d - a * b)],
-            [2 * (b * d - a * c), 2 * (c * d + a * b), a * a - b * b - c * c + d * d],
-        ]
-        return [[arb(x / n) for x in row] for row in rows]
-
-    def forces(self, C: list[list[Any]]) -> list[Any]:
-        """The specific force in the body; that in the frame is C times it."""
-        if "specific_force" in self.problem.quantities and "specific_force_body" not in self.problem.quantities:
-            frame = self.settle("specific_force")
-            return [dot(column, frame) for column in zip(*C, strict=True)]
-        body = self.vector("specific_force_body")
-        self.settle("specific_force", [dot(row, body) for row in C])
-        return body
-
-    def turned(self, ned: Sequence[Any]) -> list[Any]:
-        """A vector in the axes from north, east, down."""
-        return [dot(row, ned) for row in self.rows]
-
-    def draw(self) -> Point:
-        """The point."""
-        card, given = self.card, self.problem.quantities
-        level = card.frame == "local-level"
-        if "height" in self.problem.measured and not level:
-            raise ImpossibleError("a measured height")
-        C = self.rotation()
-        f, w, v = self.forces(C), self.vector("angular_rate"), self.vector("velocity")
-        (latitude,) = self.settle("latitude", None, -1.2, 1.2)
-        sine, cosine = latitude.sin(), latitude.cos()
-        wander = self.circle("wander_angle")
-        self.rows = axes_rows(card, *wander)
-        h: Any = self.settle("height", None, 0.25, 1.0)[0] if "height" in given else 0
-        RN, RE, third = self.radii()
-        meridian, angle = self.circle("longitude"), self.circle("earth_angle")
-        turn = rotate_about_pole(angle if card.frame == "inertial" else (0, 1))
-        normal = rotate(turn, (-cosine * meridian[1], -cosine * meridian[0], -sine))
-        if self.problem.is_placed and not level:
-            r = self.settle("position", rotate(turn, locate(sine, cosine, meridian, h, RN, RE)))
-        else:
-            r = self.vector("position")
-        radius = dot(r, r).sqrt()
-        earth = self.rotation_of_earth(sine, cosine, level)
-        pull, gravity = self.gravitation(r, radius, level, normal, earth)
-        motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.settle("radius_slope")[0]
-        world = World(
-            *motion,
-            *(gravity, pull, radius, gradient_names(RN, RE, h, third, (RN * RE).sqrt()), None, None),
-            self.settle("lever_arm") if "lever_arm" in given else (0, 0, 0),
-            self.vector("known_vector"),
-            tuple(self.problem.measured),
-            {r: self.vector(f"{r}_correction") for r in CORRECTED} if self.problem.reset else {},
-            *(meridian, angle, wander),
-        )
-        transport = self.transport(world) if level and "transport_rate" in given else None
-        if transport is None and "transport_rate" in given:
-            self.settle("transport_rate")
-        if transport is not None:
-            world = replace(world, transport=transport)
-        for name, parameter in self.problem.parameters.items():
-            if name not in self.values:
-                self.values[name] = self.pick(parameter)
-        return Point(world, self.values)
-
-    def circle(self, name: str) -> tuple[Any, Any]:
-        """Sine and cosine of an angle; those of zero where it is not given."""
-        angle = self.settle(name)[0] if name in self.problem.quantities else arb(0)
-        return angle.sin(), angle.cos()
-
-    def radii(self) -> tuple[Any, Any, Any]:
-        """Meridian, prime vertical, and the radius of gravity."""
-        found = self.settle("radii", None, 3.0, 6.0)
-        if not all(radius > 0 for radius in found):
-            message = "expected radii above zero; got another number; correct it or its range"
-            raise DomainError(message, where="quantities: radii")
-        if len(found) == 1:
-            sphere = self.card.earth != "ellipsoid"
-            return found[0], found[0] if sphere else self.pick(None, 3.0, 6.0), found[0]
-        return found[0], found[1], found[-1]
-
-    def gravitation(
-        self, r: list[Any], radius: Any, level: bool, normal: list[Any], earth: list[Any]
-    ) -> tuple[Any, list[Any]]:
-        """mu/|r|^3, and gravity in the frame or along down."""
-        if "gravitational_parameter" in self.problem.quantities:
-            pull = self.settle("gravitational_parameter", None, 0.5, 3.0)[0] / radius**3
-        else:
-            pull = self.pick(None, 0.5, 3.0)
-        size = len(self.problem.quantities.get("gravity", ()))
-        if level:
-            scalar = self.pick(None, 0.5, 3.0) if size == 3 else self.settle("gravity", None, 0.5, 3.0)[0]
-            if size == 3:
-                trees = self.problem.quantities["gravity"]
-                if any(t.head != SYMBOL or t.args[0] in self.values for t in trees):
-                    found = self.settle("gravity")
-                    scalar = dot([row[2] for row in self.rows], found)
-                self.settle("gravity", self.turned([arb(0), arb(0), scalar]))
-            return pull, [scalar]
-        if size == 3:
-            central = add_centrifugal(self.card, [-pull * x for x in r], earth, r)
-            fields = {"central": central, "normal": [self.pick(None, 0.5, 3.0) * x for x in normal]}
-            wanted = fields.get(self.card.gravity_gradient)
-            return pull, self.settle("gravity", wanted)
-        parameter = self.card.gravity_gradient == "central" and "gravitational_parameter" in self.problem.quantities
-        size_of = self.settle("gravity", [pull * radius] if parameter else None, 0.5, 3.0)[0]
-        if self.card.gravity_gradient == "normal":
-            return pull, [size_of * x for x in normal]
-        if size == 1 and "gravitational_parameter" not in self.problem.quantities:
-            pull = size_of / radius
-        return pull, add_centrifugal(self.card, [-size_of * x / radius for x in r], earth, r)
-
-    def rotation_of_earth(self, sine: Any, cosine: Any, level: bool) -> list[Any]:
-        """The Earth's rate in the frame, or (north, down) of a local level."""
-        trees = self.problem.quantities.get("earth_rate", ())
-        if len(trees) != 3:
-            (rate,) = self.settle("earth_rate", None, 0.5, 2.0)
-            return [rate * cosine, -rate * sine] if level else [arb(0), arb(0), rate]
-        if not level:
-            return self.settle("earth_rate")
-        if all(tree.head != SYMBOL for tree in trees):
-            found = self.settle("earth_rate")
-            north, east, down = (dot(column, found) for column in zip(*self.rows, strict=True))
-            if not east.contains(0):
-                raise ImpossibleError("earth_rate")
-            return [north, down]
-        rate = self.pick(None, 0.5, 2.0)
-        self.settle("earth_rate", self.turned([rate * cosine, arb(0), -rate * sine]))
-        return [rate * cosine, -rate * sine]
-
-    def transport(self, world: World) -> list[Any]:
-        """The transport rate in the axes, in the names that it has."""
-        flow = Mechanisation(replace(self.card, transport_rate=KEPT), world)
-        return self.settle("transport_rate", [arb(x.value) for x in flow.transport_rate(flow.truth())])
+# The relations
 
 
-def dot(u: Sequence[Any], v: Sequence[Any]) -> Any:
-    """The sum of u_k v_k in balls."""
-    return sum((x * y for x, y in zip(u, v, strict=True)), arb(0))
+def euler_texts() -> list[str]:
+    """The entries of a rotation by three angles; every rotation is one of these."""
+    (s1, c1), (s2, c2), (s3, c3) = ((f"sin({a})", f"cos({a})") for a in ANGLES)
+    return [
+        f"{c1}*{c2}", f"{c1}*{s2}*{s3} - {s1}*{c3}", f"{c1}*{s2}*{c3} + {s1}*{s3}",
+        f"{s1}*{c2}", f"{s1}*{s2}*{s3} + {c1}*{c3}", f"{s1}*{s2}*{c3} - {c1}*{s3}",
+        f"-{s2}", f"{c2}*{s3}", f"{c2}*{c3}",
+    ]  # fmt: skip
 
 
-def gradient_names(RN: Any, RE: Any, h: Any, third: Any, mean: Any) -> dict[str, Any]:
-    """Words of a card -> the radius of its gradient of gravity; ``mean`` is sqrt(RN RE)."""
-    bare = {"R": RN, "RN": RN, "RE": RE, "sqrt(RN*RE)": mean, "third radius": third}
-    lifted = {f"{name} + h": value if type(h) is int else value + h for name, value in bare.items()}
-    return {**bare, **lifted, "radial": third}
+def quaternion_texts() -> list[str]:
+    """The components of a unit quaternion by three angles; every one is one of these."""
+    (s1, c1), (s2, c2), (s3, c3) = ((f"sin({a})", f"cos({a})") for a in ANGLES)
+    return [f"{c1}*{c2}", f"{c1}*{s2}", f"{s1}*{c3}", f"{s1}*{s3}"]
+
+
+def substitute(tree: Tree, bound: Mapping[str, Tree]) -> Tree:
+    """The tree with bound names written by free ones."""
+    by = {build_symbol(name): bound[name] for name in list_names(tree) if name in bound}
+    return replace_parts(tree, by) if by else tree
+
+
+@lru_cache(maxsize=256)
+def relate(problem: Problem, card: Card) -> tuple[Mapping[str, Tree], Mapping[str, Sequence[Tree]]]:
+    """Bound name -> what it is in free ones; quantity -> what its components must be."""
+    problem = problem.under(card)
+    rotation = tuple(build_symbol(f"{HIDDEN}c{i}{j}") for i in range(3) for j in range(3))
+    given = {"rotation": rotation, **problem.quantities}
+    bound, wanted = dict[str, Tree](), dict[str, Sequence[Tree]]()
+
+    def bind(quantity: str, texts: Sequence[str]) -> None:
+        wanted[quantity] = [substitute(read_tree(text, None), bound) for text in texts]
+        pairs = zip(given[quantity], wanted[quantity], strict=True)
+        names = {tree.args[0]: value for tree, value in pairs if tree.head == SYMBOL}
+        if not {*names} & {*list_names(*wanted[quantity])}:  # others are written by these: they are free
+            bound.update((name, value) for name, value in names.items() if name not in bound)
+
+    for name, texts in (("quaternion", quaternion_texts()), ("rotation", euler_texts())):
+        if name in given and all(tree.head == SYMBOL for tree in given[name]):
+            bind(name, texts)
+            del wanted[name]
+    if {"specific_force", "specific_force_body"} <= set(given):
+        C, body = ([print_tree(tree) for tree in given[name]] for name in ("rotation", "specific_force_body"))
+        bind("specific_force", [" + ".join(f"({C[3 * i + k]})*({body[k]})" for k in range(3)) for i in range(3)])
+    for name, vector in list_relations(problem, card).items():
+        if len(given.get(name, ())) == len(vector):
+            bind(name, vector)
+    return {name: substitute(tree, bound) for name, tree in bound.items()}, wanted
+
+
+def list_relations(problem: Problem, card: Card) -> dict[str, list[str]]:
+    """What follows from the rest, by a motion with all its rates in which it is not given."""
+    level, given = card.frame == "local-level", problem.quantities
+    shape = "ellipsoid" if len(given.get("radii", ())) > 1 else "sphere"
+    earth = card.earth if card.earth != "none" else shape
+    whole = replace(card, earth=earth, earth_rate=KEPT, transport_rate=KEPT)
+    following = ("earth_rate", "transport_rate", "gravity") if level else ()
+    free = {name: trees for name, trees in given.items() if name not in following or len(trees) == 1}
+    formulas = Formulas(replace(problem, quantities=free), whole)
+    flow, vectors, central = Mechanisation(whole, formulas.world), dict[str, Any](), card.gravity_gradient == "central"
+    if level:
+        vectors = {name: getattr(flow, name)(flow.truth()) for name in following}
+    elif formulas.derived:
+        vectors["position"] = flow.truth().position
+    if central and "gravitational_parameter" in given and len(given.get("gravity", ())) == 1:
+        vectors["gravity"] = [formulas.world.pull * formulas.world.radius]
+    elif central:
+        vectors["gravity"] = formulas.world.gravity
+    elif card.gravity_gradient == "normal":
+        vectors["gravity"] = [row[2].value * formulas.symbol("gravity", None) for row in flow.normal_axes()]
+    return {name: [formulas.write(getattr(x, "value", x)) for x in vector] for name, vector in vectors.items()}
+
+
+# Values
+
+
+class Motion(Formulas):
+    """The world of a problem in balls, at the values of its names."""
+
+    def __init__(self, problem: Problem, card: Card, values: Mapping[str, Any]):
+        self.values = values
+        super().__init__(problem, card)
+
+    def symbol(self, name: str, text: str | None) -> Any:
+        """The value of a text."""
+        self.texts[name] = text if text is not None else HIDDEN + name
+        return evaluate(read_tree(self.texts[name], None), self.values)
+
+
+def draw_values(problem: Problem, seed: int) -> dict[str, Any]:
+    """A random rational for every name, in its declared range; no relation binds them."""
+    source, places = random.Random(seed), problem.quantities.items()
+    limits = {tree.args[0]: LIMITS[n] for n, trees in places if n in LIMITS for tree in trees if tree.head == SYMBOL}
+    limits |= {HIDDEN + name: limit for name, limit in LIMITS.items()}
+    hidden = dict.fromkeys((*ANGLES, *(HIDDEN + name for name in (*GENERATORS, "latitude", "wander_angle"))))
+    declared: Mapping[str, Parameter | None] = {**problem.parameters, **hidden}
+    return {name: pick(source, said, *limits.get(name, (-2.0, 2.0))) for name, said in declared.items()}
+
+
+def pick(source: random.Random, said: Parameter | None, low: float, high: float) -> Any:
+    """A random rational in the declared range, else between the limits."""
+    if said is not None and said.lower is not None and said.upper is not None:
+        low, high = float(exact_ball(said.lower).mid()), float(exact_ball(said.upper).mid())
+    elif said is not None and said.kind in ("positive", "nonnegative"):
+        low, high = max(low, 0.25), max(high, 3.0)
+    start, end = fmpq(round(low * 10**6), 10**6), fmpq(round(high * 10**6), 10**6)
+    return arb(start + (end - start) * fmpq(source.randint(101, 899), 1009))
+
+
+def is_outside(value: Any, said: Parameter) -> bool:
+    """True where a value leaves its declared range."""
+    if said.lower is not None and said.upper is not None:
+        return bool(value < exact_ball(said.lower) or value > exact_ball(said.upper))
+    zero = value.contains(0)
+    return not {"positive": value > 0, "nonnegative": not value < 0, "nonzero": not zero}.get(said.kind, True)
 
 
 def draw_point(problem: Problem, card: Card, seed: int) -> Point:
@@ -301,17 +185,67 @@ def draw_point(problem: Problem, card: Card, seed: int) -> Point:
     It lies in the declared ranges where one of some tries does. Another one serves formulas that are analytic: two of
     them that agree on the ranges agree there as well. Raises DomainError where other formulas have its names.
     """
+    bound, wanted = relate(problem, card)
+    problem = problem.under(card)
     for attempt in range(TRIES):
-        sampler = Sampler(problem, card, seed + 100 * attempt)
-        point = sampler.draw()
-        if not sampler.outside:
+        values = draw_values(problem, seed + 100 * attempt)
+        values.update([(name, evaluate(tree, values)) for name, tree in bound.items()])
+        point = Point(Motion(problem, card, values).world, values)
+        require_relations(problem, card, point, bound, wanted)
+        outside = {name for name, said in problem.parameters.items() if is_outside(values[name], said)}
+        if not outside:
             return point
     cells = [x for M in (problem.F, problem.H, problem.G, problem.reset) for row in M for x in row]
     for part in list_parts(*cells, *(tree for trees in problem.quantities.values() for tree in trees)):
         is_root = part.head == POWER and (part.args[1].head != NUMBER or part.args[1].args[0].denominator != 1)
-        if (is_root or part.head in BRANCHED) and (names := sampler.outside & {*list_names(part)}):
+        if (is_root or part.head in BRANCHED) and (names := outside & {*list_names(part)}):
             message = f"expected ranges that the relations of the quantities allow; got others for {', '.join(names)}"
             raise DomainError(
                 f"{message}; widen them, or write {quote(print_tree(part))} otherwise", where="parameters"
             )
     return point
+
+
+def require_relations(
+    problem: Problem, card: Card, point: Point, bound: Mapping[str, Tree], wanted: Mapping[str, Sequence[Tree]]
+) -> None:
+    """Refuse quantities that have no values or are none; ImpossibleError where they contradict the card."""
+    given, world, level = problem.quantities, point.world, card.frame == "local-level"
+    if "height" in problem.measured and not level:
+        raise ImpossibleError("a measured height")
+    values = {name: [evaluate(tree, point.values) for tree in trees] for name, trees in given.items()}
+    for name, parts in values.items():
+        if not all(part.is_finite() for part in parts):
+            message = f"expected quantities that have values; got a {name} that has none; correct its range"
+            raise DomainError(message, where=f"quantities: {name}")
+    C, unit = arb_mat(world.C), arb_mat(3, 3, [int(k % 4 == 0) for k in range(9)])
+    if not all(x.contains(0) for x in (C * C.transpose() - unit).entries()):
+        message = "expected a rotation, C C' = E for all values of its names; got another matrix; "
+        message += "write it by angles, by nine names, or as a quaternion of four names"
+        raise DomainError(message, where="quantities: rotation")
+    if not C.det() > 0:
+        message = "expected a rotation, det C = 1; got a reflection; correct the sign or the order of an axis"
+        raise DomainError(message, where="quantities: rotation")
+    if not all(radius > 0 for radius in values.get("radii", ())):
+        message = "expected radii above zero; got another number; correct it or its range"
+        raise DomainError(message, where="quantities: radii")
+    own = follow(card, world)  # of formulas, that tell the size themselves
+    for name, trees in wanted.items():
+        is_free = name in own and not any(tree.head == SYMBOL and tree.args[0] in bound for tree in given[name])
+        parts = own[name] if is_free else [evaluate(tree, point.values) for tree in trees]
+        if not all(x.overlaps(arb(y)) for x, y in zip(values[name], parts, strict=True)):
+            raise ImpossibleError(name)
+
+
+def follow(card: Card, world: Any) -> dict[str, list[Any]]:
+    """The Earth's rate without a part to the east, and gravity without one across the vertical."""
+    flow = Mechanisation(replace(card, earth_rate=KEPT), world)
+    if card.frame == "local-level":
+        vectors = {"earth_rate": flow.earth_rate(flow.truth()), "gravity": flow.gravity(flow.truth())}
+    elif card.gravity_gradient == "normal":
+        axes = flow.normal_axes()
+        down = apply(transpose(axes), constant(world.gravity))[2]
+        vectors = {"gravity": apply(axes, [NOTHING, NOTHING, down])}
+    else:
+        return {}
+    return {name: [x.value for x in vector] for name, vector in vectors.items()}

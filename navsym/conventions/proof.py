@@ -7,18 +7,18 @@ a rotation by three angles, the force in the frame by that in the body, the rate
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 from itertools import chain
 from typing import Any
 
 from navsym.claims.verdict import OPEN, PROVED, Verdict
-from navsym.conventions.card import DROPPED, KEPT, Card
+from navsym.conventions.card import DROPPED, Card
 from navsym.conventions.measuring import MEASURED_MARK, RESET_MARK
-from navsym.conventions.mechanisation import CONSTANTS, Mechanisation
-from navsym.conventions.points import BITS, Sampler, evaluate
-from navsym.conventions.reading import HIDDEN, Problem, print_matrix
-from navsym.conventions.search import Block, narrow_card
+from navsym.conventions.mechanisation import CONSTANTS
+from navsym.conventions.points import BITS, draw_values, evaluate, relate, substitute
+from navsym.conventions.reading import Problem, print_matrix
+from navsym.conventions.search import Block, key_of_points, narrow_card
 from navsym.conventions.symbols import Formulas
 from navsym.core.balls import precision
 from navsym.core.errors import NavsymError
@@ -26,28 +26,9 @@ from navsym.language.expression import read_tree
 from navsym.language.names import quote
 from navsym.language.printer import print_tree
 from navsym.language.tokens import LENGTH
-from navsym.language.tree import SYMBOL, Tree, build_symbol, list_names
-from navsym.language.tree import replace as replace_parts
+from navsym.language.tree import Tree, list_names
 from navsym.prove.claimfile import claims_from, decide_claim, statement_of
 from navsym.prove.grant import grant_verdict
-
-ANGLES = tuple(f"{HIDDEN}a{k}" for k in (1, 2, 3))
-
-
-def euler_texts() -> list[str]:
-    """The entries of a rotation by three angles; every rotation is one of these."""
-    (s1, c1), (s2, c2), (s3, c3) = ((f"sin({a})", f"cos({a})") for a in ANGLES)
-    return [
-        f"{c1}*{c2}", f"{c1}*{s2}*{s3} - {s1}*{c3}", f"{c1}*{s2}*{c3} + {s1}*{s3}",
-        f"{s1}*{c2}", f"{s1}*{s2}*{s3} + {c1}*{c3}", f"{s1}*{s2}*{c3} - {c1}*{s3}",
-        f"-{s2}", f"{c2}*{s3}", f"{c2}*{c3}",
-    ]  # fmt: skip
-
-
-def quaternion_texts() -> list[str]:
-    """The components of a unit quaternion by three angles; every one is one of these."""
-    (s1, c1), (s2, c2), (s3, c3) = ((f"sin({a})", f"cos({a})") for a in ANGLES)
-    return [f"{c1}*{c2}", f"{c1}*{s2}", f"{s1}*{c3}", f"{s1}*{s3}"]
 
 
 class Prover:
@@ -57,9 +38,11 @@ class Prover:
         self.problem = problem
         self.formulas = cache(lambda card: Formulas(problem, card))
         self.decide = cache(self.decide_texts)
+        with precision(BITS):
+            self.free_values = draw_values(problem, 99)
         self.certificates: list[Mapping[str, Any]] = []
 
-    def block_texts(self, card: Card, block: Block, sign: int) -> list[list[str]]:
+    def block_texts(self, card: Card, block: Block, sign: Fraction) -> list[list[str]]:
         """The card's block in the user's names."""
         still = card.earth == "none" and card.earth_rate in (None, DROPPED) and card.vector_error != "rotated"
         # Without gravity among the terms a flat Earth that does not turn is an inertial frame.
@@ -68,7 +51,7 @@ class Prover:
             card = Card("inertial", **{name: getattr(card, name) for name in names}, **card.quaternion())
         return self.formulas(narrow_card(card, block[1])).block(*block, sign)
 
-    def is_right(self, card: Card, block: Block, sign: int) -> bool:
+    def is_right(self, card: Card, block: Block, sign: Fraction) -> bool:
         """True where the prover grants that the blocks are equal."""
         written = print_matrix(self.problem.block(*block))
         if {*block} <= {*CONSTANTS}:  # a constant may decay; it depends on no other one
@@ -82,25 +65,19 @@ class Prover:
         """The verdict on ``left = right`` under the relations of the quantities."""
         if left == right:
             return self.decide(left, right)
-        names = {*self.problem.parameters}
         trees = [read_tree(text, None) for text in (left, right)]
-        bound = self.relations(card)
-        if set(bound) & set(list_names(*trees)) and not self.is_free_identity(card, trees, names):
+        bound, _ = relate(self.problem, key_of_points(card))
+        if set(bound) & set(list_names(*trees)) and not self.is_free_identity(trees):
             trees = [substitute(tree, bound) for tree in trees]
         texts = [*map(print_tree, trees)]
         if max(map(len, texts)) > LENGTH:  # the checker reads no formula as long as this
             return Verdict(PROVED if self.formulas(card).agree(left, right) else OPEN, "quotients of polynomials")
         return self.decide(*texts)
 
-    def is_free_identity(self, card: Card, trees: Sequence[Tree], names: set[str]) -> bool:
+    def is_free_identity(self, trees: Sequence[Tree]) -> bool:
         """True where the texts agree even at a point that satisfies no relation."""
         with precision(BITS):
-            values = dict(Sampler(self.problem, card, 99, free=True).values)
-            source = Sampler(self.problem, card, 98)
-            for name in list_names(*trees):
-                if name not in names:
-                    values[name] = source.pick(None)
-            left, right = (evaluate(tree, values) for tree in trees)
+            left, right = (evaluate(tree, self.free_values) for tree in trees)
             return bool((left - right).contains(0))
 
     def decide_texts(self, left: str, right: str) -> Verdict:
@@ -119,62 +96,3 @@ class Prover:
         if verdict.certificate is not None:
             self.certificates.append(verdict.certificate)
         return verdict
-
-    def relations(self, card: Card) -> dict[str, str]:
-        """Bound name -> text of free ones; later ones may contain earlier ones no more."""
-        given = self.problem.under(card).quantities
-        result: dict[str, str] = {}
-        texts = {name: [print_tree(tree) for tree in trees] for name, trees in given.items()}
-
-        def bind(quantity: str, values: Sequence[str]) -> None:
-            for tree, value in zip(given.get(quantity, ()), values, strict=False):
-                if tree.head == SYMBOL:
-                    result.setdefault(tree.args[0], value)
-
-        if all(tree.head == SYMBOL for tree in given.get("quaternion", ())):
-            bind("quaternion", quaternion_texts())
-        if all(tree.head == SYMBOL for tree in given.get("rotation", ())):
-            bind("rotation", euler_texts())
-        rotation = [
-            print_tree(substitute(read_tree(text, None), result))
-            for text in texts.get("rotation", [f"{HIDDEN}c{i}{j}" for i in range(3) for j in range(3)])
-        ]
-        if "rotation" not in given:
-            result.update(zip(rotation, euler_texts(), strict=True))
-            rotation = euler_texts()
-        if {"specific_force", "specific_force_body"} <= set(given):
-            body = texts["specific_force_body"]
-            rows = [[f"({rotation[3 * i + k]})*({body[k]})" for k in range(3)] for i in range(3)]
-            bind("specific_force", [*map(" + ".join, rows)])
-        flow, formulas = self.free_motion(card)
-        vectors: dict[str, Any] = {}
-        if card.frame == "local-level":
-            for name in ("earth_rate", "transport_rate", "gravity"):
-                vectors[name] = getattr(flow, name)(flow.truth())
-        elif formulas.derived:
-            vectors["position"] = flow.truth().position
-            if card.gravity_gradient == "normal":
-                vectors["gravity"] = [row[2].value * formulas.symbol("gravity", None) for row in flow.normal_axes()]
-        if card.gravity_gradient == "central" and "position" in texts:
-            vectors["gravity"] = formulas.world.gravity
-        for name, vector in vectors.items():
-            if len(given.get(name, ())) == 3:
-                bind(name, [formulas.write(getattr(x, "value", x)) for x in vector])
-        return result
-
-    def free_motion(self, card: Card) -> tuple[Mechanisation, Formulas]:
-        """A motion with all its rates, in which nothing is given that follows from the rest."""
-        shape = "ellipsoid" if len(self.problem.quantities.get("radii", ())) > 1 else "sphere"
-        earth = card.earth if card.earth != "none" else shape
-        whole = replace(card, earth=earth, earth_rate=KEPT, transport_rate=KEPT)
-        following = ("earth_rate", "transport_rate", "gravity") if card.frame == "local-level" else ()
-        given = self.problem.quantities.items()
-        free = {name: trees for name, trees in given if name not in following or len(trees) == 1}
-        formulas = Formulas(replace(self.problem, quantities=free), whole)
-        return Mechanisation(whole, formulas.world), formulas
-
-
-def substitute(tree: Tree, bound: Mapping[str, str]) -> Tree:
-    """The tree with bound names written by free ones."""
-    by = {build_symbol(name): read_tree(text, None) for name, text in bound.items() if name in list_names(tree)}
-    return replace_parts(tree, by)

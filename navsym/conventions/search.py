@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cache
 from itertools import islice, product
 from typing import Any
@@ -16,10 +17,12 @@ from navsym.conventions.card import (
     CHOICES,
     DROPPED,
     ESTIMATE,
+    HALF,
     MEASURED_LESS,
     NORTH,
     TRUTH,
     WANDER,
+    WHOLE,
     Card,
     list_structures,
 )
@@ -28,11 +31,12 @@ from navsym.conventions.mechanisation import CONSTANTS, ROLES, Mechanisation, fl
 from navsym.conventions.points import BITS, ImpossibleError, draw_point, evaluate
 from navsym.conventions.reading import Problem
 from navsym.core.balls import precision
+from navsym.core.exact import to_fmpq
 from navsym.language.tree import list_names
 
 Block = tuple[str, str]
 
-SIGNS = ("error", "rotation_sign", "bias_sign", "scale_sign", "innovation")
+SIGNS = ("error", "rotation_sign", "attitude_size", "bias_sign", "scale_sign", "innovation")
 POINTS = 3
 NOTHING_KNOWN: Mapping[str, str] = {}
 
@@ -71,7 +75,8 @@ def key_of_points(card: Card) -> Card:
 
 def plain_card(card: Card) -> Card:
     """The card with every sign plus, whose blocks the signs of others scale."""
-    return replace(card, error=ESTIMATE, rotation_sign="+", bias_sign=ESTIMATE, scale_sign=None, dropped=())
+    plain = replace(card, error=ESTIMATE, rotation_sign="+", bias_sign=ESTIMATE, scale_sign=None, dropped=())
+    return replace(plain, attitude_size=WHOLE)
 
 
 @cache
@@ -119,21 +124,21 @@ class Comparison:
         values = self.point(key, number).values
         return [[evaluate(tree, values) for tree in row] for row in self.problem.block(*block)]
 
-    def sign(self, card: Card, block: Block, sign: int) -> Mismatch | None:
+    def sign(self, card: Card, block: Block, sign: Fraction) -> Mismatch | None:
         """The first point that tells the user's block from ``sign`` times the card's, with all entries that differ."""
         if block[0] in CONSTANTS and block[1] in CONSTANTS:
             return self.bias_block(block, key_of_points(card))
         return self.signs(narrow_card(card, block[1]), key_of_points(card), block, sign)
 
-    def compare(self, card: Card, key: Card, block: Block, sign: int) -> Mismatch | None:
+    def compare(self, card: Card, key: Card, block: Block, sign: Fraction) -> Mismatch | None:
         """The same for a card of which only the fields are left that matter."""
-        row, column = block
+        (row, column), factor = block, to_fmpq(sign)
         for number in range(POINTS):
             written = self.entries(key, block, number)
             columns = self.computed(card, column, number)
             wrong = []
             for i, j in product(range(len(written)), range(3)):
-                difference = written[i][j] - sign * columns[j][row][i]
+                difference = written[i][j] - factor * columns[j][row][i]
                 if difference.is_finite() and not difference.contains(0):
                     wrong.append((self.problem.places(row)[i], self.problem.places(column)[j]))
             if wrong:
@@ -162,19 +167,20 @@ class Comparison:
             key = key_of_points(card)
             written = self.entries(key, block, number)[i][j]
             columns = self.columns(card, column, number)
-            expected = self.block_sign(card, block) * columns[j][row][i]
+            expected, sign = columns[j][row][i], self.block_sign(card, block)
+            expected = sign * expected if isinstance(expected, int) else to_fmpq(sign) * expected
             names = list_names(self.problem.block(*block)[i][j])
             point = {name: in_decimals(self.point(key, number).values[name]) for name in names}
             return point, in_decimals(written), in_decimals(expected)
 
-    def block_sign(self, card: Card, block: Block) -> int:
+    def block_sign(self, card: Card, block: Block) -> Fraction:
         """The sign by which the signs of a card scale a block; that of a noise is the one that fits more blocks."""
         if block[1].startswith(NOISE_MARK):
             signs = card.signs()
             return signs[block[0]] * self.noise_sign(plain_card(card), tuple(sorted(signs.items())), block[1])
         return sign_of(card, block)
 
-    def compare_noise(self, card: Card, signs: tuple[tuple[str, int], ...], noise: str) -> int:
+    def compare_noise(self, card: Card, signs: tuple[tuple[str, Fraction], ...], noise: str) -> int:
         """The sign of a noise, which nothing else tells."""
         rows = [(row, sign) for row, sign in signs if row in self.problem.roles]
         found = {s: [self.sign(card, (row, noise), s * sign) for row, sign in rows] for s in (1, -1)}
@@ -197,20 +203,20 @@ class Comparison:
         return all(is_same(x, 0) for k in range(3) for x in self.columns(card, column, 0)[k][row])
 
 
-def sign_of(card: Card, block: Block) -> int:
-    """The sign by which the signs of a card scale a block; noises are plus."""
+def sign_of(card: Card, block: Block) -> Fraction:
+    """The sign, and the share of the angle, by which the signs of a card scale a block; noises are plus."""
     signs = card.signs()
     row, column = block
     if row.startswith(MEASURED_MARK):
-        return (-1 if card.innovation == MEASURED_LESS else 1) * signs[column]
+        return (-1 if card.innovation == MEASURED_LESS else 1) / signs[column]
     if row.startswith(RESET_MARK):
-        return signs["attitude"]
-    return signs[row] * signs.get(column, 1)
+        return 1 / signs["attitude"]
+    return signs[row] / signs.get(column, 1)
 
 
 def in_decimals(x: Any) -> str:
     """A ball by its leading digits."""
-    return str(x) if isinstance(x, int) else str(x.str(10, radius=False))
+    return str(x) if isinstance(x, int | Fraction) else str(x.str(10, radius=False))
 
 
 def list_blocks(problem: Problem) -> list[Block]:
@@ -234,12 +240,19 @@ def list_signs(problem: Problem, known: Mapping[str, str] = NOTHING_KNOWN) -> It
     has_vectors = {"velocity", "position"} & set(problem.roles)
     errors = (ESTIMATE, TRUTH) if has_vectors else (known.get("error", ESTIMATE),)  # that of the whole filter
     attitudes: tuple[str | None, ...] = ("+", "-") if "attitude" in problem.roles else (None,)
+    sizes = list_sizes(problem)
     has = (any(role.endswith(kind) for role in problem.roles) for kind in ("bias", "scale"))
     biases, scales = ((ESTIMATE, TRUTH) if some else (None,) for some in has)
     shown: tuple[str | None, ...] = CHOICES["innovation"] if problem.measured else (None,)
-    for words in product(errors, attitudes, biases, scales, shown):
+    for words in product(errors, attitudes, sizes, biases, scales, shown):
         if all(known.get(name, word) == word for name, word in zip(SIGNS, words, strict=True)):
             yield dict(zip(SIGNS, words, strict=True))
+
+
+def list_sizes(problem: Problem) -> tuple[str | None, ...]:
+    """What the state of the attitude may be: alone it does not tell whether it is an angle or half of it."""
+    tells = len(problem.roles) > 1 or problem.measured or problem.noises or problem.reset
+    return (None,) if "attitude" not in problem.roles else (WHOLE, HALF) if tells else (WHOLE,)
 
 
 def list_problem_structures(problem: Problem, known: Mapping[str, str] = NOTHING_KNOWN) -> Iterator[Card]:
@@ -283,9 +296,16 @@ def examine(problem: Problem, comparison: Comparison, most: int = 0) -> Iterator
 def list_hopeless(structure: Card, comparison: Comparison, blocks: Sequence[Block], results: Any) -> Iterator[Mismatch]:
     """The blocks that no signs make right."""
     for block in blocks:
-        mismatch = results(block, 1)
-        if mismatch and results(block, -1) and not comparison.is_dropped(structure, block):
+        mismatch, others = results(block, Fraction(1)), list_factors(block, comparison.problem)
+        if mismatch and all(results(block, x) for x in others) and not comparison.is_dropped(structure, block):
             yield mismatch
+
+
+def list_factors(block: Block, problem: Problem) -> Iterator[Fraction]:
+    """What the signs of a card may make of a block, beside 1."""
+    yield Fraction(-1)
+    if HALF in list_sizes(problem) and (block[0] != block[1]) and ("attitude" in "".join(block) or problem.reset):
+        yield from (Fraction(sign * x, y) for x, y in ((2, 1), (1, 2)) for sign in (1, -1))
 
 
 def judge(

@@ -19,9 +19,16 @@ from flint import Ordering, fmpq_mpoly_ctx, fmpz_mpoly_ctx, fmpz_mpoly_vec
 from navsym.conventions.card import Card
 from navsym.conventions.frames import locate
 from navsym.conventions.measuring import CORRECTED, full_column
-from navsym.conventions.mechanisation import AXES, Mechanisation, World, add_centrifugal, axes_rows, rotate_about_pole
+from navsym.conventions.mechanisation import (
+    AXES,
+    Mechanisation,
+    World,
+    add_centrifugal,
+    axes_rows,
+    plus_height,
+    rotate_about_pole,
+)
 from navsym.conventions.nilpotent import rotate, times
-from navsym.conventions.points import gradient_names
 from navsym.conventions.reading import HIDDEN, Problem
 from navsym.core.exact import to_fmpq
 from navsym.core.rational_functions import Quotient, Ratio, cancel_fraction
@@ -60,6 +67,12 @@ class Entry(Ratio):
         super().__init__(quotient if top == quotient.top else cancel_fraction(top, quotient.bottom))
 
 
+def gradient_names(RN: Any, RE: Any, h: Any, third: Any, mean: Any) -> dict[str, Any]:
+    """Words of a card -> the radius of its gradient of gravity; ``mean`` is sqrt(RN RE)."""
+    bare = {"R": RN, "RN": RN, "RE": RE, "sqrt(RN*RE)": mean, "third radius": third}
+    return {**bare, **{f"{name} + h": plus_height(value, h) for name, value in bare.items()}, "radial": third}
+
+
 class Formulas:
     """The world of a problem in symbols, with a text for each of them."""
 
@@ -72,7 +85,7 @@ class Formulas:
         flow = Mechanisation(card, self.world)
         self.columns = cache(lambda role: [full_column(flow, role, k) for k in range(3)])  # of F, every sign plus
 
-    def block(self, row: str, column: str, sign: int = 1) -> list[list[str]]:
+    def block(self, row: str, column: str, sign: Fraction = Fraction(1)) -> list[list[str]]:
         """A block of F as texts, times a sign."""
         parts = self.columns(column)
         return [[self.write(parts[j][row][i], sign) for j in range(3)] for i in range(len(parts[0][row]))]
@@ -235,7 +248,7 @@ class Formulas:
         pair = self.read(left), self.read(right)
         return None not in pair and self.write(pair[0] - pair[1]) == "0"
 
-    def write(self, value: Any, sign: int = 1) -> str:
+    def write(self, value: Any, sign: Fraction = Fraction(1)) -> str:
         """A coefficient in the user's names."""
         if type(value) is int:
             return str(sign * value)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from navsym.claims.formula import side_latex
-from navsym.conventions.card import ESTIMATE, HEADINGS, Card
+from navsym.conventions.card import ESTIMATE, HALF, HEADINGS, Card
 from navsym.conventions.reading import Problem
 
 #: Role -> its letter; what errors are errors of.
@@ -24,7 +24,9 @@ def letter(role: str, card: Card) -> str:
 def define_error(role: str, card: Card) -> str:
     """The definition of one error, the estimate with a hat."""
     if role == "attitude":
-        small = rf"\left(E {card.rotation_sign} [{letter(role, card)} \times]\right)"
+        small = (
+            rf"\left(E {card.rotation_sign} {'2 ' * (card.attitude_size == HALF)}[{letter(role, card)} \times]\right)"
+        )
         return rf"\hat C = {small} C" if card.attitude_error == "frame" else rf"\hat C = C {small}"
     kind = role.rpartition("_")[2]
     x, error = LETTERS[role], {"bias": card.bias_sign, "scale": card.scale_sign}.get(kind, card.error)
@@ -46,7 +48,7 @@ def card_latex(card: Card, roles: Sequence[str] = ()) -> str:
     \text{frame: inertial; Earth: none; gravity gradient: none}
     \end{gathered}
     """
-    defined = ("error", "rotation_sign", "attitude_error", "bias_sign", "scale_sign", "vector_error")
+    defined = ("error", "rotation_sign", "attitude_size", "attitude_error", "bias_sign", "scale_sign", "vector_error")
     words = [f"{HEADINGS[name]}: {word}" for name, word in card.words().items() if name not in defined]
     return stack([*(define_error(role, card) for role in roles or DEFINED), rf"\text{{{'; '.join(words)}}}"])
 

@@ -140,12 +140,12 @@ class Flight:
 
     # Errors by the definitions of a card
 
-    def signs(self) -> tuple[int, int, int]:
+    def signs(self) -> tuple[Any, ...]:
         card = self.card
         plus = "estimate - truth"
         return (
             (1 if card.error == plus else -1),
-            (1 if card.rotation_sign == "+" else -1),
+            mp.mpf(1 if card.rotation_sign == "+" else -1) / (2 if card.attitude_size == "half angle" else 1),
             (1 if card.bias_sign == plus else -1),
         )
 

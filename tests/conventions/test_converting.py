@@ -21,6 +21,7 @@ from navsym.conventions.reading import read_problem
 from navsym.conventions.search import key_of_points
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
+from navsym.core.exact import to_fmpq
 from navsym.language.expression import read_tree
 from tests.conventions import models
 from tests.conventions.reference import AXES, STEP, Flight, exp, push, skew, stack, vec
@@ -108,10 +109,8 @@ def matrix_of_way(way: Passage) -> list[list[Any]]:
     """T of a way."""
     signs = (way.source.card.signs(), way.target.card.signs())
     columns = [transform(way, ROLES[j // 3], j % 3) for j in range(15)]
-    return [
-        [signs[1][ROLES[i // 3]] * signs[0][ROLES[j // 3]] * columns[j][ROLES[i // 3]][i % 3].error for j in range(15)]
-        for i in range(15)
-    ]
+    factors = [[to_fmpq(signs[1][ROLES[i // 3]] / signs[0][ROLES[j // 3]]) for j in range(15)] for i in range(15)]
+    return [[arb(factors[i][j] * columns[j][ROLES[i // 3]][i % 3].error) for j in range(15)] for i in range(15)]
 
 
 @pytest.mark.parametrize("frame", [None, *CHOICES["frame"]])

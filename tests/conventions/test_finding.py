@@ -119,7 +119,7 @@ def document_of(card: Card, order: str, quantities: dict[str, Any]) -> dict[str,
     empty = models.document(order, {}, quantities, **models.declared(quantities))
     formulas, signs = Formulas(read_problem(empty), card), card.signs()
     blocks = {
-        a + b: formulas.block(models.SHORT[a], models.SHORT[b], signs[models.SHORT[a]] * signs[models.SHORT[b]])
+        a + b: formulas.block(models.SHORT[a], models.SHORT[b], signs[models.SHORT[a]] / signs[models.SHORT[b]])
         for a in order
         for b in order
     }
@@ -339,3 +339,28 @@ def test_what_is_known_of_the_whole_filter_may_say_nothing_of_a_part():
         "quantities": {"angular_rate": models.W_B}, "known": {"frame": "inertial", "error": MINUS},
     }  # fmt: skip
     assert {card.attitude_error for card in nav.conventions(document).cards} == {"body"}
+
+
+def half_angle(share: str = "-1/2") -> dict[str, Any]:
+    """Lefferts, Markley and Shuster (1982): the vector part of the error quaternion, and the bias of the gyros."""
+    blocks = {"aa": models.neg(models.skew(models.W_B)), "ag": models.scale(share, models.E)}
+    return models.document("ag", blocks, {"angular_rate": models.W_B}, {"frame": "inertial", "rotation_sign": "+"})
+
+
+def test_the_vector_part_of_the_error_quaternion_is_half_of_the_angle():
+    for share, size in (("-1/2", "half angle"), ("-1", "angle")):
+        found = nav.conventions(half_angle(share))
+        (card,) = found.cards
+        assert found.complete and (card.attitude_error, card.attitude_size, card.bias_sign) == ("body", size, PLUS)
+    other = found.convert(attitude_size="half angle")
+    assert other.proved and [row[3:] for row in other.F[:3]] == [
+        ("-1/2", "0", "0"),
+        ("0", "-1/2", "0"),
+        ("0", "0", "-1/2"),
+    ]
+    assert not nav.conventions(half_angle("-1/3")).cards
+
+
+def test_a_progress_that_is_no_function_is_refused():
+    with pytest.raises(nav.NavsymError, match="expected a function of two numbers"):
+        nav.conventions(half_angle()).convert(None, None)  # type: ignore[arg-type]

@@ -12,10 +12,10 @@ from flint import arb
 
 from navsym.conventions.card import CHOICES, NORTH, WANDER, Card, list_structures
 from navsym.conventions.mechanisation import ROLES, Mechanisation, World
-from navsym.conventions.points import BITS, draw_point, evaluate, gradient_names
+from navsym.conventions.points import BITS, draw_point, evaluate
 from navsym.conventions.reading import read_problem
 from navsym.conventions.search import key_of_points, narrow_card
-from navsym.conventions.symbols import CIRCLES, Formulas, list_rules
+from navsym.conventions.symbols import CIRCLES, Formulas, gradient_names, list_rules
 from navsym.core.balls import precision
 from navsym.language.expression import read_tree
 from tests.conventions import models, reference
@@ -37,7 +37,7 @@ EXACT = [
 
 def random_card(pick: random.Random, cards: list[Card]) -> Card:
     """A card with random signs."""
-    names = ("error", "rotation_sign", "bias_sign")
+    names = ("error", "rotation_sign", "attitude_size", "bias_sign")
     return replace(pick.choice(cards), **{name: pick.choice(CHOICES[name]) for name in names})
 
 
@@ -76,7 +76,7 @@ def worst_difference(flight: reference.Flight) -> Any:
             for i in range(15):
                 value = column[ROLES[i // 3]][i % 3]
                 number = mp.mpf(value) if isinstance(value, int) else mp.mpf(value.str(40, radius=False))
-                sign = signs[ROLES[i // 3]] * signs[ROLES[j // 3]]
+                sign = signs[ROLES[i // 3]] / signs[ROLES[j // 3]]
                 worst = max(worst, abs(sign * number - expected[i, j]))
     return worst
 

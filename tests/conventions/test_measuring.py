@@ -91,7 +91,7 @@ def worst_of_H(flight: Flight) -> Any:
             expected = measurement_matrix(flight, kind)
             for j, column in enumerate(columns):
                 for i, value in enumerate(column[f"measured {kind}"]):
-                    worst = max(worst, abs(signs[ROLES[j // 3]] * number(value) - expected[i, j]))
+                    worst = max(worst, abs(number(value) / signs[ROLES[j // 3]] - expected[i, j]))
     return worst
 
 
