@@ -18,8 +18,8 @@ def sides(statement: Statement) -> tuple[str, str]:
     """Printed and derived side in the language of files: as their author wrote them, where that is known."""
     if isinstance(statement, Equation | Bound):
         written = statement.written
-        left = side_text(statement.printed, written and written.left)
-        right = side_text(statement.derived, written and written.right)
+        left = side_text(statement.printed, written.left if written else ())
+        right = side_text(statement.derived, written.right if written else ())
         if isinstance(statement, Bound):
             return f"{left} {statement.relation} {right}", ""
         limit = written.tolerance if written else statement.tolerance
@@ -32,7 +32,7 @@ def sides(statement: Statement) -> tuple[str, str]:
     return value_text(statement.printed), value_text(statement.derived.value)
 
 
-def side_text(side: Any, written: Sequence[str] | None = None) -> str:
+def side_text(side: Any, written: Sequence[str] = ()) -> str:
     """One side of a statement as text: a matrix by rows, a tuple, or one expression.
 
     written : text of each entry, where it is known

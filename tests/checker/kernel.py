@@ -48,7 +48,7 @@ def read_book(first: int | None) -> Iterator[tuple[str, Any]]:
 
 def split_theory(text: str) -> tuple[str, str]:
     """What many theories begin with, and what one says."""
-    head = LIBRARY.findall(text) + ["Open Scope R_scope."]
+    head = [*LIBRARY.findall(text), "Open Scope R_scope."]
     lemmas = [files("navsym.export.coq").joinpath(name).read_text("utf-8") for name in LEMMAS]
     head += [part for part in (BALLS, PLAIN, *lemmas) if part in text]
     body = LIBRARY.sub("", text).replace("Print Assumptions all.\n", "")
