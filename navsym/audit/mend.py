@@ -6,13 +6,13 @@ import functools
 import itertools
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from navsym.audit.decide import Scope, decide_entry, draw_points
 from navsym.audit.evaluate import Edits, Evaluator
-from navsym.audit.form import Function, Part, Unit, mentioned_in, names_in, spell_entry, walk
+from navsym.audit.form import Function, Part, Unit, has_effects, mentioned_in, names_in, spell_entry, walk
 from navsym.audit.names import squeeze
 from navsym.audit.questions import Entry, NotThereError
 from navsym.audit.sources import Source, read_expression
@@ -244,6 +244,7 @@ def rewrite_part(unit: Unit, part: Part, edits: Iterator[Edit]) -> Iterator[str]
     return (f"{cut(unit.source, low, start)}{new}{cut(unit.source, end, high)}" for start, end, new in edits)
 
 
+@functools.lru_cache(1 << 13)
 def read_mend(text: str, unit: Unit) -> Part | None:
     """A text as an expression of a language; None where it is none."""
     part = read_expression(text, unit)
@@ -350,10 +351,10 @@ def sift(mends: list[Mend], entry: Entry, source: Source, probes: list[dict[str,
     In the place of the expression it gets symbols, beside which every mend is computed.
     """
     old = mends[0].old if len(mends) > 1 else None
-    if old is None or any(part.kind == "call" and part.parts[0] in source.unit.functions for part in walk(old)):
+    if old is None or may_write_more(source.unit, old):
         yield from mends
         return
-    gap = Gap([mend.edits[id(old)] for mend in mends])
+    gap = Gap([mend.edits[id(old)] for mend in mends], source.names.declarations)
     cell, expected = read_again(entry, source, {id(old): gap})
     for number, mend in enumerate(mends):
         if number in gap.doubtful or not isinstance(cell, Scalar) or not isinstance(expected, Scalar):
@@ -364,6 +365,11 @@ def sift(mends: list[Mend], entry: Entry, source: Source, probes: list[dict[str,
                 yield mend
 
 
+def may_write_more(unit: Unit, part: Part) -> bool:
+    """True for an expression with a call of a function of the file that may write to what is not its own."""
+    return any(has_effects(f) for name in mentioned_in(part) for f in unit.functions.get(name, ()))
+
+
 class Gap:
     """What computes the mends of an expression each time that the expression is met, and gives symbols in its place.
 
@@ -371,7 +377,8 @@ class Gap:
     doubtful : the places of mends of which nothing is known
     """
 
-    def __init__(self, parts: Sequence[Part]):
+    def __init__(self, parts: Sequence[Part], names: Iterable[str]):
+        self.letters = next(word for k in range(1, 99) if not any(n.startswith(word := "gap" + "x" * k) for n in names))
         self.parts, self.trials, self.doubtful = parts, dict[str, list[Cell | None]](), set[int]()
 
     def __call__(self, machine: Evaluator, part: Part) -> Value:
@@ -380,7 +387,7 @@ class Gap:
         trials = [self.attempt(machine, number, own) for number in range(len(self.parts))]
         symbols = list[Cell]()
         for at, cell in enumerate(cells):
-            name = f"gap{len(self.trials)}@"  # no symbol of a source
+            name = f"{self.letters}{len(self.trials)}"
             self.trials[name] = [None if trial is None else cells_of(trial)[at] for trial in trials]
             symbols.append(cell if isinstance(cell, Unread) else replace(cell, tree=build_symbol(name)))
         return type(own)(own.shape, tuple(symbols)) if isinstance(own, Array) else symbols[0]
@@ -388,7 +395,7 @@ class Gap:
     def attempt(self, machine: Evaluator, number: int, own: Value) -> Value | None:
         """The value of a mend; the state of the run stays as it is."""
         part, unit = self.parts[number], machine.unit
-        if any(p.kind in ("name", "call") and {p.parts[0]} & {*unit.functions, *unit.macros} for p in walk(part)):
+        if may_write_more(unit, part):
             self.doubtful.add(number)
             return None
         count, others, steps = len(machine.conditions), len(machine.other_ways), machine.steps
