@@ -627,5 +627,7 @@ def rewrite(source: Source, expected: Tree) -> Iterator[str]:
     text, language = print_tree(fold_tree(expected, step)), source.unit.language
     if language == "python":
         text = re.sub(r"\b(sin|cos|tan|exp|log|sqrt)\(", r"np.\1(", text)
+    if language in ("c", "cpp"):  # abs may be that of integers
+        text = re.sub(r"\babs\(", "fabs(", text)
     text = source.names.show(text).replace("**", "^" if language == "matlab" else "**")
     yield re.sub(r"(?<![\w.])(\d+)/(\d+)", r"\1.0/\2.0", text) if language in ("c", "cpp") else text
