@@ -31,9 +31,13 @@ MATRIX = re.compile(
 )
 NAMED = ("preproc_def", "enumerator")
 #: Comments and texts, what is no blank, and the lines of the preprocessor.
-HIDING = re.compile(rb"//[^\n]*|/\*.*?(?:\*/|\Z)|\"(?:\\.|[^\"\\\n])*\"|'\\?.'", re.DOTALL)
+HIDING = re.compile(
+    rb"//(?:\\\r?\n|[^\n])*|/\*.*?(?:\*/|\Z)|R\"\w*\(.*?\)\w*\"|\"(?:\\.|[^\"\\\n])*\"|'\\?.'", re.DOTALL
+)
 BLACK = re.compile(rb"[^\s]")
-DIRECTIVE = re.compile(rb"^[ \t]*#[ \t]*(if|ifdef|ifndef|elif|else|endif|define|undef)\b([^\n]*)", re.MULTILINE)
+DIRECTIVE = re.compile(
+    rb"(?<!\\\n)(?<!\\\r\n)^[ \t]*#[ \t]*((?:el)?if(?:n?def)?|else|endif|define|undef)\b([^\n]*)", re.MULTILINE
+)
 DECLARING = (
     "init_declarator declaration parameter_declaration array_declarator pointer_declarator reference_declarator "
     "field_declaration"
@@ -555,9 +559,9 @@ def drop_ways(source: bytes, defined: frozenset[str] | None) -> bytes:
 
     def state_of(word: str, rest: str) -> str:
         """Of the lines behind a condition; "open" where it is no number and no name of which something is known."""
-        if (name := re.fullmatch(r"(!?)\s*defined\s*\(?\s*(\w+)\s*\)?", rest)) and word in ("if", "elif"):
+        if (name := re.fullmatch(r"(!?)\s*defined\s*\(?\s*(\w+)\s*\)?", rest)) and word == "if":
             word, rest = "ifndef" if name[1] else "ifdef", name[2]
-        if word in ("if", "elif"):
+        if word == "if":
             return "open" if not re.fullmatch("[0-9]+", rest) else "on" if int(rest) else "off"
         is_open = rest in doubtful or (defined is None and rest not in known)
         return "open" if is_open else "on" if (rest in known) == (word == "ifdef") else "off"
@@ -570,7 +574,7 @@ def drop_ways(source: bytes, defined: frozenset[str] | None) -> bytes:
         if {"off", "past"} & {*states}:
             blank(before, found.start())
         before = found.end()
-        old = states.pop() if word in ("elif", "else", "endif") and states else ""
+        old = states.pop() if word.startswith("e") and states else ""
         is_hidden = bool({"off", "past"} & {*states})
         if word in ("define", "undef"):
             if is_hidden:
@@ -579,13 +583,13 @@ def drop_ways(source: bytes, defined: frozenset[str] | None) -> bytes:
                 (doubtful.add if "open" in states else known.add if word == "define" else known.discard)(name[0])
             continue
         new = "past" if old in ("on", "past") else old if old == "open" else "on"
-        new = state_of(word, rest) if word not in ("else", "endif") and old in ("", "off") else new
+        new = state_of(word.removeprefix("el"), rest) if "if" in word and old in ("", "off") else new
         if word != "endif":
             states.append(new)
         if is_hidden or "open" not in (old, new if word != "endif" else ""):
             blank(*found.span())
-        elif word == "elif" and old == "off":
-            text[slice(*found.span(1))] = b"if  "
+        elif old == "off":  # the first way of which nothing is known
+            text[slice(*found.span(1))] = found[1].removeprefix(b"el").rjust(len(word))
     return bytes(text)
 
 

@@ -126,8 +126,14 @@ class Machine(Evaluator):
 
     def run(self, function: Function) -> Case:
         """The whole function."""
-        for constant in self.unit.constants:
-            self.statement(constant)
+        for constant in self.unit.constants:  # nothing else depends on one that is not read
+            name = constant.parts[0] if constant.kind == "declare" else constant.parts[0].parts[0]
+            try:
+                getattr(self, f"run_{constant.kind}")(*constant.parts, statement=constant)
+            except Unreadable as refusal:
+                unread = Unread(refusal.line or constant.line, refusal.why)
+                self.reading.refused.setdefault(unread.line, unread.why)
+                self.frame[name] = Variable(name, all_unread=unread)
         once = [constant.parts[0] for constant in self.unit.constants if constant.kind == "declare"]
         for name in {name for name in once if once.count(name) > 1}:
             self.frame[name].all_unread = Unread(function.line, f"{name}, which has several values in this file")

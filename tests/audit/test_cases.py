@@ -102,9 +102,23 @@ def test_what_the_preprocessor_surely_leaves_out_is_not_read(tmp_path):
     )
     assert ask(tmp_path, source % "s", ".c", "return", "2*a").status == nav.PROVED
     assert "g, which this file does not define" in ask(tmp_path, source % "g(a)", ".c", "return", "7*a").entries[0].why
+    last = "#if 0\n#elifdef X\n#define K 3\n#else\n#define K 4\n#endif\n"
+    last += 'const int n = sizeof(R"(\n#if 0\n)"); // \\\n#if 0\n'
+    last += "float f(float a) { return K*a; }\n"
+    assert ask(tmp_path, last, ".c", "return", "4*a", "defined = []").status == nav.PROVED
+    assert ask(tmp_path, last, ".c", "return", "4*a").status == nav.OPEN
     doubtful = "#ifdef X\n#define K 1\n#endif\nfloat f(float a) {\n#ifndef K\n a = 5*a;\n#endif\n return a; }\n"
     assert ask(tmp_path, doubtful, ".c", "return", "5*a").status == nav.OPEN
     assert ask(tmp_path, doubtful, ".c", "return", "a", 'defined = ["X"]').status == nav.PROVED
+
+
+@pytest.mark.parametrize("value", ["SQUARE(3)", "later()", "&x"])
+def test_a_constant_that_is_not_read_leaves_the_others_as_they_are(tmp_path, value):
+    source = f"#define SQUARE(x) ((x)*(x))\nconst double L = 2;\nconst double K = {value};\nconst double M = K;\n"
+    code = source + "double f(double a) { return %s*a; }\n"
+    assert ask(tmp_path, code % "L", ".c", "return", "2*a").status == nav.PROVED
+    for name in "KM":
+        assert ask(tmp_path, code % name, ".c", "return", "9*a").status == nav.OPEN
 
 
 def test_a_way_that_excludes_itself_is_no_case(tmp_path):
