@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from navsym.audit.cases import Case
 from navsym.audit.decide import Decision, Scope, decide_entry, decide_together, measure
-from navsym.audit.evaluate import Case
 from navsym.audit.form import spell_alike, spell_entry
 from navsym.audit.mend import Budget, suggest
 from navsym.audit.names import Names

@@ -30,6 +30,14 @@ MATRIX = re.compile(
     r"(?:\w+::)*(?:(?:Square)?Matrix([2-9]|[1-5]\d)[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
 )
 NAMED = ("preproc_def", "enumerator")
+#: Comments and texts, what is no blank, and the lines of the preprocessor.
+HIDING = re.compile(
+    rb"//(?:\\\r?\n|[^\n])*|/\*.*?(?:\*/|\Z)|R\"\w*\(.*?\)\w*\"|\"(?:\\.|[^\"\\\n])*\"|'\\?.'", re.DOTALL
+)
+BLACK = re.compile(rb"[^\s]")
+DIRECTIVE = re.compile(
+    rb"(?<!\\\n)(?<!\\\r\n)^[ \t]*#[ \t]*((?:el)?if(?:n?def)?|else|endif|define|undef)\b([^\n]*)", re.MULTILINE
+)
 DECLARING = (
     "init_declarator declaration parameter_declaration array_declarator pointer_declarator reference_declarator "
     "field_declaration"
@@ -83,12 +91,13 @@ class Reader(SourceReader):
 
     def parse(self, source: bytes) -> Any:
         """The tree of a source in which no variable is taken for a type, as ``b`` is in ``a*(b) - c``."""
+        source, known = source if self.shift else drop_ways(source, self.unit.defined), self.unit.variables
         root, text = SourceReader.parse(self, source), bytearray(source)
-        known = self.unit.variables
-        known |= list_variables(root)
-        unions = (inner for node in descend(root) if node.type == "union_specifier" for inner in descend(node))
-        self.unit.types |= list_types(root)
-        self.unit.overlaid |= {text_of(inner) for inner in unions if inner.type == "field_identifier"}
+        if not self.shift:  # of a file, not of one expression
+            known |= list_variables(root)
+            unions = (inner for node in descend(root) if node.type == "union_specifier" for inner in descend(node))
+            self.unit.types |= list_types(root)
+            self.unit.overlaid |= {text_of(inner) for inner in unions if inner.type == "field_identifier"}
         for _ in range(ROUNDS):
             casts = [field_of(field_of(n, "type"), "type") for n in descend(root) if n.type == "cast_expression"]
             found = [n for n in casts if n is not None and n.type == "type_identifier" and text_of(n) in known]
@@ -106,7 +115,6 @@ class Reader(SourceReader):
 
     def read_file(self, root: Any) -> None:
         """Functions, constants and macros, also inside namespaces and classes."""
-        dropped: set[int] = set()
         inner = (n for n in descend(root) if n.type == "identifier" and n.parent.type in (*DECLARING, "enumerator"))
         heads = ((n, field_of(n.parent, "declarator") or field_of(n.parent, "name")) for n in inner)
         others = {text_of(n) for n, head in heads if head is None or head.id == n.id}
@@ -117,11 +125,6 @@ class Reader(SourceReader):
             elif node.type in ("base_class_clause", "using_declaration"):
                 self.opened |= {*re.findall(r"\w+", text_of(node))}
         for node in descend(root):
-            if node.id in dropped or (node.parent is not None and node.parent.id in dropped):
-                dropped.add(node.id)
-                continue
-            if (kept := self.kept_way(node)) is not None:
-                dropped |= {child.id for child in node.named_children[1:]} - {child.id for child in kept}
             if node.type == "function_definition":
                 self.read_function(node)
             elif node.type == "preproc_def":
@@ -149,16 +152,6 @@ class Reader(SourceReader):
         for child in node.children_by_field_name("declarator") if not is_inside else ():
             name, members = self.declared(field_of(child, "declarator") or child)[0], self.unit.members
             members[name] = (kind if members.get(name, (kind,))[0] == kind else "other", None)
-
-    def kept_way(self, node: Any) -> list[Any] | None:
-        """What is compiled of ``#ifdef NAME`` or ``#ifndef NAME``; None where nobody has said what is defined."""
-        if node.type != "preproc_ifdef" or self.unit.defined is None:
-            return None
-        holds = (text_of(field_of(node, "name")) in self.unit.defined) == (text_of(node).startswith("#ifdef"))
-        other = field_of(node, "alternative")
-        if not holds:
-            return [] if other is None else [other]
-        return [child for child in named(node)[1:] if other is None or child.id != other.id]
 
     def read_enumerators(self, node: Any) -> None:
         """The names of an enumeration, each one more than the one before."""
@@ -259,10 +252,6 @@ class Reader(SourceReader):
                 return (self.loop(node),)
             case "switch_statement":
                 return (self.switch(node),)
-            case "preproc_ifdef" if (kept := self.kept_way(node)) is not None:
-                return tuple(s for child in kept for s in self.statement(child))
-            case "preproc_else":
-                return tuple(s for child in named(node) for s in self.statement(child))
             case "static_assert_declaration" | "using_declaration" | "empty_statement" | "type_definition":
                 return ()
         return None
@@ -558,6 +547,50 @@ class Reader(SourceReader):
             return self.refuse(node, "a number of cells that is no number")
         low = self.part("minus", node, size) if is_last else None
         return self.part("slice", node, low, None if is_last else size)
+
+
+def drop_ways(source: bytes, defined: frozenset[str] | None) -> bytes:
+    """The source with blanks for what the preprocessor surely leaves out, and for the conditions that say so.
+
+    defined : names that it knows beside those of the file; None where nobody has said it
+    """
+    bare, text, before = HIDING.sub(lambda found: BLACK.sub(b" ", found[0]), source), bytearray(source), 0
+    known, doubtful, states = {*(defined or ())}, set[str](), list[str]()  # "on", "off", "past" behind "on", or "open"
+
+    def state_of(word: str, rest: str) -> str:
+        """Of the lines behind a condition; "open" where it is no number and no name of which something is known."""
+        if (name := re.fullmatch(r"(!?)\s*defined\s*\(?\s*(\w+)\s*\)?", rest)) and word == "if":
+            word, rest = "ifndef" if name[1] else "ifdef", name[2]
+        if word == "if":
+            return "open" if not re.fullmatch("[0-9]+", rest) else "on" if int(rest) else "off"
+        is_open = rest in doubtful or (defined is None and rest not in known)
+        return "open" if is_open else "on" if (rest in known) == (word == "ifdef") else "off"
+
+    def blank(start: int, end: int) -> None:
+        text[start:end] = BLACK.sub(b" ", text[start:end])
+
+    for found in DIRECTIVE.finditer(bare):
+        word, rest = (part.decode("utf-8", "replace").strip() for part in found.groups())
+        if {"off", "past"} & {*states}:
+            blank(before, found.start())
+        before = found.end()
+        old = states.pop() if word.startswith("e") and states else ""
+        is_hidden = bool({"off", "past"} & {*states})
+        if word in ("define", "undef"):
+            if is_hidden:
+                blank(*found.span())
+            elif name := re.match(r"\w+", rest):
+                (doubtful.add if "open" in states else known.add if word == "define" else known.discard)(name[0])
+            continue
+        new = "past" if old in ("on", "past") else old if old == "open" else "on"
+        new = state_of(word.removeprefix("el"), rest) if "if" in word and old in ("", "off") else new
+        if word != "endif":
+            states.append(new)
+        if is_hidden or "open" not in (old, new if word != "endif" else ""):
+            blank(*found.span())
+        elif old == "off":  # the first way of which nothing is known
+            text[slice(*found.span(1))] = found[1].removeprefix(b"el").rjust(len(word))
+    return bytes(text)
 
 
 def head_of_function(node: Any) -> Any:

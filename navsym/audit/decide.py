@@ -16,7 +16,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_mat
 
-from navsym.audit.evaluate import Condition
+from navsym.audit.cases import Condition
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.errors import DomainError, NavsymError, TooLargeError
 from navsym.language.domains import rational_value

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, ClassVar
 
+from navsym.audit.cases import Condition, Reading
 from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write, names_in, spell_entry, walk
 from navsym.audit.functions import CONSTANTS, METHODS, NAMED_CALLS, call_known, extreme_of, is_known, is_method
 from navsym.audit.values import (
@@ -47,7 +48,6 @@ from navsym.audit.values import (
 )
 from navsym.language.tree import Tree, build_call, build_number
 
-CASES = 32
 TRUTHS = ("compare", "both", "either", "not")
 JOINS = {f"{module}.{name}": name for module in ("np", "numpy") for name in "hstack vstack concatenate block".split()}
 KINDS: dict[str, type[Array]] = {"quaternion": Quaternion, "list": List}
@@ -55,54 +55,7 @@ INLINED = 12
 
 #: Source spelling of an input -> its symbol.
 Inputs = Callable[[str], Tree]
-
-
-@dataclass(frozen=True, slots=True)
-class Condition:
-    """A comparison of the source, and whether it holds in this case; without sides it is one that is not read."""
-
-    text: str
-    line: int
-    holds: bool
-    sign: str = ""
-    left: Tree | None = None
-    right: Tree | None = None
-
-
-@dataclass(slots=True, eq=False)
-class Case:
-    """One way through a function.
-
-    variables : what its names hold at the end
-    returned  : its value, if it has one
-    has_failed : True where it ends in an error, so that it computes nothing
-    """
-
-    conditions: tuple[Condition, ...]
-    variables: dict[str, Variable]
-    returned: Value | None
-    has_failed: bool = False
-
-
-@dataclass(slots=True, eq=False)
-class Reading:
-    """A function that has been read.
-
-    cases     : every way through it
-    refused   : line -> reason
-    met       : the statements that were met, by their spans
-    valueless : assignments that are read and depend on what is not, with its reason
-    ways      : whether conditions that are not read, and maxima, have two ways
-    """
-
-    unit: Unit
-    function: Function
-    cases: list[Case] = field(default_factory=list)
-    refused: dict[int, str] = field(default_factory=dict)
-    met: set[tuple[int, int]] = field(default_factory=set)
-    refused_spans: set[tuple[int, int]] = field(default_factory=set)
-    valueless: dict[tuple[int, int], str] = field(default_factory=dict)
-    ways: tuple[bool, bool] = (True, True)
+Edits = Mapping[int, Part | Callable[["Evaluator", Part], Value]]
 
 
 class Returning(Exception):
@@ -121,6 +74,8 @@ class Failing(Exception):
 class Evaluator:
     """The state of one run, and what expressions mean in it; :class:`Machine` has the statements and conditions.
 
+    edits   : parts in the place of others, by ``id``, or what computes a value in their place
+    most    : how many steps it may take
     choices : the ways taken at undecided conditions; None leaves unread what depends on one
     is_bold : True where a condition that is not read has two ways as well
     is_split : True where a minimum or maximum has two ways; else it is a formula
@@ -141,7 +96,8 @@ class Evaluator:
     reading: Reading
     inputs: Inputs
     shapes: Mapping[str, Index]
-    edits: Mapping[int, Part]
+    edits: Edits
+    most: int
     choices: list[bool] | None
     is_bold: bool = True
     is_split: bool = True
@@ -319,7 +275,10 @@ class Evaluator:
 
     def value(self, part: Part, wants_value: bool = True) -> Value:
         """The value of an expression."""
-        part = self.edits.get(id(part), part)  # a mended one, while a mend is sought
+        if (edited := self.edits.get(id(part))) is not None:  # while a mend is sought
+            if not isinstance(edited, Part):
+                return edited(self, part)
+            part = edited
         self.steps += 1
         kind = part.kind
         try:

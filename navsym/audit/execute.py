@@ -10,7 +10,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from navsym.audit.evaluate import CASES, Case, CellView, Condition, Evaluator, Failing, Inputs, Reading, Returning
+from navsym.audit.cases import CASES, Case, Condition, Reading, is_contradictory
+from navsym.audit.evaluate import CellView, Edits, Evaluator, Failing, Inputs, Returning
 from navsym.audit.form import (
     Argument,
     Function,
@@ -70,7 +71,7 @@ def read_function(
     function: Function,
     inputs: Inputs,
     shapes: Mapping[str, Index] | None = None,
-    edits: Mapping[int, Part] | None = None,
+    edits: Edits | None = None,
     known: Reading | None = None,
 ) -> Reading:
     """All cases of a function; more than 32 leave unread what its branches write.
@@ -78,10 +79,10 @@ def read_function(
     inputs : source spelling of an input -> its symbol
     shapes : sizes of inputs that the source does not say
     edits  : expressions and statements in the place of others, by ``id``
-    known  : the reading without edits
+    known  : the reading without edits, of which one with edits may take the steps four times
     """
-    reading = Reading(unit, function)
-    start = functools.partial(Machine, reading, inputs, shapes or {}, edits or {})
+    reading, most = Reading(unit, function), STEPS if known is None else min(4 * known.steps + 1000, STEPS)
+    start = functools.partial(Machine, reading, inputs, shapes or {}, edits or {}, most)
     for reading.ways in WAYS[WAYS.index(known.ways) if known is not None else 0 :]:
         reading.cases = list_cases(start, reading, function, *reading.ways)
         if reading.cases:
@@ -109,6 +110,7 @@ def list_cases(
     while waiting:
         machine = start(waiting.pop(), is_bold, is_split)
         cases.append(machine.run(function))
+        reading.steps = max(reading.steps, machine.steps)
         if len(cases) + len(waiting) > CASES:
             return []
         waiting += machine.other_ways
@@ -124,8 +126,14 @@ class Machine(Evaluator):
 
     def run(self, function: Function) -> Case:
         """The whole function."""
-        for constant in self.unit.constants:
-            self.statement(constant)
+        for constant in self.unit.constants:  # nothing else depends on one that is not read
+            name = constant.parts[0] if constant.kind == "declare" else constant.parts[0].parts[0]
+            try:
+                getattr(self, f"run_{constant.kind}")(*constant.parts, statement=constant)
+            except Unreadable as refusal:
+                unread = Unread(refusal.line or constant.line, refusal.why)
+                self.reading.refused.setdefault(unread.line, unread.why)
+                self.frame[name] = Variable(name, all_unread=unread)
         once = [constant.parts[0] for constant in self.unit.constants if constant.kind == "declare"]
         for name in {name for name in once if once.count(name) > 1}:
             self.frame[name].all_unread = Unread(function.line, f"{name}, which has several values in this file")
@@ -171,10 +179,10 @@ class Machine(Evaluator):
 
     def statement(self, statement: Part) -> None:
         """One statement; what cannot be read leaves its names unread."""
-        statement = self.edits.get(id(statement), statement)  # a mended one, while a mend is sought
+        statement = self.edits.get(id(statement), statement)  # type: ignore[assignment]
         self.steps += 1
-        if self.steps > STEPS:
-            message = f"expected at most {STEPS} steps; got more; ask for a smaller function"
+        if self.steps > self.most:
+            message = f"expected at most {self.most} steps; got more; ask for a smaller function"
             raise TooLargeError(message, where=f"{self.unit.file}: line {statement.line}")
         if statement.kind != "block":
             self.reading.met.add(statement.span)
@@ -687,9 +695,9 @@ class Machine(Evaluator):
 
     def choose(self, condition: Condition) -> bool:
         """The way of this run at an undecided condition."""
-        for known in self.conditions:
-            if (known.sign, known.left, known.right) == (condition.sign, condition.left, condition.right):
-                return known.holds
+        for way in (True, False):
+            if is_contradictory((*self.conditions, replace(condition, holds=way))):
+                return not way
         if self.choices is None:
             raise Unreadable(condition.line, f"one of more than {CASES} cases")
         place = len(self.conditions)

@@ -2,23 +2,36 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from navsym.audit.decide import Scope, decide_entry, draw_points
-from navsym.audit.form import Function, Part, Unit, mentioned_in, names_in, spell_entry, walk
+from navsym.audit.evaluate import Edits, Evaluator
+from navsym.audit.form import Function, Part, Unit, has_effects, mentioned_in, names_in, spell_entry, walk
 from navsym.audit.names import squeeze
 from navsym.audit.questions import Entry, NotThereError
 from navsym.audit.sources import Source, read_expression
-from navsym.audit.values import Scalar, Unread
+from navsym.audit.values import Array, Cell, Scalar, Unread, Unreadable, Value, cells_of
 from navsym.claims.verdict import PROVED
 from navsym.core.errors import NavsymError
 from navsym.language.printer import print_tree
-from navsym.language.tree import MINUS_ONE, NUMBER, POWER, SYMBOL, Tree, build, build_call, fold_tree, list_names
+from navsym.language.tree import (
+    MINUS_ONE,
+    NUMBER,
+    POWER,
+    SYMBOL,
+    Tree,
+    build,
+    build_call,
+    build_symbol,
+    fold_tree,
+    list_names,
+)
 from navsym.prove.rooms.goals import player
 
 PER_ENTRY = 4000  # changes that are tried, of a short function
@@ -47,12 +60,13 @@ Kind = Callable[["Place", list[Part]], Iterator[Edit]]
 class Mend:
     """A change of one statement: parts in the place of others by ``id``, its line, and its new right side as text.
 
-    Where the left side changes the text is the whole assignment.
+    Where the left side changes the text is the whole assignment; ``old`` is the expression that is changed otherwise.
     """
 
     line: int
     text: str
     edits: Mapping[int, Part]
+    old: Part | None = None
 
 
 @dataclass(slots=True)
@@ -85,35 +99,35 @@ def suggest(entry: Entry, scope: Scope, budget: Budget) -> Mend | None:
     box = {name: player.read_range(limits) for name, limits in scope.ranges.items()}
     points = itertools.islice(draw_points(box, scope), 3)  # at which wrong ones are dropped before anything is proved
     probes = [{name: int(v.p) / int(v.q) for name, v in point.items()} for point in points]
-    for mend in itertools.chain(
-        budget.known,
+    for batch in itertools.chain(
+        ([mend] for mend in budget.known),
         change_all(near, [*SMALL_EDITS, edit_names]),
         change_all(beside, [*SMALL_EDITS, edit_names]),
         change_all(rest, SMALL_EDITS),
-        (mend for place in places if place.statement.kind == "declare" for mend in place.change_target()),
+        ([*place.change_target()] for place in places if place.statement.kind == "declare"),
         change_all(rest, [edit_names]),
         change_all(near + beside, [add_names]),
         change_all(near, [add_products]),
-        (mend for place in near or places for mend in place.change_target()),
-        (mend for place in near for text in rewrite(source, entry.expected.tree) for mend in place.put(text)),
-        (mend for place in places for mend in place.change_target()),
+        ([*place.change_target()] for place in near or places),
+        ([*place.put(text)] for place in near for text in rewrite(source, entry.expected.tree)),
+        ([*place.change_target()] for place in places),
     ):
-        key = (*mend.edits, mend.text)
-        if key in tried:
-            continue
-        tried.add(key)
-        budget.question -= price
-        if budget.question < max(least, 0):
+        fresh = {(*mend.edits, mend.text): mend for mend in batch if (*mend.edits, mend.text) not in tried}
+        left = (budget.question - max(least, 0)) // price
+        tried |= {*fresh}
+        budget.question -= price * min(len(fresh), left)
+        for mend in sift([*fresh.values()][:left], entry, source, probes):
+            if is_right(mend, entry, source, scope, probes):
+                budget.known.append(mend)
+                return mend
+        if len(fresh) > left:
             return None
-        if is_right(mend, entry, source, scope, probes):
-            budget.known.append(mend)
-            return mend
     return None
 
 
-def change_all(places: Sequence[Place], kinds: Sequence[Kind]) -> Iterator[Mend]:
+def change_all(places: Sequence[Place], kinds: Sequence[Kind]) -> Iterator[list[Mend]]:
     """The mends of places by edits of some kinds, kind by kind."""
-    return (mend for kind in kinds for place in places for mend in place.change([kind]))
+    return ([*place.change([kind])] for kind in kinds for place in places)
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +195,7 @@ class Place:
             (low, high), (start, end) = (whole_side(self.statement) or self.part).span, self.part.span
             source = self.source.unit.source
             whole = f"{cut(source, low, start)}{text}{cut(source, end, high)}"
-            yield Mend(self.part.line, " ".join(whole.split()), {id(self.part): part})
+            yield Mend(self.part.line, " ".join(whole.split()), {id(self.part): part}, self.part)
 
     def change_target(self) -> Iterator[Mend]:
         """The mends by another name or index on the left."""
@@ -230,6 +244,7 @@ def rewrite_part(unit: Unit, part: Part, edits: Iterator[Edit]) -> Iterator[str]
     return (f"{cut(unit.source, low, start)}{new}{cut(unit.source, end, high)}" for start, end, new in edits)
 
 
+@functools.lru_cache(1 << 13)
 def read_mend(text: str, unit: Unit) -> Part | None:
     """A text as an expression of a language; None where it is none."""
     part = read_expression(text, unit)
@@ -304,26 +319,118 @@ def right_side(statement: Part, place: tuple[int, int]) -> Part | None:
 
 def is_right(mend: Mend, entry: Entry, source: Source, scope: Scope, probes: list[dict[str, float]]) -> bool:
     """True when the entry is proved with this mend."""
-    try:
-        cases = source.read(mend.edits).cases
-        texts = [(c.text, c.holds) for c in entry.conditions]
-        case = next((c for c in cases if all((x.text, x.holds) in texts for x in c.conditions)), None)
-        if case is None or entry.again is None:
-            return False
-        cell, expected = entry.again(case)
-    except (NavsymError, NotThereError):
-        return False
+    cell, expected = read_again(entry, source, mend.edits)
     if not isinstance(cell, Scalar) or not isinstance(expected, Scalar):
         return False
     if not {*list_names(cell.tree, expected.tree)} <= {*scope.ranges}:  # a name that has no value
         return False
-    for probe in probes:
-        a, b = (evaluate(tree, probe) for tree in (cell.tree, expected.tree))
-        if (a is None) != (b is None):
-            return False
-        if a is not None and b is not None and abs(a - b) > TOLERANCE * (1 + abs(a) + abs(b)):
-            return False
-    return decide_entry(cell.tree, expected.tree, scope).status == PROVED
+    fits = all(map(functools.partial(are_near, cell.tree, expected.tree), probes))
+    return fits and decide_entry(cell.tree, expected.tree, scope).status == PROVED
+
+
+def read_again(entry: Entry, source: Source, edits: Edits) -> tuple[Cell, Cell]:
+    """What the code computes with edits at the place of an entry, in its case, and what it should be."""
+    texts, unread = [(c.text, c.holds) for c in entry.conditions], Unread(0, "not in this case")
+    try:
+        cases = source.read(edits).cases
+        case = next((c for c in cases if all((x.text, x.holds) in texts for x in c.conditions)), None)
+        return (unread, unread) if case is None or entry.again is None else entry.again(case)
+    except (NavsymError, NotThereError):
+        return unread, unread
+
+
+def are_near(one: Tree, two: Tree, probe: Mapping[str, float]) -> bool:
+    """True for formulas with values that are nearly equal at a point, or with none."""
+    a, b = (evaluate(tree, probe) for tree in (one, two))
+    return a is b is None or (a is not None and b is not None and abs(a - b) <= TOLERANCE * (1 + abs(a) + abs(b)))
+
+
+def sift(mends: list[Mend], entry: Entry, source: Source, probes: list[dict[str, float]]) -> Iterator[Mend]:
+    """Those mends of one expression that numbers do not rule out: the function runs once for all of them.
+
+    In the place of the expression it gets symbols, beside which every mend is computed.
+    """
+    old = mends[0].old if len(mends) > 1 else None
+    if old is None or may_write_more(source.unit, old):
+        yield from mends
+        return
+    gap = Gap([mend.edits[id(old)] for mend in mends], source.names.declarations)
+    cell, expected = read_again(entry, source, {id(old): gap})
+    for number, mend in enumerate(mends):
+        if number in gap.doubtful or not isinstance(cell, Scalar) or not isinstance(expected, Scalar):
+            yield mend
+        elif gap.trials.keys() & {*list_names(cell.tree, expected.tree)}:
+            points = (Filled(probe, gap.trials, number) for probe in probes)
+            if all(map(functools.partial(are_near, cell.tree, expected.tree), points)):
+                yield mend
+
+
+def may_write_more(unit: Unit, part: Part) -> bool:
+    """True for an expression with a call of a function of the file that may write to what is not its own."""
+    return any(has_effects(f) for name in mentioned_in(part) for f in unit.functions.get(name, ()))
+
+
+class Gap:
+    """What computes the mends of an expression each time that the expression is met, and gives symbols in its place.
+
+    trials   : symbol -> its meaning in each mend, None where a mend is not read
+    doubtful : the places of mends of which nothing is known
+    """
+
+    def __init__(self, parts: Sequence[Part], names: Iterable[str]):
+        self.letters = next(word for k in range(1, 99) if not any(n.startswith(word := "gap" + "x" * k) for n in names))
+        self.parts, self.trials, self.doubtful = parts, dict[str, list[Cell | None]](), set[int]()
+
+    def __call__(self, machine: Evaluator, part: Part) -> Value:
+        own = machine.value(replace(part))  # which has no edit
+        cells = cells_of(own)
+        trials = [self.attempt(machine, number, own) for number in range(len(self.parts))]
+        symbols = list[Cell]()
+        for at, cell in enumerate(cells):
+            name = f"{self.letters}{len(self.trials)}"
+            self.trials[name] = [None if trial is None else cells_of(trial)[at] for trial in trials]
+            symbols.append(cell if isinstance(cell, Unread) else replace(cell, tree=build_symbol(name)))
+        return type(own)(own.shape, tuple(symbols)) if isinstance(own, Array) else symbols[0]
+
+    def attempt(self, machine: Evaluator, number: int, own: Value) -> Value | None:
+        """The value of a mend; the state of the run stays as it is."""
+        part, unit = self.parts[number], machine.unit
+        if may_write_more(unit, part):
+            self.doubtful.add(number)
+            return None
+        count, others, steps = len(machine.conditions), len(machine.other_ways), machine.steps
+        unknown = [v for v in (*machine.frame.values(), *machine.globals.values()) if v.shape is None]
+        try:
+            value = machine.value(part)
+        except Unreadable:
+            return None
+        finally:
+            for variable in unknown:  # a number or an array is not said by what is tried
+                variable.shape = None
+                variable.cells.pop((), None)
+            is_split = len(machine.conditions) > count
+            del machine.conditions[count:], machine.other_ways[others:]
+            machine.steps = steps
+        if is_split or getattr(value, "shape", ()) != getattr(own, "shape", ()):
+            self.doubtful.add(number)
+            return None
+        return value
+
+
+class Filled(dict[str, float]):
+    """A point at which the symbols of a gap have the values that a mend gives."""
+
+    def __init__(self, probe: Mapping[str, float], trials: Mapping[str, list[Cell | None]], number: int):
+        super().__init__(probe)
+        self.trials, self.number = trials, number
+
+    def __missing__(self, name: str) -> float:
+        cell = self.trials[name][self.number]
+        value = evaluate(cell.tree, self) if isinstance(cell, Scalar) else None
+        if value is None:
+            raise KeyError(name)
+        self[name] = value
+        return value
 
 
 FLOATS: dict[str, Any] = {
@@ -333,7 +440,7 @@ FLOATS: dict[str, Any] = {
 }
 
 
-def evaluate(tree: Tree, point: dict[str, float]) -> float | None:
+def evaluate(tree: Tree, point: Mapping[str, float]) -> float | None:
     """The value in doubles, or None."""
 
     def step(part: Tree, inner: list[float]) -> float:
@@ -520,5 +627,7 @@ def rewrite(source: Source, expected: Tree) -> Iterator[str]:
     text, language = print_tree(fold_tree(expected, step)), source.unit.language
     if language == "python":
         text = re.sub(r"\b(sin|cos|tan|exp|log|sqrt)\(", r"np.\1(", text)
+    if language in ("c", "cpp"):  # abs may be that of integers
+        text = re.sub(r"\babs\(", "fabs(", text)
     text = source.names.show(text).replace("**", "^" if language == "matlab" else "**")
     yield re.sub(r"(?<![\w.])(\d+)/(\d+)", r"\1.0/\2.0", text) if language in ("c", "cpp") else text

@@ -6,7 +6,8 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules, names_in
+from navsym.audit.form import Argument, Function, Part, Rules, names_in, walk
+from navsym.audit.functions import HARMLESS, PURE, SCALAR, bare_name, is_known, is_method, names_view
 from navsym.audit.syntax import OPERATORS, SourceReader, descend, field_of, line_of, list_above, named, text_of
 
 RULES = Rules(entry=("{}[{}]", "{}[{}, {}]"))
@@ -28,7 +29,7 @@ class Reader(SourceReader):
 
     rebound : names of modules and of their functions that the file uses for something else
     changed : names outside of functions that hold more than their one value
-    given   : names that another name is assigned to, which may write to the same list
+    given   : names whose arrays get another name, or go to what may write to them
     free, methods : the functions of the file, outside of classes and in them
     """
 
@@ -64,12 +65,12 @@ class Reader(SourceReader):
         """Note the names that are written by parts, by more than one assignment, or as ``global``."""
         for node in descend(root):
             bound = list[str]()
-            if node.type == "global_statement":
+            if node.type == "identifier" and may_be_given(node):
+                self.given.add(text_of(node))
+            elif node.type == "global_statement":
                 self.changed |= {text_of(name) for name in named(node)}
             elif node.type in ("assignment", "augmented_assignment", "for_statement"):
-                left, right = field_of(node, "left"), field_of(node, "right")
-                if right is not None and right.type in ("identifier", "subscript"):
-                    self.given.add(re.match(r"\w*", text_of(right))[0])  # type: ignore[index]
+                left = field_of(node, "left")
                 for target in named(left) if left.type.endswith(("_list", "_pattern")) else [left]:
                     bound.append(re.match(r"\w*", text_of(target))[0])  # type: ignore[index]
                     above = list_above(node)
@@ -113,7 +114,7 @@ class Reader(SourceReader):
                     if statement.parts[0].kind == "name":
                         assigned.setdefault(statement.parts[0].parts[0], []).append(statement)
         for name, many in assigned.items():
-            is_open = name in self.changed or (name in self.given and many[0].parts[2].kind in ("list", "call"))
+            is_open = name in self.changed or (name in self.given and may_be_array(many[0].parts[2]))
             if len(many) == 1 and not is_class and not many[0].parts[1] and not is_open:
                 self.unit.constants += many
             for function in self.unit.functions.get(name, []):
@@ -291,6 +292,35 @@ class Reader(SourceReader):
         inner = named(field_of(node, "body")) if node is not None else []
         names = {text_of(field_of(field_of(n, "definition") or n, "name")) for n in inner}
         return method in names or (node is None and (self.shift < 0 or method in self.free | self.methods))
+
+
+def may_be_given(node: Any) -> bool:
+    """True where the array of a name may get another name, or go to what may write to it; not where it is only read."""
+    name, above = "", node.parent
+    while above.type in ("subscript", "attribute", "parenthesized_expression"):
+        if above.type == "subscript" and field_of(above, "value").id != node.id:
+            return False  # an index
+        name = text_of(field_of(above, "attribute")) if above.type == "attribute" else ""
+        if above.type == "attribute" and field_of(above, "object").id != node.id:
+            return False  # the name of a member
+        node, above = above, above.parent
+    if above.type == "argument_list":
+        name = "".join(text_of(field_of(above.parent, "function")).split())
+        is_quiet = is_known(name, "python") or name in {*HARMLESS, *PURE["python"], "float", "range"}
+        return names_view(name) or not is_quiet
+    if above.type == "call":
+        return name == "transpose" or not is_method(name, len(named(field_of(above, "arguments"))), "python")
+    if above.type in ("assignment", "augmented_assignment"):
+        return bool(field_of(above, "left").id != node.id)
+    return above.type not in ("binary_operator", "unary_operator", "comparison_operator", "slice", "not_operator",
+                              "expression_statement", "aliased_import", "dotted_name")  # fmt: skip
+
+
+def may_be_array(value: Part) -> bool:
+    """True for a value that may be an array, and not only a number."""
+    parts = [*walk(value)]
+    calls = {bare_name(p.parts[0]) for p in parts if p.kind == "call"}
+    return value.kind in ("name", "index") or any(p.kind in ("list", "method") for p in parts) or not calls <= SCALAR
 
 
 def name_parameter(node: Any) -> str:

@@ -11,8 +11,8 @@ from itertools import combinations_with_replacement, product
 from pathlib import Path
 from typing import Any
 
+from navsym.audit.cases import Case, Condition, is_contradictory
 from navsym.audit.decide import differentiate
-from navsym.audit.evaluate import Case, Condition
 from navsym.audit.form import spell_entry
 from navsym.audit.names import Names
 from navsym.audit.sources import Source
@@ -40,7 +40,7 @@ from navsym.language.expression import read_tree
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
 from navsym.language.printer import to_text
 from navsym.language.schema import as_list, as_table, as_text, as_title, require_key
-from navsym.language.tree import ONE, SYMBOL, Tree, list_parts, replace
+from navsym.language.tree import NUMBER, ONE, SYMBOL, Tree, build_symbol, list_parts, replace
 from navsym.models.model import Model
 from navsym.prove.claimfile import read_claims, require_numbers
 
@@ -196,15 +196,25 @@ def list_askings(question: Question) -> list[Asking]:
     """The question in every case of the code; raises DomainError for too many."""
     used = [s for s in question.sources.values() if is_used(s.name, question.keys)]
     cases = [[*source.read().cases] for source in used]
-    askings: list[Asking] = []
+    limits, askings = list_limits(question.names), list[Asking]()
     for count, chosen in enumerate(product(*cases)):
         if count == MOST_CASES:
             message = f"expected at most {MOST_CASES} cases; got more; ask about one function at a time"
             raise DomainError(message, where=question.where)
         conditions = tuple(c for case in chosen for c in case.conditions)
-        if not is_contradictory(conditions):
+        if not is_contradictory((*limits, *conditions)):
             askings.append(Asking(question, {s.name: case for s, case in zip(used, chosen, strict=True)}, conditions))
     return askings
+
+
+def list_limits(names: Names) -> list[Condition]:
+    """The ends of the declared ranges as conditions."""
+    limits = list[Condition]()
+    for name, (low, high, flags) in names.ranges().items():
+        for end, sign, flag in ((low, ">", "open-low"), (high, "<", "open-high")):
+            if end is not None and (number := read_tree(end, {})).head == NUMBER:
+                limits.append(Condition(name, 0, True, sign + "=" * (flag not in flags), build_symbol(name), number))
+    return limits
 
 
 def list_dead(question: Question) -> list[Entry]:
@@ -241,13 +251,6 @@ def is_used(name: str, keys: Any) -> bool:
     if isinstance(keys, Mapping | list):
         return any(is_used(name, value) for value in (keys.values() if isinstance(keys, Mapping) else keys))
     return isinstance(keys, str) and keys.startswith(f"{name}:")
-
-
-def is_contradictory(conditions: Sequence[Condition]) -> bool:
-    """True for two sources of which one needs what the other excludes."""
-    read = [c for c in conditions if c.left is not None]  # what is not read may be two things
-    known = {(c.sign, c.left, c.right): c.holds for c in read}
-    return any(known[c.sign, c.left, c.right] != c.holds for c in read)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

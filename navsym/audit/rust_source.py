@@ -38,6 +38,7 @@ QUIET = "println eprintln debug_assert debug_assert_eq assert assert_eq trace de
 
 #: A text, and what may write in the arguments of a macro.
 STRING, WRITING = re.compile(r'"(\\.|[^"\\])*"'), re.compile(r"(?<![=!<>])=(?!=)|mut\b")
+OPEN = "which each type of a trait may define otherwise"
 SIGNS = ("", "+=", "-=", "*=", "/=", "%=")
 
 
@@ -89,11 +90,12 @@ class Reader(SourceReader):
         for node in (node for node in nodes if node.type == "function_item"):
             modules, owners = place_of(node)
             self.places.add((text_of(field_of(node, "name")), modules, owners[0] if owners else ""))
-        self.unit.variables |= {text_of(field_of(node, "name")) for node in nodes if node.type == "const_item"}
+        constants = [node for node in nodes if node.type == "const_item" and not is_open(node)]
+        self.unit.variables |= {text_of(field_of(node, "name")) for node in constants}
         for node in nodes:
             if node.type == "function_item":
                 self.read_function(node)
-            elif node.type == "const_item" and field_of(node, "value") is not None:
+            elif node in constants and field_of(node, "value") is not None:
                 number, shape = type_of(text_of(field_of(node, "type")))
                 what = text_of(field_of(node, "name")), number, self.sizes(node, shape)
                 value = self.expression(field_of(node, "value"))
@@ -290,6 +292,8 @@ class Reader(SourceReader):
         head, _, last = name.rpartition("::")
         if head in ("", "Self") and not self.is_here(node, last, bool(head)):
             return self.refuse(node, f"the function {last}, which this file defines in another place")
+        if head == "Self" and is_open(node):
+            return self.refuse(node, f"{name}, {OPEN}")
         if not head or head == "Self":
             return arguments[0] if name in ("Ok", "Some") and arguments else self.part("call", node, last, arguments)
         if QUATERNION.fullmatch(head):
@@ -322,7 +326,9 @@ class Reader(SourceReader):
         if base.kind == "name" and base.parts[0] == "self" and not self.is_here(node, name, True):
             return self.refuse(node, f"the method {name}, which this file defines in another place")
         if base.kind == "name" and base.parts[0] == "self":
-            return self.part("call", node, name, arguments)
+            return (
+                self.part("call", node, name, arguments) if not is_open(node) else self.refuse(node, f"{name}, {OPEN}")
+            )
         if name in self.own or name in self.unit.functions:
             return self.refuse(node, f"the method {name} of this file on another value")
         if name in SAME and not arguments:
@@ -332,6 +338,11 @@ class Reader(SourceReader):
         if name in NUMBERS and len(arguments) < 2:
             return self.part("call", node, NUMBERS[name] or name, (base, *arguments))
         return self.part("method", node, base, name, arguments)
+
+
+def is_open(node: Any) -> bool:
+    """True inside a trait, where each type may have another method or constant of a name."""
+    return "trait_item" in list_above(node)
 
 
 def place_of(node: Any) -> tuple[tuple[str, ...], list[str]]:

@@ -13,7 +13,8 @@ from typing import Any
 
 from flint import ctx, fmpq
 
-from navsym.audit.evaluate import Reading
+from navsym.audit.cases import Reading
+from navsym.audit.evaluate import Edits
 from navsym.audit.execute import read_function
 from navsym.audit.form import Argument, Function, Part, Unit, called_in, mentioned_in, names_in, spell_entry, walk
 from navsym.audit.names import Names, squeeze
@@ -87,7 +88,7 @@ class Source:
             }
         return self.starts.get(spelling) or self.names.symbol(self.mirrored.get(spelling, spelling))
 
-    def read(self, edits: Mapping[int, Part] | None = None) -> Reading:
+    def read(self, edits: Edits | None = None) -> Reading:
         """The function, read once; with edits it is read again."""
         if edits:
             return read_function(self.unit, self.function, self.symbol, self.shapes, edits, self.reading)

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from navsym.audit.evaluate import Case
+from navsym.audit.cases import Case
 from navsym.audit.mend import evaluate
 from navsym.audit.names import Names
 from navsym.audit.values import Array, Cell, Unread, places_of

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 
-from navsym.audit.evaluate import Reading
+from navsym.audit.cases import Reading
 from navsym.audit.names import Names
 from navsym.audit.sources import load_unit, read_source
 from navsym.audit.syntax import descend, parse_source

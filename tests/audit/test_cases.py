@@ -95,6 +95,43 @@ def test_a_preprocessor_that_knows_its_names_reads_one_way(tmp_path):
     assert ask(tmp_path, source, ".c", "return", "5*a").status == nav.OPEN
 
 
+def test_what_the_preprocessor_surely_leaves_out_is_not_read(tmp_path):
+    left_out = "#if 0\ntypedef int real;\n#define K 7\nfloat g(float a) { return 7*a; }\n#elif 1\n#define K 2\n#endif\n"
+    source = (
+        left_out + "/*\n#if 0\n*/\nfloat f(float a) { float s = '\"';\n#ifdef K\n s = K*a;\n#endif\n return %s; }\n"
+    )
+    assert ask(tmp_path, source % "s", ".c", "return", "2*a").status == nav.PROVED
+    assert "g, which this file does not define" in ask(tmp_path, source % "g(a)", ".c", "return", "7*a").entries[0].why
+    last = "#if 0\n#elifdef X\n#define K 3\n#else\n#define K 4\n#endif\n"
+    last += 'const int n = sizeof(R"(\n#if 0\n)"); // \\\n#if 0\n'
+    last += "float f(float a) { return K*a; }\n"
+    assert ask(tmp_path, last, ".c", "return", "4*a", "defined = []").status == nav.PROVED
+    assert ask(tmp_path, last, ".c", "return", "4*a").status == nav.OPEN
+    doubtful = "#ifdef X\n#define K 1\n#endif\nfloat f(float a) {\n#ifndef K\n a = 5*a;\n#endif\n return a; }\n"
+    assert ask(tmp_path, doubtful, ".c", "return", "5*a").status == nav.OPEN
+    assert ask(tmp_path, doubtful, ".c", "return", "a", 'defined = ["X"]').status == nav.PROVED
+
+
+@pytest.mark.parametrize("value", ["SQUARE(3)", "later()", "&x"])
+def test_a_constant_that_is_not_read_leaves_the_others_as_they_are(tmp_path, value):
+    source = f"#define SQUARE(x) ((x)*(x))\nconst double L = 2;\nconst double K = {value};\nconst double M = K;\n"
+    code = source + "double f(double a) { return %s*a; }\n"
+    assert ask(tmp_path, code % "L", ".c", "return", "2*a").status == nav.PROVED
+    for name in "KM":
+        assert ask(tmp_path, code % name, ".c", "return", "9*a").status == nav.OPEN
+
+
+def test_a_way_that_excludes_itself_is_no_case(tmp_path):
+    source = "float f(float a, float b) {{ if ({}) {{ if ({}) return 7; }} return a; }}"
+    for outer, inner in (("a > 3", "a < -3"), ("a - b < 0", "2*b <= 2*a"), ("a == 2", "a != 2"), ("a > 1", "!(a > 1)")):
+        assert ask(tmp_path, source.format(outer, inner), ".c", "return", "a").status == nav.PROVED
+    for outer, inner in (("a > 3", "a > -3"), ("a - b < 0", "b >= a"), ("a >= 3", "a <= 3"), ("a > b", "a > -b")):
+        assert ask(tmp_path, source.format(outer, inner), ".c", "return", "a").status == nav.REFUTED
+    ranged = source.format("a <= b", "a < 0")
+    assert ask(tmp_path, ranged, ".c", "return", "a", '[code.symbols]\na = "positive"').status == nav.PROVED
+    assert ask(tmp_path, ranged, ".c", "return", "a", '[code.symbols]\na = "nonzero"').status == nav.REFUTED
+
+
 def test_a_mapping_replaces_a_function_of_the_file_only_when_it_says_so(tmp_path):
     source = "float g(float x) { long i = *(long*)&x; return i; }\nfloat f(float a) { return a*g(a*a); }"
     keys = '[code.functions]\ng = { of = ["x"], is = "1.0f/x"%s }\n[code.symbols]\na = "positive"'

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import importlib
 import random
 from collections import Counter
+from pathlib import Path
 
 import pytest
 
@@ -92,6 +94,22 @@ def test_random_faults_of_one_token_are_mended_nearly_always():
             [mended] if (mended := decide_mutant(subject, chosen.choice(list_mutants(subject)), True)[1]) else []
         )
     assert counts["mended"] >= 11
+
+
+GALLERY = Path(__file__).resolve().parents[2] / "examples" / "audit" / "gallery"
+
+
+@pytest.mark.parametrize("name", ["bearing_speed", "joseph_column", "product_in_place"])
+def test_mends_that_are_sifted_in_one_run_are_those_that_single_runs_find(name, monkeypatch):
+    mends, runs = [], Counter()
+    execute, mend = (importlib.import_module(f"navsym.audit.{name}") for name in ("execute", "mend"))
+    read, sift = execute.list_cases, mend.sift
+    for is_alone in (False, True):
+        monkeypatch.setattr(execute, "list_cases", lambda *a, k=is_alone: runs.update([k]) or read(*a))
+        monkeypatch.setattr(mend, "sift", (lambda mends, *_: iter(mends)) if is_alone else sift)
+        mends.append([(e.line, e.suggestion) for e in nav.audit(GALLERY / f"{name}.toml")["before"].entries])
+    assert mends[0] == mends[1] and any(text for _, text in mends[0])
+    assert 3 * runs[False] < runs[True]
 
 
 #: Body of a function in Python: what is wrong in it, and the mend, with a name of what is expected or another group.

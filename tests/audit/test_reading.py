@@ -76,7 +76,7 @@ def final(result, name, *place, case=0):
         ("y = a; RETURN_IF(a); y = 0;", "the function RETURN_IF, which this file does not define"),
         ("y = a; switch (1) { case 1: y = 0; }", "0"),
         ("y = a; switch (3) { case 1: y = 0; break; case 3: y = 2; default: y += a; }", "2 + a"),
-        ("y = a;\n#if 1\n y = 0;\n#endif\n", "a statement outside the language of audit (preproc if)"),
+        ("y = a;\n#if ONE\n y = 0;\n#endif\n", "a statement outside the language of audit (preproc if)"),
         (
             "static float s = 1; s = 2*s; y = s;",
             "a variable that keeps its value between calls, or is changed elsewhere",
@@ -134,8 +134,9 @@ def test_every_way_through_branches_is_a_case_and_constants_decide(tmp_path):
 
 
 def test_more_than_32_cases_leave_unread_what_the_branches_write(tmp_path):
-    branches = "".join(f"if (a > {n}) y[0] += {n};" for n in range(7))
-    result = read(tmp_path, f"void f(float a, float y[1], float z[1]) {{ y[0] = 0; z[0] = a; {branches} }}")
+    branches = "".join(f"if (b[{n}] > a) y[0] += {n};" for n in range(7))
+    head = "void f(float a, const float b[7], float y[1], float z[1])"
+    result = read(tmp_path, f"{head} {{ y[0] = 0; z[0] = a; {branches} }}")
     assert len(result.cases) == 1 and final(result, "z", 0) == "a"
     assert final(result, "y", 0) == "one of more than 32 cases"
 

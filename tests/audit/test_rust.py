@@ -108,3 +108,12 @@ def test_a_normalized_quaternion_has_length_one_and_an_error_computes_nothing(tm
     of = "self.gain*v[0]/sqrt(v[0]**2 + v[1]**2 + v[2]**2)"
     assert ask(tmp_path, "checked", length.format(of))["n"].status == nav.PROVED
     assert ask(tmp_path, "checked", length.format(f"2*{of}"))["n"].status == nav.REFUTED
+
+
+@pytest.mark.parametrize("value", ["self.scale()", "Self::one()", "Self::K"])
+def test_what_each_type_of_a_trait_may_define_otherwise_is_not_read(tmp_path, value):
+    head = "trait Scale {\n    const K: f64 = 2.0;\n    fn scale(&self) -> f64 { 2.0 }\n    fn one() -> f64 { 2.0 }\n"
+    trait = f"{head}    fn f(&self, a: f64, y: &mut f64) {{ *y = {value} * a; }}\n}}\n"
+    assert final(read(tmp_path, trait, end=".rs"), "y") != "2*a"
+    own = trait.replace("trait Scale", "impl Scale for A")
+    assert final(read(tmp_path, own, end=".rs"), "y") == "2*a"

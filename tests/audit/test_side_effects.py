@@ -113,3 +113,15 @@ def test_a_method_that_changes_its_vector_changes_it(tmp_path, body, right, stat
 def test_a_transposition_with_an_order_of_axes_is_not_taken_for_one_without(tmp_path, call, status):
     text = f"def step(a, b, c, d):\n    R = np.array([[a, b], [c, d]])\n    S = {call}\n    return S\n"
     assert ask(tmp_path, f"import numpy as np\n\n\n{text}", "c", "return[0][1]", end="py") == status
+
+
+@pytest.mark.parametrize(
+    "use",
+    ["change(L)", "change(L[1:])", "L.fill(a)", "return L", "return (L)[0]", "pair = [L, a]", "M = L.T", "M[1:] = L"],
+)
+def test_a_list_of_the_module_that_may_be_written_elsewhere_does_not_keep_its_numbers(tmp_path, use):
+    head = "import numpy as np\nL = np.array([[1.0, 2.0]]) * 1\nS = np.sqrt(4.0)\ndef change(x):\n    x[0] = 5.0\n"
+    code = f"{head}def other(a):\n    {{}}\ndef step(a):\n    return L[0, 1]*a + S\n"
+    assert ask(tmp_path, code.format(use), "2*a + 2", "return", "py") != "PROVED"
+    assert ask(tmp_path, code.format("return L[0, 0]*np.sum(L)"), "2*a + 2", "return", "py") == "PROVED"
+    assert ask(tmp_path, code.format("return change(S)"), "2*a + 2", "return", "py") == "PROVED"
