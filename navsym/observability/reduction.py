@@ -22,7 +22,7 @@ from navsym.core.errors import TooLargeError
 from navsym.core.rational_functions import factor_exactly, polynomial_sum
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
-from navsym.observability.ring import Hashed, Poly, Ring, gcd_all, irreducible_factors, is_divisor
+from navsym.observability.ring import Hashed, Poly, Ring, divide, gcd_all, irreducible_factors, is_divisor
 from navsym.prove.signs.bounds import Sign, prove_sign
 
 # Common real zeros of polynomials as a list of simple systems.
@@ -268,16 +268,23 @@ class UnitBasis:
 def lower_row(row: list[Poly], ring: Ring) -> list[Poly]:
     """The row without common factors that are numbers or units."""
     for unit in ring.units:
-        while True:
-            parts = [divmod(entry, unit) if entry != 0 else (entry, entry) for entry in row]
-            if any(rest != 0 for _, rest in parts) or all(entry == 0 for entry in row):
-                break
-            row = [quotient for quotient, _ in parts]
+        while any(entry != 0 for entry in row) and (parts := divide_row(row, unit)):
+            row = parts
     contents = [int(abs(entry.content())) for entry in row if entry != 0]  # type: ignore[attr-defined]
     if not contents or min(contents) == 1:
         return row
     common = gcd(*contents)
     return row if common == 1 else [entry / common if entry != 0 else entry for entry in row]
+
+
+def divide_row(row: list[Poly], unit: Poly) -> list[Poly]:
+    """The quotients of all entries; none where one leaves a remainder, at the first of them."""
+    parts: list[Poly] = []
+    for entry in row:
+        if (quotient := divide(entry, unit)) is None:
+            return []
+        parts.append(quotient)
+    return parts
 
 
 def take_out_regular(rows: Sequence[list[Poly]], ring: Ring) -> Remainder:
