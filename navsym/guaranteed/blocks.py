@@ -25,7 +25,7 @@ from navsym.core.exact import decimal, from_decimal, to_fmpq, upper_end
 from navsym.core.numbers import Number
 from navsym.guaranteed.search.cones import Cone
 from navsym.guaranteed.streaming.exchange import Cloud, exchange
-from navsym.guaranteed.streaming.flow import pivot_columns
+from navsym.guaranteed.streaming.flow import in_row_space, pivot_columns
 from navsym.guaranteed.streaming.numbers import read_exact, to_float, write_rational
 from navsym.language.names import quote
 from navsym.models.modelfile import NORMS
@@ -271,7 +271,7 @@ def solve_target(
 def find_optimum(parts: Sequence[Part], functional: fmpq_mat) -> tuple[list[list[fmpq]], list[fmpq], list[arb], Number]:
     """Unbiased weights, an admissible dual, the costs of the weights block by block, and the bounds that they show."""
     kept = independent_columns(parts, functional)
-    narrow = [part._replace(H=pick_columns(part.H, kept)) for part in parts]
+    narrow = [part._replace(H=fmpq_mat([[row[k] for k in kept] for row in part.H.tolist()])) for part in parts]
     P = fmpq_mat(len(kept), 1, [functional[k, 0] for k in kept])
     x, proposed = propose_optimum(narrow, P)
     weights = balance_weights(narrow, P, proposed)
@@ -376,7 +376,9 @@ def state_problem(
     for constraint in constraints:
         columns, relation, bound = read_constraint(constraint, [int(part.H.nrows()) for part in parts])
         free = free and (bound == 0 or relation == ("<=" if bound > 0 else ">="))
-        parts = [part._replace(H=add_column(part.H, c)) for part, c in zip(parts, columns, strict=True)]
+        tables = [zip(part.H.tolist(), c, strict=True) for part, c in zip(parts, columns, strict=True)]
+        wider = [fmpq_mat([[*row, e] for row, e in table]) for table in tables]
+        parts = [part._replace(H=H) for part, H in zip(parts, wider, strict=True)]
         if relation != "=":
             largest = max((abs(e) for c in columns for e in c), default=fmpq(0)) or fmpq(1)
             left[len(P)] = fmpq(1 if relation == "<=" else -1) * largest
@@ -407,28 +409,15 @@ def read_constraint(constraint: Any, sizes: Sequence[int]) -> tuple[list[list[fm
     return columns, relation, read_exact(bound, where)
 
 
-def add_column(H: fmpq_mat, column: Sequence[fmpq]) -> fmpq_mat:
-    """H with one more column."""
-    rows = [[*row, e] for row, e in zip(H.tolist(), column, strict=True)]
-    return fmpq_mat(len(rows), len(rows[0]), [e for row in rows for e in row])
-
-
-def pick_columns(H: fmpq_mat, columns: Sequence[int]) -> fmpq_mat:
-    """Some columns of a matrix."""
-    return fmpq_mat(H.nrows(), len(columns), [row[k] for row in H.tolist() for k in columns])
-
-
 def stack(parts: Sequence[Part]) -> fmpq_mat:
     """All regressors, one row for each measurement."""
-    rows = [e for part in parts for e in part.H.entries()]
-    return fmpq_mat(sum(part.H.nrows() for part in parts), parts[0].H.ncols(), rows)
+    return fmpq_mat([row for part in parts for row in part.H.tolist()])
 
 
 def independent_columns(parts: Sequence[Part], functional: fmpq_mat) -> list[int]:
     """Unknowns in which unbiased weights are unbiased in all. Raises NotEstimableError."""
     H = stack(parts)
-    more = fmpq_mat(H.nrows() + 1, H.ncols(), [*H.entries(), *functional.entries()])
-    if more.rank() > H.rank():
+    if not in_row_space(functional.entries(), H.tolist()):
         raise NotEstimableError(
             f"the target is not estimable from these {H.nrows()} measurements: it does not lie in the row space of the "
             f"regressors (rank {H.rank()} of {H.ncols()}); add measurements or estimate fewer unknowns"

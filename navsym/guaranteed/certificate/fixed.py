@@ -286,10 +286,10 @@ def is_admissible(found: ContactSolution, z: Sequence[arb]) -> bool:
 
 def exact_touches(found: ContactSolution, z: Sequence[arb]) -> list[list[Touch]]:
     """Touches by panel, with balls for the inner ones."""
-    free = iter(z[len(found.dual) :])
     rows: list[list[Touch]] = [[] for _ in range(max(found.panel) + 1)]
-    for i, (k, v, s, inner) in enumerate(zip(found.panel, found.v, found.sign, found.inner, strict=True)):
-        rows[k].append(Touch(next(free) if inner else to_fmpq(v), s, True, end_name(found, i)))
+    places = put_ends(found, z, list(map(to_fmpq, found.v)))
+    for k, v, s, end in zip(found.panel, places, found.sign, end_names(found), strict=True):
+        rows[k].append(Touch(v, s, True, end))
     return rows
 
 
@@ -331,39 +331,35 @@ def weights_as_costs(
 
 
 def contact_rows(found: ContactSolution, middles: Sequence[str]) -> list[dict[str, Any]]:
-    l = len(found.v)
-    free = iter(middles[len(found.dual) : len(middles) - l])
-    rows = []
-    for i, k in enumerate(found.panel):
-        at = next(free) if found.inner[i] else end_place(end_name(found, i))
-        rows.append({"panel": k, "at": [at], "weight": [middles[len(middles) - l + i]]})
-    return rows
+    places = put_ends(found, middles, [ENDS.get(end, "") for end in end_names(found)])
+    rows = zip(found.panel, places, middles[len(middles) - len(found.v) :], strict=True)
+    return [{"panel": k, "at": [at], "weight": [w]} for k, at, w in rows]
+
+
+def put_ends(found: ContactSolution, z: Sequence[Any], ends: Sequence[Any]) -> list[Any]:
+    """The places among the unknowns z, and for the contacts that do not move what stands in ``ends``."""
+    free = iter(z[len(found.dual) :])
+    return [next(free) if inner else end for inner, end in zip(found.inner, ends, strict=True)]
 
 
 def radii_with_ends(found: ContactSolution, radius: Sequence[str]) -> list[str]:
     """Radii of all unknowns: a place at an end is one for the checker, too, with an equation of its own."""
     m, l = len(found.dual), len(found.v)
-    free, smallest = iter(radius[m : len(radius) - l]), min(radius, key=from_decimal)
-    return [*radius[:m], *(next(free) if i else smallest for i in found.inner), *radius[len(radius) - l :]]
+    places = put_ends(found, radius, [min(radius, key=from_decimal)] * l)
+    return [*radius[:m], *places, *radius[len(radius) - l :]]
 
 
-def end_place(end: str) -> str:
-    """The end of a panel as a certificate names it."""
-    return {"from": "0", "to": "1"}[end]
+#: The ends of a panel as a certificate names them.
+ENDS = {"from": "0", "to": "1"}
 
 
-def end_name(found: ContactSolution, i: int) -> str:
-    """Which end of its panel a contact sits on: "from", "to", or "no"."""
-    if found.inner[i]:
-        return "no"
-    return "to" if to_fmpq(found.v[i]) == 1 else "from"
+def end_names(found: ContactSolution) -> list[str]:
+    """On which ends of their panels contacts sit: "from", "to", or "no"."""
+    return ["no" if inner else "to" if v == 1 else "from" for v, inner in zip(found.v, found.inner, strict=True)]
 
 
 def ball_support(found: ContactSolution, z: Sequence[arb]) -> tuple[tuple[int, arb, arb], ...]:
-    m, l = len(found.dual), len(found.v)
-    free = iter(z[m : len(z) - l])
-    at = [next(free) if inner else v for v, inner in zip(found.v, found.inner, strict=True)]
-    return tuple(zip(found.panel, at, z[len(z) - l :], strict=True))
+    return tuple(zip(found.panel, put_ends(found, z, found.v), z[len(z) - len(found.v) :], strict=True))
 
 
 # -- two-sided ---------------------------------------

@@ -18,7 +18,7 @@ from flint import arb, arb_mat, fmpq
 from navsym.core.balls import precision, series_terms
 from navsym.core.exact import decimal, from_decimal, to_fmpq
 from navsym.guaranteed.certificate.enclosure import PanelProblem
-from navsym.guaranteed.certificate.fixed import certificate_header, end_place
+from navsym.guaranteed.certificate.fixed import ENDS, certificate_header
 from navsym.guaranteed.certificate.moving import EVERY, Member, MovingProblem, expand_polynomial, series_coefficient
 from navsym.guaranteed.streaming.numbers import write_rational
 
@@ -306,11 +306,7 @@ def piece_row(
     m, l, smallest = moving.size, len(track.pattern), min(radius.values(), key=to_fmpq)
     text = lambda c: [decimal(a, 60) for a in c]  # noqa: E731
     contacts = [
-        {
-            "panel": k,
-            "at": text(curves[m + i]) if kind == "no" else [end_place(kind)],
-            "weight": text(curves[m + l + i]),
-        }
+        {"panel": k, "at": text(curves[m + i]) if kind == "no" else [ENDS[kind]], "weight": text(curves[m + l + i])}
         for i, (k, kind, _) in enumerate(track.pattern)
     ]
     return {

@@ -15,7 +15,7 @@ from flint import arb, arb_mat
 
 from navsym.core.balls import precision
 from navsym.guaranteed.certificate.enclosure import PanelProblem
-from navsym.guaranteed.certificate.fixed import optimality_system, solution_unknowns
+from navsym.guaranteed.certificate.fixed import optimality_system, put_ends, solution_unknowns
 from navsym.guaranteed.certificate.polish import ContactSolution
 from navsym.guaranteed.phases.family import Family
 
@@ -44,10 +44,8 @@ def walk_to(
             if z is None:
                 return None
             if value == end:
-                m, l = len(found.dual), len(found.v)
-                free = iter(z[m : len(z) - l])
-                v = tuple(next(free) if inner else at for at, inner in zip(found.v, found.inner, strict=True))
-                return replace(found, dual=tuple(z[:m]), v=v, weights=tuple(z[-l:]), residual=0.0, touching=())
+                m, v = len(found.dual), tuple(put_ends(found, z, found.v))
+                return replace(found, dual=tuple(z[:m]), v=v, weights=tuple(z[-len(v) :]), residual=0.0, touching=())
             known.append((value, z))
             share = NEARER if len(known) > 2 else FIRST
             value = max((root + (value - root) * share, end), key=lambda p: abs(p - root))
