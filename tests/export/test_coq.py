@@ -156,6 +156,11 @@ def test_a_theorem_on_matrices_of_any_size_has_their_letters_and_the_inverses_th
     letters = "forall (n : nat) (K : mat n 1) (P : mat n n) (h : mat 1 n) (inv__P : mat n n)"
     assert says.startswith(f"Theorem statement_1 : {letters}, turn P = P -> P [*] inv__P = unit -> ")
     assert says.endswith("(number (h [*] K)) [.] (inv__P [*] K) = inv__P [*] K [*] h [*] K.")
+    ridge = nav.book["ridge-dual"].prove().certificate
+    says = next(line for line in write_theory(ridge).splitlines() if line.startswith("Theorem"))
+    assert "inv__arg__text2 [*] (H [*] (turn H) [+] (alpha) [.] unit) = unit -> " in says
+    assert says.endswith("inv__arg__text0 [*] (turn H) = turn H [*] inv__arg__text2.")
+    assert "inv__R_ [*] R_ = unit" in write_theory(json.loads(json.dumps(item).replace("P", "R")))
     with pytest.raises(DomainError, match="a trace"):
         write_theory(nav.prove("trace(P) = trace(P.T)", P={"matrix": ["n", "n"]}).certificate)
 
@@ -213,7 +218,10 @@ def test_coq_proves_what_the_checker_accepts(tmp_path):
         nav.prove("integral(x*sin(x), x, 0, t) = sin(t) - t*cos(t)"),
         nav.prove("integral(x*exp(-x), x, 0, oo) = 1"),
         nav.prove("sqrt(6)*x = sqrt(2)*sqrt(3)*x"),
-        *(nav.book[name].prove() for name in ("transport-rate", "mercator-ellipsoid", "unscented-covariance")),
+        *(
+            nav.book[name].prove()
+            for name in ("transport-rate", "mercator-ellipsoid", "unscented-covariance", "joseph")
+        ),
     ]
     for place, answer in enumerate(answers):
         (row,) = nav.check(answer, kernel="coq", out=tmp_path / str(place))

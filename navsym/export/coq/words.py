@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from navsym import checker
@@ -14,7 +14,24 @@ SAYS = {"orthogonal": ("{0} [*] turn {0} = unit", "turn {0} [*] {0} = unit"), "s
 SAYS |= dict.fromkeys(("symmetric", "positive", "nonnegative", "diagonal"), ("turn {0} = {0}",))
 
 
-class Written(checker.Algebra):
+class Asked(checker.Algebra):
+    """What is answered, in order, where a statement has an inverse."""
+
+    def __init__(self, statement: Any):
+        super().__init__(statement)
+        self.asked: list[Any] = []
+
+    def invert(self, x: Typed, text: str) -> Typed:
+        answer = super().invert(x, text)
+        self.asked.append(answer.body)
+        return answer
+
+
+class Read(Asked, checker.Words):
+    """Sums of words, as the checker has them."""
+
+
+class Written(Asked):
     """Matrices as texts of ``words.v``, with hypotheses about the letters that stand in them."""
 
     def __init__(self, statement: Any):
@@ -22,7 +39,7 @@ class Written(checker.Algebra):
         self.texts = rename([*self.box, *statement["matrices"]])
         self.numbers = self.texts | {name: f"INR {self.texts[name]}" for name in self.dimensions}
         self.letters, self.inverses, self.says = dict[str, str](), dict[str, str](), dict[str, None]()
-        self.sides: list[str] = []
+        self.sides, self.sums = list[str](), dict[str, Any]()
 
     def write(self, term: Term) -> str:
         return f"({write_term(term, self.numbers)})"
@@ -61,7 +78,7 @@ class Written(checker.Algebra):
     def invert_body(self, x: Any, rows: Any) -> str:
         """A letter whose products with the matrix are 1."""
         if x not in self.inverses:
-            own = f"inv__{x}" if x.isidentifier() else f"inv__arg__{len(self.inverses)}"
+            own = f"inv__{x}" if x.isidentifier() else f"inv__arg__text{len(self.inverses)}"
             self.inverses |= {x: own, own: x}
             self.make_letter(own, rows, rows, [])
             self.says |= {f"{enclose(x)} [*] {own} = unit": None, f"{own} [*] {enclose(x)} = unit": None}
@@ -83,9 +100,23 @@ class Written(checker.Algebra):
         for name, _ in word:
             base = name.removeprefix("inv__")
             if name not in self.texts and base in self.texts:
-                self.invert_body(self.texts[base], self.statement[4][base]["size"][0])
-        letters = [f"turn {self.texts[name]}" if turned else self.texts[name] for name, turned in word]
+                self.texts[name] = self.invert_body(self.texts[base], self.statement[4][base]["size"][0])
+        letters = [f"{'turn ' * turned}{self.write_letter(name)}" for name, turned in word]
         return f"({' [*] '.join(letters) or 'unit'})"
+
+    def write_letter(self, name: str) -> str:
+        """A letter of the checker's own stands for a sum."""
+        return f"({self.write_sum(self.sums[name])})" if name in self.sums else self.texts[name]
+
+    def follow(self, algebra: Read) -> Iterator[str]:
+        """Take over the letters of the checker for sums and for their inverses; lines that turn these."""
+        self.sums = {name: body for body, name in algebra.arguments}
+        found = {((f"inv__{name}", False),): f"inv__{name}" for name in self.sums}
+        for text, body in zip(self.asked, algebra.asked, strict=True):
+            for name in (found[word] for word, c in body.items() if word in found and c == checker.ONE):
+                self.texts[name] = text
+                if name in algebra.symmetric:
+                    yield f"assert (turn {text} = {text}) by (eapply turned_inverse; [| eassumption ..]; words)."
 
 
 def enclose(text: str, *loose: str) -> str:
@@ -96,17 +127,21 @@ def enclose(text: str, *loose: str) -> str:
 
 def write_words(name: str, part: Mapping[str, Any]) -> str:
     """The theorem of an equation between matrices, and its script: the sides differ by a sum of relations."""
-    statement, algebra, own = part["statement"], checker.Words(part["statement"]), Written(part["statement"])
+    statement, algebra, own = part["statement"], Read(part["statement"]), Written(part["statement"])
     algebra.state()
     relation, x = own.state()
     if relation != "=" or not isinstance(x, Typed):
         raise Unwritten("a number or an order of matrices of any size")
     claim, shares, facts = " = ".join(own.sides), list[str](), dict[str, str]()
+    turned = [*dict.fromkeys(own.follow(algebra))]
     try:
         for share in part["shares"]:
             if share["word"] is not None:
                 raise Unwritten("a trace")
-            text = own.write_sum(algebra.relations[share["relation"]].body)
+            body = algebra.relations[share["relation"]].body
+            if any(((name, way),) in body for name in own.sums for way in (False, True)):
+                continue  # a letter is its sum
+            text = own.write_sum(body)
             facts.setdefault(f"({text})", f"S{len(facts)}")
             left, right = (own.write_word(algebra.read_word(share[side])) for side in ("left", "right"))
             shares.append(f"{own.write(checker.parse(share['coefficient']))} [.] ({left} [*] ({text}) [*] {right})")
@@ -120,7 +155,7 @@ def write_words(name: str, part: Mapping[str, Any]) -> str:
     for a, b in own.inverses.items():
         if f"turn {a} = {a}" in own.says:
             lines.append(f"assert (turn {b} = {b}) by (eapply turned_inverse; eassumption).")
-    lines += [f"assert ({fact} : {text[1:-1]} = zeros) by related." for text, fact in facts.items()]
+    lines += turned + [f"assert ({fact} : {text[1:-1]} = zeros) by related." for text, fact in facts.items()]
     if shares:
         lines += [f"apply by_difference_0. transitivity ({' [+] '.join(shares)}); [words |]."]
         lines += [f"rewrite ?{fact}." for fact in facts.values()]
