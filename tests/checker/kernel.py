@@ -17,6 +17,7 @@ import random
 import re
 import select
 import subprocess
+import tempfile
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from importlib.resources import files
@@ -61,9 +62,9 @@ class Coq:
     """One process with libraries, to which theories are said."""
 
     def __init__(self, head: str) -> None:
-        self.process = subprocess.Popen(
-            ["coqtop", "-q", "-w", "none"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
-        )
+        self.folder = tempfile.TemporaryDirectory()  # of what its tactics keep
+        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+        self.process = subprocess.Popen(["coqtop", "-q", "-w", "none"], cwd=self.folder.name, **pipes)
         assert self.process.stdin is not None and self.process.stdout is not None
         self.ends = self.process.stdin.fileno(), self.process.stdout.fileno()
         for end in self.ends:

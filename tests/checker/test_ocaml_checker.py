@@ -385,6 +385,15 @@ def checker_accepts(text: str) -> bool:
         return False
 
 
+def test_a_rate_of_a_name_that_is_declared_nowhere_means_nothing_to_both_checkers(program: Path) -> None:
+    real, moving = [None, None, []], {"shapes": {}, "given": [], "rates": {"x": "v", "t": "1"}}
+    sides, point = [("dot_(x)", "v"), ("dot_(x*t)", "v*t + x")], {"x": "0", "v": "0"}
+    claims = [statement(left, "=", right, {"x": real, "v": real}) | moving for left, right in sides]
+    texts = [proof_by({"rule": "identity"}, claim, point) for claim in claims]
+    assert [answer.partition(":")[0] for answer in judge(program, texts)] == ["accepted", "refused"]
+    assert [*map(checker_accepts, texts)] == [True, False]
+
+
 @pytest.mark.long
 def test_no_certificate_of_the_ledger_is_refused(program: Path) -> None:
     ledger = read_ledger()

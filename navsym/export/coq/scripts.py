@@ -72,7 +72,8 @@ def prove_equality(terms: Iterable[Term], names: Mapping[str, str]) -> list[str]
     write_absolutes([p for p in parts if p[0] == "abs"], script)
     rules = f" [{' '.join(script.rules)}]" if script.rules else ""
     rewrites = "".join(f"rewrite ?{rule}; " for rule in script.rules)
-    ways = [f"ring{rules}", f"progress same_denominators; ring{rules}", f"field{rules}; nonzero"]
+    ways = [f"ring{rules}", f"timeout {PATIENCE} (field{rules}); nonzero"]
+    ways += [f"progress same_denominators; ring{rules}", f"field{rules}; nonzero"]
     ways += [f"{rewrites}field; nonzero", f"field_simplify{rules}; first [ field; nonzero | nonzero ]"]
     return [*script.lines, f"first [ {' | '.join(f'solve [{way}]' for way in ways)} ]."]
 

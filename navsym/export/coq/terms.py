@@ -92,6 +92,8 @@ def write_term(term: Term, names: Mapping[str, str], now: Mapping[Term, str] | N
         case ("pi",):
             return "PI"
         case ("symbol", name):
+            if name not in names:
+                raise Unwritten(f"the symbol {name}, which the statement does not have,")
             return names[name]
         case ("+", *parts):
             return " + ".join(

@@ -28,7 +28,7 @@ PLAIN = "Ltac few_digits := lra.\nLtac many_digits := lra.\n"
 #: Files with lemmas and tactics, in the order in which they rest on one another.
 LEMMAS = ("tactics.v", "calculus.v", "condition.v", "words.v")
 #: Letters of a theory: larger ones take Coq many minutes.
-MOST_LETTERS = 200_000
+MOST_LETTERS = 2_000_000
 Said = list[tuple[Term, str, Term]]
 BALLS = "Ltac few_digits := interval with (i_prec 90).\nLtac many_digits := interval with (i_prec 700).\n"
 

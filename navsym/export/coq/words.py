@@ -39,7 +39,7 @@ class Written(Asked):
         self.texts = rename([*self.box, *statement["matrices"]])
         self.numbers = self.texts | {name: f"INR {self.texts[name]}" for name in self.dimensions}
         self.letters, self.inverses, self.says = dict[str, str](), dict[str, str](), dict[str, None]()
-        self.sides, self.sums = list[str](), dict[str, Any]()
+        self.sides: list[str] = []
 
     def write(self, term: Term) -> str:
         return f"({write_term(term, self.numbers)})"
@@ -101,22 +101,21 @@ class Written(Asked):
             base = name.removeprefix("inv__")
             if name not in self.texts and base in self.texts:
                 self.texts[name] = self.invert_body(self.texts[base], self.statement[4][base]["size"][0])
-        letters = [f"{'turn ' * turned}{self.write_letter(name)}" for name, turned in word]
+        letters = [f"turn {self.texts[name]}" if turned else self.texts[name] for name, turned in word]
         return f"({' [*] '.join(letters) or 'unit'})"
 
-    def write_letter(self, name: str) -> str:
-        """A letter of the checker's own stands for a sum."""
-        return f"({self.write_sum(self.sums[name])})" if name in self.sums else self.texts[name]
-
     def follow(self, algebra: Read) -> Iterator[str]:
-        """Take over the letters of the checker for sums and for their inverses; lines that turn these."""
-        self.sums = {name: body for body, name in algebra.arguments}
-        found = {((f"inv__{name}", False),): f"inv__{name}" for name in self.sums}
+        """Lines about letters of the checker's own for sums, and what their inverses are called."""
+        found = {((f"inv__{name}", False),): name for _, name in algebra.arguments}
         for text, body in zip(self.asked, algebra.asked, strict=True):
-            for name in (found[word] for word, c in body.items() if word in found and c == checker.ONE):
-                self.texts[name] = text
+            for name in (found.pop(word) for word, c in body.items() if word in found and c == checker.ONE):
+                self.texts |= {name: name, f"inv__{name}": text}
+                yield f"destruct (named _ _ ({self.inverses[text]})) as [{name} arg__E]."
+                yield f"match goal with H : _ [*] {text} = _, K : {text} [*] _ = _ |- _ => rewrite <- arg__E in H, K end."
                 if name in algebra.symmetric:
-                    yield f"assert (turn {text} = {text}) by (eapply turned_inverse; [| eassumption ..]; words)."
+                    yield f"assert (turn {name} = {name}) by (rewrite arg__E; words)."
+                    yield f"assert (turn {text} = {text}) by (eapply turned_inverse; eassumption)."
+                yield f"rename arg__E into {name}__E."
 
 
 def enclose(text: str, *loose: str) -> str:
@@ -133,15 +132,12 @@ def write_words(name: str, part: Mapping[str, Any]) -> str:
     if relation != "=" or not isinstance(x, Typed):
         raise Unwritten("a number or an order of matrices of any size")
     claim, shares, facts = " = ".join(own.sides), list[str](), dict[str, str]()
-    turned = [*dict.fromkeys(own.follow(algebra))]
+    named = [*own.follow(algebra)]
     try:
         for share in part["shares"]:
             if share["word"] is not None:
                 raise Unwritten("a trace")
-            body = algebra.relations[share["relation"]].body
-            if any(((name, way),) in body for name in own.sums for way in (False, True)):
-                continue  # a letter is its sum
-            text = own.write_sum(body)
+            text = own.write_sum(algebra.relations[share["relation"]].body)
             facts.setdefault(f"({text})", f"S{len(facts)}")
             left, right = (own.write_word(algebra.read_word(share[side])) for side in ("left", "right"))
             shares.append(f"{own.write(checker.parse(share['coefficient']))} [.] ({left} [*] ({text}) [*] {right})")
@@ -155,7 +151,7 @@ def write_words(name: str, part: Mapping[str, Any]) -> str:
     for a, b in own.inverses.items():
         if f"turn {a} = {a}" in own.says:
             lines.append(f"assert (turn {b} = {b}) by (eapply turned_inverse; eassumption).")
-    lines += turned + [f"assert ({fact} : {text[1:-1]} = zeros) by related." for text, fact in facts.items()]
+    lines += named + [f"assert ({fact} : {text[1:-1]} = zeros) by related." for text, fact in facts.items()]
     if shares:
         lines += [f"apply by_difference_0. transitivity ({' [+] '.join(shares)}); [words |]."]
         lines += [f"rewrite ?{fact}." for fact in facts.values()]

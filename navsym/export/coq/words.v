@@ -127,6 +127,8 @@ Proof.
   intros n A X S P Q. assert (T := f_equal turn P). rewrite turn_times, S, turn_unit in T.
   now rewrite <- (times_unit (turn X)), <- P, <- from_right, T, unit_times.
 Qed.
+Lemma named : forall m n (A : mat m n), exists B, B = A.
+Proof. intros. now exists A. Qed.
 Ltac multiply_out := repeat first
   [ rewrite turn_times | rewrite turn_add | rewrite turn_scale | rewrite turn_unit | rewrite turn_zeros | rewrite turn_turn
   | match goal with S : turn ?A = _ |- context [turn ?A] => is_var A; rewrite S end

@@ -848,7 +848,7 @@ let read_rates context value =
     let declared_value =
       match List.assoc_opt name context.shapes with
       | Some rows -> Matrix (List.map (List.map (fun s -> Sym s)) rows)
-      | None -> if List.mem_assoc name context.box then Scalar (Sym name) else refuse "rates: unknown name %s" name
+      | None -> Scalar (Sym name)
     in
     match rate with
     | Null -> (name, None)
