@@ -111,7 +111,8 @@ class Written(Asked):
             for name in (found.pop(word) for word, c in body.items() if word in found and c == checker.ONE):
                 self.texts |= {name: name, f"inv__{name}": text}
                 yield f"destruct (named _ _ ({self.inverses[text]})) as [{name} arg__E]."
-                yield f"match goal with H : _ [*] {text} = _, K : {text} [*] _ = _ |- _ => rewrite <- arg__E in H, K end."
+                facts = f"H : _ [*] {text} = _, K : {text} [*] _ = _"
+                yield f"match goal with {facts} |- _ => rewrite <- arg__E in H, K end."
                 if name in algebra.symmetric:
                     yield f"assert (turn {name} = {name}) by (rewrite arg__E; words)."
                     yield f"assert (turn {text} = {text}) by (eapply turned_inverse; eassumption)."
