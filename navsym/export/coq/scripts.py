@@ -70,6 +70,7 @@ def prove_equality(terms: Iterable[Term], names: Mapping[str, str]) -> list[str]
     write_exponentials([p for p in parts if p[0] == "exp"], script)
     write_roots([p for p in parts if is_square_root(p)], script)
     write_absolutes([p for p in parts if p[0] == "abs"], script)
+    write_logarithms([p for p in parts if p[0] == "log"], script)
     rules = f" [{' '.join(script.rules)}]" if script.rules else ""
     rewrites = "".join(f"rewrite ?{rule}; " for rule in script.rules)
     ways = [f"ring{rules}", f"timeout {PATIENCE} (field{rules}); nonzero"]
@@ -244,6 +245,27 @@ def write_absolutes(parts: list[Term], script: Script) -> None:
             script.know(f"Rabs ({text}) ^ 2 = ({text}) ^ 2", "apply pow2_abs")
         else:
             script.rewrite(part, write_term(("number", abs(q)), {}), "unfold Rabs; destruct Rcase_abs; lra")
+
+
+def write_logarithms(parts: list[Term], script: Script) -> None:
+    """Logarithms of products and quotients by those of their factors, where these are seen to be positive."""
+    for part in parts:
+        generators = sorted({*checker.list_generators(part[1])}, key=script.write)
+        ring = fmpq_mpoly_ctx.get([f"x{k}" for k in range(len(generators))] or ["x0"])
+        fraction = checker.to_quotient(part[1], dict(zip(generators, ring.gens(), strict=False)), ring)
+        if 0 in fraction:
+            continue
+        texts, sums, scale = [script.write(g) for g in generators], list[str](), fmpq(1)
+        for sign, (number, factors) in zip((1, -1), (side.factor() for side in fraction), strict=True):
+            for factor, power in factors:
+                own = factor if factor.coeffs()[-1] > 0 else factor * -1
+                sums += [f"{'' if sign > 0 else '- '}ln ({write_polynomial(own, texts)})"] * power
+                number *= 1 if own == factor else (-1) ** power
+            scale *= number**sign
+        if scale > 0 and len(sums) <= MOST_TURNS:
+            sums += [f"ln ({write_term(('number', scale), {})})"] * (scale != 1)
+            old, new = f"ln ({script.write(part[1])})", " + ".join(sums) or "0"
+            script.lines.append(f"try (assert (E : {old} = {new}) by by_logarithms; rewrite E; clear E).")
 
 
 def split_root(q: fmpq) -> tuple[fmpq, list[int]]:

@@ -168,3 +168,6 @@ Ltac contradict H :=
   | ?x < ?y => let D := fresh in assert (D : y <= x) by (clear H; numbers); exact (Rle_not_lt _ _ D H)
   | ?x > ?y => let D := fresh in assert (D : x <= y) by (clear H; numbers); exact (Rle_not_gt _ _ D H)
   end.
+(* A logarithm by those of the factors. *)
+Ltac by_logarithms :=
+  apply exp_inv; rewrite ?exp_plus, ?exp_Ropp, ?exp_0; rewrite !exp_ln by positive; field; nonzero.

@@ -108,11 +108,14 @@ class Written(Asked):
         """Lines about letters of the checker's own for sums, and what their inverses are called."""
         found = {((f"inv__{name}", False),): name for _, name in algebra.arguments}
         for text, body in zip(self.asked, algebra.asked, strict=True):
+            turned = [word[0][0] for word, c in body.items() if len(word) == 1 and word[0][1] and c == checker.ONE]
+            if text in self.letters and turned and turned[0] in self.texts:
+                yield f"assert ({text} = turn {self.texts[turned[0]]}) by turned_back; subst {text}."
             for name in (found.pop(word) for word, c in body.items() if word in found and c == checker.ONE):
                 self.texts |= {name: name, f"inv__{name}": text}
                 yield f"destruct (named _ _ ({self.inverses[text]})) as [{name} arg__E]."
-                facts = f"H : _ [*] {text} = _, K : {text} [*] _ = _"
-                yield f"match goal with {facts} |- _ => rewrite <- arg__E in H, K end."
+                both = f"H : _ [*] {text} = _, K : {text} [*] _ = _"
+                yield f"match goal with {both} |- _ => rewrite <- arg__E in H, K end."
                 if name in algebra.symmetric:
                     yield f"assert (turn {name} = {name}) by (rewrite arg__E; words)."
                     yield f"assert (turn {text} = {text}) by (eapply turned_inverse; eassumption)."

@@ -129,6 +129,11 @@ Proof.
 Qed.
 Lemma named : forall m n (A : mat m n), exists B, B = A.
 Proof. intros. now exists A. Qed.
+Lemma same_inverse : forall n (A X Y : mat n n), A [*] X = unit -> Y [*] A = unit -> X = Y.
+Proof. intros n A X Y P Q. now rewrite <- (unit_times X), <- Q, from_right, P, times_unit. Qed.
+Ltac turned_back :=
+  eapply same_inverse; [eassumption |]; rewrite <- turn_times;
+  match goal with H : _ = unit |- _ => rewrite H; apply turn_unit end.
 Ltac multiply_out := repeat first
   [ rewrite turn_times | rewrite turn_add | rewrite turn_scale | rewrite turn_unit | rewrite turn_zeros | rewrite turn_turn
   | match goal with S : turn ?A = _ |- context [turn ?A] => is_var A; rewrite S end
