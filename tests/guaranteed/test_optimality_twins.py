@@ -1,4 +1,4 @@
-"""The fast tests of an optimum beside slow twins: one polynomial for a panel, tapes, the box of Newton's method."""
+"""The fast tests of an optimum beside their slow twins: one polynomial for a panel, tapes; boxes of exact contacts."""
 
 from __future__ import annotations
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 
 import pytest
 import sympy as sp
@@ -10,10 +11,12 @@ import sympy as sp
 from navsym import checker
 from navsym.claims import CERTIFIED
 from navsym.core.errors import DomainError, NotEstimableError
+from navsym.guaranteed.certificate.basis import make_basis
 from navsym.guaranteed.phases import boundaries as events
 from navsym.guaranteed.phases import driver as changes
 from navsym.guaranteed.phases.driver import find_phases
 from navsym.guaranteed.phases.family import family_of
+from navsym.guaranteed.phases.patterns import scan_patterns
 from navsym.models.modelfile import model_from
 from tests.guaranteed.phases_cover import lost
 from tests.guaranteed.test_solver import VELOCITY
@@ -243,6 +246,20 @@ def test_a_numerator_that_vanishes_with_its_denominator_is_no_zero():
     T = sp.Symbol("T", positive=True)
     assert events.recognise_root((T - 1) / (T**2 - 1), T, 1.0, 0.1) is None
     assert events.recognise_root((T - 1) / (T**2 + 1), T, 1.0, 0.1) == 1
+
+
+def test_a_pattern_is_followed_to_where_its_weight_at_an_end_vanishes():
+    """Three contacts, the first and the last at ends; at T = 2 pi/3 the weight of the first is zero."""
+    own = family_of(model_from(VELOCITY), "y3", "T")
+    left = scan_patterns(own, Fraction(19, 10), Fraction(23, 10), 6)[0]
+    contacts, begin = next(events.nearby_contacts(own, left, left.upper, -1))
+    root = sp.Rational(str(sp.N(2 * sp.pi / 3, 60)))
+    T = sp.Rational(round((root - sp.Rational(1, 10**20)) * 10**24), 10**24)
+    found = events.walk_to(own, events.solve_pattern(own, begin, left.pattern, contacts, begin), begin, root, T)
+    assert found.inner == (False, True, False) and [float(v) for v in found.v] == [0, 0.5, 1]
+    assert float(found.weights[0]) == pytest.approx(-float((2 * sp.pi / 3 - T) * sp.sqrt(3) / 2), rel=1e-6)
+    problem = own.exact(T)
+    assert events.certify_touch(problem, make_basis(problem), found, 160, 1600) is not None
 
 
 def test_a_change_does_not_rest_on_a_closed_form_that_is_not_proved(monkeypatch):
