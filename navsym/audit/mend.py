@@ -354,7 +354,7 @@ def sift(mends: list[Mend], entry: Entry, source: Source, probes: list[dict[str,
     if old is None or may_write_more(source.unit, old):
         yield from mends
         return
-    gap = Gap([mend.edits[id(old)] for mend in mends], source.names.declarations)
+    gap = Gap([mend.edits[id(old)] for mend in mends], source.unit.source, source.names.declarations)
     cell, expected = read_again(entry, source, {id(old): gap})
     for number, mend in enumerate(mends):
         if number in gap.doubtful or not isinstance(cell, Scalar) or not isinstance(expected, Scalar):
@@ -377,8 +377,10 @@ class Gap:
     doubtful : the places of mends of which nothing is known
     """
 
-    def __init__(self, parts: Sequence[Part], names: Iterable[str]):
-        self.letters = next(word for k in range(1, 99) if not any(n.startswith(word := "gap" + "x" * k) for n in names))
+    def __init__(self, parts: Sequence[Part], source: bytes, names: Iterable[str]):
+        taken = (*names, source.decode("utf-8", "replace"))
+        words = ("gap" + "x" * k for k in itertools.count(1))
+        self.letters = next(word for word in words if not any(word in text for text in taken))
         self.parts, self.trials, self.doubtful = parts, dict[str, list[Cell | None]](), set[int]()
 
     def __call__(self, machine: Evaluator, part: Part) -> Value:

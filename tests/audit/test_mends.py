@@ -116,6 +116,8 @@ def test_mends_that_are_sifted_in_one_run_are_those_that_single_runs_find(name, 
 BODIES = {
     "group": ("(a - b)*s + k", "a - b*s + k"),
     "divisor": ("k*(a - b)", "k/s*(a - b)"),
+    "constant": ("3.0", "2.0"),
+    "names as of what is sought": ("gapx0 - gapxx0", "gapx0 + gapxx0"),
     "name of what is expected": ("k*a - u", "k*a - b"),
     "square of a divisor": ("(a + k)*s", "(a + k)/(s*s)"),
 }
@@ -124,8 +126,8 @@ BODIES = {
 @pytest.mark.parametrize("kind", BODIES)
 def test_a_mend_uses_what_is_expected(kind, tmp_path):
     wrong, right = BODIES[kind]
-    (tmp_path / "f.py").write_text(f"def f(a, s, k, u):\n    return {wrong}\n")
-    (tmp_path / "g.py").write_text(f"def g(a, b, s, k):\n    return {right}\n")
+    (tmp_path / "f.py").write_text(f"def f(a, s, k, u, gapx0, gapxx0):\n    return {wrong}\n")
+    (tmp_path / "g.py").write_text(f"def g(a, b, s, k, gapx0, gapxx0):\n    return {right}\n")
     spec = "".join(f'[[code]]\nname = "{n}"\nfile = "{n}.py"\nfunction = "{n}"\n' for n in "fg")
     (tmp_path / "s.toml").write_text(f'{spec}[[question]]\nkind = "equal"\nleft = "f:return"\nright = "g:return"\n')
     wanted, (entry,) = right.replace(" ", ""), nav.audit(tmp_path / "s.toml").questions[0].entries
