@@ -28,7 +28,7 @@ from navsym.conventions.card import (
 )
 from navsym.conventions.measuring import MEASURED_MARK, NOISE_MARK, RESET_MARK, full_column
 from navsym.conventions.mechanisation import CONSTANTS, ROLES, Mechanisation, flat_card
-from navsym.conventions.points import BITS, ImpossibleError, draw_point, evaluate
+from navsym.conventions.points import BITS, ImpossibleError, Point, draw_point, evaluate
 from navsym.conventions.reading import Problem
 from navsym.core.balls import precision
 from navsym.core.exact import to_fmpq
@@ -102,13 +102,27 @@ class Comparison:
 
     def __init__(self, problem: Problem):
         self.problem = problem
-        self.point = cache(lambda key, number: draw_point(problem, key, number + 1))
+        self.drawn = cache(self.draw_or_refuse)
         self.computed = cache(self.compute_columns)
         self.entries = cache(self.evaluate_block)
         self.signs = cache(self.compare)
         self.is_small = cache(self.has_small_terms)
         self.is_zero = cache(self.has_zeros)
         self.noise_sign = cache(self.compare_noise)
+
+    def draw_or_refuse(self, key: Card, number: int) -> Point | ImpossibleError:
+        """A point, or why there is none."""
+        try:
+            return draw_point(self.problem, key, number + 1)
+        except ImpossibleError as error:
+            return error
+
+    def point(self, key: Card, number: int) -> Point:
+        """A point of the card's relations."""
+        found = self.drawn(key, number)
+        if isinstance(found, ImpossibleError):
+            raise found
+        return found
 
     def columns(self, card: Card, role: str, number: int) -> list[dict[str, list[Any]]]:
         """Three columns of F of a card with every sign plus."""
@@ -331,6 +345,8 @@ def has_evidence(card: Card, comparison: Comparison, blocks: Sequence[Block]) ->
     plain = plain_card(card)
     flat, other = flat_card(plain), flat_card(card)
     if flat == plain or any(getattr(other, name) != word for name, word in comparison.problem.known.items()):
+        return True
+    if isinstance(comparison.drawn(key_of_points(flat), 0), ImpossibleError):
         return True
     for block in blocks:
         if block in card.dropped:

@@ -364,3 +364,18 @@ def test_the_vector_part_of_the_error_quaternion_is_half_of_the_angle():
 def test_a_progress_that_is_no_function_is_refused():
     with pytest.raises(nav.NavsymError, match="expected a function of two numbers"):
         nav.conventions(half_angle()).convert(None, None)  # type: ignore[arg-type]
+
+
+def test_rates_that_are_written_as_formulas_exclude_the_cards_of_other_axes():
+    """The flat Earth has another transport rate: it is no reading of the model, and it fell when it was looked at."""
+    quantities = {**models.NED, "transport_rate": ["vE/(RE + h)", "-vN/(RN + h)", "-vE*tan(L)/(RE + h)"]}
+    card = Card(
+        "local-level", "NED", "north", angle="phi", bias_sign=None, earth="ellipsoid", earth_rate="kept",
+        transport_rate="kept", height_variation="kept", radius_variation=None,
+    )  # fmt: skip
+    document = document_of(card, "va", quantities) | {"known": {"frame": "local-level", "error": PLUS}}
+    answer = nav.conventions(document)
+    assert answer.complete and {(c.axes, c.earth, c.attitude_error) for c in answer.cards} == {
+        ("NED", "ellipsoid", "frame")
+    }
+    assert any(e.why.startswith(("earth_rate", "transport_rate")) for e in answer.excluded)
