@@ -311,15 +311,17 @@ def divide_on(value: Poly, zeros: System, parts: list[Poly], unit: Poly) -> tupl
 def points_on(zeros: System, said: Statement, symbols: Sequence[sp.Symbol]) -> Iterator[dict[Any, sp.Expr]]:
     """A few points where the zeros vanish: rational but for what the equations give, by roots or angles."""
     texts = [said.ring.expression(f) for f in zeros]
-    angles = {s for text in texts for s in text.atoms(sp.sin, sp.cos) for s in s.free_symbols}
-    for k in range(POINTS):
+    angles = sorted({s for text in texts for f in text.atoms(sp.sin, sp.cos) for s in f.free_symbols}, key=str)
+    turns = [(TURNS[k] if k < len(TURNS) else 4 * sp.atan(sp.Rational(1, k)),) * len(angles) for k in range(POINTS)]
+    turns += [values for values in product(TURNS, repeat=2) if len({*values}) == len(angles) == 2]
+    for k, values in enumerate(turns):
         size = 7 if k % 2 else 1
         signed = [size if k == 0 or (i + k) % 3 else -size for i in range(len(symbols))]
         at = {
             s: sp.Rational(sp.prime(2 * i + k + 3), c * (7 * i + 2 * k + 9))
             for i, (s, c) in enumerate(zip(symbols, signed, strict=True))
         }
-        at |= {s: TURNS[k] if k < len(TURNS) else 4 * sp.atan(sp.Rational(1, k)) for s in angles}
+        at |= dict(zip(angles, values, strict=True))
         here = [text.subs({s: at[s] for s in angles}).expand(trig=True) for text in texts]
         rest = [value for value in here if value != 0]
         if all(value.free_symbols for value in rest):

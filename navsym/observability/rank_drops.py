@@ -25,7 +25,7 @@ from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
 from navsym.observability.reduction import System, components, irredundant, krylov_remainder
 from navsym.observability.ring import Hashed, Poly, Ring, irreducible_factors, is_odd
-from navsym.observability.tree import SPLIT_TERMS, Leaf, is_covered, leaf_on, lost_columns, search_drops
+from navsym.observability.tree import SPLIT_TERMS, Leaf, is_covered, leaf_on, lost_columns, named_values, search_drops
 from navsym.prove.assumptions import is_nonzero
 
 # Determinants of chains by values at integer points.
@@ -263,7 +263,7 @@ class View:
             zeros = conditions_on(system, ring)
             if not zeros:
                 continue
-            leaves = self.leaves_on(system) or self.leaves_below(system, known)
+            leaves = () if self.is_vague(system) else self.leaves_on(system) or self.leaves_below(system, known)
             if not leaves:
                 listed.append(self.make_drop(zeros))
                 continue
@@ -290,6 +290,12 @@ class View:
             for zeros, leaf in partial
             if zeros
         ]
+
+    def is_vague(self, system: System) -> bool:
+        """True where functions may depend on each other: exp(a t) and exp(w t) are one where a = w."""
+        ring = self.motion.ring
+        held = {ring.places[s] for text in ring.meaning.values() for s in text.free_symbols if s in ring.places}
+        return any(len(f) > 1 and f.degrees()[place] for f in system for place in held)
 
     def leaves_on(self, system: System) -> tuple[Leaf, ...]:
         """What is shown on a system, on both of its parts where it joins half angles; none where it was not found."""
@@ -395,7 +401,7 @@ def locus_of(chains: Chains, part: tuple[Chain, ...], rank: int) -> Locus:
     found = search_drops([chain.vectors[0] for chain in part], rank, ring, motion)
     lasting, left, leaves = closed_systems(found.drops), found.open, found.drops
     if motion.rates:
-        passing = [system for system in systems if not is_covered(system, lasting)]
+        passing = [system for system in systems if not is_covered([*system, *named_values(system, ring)], lasting)]
         return Locus(lasting, passing, leaves, left, whole and not left)
     return Locus(irredundant([*lasting, *systems]), [], leaves, left, not left)
 

@@ -20,6 +20,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import sympy as sp
 from flint import Ordering, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
 from navsym.core.errors import TooLargeError
@@ -251,9 +252,20 @@ class Tree:
 def tidy_system(system: System, ring: Ring) -> System | None:
     """The equations without units and repetitions; None where no real point satisfies them."""
     plain = [ring.without_units(f.primitive()[1]) for f in system if f != 0]
-    listed = [item.poly for item in dict.fromkeys(map(Hashed, plain))]
+    listed = [item.poly for item in dict.fromkeys(map(Hashed, [*plain, *named_values(plain, ring)]))]
     none = any(f.is_constant() for f in listed) or is_nowhere(listed, ring) or any(map(is_definite, listed))
     return None if none else listed
+
+
+def named_values(system: System, ring: Ring) -> System:
+    """What the functions that generators stand for become where symbols vanish: sin(w t) and exp(w t) - 1 with w."""
+    if not ring.meaning:
+        return []
+    gone = {s: sp.Integer(0) for s, k in ring.places.items() if any(f == ring.context.gen(k) for f in system)}
+    known = {symbol: text.subs(gone) for symbol, text in ring.meaning.items()}
+    sines = [ring.halves(angle)[0] for angle in ring.angles if known.get(angle.symbol) == 0]
+    units = [ring.places[s] for s, value in known.items() if value == 1 and s in ring.places]
+    return sines + [ring.context.gen(place) - 1 for place in units]
 
 
 Parts = list[tuple[System, Ring]]

@@ -133,3 +133,10 @@ def test_a_point_is_found_where_some_equations_follow_from_others_or_ask_for_oth
     found = solve_near(zeros, {x: sp.Rational(k + 2, 7) for k, x in enumerate(names)}, turn)
     assert all(sp.expand(zero.subs(found)) == 0 for zero in zeros)
     assert sum(value != 0 for value in found.values()) >= len(names) - 2
+
+
+def test_drops_where_two_angles_differ_by_a_quarter_turn_are_granted():
+    answer = nav.observe(nav.Model("x y", F=[["0", "cos(A - B)"], ["sin(A + B)", "0"]], H=["x"], A=REAL, B=REAL))
+    certifier, joint = Certifier.of(answer.model), [drop for drop in answer.rank_drops if drop.subspace == "joint"]
+    items = [certifier.certify_drop(drop) for drop in joint]
+    assert len(items) == 2 and all(item is not None and checker.check(item) for item in items)

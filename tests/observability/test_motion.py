@@ -268,6 +268,22 @@ def test_a_nonlinear_model_file_reads_back(tmp_path):
 # Defects that are mended
 
 
+@pytest.mark.parametrize("gain", ["sin(w*t)", "exp(w*t) - 1"])
+def test_functions_of_what_vanishes_take_their_values_there(gain):
+    """x' = gain s + w b shows nothing but x for w = 0: sin(w t) and exp(w t) - 1 vanish with w."""
+    answer = nav.observe(nav.Model("x s b", F=[["0", gain, "w"], ["0"] * 3, ["0"] * 3], H=["x"], w="real"))
+    joint = [drop for drop in answer.rank_drops if drop.subspace == "joint"]
+    (drop,) = (drop for drop in joint if drop.condition == "w = 0")
+    assert (answer.rank, drop.lasting, drop.rank, drop.directions.rows, drop.inside) == (3, True, 1, 2, ())
+
+
+def test_no_rank_is_told_where_functions_become_one():
+    """For a = w the two exponentials are one, and x alone is shown: they are no longer independent."""
+    F = [["0", "exp(w*t) - exp(a*t)", "w - a"], ["0"] * 3, ["0"] * 3]
+    listed = nav.observe(nav.Model("x s b", F=F, H=["x"], w="real", a="real")).rank_drops
+    assert [drop.rank for drop in listed if drop.condition == "a - w = 0"] in ([None], [None, None])
+
+
 def test_constants_of_the_earth_are_factored():
     entry = "x**2 - (7.292115e-5)**2"
     model = nav.Model("a b", F=[["0", entry], ["0", "0"]], H=["a", "b"], x="real")

@@ -20,6 +20,8 @@ from navsym.observability.chains import chains_of, observe_jointly
 from navsym.observability.linear import PRIME, residue_rank
 from navsym.observability.motion import residue_chains
 from navsym.observability.rank_drops import find_drops
+from navsym.observability.reduction import lower_row
+from navsym.observability.ring import Ring
 from navsym.observability.tree import search_drops
 from navsym.studies.atlas.scenes import model_of
 from tests.sampling import thinned
@@ -36,6 +38,15 @@ def random_model(seed: int) -> LinearModel:
     F = sp.Matrix(n, n, lambda i, j: source.choice(entries))
     H = sp.Matrix([[1, *[source.choice(entries) for _ in range(n - 1)]], [source.choice(entries), b, *[0] * (n - 2)]])
     return LinearModel(F, None, H)
+
+
+def test_a_row_loses_a_unit_as_often_as_all_its_entries_hold_it():
+    plain = Ring.of([a, b])
+    x, y = (plain.context.gen(k) for k in (0, 1))
+    ring = plain.with_units([x**2 + 1, y])
+    row = [6 * (x**2 + 1) ** 2 * y, 0 * x, 4 * (x**2 + 1) ** 3 * (x - y) * y]
+    assert lower_row(row, ring) == [3 + 0 * x, 0 * x, 2 * (x**2 + 1) * (x - y)]
+    assert lower_row([x - y, y], ring) == [x - y, y] and lower_row([0 * x], ring) == [0 * x]
 
 
 def exact_rank(model: LinearModel, at: dict[sp.Symbol, int]) -> int:
