@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -70,6 +70,24 @@ class Reading:
     valueless: dict[tuple[int, int], str] = field(default_factory=dict)
     ways: tuple[bool, bool] = (True, True)
     steps: int = 0
+
+
+def list_cases(
+    start: Callable[..., Any], reading: Reading, function: Function, is_bold: bool, is_split: bool
+) -> list[Case]:
+    """The cases of a function; none where there are more than 32."""
+    cases: list[Case] = []
+    waiting: list[list[bool]] = [[]]
+    for table in (reading.met, reading.refused, reading.refused_spans, reading.valueless):
+        table.clear()  # type: ignore[attr-defined]
+    while waiting:
+        machine = start(waiting.pop(), is_bold, is_split)
+        cases.append(machine.run(function))
+        reading.steps = max(reading.steps, machine.steps)
+        if len(cases) + len(waiting) > CASES:
+            return []
+        waiting += machine.other_ways
+    return cases
 
 
 def is_contradictory(conditions: Iterable[Condition]) -> bool:

@@ -6,11 +6,11 @@ import contextlib
 import functools
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from navsym.audit.cases import CASES, Case, Condition, Reading, is_contradictory
+from navsym.audit.cases import CASES, Case, Condition, Reading, is_contradictory, list_cases
 from navsym.audit.evaluate import CellView, Edits, Evaluator, Failing, Inputs, Returning
 from navsym.audit.form import (
     Argument,
@@ -97,24 +97,6 @@ def read_function(
             variable.all_unread = why
     reading.cases = lasting or reading.cases[:1]
     return reading
-
-
-def list_cases(
-    start: Callable[..., Machine], reading: Reading, function: Function, is_bold: bool, is_split: bool
-) -> list[Case]:
-    """The cases of a function; none where there are more than 32."""
-    cases: list[Case] = []
-    waiting: list[list[bool]] = [[]]
-    for table in (reading.met, reading.refused, reading.refused_spans, reading.valueless):
-        table.clear()  # type: ignore[attr-defined]
-    while waiting:
-        machine = start(waiting.pop(), is_bold, is_split)
-        cases.append(machine.run(function))
-        reading.steps = max(reading.steps, machine.steps)
-        if len(cases) + len(waiting) > CASES:
-            return []
-        waiting += machine.other_ways
-    return cases
 
 
 @dataclass(slots=True, eq=False)
