@@ -15,10 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.core import arrays
+from navsym.core.arrays import Array
 from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError, TooLargeError
 from navsym.language.names import only_keys
-
-Array = NDArray[np.float64]
 
 KEYS_OF_MODEL, KEYS_OF_START = ("F", "Q", "H", "R"), ("mean", "covariance", "probabilities")
 

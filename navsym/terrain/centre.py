@@ -17,10 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from navsym.core.arrays import Array
 from navsym.core.errors import NotEstimableError
 from navsym.terrain.heights import TerrainMap, blend
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 #: Ratio of the smallest to the largest information below which a direction counts as flat.
 FLAT = 1e-12

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from navsym.core.answers import Answer, named
+from navsym.core.arrays import Array
 from navsym.core.errors import DomainError, NavsymError, OutsideMapError
 from navsym.core.tables import Table
 from navsym.language.files import name_file
@@ -27,8 +27,6 @@ from navsym.terrain.refine import refine
 from navsym.terrain.search import Correction, Search, criteria, prepare, search_full, search_position
 from navsym.terrain.sequential import search_sequential
 from navsym.terrain.track import Hypotheses, Profile
-
-Array = NDArray[np.float64]
 
 FEET = 0.3048
 #: Times the usual departure from the map beyond which a height is named, and the least that is usual, m.

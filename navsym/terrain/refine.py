@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from navsym.core.arrays import Array
 from navsym.core.errors import NotEstimableError
 from navsym.terrain.heights import ON_MAP, TerrainMap, demand_heights
 from navsym.terrain.search import need
 from navsym.terrain.track import Profile
-
-Array = NDArray[np.float64]
 
 #: Largest number of Gauss-Newton steps, and the step (in cells) below which they end.
 STEPS, ENOUGH = 60, 1e-7

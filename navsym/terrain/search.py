@@ -17,6 +17,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from navsym.core.arrays import Array
 from navsym.core.errors import NotEstimableError
 from navsym.terrain.heights import TerrainMap, demand_heights
 from navsym.terrain.kernels.bounded import BoundedResult, search_bounded, search_one_velocity
@@ -25,7 +26,6 @@ from navsym.terrain.kernels.lattice import fits, lattice, rounded
 from navsym.terrain.kernels.margins import DOUBLE, PLAIN, parts_about_the_mean
 from navsym.terrain.track import Hypotheses, Profile
 
-Array = NDArray[np.float64]
 Index = tuple[int, int, int, int]
 
 

@@ -11,15 +11,13 @@ joint least-squares solution (terrain_search:sequential.exact) at the cost of si
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from navsym.core.arrays import Array
 from navsym.terrain.centre import demand_estimable, information, slopes
 from navsym.terrain.heights import TerrainMap
 from navsym.terrain.kernels.criteria import velocity_criteria
 from navsym.terrain.search import Correction, apart, criteria, lowest, need, prepare, two_lowest, unravel
 from navsym.terrain.track import Hypotheses, Profile
-
-Array = NDArray[np.float64]
 
 
 def search_sequential(

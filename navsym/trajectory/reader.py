@@ -18,7 +18,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.arrays import as_array, as_floats
+from navsym.core.arrays import Array, as_array, as_floats
 from navsym.core.errors import (
     DomainError,
     DuplicateError,
@@ -33,7 +33,6 @@ from navsym.language.csvfile import LARGEST_FILE, lines_of, number_of, read_rows
 from navsym.language.files import decode, name_file, read_bytes
 from navsym.trajectory.units import BRACKETS, Unit, unit_of, usual_unit
 
-Array = NDArray[np.float64]
 Policy = Literal["strict", "repair"]
 
 LARGEST_ROWS = 2_000_000

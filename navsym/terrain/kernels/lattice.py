@@ -12,13 +12,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from navsym.core.arrays import Array
 from navsym.core.lanes import load_lanes, spread_lanes, store_lanes
 from navsym.core.loops import njit
 from navsym.terrain.kernels.criteria import COMPILE, add_square, blend
-
-Array = NDArray[np.float64]
 
 
 def rounded(cells: Array, side: int) -> Array:
