@@ -16,7 +16,8 @@ from navsym.claims.display import count_in_words, display_latex, latex_of, write
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, NavsymError, ShapeError
 from navsym.language.declarations import Parameter, read_parameters, symbols_of
 from navsym.language.expression import parse, symbol, to_text
-from navsym.language.files import name_file, write_text
+from navsym.language.files import file_in_errors as file_in_errors
+from navsym.language.files import write_text
 from navsym.language.names import join_place, quote, require_path, require_table
 from navsym.language.tomlfile import read_toml, toml_text
 from navsym.language.values import read_assumptions, write_declaration, write_entries, write_value
@@ -434,18 +435,6 @@ def as_model(value: Any, where: str) -> Model:
         return Model.load(value)
     message = f"expected a model, or the path of a model file; got {quote(value)}; make one with navsym.Model"
     raise DomainError(message, where=where)
-
-
-@contextmanager
-def file_in_errors(model: Any) -> Iterator[None]:
-    """Errors about a model that is given by its path name that file."""
-    try:
-        yield
-    except NavsymError as error:
-        name = name_file(model) if isinstance(model, str | os.PathLike) else ""
-        if name and not error.where.startswith(name):
-            error.at(name)
-        raise
 
 
 # Arguments to tables of a model file

@@ -14,9 +14,9 @@ import numpy as np
 
 from navsym.core.answers import Answer, named
 from navsym.core.arrays import Array
-from navsym.core.errors import DomainError, NavsymError, OutsideMapError
+from navsym.core.errors import DomainError, OutsideMapError
 from navsym.core.tables import Table
-from navsym.language.files import name_file
+from navsym.language.files import file_in_errors
 from navsym.language.jsonfile import read_json
 from navsym.language.names import quote
 from navsym.terrain.centre import demand_estimable, one_sided
@@ -146,16 +146,12 @@ def locate(
     if not isinstance(method, str) or method not in SEARCHES:
         message = f"expected one of {', '.join(SEARCHES)}; got {quote(method)}; choose one"
         raise DomainError(message, where="locate: method")
-    if isinstance(config, str | os.PathLike):
-        document, place = read_json(config), name_file(config)
-        folder = Path(config).parent if folder is None else folder
-    else:
-        document, place = config, "locate"
-    try:
+    if isinstance(config, str | os.PathLike) and folder is None:
+        folder = Path(config).parent
+    with file_in_errors(config, "locate"):
+        document = read_json(config) if isinstance(config, str | os.PathLike) else config
         case = read_search(document, Path(folder or "."), velocity_needed=method != "position")
         return fix_of(*case, method, maps, offset_free)
-    except NavsymError as error:
-        raise error if error.where.startswith(place) else error.at(place) from None
 
 
 def fix_of(

@@ -35,7 +35,7 @@ from navsym.core.errors import (
     TooLargeError,
 )
 from navsym.language.csvfile import read_numbers
-from navsym.language.files import name_file, read_bytes, read_text
+from navsym.language.files import file_in_errors, name_file, read_bytes, read_text
 from navsym.models.earth import ECCENTRICITY_SQUARED, SEMI_MAJOR, prime_vertical_radius
 from navsym.terrain.heights import voids_in
 
@@ -304,14 +304,11 @@ def read_map(path: str | os.PathLike[str]) -> Raster:
         ".tiff": read_geotiff,
     }
     reader = readers.get(Path(path).suffix.lower())
-    place = name_file(path)
-    if reader is None:
-        got = name_file(Path(path).name)[-40:]
-        raise DomainError(f"expected {', '.join(readers)} at the end; got {got}; convert it", where=place)
-    try:
+    with file_in_errors(path):
+        if reader is None:
+            got = name_file(Path(path).name)[-40:]
+            raise DomainError(f"expected {', '.join(readers)} at the end; got {got}; convert it")
         return reader(Path(path))
-    except NavsymError as error:
-        raise error if error.where.startswith(place) else error.at(place) from None
 
 
 def metres_per_degree(latitude: float) -> tuple[float, float]:
