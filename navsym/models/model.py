@@ -23,7 +23,7 @@ from navsym.language.tomlfile import read_toml, toml_text
 from navsym.language.values import read_assumptions, write_declaration, write_entries, write_value
 from navsym.language.vectors import is_wide
 from navsym.models.linear import LinearModel, linear_row
-from navsym.models.modelfile import BasisFile, ModelFile, model_from, need_fixed, piece_model, read_model
+from navsym.models.modelfile import BasisFile, ModelFile, linear_model, model_from, need_fixed, read_model
 
 #: Keys of a model file -> the arguments that write them, for the place of an error.
 PLACES = (
@@ -293,9 +293,7 @@ class Model:
 
         Raises ShapeError for a system in pieces, DomainError for regressors.
         """
-        contents = self._system(values)
-        need_fixed(contents, "Model")
-        return piece_model(contents, contents.F)
+        return linear_model(self._system(values))
 
     def _system(self, values: Mapping[str, Any] | None = None) -> ModelFile:
         """The contents where they are a system; DomainError for regressors."""

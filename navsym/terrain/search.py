@@ -13,6 +13,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +21,8 @@ from numpy.typing import NDArray
 from navsym.core.arrays import Array
 from navsym.core.errors import NotEstimableError
 from navsym.terrain.heights import TerrainMap, demand_heights
-from navsym.terrain.kernels.bounded import BoundedResult, search_bounded, search_one_velocity
-from navsym.terrain.kernels.criteria import TOGETHER, dense_masked, padded, patch_rows, profile, slab
+from navsym.terrain.kernels.bounded import BoundedResult, add_slab, search_bounded, search_one_velocity
+from navsym.terrain.kernels.criteria import dense_masked, padded, profile
 from navsym.terrain.kernels.lattice import fits, lattice, rounded
 from navsym.terrain.kernels.margins import DOUBLE, PLAIN, parts_about_the_mean
 from navsym.terrain.track import Hypotheses, Profile
@@ -161,7 +162,8 @@ def criteria(prepared: Prepared, *, threads: int = 1, centred: bool = False) -> 
     if prepared.on_lattice:
         lattice(*prepared.case[:4], (Mx, My), sums[0, 0])
     else:
-        each_velocity(lambda Vi: one_slab(prepared, Vi, sums[Vi]), Mvx, threads)
+        run = partial(add_slab, prepared.case, prepared.steps, prepared.counts)
+        each_velocity(lambda Vi: run(Vi, False, sums[Vi]), Mvx, threads)
     return sums[..., :Mx]
 
 
@@ -173,14 +175,6 @@ def each_velocity(work: Callable[[int], None], count: int, threads: int) -> None
         return
     with ThreadPoolExecutor(threads) as pool:
         list(pool.map(work, range(count)))
-
-
-def one_slab(prepared: Prepared, Vi: int, out: Array) -> None:
-    """Criteria at one velocity index Vi across, added to ``out`` (Mvy, My, W), W = Mx padded to whole lanes."""
-    Mx, My, Mvx, Mvy = prepared.counts
-    rows = patch_rows(prepared.by, prepared.wy, prepared.steps[1], My, Mvy, prepared.H.shape[0])
-    patch = np.empty((TOGETHER, rows, out.shape[2]))
-    slab(prepared.case, prepared.steps, (Mx, My, Mvy), float(Vi - Mvx // 2), False, patch, out)
 
 
 def search_position(
