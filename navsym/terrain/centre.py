@@ -71,6 +71,19 @@ class Information:
             float(M[0, 1] * G[1, 1] - M[1, 1] * G[0, 1]),  # terrain_search:12.Ax0*
         )
 
+    @property
+    def mean_time(self) -> float:
+        """Mean of t_G over a uniform direction: tr(G^-1/2 M1) / tr(G^1/2), terrain_search:mean.rotated."""
+        G, M = self.G, self.symmetric
+        root = math.sqrt(G[0, 0] * G[1, 1] - G[0, 1] ** 2)
+        adjugate = np.array([[G[1, 1], -G[0, 1]], [-G[0, 1], G[0, 0]]])
+        return float((np.sum(adjugate * M) + root * np.trace(M)) / (root * (np.trace(G) + 2.0 * root)))
+
+    def time_of(self, direction: tuple[float, float]) -> float:
+        """t_G for a velocity error along ``direction``: the Rayleigh quotient."""
+        v = np.asarray(direction, dtype=float)
+        return float(v @ self.M1 @ v / (v @ self.G @ v))
+
 
 def information(gx: Array, gy: Array, times: Array, *, centred: bool = False) -> Information:
     """The sums G, M1 of slopes (n,), (n,) at times (n,); unknown slopes (NaN) are left out.

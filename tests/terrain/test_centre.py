@@ -39,15 +39,22 @@ def test_the_interval_is_the_range_of_the_eigenvalues_and_of_all_directions(trac
     low, high = info.interval
     assert_allclose(sorted(np.linalg.eigvals(info.centre).real), [low, high], atol=1e-6 * gx.size)
     angles = np.linspace(0, np.pi, 181)
-    times = [time_of(info, (np.cos(a), np.sin(a))) for a in angles]
+    times = [info.time_of((np.cos(a), np.sin(a))) for a in angles]
     assert min(times) >= low - 1e-9 * gx.size and max(times) <= high + 1e-9 * gx.size
     assert low + 1e-9 >= 0 and high <= gx.size - 1 + 1e-9
 
 
-def time_of(info, direction):
-    """t_G for a velocity error along a direction: the Rayleigh quotient."""
-    v = np.array(direction)
-    return v @ info.M1 @ v / (v @ info.G @ v)
+@given(tracks)
+@settings(max_examples=40)
+def test_the_mean_time_is_the_mean_over_directions(track):
+    gx, gy = map(np.array, track)
+    info = information(gx, gy, np.arange(gx.size, dtype=float))
+    values = np.linalg.eigvalsh(info.G)
+    assume(values[0] >= max(1e-2 * values[1], 1e-9))
+    # The trapezoidal rule converges geometrically for a periodic function.
+    angles = np.arange(2000) * np.pi / 2000
+    mean = np.mean([info.time_of((np.cos(a), np.sin(a))) for a in angles])
+    assert_allclose(info.mean_time, mean, rtol=1e-9)
 
 
 def test_where_the_quadratic_vanishes_the_quotient_is_extreme():
@@ -55,7 +62,7 @@ def test_where_the_quadratic_vanishes_the_quotient_is_extreme():
     info = information(generator.normal(size=30), generator.normal(size=30), np.arange(30.0))
     A2, A1, A0 = info.quadratic
     roots = np.roots([A2, A1, A0])
-    assert_allclose(sorted(time_of(info, (r, 1.0)) for r in roots), info.interval, rtol=1e-9)
+    assert_allclose(sorted(info.time_of((r, 1.0)) for r in roots), info.interval, rtol=1e-9)
 
 
 def test_slopes_of_a_quadratic_surface_are_exact():
