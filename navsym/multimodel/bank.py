@@ -192,11 +192,8 @@ def depth(value: Any) -> int:
 
 def transitions(value: Any, m: int) -> Array:
     """Transition probabilities as (T or 1, m, m)."""
-
-    def gate(name: str, part: Any, shape: Any) -> Array:
-        return arrays.as_transition(name, part, m)
-
-    return arrays.freeze(over_time("mode_transition", value, gate))
+    rows = over_time("mode_transition", value, lambda name, part, _: arrays.as_transition(name, part, m))
+    return arrays.freeze(rows)
 
 
 def initial_moments(mean: Any, covariance: Any, m: int, n: int) -> tuple[Array, Array, bool]:

@@ -21,7 +21,7 @@ from navsym.language.files import file_in_errors
 from navsym.language.jsonfile import read_json
 from navsym.language.names import only_keys
 from navsym.multimodel.bank import Bank, check_initial, forget_modes, measurements_for, spaced
-from navsym.multimodel.doubt import Rerun, settle
+from navsym.multimodel.doubt import Rerun, moments, settle
 from navsym.multimodel.engine import MOST_SENTENCES, Estimates, run_in_numpy
 from navsym.multimodel.kalman import FORMS, form_of
 from navsym.multimodel.schemes import require_room, scheme
@@ -169,8 +169,7 @@ def is_chain(probabilities: NDArray[np.floating[Any]], models: Bank) -> bool:
 
 def require_range(estimate: Estimates) -> Estimates:
     """The same estimate; NotFiniteError with the first step at which a number left the range of a double."""
-    series = (estimate.mean, estimate.covariance, estimate.probabilities, estimate.log_likelihood)
-    lost = [~np.isfinite(values.reshape(len(values), -1)).all(axis=1) for values in series]
+    lost = [~np.isfinite(values.reshape(len(values), -1)).all(axis=1) for values in moments(estimate)]
     steps = np.flatnonzero(np.any(lost, axis=0))
     if steps.size:
         raise NotFiniteError(
