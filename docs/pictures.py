@@ -179,11 +179,11 @@ def errors() -> Figure:
 
 def conditions() -> Figure:
     """Condition numbers of N_f: certified, as printed, and in double precision."""
-    from navsym.trajectory.conditioning import condition_numbers
+    from navsym.trajectory.conditioning import condition
     from navsym_papers.trajectory import table
 
     orders = np.array([2, 3, 4, 5, 10, 15, 19, 20])
-    found = [condition_numbers(int(n), "1/6371000", "1/5", digits=15)["N_f"] for n in orders]
+    found = [condition(int(n), "1/5", digits=15).N_f for n in orders]
     printed = [float(row[2]) if (row := table.PRINTED.get((int(n), "tau0.2"))) else np.nan for n in orders]
     return drawings.condition_numbers(
         orders,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from navsym.cli.output import emit, table
+from navsym.cli.output import emit, table, write_text
 
 if TYPE_CHECKING:
     from navsym.audit.answer import Audit
@@ -30,7 +30,6 @@ def command(
 
     answer = nav.audit(file, function=function)
     if html is not None:
-        from navsym.language.files import write_text
         from navsym.report.audit_page import audit_page
 
         write_text(html, audit_page(answer))

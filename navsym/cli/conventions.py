@@ -9,7 +9,7 @@ from typing import Any
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
 from navsym.cli.derive import aligned
-from navsym.cli.output import emit, table
+from navsym.cli.output import emit, table, write_text
 from navsym.conventions.card import HEADINGS, attitude_formula, list_neighbours
 
 
@@ -33,7 +33,6 @@ def command(
     with Progress("steps") as bar:
         shown: Any = answer.convert(None, bar.follow, **changes) if changes else answer
     if html is not None:
-        from navsym.language.files import write_text
         from navsym.report.conventions_page import conventions_page
 
         write_text(html, conventions_page(answer))

@@ -89,25 +89,18 @@ def overview(data: Mapping[str, Any]) -> str:
     """The dimension that each measurement observes, and the unobservable directions."""
     verdict = "observable" if data["observable"] else "NOT observable"
     directions = data["unobservable_directions"]
-    return "\n".join(
-        [
-            f"{data['n']} states, joint dimension {data['joint_dimension']}: {verdict}"
-            f"{' (granted by the checker)' if data['checked'] else ' (unchecked)'}\n",
-            table(
-                ["measurement", "dimension", "companion"],
-                [[m["name"], str(m["dimension"]), ", ".join(m["companion"])] for m in data["measurements"]],
-            ),
-            *(["unobservable directions: " + "; ".join(directions) + "\n"] if directions else []),
-            *(["observed combinations: " + "; ".join(data["observable_functionals"]) + "\n"] if directions else []),
-            *(["redundant: " + ", ".join(data["redundant"]) + "\n"] if data["redundant"] else []),
-            *(
-                []
-                if data["proved"]
-                else ["the rank is proved from below only: no unobservable directions were found\n"]
-            ),
-            *pieces_text(data["pieces"], data["n"]),
-        ]
-    )
+    checked = "granted by the checker" if data["checked"] else "unchecked"
+    rows = [[m["name"], str(m["dimension"]), ", ".join(m["companion"])] for m in data["measurements"]]
+    lines = [f"{data['n']} states, joint dimension {data['joint_dimension']}: {verdict} ({checked})\n"]
+    lines.append(table(["measurement", "dimension", "companion"], rows))
+    if directions:
+        lines.append(f"unobservable directions: {'; '.join(directions)}\n")
+        lines.append(f"observed combinations: {'; '.join(data['observable_functionals'])}\n")
+    if data["redundant"]:
+        lines.append(f"redundant: {', '.join(data['redundant'])}\n")
+    if not data["proved"]:
+        lines.append("the rank is proved from below only: no unobservable directions were found\n")
+    return "\n".join([*lines, *pieces_text(data["pieces"], data["n"])])
 
 
 def pieces_text(pieces: Sequence[Mapping[str, Any]], n: int) -> list[str]:

@@ -11,7 +11,6 @@ from typing import IO, Any
 
 from navsym.cli._progress import LINE
 from navsym.core.errors import OutputError
-from navsym.language.files import write_bytes as write_bytes
 from navsym.language.files import write_text as write_text
 
 #: Colours of the words that a reader looks for first.

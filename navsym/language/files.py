@@ -6,6 +6,7 @@ import codecs
 import contextlib
 import os
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError, OutputError, TooLargeError, printable
@@ -23,6 +24,21 @@ MARKS = {
 def name_file(path: str | os.PathLike[str]) -> str:
     """The path as it may stand in a message."""
     return printable(os.fspath(path))
+
+
+@contextlib.contextmanager
+def file_in_errors(source: object, otherwise: str = "") -> Iterator[None]:
+    """Errors name the file that is read inside, if they do not begin with it.
+
+    source : path of the file, or what was given in place of one; otherwise : the name of that, none where empty
+    """
+    name = name_file(source) if isinstance(source, str | os.PathLike) else otherwise
+    try:
+        yield
+    except NavsymError as error:
+        if name and not error.where.startswith(name):
+            error.at(name)
+        raise
 
 
 def read_text(path: str | os.PathLike[str], limit: int) -> str:

@@ -103,6 +103,8 @@ class Writer:
         place, model = join_place(join_place(where, "model"), "states"), document.get("model", {})
         states = as_list(model.get("states", [*list_roles(document)]), place, "a list of names")
         self.sizes = [*self.list_states(states, place)]
+        self.heights = [len(entries) for _, entries in self.sizes]
+        self.whole = sum(self.heights)
 
     def declare(self, declared: Table, place: str) -> Iterator[tuple[str, Any]]:
         """The declarations of numbers; those of vectors and matrices entry by entry."""
@@ -236,17 +238,16 @@ class Writer:
 
     def square(self, value: Any, here: str) -> Any:
         """F: one text, or a list of rows of blocks; written out in full already where it has a row for every entry."""
-        sizes = [len(entries) for _, entries in self.sizes]
         if isinstance(value, str):
-            return self.block(value, sum(sizes), sum(sizes), here)
+            return self.block(value, self.whole, self.whole, here)
         rows = as_list(value, here, "a list of rows")
-        if len(rows) != len(sizes):
-            return self.entries(rows, sum(sizes), here)
-        return [line for i, row in enumerate(rows) for line in self.line(row, sizes[i], join_place(here, i))]
+        if len(rows) != len(self.heights):
+            return self.entries(rows, here)
+        return [line for i, row in enumerate(rows) for line in self.line(row, self.heights[i], join_place(here, i))]
 
-    def entries(self, items: Sequence[Any], whole: int, here: str) -> Any:
+    def entries(self, items: Sequence[Any], here: str) -> Any:
         """What is written out already, with an entry for each number."""
-        if len(items) != whole:
+        if len(items) != self.whole:
             message = (
                 f"expected {len(self.sizes)} entries, one for each state of the list; got {len(items)}; correct it"
             )
@@ -255,16 +256,15 @@ class Writer:
 
     def line(self, row: Any, height: int, here: str) -> Rows:
         """A row of blocks, or one text for all of it, as rows of entries."""
-        sizes = [len(entries) for _, entries in self.sizes]
         if isinstance(row, str):
-            return self.block(row, height, sum(sizes), here)
+            return self.block(row, height, self.whole, here)
         items = as_list(row, here, "a list of expressions")
-        if len(items) != len(sizes):
-            message = f"expected {len(sizes)} blocks, one for each state of the list; got {len(items)}; correct the row"
-            raise ShapeError(message, where=here)
+        if len(items) != len(self.heights):
+            expected = f"expected {len(self.heights)} blocks, one for each state of the list"
+            raise ShapeError(f"{expected}; got {len(items)}; correct the row", where=here)
         blocks = [
             self.block(item, height, size, join_place(here, j))
-            for j, (item, size) in enumerate(zip(items, sizes, strict=True))
+            for j, (item, size) in enumerate(zip(items, self.heights, strict=True))
         ]
         return [[entry for block in blocks for entry in block[i]] for i in range(height)]
 
@@ -277,12 +277,12 @@ class Writer:
         if len({*map(len, cells)}) > 1:
             raise ShapeError("expected rows of one length; got several; correct the matrix", where=here)
         columns = [*zip(*cells, strict=True)]
-        if len(rows) < sum(len(entries) for _, entries in self.sizes) and ("0",) * len(rows) in columns:
+        if len(rows) < self.whole and ("0",) * len(rows) in columns:
             raise ShapeError("expected a block with a size in each column; got zeros; write zeros(3, 3)", where=here)
         widths = [max(len(x[0]) if isinstance(x, list) else 1 for x in column) for column in columns]
         done = []
-        for i, (line, (_, entries)) in enumerate(zip(lines, self.sizes, strict=True)):
-            place, height = join_place(here, i), len(entries)
+        for i, (line, height) in enumerate(zip(lines, self.heights, strict=True)):
+            place = join_place(here, i)
             blocks = [
                 self.block(x, height, w, join_place(place, j))
                 for j, (x, w) in enumerate(zip(line, widths, strict=True))
@@ -319,10 +319,10 @@ class Writer:
         """One entry for each state of the list, each a vector of its size."""
         items = as_list(value, here, "a list of expressions")
         if len(items) != len(self.sizes):
-            return self.entries(items, sum(len(entries) for _, entries in self.sizes), here)
+            return self.entries(items, here)
         rows = [
-            self.block(item, len(entries), 1, join_place(here, i))
-            for i, (item, (_, entries)) in enumerate(zip(items, self.sizes, strict=True))
+            self.block(item, height, 1, join_place(here, i))
+            for i, (item, height) in enumerate(zip(items, self.heights, strict=True))
         ]
         return [entry for block in rows for (entry,) in block]
 
@@ -354,12 +354,11 @@ class Writer:
         found = value if isinstance(value, list) else self.evaluate(value, here)
         if key == "z":
             return [found] if isinstance(found, str) else [entry for (entry,) in self.block(value, len(found), 1, here)]
-        whole = sum(len(entries) for _, entries in self.sizes)
         if found is not value and isinstance(found, list):
-            return self.block(value, len(found), whole, here)
-        if not isinstance(value, list) or len(value) not in (len(self.sizes), whole):
+            return self.block(value, len(found), self.whole, here)
+        if not isinstance(value, list) or len(value) not in (len(self.sizes), self.whole):
             items = value if isinstance(value, list) else as_list(value, here, "a list of blocks")
-            return [self.entries(items, whole, here)]
+            return [self.entries(items, here)]
         if len(value) != len(self.sizes):
             return [value]
         blocks = [self.evaluate(item, join_place(here, j)) for j, item in enumerate(value)]

@@ -67,13 +67,13 @@ class Derivation(Answer):
     """Everything that follows from a model before an estimator is chosen.
 
     states, measurements, sigmas : names and bounds, as the model gives them
-    system        : F (n, n), one matrix per piece; empty for regressors
-    transition    : exp(F t) per piece, with the factors of its characteristic polynomial; empty for regressors
     pieces        : H_j(tau), rows (p, n) on each piece of the interval
     time, end     : tau and T
     multipliers   : x, one per unknown
-    observability_matrix : rows H, H F, ... (n p, n); None for regressors or several pieces
     conditions    : per target, the conditions of an optimal guaranteed estimate
+    system        : F (n, n), one matrix per piece; empty for regressors
+    transition    : exp(F t) per piece, with the factors of its characteristic polynomial; empty for regressors
+    observability_matrix : rows H, H F, ... (n p, n); None for regressors or several pieces
     assumptions   : what the formulas take to hold
 
     >>> import navsym as nav
@@ -85,15 +85,15 @@ class Derivation(Answer):
     states: tuple[str, ...]
     measurements: tuple[str, ...]
     sigmas: tuple[sp.Expr, ...]
-    system: tuple[sp.ImmutableMatrix, ...]
-    transition: tuple[TransitionMatrix, ...]
     pieces: tuple[PieceRegressors, ...]
     time: sp.Symbol
     end: sp.Expr
     multipliers: tuple[sp.Symbol, ...]
-    observability_matrix: sp.ImmutableMatrix | None
     conditions: tuple[Conditions, ...]
-    assumptions: tuple[sp.Basic, ...]
+    system: tuple[sp.ImmutableMatrix, ...] = ()
+    transition: tuple[TransitionMatrix, ...] = ()
+    observability_matrix: sp.ImmutableMatrix | None = None
+    assumptions: tuple[sp.Basic, ...] = ()
 
     @property
     def F(self) -> sp.ImmutableMatrix:
@@ -221,15 +221,11 @@ def derive_basis(found: BasisFile) -> Derivation:
         states=tuple(f"q{k + 1}" for k in range(unknowns)),
         measurements=tuple(f"z{j + 1}" for j in range(len(found.H))),
         sigmas=found.sigma,
-        system=(),
-        transition=(),
         pieces=pieces,
         time=found.variable,
         end=found.interval[1],
         multipliers=multipliers,
-        observability_matrix=None,
         conditions=optimality_conditions(found.targets.items(), pieces, multipliers, found.variable),
-        assumptions=(),
     )
 
 

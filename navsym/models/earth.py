@@ -12,6 +12,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from navsym.core.arrays import Array
 from navsym.core.errors import DomainError
 
 # Positions on WGS-84 as numbers: Earth-fixed Cartesian coordinates and local East-North-Up axes.
@@ -20,7 +21,6 @@ from navsym.core.errors import DomainError
 # meridian, which is why tracks are differentiated there and only the result is turned to East, North, Up.
 
 
-Array = NDArray[np.float64]
 Angles = NDArray[np.float64] | float
 
 SEMI_MAJOR = 6378137.0

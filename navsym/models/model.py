@@ -16,13 +16,14 @@ from navsym.claims.display import count_in_words, display_latex, latex_of, write
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, NavsymError, ShapeError
 from navsym.language.declarations import Parameter, read_parameters, symbols_of
 from navsym.language.expression import parse, symbol, to_text
-from navsym.language.files import name_file, write_text
+from navsym.language.files import file_in_errors as file_in_errors
+from navsym.language.files import write_text
 from navsym.language.names import join_place, quote, require_path, require_table
 from navsym.language.tomlfile import read_toml, toml_text
 from navsym.language.values import read_assumptions, write_declaration, write_entries, write_value
 from navsym.language.vectors import is_wide
 from navsym.models.linear import LinearModel, linear_row
-from navsym.models.modelfile import BasisFile, ModelFile, model_from, need_fixed, piece_model, read_model
+from navsym.models.modelfile import BasisFile, ModelFile, linear_model, model_from, need_fixed, read_model
 
 #: Keys of a model file -> the arguments that write them, for the place of an error.
 PLACES = (
@@ -292,9 +293,7 @@ class Model:
 
         Raises ShapeError for a system in pieces, DomainError for regressors.
         """
-        contents = self._system(values)
-        need_fixed(contents, "Model")
-        return piece_model(contents, contents.F)
+        return linear_model(self._system(values))
 
     def _system(self, values: Mapping[str, Any] | None = None) -> ModelFile:
         """The contents where they are a system; DomainError for regressors."""
@@ -434,18 +433,6 @@ def as_model(value: Any, where: str) -> Model:
         return Model.load(value)
     message = f"expected a model, or the path of a model file; got {quote(value)}; make one with navsym.Model"
     raise DomainError(message, where=where)
-
-
-@contextmanager
-def file_in_errors(model: Any) -> Iterator[None]:
-    """Errors about a model that is given by its path name that file."""
-    try:
-        yield
-    except NavsymError as error:
-        name = name_file(model) if isinstance(model, str | os.PathLike) else ""
-        if name and not error.where.startswith(name):
-            error.at(name)
-        raise
 
 
 # Arguments to tables of a model file

@@ -15,10 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.core import arrays
+from navsym.core.arrays import Array
 from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError, TooLargeError
 from navsym.language.names import only_keys
-
-Array = NDArray[np.float64]
 
 KEYS_OF_MODEL, KEYS_OF_START = ("F", "Q", "H", "R"), ("mean", "covariance", "probabilities")
 
@@ -193,11 +192,8 @@ def depth(value: Any) -> int:
 
 def transitions(value: Any, m: int) -> Array:
     """Transition probabilities as (T or 1, m, m)."""
-
-    def gate(name: str, part: Any, shape: Any) -> Array:
-        return arrays.as_transition(name, part, m)
-
-    return arrays.freeze(over_time("mode_transition", value, gate))
+    rows = over_time("mode_transition", value, lambda name, part, _: arrays.as_transition(name, part, m))
+    return arrays.freeze(rows)
 
 
 def initial_moments(mean: Any, covariance: Any, m: int, n: int) -> tuple[Array, Array, bool]:

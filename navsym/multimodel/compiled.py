@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
 from navsym.core import arrays
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.engine import UNDERFLOW, Estimates, run_in_numpy
-from navsym.multimodel.kalman import independent_scalars, logs
+from navsym.multimodel.kalman import Array, independent_scalars, logs
 from navsym.multimodel.kernels.bank import ALL, BY_MODE, CROSS, KEEP, MIXED, OWN, run_bank
 from navsym.multimodel.schemes import Scheme, filters_at
-
-Array = NDArray[np.floating[Any]]
 
 BRANCHING = {"cross": CROSS, "mixed": MIXED, "own": OWN}
 FOLDING = {"none": KEEP, "all": ALL, "by mode": BY_MODE}

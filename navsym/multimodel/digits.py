@@ -14,9 +14,8 @@ from navsym.core.balls import precision
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.engine import UNDERFLOW, Estimates
 from navsym.multimodel.exact import Kit, Leaf, Model, run_exactly
+from navsym.multimodel.kalman import Array
 from navsym.multimodel.schemes import Scheme
-
-Array = NDArray[np.floating[Any]]
 
 BITS = 340
 #: Binary exponent of the weight of a dimension that S lacks: beyond every density of doubles.

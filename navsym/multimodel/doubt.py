@@ -11,17 +11,15 @@ import copy
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from navsym.core import arrays
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.engine import Estimates
+from navsym.multimodel.kalman import Array
 from navsym.multimodel.schemes import Scheme
 
-Array = NDArray[np.floating[Any]]
 Moments = tuple[Array, Array, Array, Array]
 Rerun = Callable[..., Estimates]
 

@@ -17,10 +17,8 @@ from navsym.core import arrays
 from navsym.core.answers import Answer, named
 from navsym.core.tables import Table
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.kalman import FORMS, Form, logs, normalise, residual, times, variances
+from navsym.multimodel.kalman import FORMS, Array, Form, logs, normalise, residual, times, variances
 from navsym.multimodel.schemes import Scheme
-
-Array = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

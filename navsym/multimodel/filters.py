@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.core import arrays
-from navsym.core.errors import DomainError, NavsymError, NotFiniteError, ShapeError
-from navsym.language.files import name_file
+from navsym.core.errors import DomainError, NotFiniteError, ShapeError
+from navsym.language.files import file_in_errors
 from navsym.language.jsonfile import read_json
 from navsym.language.names import only_keys
 from navsym.multimodel.bank import Bank, check_initial, forget_modes, measurements_for, spaced
-from navsym.multimodel.doubt import Rerun, settle
+from navsym.multimodel.doubt import Rerun, moments, settle
 from navsym.multimodel.engine import MOST_SENTENCES, Estimates, run_in_numpy
 from navsym.multimodel.kalman import FORMS, form_of
 from navsym.multimodel.schemes import require_room, scheme
@@ -81,8 +81,7 @@ def filter(
     >>> nav.filter(bank, [[0.1], [30.0]], method="gpb2").modes.tolist()
     [0, 1]
     """
-    place = name_file(bank) if isinstance(bank, str | os.PathLike) else "filter"
-    try:
+    with file_in_errors(bank, "filter"):
         for name, value in (("memoryless", memoryless), ("missing", missing)):
             switch({name: value}, name)
         if isinstance(bank, Bank):
@@ -93,8 +92,6 @@ def filter(
         said: dict[str, Any] = {"memoryless": memoryless or given.memoryless, "missing": missing or given.missing}
         run = functools.partial(run_filter, given.bank, method=method, depth=depth, form=form, engine=engine)
         return run(given.measurements, **said) if given.times is None else run_with_gaps(run, given, said)
-    except NavsymError as error:
-        raise error if error.where.startswith(place) else error.at(place) from None
 
 
 def run_with_gaps(run: Callable[..., Estimates], given: BankFile, said: dict[str, bool]) -> Estimates:
@@ -122,15 +119,7 @@ def run_filter(
     engine: Engine = "auto",
     form: str = "joseph",
 ) -> Estimates:
-    """Filter a series of measurements (T, p); the first row is at step 1.
-
-    method  : exact, pulsating, k-pulsating, gpb2, imm or polygaussian
-    depth   : K of k-pulsating
-    memoryless : the printed (14)-(17): the unconditional P[I(k) = i] in place of p^ij(k)
-    missing : NaN or None is a number that did not come, instead of an error
-    engine  : compiled loops, numpy, or whichever fits
-    form    : how covariances are kept: joseph, or the factors qr, potter, ud (numpy only), which keep twice the
-              digits where covariances are nearly singular
+    """Filter a series of measurements (T, p), the first row at step 1; arguments as those of :func:`filter`.
 
     Raises the errors of the bank, DomainError for a method that does not exist, TooLargeError for a tree
     that does not fit.
@@ -180,8 +169,7 @@ def is_chain(probabilities: NDArray[np.floating[Any]], models: Bank) -> bool:
 
 def require_range(estimate: Estimates) -> Estimates:
     """The same estimate; NotFiniteError with the first step at which a number left the range of a double."""
-    series = (estimate.mean, estimate.covariance, estimate.probabilities, estimate.log_likelihood)
-    lost = [~np.isfinite(values.reshape(len(values), -1)).all(axis=1) for values in series]
+    lost = [~np.isfinite(values.reshape(len(values), -1)).all(axis=1) for values in moments(estimate)]
     steps = np.flatnonzero(np.any(lost, axis=0))
     if steps.size:
         raise NotFiniteError(

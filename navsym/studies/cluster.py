@@ -44,15 +44,9 @@ def cluster(workers: int, scheduler: str | None) -> Iterator[Any]:
     with contextlib.ExitStack() as stack:
         stack.enter_context(hushed("distributed"))
         stack.enter_context(environment_restored())
-        stack.enter_context(
-            dask.config.set(
-                {
-                    "distributed.scheduler.allowed-failures": DEATHS,
-                    "distributed.nanny.pre-spawn-environ": dask.config.get("distributed.nanny.pre-spawn-environ")
-                    | ALONE,
-                }
-            )
-        )
+        spawned = "distributed.nanny.pre-spawn-environ"
+        settings = {"distributed.scheduler.allowed-failures": DEATHS, spawned: dask.config.get(spawned) | ALONE}
+        stack.enter_context(dask.config.set(settings))
         if scheduler is None:
             local = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0")
             scheduler = stack.enter_context(local).scheduler_address

@@ -22,7 +22,7 @@ from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, MissingEngineError, NavsymError
 from navsym.core.store import code_digest, key_of
 from navsym.core.tables import Table
-from navsym.language.files import name_file
+from navsym.language.files import file_in_errors
 from navsym.language.jsonfile import read_json
 from navsym.language.names import quote
 from navsym.studies.cluster import PATIENCE, answers, cluster
@@ -223,14 +223,8 @@ def keep_shards(
 
 def read_plan(config: Any) -> Sweep:
     """The study of a configuration file, or of its document."""
-    if isinstance(config, str | os.PathLike):
-        document, place = read_json(config), name_file(config)
-    else:
-        document, place = config, "sweep"
-    try:
-        return sweep_from(document)
-    except NavsymError as error:
-        raise error.at(place) from None
+    with file_in_errors(config, "sweep"):
+        return sweep_from(read_json(config) if isinstance(config, str | os.PathLike) else config)
 
 
 def run_shard(sweep: Sweep, part: range) -> tuple[range, str, Rows]:

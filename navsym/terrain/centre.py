@@ -2,7 +2,7 @@
 
 With the slopes g_k = (dh/dx, dh/dy) of the map at the measurements and their times t_k,
 
-    G  = sum g_k g_k^T,   M1 = sum t_k g_k g_k^T,   M2 = sum t_k^2 g_k g_k^T
+    G = sum g_k g_k^T,   M1 = sum t_k g_k g_k^T
 
 are all that the theory of the paper needs. ``t_G(v) = v^T M1 v / v^T G v`` is a Rayleigh quotient
 (terrain_search:11*), its extremes are the roots of ``det(M1 - t G)`` (terrain_search:roots.values), and
@@ -17,10 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from navsym.core.arrays import Array
 from navsym.core.errors import NotEstimableError
 from navsym.terrain.heights import TerrainMap, blend
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 #: Ratio of the smallest to the largest information below which a direction counts as flat.
 FLAT = 1e-12
@@ -28,14 +28,13 @@ FLAT = 1e-12
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Information:
-    """G, M1, M2 (2, 2), slopes squared, times slopes squared and so on.
+    """G and M1 (2, 2), slopes squared and times slopes squared.
 
     M1 is not symmetric when the means were taken off (``information(..., centred=True)``).
     """
 
     G: Array
     M1: Array
-    M2: Array
 
     @property
     def centre(self) -> Array:
@@ -87,7 +86,7 @@ class Information:
 
 
 def information(gx: Array, gy: Array, times: Array, *, centred: bool = False) -> Information:
-    """The sums G, M1, M2 of slopes (n,), (n,) at times (n,); unknown slopes (NaN) are left out.
+    """The sums G, M1 of slopes (n,), (n,) at times (n,); unknown slopes (NaN) are left out.
 
     centred : take off the means of g and of t g over the track, which an unknown constant height error takes
               away (terrain_search:offset.centre)
@@ -97,8 +96,8 @@ def information(gx: Array, gy: Array, times: Array, *, centred: bool = False) ->
     moving = g * times
     if centred:
         g, moving = g - g.mean(axis=1, keepdims=True), moving - moving.mean(axis=1, keepdims=True)
-    M1, M2 = g @ moving.T, moving @ moving.T
-    return Information(g @ g.T, M1 if centred else 0.5 * (M1 + M1.T), M2)
+    M1 = g @ moving.T
+    return Information(g @ g.T, M1 if centred else 0.5 * (M1 + M1.T))
 
 
 #: Weights of three neighbouring nodes for the slope at the first, the middle and the last of them.
@@ -144,7 +143,7 @@ def one_sided(terrain: TerrainMap, x: Array, y: Array) -> Information:
         gx = (terrain.sample(x + side * terrain.dx, y)[0] - here) / terrain.dx
         gy = (terrain.sample(x, y + side * terrain.dy)[0] - here) / terrain.dy
         found.append(information(gx, gy, np.zeros(here.size)))
-    return Information(found[0].G + found[1].G, found[0].M1, found[0].M2)
+    return Information(found[0].G + found[1].G, found[0].M1)
 
 
 def demand_estimable(info: Information) -> None:

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from navsym.terrain.heights import Array, TerrainMap
-from navsym.terrain.refine import cell_slopes
+from navsym.terrain.refine import jacobian
 from navsym.terrain.track import Hypotheses, Profile
 
 #: Condition of the normalised Jacobian beyond which the geometry is nearly singular, and beyond which nothing is said.
@@ -65,7 +65,7 @@ def trust_of(
     grid     : the grid that the fix is a point of, None for a minimum between its points
     metres   : metres of a unit of the map along x and y, for the direction
     """
-    J = jacobian(terrain, track, at, velocity=velocity, offset=offset)
+    J = jacobian(terrain, *at, track.elapsed - track.elapsed[-1], velocity=velocity, offset=offset)
     spare = len(J) - J.shape[1]
     if spare < 1:
         return Trust(None, remarks=(f"no covariance: {len(J)} heights for {J.shape[1]} unknowns leave no residual",))
@@ -108,14 +108,6 @@ def height_spread(J: Array, residual: Array) -> tuple[Array, float]:
     weights = np.exp(np.array(logs) - max(logs))
     weights /= weights.sum()
     return np.tensordot(weights, products, axes=1), float(weights @ rhos)
-
-
-def jacobian(terrain: TerrainMap, track: Profile, at: tuple[Array, Array], *, velocity: bool, offset: bool) -> Array:
-    """(n, p): heights along the corrected track by position, velocity and height error at the last time."""
-    gx, gy = cell_slopes(terrain, *at)
-    back = track.elapsed - track.elapsed[-1]
-    columns = [gx, gy, *([gx * back, gy * back] if velocity else []), *([np.ones_like(gx)] if offset else [])]
-    return np.stack(columns, axis=1)
 
 
 def rounding(grid: Hypotheses, elapsed: float, count: int) -> Array:

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from navsym.core.answers import Answer, named
-from navsym.core.errors import DomainError, NavsymError, OutsideMapError
+from navsym.core.arrays import Array
+from navsym.core.errors import DomainError, OutsideMapError
 from navsym.core.tables import Table
-from navsym.language.files import name_file
+from navsym.language.files import file_in_errors
 from navsym.language.jsonfile import read_json
 from navsym.language.names import quote
 from navsym.terrain.centre import demand_estimable, one_sided
@@ -23,13 +24,10 @@ from navsym.terrain.configuration import OnEarth, read_search
 from navsym.terrain.covariance import Trust, trust_of
 from navsym.terrain.heights import ON_MAP, TerrainMap
 from navsym.terrain.refine import refine
-from navsym.terrain.search import Search, criteria, prepare, search_full, search_position
+from navsym.terrain.search import Correction, Search, criteria, prepare, search_full, search_position
 from navsym.terrain.sequential import search_sequential
 from navsym.terrain.track import Hypotheses, Profile
 
-Array = NDArray[np.float64]
-
-METHODS = ("position", "full", "sequential", "refined")
 FEET = 0.3048
 #: Times the usual departure from the map beyond which a height is named, and the least that is usual, m.
 GROSS, GRAIN = 20.0, 0.1
@@ -109,21 +107,6 @@ class Fix(Answer):
         return ("", "fix", "correction"), [(name, f"{at:.{n}f}", f"{move:+.{n}f}") for name, at, n, move in values]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Correction:
-    """What every method has to say: indices, criterion and the correction at the last time."""
-
-    index: tuple[int, int, int, int]
-    criterion: float
-    second_best: float
-    unique: bool | None
-    shift: Array
-    velocity: Array
-    evaluated: int
-    t_G: tuple[float, float, float] | None = None
-    quadratic: tuple[float, float, float] | None = None
-
-
 def locate(
     config: str | os.PathLike[str] | Mapping[str, Any],
     method: str = "full",
@@ -160,19 +143,15 @@ def locate(
     Traceback (most recent call last):
     navsym.core.errors.EmptyError: locate: map: heights: expected a value; got none; add it
     """
-    if not isinstance(method, str) or method not in METHODS:
-        message = f"expected one of {', '.join(METHODS)}; got {quote(method)}; choose one"
+    if not isinstance(method, str) or method not in SEARCHES:
+        message = f"expected one of {', '.join(SEARCHES)}; got {quote(method)}; choose one"
         raise DomainError(message, where="locate: method")
-    if isinstance(config, str | os.PathLike):
-        document, place = read_json(config), name_file(config)
-        folder = Path(config).parent if folder is None else folder
-    else:
-        document, place = config, "locate"
-    try:
+    if isinstance(config, str | os.PathLike) and folder is None:
+        folder = Path(config).parent
+    with file_in_errors(config, "locate"):
+        document = read_json(config) if isinstance(config, str | os.PathLike) else config
         case = read_search(document, Path(folder or "."), velocity_needed=method != "position")
         return fix_of(*case, method, maps, offset_free)
-    except NavsymError as error:
-        raise error if error.where.startswith(place) else error.at(place) from None
 
 
 def fix_of(
@@ -226,16 +205,13 @@ def fix_of(
 # The methods
 
 
-def by_position(terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_free: bool) -> Correction:
-    """The best position, velocity errors taken as zero; raises NotEstimableError over flat terrain."""
-    found = search_position(terrain, track, grid, offset_free=offset_free)
-    return checked(terrain, track, answer_of(found, track, grid))
-
-
-def by_full(terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_free: bool) -> Correction:
-    """The best of all hypotheses in position and velocity; raises NotEstimableError over flat terrain."""
-    found = search_full(terrain, track, grid, offset_free=offset_free)
-    return checked(terrain, track, answer_of(found, track, grid))
+def by_grid(
+    search: Callable[..., Search], terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_free: bool
+) -> Correction:
+    """The best hypothesis of a search over the grid; raises NotEstimableError over flat terrain."""
+    answer = answer_of(search(terrain, track, grid, offset_free=offset_free), track, grid)
+    demand_estimable(one_sided(terrain, *corrected(track, answer)))
+    return answer
 
 
 def answer_of(found: Search, track: Profile, grid: Hypotheses) -> Correction:
@@ -246,13 +222,6 @@ def answer_of(found: Search, track: Profile, grid: Hypotheses) -> Correction:
     return Correction(found.index, found.criterion, found.second_best, found.unique, shift, velocity, found.evaluated)
 
 
-def checked(terrain: TerrainMap, track: Profile, answer: Correction) -> Correction:
-    """The same answer; NotEstimableError when the terrain under it is flat."""
-    x, y = corrected(track, answer)
-    demand_estimable(one_sided(terrain, x, y))
-    return answer
-
-
 def corrected(track: Profile, answer: Correction) -> tuple[Array, Array]:
     """The track under the correction found."""
     back = track.elapsed - track.elapsed[-1]
@@ -260,15 +229,9 @@ def corrected(track: Profile, answer: Correction) -> tuple[Array, Array]:
     return track.x + dx, track.y + dy
 
 
-def by_sequence(terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_free: bool) -> Correction:
-    """Position first and then velocity, with the times t_G and the quadratic of the paper."""
-    found = search_sequential(terrain, track, grid, offset_free=offset_free)
-    return Correction(**{field.name: getattr(found, field.name) for field in fields(Correction)})
-
-
 def by_refinement(terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_free: bool) -> Correction:
     """The full search, then the minimum between its grid points."""
-    start = by_full(terrain, track, grid, offset_free)
+    start = by_grid(search_full, terrain, track, grid, offset_free)
     velocity = start.velocity
     position = start.shift - velocity * track.elapsed[-1]
     fine = refine(terrain, track, (position[0], position[1]), (velocity[0], velocity[1]), offset=offset_free)
@@ -276,7 +239,12 @@ def by_refinement(terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_
     return replace(start, criterion=fine.criterion, shift=shift, velocity=fine.velocity)
 
 
-SEARCHES = {"position": by_position, "full": by_full, "sequential": by_sequence, "refined": by_refinement}
+SEARCHES: dict[str, Callable[[TerrainMap, Profile, Hypotheses, bool], Correction]] = {
+    "position": partial(by_grid, search_position),
+    "full": partial(by_grid, search_full),
+    "sequential": lambda terrain, track, grid, free: search_sequential(terrain, track, grid, offset_free=free),
+    "refined": by_refinement,
+}
 
 
 # What the answer says beside the correction

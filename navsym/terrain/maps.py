@@ -35,7 +35,7 @@ from navsym.core.errors import (
     TooLargeError,
 )
 from navsym.language.csvfile import read_numbers
-from navsym.language.files import name_file, read_bytes, read_text
+from navsym.language.files import file_in_errors, name_file, read_bytes, read_text
 from navsym.models.earth import ECCENTRICITY_SQUARED, SEMI_MAJOR, prime_vertical_radius
 from navsym.terrain.heights import voids_in
 
@@ -275,9 +275,6 @@ MOST_INFLATED, MOST_TIMES = 256_000_000, 50
 MOST_TIFF_BYTES = 8 * MOST_HEIGHTS
 SRTM_VOID = -32768
 
-#: A header's announcement: shape, type.
-Header = tuple[tuple[int, ...], np.dtype[Any]]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Raster:
@@ -307,12 +304,11 @@ def read_map(path: str | os.PathLike[str]) -> Raster:
         ".tiff": read_geotiff,
     }
     reader = readers.get(Path(path).suffix.lower())
-    if reader is None:
-        raise DomainError(
-            f"expected {', '.join(readers)} at the end; got {name_file(Path(path).name)[-40:]}; convert it",
-            where=name_file(path),
-        )
-    return reader(Path(path))
+    with file_in_errors(path):
+        if reader is None:
+            got = name_file(Path(path).name)[-40:]
+            raise DomainError(f"expected {', '.join(readers)} at the end; got {got}; convert it")
+        return reader(Path(path))
 
 
 def metres_per_degree(latitude: float) -> tuple[float, float]:
@@ -346,17 +342,14 @@ def read_npz(path: Path) -> Raster:
     first row in the north.
     """
     with opened_zip(path) as archive:
-        names = member_names(archive, path)
-        get = lambda name: read_member(archive, names, name, path)  # noqa: E731
+        names = member_names(archive)
+        get = lambda name: read_member(archive, names, name)  # noqa: E731
         if "elevation" in names and "heights" not in names:
-            top, bottom = sorted((scalar(get, "ymin", path), scalar(get, "ymax", path)))[::-1]
-            heights, dy = get("elevation")[::-1], scalar(get, "dy", path)
+            west, south, north, dx, dy = (scalar(get, name) for name in ("xmin", "ymin", "ymax", "dx", "dy"))
             # ymin and ymax are the outer edges of cells; the lowest row lies half a cell inside.
-            dx = scalar(get, "dx", path)
-            x0, y0 = scalar(get, "xmin", path) + 0.5 * dx, min(top, bottom) + 0.5 * dy
-            return Raster(heights, x0, y0, dx, dy, None, True)
-        x0, y0, dx, dy = (scalar(get, name, path) for name in ("x0", "y0", "dx", "dy"))
-        nodata = scalar(get, "nodata", path, finite=False) if "nodata" in names else None
+            return Raster(get("elevation")[::-1], west + 0.5 * dx, min(south, north) + 0.5 * dy, dx, dy, None, True)
+        x0, y0, dx, dy = (scalar(get, name) for name in ("x0", "y0", "dx", "dy"))
+        nodata = scalar(get, "nodata", finite=False) if "nodata" in names else None
         return Raster(get("heights"), x0, y0, dx, dy, nodata)
 
 
@@ -368,59 +361,55 @@ def opened_zip(path: Path) -> zipfile.ZipFile:
         archive = zipfile.ZipFile(path)
     except FileNotFoundError:
         message = "expected a readable map file; got nothing there; check the path"
-        raise NavsymError(message, where=name_file(path), kind="missing-file") from None
+        raise NavsymError(message, kind="missing-file") from None
     except Exception as reason:  # zipfile has many: BadZipFile, NotImplementedError, struct errors
-        raise damaged(path, "an npz archive", reason) from None
+        raise damaged("an npz archive", reason) from None
     packed = [member for member in archive.infolist() if member.compress_type != zipfile.ZIP_STORED]
     size = sum(member.file_size for member in packed)
     # numpy writes deflate; of the others one block may inflate without a bound
     if any(member.compress_type != zipfile.ZIP_DEFLATED for member in packed):
         message = "expected arrays stored or deflated; got another compression; save it by numpy.savez_compressed"
-        raise DomainError(message, where=name_file(path))
+        raise DomainError(message)
     if not is_inflatable(size, path.stat().st_size):
-        raise bomb(size, path)
+        raise bomb(size)
     return archive
 
 
-def bomb(size: int, path: Path) -> TooLargeError:
+def bomb(size: int) -> TooLargeError:
     """The error of an archive that would inflate too far; nothing of it has been inflated."""
     least = f"at most {MOST_INFLATED} bytes, or {MOST_TIMES} times those of the file"
-    message = f"expected {least}, once inflated; got {size}; cut the map, or store it uncompressed"
-    return TooLargeError(message, where=name_file(path))
+    return TooLargeError(f"expected {least}, once inflated; got {size}; cut the map, or store it uncompressed")
 
 
-def damaged(path: Path, what: str, reason: object) -> ExpressionSyntaxError:
+def damaged(what: str, reason: object) -> ExpressionSyntaxError:
     """The error of a damaged file; what says what was expected in it, reason what came."""
-    message = f"expected {what}; got a damaged file ({reason!s:.80}); fetch or write it again"
-    return ExpressionSyntaxError(message, where=name_file(path))
+    return ExpressionSyntaxError(f"expected {what}; got a damaged file ({reason!s:.80}); fetch or write it again")
 
 
-def member_names(archive: zipfile.ZipFile, path: Path) -> frozenset[str]:
+def member_names(archive: zipfile.ZipFile) -> frozenset[str]:
     """Names of the arrays in an archive; raises DuplicateError when one comes twice."""
     names = [name.removesuffix(".npy") for name in archive.namelist()]
     if len(set(names)) < len(names):
-        message = "expected every array once; got one name twice; write it again"
-        raise DuplicateError(message, where=name_file(path))
+        raise DuplicateError("expected every array once; got one name twice; write it again")
     return frozenset(names)
 
 
-def read_member(archive: zipfile.ZipFile, names: frozenset[str], name: str, path: Path) -> NDArray[Any]:
+def read_member(archive: zipfile.ZipFile, names: frozenset[str], name: str) -> NDArray[Any]:
     """One array of an npz archive, its header checked before anything is allocated."""
-    where = f"{name_file(path)}: {name}"
     if name not in names:
         message = f"expected an array '{name}'; got {', '.join(sorted(names))[:120]}; add it"
-        raise EmptyError(message, where=where)
+        raise EmptyError(message, where=name)
     try:
         with archive.open(f"{name}.npy") as file:
             shape, fortran, dtype = npy_header(file)
-            size = checked_size((shape, dtype), where)
+            size = checked_size(shape, dtype)
             data = file.read(size + 1)
-    except NavsymError:
-        raise
+    except NavsymError as error:
+        raise error.at(name) from None
     except Exception as reason:  # zlib, zipfile and struct errors of a damaged member
-        raise damaged(path, f"the array '{name}'", reason) from None
+        raise damaged(f"the array '{name}'", reason) from None
     if len(data) != size:
-        raise damaged(path, f"{size} bytes of '{name}'", f"{len(data)} bytes")
+        raise damaged(f"{size} bytes of '{name}'", f"{len(data)} bytes")
     array = np.frombuffer(data, dtype=dtype).reshape(shape, order="F" if fortran else "C")
     return np.array(array)
 
@@ -440,29 +429,26 @@ def npy_header(file: Any) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
     return shape, bool(fortran), dtype
 
 
-def checked_size(header: Header, where: str) -> int:
+def checked_size(shape: tuple[int, ...], dtype: np.dtype[Any]) -> int:
     """Bytes that a header announces; refuses objects (pickles), other types and large arrays."""
-    shape, dtype = header
     if dtype.kind not in "iuf" or dtype.hasobject:
-        raise DomainError(f"expected real numbers; got type {dtype!s:.40}; save plain numbers", where=where)
+        raise DomainError(f"expected real numbers; got type {dtype!s:.40}; save plain numbers")
     if any(n < 0 for n in shape) or math.prod(shape) > MOST_HEIGHTS:
-        raise TooLargeError(
-            f"expected at most {MOST_HEIGHTS} numbers; got shape {shape!s:.60}; cut the map", where=where
-        )
+        raise TooLargeError(f"expected at most {MOST_HEIGHTS} numbers; got shape {shape!s:.60}; cut the map")
     return math.prod(shape) * dtype.itemsize
 
 
-def scalar(get: Callable[[str], NDArray[Any]], name: str, path: Path, *, finite: bool = True) -> float:
+def scalar(get: Callable[[str], NDArray[Any]], name: str, *, finite: bool = True) -> float:
     """A single number of the archive as a float; get reads an array by name.
 
     Raises ShapeError for more or fewer numbers, NotFiniteError for nan and infinity unless finite is False.
     """
-    array, where = get(name), f"{name_file(path)}: {name}"
+    array = get(name)
     if array.size != 1:
-        raise ShapeError(f"expected one number; got shape {array.shape}; give one", where=where)
+        raise ShapeError(f"expected one number; got shape {array.shape}; give one", where=name)
     value = float(array.reshape(-1)[0])
     if finite and not math.isfinite(value):
-        raise NotFiniteError(f"expected a finite number; got {value}; mend it", where=where)
+        raise NotFiniteError(f"expected a finite number; got {value}; mend it", where=name)
     return value
 
 
@@ -476,18 +462,13 @@ def read_hgt(path: Path) -> Raster:
     """
     name = re.match(r"([NS])(\d{2})([EW])(\d{3})", path.name.upper())
     if name is None:
-        raise DomainError(
-            f"expected a name such as N44W072.hgt, which gives the corner; got {name_file(path.name)[-40:]}; rename it",
-            where=name_file(path),
-        )
+        got = name_file(path.name)[-40:]
+        raise DomainError(f"expected a name such as N44W072.hgt, which gives the corner; got {got}; rename it")
     data = read_bytes(path, 2 * 3601 * 3601)
     side = {2 * n * n: n for n in (1201, 3601)}.get(len(data))
     if side is None:
-        raise ShapeError(
-            f"expected {2 * 1201**2} or {2 * 3601**2} bytes (1201 or 3601 samples squared); got {len(data)}; "
-            "fetch it again",
-            where=name_file(path),
-        )
+        sizes = f"{2 * 1201**2} or {2 * 3601**2} bytes (1201 or 3601 samples squared)"
+        raise ShapeError(f"expected {sizes}; got {len(data)}; fetch it again")
     latitude = int(name[2]) * (1 if name[1] == "N" else -1)
     longitude = int(name[4]) * (1 if name[3] == "E" else -1)
     heights = np.frombuffer(data, dtype=">i2").reshape(side, side)[::-1].astype(np.int16)
@@ -507,22 +488,18 @@ def read_geotiff(path: Path) -> Raster:
     try:
         plain = read_plain(data, MOST_HEIGHTS)
     except Bomb as reason:
-        raise bomb(reason.args[0], path) from None
+        raise bomb(reason.args[0]) from None
     except OverflowError as reason:
-        raise TooLargeError(
-            f"expected at most {MOST_HEIGHTS} numbers; got {reason!s:.60}; cut the map", where=name_file(path)
-        ) from None
+        raise TooLargeError(f"expected at most {MOST_HEIGHTS} numbers; got {reason!s:.60}; cut the map") from None
     except Damaged as reason:
-        raise damaged(path, "a GeoTIFF", reason) from None
+        raise damaged("a GeoTIFF", reason) from None
     if plain is not None:
         refuse_sidecar(path)
     band = by_rasterio(path) if plain is None else plain
     if band.foreign is not None:  # it would be taken for metres, or for degrees, without being that
-        raise DomainError(
-            f"expected places in degrees or true metres, and heights in metres; got {band.foreign}; warp it first",
-            where=name_file(path),
-        )
-    return in_metres(upright(band, path), band.factor, band.offset)
+        wanted = "places in degrees or true metres, and heights in metres"
+        raise DomainError(f"expected {wanted}; got {band.foreign}; warp it first")
+    return in_metres(upright(band), band.factor, band.offset)
 
 
 def refuse_sidecar(path: Path) -> None:
@@ -530,10 +507,8 @@ def refuse_sidecar(path: Path) -> None:
     beside = path.with_name(f"{path.name}.aux.xml")
     said = SAID.search(read_text(beside, MOST_BYTES)) if beside.is_file() else None
     if said:
-        message = (
-            f"expected {said[1]} in the map itself; got it in {beside.name[-60:]}; write it there by gdal_translate"
-        )
-        raise DomainError(message, where=name_file(path))
+        place = beside.name[-60:]
+        raise DomainError(f"expected {said[1]} in the map itself; got it in {place}; write it there by gdal_translate")
 
 
 def in_metres(raster: Raster, factor: float, offset: float) -> Raster:
@@ -552,15 +527,14 @@ def by_rasterio(path: Path) -> Band:
     except ModuleNotFoundError:
         raise MissingEngineError(
             "expected one band of numbers, uncompressed or deflated, placed by a tie point and a scale, or the Python "
-            "package rasterio; got another GeoTIFF and no rasterio; install the extra navsym[maps]",
-            where=name_file(path),
+            "package rasterio; got another GeoTIFF and no rasterio; install the extra navsym[maps]"
         ) from None
     try:
         with rasterio.open(path) as source:
             shape, transform = (source.height, source.width), source.transform
-            size = checked_size((shape, np.dtype(source.dtypes[0])), name_file(path))
+            size = checked_size(shape, np.dtype(source.dtypes[0]))
             if not is_inflatable(size, path.stat().st_size):
-                raise bomb(size, path)
+                raise bomb(size)
             geographic = bool(source.crs is not None and source.crs.is_geographic)
             foreign = foreign_to_us(source.crs) or foreign_heights(source.units[0] or "")
             scales = source.scales[0], source.offsets[0]
@@ -568,7 +542,7 @@ def by_rasterio(path: Path) -> Band:
     except NavsymError:
         raise
     except Exception as reason:  # whatever GDAL says about a damaged file
-        raise damaged(path, "a GeoTIFF", reason) from None
+        raise damaged("a GeoTIFF", reason) from None
 
 
 def foreign_to_us(crs: Any) -> str | None:
@@ -581,13 +555,11 @@ def foreign_to_us(crs: Any) -> str | None:
     return None if math.isclose(metres, 1.0, rel_tol=1e-9) else f"lengths in {name}"
 
 
-def upright(band: Band, path: Path) -> Raster:
+def upright(band: Band) -> Raster:
     """A north-up raster with its rows turned round; heights stand at the middle of the pixels."""
     heights, transform = band.heights, band.transform
     if transform.b or transform.d or transform.a <= 0 or transform.e >= 0:
-        raise DomainError(
-            "expected a raster with north up and no rotation; got another one; warp it first", where=name_file(path)
-        )
+        raise DomainError("expected a raster with north up and no rotation; got another one; warp it first")
     x0 = transform.c + 0.5 * transform.a
     y0 = transform.f + transform.e * (heights.shape[0] - 0.5)
     void = None if band.nodata is None else float(band.nodata)

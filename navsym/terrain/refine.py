@@ -1,18 +1,16 @@
-"""From the best grid point to the minimum between the grid points, with its covariance."""
+"""From the best grid point to the minimum between the grid points."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from navsym.core.arrays import Array
 from navsym.core.errors import NotEstimableError
 from navsym.terrain.heights import ON_MAP, TerrainMap, demand_heights
 from navsym.terrain.search import need
 from navsym.terrain.track import Profile
-
-Array = NDArray[np.float64]
 
 #: Largest number of Gauss-Newton steps, and the step (in cells) below which they end.
 STEPS, ENOUGH = 60, 1e-7
@@ -22,21 +20,14 @@ STEPS, ENOUGH = 60, 1e-7
 class Refined:
     """A correction off the grid.
 
-    position   : (2,) correction at the first measurement ; velocity : (2,) ; offset : height error, m
-    criterion  : sum of squared residuals there
-    covariance : of (x, y, vx, vy[, offset]) at the first measurement, from the residuals:
-                 Q / (n - p) (J^T J)^-1
-    iterations : Gauss-Newton steps tried
-    converged  : whether the last step was short enough
+    position  : (2,) correction at the first measurement ; velocity : (2,) ; offset : height error, m
+    criterion : sum of squared residuals there
     """
 
     position: Array
     velocity: Array
     offset: float
     criterion: float
-    covariance: Array
-    iterations: int
-    converged: bool
 
 
 def refine(
@@ -61,9 +52,10 @@ def refine(
         residual = residual - q[4]
     scale = np.array([terrain.dx, terrain.dy, *np.array([terrain.dx, terrain.dy]) / track.elapsed[-1], 1.0])
     scale = scale[: q.size]
-    damping, taken, iterations = 1e-6, np.inf, 0
-    while iterations < STEPS and taken > ENOUGH and damping < 1e12:
-        iterations += 1
+    damping, taken = 1e-6, np.inf
+    for _ in range(STEPS):
+        if taken <= ENOUGH or damping >= 1e12:
+            break
         step = damped_step(J * scale, residual, damping) * scale
         tried = evaluated(terrain, track, q + step)
         if tried is not None and tried[0] @ tried[0] <= residual @ residual:
@@ -71,10 +63,8 @@ def refine(
             residual, J = tried
         else:
             damping *= 8.0
-    covariance = spread(J * scale, residual, scale)
-    b = float(q[4]) if offset else 0.0
-    settled = taken <= ENOUGH or damping >= 1e12
-    return Refined(q[:2], q[2:4], b, float(residual @ residual), covariance, iterations, settled)
+    demand_determined(J * scale, scale)
+    return Refined(q[:2], q[2:4], float(q[4]) if offset else 0.0, float(residual @ residual))
 
 
 def linearised(terrain: TerrainMap, track: Profile, q: Array) -> tuple[Array, Array]:
@@ -82,11 +72,15 @@ def linearised(terrain: TerrainMap, track: Profile, q: Array) -> tuple[Array, Ar
     x, y = moved(track, q)
     heights, flags = terrain.sample(x, y)
     demand_heights(terrain, x, y, flags)
+    J = jacobian(terrain, x, y, track.elapsed, velocity=True, offset=q.size == 5)
+    return track.h - heights - (q[4] if q.size == 5 else 0.0), J
+
+
+def jacobian(terrain: TerrainMap, x: Array, y: Array, times: Array, *, velocity: bool, offset: bool) -> Array:
+    """(n, p): heights along x, y by position and velocity at the time 0 of ``times`` (n,), and by height error."""
     gx, gy = cell_slopes(terrain, x, y)
-    tau = track.elapsed
-    columns = [gx, gy, gx * tau, gy * tau, np.ones_like(tau)][: q.size]
-    offset = q[4] if q.size == 5 else 0.0
-    return track.h - heights - offset, np.stack(columns, axis=1)
+    columns = [gx, gy, *([gx * times, gy * times] if velocity else []), *([np.ones_like(gx)] if offset else [])]
+    return np.stack(columns, axis=1)
 
 
 def evaluated(terrain: TerrainMap, track: Profile, q: Array) -> tuple[Array, Array] | None:
@@ -125,8 +119,8 @@ def damped_step(J: Array, residual: Array, damping: float) -> Array:
     return step
 
 
-def spread(J: Array, residual: Array, scale: Array) -> Array:
-    """Covariance in the units of the unknowns; NotEstimableError for a singular Jacobian."""
+def demand_determined(J: Array, scale: Array) -> None:
+    """NotEstimableError for a singular Jacobian, with the direction in the units of the unknowns."""
     values, vectors = np.linalg.eigh(np.einsum("ij,ik->jk", J, J))
     if values[0] <= 1e-14 * values[-1]:
         direction = ", ".join(f"{v:.3g}" for v in vectors[:, 0] * scale)
@@ -134,6 +128,3 @@ def spread(J: Array, residual: Array, scale: Array) -> Array:
             f"terrain: expected slopes that determine x, y, vx, vy; got none along ({direction}); "
             "fly longer or over other relief"
         )
-    half = scale[:, None] * vectors / np.sqrt(values)
-    covariance: Array = half @ half.T * float(residual @ residual) / (residual.size - J.shape[1])
-    return covariance

@@ -13,19 +13,20 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from navsym.core.arrays import Array
 from navsym.core.errors import NotEstimableError
 from navsym.terrain.heights import TerrainMap, demand_heights
-from navsym.terrain.kernels.bounded import BoundedResult, search_bounded, search_one_velocity
-from navsym.terrain.kernels.criteria import TOGETHER, dense_masked, padded, patch_rows, profile, slab
+from navsym.terrain.kernels.bounded import BoundedResult, add_slab, search_bounded, search_one_velocity
+from navsym.terrain.kernels.criteria import dense_masked, padded, profile
 from navsym.terrain.kernels.lattice import fits, lattice, rounded
 from navsym.terrain.kernels.margins import DOUBLE, PLAIN, parts_about_the_mean
 from navsym.terrain.track import Hypotheses, Profile
 
-Array = NDArray[np.float64]
 Index = tuple[int, int, int, int]
 
 
@@ -82,6 +83,26 @@ class Search:
     evaluated: int
     share: float = 1.0
     criteria: Array | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Correction:
+    """What every method has to say: hypothesis, criterion, and the correction at the last time.
+
+    index, criterion, second_best, unique, evaluated : as in :class:`Search`
+    shift, velocity : (2,) corrections of position, map units, and of velocity
+    t_G, quadratic  : of the sequential search: (min, max, mid) counted in measurements from 0, and (A2, A1, A0)
+    """
+
+    index: Index
+    criterion: float
+    second_best: float
+    unique: bool | None
+    shift: Array
+    velocity: Array
+    evaluated: int
+    t_G: tuple[float, float, float] | None = None
+    quadratic: tuple[float, float, float] | None = None
 
 
 def prepare(terrain: TerrainMap, track: Profile, grid: Hypotheses, *, on_map: bool = True) -> Prepared:
@@ -141,7 +162,8 @@ def criteria(prepared: Prepared, *, threads: int = 1, centred: bool = False) -> 
     if prepared.on_lattice:
         lattice(*prepared.case[:4], (Mx, My), sums[0, 0])
     else:
-        each_velocity(lambda Vi: one_slab(prepared, Vi, sums[Vi]), Mvx, threads)
+        run = partial(add_slab, prepared.case, prepared.steps, prepared.counts)
+        each_velocity(lambda Vi: run(Vi, False, sums[Vi]), Mvx, threads)
     return sums[..., :Mx]
 
 
@@ -155,14 +177,6 @@ def each_velocity(work: Callable[[int], None], count: int, threads: int) -> None
         list(pool.map(work, range(count)))
 
 
-def one_slab(prepared: Prepared, Vi: int, out: Array) -> None:
-    """Criteria at one velocity index Vi across, added to ``out`` (Mvy, My, W), W = Mx padded to whole lanes."""
-    Mx, My, Mvx, Mvy = prepared.counts
-    rows = patch_rows(prepared.by, prepared.wy, prepared.steps[1], My, Mvy, prepared.H.shape[0])
-    patch = np.empty((TOGETHER, rows, out.shape[2]))
-    slab(prepared.case, prepared.steps, (Mx, My, Mvy), float(Vi - Mvx // 2), False, patch, out)
-
-
 def search_position(
     terrain: TerrainMap, track: Profile, grid: Hypotheses, *, dense: bool = False, offset_free: bool = False
 ) -> Search:
@@ -174,17 +188,11 @@ def search_position(
     Raises OutsideMapError, NoDataError, NotEstimableError (fewer than two measurements, three without offset).
     """
     need(track, *((3, "two coordinates and the height offset") if offset_free else (2, "two coordinates")))
-    return found_by(prepare(terrain, track, grid.position_only), dense, 1, offset_free)
+    return found_by(prepare(terrain, track, grid.position_only), dense, offset_free)
 
 
 def search_full(
-    terrain: TerrainMap,
-    track: Profile,
-    grid: Hypotheses,
-    *,
-    dense: bool = False,
-    threads: int = 1,
-    offset_free: bool = False,
+    terrain: TerrainMap, track: Profile, grid: Hypotheses, *, dense: bool = False, offset_free: bool = False
 ) -> Search:
     """The best hypothesis in position and velocity (terrain_search:4, terrain_search:5).
 
@@ -195,10 +203,10 @@ def search_full(
     """
     what = "two coordinates and two velocities"
     need(track, *((5, f"{what} and the height offset") if offset_free else (4, what)))
-    return found_by(prepare(terrain, track, grid), dense, threads, offset_free)
+    return found_by(prepare(terrain, track, grid), dense, offset_free)
 
 
-def found_by(prepared: Prepared, dense: bool, threads: int, centred: bool) -> Search:
+def found_by(prepared: Prepared, dense: bool, centred: bool) -> Search:
     """The minimum by bounding where that is possible and wanted, else by evaluating every hypothesis."""
     total = math.prod(prepared.counts)
     # Outside this range single precision could overflow or underflow; nobody measures such heights.
@@ -207,7 +215,7 @@ def found_by(prepared: Prepared, dense: bool, threads: int, centred: bool) -> Se
     is_slow = (prepared.counts[2:] == (1, 1) and not prepared.plain) or (prepared.on_lattice and not centred)
     found = None if dense or is_slow or not (prepared.whole and usual) else quickly(prepared, centred)
     if found is None or found.index < 0:
-        return lowest(prepared, criteria(prepared, threads=threads, centred=centred), centred)
+        return lowest(prepared, criteria(prepared, centred=centred), centred)
     index, runner_up = unravel(found.index, prepared.counts), unravel(max(found.runner_up, 0), prepared.counts)
     best, second = (index, found.criterion), (runner_up, found.second)
     unique = math.isinf(found.second) or is_unique(prepared, best, second, centred)
@@ -233,25 +241,26 @@ def need(track: Profile, least: int, what: str) -> None:
 
 def lowest(prepared: Prepared, values: Array, centred: bool = False) -> Search:
     """Minimum and runner-up of an array of criteria (Mvx, Mvy, My, Mx)."""
+    best, criterion, runner_up, second = two_lowest(values)
+    index, other = unravel(best, prepared.counts), unravel(runner_up, prepared.counts)
+    unique = math.isinf(second) or is_unique(prepared, (index, criterion), (other, second), centred)
+    return Search(index, criterion, second, unique, values.size, 1.0, values)
+
+
+def two_lowest(values: Array) -> tuple[int, float, int, float]:
+    """Flat index and value of the smallest number and of the second smallest; infinity where there is no other."""
     flat = np.ravel(values)
     best = int(flat.argmin())
-    others = np.concatenate([flat[:best], flat[best + 1 :]])
-    second = float(others.min(initial=math.inf))
-    index = unravel(best, prepared.counts)
-    unique: bool | None = True
-    if math.isfinite(second):
-        at = int(others.argmin())
-        runner_up = unravel(at + (at >= best), prepared.counts)
-        unique = is_unique(prepared, (index, float(flat[best])), (runner_up, second), centred)
-    return Search(index, float(flat[best]), second, unique, values.size, 1.0, values)
+    others = np.concatenate([flat[:best], flat[best + 1 :], [math.inf]])
+    at = int(others.argmin())
+    return best, float(flat[best]), min(at + (at >= best), flat.size - 1), float(others[at])
 
 
 def unravel(flat: int, counts: Index) -> Index:
     """(i, j, Vi, Vj) from -N to N of a flat index in the order Vi, Vj, j, i."""
     Mx, My, Mvx, Mvy = counts
-    i, rest = flat % Mx, flat // Mx
-    j, rest = rest % My, rest // My
-    return i - Mx // 2, j - My // 2, rest // Mvy - Mvx // 2, rest % Mvy - Mvy // 2
+    Vi, Vj, j, i = map(int, np.unravel_index(flat, (Mvx, Mvy, My, Mx)))
+    return i - Mx // 2, j - My // 2, Vi - Mvx // 2, Vj - Mvy // 2
 
 
 # Uniqueness
@@ -265,17 +274,21 @@ def is_unique(
     True when the two smallest double sums differ by more than their rounding can; False when the
     two criteria are equal as rational numbers; None otherwise.
     """
+    if apart(prepared, best[1], second[1], centred):
+        return True
+    if prepared.z.size > 5000:
+        return None
+    equal = exact_criterion(prepared, best[0], centred) == exact_criterion(prepared, second[0], centred)
+    return False if equal else None
+
+
+def apart(prepared: Prepared, criterion: float, second: float, centred: bool, times: float = 1.0) -> bool:
+    """Whether two double sums differ by more than so many times what their rounding can."""
     n = prepared.z.size
     parts = parts_about_the_mean(n) if centred else PLAIN
-    slack = DOUBLE * (parts * prepared.bound + PLAIN * position_noise(prepared)) * math.sqrt(n)
+    slack = times * DOUBLE * (parts * prepared.bound + PLAIN * position_noise(prepared)) * math.sqrt(n)
     grow = (n + 4) * DOUBLE
-    upper = math.sqrt(best[1]) * (1.0 + grow) + slack
-    lower = math.sqrt(second[1]) * (1.0 - grow) - slack
-    if lower > upper:
-        return True
-    if n > 5000 or exact_criterion(prepared, best[0], centred) != exact_criterion(prepared, second[0], centred):
-        return None
-    return False
+    return math.sqrt(second) * (1.0 - grow) - slack > math.sqrt(criterion) * (1.0 + grow) + slack
 
 
 def position_noise(prepared: Prepared) -> float:

@@ -10,54 +10,20 @@ joint least-squares solution (terrain_search:sequential.exact) at the cost of si
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from navsym.terrain.centre import Information, demand_estimable, information, slopes
+from navsym.core.arrays import Array
+from navsym.terrain.centre import demand_estimable, information, slopes
 from navsym.terrain.heights import TerrainMap
 from navsym.terrain.kernels.criteria import velocity_criteria
-from navsym.terrain.kernels.margins import DOUBLE, PLAIN
-from navsym.terrain.search import Prepared, Search, criteria, lowest, need, position_noise, prepare
+from navsym.terrain.search import Correction, apart, criteria, lowest, need, prepare, two_lowest, unravel
 from navsym.terrain.track import Hypotheses, Profile
-
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Sequential:
-    """Result of the sequential search.
-
-    coarse      : result of the position stage
-    index       : (i, j, Vi, Vj)
-    criterion   : Q_V at the chosen velocity (terrain_search:6); second_best: among velocities;
-                  unique: True where both stages are proved to have one best hypothesis, False where the first has not
-    t_G         : (min, max, mid), counted in measurements from 0 as in the paper
-    quadratic   : (A2, A1, A0) with the measurement number as time
-    shift       : (2,) correction of the position at the last time, in map units
-    velocity    : (2,) correction of the velocity
-    information : sums of the slopes over time in seconds since the first measurement
-    """
-
-    coarse: Search
-    index: tuple[int, int, int, int]
-    criterion: float
-    second_best: float
-    unique: bool | None
-    t_G: tuple[float, float, float]
-    quadratic: tuple[float, float, float]
-    shift: Array
-    velocity: Array
-    information: Information
-    evaluated: int
 
 
 def search_sequential(
     terrain: TerrainMap, track: Profile, grid: Hypotheses, *, improved: bool = False, offset_free: bool = False
-) -> Sequential:
-    """Position first, then velocity.
+) -> Correction:
+    """Position first, then velocity, whose ``criterion`` is Q_V (terrain_search:6); ``second_best`` among velocities.
 
     improved    : turn about the matrix centre C instead of the middle of [t_min, t_max]
     offset_free : both stages and t_G without the means that a constant height error takes away
@@ -78,15 +44,16 @@ def search_sequential(
     centre = timed.centre if improved else instant * np.eye(2)
     at = (position.bx + i * position.steps[0], position.by + j * position.steps[1])
     values = velocity_stage(terrain, track, grid, at, centre, offset_free)
-    Vi, Vj, criterion, second = two_lowest(values)
+    best, criterion, _, second = two_lowest(values)
+    _, _, Vi, Vj = unravel(best, (1, 1, *values.shape))
     velocity = np.array([Vi * grid.velocity_step[0], Vj * grid.velocity_step[1]])
     shift = start + (track.elapsed[-1] * np.eye(2) - centre) @ velocity  # terrain_search:14
-    unique = coarse.unique if coarse.unique is not True else (True if apart(position, criterion, second) else None)
-    evaluated = coarse.evaluated + values.size
+    # Turning a track about a centre takes a few roundings of coordinates more than moving it: four times the margin.
+    is_apart = apart(position, criterion, second, offset_free, 4.0)
+    unique = coarse.unique if coarse.unique is not True else is_apart or None
     index, t_G = (i, j, Vi, Vj), (low, high, middle)
-    return Sequential(
-        coarse, index, criterion, second, unique, t_G, numbered.quadratic, shift, velocity, timed, evaluated
-    )
+    evaluated = coarse.evaluated + values.size
+    return Correction(index, criterion, second, unique, shift, velocity, evaluated, t_G, numbered.quadratic)
 
 
 def velocity_stage(
@@ -104,23 +71,3 @@ def velocity_stage(
     case = (terrain.heights, bx, by, np.array(track.h), track.elapsed, track.elapsed)
     velocity_criteria(case, cells, steps, grid.counts[2:], centred, out)
     return out
-
-
-def apart(prepared: Prepared, criterion: float, second: float) -> bool:
-    """Whether two double sums differ by more than their rounding can: the margins of :func:`is_unique`, four times.
-
-    Turning a track about a centre takes a few roundings of coordinates more than moving it.
-    """
-    n = prepared.z.size
-    slack = 4.0 * DOUBLE * PLAIN * (prepared.bound + position_noise(prepared)) * math.sqrt(n)
-    grow = (n + 4) * DOUBLE
-    return math.sqrt(second) * (1.0 - grow) - slack > math.sqrt(criterion) * (1.0 + grow) + slack
-
-
-def two_lowest(values: Array) -> tuple[int, int, float, float]:
-    """(Vi, Vj) of the smallest criterion, its value, and the second smallest value."""
-    best = int(values.argmin())
-    others = np.delete(np.ravel(values), best)
-    Vi, Vj = divmod(best, values.shape[1])
-    criterion, second = float(values.flat[best]), float(others.min(initial=np.inf))
-    return Vi - values.shape[0] // 2, Vj - values.shape[1] // 2, criterion, second

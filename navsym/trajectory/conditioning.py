@@ -301,37 +301,14 @@ def condition_number(rows: Rows, *, digits: int = 30, equilibrate: bool = False)
     return found or condition_by_eigenvalues(rows, digits=digits, equilibrate=equilibrate)
 
 
-def condition_numbers(
-    n: int,
-    rho: Fraction | int | str,
-    tau: Fraction | int | str,
-    *,
-    digits: int = 30,
-    progress: Callable[[str], None] = lambda matrix: None,
-) -> dict[str, MatrixCondition]:
-    """Condition numbers of N_p, N_pN, N_f, N_s (trajectory:table), certified and in double precision.
+def four_matrices(n: int, rho: Fraction, tau: Fraction) -> Iterator[tuple[str, Rows, bool]]:
+    """Name and rows of N_p, N_pN, N_f, N_s, and whether their columns are scaled to unit length (trajectory:table).
 
-    n        : order of the polynomial motion model, 1 to 120
-    rho, tau : exact numbers, rho nonzero (1/m), tau positive (s), text is read as a fraction or a decimal
-    progress : called with the name of each matrix that is done
-    Raises DomainError and TooLargeError for numbers outside these ranges.
+    Signs of columns do not change a norm, so N_pN and N_s agree for every nonzero rho and tau; both are computed from
+    their own definitions all the same.
     """
-    rho, tau = Fraction(rho), Fraction(tau)
-    check_request(n, rho, tau)
     measured, powers = observability_rows(n, rho, tau), power_rows(n)
-    # Signs of columns do not change a norm, so N_pN and N_s agree for every nonzero rho and tau;
-    # both are computed from their own definitions all the same.
-    found = {}
-    for name, rows, equilibrate in (
-        ("N_p", measured, False),
-        ("N_pN", measured, True),
-        ("N_f", powers, False),
-        ("N_s", powers, True),
-    ):
-        exact = condition_number(rows, digits=digits, equilibrate=equilibrate)
-        found[name] = MatrixCondition(name, exact, digits, double_condition(rows, equilibrate))
-        progress(name)
-    return found
+    yield from (("N_p", measured, False), ("N_pN", measured, True), ("N_f", powers, False), ("N_s", powers, True))
 
 
 def check_request(n: int, rho: Fraction, tau: Fraction) -> None:
@@ -411,12 +388,10 @@ class Conditions(Answer):
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """That each of the four condition numbers lies between its ends, for the checker."""
-        measured, powers = observability_rows(self.n, self.rho, self.tau), power_rows(self.n)
-        matrices = {"N_p": measured, "N_pN": measured, "N_f": powers, "N_s": powers}
         found: list[Mapping[str, Any]] = []
-        for part in self:
+        for part, (_, rows, equilibrate) in zip(self, four_matrices(self.n, self.rho, self.tau), strict=True):
             ends = (Fraction(part.value.lower), Fraction(part.value.upper))
-            statement = state_condition(matrices[part.name], *ends, equilibrate=part.name in ("N_pN", "N_s"))
+            statement = state_condition(rows, *ends, equilibrate=equilibrate)
             found.append(certify_condition(statement, self.digits + 10))
         return found
 
@@ -466,12 +441,17 @@ def condition(
     for name, number in (("n", n), ("digits", digits)):
         if isinstance(number, bool) or not isinstance(number, int):
             raise DomainError(f"expected an integer; got {quote(number)}; give one", where=f"condition: {name}")
-    exact_tau, exact_rho = read_exactly(tau, "condition: tau"), read_exactly(rho, "condition: rho")
+    tau, rho = read_exactly(tau, "condition: tau"), read_exactly(rho, "condition: rho")
+    parts = {}
     try:
-        parts = condition_numbers(n, exact_rho, exact_tau, digits=digits, progress=progress)
+        check_request(n, rho, tau)
+        for name, rows, equilibrate in four_matrices(n, rho, tau):
+            exact = condition_number(rows, digits=digits, equilibrate=equilibrate)
+            parts[name] = MatrixCondition(name, exact, digits, double_condition(rows, equilibrate))
+            progress(name)
     except NavsymError as error:
         raise error.at("condition") from None
-    return Conditions(n, exact_tau, exact_rho, digits, **parts)
+    return Conditions(n, tau, rho, digits, **parts)
 
 
 def read_exactly(value: Any, where: str) -> Fraction:

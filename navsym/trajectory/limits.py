@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from navsym.core.answers import Answer, named
-from navsym.core.arrays import Array, as_array
+from navsym.core.arrays import Array, as_array, freeze
 from navsym.core.errors import DomainError, TooLargeError
 from navsym.core.tables import Table
 from navsym.language.names import quote
@@ -54,10 +54,6 @@ class Rule:
     weights: Array
     noise: float
     motion: float
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "ages", as_array("ages", self.ages, (None,), "one for each position"))
-        object.__setattr__(self, "weights", as_array("weights", self.weights, np.shape(self.ages), "one for each age"))
 
     @property
     def error(self) -> float:
@@ -265,7 +261,7 @@ def rule(ages: Array, noise: float, bound: float, derivative: int = 1) -> Rule:
     check(noise, bound, derivative, len(ages))
     if ages[0] != 0 or not (np.diff(ages) > 0).all():
         raise DomainError(f"ages: expected ages that rise from 0; got {ages.tolist()}; give the newest position first")
-    weights = np.array([cardinal(ages, i, derivative) for i in range(len(ages))])
+    weights = freeze(np.array([cardinal(ages, i, derivative) for i in range(len(ages))]))
     older = ages[1:]
     integral = older.sum() / 3 if derivative == 2 else older.prod() / math.factorial(len(ages))
     return Rule(ages, weights, noise * float(np.abs(weights).sum()), bound * float(integral))

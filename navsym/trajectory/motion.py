@@ -11,8 +11,8 @@ import numpy as np
 
 from navsym.core.answers import Answer, named, plain
 from navsym.core.arrays import Array, freeze
-from navsym.core.errors import DomainError, NavsymError
-from navsym.language.files import name_file, write_text
+from navsym.core.errors import DomainError
+from navsym.language.files import file_in_errors, write_text
 from navsym.language.names import quote
 from navsym.trajectory.consistency import Consistency, compare, consistency_of
 from navsym.trajectory.estimate import Progress, Settings, estimate, filtered, gaps, largest_gap, window_of
@@ -177,17 +177,12 @@ def track(
     """
     settings = settings_of(method, window, order, gate, sigma)
     read = read_track(data, policy) if isinstance(data, str | os.PathLike) else read_columns(data, policy)
-    place = name_file(data) if isinstance(data, str | os.PathLike) else "track"
-    try:
+    with file_in_errors(data, "track"):
         check_order(len(read.t), settings.order)
         given = read.sigma if sigma is None else sigma
         positions = project_positions(read.t - read.t[0], read.latitude, read.longitude, read.height, given)
         found = describe_motion(read, positions, settings, progress)
-        if reference is None:
-            return found
-        return with_reference(found, reference)
-    except NavsymError as error:
-        raise error.at(place) from None
+        return found if reference is None else with_reference(found, reference)
 
 
 def with_reference(found: Track, reference: Any) -> Track:

@@ -18,7 +18,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.arrays import as_array, as_floats
+from navsym.core.arrays import Array, as_array, as_floats
 from navsym.core.errors import (
     DomainError,
     DuplicateError,
@@ -33,7 +33,6 @@ from navsym.language.csvfile import LARGEST_FILE, lines_of, number_of, read_rows
 from navsym.language.files import decode, name_file, read_bytes
 from navsym.trajectory.units import BRACKETS, Unit, unit_of, usual_unit
 
-Array = NDArray[np.float64]
 Policy = Literal["strict", "repair"]
 
 LARGEST_ROWS = 2_000_000
@@ -95,7 +94,7 @@ class Log:
     warnings: list[str] = field(default_factory=list)
     units: tuple[Unit, ...] = tuple(map(usual_unit, NAMES))
 
-    def problem(self, kind: type[NavsymError], line: int, message: str, repair: str) -> None:
+    def problem(self, kind: type[NavsymError], line: int, message: str, repair: str = "row left out") -> None:
         """Note a problem of a line: an error of this kind when strict, else the repair that was made.
 
         Raises the first error as soon as there are :data:`MOST_PROBLEMS`.
@@ -211,12 +210,10 @@ def rtklib_rows(text: str, log: Log) -> Iterator[Row]:
             raise too_long(log)
         fields = line.replace(",", " ").split()
         if len(fields) < 5:
-            message = f"expected at least 5 fields; got {len(fields)}; mend or remove the row"
-            log.problem(ShapeError, number, message, "row left out")
+            log.problem(ShapeError, number, f"expected at least 5 fields; got {len(fields)}; mend or remove the row")
             continue
         if fields[5:6] == ["0"]:
-            message = "Q: expected a solution, 1 to 7; got 0, which is none; remove the row"
-            log.problem(DomainError, number, message, "row left out")
+            log.problem(DomainError, number, "Q: expected a solution, 1 to 7; got 0, which is none; remove the row")
             continue
         time = rtklib_time(fields[0], fields[1])
         values = [time, *(number_of(x) for x in fields[2:5])]
@@ -288,8 +285,7 @@ def csv_rows(text: str, log: Log) -> Iterator[Row]:
     width = max(len(first), 4)
     for number, fields in lines[start:]:
         if len(fields) != width:
-            message = f"expected {width} fields; got {len(fields)}; mend the row"
-            log.problem(ShapeError, number, message, "row left out")
+            log.problem(ShapeError, number, f"expected {width} fields; got {len(fields)}; mend the row")
             continue
         texts = [fields[columns[name]] for name in NAMES]
         row = row_of([value_of(x, number, log) for x in texts], number, texts, None, log)
@@ -351,12 +347,12 @@ def row_of(
     ):
         if value is None:
             message = f"{name}: expected a number; got {text[:40]!r}; mend or remove the row"
-            log.problem(ExpressionSyntaxError, line, message, "row left out")
+            log.problem(ExpressionSyntaxError, line, message)
             return None
         numbers.append(unit.convert(float(value)))
         if not math.isfinite(numbers[-1]):
             message = f"{name}: expected a finite number; got {text[:40]}; mend or remove the row"
-            log.problem(NotFiniteError, line, message, "row left out")
+            log.problem(NotFiniteError, line, message)
             return None
     t, lat, lon, h = numbers
     return Row(line, t, lat, lon, h, sigma)
@@ -372,7 +368,7 @@ def acceptable(row: Row, log: Log) -> bool:
     for name, value, fits, words in limits:
         if not fits(value):
             message = f"{name}: expected a value {words}; got {value:g}; check the column and its unit"
-            log.problem(DomainError, row.line, message, "row left out")
+            log.problem(DomainError, row.line, message)
             return False
     return True
 
@@ -383,12 +379,12 @@ def in_order(rows: list[Row], log: Log) -> list[Row]:
     for row in rows:
         if not kept or row.t > kept[-1].t:
             kept.append(row)
-        elif row.t == kept[-1].t:
-            message = f"time: expected a later time than {kept[-1].t:.3f}; got the same; keep one of the rows"
-            log.problem(DuplicateError, row.line, message, "row left out")
+            continue
+        later = f"time: expected a later time than {kept[-1].t:.3f}"
+        if row.t == kept[-1].t:
+            log.problem(DuplicateError, row.line, f"{later}; got the same; keep one of the rows")
         else:
-            message = f"time: expected a later time than {kept[-1].t:.3f}; got {row.t:.3f}; sort or remove the row"
-            log.problem(DomainError, row.line, message, "row left out")
+            log.problem(DomainError, row.line, f"{later}; got {row.t:.3f}; sort or remove the row")
     return kept
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from navsym.cli.main import run
 from navsym.core.errors import NavsymError
-from navsym.terrain.locate import METHODS, locate
+from navsym.terrain.locate import SEARCHES, locate
 
 KEYS = {
     "method",
@@ -64,7 +64,7 @@ def call(tmp_path, capsys, document, *options):
     return status, json.loads(capsys.readouterr().out)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", SEARCHES)
 def test_every_method_answers_with_the_keys_of_the_interface(tmp_path, capsys, method):
     status, answer = call(tmp_path, capsys, config(), "--method", method)
     assert status == 0 and set(answer) == KEYS and answer["method"] == method
@@ -101,7 +101,7 @@ def test_the_printed_sequential_search_follows_equation_14(tmp_path, capsys):
     assert answer["evaluated"] == 81 + 49
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", SEARCHES)
 def test_an_unknown_height_error_is_estimated_and_does_not_move_the_fix(tmp_path, capsys, method):
     document = config()
     _, flat_answer = call(tmp_path, capsys, document, "--method", method, "--offset-free")
@@ -348,7 +348,7 @@ def test_absurd_values_anywhere_are_refused_or_harmless():
             inner = inner[key]
         inner[path[-1]] = generator.choice(ABSURD)
         try:
-            answer = locate(document, generator.choice(METHODS), maps=True).document()
+            answer = locate(document, generator.choice([*SEARCHES]), maps=True).document()
         except NavsymError as error:
             assert "expected" in error.message and "got" in error.message
         else:

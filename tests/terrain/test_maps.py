@@ -160,16 +160,16 @@ def band_of(heights, **place):
     return readers_maps.Band(heights, readers_maps.Transform(**(numbers | place)), -1.0, False)
 
 
-def test_a_north_up_raster_is_turned_and_stands_at_the_middle_of_its_pixels(tmp_path):
-    raster = readers_maps.upright(band_of(np.arange(6.0).reshape(2, 3)), tmp_path)
+def test_a_north_up_raster_is_turned_and_stands_at_the_middle_of_its_pixels():
+    raster = readers_maps.upright(band_of(np.arange(6.0).reshape(2, 3)))
     assert (raster.x0, raster.y0, raster.dx, raster.dy) == (101.0, 45.5, 2.0, 3.0)
     np.testing.assert_array_equal(raster.heights, [[3, 4, 5], [0, 1, 2]])
 
 
 @pytest.mark.parametrize("wrong", [{"b": 0.1}, {"e": 3.0}, {"a": -2.0}])
-def test_a_turned_raster_is_refused(tmp_path, wrong):
+def test_a_turned_raster_is_refused(wrong):
     with pytest.raises(NavsymError, match="north up"):
-        readers_maps.upright(band_of(np.zeros((2, 2)), **wrong), tmp_path)
+        readers_maps.upright(band_of(np.zeros((2, 2)), **wrong))
 
 
 def test_the_sample_of_matplotlib_is_read():

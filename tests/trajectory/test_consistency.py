@@ -135,3 +135,10 @@ def test_a_wrong_reference_is_an_error_with_kind_and_place(reference: object, ki
     with pytest.raises(NavsymError) as caught:
         nav.track("examples/drive.csv", sigma=0.5, order=2, reference=reference)
     assert caught.value.kind == kind and caught.value.where
+
+
+def test_an_error_of_a_reference_in_memory_names_the_track_once() -> None:
+    rows = [(k, 45 + 1e-4 * k, 10.0, 100.0) for k in range(20)]
+    with pytest.raises(NavsymError) as caught:
+        nav.track(rows, order=2, reference=[[0, 1, 2]])
+    assert caught.value.where == "track: reference"

@@ -37,7 +37,7 @@ from navsym.models.transition.rings import (
     Poly,
     Ring,
     companion_inverse,
-    monic_quotient,
+    monic_division,
     monic_remainder,
     mu_coefficients,
     reduce_squares,
@@ -223,7 +223,7 @@ class Term:
 def terms_of(ring: Ring, B: Matrix, characteristic: list[Poly], form: Form) -> list[Term]:
     """E_i(B) r_i(B, t) of one factor, one term for each piece of its form."""
     power = reduce(lambda x, _: multiply_coefficients(x, form.base), range(form.times), [ring.one])
-    cofactor = monic_quotient(ring, characteristic, power)
+    cofactor, _ = monic_division(ring, characteristic, power)
     inverse, resultant = companion_inverse(ring, monic_remainder(ring, cofactor, power), power)
     projected = [matrix_polynomial(ring, cofactor, B)]
     for _ in range(len(power) - 2):

@@ -31,9 +31,7 @@ from navsym.models.transition.pieces import (
     Root,
     Surd,
     Wave,
-    direct_root,
     in_lambda,
-    inverted_root,
     multiply_constants,
     reality_conditions,
     root_of_quotient,
@@ -124,18 +122,18 @@ def product_waves(frame: Frame, a: Poly, c: Poly, complex_pair: bool) -> tuple[s
     unit = frame.d**2, c
     minus = 1 if complex_pair else -1
     both = multiply_constants(
-        ring, multiply_constants(ring, inverted_root(P), inverted_root(M)), ((ring.one, ring.one * 2), RATIONAL)
+        ring, multiply_constants(ring, P.inverse, M.inverse), ((ring.one, ring.one * 2), RATIONAL)
     )
     sums = (
         (Wave(cP * cM, (ring.one, ring.one)),),
         (
-            wave(ring, sP * cM, direct_root(P), (unit, RATIONAL)),
-            wave(ring, cP * sM, direct_root(M), ((unit[0] * minus, c), RATIONAL)),
+            wave(ring, sP * cM, P.factor, (unit, RATIONAL)),
+            wave(ring, cP * sM, M.factor, ((unit[0] * minus, c), RATIONAL)),
         ),
         (wave(ring, sP * sM, both),),
         (
-            wave(ring, sP * cM, inverted_root(P), ((unit[0], 2 * c), RATIONAL)),
-            wave(ring, cP * sM, inverted_root(M), ((-unit[0], 2 * c), RATIONAL)),
+            wave(ring, sP * cM, P.inverse, ((unit[0], 2 * c), RATIONAL)),
+            wave(ring, cP * sM, M.inverse, ((-unit[0], 2 * c), RATIONAL)),
         ),
     )
     return "damped waves" if complex_pair else "two frequencies", sums, reality_conditions(ring, P, M)
@@ -148,7 +146,7 @@ def nested_waves(frame: Frame, a: Poly, b: Poly) -> tuple[str, Sums, tuple[sp.Ba
     middle = write_quotient(ring, a, frame.d**2)
     signs = declared_sign(ring, a), declared_sign(ring, b)
     grows = signs[1] < 0 or signs == (-1, 1), signs == (-1, 1)
-    half, over = ((ring.one, ring.one * 2), RATIONAL), inverted_root(delta)
+    half, over = ((ring.one, ring.one * 2), RATIONAL), delta.inverse
     negative = (-over[0][0], over[0][1]), over[1]
     pairs = []
     for direction, grow in zip((1, -1), grows, strict=True):
@@ -280,7 +278,7 @@ def taylor_wave(
     above, below = frame.d ** (2 * e) * int(c.p), D**e * frame.d**degree * int(c.q)
     surd = RATIONAL
     if wave == "S":
-        (top, bottom), surd = root.inverse, root.surd
+        (top, bottom), surd = root.inverse
         above, below = above * top, below * bottom
     return Wave(frame.time**k * waves[wave], cancel_fraction(above, below), surd)
 

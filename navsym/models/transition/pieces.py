@@ -34,6 +34,8 @@ class Surd:
 
 
 RATIONAL = Surd(sp.S.One)
+#: A constant, its rational and its irrational part.
+Factor = tuple[Fraction, Surd]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,10 +89,15 @@ class Root:
     value: sp.Expr
 
     @property
-    def inverse(self) -> Fraction:
-        """The rational factor of 1 / root; the surd stays as it is."""
+    def factor(self) -> Factor:
+        """The root as a constant factor."""
+        return self.rational, self.surd
+
+    @property
+    def inverse(self) -> Factor:
+        """1 / root as a constant factor; the surd stays as it is."""
         above, below = self.rational
-        return below, above if self.surd.radicand is None else above * self.surd.radicand
+        return (below, above if self.surd.radicand is None else above * self.surd.radicand), self.surd
 
 
 def in_lambda(frame: Frame, base: Coefficients) -> sp.Expr:
@@ -117,19 +124,6 @@ def reality_conditions(ring: Ring, *roots: Root) -> tuple[sp.Basic, ...]:
 def scale_piece(piece: Piece, growth: sp.Expr) -> Piece:
     """The piece with every function of time multiplied by one more."""
     return replace(piece, waves=tuple(replace(wave, function=wave.function * growth) for wave in piece.waves))
-
-
-Factor = tuple[Fraction, Surd]
-
-
-def direct_root(root: Root) -> Factor:
-    """The root itself as a constant factor."""
-    return root.rational, root.surd
-
-
-def inverted_root(root: Root) -> Factor:
-    """1 / root as a constant factor."""
-    return root.inverse, root.surd
 
 
 def multiply_constants(ring: Ring, *factors: Factor) -> Factor:

@@ -239,11 +239,6 @@ def monic_division(ring: Ring, a: Coefficients, b: Coefficients) -> tuple[Coeffi
     return quotient, (rest + [ring.zero] * n)[:n]
 
 
-def monic_quotient(ring: Ring, a: Coefficients, b: Coefficients) -> Coefficients:
-    """Quotient by a monic divisor."""
-    return monic_division(ring, a, b)[0]
-
-
 def monic_remainder(ring: Ring, a: Coefficients, b: Coefficients) -> Coefficients:
     """Remainder by a monic divisor, with exactly as many coefficients as its degree."""
     return monic_division(ring, a, b)[1]

@@ -154,7 +154,7 @@ def lay_start(sources, n, means, covariances, x, P):  # type: ignore[no-untyped-
 
 
 @njit(**COMPILE)
-def lay_models(k, branches, modes, F, Q, H, r, U, z, lanes):  # type: ignore[no-untyped-def]
+def lay_models(k, branches, modes, F, Q, H, r, lanes):  # type: ignore[no-untyped-def]
     """Models of step k, branch b has mode b % modes, into the layout of lanes; idle lanes get a unit model.
 
     F, Q (T or 1, m, n, n), H (T or 1, m, p, n), r (T or 1, m, p), lanes = (F, Q, H, r) flat.
@@ -240,15 +240,6 @@ def keep(k, n, now_mean, now, mean, covariance):  # type: ignore[no-untyped-def]
 
 
 @njit(**COMPILE)
-def fold_to_one(n, mean, covariance, x, P):  # type: ignore[no-untyped-def]
-    """The merged estimate (n,), (n, n) as the only source: GPB1."""
-    for a in range(n):
-        x[a * 8] = mean[a]
-        for c in range(n):
-            P[(a * n + c) * 8] = covariance[a, c]
-
-
-@njit(**COMPILE)
 def fold_by_mode(branches, modes, n, logs, totals, weights, x, P, mean, covariance):  # type: ignore[no-untyped-def]
     """Merge the branches of every last mode: GPB2.
 
@@ -276,17 +267,14 @@ def fold_by_mode(branches, modes, n, logs, totals, weights, x, P, mean, covarian
 
 
 @njit(**COMPILE)
-def constant(F, Q, H, r):  # type: ignore[no-untyped-def]
-    """Whether no model changes with time."""
-    return F.shape[0] == 1 and Q.shape[0] == 1 and H.shape[0] == 1 and r.shape[0] == 1
-
-
-@njit(**COMPILE)
 def fold(folding, branches, m, n, logs, totals, terms, weights, nx, nP, mean, covariance, x, P):  # type: ignore[no-untyped-def]
     """The sources of the next step, and their log weights: one for all branches, or one for each mode."""
     log_sums_by_mode(branches, m, logs, totals, terms)
-    if folding == ALL:
-        fold_to_one(n, mean, covariance, x, P)
+    if folding == ALL:  # the merged estimate is the only source: GPB1
+        for a in range(n):
+            x[a * 8] = mean[a]
+            for c in range(n):
+                P[(a * n + c) * 8] = covariance[a, c]
     else:
         fold_by_mode(branches, m, n, logs, totals, weights, nx, nP, x, P)
     for i in range(m):
@@ -321,7 +309,7 @@ def run_bank(scheme, models, chain, start, z, results):  # type: ignore[no-untyp
     known, sources = (True, m) if branching == OWN or not common else (False, 1)
     lay_start(sources, n, means, covariances, x, P)
     logs[:m] = log_prior
-    laid, total_log, unchanging = 0, 0.0, constant(F, Q, H, r)
+    laid, total_log, unchanging = 0, 0.0, F.shape[0] == Q.shape[0] == H.shape[0] == r.shape[0] == 1
     for k in range(T):
         branches = sources * m if branching == CROSS else m
         branch_modes(branching, known, sources, m, k, logs, p_mode, log_p, totals, mixing, ahead, terms)
@@ -330,7 +318,7 @@ def run_bank(scheme, models, chain, start, z, results):  # type: ignore[no-untyp
         elif branching == CROSS:
             copy_sources(branches, m, n, x, P, nx, nP)
         if laid != branches or not unchanging:
-            lay_models(k, branches, m, F, Q, H, r, U, z, (lf, lq, lh, lr))
+            lay_models(k, branches, m, F, Q, H, r, (lf, lq, lh, lr))
             laid = branches
         lay_measurement(k, branches, m, rotated, U, z, came, zl)
         for g in range((branches + 7) // 8):

@@ -70,14 +70,8 @@ def predict_group(g, n, F, Q, x, P, scratch):  # type: ignore[no-untyped-def]
 @njit(inline="always", **COMPILE)
 def six_of_product(n, A, at_a, B, at_b, out, at_out, a, b):  # type: ignore[no-untyped-def]
     """Entries [a, b..b+2] and [a+1, b..b+2] of a product: five loads for six products."""
-    s0, s1, s2, t0, t1, t2 = (
-        spread_lanes(0.0),
-        spread_lanes(0.0),
-        spread_lanes(0.0),
-        spread_lanes(0.0),
-        spread_lanes(0.0),
-        spread_lanes(0.0),
-    )
+    s0, s1, s2 = spread_lanes(0.0), spread_lanes(0.0), spread_lanes(0.0)
+    t0, t1, t2 = s0, s1, s2
     for c in range(n):
         up, down = load_lanes(A, at_a + (a * n + c) * 8), load_lanes(A, at_a + (a * n + n + c) * 8)
         row = at_b + (c * n + b) * 8
@@ -204,15 +198,13 @@ def mix_group(g, n, sources, weights, x, P, mean, covariance, off):  # type: ign
     for a in range(0, even, 2):
         for b in range(0, a + 2, 2):
             mix_four(g, n, sources, weights, P, covariance, off, a, b)
-    if even < n:
-        for b in range(0, even, 2):
-            mix_pair(g, n, sources, weights, P, covariance, off, even, b)
-        mix_one(g, n, sources, weights, P, covariance, off, even, even)
+    for b in range(n if even < n else 0):
+        mix_one(g, n, sources, weights, P, covariance, off, even, b)
 
 
 @njit(inline="always", **COMPILE)
 def mix_four(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[no-untyped-def]
-    """Entries [a, b], [a, b + 1], [a + 1, b], [a + 1, b + 1]: nine loads for four entries, and see mix_pair."""
+    """Entries [a, b], [a, b + 1], [a + 1, b], [a + 1, b + 1]: nine loads for four entries, and see mix_one."""
     square, up, given = g * n * n * 8, a * sources * 8, g * sources * 8
     down, one, two = up + sources * 8, b * sources * 8, (b + 1) * sources * 8
     i00, i01, i10, i11 = spread_lanes(0.0), spread_lanes(0.0), spread_lanes(0.0), spread_lanes(0.0)
@@ -237,39 +229,20 @@ def mix_four(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[
 
 
 @njit(inline="always", **COMPILE)
-def mix_pair(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[no-untyped-def]
-    """Entries [a, b] and [a, b + 1] of the mixed covariance: sum of w (P + d d^T) over the sources.
+def mix_one(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[no-untyped-def]
+    """Entry [a, b] of the mixed covariance: sum of w (P + d d^T) over the sources.
 
-    Blocks of eight sources keep divisions out of the index; four sums keep the chains short.
+    Blocks of eight sources keep divisions out of the index; two sums keep the chains short.
     """
-    square, left = g * n * n * 8, a * sources * 8
-    one, two, given = b * sources * 8, (b + 1) * sources * 8, g * sources * 8
-    inside, between, inside2, between2 = spread_lanes(0.0), spread_lanes(0.0), spread_lanes(0.0), spread_lanes(0.0)
+    left, right, given = a * sources * 8, b * sources * 8, g * sources * 8
+    inside, between = spread_lanes(0.0), spread_lanes(0.0)
     for block in range(0, sources, 8):
         value = block * n * n + (a * n + b) * 8
         for lane in range(min(8, sources - block)):
             step = (block + lane) * 8
             w = load_lanes(weights, given + step)
-            d = w * load_lanes(off, left + step)
             inside = inside + w * spread_lanes(P[value + lane])
-            inside2 = inside2 + w * spread_lanes(P[value + 8 + lane])
-            between = between + d * load_lanes(off, one + step)
-            between2 = between2 + d * load_lanes(off, two + step)
-    store_twice(covariance, square, n, a, b, inside + between)
-    store_twice(covariance, square, n, a, b + 1, inside2 + between2)
-
-
-@njit(inline="always", **COMPILE)
-def mix_one(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[no-untyped-def]
-    """Entry [a, b] of the mixed covariance, for the odd one out."""
-    left, right, given = a * sources * 8, b * sources * 8, g * sources * 8
-    inside, between = spread_lanes(0.0), spread_lanes(0.0)
-    for s in range(sources):
-        value = spread_lanes(P[(((s // 8) * n + a) * n + b) * 8 + s % 8])
-        inside = inside + load_lanes(weights, given + s * 8) * value
-        between = between + load_lanes(weights, given + s * 8) * load_lanes(off, left + s * 8) * load_lanes(
-            off, right + s * 8
-        )
+            between = between + w * load_lanes(off, left + step) * load_lanes(off, right + step)
     store_twice(covariance, g * n * n * 8, n, a, b, inside + between)
 
 

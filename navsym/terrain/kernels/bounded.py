@@ -57,8 +57,8 @@ EVERY = 8
 PROBES = 32
 
 Counts = tuple[int, int, int, int]
-#: ``(H, bx, by, z, wx, wy)`` as in :mod:`navsym.terrain.kernels.criteria`.
-Case = tuple[NDArray[np.float64], ...]
+#: ``(H, bx, by, z, wx, wy)`` as in :mod:`navsym.terrain.kernels.criteria`; H may be in single precision.
+Case = tuple[NDArray[Any], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,15 +167,26 @@ def first_sums(
     case: Case, steps: NDArray[np.float64], counts: Counts, centred: bool, chosen: NDArray[np.int64]
 ) -> NDArray[np.float32]:
     """Single-precision sums (Mvx, Mvy, My, W) of every hypothesis over the chosen measurements."""
-    H, bx, by, z, wx, wy = part_of(case, chosen)
-    Mx, My, Mvx, Mvy = counts
+    part, (Mx, My, Mvx, Mvy) = part_of(case, chosen), counts
     sums = np.zeros((Mvx, Mvy, My, padded(Mx)), np.float32)
-    rows = patch_rows(by, wy, float(steps[1]), My, Mvy, H.shape[0])
-    patch = np.empty((TOGETHER, rows, sums.shape[3]), np.float32)
-    part = (H, bx, by, z.astype(np.float32), wx, wy)
     for Vi in range(Mvx):
-        slab(part, (steps[0], steps[1]), (Mx, My, Mvy), float(Vi - Mvx // 2), centred, patch, sums[Vi])
+        add_slab(part, (steps[0], steps[1]), counts, Vi, centred, sums[Vi])
     return sums
+
+
+def add_slab(
+    case: Case, steps: tuple[float, float], counts: Counts, Vi: int, centred: bool, sums: NDArray[np.floating[Any]]
+) -> None:
+    """Add all measurements to the criteria at one velocity index Vi across, in the precision of the sums.
+
+    sums : (Mvy, My, W), W = Mx padded to whole lanes
+    """
+    H, bx, by, z, wx, wy = case
+    Mx, My, Mvx, Mvy = counts
+    rows = patch_rows(by, wy, float(steps[1]), My, Mvy, H.shape[0])
+    patch = np.empty((TOGETHER, rows, sums.shape[2]), sums.dtype)
+    part = (H, bx, by, z.astype(sums.dtype), wx, wy)
+    slab(part, steps, (Mx, My, Mvy), float(Vi - Mvx // 2), centred, patch, sums)
 
 
 def best_measurements(score: NDArray[np.float64], m: int) -> NDArray[np.int64]:
@@ -299,9 +310,9 @@ def search_one_velocity(
     """
     n, still = case[3].shape[0], np.zeros_like(case[1])
     case, pair, all_counts = (*case[:4], still, still), np.array(steps), (*counts, 1, 1)
-    early = np.arange(n) % EVERY == 0
+    early, rough = np.arange(n) % EVERY == 0, (single, *case[1:])
     sums = np.zeros((1, 1, counts[1], padded(counts[0])), np.float32)
-    flat = add_single(single, part_of(case, early), steps, counts, sums)
+    flat = add_single(part_of(rough, early), steps, counts, sums)
     lowest = np.sort(np.argpartition(flat, min(8, flat.size - 1))[:8]).astype(np.int64)
     _, _, _, second = settle(case, pair, all_counts, False, lowest, np.inf)
     ceiling, m = ceiling_of(second, n, bound) if math.isfinite(second) else math.inf, int(early.sum())
@@ -312,7 +323,7 @@ def search_one_velocity(
         samples += add_more(part_of(case, ~early), pair, all_counts, False, index, low, limit)
         index = index[low <= limit]
     else:
-        flat = add_single(single, part_of(case, ~early), steps, counts, sums)
+        flat = add_single(part_of(rough, ~early), steps, counts, sums)
         index, samples = below(flat, ceiling, n, bound), samples + flat.size * (n - m)
     best, criterion, runner_up, second = settle(case, pair, all_counts, False, index, second)
     completed = min(index.size + lowest.size, flat.size)
@@ -320,17 +331,10 @@ def search_one_velocity(
 
 
 def add_single(
-    single: NDArray[np.float32],
-    part: Case,
-    steps: tuple[float, float],
-    counts: tuple[int, int],
-    sums: NDArray[np.float32],
+    part: Case, steps: tuple[float, float], counts: tuple[int, int], sums: NDArray[np.float32]
 ) -> NDArray[np.float32]:
-    """Add the measurements of a part to sums (1, 1, My, W); returns them as a flat copy without padding."""
-    _, bx, by, z, wx, wy = part
-    rows = patch_rows(by, wy, steps[1], counts[1], 1, single.shape[0])
-    patch = np.empty((TOGETHER, rows, sums.shape[3]), np.float32)
-    slab((single, bx, by, z.astype(np.float32), wx, wy), steps, (*counts, 1), 0.0, False, patch, sums[0])
+    """Add the measurements of a part, with H in single precision, to sums (1, 1, My, W); flat, without padding."""
+    add_slab(part, steps, (*counts, 1, 1), 0, False, sums[0])
     return sums[0, 0, :, : counts[0]].ravel()
 
 

@@ -12,13 +12,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from navsym.core.arrays import Array
 from navsym.core.lanes import load_lanes, spread_lanes, store_lanes
 from navsym.core.loops import njit
 from navsym.terrain.kernels.criteria import COMPILE, add_square, blend
-
-Array = NDArray[np.float64]
 
 
 def rounded(cells: Array, side: int) -> Array:
@@ -37,29 +35,30 @@ def add_four_lanes(
 ) -> None:
     """Add four measurements to the eight columns of hypotheses from ``first`` on.
 
-    h : the map, flat ; at : four places of the first height ; f, g, z : four fractions each way, four heights
+    h : the map, flat ; at : four places of the first height of column 0 ; f, g, z : four fractions each way, heights
     out : (My, W) flat
     """
     f0, f1, f2, f3 = spread_lanes(f[0]), spread_lanes(f[1]), spread_lanes(f[2]), spread_lanes(f[3])
     g0, g1, g2, g3 = spread_lanes(g[0]), spread_lanes(g[1]), spread_lanes(g[2]), spread_lanes(g[3])
     z0, z1, z2, z3 = spread_lanes(z[0]), spread_lanes(z[1]), spread_lanes(z[2]), spread_lanes(z[3])
-    a0 = blend(load_lanes(h, at[0]), load_lanes(h, at[0] + 1), f0)
-    a1 = blend(load_lanes(h, at[1]), load_lanes(h, at[1] + 1), f1)
-    a2 = blend(load_lanes(h, at[2]), load_lanes(h, at[2] + 1), f2)
-    a3 = blend(load_lanes(h, at[3]), load_lanes(h, at[3] + 1), f3)
+    p0, p1, p2, p3 = at[0] + first, at[1] + first, at[2] + first, at[3] + first
+    a0 = blend(load_lanes(h, p0), load_lanes(h, p0 + 1), f0)
+    a1 = blend(load_lanes(h, p1), load_lanes(h, p1 + 1), f1)
+    a2 = blend(load_lanes(h, p2), load_lanes(h, p2 + 1), f2)
+    a3 = blend(load_lanes(h, p3), load_lanes(h, p3 + 1), f3)
     for j in range(My):
         below = (j + 1) * nx
         total = load_lanes(out, j * W + first)
-        b = blend(load_lanes(h, at[0] + below), load_lanes(h, at[0] + below + 1), f0)
+        b = blend(load_lanes(h, p0 + below), load_lanes(h, p0 + below + 1), f0)
         d = z0 - blend(a0, b, g0)
         total, a0 = add_square(total, d), b
-        b = blend(load_lanes(h, at[1] + below), load_lanes(h, at[1] + below + 1), f1)
+        b = blend(load_lanes(h, p1 + below), load_lanes(h, p1 + below + 1), f1)
         d = z1 - blend(a1, b, g1)
         total, a1 = add_square(total, d), b
-        b = blend(load_lanes(h, at[2] + below), load_lanes(h, at[2] + below + 1), f2)
+        b = blend(load_lanes(h, p2 + below), load_lanes(h, p2 + below + 1), f2)
         d = z2 - blend(a2, b, g2)
         total, a2 = add_square(total, d), b
-        b = blend(load_lanes(h, at[3] + below), load_lanes(h, at[3] + below + 1), f3)
+        b = blend(load_lanes(h, p3 + below), load_lanes(h, p3 + below + 1), f3)
         d = z3 - blend(a3, b, g3)
         total, a3 = add_square(total, d), b
         store_lanes(out, j * W + first, total)
@@ -98,19 +97,7 @@ def lattice(H: np.ndarray, bx: np.ndarray, by: np.ndarray, z: np.ndarray, counts
                 add_one_measurement(heights, nx, at[q], f[q], g[q], z[k0 + q], Mx, My, W, sums)
             continue
         for i in range(0, W, 8):
-            places = (at[0] + i, at[1] + i, at[2] + i, at[3] + i)
-            add_four_lanes(
-                heights,
-                nx,
-                places,
-                (f[0], f[1], f[2], f[3]),
-                (g[0], g[1], g[2], g[3]),
-                (z[k0], z[k0 + 1], z[k0 + 2], z[k0 + 3]),
-                My,
-                W,
-                i,
-                sums,
-            )
+            add_four_lanes(heights, nx, at, f, g, z[k0 : k0 + 4], My, W, i, sums)
 
 
 def fits(H: Array, bx: Array, by: Array, counts: tuple[int, int], W: int) -> bool:

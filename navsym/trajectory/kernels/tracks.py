@@ -31,9 +31,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from navsym.core.arrays import Array
 from navsym.core.loops import njit
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.int64]
 
 #: What happened to a measurement.
