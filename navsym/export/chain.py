@@ -156,18 +156,7 @@ def part_of(link: Link, decided: Decided) -> Material:
     shown = ", ".join(n for n in link.results if n) or "the first state, which is given"
     require_exportable(f"the formulas of {shown}", verdict, None, False)
     where = f"definition of {shown}" if link.theorem is None else f"theorem of {shown}"
-    source = Source(
-        " and ".join(link.cites) or where,
-        "",
-        "",
-        where,
-        str(verdict.status),
-        verdict.method,
-        verdict.scope,
-        tuple(verdict.assumptions),
-        (),
-        verdict.certificate,
-    )
+    source = Source.of(verdict, claim=" and ".join(link.cites) or where, equation=where)
     return Material(where, [(Output("own", (len(link.formulas),)), list(link.formulas))], {}, source)
 
 
