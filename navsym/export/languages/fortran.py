@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import helpers_used
+from navsym.export.languages.helpers import helpers_used, operations_of
 from navsym.export.languages.writer import PrintedPiece, short_names, vectors_text, writer_of
 from navsym.export.parts import ExportedFunction
 
@@ -17,7 +17,7 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
     given = {"functions": functions, "names": short_names(functions), "license": license_}
     widest = max(len(f.inputs) + 3 * f.size for f in functions)
     operations = {op for f in functions for piece in f.pieces for op in piece.graph.operations()}
-    operations |= {op for h in helpers_used(*functions) for op in h.operations}
+    operations |= {op for part, real in helpers_used(*functions) for op in operations_of(part, real)}
     test = WRITER.render(
         "test_vectors.f90",
         widest=widest,

@@ -137,7 +137,7 @@ class Writer:
 
     def helpers(self, functions: Sequence[ExportedFunction], argument: str = "x") -> list[PrintedHelper]:
         """The parts with a hole that the functions need; ``argument`` is what the formula above the switch is of."""
-        return [print_helper(helper, self.spelling, argument) for helper in helpers_used(*functions)]
+        return [print_helper(part, real, self.spelling, argument) for part, real in helpers_used(*functions)]
 
     def columns(self, function: ExportedFunction, tests: Sequence[Vector], wide: Spelling) -> dict[str, list[str]]:
         """Inputs, status, lower, upper and nearest numbers of all vectors, one after the other; doubles as ``wide``."""
