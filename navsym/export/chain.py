@@ -44,6 +44,11 @@ class Link:
     cites: tuple[str, ...] = ()
 
 
+def define(values: Mapping[sp.Symbol, sp.Expr], theorem: Any = None, cites: tuple[str, ...] = ()) -> Link:
+    """The link of formulas of our own by the symbols that they give a value to."""
+    return Link(tuple(s.name for s in values), "", tuple(values.values()), theorem, cites=cites)
+
+
 @dataclass(frozen=True, slots=True)
 class Chain:
     """Links in order.
