@@ -44,6 +44,11 @@ class Link:
     cites: tuple[str, ...] = ()
 
 
+def define(values: Mapping[sp.Symbol, sp.Expr], theorem: Any = None, cites: tuple[str, ...] = ()) -> Link:
+    """The link of formulas of our own by the symbols that they give a value to."""
+    return Link(tuple(s.name for s in values), "", tuple(values.values()), theorem, cites=cites)
+
+
 @dataclass(frozen=True, slots=True)
 class Chain:
     """Links in order.
@@ -156,18 +161,7 @@ def part_of(link: Link, decided: Decided) -> Material:
     shown = ", ".join(n for n in link.results if n) or "the first state, which is given"
     require_exportable(f"the formulas of {shown}", verdict, None, False)
     where = f"definition of {shown}" if link.theorem is None else f"theorem of {shown}"
-    source = Source(
-        " and ".join(link.cites) or where,
-        "",
-        "",
-        where,
-        str(verdict.status),
-        verdict.method,
-        verdict.scope,
-        tuple(verdict.assumptions),
-        (),
-        verdict.certificate,
-    )
+    source = Source.of(verdict, claim=" and ".join(link.cites) or where, equation=where)
     return Material(where, [(Output("own", (len(link.formulas),)), list(link.formulas))], {}, source)
 
 

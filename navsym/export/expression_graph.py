@@ -11,9 +11,10 @@ so that every link is proved by itself and no formula is ever written out in ful
 
 from __future__ import annotations
 
+import operator
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import reduce
 from typing import Any
 
@@ -95,7 +96,9 @@ class Graph:
         return pruned(Graph(self.inputs, tuple(builder.nodes), tuple(new[root] for root in self.roots), names))
 
 
-FUNCTION_OF = {name: kind for kind, name in (*UNARY.items(), *BINARY.items())}
+FUNCTION_OF: dict[str, Any] = {name: kind for kind, name in (*UNARY.items(), *BINARY.items())}
+FUNCTION_OF |= {name: getattr(operator, name) for name in ("add", "sub", "mul", "neg", "pow")}
+FUNCTION_OF |= {"div": operator.truediv, "sqrt": sp.sqrt}
 
 
 def value_of(node: Node, args: list[sp.Expr], inputs: Sequence[sp.Symbol]) -> sp.Expr:
@@ -104,21 +107,7 @@ def value_of(node: Node, args: list[sp.Expr], inputs: Sequence[sp.Symbol]) -> sp
         return inputs[node.value]
     if node.op in ("const", "let"):
         return node.value
-    if node.op == "filled":
-        filled_: sp.Expr = node.value.at(args[0])
-        return filled_
-    if node.op in FUNCTION_OF:
-        return FUNCTION_OF[node.op](*args)
-    arithmetic = {
-        "add": lambda: args[0] + args[1],
-        "sub": lambda: args[0] - args[1],
-        "mul": lambda: args[0] * args[1],
-        "div": lambda: args[0] / args[1],
-        "neg": lambda: -args[0],
-        "sqrt": lambda: sp.sqrt(args[0]),
-        "pow": lambda: args[0] ** args[1],
-    }
-    return arithmetic[node.op]()
+    return node.value.at(*args) if node.op == "filled" else FUNCTION_OF[node.op](*args)
 
 
 def build(
@@ -145,21 +134,14 @@ def build(
 
 def pruned(graph: Graph) -> Graph:
     """The graph without operations that no result needs."""
-    needed = [False] * len(graph.nodes)
-    for root in graph.roots:
-        needed[root] = True
-    for place in range(len(graph.nodes) - 1, -1, -1):
-        if needed[place]:
-            for argument in graph.nodes[place].args:
-                needed[argument] = True
-    new: dict[int, int] = {}
-    nodes: list[Node] = []
-    for place, node in enumerate(graph.nodes):
-        if needed[place]:
-            new[place] = len(nodes)
-            nodes.append(Node(node.op, tuple(new[a] for a in node.args), node.value))
+    needed = set(graph.roots)
+    for place in reversed(range(len(graph.nodes))):
+        if place in needed:
+            needed.update(graph.nodes[place].args)
+    new = {place: k for k, place in enumerate(sorted(needed))}
+    nodes = tuple(replace(graph.nodes[place], args=tuple(new[a] for a in graph.nodes[place].args)) for place in new)
     names = {new[place]: name for place, name in graph.names.items() if place in new}
-    return Graph(graph.inputs, tuple(nodes), tuple(new[root] for root in graph.roots), names)
+    return Graph(graph.inputs, nodes, tuple(new[root] for root in graph.roots), names)
 
 
 class Builder:

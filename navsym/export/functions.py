@@ -97,9 +97,8 @@ def material(
     """A decided claim as material for a function; raises RefusedError when it must not leave."""
     require_exportable(claim, verdict, correction, allow_confirmed)
     results = results_of(statement, claim)
-    certificate, assumptions = verdict.certificate, tuple(verdict.assumptions)
-    said = (str(verdict.status), verdict.method, verdict.scope, assumptions)
-    source = Source(claim, title, paper, equation, *said, formula_lines(results), certificate)
+    words = {"title": title, "paper": paper, "equation": equation, "formula": formula_lines(results)}
+    source = Source.of(verdict, claim=claim, **words)
     box = statement.box if isinstance(statement, (Equation, Optimum)) else {}
     return Material(claim, results, with_ends(box, claim.partition(":")[0]), source)
 

@@ -319,12 +319,9 @@ def function_of_estimator(found: Estimator, real: str, units: Mapping[str, str])
     source = Source(
         claim=f"estimator:{found.target}",
         title=f"Guaranteed estimate of {found.target}",
-        paper="",
-        equation="",
         status=str(found.status),
         method="exact primal-dual certificate",
         scope=f"{'; '.join(rows)}; weights, times and value to {found.digits} digits",
-        assumptions=(),
         formula=formula_lines([(output, [e.xreplace(plain) for e in flat]) for output, flat in results]),
         certificate=found.certificate,
     )
@@ -368,9 +365,8 @@ def material_of_regime(found: Phases, regime: Regime, errors: Sequence[sp.Expr])
     """Value, weights, times and the places of the measurements of one regime."""
     assert regime.closed is not None and regime.value is not None
     rows = [(point.measurement, point.at, point.weight) for point in regime.support]
-    said = (regime.closed.verdict.method, regime.closed.verdict.scope, tuple(regime.closed.verdict.assumptions))
-    ends, proof = (regime.lower, regime.upper), regime.closed.verdict.certificate
-    return material_of_support(found, str(regime.status), ends, regime.value, rows, errors, said, proof)
+    proof = replace(Source.of(regime.closed.verdict, claim=""), status=str(regime.status))
+    return material_of_support(found, (regime.lower, regime.upper), regime.value, rows, errors, proof)
 
 
 def material_of_piece(found: Phases, regime: Regime, piece: TablePiece) -> Material:
@@ -388,28 +384,27 @@ def material_of_piece(found: Phases, regime: Regime, piece: TablePiece) -> Mater
     value = horner([sum(column) for column in itertools.zip_longest(*values, fillvalue=sp.S.Zero)], share) / power
     error, late = (expression_text(e) for e in (piece.error, piece.time_error))
     scope = f"value and sum of sigma |error of a weight| within {error}, times within {late}, beside rounding"
-    said = "interpolation about the certified optimum", scope, ()
+    method, status = "interpolation about the certified optimum", str(regime.status)
+    proof = Source(claim="", status=status, method=method, scope=scope, certificate=piece.certificate)
     ends, errors = (piece.lower, piece.upper), [piece.error, piece.time_error]
     support = rows[:: -1 if family.backward else 1]
-    made = material_of_support(found, str(regime.status), ends, value, support, errors, said, piece.certificate)
+    made = material_of_support(found, ends, value, support, errors, proof)
     return replace(made, lets=((share, piece.share),))
 
 
 def material_of_support(
     found: Phases,
-    status: str,
     ends: tuple[sp.Expr, sp.Expr],
     value: sp.Expr,
     support: Sequence[tuple[str, Any, Any]],
     errors: Sequence[sp.Expr],
-    said: tuple[str, str, tuple[str, ...]],
-    certificate: Mapping[str, Any] | None,
+    proof: Source,
 ) -> Material:
     """Value, weights and times between two values of the parameter, with the sentences about them.
 
     support : (measurement, time, weight)
     errors  : of the value and of the times; none where no regime has a table
-    said    : method, scope, assumptions
+    proof   : the verdict on them
     """
     names = list(dict.fromkeys(found.family.measurements))
     columns: list[tuple[str, Sequence[Any]]] = [
@@ -422,17 +417,10 @@ def material_of_support(
     results += [(Output(name, (len(column),)), list(column)) for name, column in columns]
     results += [(Output(name), [e]) for name, e in zip(("error", "time_error"), errors, strict=False)]
     formula = formula_lines(results)
+    formula += tuple(f"measurement {k} is {name}" for k, name in enumerate(names) if len(names) > 1)
     start, end = map(end_text, ends)
-    source = Source(
-        f"phases:{found.target} for {found.parameter} from {start} to {end}",
-        f"Guaranteed estimator of {found.target}",
-        "",
-        "",
-        status,
-        *said,
-        formula=formula + tuple(f"measurement {k} is {name}" for k, name in enumerate(names) if len(names) > 1),
-        certificate=certificate,
-    )
+    claim = f"phases:{found.target} for {found.parameter} from {start} to {end}"
+    source = replace(proof, claim=claim, title=f"Guaranteed estimator of {found.target}", formula=formula)
     return Material(source.claim, results, {found.family.parameter: ends}, source)
 
 

@@ -10,26 +10,33 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from navsym.claims import Verdict
 from navsym.core.balls import enclose
 from navsym.export.accuracy.rounding import Arithmetic
 from navsym.export.accuracy.uniform import Uniform
 from navsym.export.expression_graph import Graph
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Source:
     """Where a function comes from, in words and with its certificate."""
 
     claim: str
-    title: str
-    paper: str
-    equation: str
+    title: str = ""
+    paper: str = ""
+    equation: str = ""
     status: str
     method: str
-    scope: str
-    assumptions: tuple[str, ...]
-    formula: tuple[str, ...]
+    scope: str = ""
+    assumptions: tuple[str, ...] = ()
+    formula: tuple[str, ...] = ()
     certificate: Mapping[str, Any] | None = None
+
+    @classmethod
+    def of(cls, verdict: Verdict, **words: Any) -> Source:
+        """A source that says what a verdict says."""
+        said: dict[str, Any] = {"method": verdict.method, "scope": verdict.scope, "certificate": verdict.certificate}
+        return cls(status=str(verdict.status), assumptions=tuple(verdict.assumptions), **said, **words)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

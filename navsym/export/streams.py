@@ -314,15 +314,10 @@ def files_of_rule(rule: Rule, order: Order) -> tuple[dict[str, str], dict[str, A
 
 def columns_of(rows: Sequence[dict[str, Any]]) -> dict[str, list[Any]]:
     """The vectors as the tables of the test program."""
-    return {
-        "z": [x for row in rows for x in row["z"]],
-        "sigmas": [x for row in rows for x in row["sigma"]],
-        "statuses": [row["status"] for row in rows],
-        "truth_low": [row["truth"][0] for row in rows],
-        "truth_high": [row["truth"][1] for row in rows],
-        "least_low": [row["least"][0] for row in rows],
-        "least_high": [row["least"][1] for row in rows],
-    }
+    ends = [(name, k, end) for name in ("truth", "least") for k, end in enumerate(("low", "high"))]
+    found = {f"{name}_{end}": [row[name][k] for row in rows] for name, k, end in ends}
+    found |= {f"{name}s": [x for row in rows for x in row[name]] for name in ("z", "sigma")}
+    return found | {"statuses": [row["status"] for row in rows]}
 
 
 def export_guard(guard: Guard, order: Order, out: Path) -> Exported:

@@ -66,14 +66,3 @@ def misra(folder: Path) -> Said:
     other = [line for line in text.splitlines() if line.strip() and not MISRA_LINE.match(line)]
     why = f"rules broken: {', '.join(beyond)}" if beyond else "; ".join(other[:3])
     return Said("cppcheck", "failed" if beyond or other else "passed", why, dict(sorted(found.items())), files)
-
-
-def deviations_page(license_: str) -> str:
-    """The written list that goes with every C folder."""
-    lines = [f"<!-- {license_} -->", "# Deviations from MISRA C:2012", ""]
-    lines += ["The rules below are not kept, and why. Whether the code was checked, by which program and with which"]
-    lines += ["findings, is what `navsym check` says of this folder; this page claims nothing about it.", ""]
-    lines += ["| rule | kind | reason |", "| --- | --- | --- |"]
-    return "\n".join(
-        [*lines, *(f"| {rule} | {row['kind']} | {row['reason']} |" for rule, row in DEVIATIONS.items()), ""]
-    )

@@ -25,36 +25,13 @@ PRODUCTS = 8  # roundings of which each product has one; so many cover a pow wit
 LONGEST = 20_000  # characters of the formula that was traced
 
 #: numpy's names of operations, where they are not our own.
-UFUNCS = {
-    "subtract": "sub",
-    "multiply": "mul",
-    "divide": "div",
-    "true_divide": "div",
-    "negative": "neg",
-    "absolute": "abs",
-    "fabs": "abs",
-    "power": "pow",
-    "square": "pow",
-    "float_power": "pow",
-    "arcsin": "asin",
-    "arccos": "acos",
-    "arctan": "atan",
-    "arctan2": "atan2",
-    "maximum": "max",
-    "minimum": "min",
-}
-#: casadi's names of operations.
-CASADI = {
-    "ADD": "add",
-    "SUB": "sub",
-    "MUL": "mul",
-    "HYPOT": "hypot",
-    "DIV": "div",
-    "NEG": "neg",
-    "FABS": "abs",
-    "SQRT": "sqrt",
-}
-CASADI |= {"POW": "pow", "CONSTPOW": "pow", "FMAX": "max", "FMIN": "min", "ATAN2": "atan2", "EXPM1": "expm1"}
+UFUNCS = {"subtract": "sub", "multiply": "mul", "divide": "div", "true_divide": "div", "negative": "neg"}
+UFUNCS |= {"absolute": "abs", "fabs": "abs", "maximum": "max", "minimum": "min"}
+UFUNCS |= dict.fromkeys(("power", "square", "float_power"), "pow")
+UFUNCS |= {f"arc{name}": f"a{name}" for name in ("sin", "cos", "tan", "tan2")}
+#: casadi's names of operations, where they are not ours in capitals.
+CASADI = {"FABS": "abs", "CONSTPOW": "pow", "FMAX": "max", "FMIN": "min"}
+CASADI |= {name.upper(): name for name in "add sub mul div neg sqrt hypot pow atan2 expm1".split()}
 CASADI |= {name.upper(): name for name in "sin cos tan exp log asin acos atan sinh cosh tanh".split()}
 #: Functions that multiply by one double.
 SCALES = {"radians": sp.pi / 180, "deg2rad": sp.pi / 180, "degrees": 180 / sp.pi, "rad2deg": 180 / sp.pi}

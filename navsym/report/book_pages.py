@@ -8,31 +8,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from markupsafe import Markup
-
-from navsym.book.entries import Entry, Misprint, book
+from navsym.book.entries import Entry, book
 from navsym.report.formula.latex import convert_own
-from navsym.report.page import slug
-
-
-@dataclass(frozen=True, slots=True)
-class Shown:
-    """A formula set in type, None where it cannot be, and its verdict."""
-
-    stated: Entry | Misprint
-    status: str
-    mathml: Markup | None
-
-
-@dataclass(frozen=True, slots=True)
-class EntryView:
-    """An entry with the declarations of its names and its misprints."""
-
-    entry: Entry
-    anchor: str
-    shown: Shown
-    symbols: tuple[tuple[str, str], ...]
-    misprints: tuple[Shown, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,9 +18,17 @@ class Chapter:
 
     title: str
     file: str
-    entries: tuple[EntryView, ...]
-    counts: Mapping[str, int]
-    misprints: int
+    entries: tuple[Entry, ...]
+
+    @property
+    def counts(self) -> Counter[str]:
+        """How many entries have each verdict."""
+        return Counter(str(entry.status) for entry in self.entries)
+
+    @property
+    def misprints(self) -> int:
+        """How many printed forms its entries correct."""
+        return sum(len(entry.misprints) for entry in self.entries)
 
 
 def book_pages(template: Callable[[str], Any], shared: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -55,32 +40,22 @@ def book_pages(template: Callable[[str], Any], shared: Mapping[str, Any]) -> Ite
     (24, True, True)
     """
     titles = dict.fromkeys(entry.chapter for entry in book.values())
-    chapters = [read_chapter(title, f"book-{place:02}.html") for place, title in enumerate(titles, start=1)]
+    chapters = [
+        Chapter(title, f"book-{place:02}.html", tuple(entry for entry in book.values() if entry.chapter == title))
+        for place, title in enumerate(titles, start=1)
+    ]
+    words = {**shared, "mathml": convert_own, "symbols": describe_symbols}
     for place, chapter in enumerate(chapters):
         near = [chapters[k] if 0 <= k < len(chapters) else None for k in (place - 1, place + 1)]
-        yield chapter.file, template("book_chapter.html").render(shared, chapter=chapter, near=near)
-    total = sum((Counter(chapter.counts) for chapter in chapters), Counter[str]())
+        yield chapter.file, template("book_chapter.html").render(words, chapter=chapter, near=near)
+    total = sum((chapter.counts for chapter in chapters), Counter[str]())
     yield "book.html", template("book.html").render(shared, chapters=chapters, total=total)
 
 
-def read_chapter(title: str, file: str) -> Chapter:
-    """The entries of a chapter as its page shows them."""
-    entries = tuple(view_entry(entry) for entry in book.values() if entry.chapter == title)
-    counts = Counter(view.shown.status for view in entries)
-    return Chapter(title, file, entries, counts, sum(len(view.misprints) for view in entries))
-
-
-def view_entry(entry: Entry) -> EntryView:
-    """An entry as its card shows it."""
+def describe_symbols(entry: Entry) -> list[tuple[str, str]]:
+    """The declarations in words of the names that an entry uses."""
     used = words_of(entry.statement)
-    table = entry.document.get("symbols", {})
-    symbols = tuple((name, describe(table[name])) for name in table if name in used)
-    return EntryView(entry, f"e-{slug(entry.id)}", show(entry), symbols, tuple(map(show, entry.misprints)))
-
-
-def show(stated: Entry | Misprint) -> Shown:
-    """A formula in MathML, with its verdict."""
-    return Shown(stated, str(stated.status), convert_own(stated.latex))
+    return [(name, describe(words)) for name, words in entry.document.get("symbols", {}).items() if name in used]
 
 
 def words_of(statement: str) -> set[str]:

@@ -21,15 +21,6 @@ MOST_COORDINATES = 6  # more than that nobody inserts by hand
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
-    """One line of a correction that changes several figures: what, as printed, as it should be."""
-
-    what: str
-    wrong: str
-    right: str
-
-
-@dataclass(frozen=True, slots=True)
 class Check:
     """Arithmetic that a reader can repeat: both sides at a point (the whole line where there is none).
 
@@ -54,7 +45,7 @@ class Entry:
     words  : wording for an editor, or None
     wrong, right : as printed, and as it should read, made from the claims (empty without a proved correction);
                    where a document was read, its own formula, then what was decided
-    rows   : figures, for a correction of several
+    rows   : for a correction of several figures: what, as printed, as it should be
     reason : what is wrong
     check  : how to convince oneself, where numbers can
     status : verdict on the corrected statement
@@ -68,7 +59,7 @@ class Entry:
     wrong: tuple[Formula, ...]
     right: tuple[Formula, ...]
     right_words: str
-    rows: tuple[Row, ...]
+    rows: tuple[tuple[str, str, str], ...]
     reason: str
     check: Check | None
     status: str
@@ -151,10 +142,10 @@ def entry(paper: Paper, group: Sequence[Record], corrections: Mapping[str, Recor
     )
 
 
-def row(record: Record, correction: Record | None) -> Row:
+def row(record: Record, correction: Record | None) -> tuple[str, str, str]:
     """One line of a group: what it is about, as printed, and the correction."""
     what = re.sub(r", as .*$", "", record.title).rstrip(".")
-    return Row(what, printed_text(record), printed_text(correction) if correction is not None else "none proved")
+    return what, printed_text(record), printed_text(correction) if correction is not None else "none proved"
 
 
 def capital(sentence: str) -> str:

@@ -262,26 +262,20 @@ def claim_views(records: Sequence[Record], progress: Callable[[str], None]) -> I
     known = {record.id: record for record in records}
     corrections = {record.corrects: record for record in records if record.corrects}
     for record in records:
-        yield claim_view(record, corrections.get(record.id), known.get(record.corrects or ""))
+        yield ClaimView(
+            record=record,
+            source=as_printed(record.latex),
+            printed=side(record.printed),
+            derived=side(record.derived),
+            story=tuple((step, formula(step.formula) if step.formula else None) for step in steps(record)),
+            plot=Markup(refutation_svg(record) if record.status == "REFUTED" else ""),
+            point=coordinates(record.counterexample),
+            correction=corrections.get(record.id),
+            corrects=known.get(record.corrects or ""),
+            certificates=tuple(name for name, _ in certificates_by_file(record)),
+            backing=backing_words(record),
+        )
         progress(record.id)
-
-
-def claim_view(record: Record, correction: Record | None, corrected: Record | None) -> ClaimView:
-    """What the page shows of a claim; correction and corrected are the records it is linked with, or None."""
-    story = tuple((step, formula(step.formula) if step.formula else None) for step in steps(record))
-    return ClaimView(
-        record=record,
-        source=as_printed(record.latex),
-        printed=side(record.printed),
-        derived=side(record.derived),
-        story=story,
-        plot=Markup(refutation_svg(record) if record.status == "REFUTED" else ""),
-        point=coordinates(record.counterexample),
-        correction=correction,
-        corrects=corrected,
-        certificates=tuple(name for name, _ in certificates_by_file(record)),
-        backing=backing_words(record),
-    )
 
 
 def side(text: str) -> Formula:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -116,15 +117,11 @@ def make_folder(out: Path) -> None:
 
 def write_pages(out: Path, ledger: Ledger, progress: Callable[[int, int, str], None], *, book: bool = False) -> Site:
     """Write the files of the report as they are made, each whole or not at all; with the book or without."""
-    names: list[str] = []
-    done = 0
+    names, numbers, workspace = list[str](), itertools.count(1), find_workspace()
 
     def step(claim: str) -> None:
-        nonlocal done
-        done += 1
-        progress(done, len(ledger), claim)
+        progress(next(numbers), len(ledger), claim)
 
-    workspace = find_workspace()
     home = papers_folder() if workspace is None else workspace.root
     files = sorted((home / "errata").glob("*.toml"))  # wording of the erratum sheets, by module
     wordings = {path.stem: read_wording(read_text(path, LARGEST), path.name) for path in files}

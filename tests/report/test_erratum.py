@@ -144,7 +144,7 @@ def test_what_covers_several_figures_becomes_a_table():
     entries = erratum_of(card, records, words_of("trajectory")).entries
     (table,) = [entry for entry in entries if entry.rows]
     assert len(table.rows) == 16 and len(table.ids) == 16
-    assert {row.wrong for row in table.rows}.isdisjoint({row.right for row in table.rows})
+    assert {wrong for _, wrong, _ in table.rows}.isdisjoint({right for *_, right in table.rows})
 
 
 @pytest.mark.parametrize(

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from navsym.export.expression_graph import Graph, Node
+from navsym.export.expression_graph import Builder, Graph, Node
 
 if TYPE_CHECKING:
     from navsym.export.accuracy.overflow import Size
@@ -24,7 +24,7 @@ FOLLOWS = frozenset({"neg", "abs", "sqrt", "sin", "asin", "atan", "sinh", "tanh"
 SUMS, PRODUCTS = ("add", "sub", "max", "min"), ("mul", "div", "pow", "exp")
 
 
-class Margins:
+class Margins(Builder):
     """Nodes that are normal numbers where no product behind a value has lost digits by underflow, else subnormal.
 
     The margin of a product is its magnitude, plus one where a factor is exactly zero; that of a sum its magnitude, plus
@@ -32,22 +32,14 @@ class Margins:
     """
 
     def __init__(self, graph: Graph, ranges: Sequence[Size | None], least: float):
-        self.nodes = list(graph.nodes)
+        super().__init__(graph.inputs)
+        self.nodes += graph.nodes  # those of the margins come behind them, each once
         self.ranges, self.least = ranges, least
         self.lows: list[float] = []
         for node, size in zip(graph.nodes, ranges, strict=True):
             self.lows.append(self.low_of(node) if size is None else size.low - 1.0)
         self.suffering: dict[int, bool] = {}
         self.done: dict[int, int | None] = {}
-        self.new: dict[tuple[str, tuple[int, ...], Any], int] = {}
-
-    def put(self, op: str, *args: int, value: Any = None) -> int:
-        """The place of a node behind those of the graph, made once."""
-        key = (op, args, value)
-        if key not in self.new:
-            self.new[key] = len(self.nodes)
-            self.nodes.append(Node(op, args, value))
-        return self.new[key]
 
     def is_needed(self, place: int) -> bool:
         """Whether a value, whose size is not known, may have lost digits by underflow."""

@@ -6,12 +6,13 @@ vector, and need no inverse. Covariances are kept as upper triangles, row by row
 
 from __future__ import annotations
 
-from itertools import combinations_with_replacement
+from collections.abc import Iterable
+from itertools import combinations_with_replacement as pairs
 
 import sympy as sp
 
 from navsym.claims import Equation
-from navsym.export.chain import Chain, Link, real
+from navsym.export.chain import Chain, Link, define, real
 from navsym.export.parts import Layout
 
 UNITS = {
@@ -27,7 +28,7 @@ UNITS = {
 
 def triangle(name: str, n: int) -> tuple[str, ...]:
     """Names of the upper triangle, row by row."""
-    return tuple(f"{name}{i}_{j}" for i, j in combinations_with_replacement(range(n), 2))
+    return tuple(f"{name}{i}_{j}" for i, j in pairs(range(n), 2))
 
 
 def entry(name: str, i: int, j: int) -> sp.Symbol:
@@ -48,35 +49,24 @@ def information() -> Equation:
 def one_measurement(k: int, n: int) -> tuple[Link, ...]:
     """Gain and correction by measurement k, from the values named by k to those named by k + 1."""
     x, P = ("x", "P") if k == 0 else (f"x{k}at", f"P{k}at")
-    h = [real(f"h{k}_{i}") for i in range(n)]
-    g, gain = [real(f"g{k}_{i}") for i in range(n)], [real(f"K{k}_{i}") for i in range(n)]
-    v, s = real(f"v{k}"), real(f"s{k}")
-    pairs = list(combinations_with_replacement(range(n), 2))
+    h, g, gain = ([real(f"{letter}{k}_{i}") for i in range(n)] for letter in "hgK")
+    state, (q, s, v, z) = [real(f"{x}{i}") for i in range(n)], (real(f"{letter}{k}") for letter in "qsvz")
+    along = {s: scalar_product(h, g) + sp.Symbol(f"r{k}", positive=True), v: z - scalar_product(h, state)}
+    moved = {real(f"x{k + 1}at{i}"): state[i] + gain[i] * v for i in range(n)}
+    shrunk = {entry(f"P{k + 1}at", i, j): entry(P, i, j) - g[i] * gain[j] for i, j in pairs(range(n), 2)}
     return (
-        Link(
-            tuple(f"g{k}_{i}" for i in range(n)),
-            "",
-            tuple(sum(entry(P, i, j) * h[j] for j in range(n)) for i in range(n)),
-        ),
-        Link(
-            (f"s{k}", f"v{k}"),
-            "",
-            (
-                sum(h[i] * g[i] for i in range(n)) + sp.Symbol(f"r{k}", positive=True),
-                real(f"z{k}") - sum(h[i] * real(f"{x}{i}") for i in range(n)),
-            ),
-        ),
-        Link((f"q{k}",), "", (1 / s,)),
-        Link(tuple(f"K{k}_{i}" for i in range(n)), "", tuple(g[i] * real(f"q{k}") for i in range(n))),
-        Link(tuple(f"x{k + 1}at{i}" for i in range(n)), "", tuple(real(f"{x}{i}") + gain[i] * v for i in range(n))),
-        Link(
-            tuple(f"P{k + 1}at{i}_{j}" for i, j in pairs),
-            "",
-            tuple(entry(P, i, j) - g[i] * gain[j] for i, j in pairs),
-            information,
-            cites=("multistructure:8.correct",),
-        ),
+        define({g[i]: scalar_product([entry(P, i, j) for j in range(n)], h) for i in range(n)}),
+        define(along),
+        define({q: 1 / s}),
+        define({gain[i]: g[i] * q for i in range(n)}),
+        define(moved),
+        define(shrunk, information, cites=("multistructure:8.correct",)),
     )
+
+
+def scalar_product(a: Iterable[sp.Expr], b: Iterable[sp.Expr]) -> sp.Expr:
+    """The sum of the products of entries."""
+    return sum(x * y for x, y in zip(a, b, strict=True))
 
 
 def update(n: int, m: int) -> Chain:
@@ -90,7 +80,7 @@ def update(n: int, m: int) -> Chain:
     }
     tests = {
         name: ((2.0, 4.0) if i == j else (-0.2, 0.2))
-        for name, (i, j) in zip(triangle("P", n), combinations_with_replacement(range(n), 2), strict=True)
+        for name, (i, j) in zip(triangle("P", n), pairs(range(n), 2), strict=True)
     }
     tests |= {"x": (-10.0, 10.0), "z": (-10.0, 10.0), "H": (-1.0, 1.0), "R": (0.1, 4.0)}
     return Chain(

@@ -19,8 +19,8 @@ import sympy as sp
 from navsym.claims import Equation, Statement
 from navsym.core.balls import enclose
 from navsym.core.errors import DomainError, DuplicateError
-from navsym.export.algorithms.kalman import entry, information, triangle
-from navsym.export.chain import SECONDS, Chain, Link, real
+from navsym.export.algorithms.kalman import entry, information, scalar_product, triangle
+from navsym.export.chain import SECONDS, Chain, Link, define, real
 from navsym.export.functions import function_of, material, require_exportable
 from navsym.export.languages.names import function_name
 from navsym.export.parts import ExportedFunction, Layout, Material, Output
@@ -243,8 +243,7 @@ class Steps:
         new = [k for k, e in enumerate(formulas) if not (e.is_Atom and (e.is_Symbol or e.is_number))]
         made = {k: real(names[k]) for k in new}
         if new:
-            link = Link(tuple(names[k] for k in new), "", tuple(formulas[k] for k in new), theorem)
-            self.links.append(link)
+            self.links.append(define({made[k]: formulas[k] for k in new}, theorem))
         return [made.get(k, e) for k, e in enumerate(formulas)]
 
     def vector(self, letter: str, formulas: Iterable[sp.Expr], theorem: Any = None) -> list[sp.Expr]:
@@ -319,11 +318,6 @@ def measured_range(plant: Plant, k: int) -> float:
 def upper(matrix: sp.MatrixBase) -> list[sp.Expr]:
     """The upper triangle of a square matrix, row by row."""
     return [matrix[i, j] for i, j in pairs(range(matrix.rows), 2)]
-
-
-def scalar_product(a: Iterable[sp.Expr], b: Iterable[sp.Expr]) -> sp.Expr:
-    """The sum of the products of entries."""
-    return sum(x * y for x, y in zip(a, b, strict=True))
 
 
 def predict(steps: Steps) -> Chain:

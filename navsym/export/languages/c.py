@@ -2,27 +2,18 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.printing import Spelling, calls
 from navsym.export.languages.summary import unit_of
-from navsym.export.languages.writer import Writer, environment
+from navsym.export.languages.writer import environment, writer_of
 from navsym.export.parts import ExportedFunction, Output
-from navsym.export.tools import deviations_page
+from navsym.export.tools import DEVIATIONS
 
-
-def spelling(real: str) -> Spelling:
-    """C with ``double`` or ``float``; float has its own functions, so that nothing is promoted (NAN is a float)."""
-    suffix = "f" if real == "float" else ""
-    return Spelling(calls(suffix=suffix), f"({real})NAN", f"({real})INFINITY", suffix)
-
-
-def writer(real: str) -> Writer:
-    """C with this type."""
-    return Writer("c", spelling(real), real, "FLT_MAX" if real == "float" else "DBL_MAX")
+writer = functools.partial(writer_of, "c")
 
 
 def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
@@ -34,13 +25,13 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
         found[f"{f.name}.c"] = source(f, license_)
         if f.state:
             found[f"{f.state.program}.h"] = w.render("program.h", license=license_, f=f)
-    columns = [(f, w.columns(f, tests[f.name], spelling("double"))) for f in functions]
+    columns = [(f, w.columns(f, tests[f.name], writer("double").spelling)) for f in functions]
     found["test_vectors.h"] = w.render("test_vectors.h", vectors=columns, **given)
     unit, epsilon = ("2^-52", 2.0**-52) if w.real == "double" else ("2^-23", 2.0**-23)
     found["test_main.c"] = w.render("test_main.c", unit=unit, epsilon=repr(epsilon), **given)
     return found | {
         "CMakeLists.txt": w.render("CMakeLists.txt", **given),
-        "MISRA_DEVIATIONS.md": deviations_page(license_),
+        "MISRA_DEVIATIONS.md": w.render("MISRA_DEVIATIONS.md", license=license_, deviations=DEVIATIONS),
     }
 
 
@@ -81,7 +72,7 @@ def signature(function: ExportedFunction) -> str:
 
 def called(function: ExportedFunction) -> str:
     """Which functions of the C library the code calls; it needs nothing else of it."""
-    known = {text.partition("(")[0] for text in spelling(function.arithmetic.name).calls.values()}
+    known = {text.partition("(")[0] for text in writer(function.arithmetic.name).spelling.calls.values()}
     code = re.sub(r"/\*.*?\*/", "", source(function, ""), flags=re.S)
     found = sorted(set(re.findall(r"\b(\w+)\(", code)) & {n for n in known if "navsym" not in n})
     return f"Calls    {', '.join(found) or 'nothing'}{' of math.h' if found else ''}; no allocation, no state"

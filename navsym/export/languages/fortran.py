@@ -5,18 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import helpers_used
-from navsym.export.languages.printing import Spelling, calls
-from navsym.export.languages.writer import PrintedPiece, Writer, short_names, vectors_text
+from navsym.export.languages.helpers import helpers_used, operations_of
+from navsym.export.languages.writer import PrintedPiece, short_names, vectors_text, writer_of
 from navsym.export.parts import ExportedFunction
 
-SPELLING = Spelling(
-    calls(abs="abs({0})", pow="(({0})**({1}))", max="max({0}, {1})", min="min({0}, {1})", expm1="navsym_expm1({0})"),
-    "nan",
-    "inf",
-    exponent="d",
-)
-WRITER = Writer("fortran", SPELLING, "double", "huge(1.0d0)", arrays=False)
+WRITER = writer_of("fortran", "double")
 
 
 def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
@@ -24,7 +17,7 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
     given = {"functions": functions, "names": short_names(functions), "license": license_}
     widest = max(len(f.inputs) + 3 * f.size for f in functions)
     operations = {op for f in functions for piece in f.pieces for op in piece.graph.operations()}
-    operations |= {op for h in helpers_used(*functions) for op in h.operations}
+    operations |= {op for part, real in helpers_used(*functions) for op in operations_of(part, real)}
     test = WRITER.render(
         "test_vectors.f90",
         widest=widest,

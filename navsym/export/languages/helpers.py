@@ -5,6 +5,7 @@ Every language writes them from the same two branches (:func:`print_helper`): th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -17,48 +18,6 @@ from navsym.export.languages.names import name_of
 from navsym.export.languages.printing import Spelling, bare, node_text
 from navsym.export.parts import ExportedFunction
 from navsym.prove.wording import expression_text
-
-
-@dataclass(frozen=True, slots=True)
-class Helper:
-    """A part and the type it is computed in."""
-
-    part: Part
-    real: str
-
-    @property
-    def name(self) -> str:
-        """What code calls it, behind ``navsym_``."""
-        return name_of(self.part)
-
-    @property
-    def known(self) -> Continuation:
-        """The two branches of the part for this type."""
-        return continuation(self.part, self.real)
-
-    @property
-    def formula(self) -> str:
-        """What it is, in x."""
-        numerator = expression_text(self.part.plain.xreplace({T: sp.Symbol("x", real=True)}))
-        power = {0: "", 1: "/x"}.get(self.part.divided, f"/x^{self.part.divided}")
-        return f"({numerator}){power}" if power else numerator
-
-    @property
-    def operations(self) -> set[str]:
-        """What both branches call."""
-        return {*self.known.below.operations(), *self.known.above.operations()}
-
-
-def helpers_used(*functions: ExportedFunction) -> list[Helper]:
-    """The parts that the code needs, by name."""
-    used = {
-        Helper(node.value, function.arithmetic.name)
-        for function in functions
-        for piece in function.pieces
-        for node in piece.graph.nodes
-        if node.op == "filled"
-    }
-    return sorted(used, key=lambda helper: helper.name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,33 +35,55 @@ class PrintedHelper:
     squared: bool
 
 
-def print_helper(helper: Helper, s: Spelling, x: str) -> PrintedHelper:
+def helpers_used(*functions: ExportedFunction) -> list[tuple[Part, str]]:
+    """The parts that the code needs, each with the type it is computed in, by name."""
+    used = {
+        (node.value, function.arithmetic.name)
+        for function in functions
+        for piece in function.pieces
+        for node in piece.graph.nodes
+        if node.op == "filled"
+    }
+    return sorted(used, key=lambda pair: name_of(pair[0]))
+
+
+def operations_of(part: Part, real: str) -> set[str]:
+    """What both branches of a part call."""
+    known = continuation(part, real)
+    return {*known.below.operations(), *known.above.operations()}
+
+
+def print_helper(part: Part, real: str, s: Spelling, x: str) -> PrintedHelper:
     """A part in this language; ``x`` is the argument of the formula above the switch."""
-    known, squared = helper.known, squared_node(helper) is not None
-    below = bare(nested(known.below, helper, s, "x", "y" * squared))
-    above = bare(nested(known.above, helper, s, x))
-    return PrintedHelper(helper.name, helper_about(helper, s), s.number(known.switch), below, above, squared)
+    known = continuation(part, real)
+    square = squared_node(known.below)
+    literals = literals_of(known.below, ARITHMETICS[real])
+    below = bare(nested(known.below, literals, s, "x", square))
+    above = bare(nested(known.above, known.literals, s, x))
+    switch, about = s.number(known.switch), helper_about(part, known, s)
+    return PrintedHelper(name_of(part), about, switch, below, above, square is not None)
 
 
-def nested(graph: Graph, helper: Helper, s: Spelling, x: str, y: str = "") -> str:
-    """A graph of one argument as one expression."""
-    literals, square = literals_of(graph, ARITHMETICS[helper.real]), squared_node(helper) if y else None
+def nested(graph: Graph, literals: Sequence[float | None], s: Spelling, x: str, square: int | None = None) -> str:
+    """A graph of one argument as one expression, with y for the node ``square``."""
     text: list[str] = []
     for place in range(len(graph.nodes)):
-        text.append(y if place == square else node_text(graph, place, text, [x], literals, s))
+        text.append("y" if place == square else node_text(graph, place, text, [x], literals, s))
     return text[graph.roots[0]]
 
 
-def squared_node(helper: Helper) -> int | None:
-    """The node of the polynomial that is the square of the argument, None where there is none."""
-    graph = helper.known.below
-    t = next((k for k, node in enumerate(graph.nodes) if node.op == "input"), None)
-    return next((k for k, node in enumerate(graph.nodes) if node.op == "mul" and node.args == (t, t)), None)
+def squared_node(polynomial: Graph) -> int | None:
+    """The node of a polynomial that is the square of the argument, None where there is none."""
+    nodes = polynomial.nodes
+    t = next((k for k, node in enumerate(nodes) if node.op == "input"), None)
+    return next((k for k, node in enumerate(nodes) if node.op == "mul" and node.args == (t, t)), None)
 
 
-def helper_about(helper: Helper, s: Spelling) -> str:
-    """The comment of a helper."""
-    known = helper.known
+def helper_about(part: Part, known: Continuation, s: Spelling) -> str:
+    """The comment of a helper: what it is in x, and how near the polynomial is."""
+    formula = expression_text(part.plain.xreplace({T: sp.Symbol("x", real=True)}))
+    power = {0: "", 1: "/x"}.get(part.divided, f"/x^{part.divided}")
+    formula = f"({formula}){power}" if power else formula
     lost = int(sp.ceiling(sp.log(sp.Float(float(known.remainder / known.least)), 2)))
     switch = s.number(known.switch).removesuffix(s.suffix)
-    return f"{helper.formula}; below {switch} its Taylor polynomial, proved within 2^{lost} of it; defined at zero."
+    return f"{formula}; below {switch} its Taylor polynomial, proved within 2^{lost} of it; defined at zero."

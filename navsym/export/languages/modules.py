@@ -1,41 +1,21 @@
-"""Languages of one module and one test program, filled in from a table of their words (``modules.toml``).
+"""Languages of one module and one test program, filled in from a table of their words (``spellings.toml``).
 
 Vectors stand in a file of their own, or in the test program where the table names none.
 """
 
 from __future__ import annotations
 
-import json
 import math
-import tomllib
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.c import safe_comment
-from navsym.export.languages.printing import Spelling, calls, result_fields
-from navsym.export.languages.writer import Writer, calls_table, vectors_json, vectors_text
+from navsym.export.languages.printing import result_fields
+from navsym.export.languages.writer import calls_table, read_words, vectors_json, vectors_text, writer_of
 from navsym.export.parts import ExportedFunction, Output
 
-TABLE: dict[str, dict[str, Any]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 VECTORS = {"vectors.json": vectors_json, "vectors.txt": vectors_text}
-
-
-def read_words(language: str, real: str) -> dict[str, Any]:
-    """The words of a language for a type."""
-    words = {key: v[real] if isinstance(v, dict) and real in v else v for key, v in TABLE[language].items()}
-    typed: dict[str, Any] = json.loads(json.dumps(words).replace("KIND", words["kind"]))
-    return typed
-
-
-def writer_of(language: str, real: str) -> Writer:
-    """The language in a type."""
-    words = read_words(language, real)
-    table = calls(prefix=words.get("prefix", ""), **words.get("special", {}))
-    spelling = Spelling(table, words["nan"], words["inf"], words.get("suffix", ""))
-    layout = {key: words[key] for key in ("smallest", "entry", "arrays") if key in words}
-    return Writer(language, spelling, real, words["largest"], **layout)
 
 
 def files(

@@ -11,8 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.printing import Spelling, calls
-from navsym.export.languages.writer import Writer, short_names, vectors_text
+from navsym.export.languages.writer import short_names, vectors_text, writer_of
 from navsym.export.parts import Argument, ExportedFunction, Output
 
 #: Functions that leave the real numbers where those of C give NaN: the condition under which they stay real.
@@ -23,13 +22,7 @@ REAL = {
     "acos": ("x", "abs(x) <= 1", "acos(x)"),
     "pow": ("x, y", "x >= 0 || y == fix(y)", "x ^ y"),
 }
-SPELLING = Spelling(
-    calls(abs="abs({0})", max="max({0}, {1})", min="min({0}, {1})", pow="navsym_pow({0}, {1})")
-    | {name: f"navsym_{name}({{0}})" for name in REAL if name != "pow"},
-    "NaN",
-    "Inf",
-)
-WRITER = Writer("octave", SPELLING, "double", SPELLING.inf, entry="{0}({1})", first=1)
+WRITER = writer_of("octave", "double")
 
 
 def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
@@ -64,7 +57,9 @@ def counted_from_one(line: str) -> str:
 def in_range(function: ExportedFunction, argument: Argument) -> str:
     """The test of one argument; entries of an array have one range or their own."""
     inputs = function.inputs[argument.first : argument.first + (argument.size or 1)]
-    ends = [[SPELLING.number(x) for x in column] for column in ([i.low for i in inputs], [i.high for i in inputs])]
+    ends = [
+        [WRITER.spelling.number(x) for x in column] for column in ([i.low for i in inputs], [i.high for i in inputs])
+    ]
     low, high = (column[0] if len(set(column)) == 1 else f"[{' '.join(column)}]" for column in ends)
     return f"navsym_numbers({argument.name}, {argument.size or 1}, {low}, {high})"
 

@@ -29,7 +29,7 @@ SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 class Target:
     """One language.
 
-    writer  : "module:function" of this folder that makes the files; by default from the table ``modules.toml``
+    writer  : "module:function" of this folder that makes the files; by default from the table ``spellings.toml``
     tool    : program that must be there to run the vectors; "" when Python itself is enough
     steps   : commands, run in the folder; their words "{tool}", "{python}", "{c}" and those of ``WORDS``, and {build},
               are replaced

@@ -9,6 +9,7 @@ from __future__ import annotations
 import functools
 import json
 import math
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,11 +19,12 @@ import jinja2
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.helpers import PrintedHelper, helpers_used, print_helper
-from navsym.export.languages.printing import Spelling, assignments
+from navsym.export.languages.printing import Spelling, assignments, calls
 from navsym.export.languages.summary import field_text, state_record, summary, unit_of
 from navsym.export.parts import ExportedFunction
 
 TEMPLATES = Path(__file__).parents[1] / "templates"
+TABLE: dict[str, dict[str, Any]] = tomllib.loads(Path(__file__).with_name("spellings.toml").read_text("utf-8"))
 
 
 @functools.cache
@@ -135,7 +137,7 @@ class Writer:
 
     def helpers(self, functions: Sequence[ExportedFunction], argument: str = "x") -> list[PrintedHelper]:
         """The parts with a hole that the functions need; ``argument`` is what the formula above the switch is of."""
-        return [print_helper(helper, self.spelling, argument) for helper in helpers_used(*functions)]
+        return [print_helper(part, real, self.spelling, argument) for part, real in helpers_used(*functions)]
 
     def columns(self, function: ExportedFunction, tests: Sequence[Vector], wide: Spelling) -> dict[str, list[str]]:
         """Inputs, status, lower, upper and nearest numbers of all vectors, one after the other; doubles as ``wide``."""
@@ -145,6 +147,22 @@ class Writer:
             values = (x for v in tests for x in (getattr(v, part) or (0.0,) * function.size))
             found[part] = [wide.number(x) for x in values]
         return found
+
+
+def read_words(language: str, real: str) -> dict[str, Any]:
+    """The words of a language for a type."""
+    words = {key: v[real] if isinstance(v, dict) and real in v else v for key, v in TABLE[language].items()}
+    typed: dict[str, Any] = json.loads(json.dumps(words).replace("KIND", words["kind"]))
+    return typed
+
+
+def writer_of(language: str, real: str) -> Writer:
+    """The language in a type."""
+    words = read_words(language, real)
+    table = calls(words.get("prefix", ""), words.get("ending", ""), **words.get("special", {}))
+    spelling = Spelling(table, words["nan"], words["inf"], words.get("suffix", ""), words.get("exponent", "e"))
+    layout = {key: words[key] for key in ("smallest", "entry", "first", "arrays") if key in words}
+    return Writer(language, spelling, real, words["largest"], **layout)
 
 
 def vectors_json(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]]) -> str:
