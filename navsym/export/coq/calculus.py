@@ -1,7 +1,8 @@
 """Derivatives and integrals for Coq: how they are written, and scripts that put what the checker has in their place.
 
 ``diff(f, x)`` is ``Derive (fun x => f) x``; ``dot_(f)`` is the derivative by a time in which all symbols move along
-their rates; ``integral(f, x, a, b)`` is ``RInt (fun x => f) a b``, or ``RInt_gen`` to infinity.
+their rates; ``integral(f, x, a, b)`` is ``RInt (fun x => f) a b``, or ``RInt_gen`` to infinity; ``sum`` and
+``product`` are ``sum_over`` and ``product_over`` of ``calculus.v``.
 """
 
 from __future__ import annotations
@@ -131,9 +132,10 @@ def put_slopes(slopes: Iterable[Slope], names: Names) -> Iterator[str]:
 
 
 def name_questions(questions: Iterable[Question], names: dict[str, str]) -> dict[str, str]:
-    """Names with what is asked: integrals of functions without integrals."""
+    """Names with what is asked: integrals, finite sums and products of functions without such."""
     for q in questions:
-        if q.kind != "integral" or q.within or any(map(checker.is_asked, q.list_terms())):
+        is_open = q.kind not in ("integral", "sum", "product") or (q.kind != "integral" and q.high in ENDS)
+        if is_open or q.within or any(map(checker.is_asked, q.list_terms())):
             raise Unwritten(f"{q.kind} of this kind")
         own = q.variable.rpartition("__")[0]
         while own in RESERVED or own in names.values():
@@ -145,12 +147,31 @@ def name_questions(questions: Iterable[Question], names: dict[str, str]) -> dict
             for e, t in zip(ends, (q.low, q.high), strict=True)
         ]
         function = f"(fun {own} : R => {write_term(q.term, {**names, q.variable: own})})"
-        names |= {q.value: f"{'RInt_gen' if open_ended else 'RInt'} {function} ({ends[0]}) ({ends[1]})"}
+        word = f"{q.kind}_over" if q.kind != "integral" else "RInt_gen" if open_ended else "RInt"
+        names |= {q.value: f"{word} {function} ({ends[0]}) ({ends[1]})"}
     return names
 
 
-def put_integral(q: Question, entry: Mapping[str, Any], value: Term, names: Names) -> Iterator[str]:
-    """Lines of a script that put the difference of an antiderivative in the place of an integral."""
+def put_answer(q: Question, entry: Mapping[str, Any], value: Term, names: Names) -> Iterator[str]:
+    """Lines of a script that put its value in the place of an integral, a sum or a product."""
+    yield f"assert (D : {names[q.value]} = {write_term(value, names)})."
+    yield from put_integral(q, entry, names) if q.kind == "integral" else put_sum(q, entry, names)
+    yield "cbv beta. real_equation. }"
+    yield "try rewrite D in *; clear D; as_real."
+
+
+def put_sum(q: Question, entry: Mapping[str, Any], names: Names) -> Iterator[str]:
+    """A sum by its telescoper: G(x + 1) = G(x) + f(x), or G(x) f(x) of a product."""
+    G, x = checker.parse(entry["telescoper"]), q.variable
+    inner, following = {**names, x: x}, checker.substitute(G, {x: ("+", ("symbol", x), checker.ONE)})
+    step = ("+" if q.kind == "sum" else "*", G, q.term)
+    yield f"{{ eapply eq_trans; [ eapply (by_{q.kind} (fun {x} : R => {write_term(G, inner)})) |]; cbv beta."
+    yield f"{{ whole. }}\n{{ lra. }}\n{{ intros {x} ? ?."
+    yield from (*prove_equality((following, step), inner), "}", *["{ nonzero. }"] * (q.kind == "product"))
+
+
+def put_integral(q: Question, entry: Mapping[str, Any], names: Names) -> Iterator[str]:
+    """An integral by the difference of its antiderivative."""
     texts = {piece["antiderivative"] for piece in entry["pieces"]}
     if len(texts) > 1 or any(piece["equal"] is not None for piece in entry["pieces"]):
         raise Unwritten("an integral in pieces")
@@ -163,9 +184,7 @@ def put_integral(q: Question, entry: Mapping[str, Any], value: Term, names: Name
         limits = "".join("apply at_place. " if end not in ENDS else "to_limit. " for end in (q.low, q.high))
     goal = f"(fun y : R => is_derive {function} {x} y)"
     equal = f"refine (@eq_ind R ({write_term(slope, inner)}) {goal} _ ({write_term(q.term, inner)}) _)."
-    yield f"assert (D : {names[q.value]} = {write_term(value, names)})."
     yield f"{{ eapply eq_trans; [ eapply (by_{rule} {function}) |]; try typeclasses eauto; cbv beta."
     yield from (f"{{ {intro}. {equal} derive.", *prove_equality((slope, q.term), inner), "}")
     yield f"{{ {intro}. has_slope. }}"
-    yield f"{limits}cbv beta. real_equation. }}"
-    yield "try rewrite D in *; clear D; as_real."
+    yield limits

@@ -76,6 +76,8 @@ def prove_equality(terms: Iterable[Term], names: Mapping[str, str]) -> list[str]
     ways = [f"ring{rules}", f"timeout {PATIENCE} (field{rules}); nonzero"]
     ways += [f"progress same_denominators; ring{rules}", f"field{rules}; nonzero"]
     ways += [f"{rewrites}field; nonzero", f"field_simplify{rules}; first [ field; nonzero | nonzero ]"]
+    ways += [f"whole_roots; field{rules}; nonzero"] if rules else []
+    ways += ["by_signs"] if any(part[0] == "abs" for part in parts) else []
     return [*script.lines, f"first [ {' | '.join(f'solve [{way}]' for way in ways)} ]."]
 
 

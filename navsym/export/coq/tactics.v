@@ -18,6 +18,11 @@ Ltac split_factors :=
     end
   end.
 
+Ltac know_exponentials :=
+  repeat match goal with |- context [exp ?x] => lazymatch goal with
+    | _ : 0 < exp x |- _ => fail
+    | _ => assert (0 < exp x) by apply exp_pos end end.
+
 (* Products, powers and exponentials that are not 0, by hypotheses up to form, sign and a number. *)
 Ltac nonzero :=
   repeat match goal with |- _ /\ _ => split end;
@@ -37,7 +42,7 @@ Ltac nonzero :=
     | match goal with H : 0 < ?d |- ?e <> 0 =>
         first [ solve [ replace e with d by field; lra ] | solve [ replace e with (- d) by field; lra ] ]
       end
-    | timeout 10 nra ].
+    | know_exponentials; timeout 10 nra ].
 
 (* Denominators that are equal as polynomials become the same one: fewer are cleared, or none. *)
 Ltac same_denominators :=
@@ -57,6 +62,17 @@ Ltac by_multiplication := rewrite ?exp_plus, ?exp_Ropp, ?exp_0; field; nonzero.
 Ltac root_of last :=
   apply sqrt_lem_1; [ lra | repeat apply Rmult_le_pos; first [ apply sqrt_pos | lra ] | last ].
 Ltac square_of_root := apply pow2_sqrt; first [ assumption | lra | timeout 10 nra | many_digits ].
+
+(* The root z of a quotient x / y is w / y, where w w = x y: a rule without a quotient. *)
+Lemma whole_root : forall x y z, y <> 0 -> z ^ 2 = x / y -> exists w, z = w / y /\ w ^ 2 = x * y.
+Proof.
+  intros x y z Y S. exists (z * y). split; [field; exact Y |].
+  rewrite Rpow_mult_distr, S. field. exact Y.
+Qed.
+Ltac whole_roots := progress repeat match goal with S : sqrt ?q ^ 2 = ?x / ?y |- _ =>
+    let E := fresh in let T := fresh in let w := fresh "w" in
+    destruct (whole_root x y (sqrt q) ltac:(nonzero) S) as [w [E T]]; clear S; rewrite E in *; clear E; rename T into S
+  end.
 
 Lemma half_root : 1 / sqrt 2 = sqrt 2 / 2.
 Proof.

@@ -15,7 +15,8 @@ RESERVED = frozenset(
     "Abs Admitted All Axiom Definition End Fixpoint IZR INR In Inductive Lemma Let Ltac Module PI Proof Prop Qed R R0 "
     "R1 Rabs Rdefinitions Require Section Set Theorem Type Variable acos all as asin at atan cofix cos cosh cot else "
     "end exists exists2 exp few_digits fix for forall fun if in let ln many_digits mat match mod nat nonzero not "
-    "number numbers or pow return sin sinh split sqr sqrt tan tanh then turn unit using where with zeros".split()
+    "number numbers or pow product_over return sin sinh split sqr sqrt sum_over tan tanh then turn unit using where "
+    "with zeros".split()
 )
 FUNCTIONS = {
     "sin": "sin", "cos": "cos", "tan": "tan", "exp": "exp", "log": "ln", "sqrt": "sqrt", "abs": "Rabs",

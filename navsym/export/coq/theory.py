@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 from navsym import checker
 from navsym.checker import Case, Question, Range, Term, Value
 from navsym.core.errors import DomainError
-from navsym.export.coq.calculus import Writer, list_all, list_slopes, name_questions, put_integral, put_slopes, strip
+from navsym.export.coq.calculus import Writer, list_all, list_slopes, name_questions, put_answer, put_slopes, strip
 from navsym.export.coq.condition import write_condition
 from navsym.export.coq.scripts import Follower, prove_modulo, refute
 from navsym.export.coq.terms import RELATIONS, Unwritten, defined, ranges, rename, subterms, write_term
@@ -184,7 +184,7 @@ def write_case(part: Mapping[str, Any], stated: Stated, proofs: Iterator[Any]) -
         return "\n".join([f"~ ({whole}).", "Proof.", *refute(place, put_slopes(slopes, place)), "Qed.", ""])
     lines += put_slopes(slopes, names)
     for question in questions:
-        lines += put_integral(*question, names)
+        lines += put_answer(*question, names)
     for k, ((x, relation, y), goal) in enumerate(zip(wanted, case.goals, strict=True)):
         lines += ["split."] * (k + 1 < len(wanted))
         proof: Mapping[str, Any] = next(proofs, {})
