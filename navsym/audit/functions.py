@@ -21,6 +21,7 @@ from navsym.audit.values import (
     cells_of,
     constant_of,
     cross_product,
+    demand,
     determinant,
     divide,
     find_unread,
@@ -148,12 +149,12 @@ def extreme_of(name: str, language: str) -> str:
     return "" if not re.fullmatch(EXTREMES[language], name) else ">=" if "max" in name else "<="
 
 
-def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Value:
+def call_known(name: str, values: Sequence[Value], unit: Unit) -> Value:
     """The value of a known function."""
     if (unread := find_unread(*values)) is not None:
         return unread
     if unit.language == "cpp" and name == "abs" and ABS_OF_REALS.search(unit.source) is None:
-        raise Unreadable(line, "abs, which cuts to an integer beside <cmath>; std::abs does not")
+        raise Unreadable("abs, which cuts to an integer beside <cmath>; std::abs does not")
     values = [Array(value.shape, value.cells) if isinstance(value, List) else value for value in values]
     if (known := KNOWN.get((bare_name(name), len(values)))) is not None:
         return known(unit, *values)
@@ -162,7 +163,7 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
         sides = sizes_of(unit, *values) or tuple(int(side) for side in named if side)
         if len(sides) == 2:
             return identity_array(*sides) if found[4] == "Identity" else filled(sides, 0)
-    raise Unreadable(line, f"the function {name} with {len(values)} arguments")
+    raise Unreadable(f"the function {name} with {len(values)} arguments")
 
 
 # Each takes the source, and the values to which it is applied; a method is applied to what stands before it.
@@ -190,7 +191,7 @@ def turn(factor: Fraction) -> Known:
 
 
 def absolute(unit: Unit, value: Value) -> Value:
-    forbid(unit.language == "c", 0, "abs, which cuts to an integer in C; fabs does not")
+    forbid(unit.language == "c", "abs, which cuts to an integer in C; fabs does not")
     return whole_or_real(lambda x: build_call("abs", x))(unit, value)
 
 
@@ -206,16 +207,16 @@ def filled(shape: tuple[int, ...], number: int) -> Array:
 def sizes_of(unit: Unit, *values: Value) -> tuple[int, ...]:
     """The shape that arguments give: numbers, or a tuple of them."""
     numbers = [constant_of(cell) for value in values for cell in cells_of(value)]
-    forbid(any(n is None or n.denominator != 1 for n in numbers), 0, "a size that is no constant")
+    forbid(any(n is None or n.denominator != 1 for n in numbers), "a size that is no constant")
     sizes = tuple(int(n) for n in numbers if n is not None)
     return sizes * 2 if unit.language == "matlab" and len(sizes) == 1 else sizes
 
 
 def require(value: Value, dimension: int, what: str) -> Array:
     """An array of so many sizes."""
-    if not isinstance(value, Array) or len(value.shape) != dimension:
-        raise Unreadable(0, f"{what} of what is no {'vector' if dimension == 1 else 'matrix'}")
-    return value
+    why = f"{what} of what is no {'vector' if dimension == 1 else 'matrix'}"
+    forbid(len(demand(value, Array, why).shape) != dimension, why)
+    return demand(value, Array, why)
 
 
 def make_diagonal(unit: Unit, value: Value) -> Value:
@@ -226,13 +227,12 @@ def make_diagonal(unit: Unit, value: Value) -> Value:
 
 
 def make_outer(unit: Unit, a: Value, b: Value) -> Value:
-    if not (isinstance(a, Array) and isinstance(b, Array)):
-        raise Unreadable(0, "outer of what are no vectors")
-    return Array((len(a.cells), len(b.cells)), tuple(map_cell(multiply, x, y) for x in a.cells for y in b.cells))
+    left, right = (demand(value, Array, "outer of what are no vectors").cells for value in (a, b))
+    return Array((len(left), len(right)), tuple(map_cell(multiply, x, y) for x in left for y in right))
 
 
 def norm_of(unit: Unit, value: Value) -> Value:
-    forbid(is_matrix(value), 0, "the norm of a matrix")
+    forbid(is_matrix(value), "the norm of a matrix")
     return map_cells(lambda x: build_call("sqrt", x), square_sum(value))
 
 
@@ -245,11 +245,10 @@ def dot_of(unit: Unit, a: Value, b: Value) -> Value:
     """The product of two vectors; of numpy's matrices, their product."""
     if unit.language == "python":
         return matrix_product(a, b)
-    if not (isinstance(a, Array) and isinstance(b, Array)):
-        raise Unreadable(0, "a dot product of what are no vectors")
-    if len(a.cells) != len(b.cells) or is_matrix(a) or is_matrix(b):
-        raise Unreadable(0, "a dot product of different sizes, or of matrices")
-    return matrix_product(*(Array((len(v.cells),), v.cells) for v in (a, b)))
+    left, right = (demand(value, Array, "a dot product of what are no vectors").cells for value in (a, b))
+    is_other = len(left) != len(right) or is_matrix(a) or is_matrix(b)
+    forbid(is_other, "a dot product of different sizes, or of matrices")
+    return matrix_product(*(Array((len(cells),), cells) for cells in (left, right)))
 
 
 def normalize(unit: Unit, value: Value) -> Value:
@@ -269,14 +268,14 @@ def trace_of(unit: Unit, value: Value) -> Value:
 def determine(unit: Unit, value: Value) -> Value:
     n = value.shape[0] if isinstance(value, Array) else 0
     if not isinstance(value, Array) or value.shape != (n, n) or n > LARGEST_INVERSE:
-        raise Unreadable(0, "the determinant of what is no small square matrix")
+        raise Unreadable("the determinant of what is no small square matrix")
     return map_cell(lambda *trees: determinant([list(trees[k * n : k * n + n]) for k in range(n)]), *value.cells)
 
 
 def sum_of(unit: Unit, value: Value) -> Value:
     """The sum of all entries; of a matrix MATLAB sums the columns."""
     if not isinstance(value, Array) or (unit.language == "matlab" and is_matrix(value)):
-        raise Unreadable(0, "the sum of what is no vector")
+        raise Unreadable("the sum of what is no vector")
     return map_cell(lambda *trees: total(list(trees)), *value.cells)
 
 
@@ -285,21 +284,19 @@ def make_matrix(unit: Unit, *values: Value) -> Value:
     *sizes, entries = values
     shape = sizes_of(unit, *sizes)
     if not isinstance(entries, Array) or len(entries.shape) != 1 or math.prod(shape) != len(entries.cells):
-        raise Unreadable(0, "entries that do not fit the sizes")
+        raise Unreadable("entries that do not fit the sizes")
     return Array(shape, entries.cells)
 
 
 def make_quaternion(unit: Unit, *values: Value) -> Value:
     """From w, i, j and k, or from w and the vector."""
     w, *cells = (cell for value in values for cell in cells_of(value))
-    forbid(len(cells) != 3, 0, "a quaternion of other than four numbers")
+    forbid(len(cells) != 3, "a quaternion of other than four numbers")
     return Quaternion((4,), (*cells, w))
 
 
 def require_quaternion(unit: Unit, value: Value) -> Quaternion:
-    if not isinstance(value, Quaternion):
-        raise Unreadable(0, "an array where a quaternion is needed")
-    return value
+    return demand(value, Quaternion, "an array where a quaternion is needed")
 
 
 def conjugate(unit: Unit, value: Value) -> Value:
@@ -325,7 +322,7 @@ def rotation_of(unit: Unit, value: Value) -> Value:
 def as_another(unit: Unit, value: Value) -> Value:
     """A number or a vector in another type; a matrix of nalgebra takes nested arrays as its columns."""
     if isinstance(value, Array) and len(value.shape) != 1:
-        raise Unreadable(0, "a matrix made of another, which nalgebra may read by columns")
+        raise Unreadable("a matrix made of another, which nalgebra may read by columns")
     return value
 
 
@@ -350,7 +347,7 @@ ARRAYS: dict[tuple[str, int], Known] = {
     **dict.fromkeys((("array", 1), ("asarray", 1), ("copy", 1)), same), ("transpose", 1): transposed,
     **dict.fromkeys((("norm", 1), ("linalg.norm", 1)), norm_of), ("diag", 1): make_diagonal, ("outer", 2): make_outer,
     ("cross", 2): lambda unit, a, b: cross_product(a, b), ("dot", 2): dot_of,
-    ("matmul", 2): lambda unit, a, b: operate(unit, "@", a, b, 0),
+    ("matmul", 2): lambda unit, a, b: operate(unit, "@", a, b),
     **dict.fromkeys((("inv", 1), ("linalg.inv", 1)), lambda unit, value: invert(value)),
     ("linalg.solve", 2): lambda unit, a, b: matrix_product(invert(a), b), ("trace", 1): trace_of, ("sum", 1): sum_of,
     **dict.fromkeys((("det", 1), ("linalg.det", 1)), determine),
