@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 from navsym.audit.cases import Condition, Reading
 from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write, names_in, spell_entry, walk
-from navsym.audit.functions import CONSTANTS, METHODS, NAMED_CALLS, call_known, extreme_of, is_known, is_method
+from navsym.audit.functions import CONSTANTS, KNOWN, NAMED_CALLS, call_known, extreme_of, is_known, is_method
 from navsym.audit.values import (
     CUT,
     LIMITS,
@@ -490,7 +490,7 @@ class Evaluator:
         else:  # one condition for both, so that the larger and the smaller of the same two are told apart together
             if not self.is_split:  # (a + b + |a - b|)/2 is the larger one
                 apart = build_call("abs", add(a.tree, minus(b.tree)))
-                whole = total([a.tree, b.tree, apart if sign == ">=" else minus(apart)])
+                whole = total(a.tree, b.tree, apart if sign == ">=" else minus(apart))
                 return Scalar(divide(whole, build_number(2)))
             is_first = self.choose(Condition(text, part.line, True, ">=", a.tree, b.tree))
         result = a if is_first == (sign == ">=") else b
@@ -594,7 +594,7 @@ class Evaluator:
         base, name, arguments = part.parts
         is_array = base.kind != "name" or name == "T" or bool(self.variable_shape(base.parts[0]))
         if (is_known_method := is_method(name, len(arguments), self.unit.language)) and is_array:
-            return METHODS[name, len(arguments)](self.unit, self.value(base), *map(self.value, arguments))
+            return KNOWN[name, 1 + len(arguments)](self.unit, self.value(base), *map(self.value, arguments))
         if base.kind == "name" and self.variable_shape(base.parts[0]):
             return self.entries(self.component(part))
         if is_known_method:  # never an accessor: without its size nobody knows what it gives

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from navsym.audit.form import Argument, Function, Part, Rules, names_in, walk
-from navsym.audit.functions import HARMLESS, PURE, SCALAR, bare_name, is_known, is_method, names_view
+from navsym.audit.functions import HARMLESS, NUMBERS, PURE, bare_name, is_known, is_method, names_view
 from navsym.audit.syntax import OPERATORS, SourceReader, descend, field_of, line_of, list_above, named, text_of
 
 RULES = Rules(entry=("{}[{}]", "{}[{}, {}]"))
@@ -320,7 +320,7 @@ def may_be_array(value: Part) -> bool:
     """True for a value that may be an array, and not only a number."""
     parts = [*walk(value)]
     calls = {bare_name(p.parts[0]) for p in parts if p.kind == "call"}
-    return value.kind in ("name", "index") or any(p.kind in ("list", "method") for p in parts) or not calls <= SCALAR
+    return value.kind in ("name", "index") or any(p.kind in ("list", "method") for p in parts) or not calls <= NUMBERS
 
 
 def name_parameter(node: Any) -> str:

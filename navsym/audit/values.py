@@ -231,7 +231,7 @@ def raise_to(a: Tree, b: Tree) -> Tree:
     return a if b is ONE else build_power(a, b)
 
 
-def total(trees: list[Tree]) -> Tree:
+def total(*trees: Tree) -> Tree:
     """The sum of trees."""
     result = ZERO
     for tree in trees:
@@ -314,7 +314,7 @@ def matrix_product(a: Value, b: Value) -> Value:
     def cell(i: int, j: int) -> Cell:
         row = [a.cells[i * left[1] + k] for k in range(left[1])]
         column = [b.cells[k * right[1] + j] for k in range(left[1])]
-        return map_cell(lambda *t: total([multiply(t[k], t[k + left[1]]) for k in range(left[1])]), *row, *column)
+        return map_cell(lambda *t: total(*(multiply(t[k], t[k + left[1]]) for k in range(left[1]))), *row, *column)
 
     whole = make_array((left[0], right[1]), cell)
     if left[0] == right[1] == 1 and (len(a.shape), len(b.shape)) != (2, 2):
@@ -329,7 +329,7 @@ def determinant(rows: list[list[Tree]]) -> Tree:
     if not rows:
         return ONE
     minors = [determinant([[*row[:j], *row[j + 1 :]] for row in rows[1:]]) for j in range(len(rows))]
-    return total([multiply(x if j % 2 == 0 else minus(x), minors[j]) for j, x in enumerate(rows[0]) if x is not ZERO])
+    return total(*(multiply(x if j % 2 == 0 else minus(x), minors[j]) for j, x in enumerate(rows[0]) if x is not ZERO))
 
 
 def invert(value: Value) -> Value:
@@ -369,7 +369,7 @@ def quaternion_product(a: Quaternion, b: Quaternion) -> Quaternion:
     """Hamilton's product."""
     (u, w), (v, s) = ((Array((3,), q.cells[:3]), q.cells[3]) for q in (a, b))
     parts = map_cells(multiply, w, v), map_cells(multiply, s, u), cross_product(u, v)
-    vector = map_cells(lambda *trees: total([*trees]), *parts)
+    vector = map_cells(total, *parts)
     real = map_cells(lambda x, y: add(x, minus(y)), map_cells(multiply, w, s), matrix_product(u, v))
     return Quaternion((4,), (*cells_of(vector), *cells_of(real)))
 
@@ -380,12 +380,12 @@ def rotate(quaternion: Value, vector: Value) -> Array:
     u, w = Array((3,), quaternion.cells[:3]), quaternion.cells[3]
     t = map_cells(lambda x: multiply(build_number(2), x), cross_product(u, vector))
     parts = vector, map_cells(multiply, w, t), cross_product(u, t)
-    return map_cells(lambda *trees: total([*trees]), *parts)  # type: ignore[return-value]
+    return map_cells(total, *parts)  # type: ignore[return-value]
 
 
 def square_sum(value: Value) -> Cell:
     """The sum of the squares of all cells."""
-    return map_cell(lambda *trees: total([raise_to(t, build_number(2)) for t in trees]), *cells_of(value))
+    return map_cell(lambda *trees: total(*(raise_to(t, build_number(2)) for t in trees)), *cells_of(value))
 
 
 def identity_array(m: int, n: int) -> Array:
