@@ -91,8 +91,7 @@ class Reader(SourceReader):
     def assignment(self, node: Any) -> Part:
         left, right = field_of(node, "left"), field_of(node, "right")
         if left.type == "multioutput_variable":
-            targets = tuple(map(self.expression, named(left)))
-            return self.part("several", node, targets, self.expression(right))
+            return self.part("several", node, self.several(named(left)), self.expression(right))
         if left.type not in ("identifier", "function_call", "field_expression"):
             return self.unread(node, "several names assigned at once")
         if left.type == "function_call" and right.type == "matrix" and not named(right):
@@ -120,8 +119,7 @@ class Reader(SourceReader):
         parts = named(iterator) if iterator is not None else []
         if len(parts) != 2 or parts[1].type != "range":
             return self.unread(node, "a loop over something else than a range")
-        ends = [self.expression(child) for child in named(parts[1])]
-        one = self.part("number", node, 1, "int")
+        ends, one = self.several(named(parts[1])), self.whole(node, 1)
         step = ends[1] if len(ends) == 3 else one
         if step.kind not in ("number", "minus"):
             return self.unread(node, "a loop with a step that is no number")
@@ -138,16 +136,8 @@ class Reader(SourceReader):
                 return self.power(node) if sign in POWERS else self.operate(node, sign, *named(node))
             case "postfix_operator":
                 return self.part("method", node, self.expression(field_of(node, "operand")), "T", ())
-            case "matrix":
-                rows = [r for r in named(node) if r.type == "row"]
-                return self.part("list", node, tuple(self.row(r) for r in rows))
             case "function_call":
                 return self.call(node)
-            case "field_expression":
-                name = "".join(text_of(node).split())
-                if not name.replace(".", "").replace("_", "").isalnum():
-                    return self.refuse(node, "a member of an expression")
-                return self.part("name", node, name)
         return None
 
     def power(self, node: Any) -> Part:
@@ -165,9 +155,6 @@ class Reader(SourceReader):
             value = self.part("op", node, SIGNS[sign], value, self.expression(operand))
         return self.part("minus", node, value) if negative else value
 
-    def row(self, node: Any) -> Part:
-        return self.part("list", node, tuple(map(self.expression, named(node))))
-
     def call(self, node: Any) -> Part:
         """A function, or entries ``M(i, j)``, which look alike."""
         name = field_of(node, "name")
@@ -182,7 +169,7 @@ class Reader(SourceReader):
         if node.type == "spread_operator":
             return self.part("slice", node, None, None)
         if node.type == "range":
-            ends = [self.expression(child) for child in named(node)]
+            ends = self.several(named(node))
             return self.part("slice", node, *ends) if len(ends) == 2 else self.refuse(node, "a range with a step")
         return self.expression(node)
 
