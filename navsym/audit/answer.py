@@ -21,7 +21,7 @@ from navsym.audit.values import Array, Cell, Scalar, Unread, cells_of, places_of
 from navsym.claims.display import write_table
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.answers import Answer, named
-from navsym.core.errors import ExpressionSyntaxError, NavsymError, ShapeError
+from navsym.core.errors import ExpressionSyntaxError, ShapeError
 from navsym.language.files import name_file
 from navsym.language.names import expect_keys, join_place, quote, require_path
 from navsym.language.printer import print_tree
@@ -264,10 +264,8 @@ def audit_specification(path: Path, only: str | None = None) -> Audit:
         for i, block in enumerate(read_blocks(document, "question", where))
     ]
     require_distinct((question.name for question in questions), place)
-    sources = [*by_name.values()]
-    chosen = [question for question in questions if only in (None, question.name)]
-    answers = tuple(answer_question(question, sources) for question in chosen)
-    return Audit(describe_files(sources), answers)
+    chosen = (question for question in questions if only in (None, question.name))
+    return Audit(describe_files([*by_name.values()]), tuple(map(answer_question, chosen)))
 
 
 def read_sources(document: Mapping[str, Any], folder: Path, where: str) -> tuple[Names, dict[str, Source]]:
@@ -308,7 +306,7 @@ def describe_files(sources: Sequence[Source]) -> tuple[AuditedFile, ...]:
     return tuple(done)
 
 
-def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQuestion:
+def answer_question(question: Question) -> AuditedQuestion:
     """The verdicts on the entries of a question; of several cases the worst stands for the entry."""
     relations, entries = question.relations(), list_entries(question)
     scopes = [make_scope(question.names, entry, relations) for entry in entries]
@@ -338,10 +336,7 @@ def decide_cells(entry: Entry, scope: Scope, decided: dict[Any, Decision]) -> De
         return decided[code.tree, expected.tree]
     key = (code.tree, expected.tree, entry.conditions)
     if key not in decided:
-        try:
-            decided[key] = decide_entry(code.tree, expected.tree, scope)
-        except NavsymError as error:
-            return Decision(OPEN, why=error.message)
+        decided[key] = decide_entry(code.tree, expected.tree, scope)
     return decided[key]
 
 

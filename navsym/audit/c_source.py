@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED, Argument, Function, Part, Rules, names_in, walk
+from navsym.audit.form import NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED, Argument, Function, Part, names_in, walk
 from navsym.audit.functions import METHODS
 from navsym.audit.syntax import (
     SourceReader,
@@ -22,8 +22,6 @@ from navsym.audit.syntax import (
 )
 from navsym.audit.values import LIMITS
 
-RULES = Rules(integer=True)
-RULES_OF_CPP = Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))
 REAL = frozenset("float double real_t ftype Scalar scalar_t Real postype_t T float32_t float64_t f32 f64".split())
 WHOLE = re.compile(r"(unsigned |signed )*(u?int\d+(_t)?|int|long|short|char|size_t|bool|unsigned|Eigen::Index)( int)?")
 VECTOR = re.compile(r"(?:\w+::)*(?:(?:Sparse)?Vector([2-9]|[1-5]\d)[fd]?(?:<[\w, ]+>)?|Vector<\w+,(\d+)>)")
@@ -414,8 +412,7 @@ class Reader(SourceReader):
             case "subscript_expression":
                 index = field_of(node, "index") or field_of(node, "indices")
                 places = named(index) if index.type == "subscript_argument_list" else [index]
-                base = self.expression(field_of(node, "argument"))
-                return self.part("index", node, base, self.several(places))
+                return self.part("index", node, *self.fields(node, "argument"), self.several(places))
             case "call_expression":
                 return self.call(node)
             case "field_expression":
@@ -516,8 +513,7 @@ class Reader(SourceReader):
         """``M.block<p, q>(i, j)``, ``M.block(i, j, p, q)``, ``M.row(i)`` and the like as slices; None for others."""
         bare = re.sub(r"\s|template", "", method)
         if bare in ("row", "col") and len(arguments) == 1:
-            end = self.part("op", node, "+", arguments[0], self.whole(node, 1))
-            row = self.part("slice", node, arguments[0], end)
+            row = self.part("slice", node, arguments[0], self.part("op", node, "+", arguments[0], self.whole(node, 1)))
             whole = self.part("slice", node, None, None)
             return self.part("index", node, base, (row, whole) if bare == "row" else (whole, arguments[0]))
         found = re.fullmatch(r"(block|segment|head|tail|(top|bottom)(Left|Right)Corner)(?:<([\d,]+)>)?", bare)
@@ -542,8 +538,7 @@ class Reader(SourceReader):
         """The first or the last cells of a side; how many must be a number."""
         if size.kind != "number" or size.parts[0] < 1:
             return self.refuse(node, "a number of cells that is no number")
-        low = self.part("minus", node, size) if is_last else None
-        return self.part("slice", node, low, None if is_last else size)
+        return self.part("slice", node, *((self.part("minus", node, size), None) if is_last else (None, size)))
 
 
 def drop_ways(source: bytes, defined: frozenset[str] | None) -> bytes:

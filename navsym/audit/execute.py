@@ -354,8 +354,7 @@ class Machine(Evaluator):
         if result is not None:
             self.note_unread(result, statement)
             self.write(variable, self.fill(result, sizes), statement)
-        is_cpp = self.unit.language == "cpp"
-        lazy = ("op", "minus", "method", "index", *(("name",) if is_cpp else ()))
+        lazy = ("op", "minus", "method", "index", *(("name",) if self.unit.language == "cpp" else ()))
         if is_lazy and shape is None and sizes and value is not None and value.kind in lazy:
             share(variable, self.arrays_in(value))  # auto of Eigen, computed when it is used; of an array a pointer
 
@@ -564,13 +563,12 @@ class Machine(Evaluator):
         if value is None:
             raise Returning(None)
         self.require_order(value)
-        is_tuple = self.unit.language == "python" and value.kind == "list"
         try:
             raise Returning(self.value(value))
         except Unreadable as refusal:
             if any(self.has_effect(p) or (p.kind == "method" and not self.is_plain(p)) for p in walk(value)):
                 raise
-            if is_tuple:
+            if self.unit.language == "python" and value.kind == "list":
                 raise Returning(Unread(value.line, "several arrays returned; ask for them by their names")) from None
             unread = refusal.leave(statement)  # the end is known, the value is not
             self.reading.refused.setdefault(unread.line, unread.why)

@@ -77,12 +77,25 @@ class Rules:
     integer  : True where the quotient of two integers is cut
     matrix   : True where ``*`` is the product of matrices
     entry    : how entries are written, with one index and with two
+    root     : how a square root is written
+    turned   : what is behind a transposed matrix, if the language has matrices
     """
 
     first: int = 0
     integer: bool = False
     matrix: bool = False
     entry: tuple[str, str] = ("{}[{}]", "{}[{}][{}]")
+    root: str = "sqrt({})"
+    turned: str = ""
+
+
+RULES = {
+    "c": Rules(integer=True),
+    "cpp": Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"), turned=".transpose()"),
+    "python": Rules(entry=("{}[{}]", "{}[{}, {}]"), root="np.sqrt({})", turned=".T"),
+    "matlab": Rules(first=1, matrix=True, entry=("{}({})", "{}({},{})"), turned="'"),
+    "rust": Rules(integer=True, matrix=True, root="{}.sqrt()", turned=".transpose()"),
+}
 
 
 @dataclass(slots=True, eq=False)

@@ -102,8 +102,7 @@ def is_known(name: str, language: str) -> bool:
 
 def does_take(name: str, count: int, language: str) -> bool:
     """True for a known function that only reads so many arguments; one more of numpy is where it writes."""
-    bare = bare_name(name)
-    most = max((n for known, n in KNOWN if known == bare), default=2)
+    most = max((n for known, n in KNOWN if known == bare_name(name)), default=2)
     return is_known(name, language) and (language != "python" or count <= most)
 
 
@@ -231,8 +230,7 @@ def dot_of(unit: Unit, a: Value, b: Value) -> Value:
     if unit.language == "python":
         return matrix_product(a, b)
     left, right = (demand(value, Array, "a dot product of what are no vectors").cells for value in (a, b))
-    is_other = len(left) != len(right) or is_matrix(a) or is_matrix(b)
-    forbid(is_other, "a dot product of different sizes, or of matrices")
+    forbid(len(left) != len(right) or is_matrix(a) or is_matrix(b), "a dot product of different sizes, or of matrices")
     return matrix_product(*(Array((len(cells),), cells) for cells in (left, right)))
 
 

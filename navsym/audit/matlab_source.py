@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules
+from navsym.audit.form import Argument, Function, Part
 from navsym.audit.syntax import (
     OPERATORS,
     UNARY,
@@ -23,7 +23,6 @@ from navsym.audit.syntax import (
     text_of,
 )
 
-RULES = Rules(first=1, matrix=True, entry=("{}({})", "{}({},{})"))
 POWERS = ("^", ".^")
 #: Commands that write no name.
 QUIET = ("format", "hold", "close", "clc", "more", "warning", "figure", "disp", "drawnow")
@@ -60,16 +59,15 @@ class Reader(SourceReader):
         inner = any(child.type == "function_definition" for child in descend(node) if child.id != node.id)
         if inner or "function_definition" in list_above(node):
             statements = (self.part("jump", node, "a function in another one, which share their names", ()),)
-        function = Function(name, line_of(node), arguments, statements, outputs)
-        self.unit.functions.setdefault(name, []).append(function)
+        known = self.unit.functions.setdefault(name, [])
+        known.append(Function(name, line_of(node), arguments, statements, outputs))
 
     def read_statement(self, node: Any) -> tuple[Part, ...] | None:
         match node.type:
             case "assignment":
                 return (self.assignment(node),)
             case "if_statement":
-                clauses = [c for c in named(node) if c.type in ("elseif_clause", "else_clause")]
-                return (self.chain(node, clauses),)
+                return (self.chain(node, [c for c in named(node) if c.type in ("elseif_clause", "else_clause")]),)
             case "switch_statement":
                 return self.switch(node)
             case "for_statement":

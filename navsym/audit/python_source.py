@@ -6,11 +6,10 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules, names_in, walk
+from navsym.audit.form import Argument, Function, Part, names_in, walk
 from navsym.audit.functions import HARMLESS, NUMBERS, PURE, bare_name, is_known, is_method, names_view
 from navsym.audit.syntax import OPERATORS, SourceReader, ascend, descend, field_of, line_of, list_above, named, text_of
 
-RULES = Rules(entry=("{}[{}]", "{}[{}, {}]"))
 #: Decorators that leave a function what it is.
 PLAIN_DECORATORS = re.compile(
     r"@((abc\.)?(abstractmethod|staticmethod|classmethod|property)|((nb|numba)\.)?(jit|njit)(\(.*\))?"

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules, names_in
+from navsym.audit.form import Argument, Function, Part, names_in
 from navsym.audit.syntax import (
     SourceReader,
     ascend,
@@ -20,7 +20,6 @@ from navsym.audit.syntax import (
     whole_kind,
 )
 
-RULES = Rules(integer=True, matrix=True, entry=("{}[{}]", "{}[{}][{}]"))
 REAL = ("f32", "f64", "N", "T", "R", "Real", "Self")
 WHOLE = re.compile(r"[iu](8|16|32|64|128|size)|bool")
 VECTOR = re.compile(r"(?:\w+::)*(?:S?Vector(\d)(?:<\w+>)?|SVector<\w+,(\d+)>|Point([23])<\w+>)")
@@ -103,8 +102,7 @@ class Reader(SourceReader):
                 self.unit.constants.append(self.part("declare", node, *what, value, False))
             elif node.type == "field_declaration":  # of two structures that have it differently it stays unknown
                 name, known = f"self.{text_of(field_of(node, 'name'))}", type_of(text_of(field_of(node, "type")))
-                is_new = self.unit.members.get(name, known) == known
-                self.unit.members[name] = known if is_new else ("other", None)
+                self.unit.members[name] = known if self.unit.members.get(name, known) == known else ("other", None)
         self.unit.constants.sort(key=lambda statement: statement.span)
 
     def read_function(self, node: Any) -> None:
@@ -306,8 +304,7 @@ class Reader(SourceReader):
             sides = (self.whole(node, n) for n in shape)
             return self.part("call", node, "Matrix::new", (*sides, self.part("list", node, arguments)))
         if shape and last in ("zeros", "identity", "zero") and not arguments:
-            sizes = self.sizes(node, shape)
-            return self.part("call", node, "eye" if last == "identity" else "zeros", sizes)
+            return self.part("call", node, "eye" if last == "identity" else "zeros", self.sizes(node, shape))
         if head in ("f64", "f32") and last in NUMBERS:
             return self.part("call", node, NUMBERS[last] or last, arguments)
         return self.part("call", node, name, arguments)

@@ -112,18 +112,14 @@ class Table:
             used = {*list_names(code, expected)}
             near = tuple(r for r in self.scope.relations if used & {*list_names(r)} and not reading.order)
             scope = replace(self.scope, ranges=own, relations=near, order=reading.order)
-            try:
-                answer = decide_entry(code, expected, scope, rounds)
-            except NavsymError as error:
-                answer = Decision(OPEN, why=error.message)
+            answer = decide_entry(code, expected, scope, rounds)
             if not answer.status.holds:
                 break
             certificates.append(answer.certificate)
             status = max(status, answer.status, key=(PROVED, CERTIFIED).index)
         status = status if answer.status.holds else answer.status
         whole = certificates[0] if len(certificates) == 1 else {"kind": "all", "of": certificates}
-        kept = whole if status.holds else None
-        self.decided[reading] = Decision(status, certificate=kept, why=reading.note)
+        self.decided[reading] = Decision(status, certificate=whole if status.holds else None, why=reading.note)
         return self.decided[reading]
 
 

@@ -16,7 +16,18 @@ from flint import ctx, fmpq
 from navsym.audit.cases import Reading
 from navsym.audit.evaluate import Edits
 from navsym.audit.execute import read_function
-from navsym.audit.form import Argument, Function, Part, Unit, called_in, mentioned_in, names_in, spell_entry, walk
+from navsym.audit.form import (
+    RULES,
+    Argument,
+    Function,
+    Part,
+    Unit,
+    called_in,
+    mentioned_in,
+    names_in,
+    spell_entry,
+    walk,
+)
 from navsym.audit.names import Names, squeeze
 from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import (
@@ -141,10 +152,8 @@ def load_unit(
 
 def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | None) -> Unit:
     """A source in the one form."""
-    module = load_reader(language)
-    rules = module.RULES_OF_CPP if language == "cpp" else module.RULES
-    unit = Unit(where, language, rules, data, defined=defined)
-    reader = module.Reader(unit)
+    unit = Unit(where, language, RULES[language], data, defined=defined)
+    reader = load_reader(language)(unit)
     reader.read_file(reader.parse(data))
     bodies = (f.body for several in unit.functions.values() for f in several) if language == "cpp" else ()
     for part in walk(*bodies):
@@ -157,13 +166,13 @@ def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | 
 
 def read_expression(text: str, unit: Unit) -> Part:
     """One expression in the language of a source."""
-    part: Part = load_reader(unit.language).Reader.read_text(text, unit)
+    part: Part = load_reader(unit.language).read_text(text, unit)
     return part
 
 
 def load_reader(language: str) -> Any:
-    """The module of a language: its ``Reader`` and its ``RULES``."""
-    return importlib.import_module(f"navsym.audit.{'c' if language == 'cpp' else language}_source")
+    """The reader of a language, whose grammar is loaded when it is first needed."""
+    return importlib.import_module(f"navsym.audit.{'c' if language == 'cpp' else language}_source").Reader
 
 
 def find_function(unit: Unit, name: str, where: str, line: int | None = None) -> Function:
@@ -344,9 +353,7 @@ def read_symbols(table: Table, names: Names, where: str) -> tuple[dict[str, Inde
 
 def read_start(declaration: Table, where: str) -> bool:
     """True for an array that holds zeros or the identity at the beginning, as a mapping says."""
-    if "start" in declaration and declaration["start"] not in ("zero", "identity"):
-        message = f'expected "zero" or "identity"; got {quote(declaration["start"])}; correct it'
-        raise ExpressionSyntaxError(message, where=where)
+    one_of(declaration.get("start", "zero"), ("zero", "identity"), where)
     return "start" in declaration and bool({"matrix", "vector"} & {*declaration})
 
 
@@ -396,8 +403,7 @@ def take_lines(unit: Unit, function: Function, first: int, last: int, where: str
     for name, statement in declared.items():
         if statement not in links:
             arguments[name] = argument_of(statement)
-    used = mentioned_in(*near, *links)
-    kept = tuple(replace(a, shared=True) for a in arguments.values() if a.name in used)
+    kept = tuple(replace(arguments[name], shared=True) for name in arguments if name in mentioned_in(*near, *links))
     return Function(function.name, near[0].line, kept, (*links, *near))
 
 

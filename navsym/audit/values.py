@@ -368,8 +368,7 @@ def cross_product(a: Value, b: Value) -> Value:
 def quaternion_product(a: Quaternion, b: Quaternion) -> Quaternion:
     """Hamilton's product."""
     (u, w), (v, s) = ((Array((3,), q.cells[:3]), q.cells[3]) for q in (a, b))
-    parts = map_cells(multiply, w, v), map_cells(multiply, s, u), cross_product(u, v)
-    vector = map_cells(total, *parts)
+    vector = map_cells(total, map_cells(multiply, w, v), map_cells(multiply, s, u), cross_product(u, v))
     real = map_cells(lambda x, y: add(x, minus(y)), map_cells(multiply, w, s), matrix_product(u, v))
     return Quaternion((4,), (*cells_of(vector), *cells_of(real)))
 
