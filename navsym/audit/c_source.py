@@ -6,21 +6,10 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED, Argument, Function, Part, names_in, walk
+from navsym.audit.form import NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED, Argument, Part, names_in, walk
 from navsym.audit.functions import METHODS
-from navsym.audit.syntax import (
-    SourceReader,
-    ascend,
-    descend,
-    field_of,
-    identifiers_in,
-    line_of,
-    list_above,
-    named,
-    text_of,
-    whole_kind,
-)
-from navsym.audit.values import LIMITS
+from navsym.audit.syntax import SourceReader, ascend, descend, field_of, identifiers_in, list_above, named, text_of
+from navsym.audit.values import LIMITS, whole_kind
 
 REAL = frozenset("float double real_t ftype Scalar scalar_t Real postype_t T float32_t float64_t f32 f64".split())
 WHOLE = re.compile(r"(unsigned |signed )*(u?int\d+(_t)?|int|long|short|char|size_t|bool|unsigned|Eigen::Index)( int)?")
@@ -196,8 +185,7 @@ class Reader(SourceReader):
         start = tuple(self.part("unread", c, "the list of members before a constructor", ()) for c in before)
         is_plain = field_of(node, "declarator").type == "function_declarator" and field_of(node, "type") is not None
         number = number_of(self.type_of(node)) if is_plain else "auto"
-        function = Function(name, line_of(node), arguments, start + self.block(body), number=number)
-        self.unit.functions.setdefault(name, []).append(function)
+        self.define(node, name, arguments, start + self.block(body), (), number)
 
     def argument(self, node: Any, types: set[str]) -> Argument:
         """A parameter with its sizes; pointers, references and arrays are shared with the caller.

@@ -235,9 +235,8 @@ def refute(document: Document, code: Tree, expected: Tree, scope: Scope) -> Deci
             certificate = refute_document([document], document, {n: texts[n] for n in document["symbols"]})
         except REFUSALS:
             continue
-        return Decision(
-            REFUTED, "exact", texts, (value_text(code, point), value_text(expected, point)), "", certificate
-        )
+        both = value_text(code, point), value_text(expected, point)
+        return Decision(REFUTED, "exact", texts, both, "", certificate)
     return None
 
 

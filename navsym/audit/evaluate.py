@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 from navsym.audit.cases import Condition, Reading
 from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write, names_in, spell_entry, walk
-from navsym.audit.functions import CONSTANTS, KNOWN, NAMED_CALLS, call_known, extreme_of, is_known, is_method
+from navsym.audit.functions import CONSTANTS, KNOWN, NAMED_CALLS, call_known, extreme_of, is_known, is_method, is_view
 from navsym.audit.values import (
     CUT,
     LIMITS,
@@ -90,7 +90,6 @@ class Evaluator:
     decide: ClassVar[Any]
     decide_known: ClassVar[Any]
     choose: ClassVar[Any]
-    is_view: ClassVar[Any]
     arrays_in: ClassVar[Any]
     write: ClassVar[Any]
 
@@ -232,10 +231,7 @@ class Evaluator:
         if sizes and len(sizes) == 2 and len(indices) == 1 and self.unit.language in ("cpp", "rust"):
             raise Unreadable("one index of a matrix, which Eigen and nalgebra count by columns")
         if sizes and len(indices) < len(sizes) and self.unit.language != "matlab":
-            indices = [
-                *indices,
-                *(Part("slice", indices[0].line, (None, None)) for _ in range(len(sizes) - len(indices))),
-            ]
+            indices = [*indices, *[Part("slice", 0, (None, None))] * (len(sizes) - len(indices))]
         is_column = sizes is not None and len(indices) == 2 and len(sizes) == 1 and self.unit.rules.matrix
         if is_column and self.whole(indices[1]) == self.unit.rules.first:  # v(i, 0)
             indices = indices[:1]
@@ -573,8 +569,8 @@ class Evaluator:
                 raise Unreadable(f"a part of an array that {function.name} may change", given.line)
             if not sides and self.unit.language != "python":
                 return self.linked(inner)
-        is_view = given.kind in ("method", "call", "choose") and self.is_view(given) and given.parts[1] != "copy"
-        if self.unit.language == "python" and is_view and may_write(self.unit, function, argument.name):
+        is_alias = given.kind in ("method", "call", "choose") and is_view(self.unit, given) and given.parts[1] != "copy"
+        if self.unit.language == "python" and is_alias and may_write(self.unit, function, argument.name):
             raise Unreadable(f"a view of an array that {function.name} may change", given.line)
         value = self.value(given)
         if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in cells_of(value)):
@@ -585,7 +581,7 @@ class Evaluator:
             variable.all_unread = value
             return variable
         self.write(variable, value, given)
-        if self.unit.language == "python" and variable.shape and (is_place or is_view):
+        if self.unit.language == "python" and variable.shape and (is_place or is_alias):
             share(variable, self.arrays_in(given))
         return variable
 

@@ -12,19 +12,8 @@ from typing import Any
 
 from navsym.audit.cases import CASES, Case, Condition, Reading, is_contradictory, list_cases
 from navsym.audit.evaluate import CellView, Edits, Evaluator, Failing, Inputs, Returning
-from navsym.audit.form import (
-    Argument,
-    Function,
-    Part,
-    Unit,
-    head_of,
-    may_return_view,
-    may_write_by_macro,
-    mentioned_in,
-    names_in,
-    walk,
-)
-from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, does_take, find_race, is_method, may_change, names_view
+from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write_by_macro, mentioned_in, names_in, walk
+from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, does_take, find_race, is_method, is_view, may_change
 from navsym.audit.values import (
     COMPARE,
     CUT,
@@ -459,7 +448,7 @@ class Machine(Evaluator):
         self.frame[name] = variable
         if cells and bases and isinstance(result, List):
             share(variable, [*bases, variable])  # two of its rows may be one
-        elif cells and self.is_view(value):
+        elif cells and is_view(self.unit, value):
             share(variable, bases)
 
     def rename_object(self, name: str, value: Part, statement: Part) -> None:
@@ -474,13 +463,6 @@ class Machine(Evaluator):
             self.lose_members(name, unread)
         if self.unit.language == "python" and value.kind == "name":
             self.aliases[name] = (self.canonical(value.parts[0]), ".")
-
-    def is_view(self, value: Part) -> bool:
-        """True for an expression of Python whose value may share cells with an array in it."""
-        if value.kind != "call":
-            return value.kind in ("index", "method", "choose")
-        functions = self.unit.functions.get(value.parts[0], [])
-        return names_view(value.parts[0]) or any(map(may_return_view, functions))
 
     def arrays_in(self, value: Part) -> list[Variable]:
         """The arrays that an expression names."""

@@ -216,18 +216,6 @@ def head_of(name: str) -> str:
     return name.replace("->", ".").replace("[", ".").split(".")[0]
 
 
-def may_return_view(function: Function) -> bool:
-    """True for a function of Python that may return what it was given, or a part of it."""
-    fresh = {"op", "minus", "number", "compare", "call", "refused"}
-    parts = [*walk(*function.body)]
-    values = {p.parts[0].parts[0]: p.parts[2] for p in parts if p.kind == "assign" and p.parts[0].kind == "name"}
-    for part in (p.parts[0] for p in parts if p.kind == "return"):
-        value = values.get(part.parts[0]) if part is not None and part.kind == "name" else part
-        if part is not None and (value is None or value.kind not in fresh):
-            return True
-    return False
-
-
 def spell_entry(unit: Unit, name: str, place: tuple[int, ...]) -> str:
     """An entry as the source writes it: ``F[0][1]``, ``F(0, 1)``."""
     if not place:

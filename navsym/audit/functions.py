@@ -134,6 +134,25 @@ def may_change(unit: Unit, function: Function, owner: str) -> bool:
     return head_of(owner) in {*map(head_of, names)}.union(*hidden)
 
 
+def may_return_view(function: Function) -> bool:
+    """True for a function of Python that may return what it was given, or a part of it."""
+    fresh = {"op", "minus", "number", "compare", "call", "refused"}
+    parts = [*walk(*function.body)]
+    values = {p.parts[0].parts[0]: p.parts[2] for p in parts if p.kind == "assign" and p.parts[0].kind == "name"}
+    for part in (p.parts[0] for p in parts if p.kind == "return"):
+        value = values.get(part.parts[0]) if part is not None and part.kind == "name" else part
+        if part is not None and (value is None or value.kind not in fresh):
+            return True
+    return False
+
+
+def is_view(unit: Unit, value: Part) -> bool:
+    """True for an expression of Python whose value may share cells with an array in it."""
+    if value.kind != "call":
+        return value.kind in ("index", "method", "choose")
+    return names_view(value.parts[0]) or any(map(may_return_view, unit.functions.get(value.parts[0], [])))
+
+
 def extreme_of(name: str, language: str) -> str:
     """``>=`` for a name of the larger of two numbers, ``<=`` for one of the smaller; else nothing."""
     return "" if not re.fullmatch(EXTREMES[language], name) else ">=" if "max" in name else "<="

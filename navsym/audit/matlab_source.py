@@ -7,21 +7,8 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part
-from navsym.audit.syntax import (
-    OPERATORS,
-    UNARY,
-    SourceReader,
-    descend,
-    field_of,
-    find_body,
-    line_of,
-    list_above,
-    named,
-    read_decimal,
-    sign_of,
-    text_of,
-)
+from navsym.audit.form import Argument, Part
+from navsym.audit.syntax import SourceReader, descend, field_of, find_body, list_above, named, sign_of, text_of
 
 POWERS = ("^", ".^")
 #: Commands that write no name.
@@ -36,8 +23,8 @@ OTHERS: dict[str, tuple[str, ...]] = {"~=": ("compare", "!="), "&": ("both",), "
 class Reader(SourceReader):
     """Walks the syntax tree of MATLAB."""
 
-    UNARY = UNARY | {"~": "not"}
-    OPERATORS = OPERATORS | {sign: ("op", meaning) for sign, meaning in SIGNS.items()} | OTHERS
+    UNARY = SourceReader.UNARY | {"~": "not"}
+    OPERATORS = SourceReader.OPERATORS | {sign: ("op", meaning) for sign, meaning in SIGNS.items()} | OTHERS
 
     @staticmethod
     def find_value(node: Any) -> Any:
@@ -59,8 +46,7 @@ class Reader(SourceReader):
         inner = any(child.type == "function_definition" for child in descend(node) if child.id != node.id)
         if inner or "function_definition" in list_above(node):
             statements = (self.part("jump", node, "a function in another one, which share their names", ()),)
-        known = self.unit.functions.setdefault(name, [])
-        known.append(Function(name, line_of(node), arguments, statements, outputs))
+        self.define(node, name, arguments, statements, outputs)
 
     def read_statement(self, node: Any) -> tuple[Part, ...] | None:
         match node.type:
@@ -127,8 +113,9 @@ class Reader(SourceReader):
     def read_expression(self, node: Any) -> Part | None:
         match node.type:
             case "number":
-                value = read_decimal(text_of(node))
-                return self.literal(node, text_of(node), value is not None and value.denominator != 1)
+                number = self.literal(node, text_of(node), True)
+                is_whole = number.kind == "number" and number.parts[0].denominator == 1
+                return self.literal(node, text_of(node), False) if is_whole else number
             case "binary_operator":
                 sign = whole_sign(node)
                 return self.power(node) if sign in POWERS else self.operate(node, sign, *named(node))

@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, names_in, walk
+from navsym.audit.form import Argument, Part, names_in, walk
 from navsym.audit.functions import HARMLESS, NUMBERS, PURE, bare_name, is_known, is_method, names_view
-from navsym.audit.syntax import OPERATORS, SourceReader, ascend, descend, field_of, line_of, list_above, named, text_of
+from navsym.audit.syntax import OPERATORS, SourceReader, ascend, descend, field_of, list_above, named, text_of
 
 #: Decorators that leave a function what it is.
 PLAIN_DECORATORS = re.compile(
@@ -127,7 +127,7 @@ class Reader(SourceReader):
         if decorator is not None:
             body = (self.part("jump", decorator, "a decorator that may change the function", ()),)
         arguments = arguments[1:] if arguments and arguments[0].name == "self" else arguments
-        self.unit.functions.setdefault(name, []).append(Function(name, line_of(node), tuple(arguments), body))
+        self.define(node, name, arguments, body)
 
     def read_statement(self, node: Any) -> tuple[Part, ...] | None:
         match node.type:

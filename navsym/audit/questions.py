@@ -48,6 +48,7 @@ from navsym.prove.claimfile import read_claims, require_numbers
 MOST_CASES = 64
 MOST_ENTRIES = 4000
 INDEX = re.compile(r"(.*?)((?:\s*[\[(][\d\s,]+[\])])*)", re.DOTALL)
+Again = Callable[[Case], tuple[Cell, Cell]]
 MATRIX_KEYS = ("F", "G", "H", "Q", "R")
 
 #: What is said about a question in a workspace, as about a claim.
@@ -93,7 +94,7 @@ class Entry:
     expected: Cell
     conditions: tuple[Condition, ...]
     source: Source | None = None
-    again: Callable[[Case], tuple[Cell, Cell]] | None = None
+    again: Again | None = None
     asking: Asking | None = None
     key: str = ""
 
@@ -347,9 +348,7 @@ class Asking:
             entries.append(Entry(row, is_, should, self.conditions, *self.repeat(key, number, should), self, key))
         return entries
 
-    def repeat(
-        self, key: str, number: int, expected: Cell
-    ) -> tuple[Source | None, Callable[[Case], tuple[Cell, Cell]] | None]:
+    def repeat(self, key: str, number: int, expected: Cell) -> tuple[Source | None, Again | None]:
         """How to find the same entry again when the code is read with a mend."""
         listed = flatten(self.question.keys.get(key))
         at = number if len(listed) > 1 else 0

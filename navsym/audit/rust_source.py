@@ -6,19 +6,9 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, names_in
-from navsym.audit.syntax import (
-    SourceReader,
-    ascend,
-    descend,
-    field_of,
-    identifiers_in,
-    line_of,
-    list_above,
-    named,
-    text_of,
-    whole_kind,
-)
+from navsym.audit.form import Argument, Part, names_in
+from navsym.audit.syntax import SourceReader, ascend, descend, field_of, identifiers_in, list_above, named, text_of
+from navsym.audit.values import whole_kind
 
 REAL = ("f32", "f64", "N", "T", "R", "Real", "Self")
 WHOLE = re.compile(r"[iu](8|16|32|64|128|size)|bool")
@@ -115,8 +105,7 @@ class Reader(SourceReader):
             number, shape = type_of(kind)
             label = text_of(field_of(child, "pattern")).removeprefix("mut ")
             arguments.append(Argument(label, number, self.sizes(child, shape), "&mut" in kind.replace(" ", "")))
-        function = Function(name, line_of(node), tuple(arguments), tuple(self.body(field_of(node, "body"))))
-        self.unit.functions.setdefault(name, []).append(function)
+        self.define(node, name, arguments, tuple(self.body(field_of(node, "body"))))
 
     def body(self, node: Any) -> list[Part]:
         """The statements of a function; an expression at its end is its value."""
@@ -318,12 +307,11 @@ class Reader(SourceReader):
 
     def method(self, node: Any, function: Any, arguments: tuple[Part, ...]) -> Part:
         base, name = self.expression(field_of(function, "value")), text_of(field_of(function, "field"))
-        if base.kind == "name" and base.parts[0] == "self" and not self.is_here(node, name, True):
+        is_own = base.kind == "name" and base.parts[0] == "self"
+        if is_own and not self.is_here(node, name, True):
             return self.refuse(node, f"the method {name}, which this file defines in another place")
-        if base.kind == "name" and base.parts[0] == "self":
-            return (
-                self.part("call", node, name, arguments) if not is_open(node) else self.refuse(node, f"{name}, {OPEN}")
-            )
+        if is_own:
+            return self.refuse(node, f"{name}, {OPEN}") if is_open(node) else self.part("call", node, name, arguments)
         if name in self.own or name in self.unit.functions:
             return self.refuse(node, f"the method {name} of this file on another value")
         if name in SAME and not arguments:

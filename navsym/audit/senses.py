@@ -146,11 +146,8 @@ def weaken(question: Question, entries: Sequence[Entry], decisions: list[Decisio
     for table, at, k in waiting:
         decisions[k] = admit(table, at, decisions[k], admitted)
     failed = [(table, at, k) for table, at, k in waiting if not decisions[k].status.holds]
-    if (
-        not failed
-        or not all(map(is_read, entries))
-        or any(sum(map(measure, table.pair(at))) > BRIEF for table, at, _ in failed)
-    ):
+    is_brief = all(sum(map(measure, table.pair(at))) <= BRIEF for table, at, _ in failed)
+    if not failed or not is_brief or not all(map(is_read, entries)):
         return
     for sense in SENSES[2:]:
         notes = dict[int, str]()
@@ -393,10 +390,5 @@ def show(table: Table, tree: Tree) -> str:
     return table.question.names.show(print_tree(tree))
 
 
-READERS: dict[str, Any] = {
-    "tangent": read_tangent,
-    "order": read_order,
-    "approximation": read_approximation,
-    "noise-sign": read_noise,
-    "renamed": read_renamed,
-}
+WEAKER = (read_tangent, read_order, read_approximation, read_noise, read_renamed)
+READERS: dict[str, Any] = dict(zip(SENSES[2:], WEAKER, strict=True))

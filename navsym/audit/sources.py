@@ -30,20 +30,7 @@ from navsym.audit.form import (
 )
 from navsym.audit.names import Names, squeeze
 from navsym.audit.syntax import SIZE, read_decimal
-from navsym.audit.values import (
-    Array,
-    Index,
-    Scalar,
-    Value,
-    add,
-    cross_product,
-    identity_array,
-    map_cells,
-    matrix_product,
-    minus,
-    places_of,
-    transpose,
-)
+from navsym.audit.values import Array, Index, Scalar, places_of, relate_rotation
 from navsym.core.choice import one_of
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
 from navsym.language.expression import read_tree
@@ -91,12 +78,9 @@ class Source:
     def symbol(self, spelling: str) -> Tree:
         """The symbol of an input; of a symmetric matrix that of the upper half."""
         if self.mirrored is None:
-            self.mirrored = {
-                spell_entry(self.unit, name, (i, j)): spell_entry(self.unit, name, (j, i))
-                for name in self.symmetric
-                for i, j in places_of(self.shapes[name])
-                if i > j
-            }
+            lower = ((name, i, j) for name in self.symmetric for i, j in places_of(self.shapes[name]) if i > j)
+            unit = self.unit
+            self.mirrored = {spell_entry(unit, n, (i, j)): spell_entry(unit, n, (j, i)) for n, i, j in lower}
         return self.starts.get(spelling) or self.names.symbol(self.mirrored.get(spelling, spelling))
 
     def read(self, edits: Edits | None = None) -> Reading:
@@ -195,10 +179,8 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
     """One ``[[code]]`` block; a line tells several functions of one name apart."""
     table = as_table(block, where)
     expect_keys(table, KEYS, where)
-    name, file, asked = (
-        as_text(require_key(table, key, where), join_place(where, key), "a name")
-        for key in ("name", "file", "function")
-    )
+    given = ((key, require_key(table, key, where)) for key in ("name", "file", "function"))
+    name, file, asked = (as_text(value, join_place(where, key), "a name") for key, value in given)
     if (language := table.get("language")) is not None:
         one_of(as_text(language, join_place(where, "language"), "a language"), LANGUAGES.values(), where)
     also, defined, ignored = (read_names(table, key, where) for key in ("also", "defined", "ignored"))
@@ -246,16 +228,6 @@ def is_rotation(declaration: Any, where: str) -> bool:
     if given is not False and (given is not True or declaration.get("matrix") != [3, 3]):
         raise ShapeError("expected matrix = [3, 3] and rotation = true; got something else; correct it", where=where)
     return bool(given)
-
-
-def relate_rotation(matrix: Array) -> tuple[Tree, ...]:
-    """What is zero of a rotation: C C' - E, C' C - E, and c_i x c_j - c_k for its rows."""
-    mirror = transpose(matrix, True)
-    rows, one = [matrix.row(i) for i in range(3)], identity_array(3, 3)
-    pairs: list[tuple[Value, Value]] = [(matrix_product(matrix, mirror), one), (matrix_product(mirror, matrix), one)]
-    pairs += [(cross_product(rows[i], rows[(i + 1) % 3]), rows[(i + 2) % 3]) for i in range(3)]
-    cells = [c for p in pairs for c in map_cells(lambda a, b: add(a, minus(b)), *p).cells]  # type: ignore[union-attr]
-    return tuple(dict.fromkeys(cell.tree for cell in cells if isinstance(cell, Scalar)))
 
 
 def read_names(table: Table, key: str, where: str) -> list[str] | None:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from navsym.audit.form import Part, Unit
+from navsym.audit.form import Argument, Function, Part, Unit
 from navsym.core.errors import MissingEngineError, TooLargeError
 
 DEPTH = 200
@@ -115,15 +115,6 @@ def identifiers_in(node: Any) -> tuple[str, ...]:
 def read_decimal(text: str) -> Fraction | None:
     """The exact value of decimal digits, with a point and an exponent of at most three digits; None for others."""
     return Fraction(text) if len(text) <= 60 and DECIMAL.fullmatch(text) else None
-
-
-def whole_kind(text: str) -> str:
-    """The name in LIMITS of a type of integers of C or Rust."""
-    bits = next((bits for mark, bits in (("8", 8), ("char", 8), ("16", 16), ("short", 16)) if mark in text), 0)
-    if text == "bool":
-        return "bool"
-    is_unsigned = text.startswith(("u", "size_t"))
-    return f"{'u' * is_unsigned}int{bits}" if bits else "unsigned" if is_unsigned else "int"
 
 
 #: Where the order of statements is left, in any of the grammars.
@@ -251,6 +242,11 @@ class SourceReader:
             case "unary_expression" | "unary_operator" | "not_operator":
                 return self.operate_alone(node, sign_of(node), named(node)[-1])
         return None
+
+    def define(self, node: Any, name: str, arguments: Iterable[Argument], body: tuple[Part, ...], *more: Any) -> None:
+        """One more function of the file."""
+        function = Function(name, line_of(node), tuple(arguments), body, *more)
+        self.unit.functions.setdefault(name, []).append(function)
 
     def several(self, nodes: Iterable[Any]) -> tuple[Part, ...]:
         """Expressions one by one."""

@@ -392,12 +392,31 @@ def identity_array(m: int, n: int) -> Array:
     return make_array((m, n), lambda i, j: Scalar(ONE if i == j else ZERO))
 
 
+def relate_rotation(matrix: Array) -> tuple[Tree, ...]:
+    """What is zero of a rotation: C C' - E, C' C - E, and c_i x c_j - c_k for its rows."""
+    mirror = transpose(matrix, True)
+    rows, one = [matrix.row(i) for i in range(3)], identity_array(3, 3)
+    pairs: list[tuple[Value, Value]] = [(matrix_product(matrix, mirror), one), (matrix_product(mirror, matrix), one)]
+    pairs += [(cross_product(rows[i], rows[(i + 1) % 3]), rows[(i + 2) % 3]) for i in range(3)]
+    cells = [c for p in pairs for c in map_cells(lambda a, b: add(a, minus(b)), *p).cells]  # type: ignore[union-attr]
+    return tuple(dict.fromkeys(cell.tree for cell in cells if isinstance(cell, Scalar)))
+
+
 def constant_of(value: Value) -> Fraction | None:
     """The number that a value is, or None."""
     return Fraction(value.tree.args[0]) if isinstance(value, Scalar) and value.tree.head == NUMBER else None
 
 
 # The operators of the languages
+
+
+def whole_kind(text: str) -> str:
+    """The name in LIMITS of a type of integers of C or Rust."""
+    bits = next((bits for mark, bits in (("8", 8), ("char", 8), ("16", 16), ("short", 16)) if mark in text), 0)
+    if text == "bool":
+        return "bool"
+    is_unsigned = text.startswith(("u", "size_t"))
+    return f"{'u' * is_unsigned}int{bits}" if bits else "unsigned" if is_unsigned else "int"
 
 
 def promote(kind: str) -> str:
