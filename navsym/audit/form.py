@@ -119,7 +119,6 @@ class Unit:
 
     file: str
     language: str
-    rules: Rules
     source: bytes
     functions: dict[str, list[Function]] = field(default_factory=dict)
     constants: list[Part] = field(default_factory=list)
@@ -135,6 +134,11 @@ class Unit:
     imported: dict[str, str] = field(default_factory=dict)
     declared: set[str] = field(default_factory=set)
     types: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def rules(self) -> Rules:
+        """What signs mean in its language."""
+        return RULES[self.language]
 
     def is_array(self, name: str) -> bool:
         """True for a name before parentheses that holds entries; of others two calls may give two values."""

@@ -20,18 +20,7 @@ from navsym.audit.values import Array, Cell, Scalar, Unread, Unreadable, Value, 
 from navsym.claims.verdict import PROVED
 from navsym.core.errors import NavsymError
 from navsym.language.printer import print_tree
-from navsym.language.tree import (
-    MINUS_ONE,
-    NUMBER,
-    POWER,
-    SYMBOL,
-    Tree,
-    build,
-    build_call,
-    build_symbol,
-    fold_tree,
-    list_names,
-)
+from navsym.language.tree import MINUS_ONE, NUMBER, POWER, SYMBOL, Tree, build, build_symbol, fold_tree, list_names
 from navsym.prove.rooms.goals import player
 
 PER_ENTRY = 4000  # changes that are tried, of a short function
@@ -619,9 +608,8 @@ def rewrite(source: Source, expected: Tree) -> Iterator[str]:
     def step(part: Tree, inner: list[Tree]) -> Tree:
         if not inner:
             return part
-        if part.head == POWER and part.args[1] is not MINUS_ONE and source.unit.language in ("c", "cpp"):
-            return build_call("pow", *inner)
-        return build(part.head, tuple(inner))
+        is_call = part.head == POWER and part.args[1] is not MINUS_ONE and source.unit.language in ("c", "cpp")
+        return build("pow" if is_call else part.head, tuple(inner))
 
     text, language = print_tree(fold_tree(expected, step)), source.unit.language
     if language == "python":

@@ -16,18 +16,7 @@ from flint import ctx, fmpq
 from navsym.audit.cases import Reading
 from navsym.audit.evaluate import Edits
 from navsym.audit.execute import read_function
-from navsym.audit.form import (
-    RULES,
-    Argument,
-    Function,
-    Part,
-    Unit,
-    called_in,
-    mentioned_in,
-    names_in,
-    spell_entry,
-    walk,
-)
+from navsym.audit.form import Argument, Function, Part, Unit, called_in, mentioned_in, names_in, spell_entry, walk
 from navsym.audit.names import Names, squeeze
 from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import Array, Index, Scalar, places_of, relate_rotation
@@ -136,7 +125,7 @@ def load_unit(
 
 def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | None) -> Unit:
     """A source in the one form."""
-    unit = Unit(where, language, RULES[language], data, defined=defined)
+    unit = Unit(where, language, data, defined=defined)
     reader = load_reader(language)(unit)
     reader.read_file(reader.parse(data))
     bodies = (f.body for several in unit.functions.values() for f in several) if language == "cpp" else ()
