@@ -20,9 +20,7 @@ MATRIX = re.compile(
 NAMED = ("preproc_def", "enumerator")
 SCOPES = ("namespace_definition", "struct_specifier", "class_specifier")
 #: Comments and texts, what is no blank, and the lines of the preprocessor.
-HIDING = re.compile(
-    rb"//(?:\\\r?\n|[^\n])*|/\*.*?(?:\*/|\Z)|R\"\w*\(.*?\)\w*\"|\"(?:\\.|[^\"\\\n])*\"|'\\?.'", re.DOTALL
-)
+HIDING = re.compile(rb"(?s)//(?:\\\r?\n|[^\n])*|/\*.*?(?:\*/|\Z)|R\"\w*\(.*?\)\w*\"|\"(?:\\.|[^\"\\\n])*\"|'\\?.'")
 BLACK = re.compile(rb"[^\s]")
 DIRECTIVE = re.compile(
     rb"(?<!\\\n)(?<!\\\r\n)^[ \t]*#[ \t]*((?:el)?if(?:n?def)?|else|endif|define|undef)\b([^\n]*)", re.MULTILINE
