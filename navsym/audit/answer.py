@@ -21,7 +21,7 @@ from navsym.audit.values import Array, Cell, Scalar, Unread, cells_of, places_of
 from navsym.claims.display import write_table
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.answers import Answer, named
-from navsym.core.errors import ExpressionSyntaxError, NavsymError, ShapeError
+from navsym.core.errors import ExpressionSyntaxError, ShapeError
 from navsym.language.files import name_file
 from navsym.language.names import expect_keys, join_place, quote, require_path
 from navsym.language.printer import print_tree
@@ -182,11 +182,8 @@ class Audit(Answer):
         for q in self.questions:
             title = f"{q.name} ({q.kind}): {q.status}, {sum(e.status.holds for e in q.entries)} of {len(q.entries)}"
             title += f" entries proved, {q.sense}" if q.status.holds else " entries proved"
-            rows = [
-                (f"{e.entry[0]},{e.entry[1]}", f"{Path(e.file).name}:{e.line}", str(e.status), e.remark())
-                for e in q.entries
-                if every or not e.status.holds
-            ]
+            shown = ((e, Path(e.file).name) for e in q.entries if every or not e.status.holds)
+            rows = [(f"{e.entry[0]},{e.entry[1]}", f"{f}:{e.line}", str(e.status), e.remark()) for e, f in shown]
             found.append((title, ("entry", "place", "verdict", "remark"), rows))
         return found
 
@@ -200,12 +197,8 @@ class Audit(Answer):
 
     def list_failures(self) -> list[str]:
         """``file:line: message`` for every entry that is REFUTED or OPEN."""
-        return [
-            f"{e.file}:{e.line}: {q.name}[{e.entry[0]},{e.entry[1]}] {e.status}: {e.remark()}"
-            for q in self.questions
-            for e in q.entries
-            if not e.status.holds
-        ]
+        failing = ((q.name, e) for q in self.questions for e in q.entries if not e.status.holds)
+        return [f"{e.file}:{e.line}: {name}[{e.entry[0]},{e.entry[1]}] {e.status}: {e.remark()}" for name, e in failing]
 
     def annotations(self) -> list[str]:
         """The failures, and ``file:line: message`` for every refused line."""
@@ -213,10 +206,8 @@ class Audit(Answer):
 
     def document(self, every: bool = False) -> dict[str, Any]:
         """The JSON document of ``navsym audit``."""
-        document: dict[str, Any] = {
-            "read": {"files": [file.document() for file in self.files]},
-            "questions": [question.document(every) for question in self.questions],
-        }
+        document: dict[str, Any] = {"read": {"files": [file.document() for file in self.files]}}
+        document["questions"] = [question.document(every) for question in self.questions]
         return {**document, "formulas": [f.document() for f in self.formulas]} if self.formulas else document
 
 
@@ -259,15 +250,11 @@ def audit_specification(path: Path, only: str | None = None) -> Audit:
     expect_keys(document, ("code", "question"), where)
     names, by_name = read_sources(document, path.parent, where)
     place = join_place(where, "question")
-    questions = [
-        read_question(block, by_name, names, path.parent, join_place(place, i))
-        for i, block in enumerate(read_blocks(document, "question", where))
-    ]
+    blocks = enumerate(read_blocks(document, "question", where))
+    questions = [read_question(block, by_name, names, path.parent, join_place(place, i)) for i, block in blocks]
     require_distinct((question.name for question in questions), place)
-    sources = [*by_name.values()]
-    chosen = [question for question in questions if only in (None, question.name)]
-    answers = tuple(answer_question(question, sources) for question in chosen)
-    return Audit(describe_files(sources), answers)
+    chosen = (question for question in questions if only in (None, question.name))
+    return Audit(describe_files([*by_name.values()]), tuple(map(answer_question, chosen)))
 
 
 def read_sources(document: Mapping[str, Any], folder: Path, where: str) -> tuple[Names, dict[str, Source]]:
@@ -308,7 +295,7 @@ def describe_files(sources: Sequence[Source]) -> tuple[AuditedFile, ...]:
     return tuple(done)
 
 
-def answer_question(question: Question, sources: Sequence[Source]) -> AuditedQuestion:
+def answer_question(question: Question) -> AuditedQuestion:
     """The verdicts on the entries of a question; of several cases the worst stands for the entry."""
     relations, entries = question.relations(), list_entries(question)
     scopes = [make_scope(question.names, entry, relations) for entry in entries]
@@ -338,10 +325,7 @@ def decide_cells(entry: Entry, scope: Scope, decided: dict[Any, Decision]) -> De
         return decided[code.tree, expected.tree]
     key = (code.tree, expected.tree, entry.conditions)
     if key not in decided:
-        try:
-            decided[key] = decide_entry(code.tree, expected.tree, scope)
-        except NavsymError as error:
-            return Decision(OPEN, why=error.message)
+        decided[key] = decide_entry(code.tree, expected.tree, scope)
     return decided[key]
 
 

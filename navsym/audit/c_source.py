@@ -6,23 +6,11 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED, Argument, Function, Part, Rules, names_in, walk
+from navsym.audit.form import NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED, Argument, Part, names_in, walk
 from navsym.audit.functions import METHODS
-from navsym.audit.syntax import (
-    SourceReader,
-    descend,
-    field_of,
-    identifiers_in,
-    line_of,
-    list_above,
-    named,
-    text_of,
-    whole_kind,
-)
-from navsym.audit.values import LIMITS
+from navsym.audit.syntax import SourceReader, ascend, descend, field_of, identifiers_in, list_above, named, text_of
+from navsym.audit.values import LIMITS, whole_kind
 
-RULES = Rules(integer=True)
-RULES_OF_CPP = Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"))
 REAL = frozenset("float double real_t ftype Scalar scalar_t Real postype_t T float32_t float64_t f32 f64".split())
 WHOLE = re.compile(r"(unsigned |signed )*(u?int\d+(_t)?|int|long|short|char|size_t|bool|unsigned|Eigen::Index)( int)?")
 VECTOR = re.compile(r"(?:\w+::)*(?:(?:Sparse)?Vector([2-9]|[1-5]\d)[fd]?(?:<[\w, ]+>)?|Vector<\w+,(\d+)>)")
@@ -30,10 +18,9 @@ MATRIX = re.compile(
     r"(?:\w+::)*(?:(?:Square)?Matrix([2-9]|[1-5]\d)[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
 )
 NAMED = ("preproc_def", "enumerator")
+SCOPES = ("namespace_definition", "struct_specifier", "class_specifier")
 #: Comments and texts, what is no blank, and the lines of the preprocessor.
-HIDING = re.compile(
-    rb"//(?:\\\r?\n|[^\n])*|/\*.*?(?:\*/|\Z)|R\"\w*\(.*?\)\w*\"|\"(?:\\.|[^\"\\\n])*\"|'\\?.'", re.DOTALL
-)
+HIDING = re.compile(rb"(?s)//(?:\\\r?\n|[^\n])*|/\*.*?(?:\*/|\Z)|R\"\w*\(.*?\)\w*\"|\"(?:\\.|[^\"\\\n])*\"|'\\?.'")
 BLACK = re.compile(rb"[^\s]")
 DIRECTIVE = re.compile(
     rb"(?<!\\\n)(?<!\\\r\n)^[ \t]*#[ \t]*((?:el)?if(?:n?def)?|else|endif|define|undef)\b([^\n]*)", re.MULTILINE
@@ -155,8 +142,7 @@ class Reader(SourceReader):
 
     def read_enumerators(self, node: Any) -> None:
         """The names of an enumeration, each one more than the one before."""
-        previous: Part = self.part("number", node, -1, "int")
-        one = self.part("number", node, 1, "int")
+        previous, one = self.whole(node, -1), self.whole(node, 1)
         for child in named(node):
             if child.type != "enumerator":
                 return
@@ -197,8 +183,7 @@ class Reader(SourceReader):
         start = tuple(self.part("unread", c, "the list of members before a constructor", ()) for c in before)
         is_plain = field_of(node, "declarator").type == "function_declarator" and field_of(node, "type") is not None
         number = number_of(self.type_of(node)) if is_plain else "auto"
-        function = Function(name, line_of(node), arguments, start + self.block(body), number=number)
-        self.unit.functions.setdefault(name, []).append(function)
+        self.define(node, name, arguments, start + self.block(body), (), number)
 
     def argument(self, node: Any, types: set[str]) -> Argument:
         """A parameter with its sizes; pointers, references and arrays are shared with the caller.
@@ -321,7 +306,7 @@ class Reader(SourceReader):
             shape = sizes or self.sizes(child, shape_of_type(kind))
             is_call = value is not None and value.type == "argument_list"
             if is_call or (value is not None and value.type == "initializer_list" and sizes is None):
-                items = tuple(map(self.expression, named(value)))  # v(a, b), v{a + b}
+                items = self.several(named(value))  # v(a, b), v{a + b}
                 whole = self.part("list", value, items) if items or not is_call else None
                 start = items[0] if len(items) == 1 else whole
             else:
@@ -381,9 +366,8 @@ class Reader(SourceReader):
                     return (self.unread(node, "noalias() of a product with the target in it"),)
                 return (*first, self.part("assign", node, left, sign, value))
             case "update_expression":
-                one = self.part("number", node, 1, "int")
-                target = self.expression(field_of(node, "argument"))
-                return (self.part("assign", node, target, text_of(field_of(node, "operator"))[0], one),)
+                target, sign = self.expression(field_of(node, "argument")), text_of(field_of(node, "operator"))[0]
+                return (self.part("assign", node, target, sign, self.whole(node, 1)),)
             case "comma_expression" | "binary_expression" if (filled := self.comma_list(node)) is not None:
                 return (filled,)
             case "comma_expression" | "parenthesized_expression":
@@ -399,7 +383,7 @@ class Reader(SourceReader):
         first, *items = list_commas(node)
         if first.type != "binary_expression" or text_of(field_of(first, "operator")) != "<<":
             return None
-        cells = tuple(map(self.expression, (field_of(first, "right"), *items)))
+        cells = self.several((field_of(first, "right"), *items))
         return self.part("assign", node, self.expression(field_of(first, "left")), "<<", self.part("list", node, cells))
 
     def read_expression(self, node: Any) -> Part | None:
@@ -414,8 +398,7 @@ class Reader(SourceReader):
             case "subscript_expression":
                 index = field_of(node, "index") or field_of(node, "indices")
                 places = named(index) if index.type == "subscript_argument_list" else [index]
-                base = self.expression(field_of(node, "argument"))
-                return self.part("index", node, base, tuple(map(self.expression, places)))
+                return self.part("index", node, *self.fields(node, "argument"), self.several(places))
             case "call_expression":
                 return self.call(node)
             case "field_expression":
@@ -434,15 +417,12 @@ class Reader(SourceReader):
                     return self.refuse(node, f"{name} beside a local name that is written alike")
                 return self.part("name", node, member)
             case "conditional_expression":
-                fields = (field_of(node, name) for name in ("condition", "consequence", "alternative"))
-                return self.part("choose", node, *map(self.expression, fields))
+                return self.part("choose", node, *self.fields(node, "condition", "consequence", "alternative"))
             case "cast_expression":
                 number = number_of(self.type_of(node))
                 if number not in (*LIMITS, "real"):
                     return self.refuse(node, "a cast to a type that is not known, or a name alone in parentheses")
                 return self.part("cast", node, number, self.expression(field_of(node, "value")))
-            case "initializer_list":
-                return self.part("list", node, tuple(map(self.expression, named(node))))
             case "pointer_expression":
                 sign = text_of(field_of(node, "operator"))
                 pointed = self.expression(field_of(node, "argument"))
@@ -471,7 +451,7 @@ class Reader(SourceReader):
     def call(self, node: Any) -> Part:
         """A function, a method, an entry ``M(i, j)``, or an accessor without arguments, which is a name."""
         function = field_of(node, "function")
-        arguments = tuple(map(self.expression, named(field_of(node, "arguments"))))
+        arguments = self.several(named(field_of(node, "arguments")))
         if function.type == "field_expression":
             base, method = self.expression(field_of(function, "argument")), text_of(field_of(function, "field"))
             if base.kind == "name" and base.parts[0] == "this":
@@ -479,7 +459,7 @@ class Reader(SourceReader):
             if method == "noalias" and not arguments:  # says how Eigen computes, not what
                 return base
             if (found := re.fullmatch(r"(?:template)?at<(\d+)>", re.sub(r"\s", "", method))) and not arguments:
-                return self.part("index", node, base, (self.part("number", node, int(found[1]), "int"),))
+                return self.part("index", node, base, (self.whole(node, int(found[1])),))
             if (block := self.block_of(node, base, method, arguments)) is not None:
                 return block
             return self.part("method", node, base, method, arguments)
@@ -519,14 +499,13 @@ class Reader(SourceReader):
         """``M.block<p, q>(i, j)``, ``M.block(i, j, p, q)``, ``M.row(i)`` and the like as slices; None for others."""
         bare = re.sub(r"\s|template", "", method)
         if bare in ("row", "col") and len(arguments) == 1:
-            one = self.part("number", node, 1, "int")
-            row = self.part("slice", node, arguments[0], self.part("op", node, "+", arguments[0], one))
+            row = self.part("slice", node, arguments[0], self.part("op", node, "+", arguments[0], self.whole(node, 1)))
             whole = self.part("slice", node, None, None)
             return self.part("index", node, base, (row, whole) if bare == "row" else (whole, arguments[0]))
         found = re.fullmatch(r"(block|segment|head|tail|(top|bottom)(Left|Right)Corner)(?:<([\d,]+)>)?", bare)
         if found is None:
             return None
-        sizes = [self.part("number", node, int(n), "int") for n in (found[4] or "").split(",") if n]
+        sizes = [self.whole(node, int(n)) for n in (found[4] or "").split(",") if n]
         starts = [*arguments]
         if not sizes:
             at = len(starts) // 2 if found[1] in ("block", "segment") else 0
@@ -545,8 +524,7 @@ class Reader(SourceReader):
         """The first or the last cells of a side; how many must be a number."""
         if size.kind != "number" or size.parts[0] < 1:
             return self.refuse(node, "a number of cells that is no number")
-        low = self.part("minus", node, size) if is_last else None
-        return self.part("slice", node, low, None if is_last else size)
+        return self.part("slice", node, *((self.part("minus", node, size), None) if is_last else (None, size)))
 
 
 def drop_ways(source: bytes, defined: frozenset[str] | None) -> bytes:
@@ -604,14 +582,11 @@ def head_of_function(node: Any) -> Any:
 def scope_of(node: Any) -> tuple[str, ...]:
     """The namespaces and classes around a node, those before the name of the function among them."""
     names = list[str]()
-    while node is not None:
-        text = ""
-        if node.type == "function_definition":
-            text = text_of(field_of(head_of_function(node), "declarator")).rpartition("::")[0]
-        elif node.type in ("namespace_definition", "struct_specifier", "class_specifier"):
-            text = text_of(field_of(node, "name"))
+    for above in (node, *ascend(node)):
+        text = text_of(field_of(above, "name")) if above.type in SCOPES else ""
+        if above.type == "function_definition":
+            text = text_of(field_of(head_of_function(above), "declarator")).rpartition("::")[0]
         names[:0] = re.findall(r"\w+", re.sub(r"<.*>", "", text))
-        node = node.parent
     return tuple(names)
 
 

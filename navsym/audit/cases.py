@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -72,9 +72,7 @@ class Reading:
     steps: int = 0
 
 
-def list_cases(
-    start: Callable[..., Any], reading: Reading, function: Function, is_bold: bool, is_split: bool
-) -> list[Case]:
+def list_cases(start: Any, reading: Reading, function: Function, is_bold: bool, is_split: bool) -> list[Case]:
     """The cases of a function; none where there are more than 32."""
     cases: list[Case] = []
     waiting: list[list[bool]] = [[]]

@@ -101,12 +101,12 @@ class Scope:
 def decide_entry(code: Tree, expected: Tree, scope: Scope, rounds: Rounds = TRIES) -> Decision:
     """Whether the code computes what is expected, at all points of the scope."""
     length = measure(code) + measure(expected)
-    if length > LONG and (granted := prove_shared([(code, expected)], scope).get((code, expected))) is not None:
-        return Decision(PROVED, certificate=granted)
-    if length > LONGEST:
-        return Decision(OPEN, why="a formula of more than 200,000 characters")
-    document = write_document(code, expected, replace(scope, relations=()))
     try:
+        if length > LONG and (granted := prove_shared([(code, expected)], scope).get((code, expected))) is not None:
+            return Decision(PROVED, certificate=granted)
+        if length > LONGEST:
+            return Decision(OPEN, why="a formula of more than 200,000 characters")
+        document = write_document(code, expected, replace(scope, relations=()))
         if (granted := prove_document(document)) is not None:
             return Decision(PROVED, certificate=granted)
         dark = next((c for c in scope.conditions if c.left is None), None)
@@ -122,6 +122,8 @@ def decide_entry(code: Tree, expected: Tree, scope: Scope, rounds: Rounds = TRIE
         return search_proof(document, scope, rounds, why)
     except REFUSALS as refusal:
         return Decision(OPEN, why=f"not granted: {refusal}")
+    except NavsymError as error:
+        return Decision(OPEN, why=error.message)
 
 
 def decide_together(pairs: Sequence[tuple[Tree, Tree]], scope: Scope) -> dict[tuple[Tree, Tree], Decision]:
@@ -148,14 +150,8 @@ def write_document(code: Tree, expected: Tree, scope: Scope) -> Document:
 
 def write_equation(left: str, right: str, symbols: Mapping[str, Any], given: Sequence[str]) -> Document:
     """An equation in the words of the checker, below hypotheses."""
-    document: Document = {
-        "left": left,
-        "relation": "=",
-        "right": right,
-        "symbols": symbols,
-        "exists": [],
-        "tolerance": None,
-    }
+    document: Document = {"left": left, "relation": "=", "right": right, "symbols": symbols}
+    document |= {"exists": [], "tolerance": None}
     return document | ({"shapes": {}, "given": given, "rates": {}} if given else {})
 
 

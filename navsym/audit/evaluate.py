@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 from navsym.audit.cases import Condition, Reading
 from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write, names_in, spell_entry, walk
-from navsym.audit.functions import CONSTANTS, METHODS, NAMED_CALLS, call_known, extreme_of, is_known, is_method
+from navsym.audit.functions import CONSTANTS, KNOWN, NAMED_CALLS, call_known, extreme_of, is_known, is_method, is_view
 from navsym.audit.values import (
     CUT,
     LIMITS,
@@ -32,6 +32,7 @@ from navsym.audit.values import (
     combine,
     constant_of,
     convert,
+    demand,
     divide,
     does_fit,
     find_unread,
@@ -89,7 +90,6 @@ class Evaluator:
     decide: ClassVar[Any]
     decide_known: ClassVar[Any]
     choose: ClassVar[Any]
-    is_view: ClassVar[Any]
     arrays_in: ClassVar[Any]
     write: ClassVar[Any]
 
@@ -172,7 +172,7 @@ class Evaluator:
     def whole(self, part: Part) -> int:
         """A constant whole number."""
         if (exact := constant_of(self.value(part))) is None or exact.denominator != 1:
-            raise Unreadable(part.line, "an index or size that is no constant")
+            raise Unreadable("an index or size that is no constant", part.line)
         return int(exact)
 
     def targets(self, part: Part) -> tuple[Variable, list[Index], Index]:
@@ -188,50 +188,50 @@ class Evaluator:
             is_array = bool(variable.shape) or (variable.shape is None and any(variable.cells))
             return variable, [(0,) * max(len(variable.shape or ()), 1) if is_array else ()], ()
         if part.kind == "method" and self.unit.language == "cpp" and part.parts[1] in self.unit.functions:
-            raise Unreadable(part.line, f"the method {part.parts[1]} of another object")
+            raise Unreadable(f"the method {part.parts[1]} of another object")
         if part.kind == "method" and part.parts[0].kind == "name" and part.parts[2] and self.unit.language == "cpp":
             part = Part("call", part.line, (f"{part.parts[0].parts[0]}.{part.parts[1]}", part.parts[2]), part.span)
         if part.kind == "method" and part.parts[0].kind == "name" and self.variable_shape(part.parts[0].parts[0]):
             part = self.component(part) if not part.parts[2] else part  # v.x()
         if part.kind not in ("index", "call") and not (part.kind == "method" and part.parts[1] == "block"):
-            raise Unreadable(part.line, "a target that is no entry")
+            raise Unreadable("a target that is no entry")
         indices: list[Part] = []
         while part.kind == "index":
-            forbid(indices and any(index.kind == "slice" for index in part.parts[1]), part.line, "an index of a block")
+            forbid(indices and any(index.kind == "slice" for index in part.parts[1]), "an index of a block")
             indices = [*part.parts[1], *indices]
             part = part.parts[0]
         if part.kind == "call":
             is_own = part.parts[0] in self.unit.functions and part.parts[0] not in self.frame
-            forbid(is_own, part.line, f"the call of {part.parts[0]} where a variable is needed")
+            forbid(is_own, f"the call of {part.parts[0]} where a variable is needed")
             indices = [*part.parts[1], *indices]
-            self.require_entries(part.parts[0], part.line)
+            self.require_entries(part.parts[0])
             if self.unit.language == "cpp" and self.variable(part.parts[0]).number == "quaternion":
-                raise Unreadable(part.line, "an entry of a quaternion by its number, which libraries count differently")
+                raise Unreadable("an entry of a quaternion by its number, which libraries count differently")
         elif part.kind != "name":
-            raise Unreadable(part.line, "an index of an expression")
+            raise Unreadable("an index of an expression")
         elif "()" in part.parts[0]:
-            self.require_entries(part.parts[0], part.line)
+            self.require_entries(part.parts[0])
         variable = self.variable(part.parts[0])
-        return variable, *self.resolve(variable, indices, part.line)
+        return variable, *self.resolve(variable, indices)
 
-    def require_entries(self, name: str, line: int) -> None:
+    def require_entries(self, name: str) -> None:
         """Refuse the call of a function that is not known: two calls may give two values, as of a clock."""
         may_be = self.unit.language in ("cpp", "matlab") or (self.unit.language == "c" and "()" in name)
         is_lost = name in self.globals and self.globals[name].all_unread is not None  # it has a better reason
         if name not in self.frame and not is_lost and not (may_be and self.unit.is_array(name)):
-            raise Unreadable(line, f"the function {name}, which this file does not define")
+            raise Unreadable(f"the function {name}, which this file does not define")
 
-    def resolve(self, variable: Variable, indices: list[Part], line: int) -> tuple[list[Index], Index]:
+    def resolve(self, variable: Variable, indices: list[Part]) -> tuple[list[Index], Index]:
         """The places that indices and slices mean, and their shape."""
         sizes = variable.shape
         if sizes and len(sizes) == 2 and 1 in sizes and len(indices) == 1 and self.unit.language in ("matlab", "cpp"):
-            spot = self.index_range(indices[0], max(sizes), line)
+            spot = self.index_range(indices[0], max(sizes))
             shape = (1, *spot[1]) if sizes[0] == 1 and spot[1] else spot[1]
             return [(0, k) if sizes[0] == 1 else (k, 0) for k in spot[0]], shape
         if sizes and len(sizes) == 2 and len(indices) == 1 and self.unit.language in ("cpp", "rust"):
-            raise Unreadable(line, "one index of a matrix, which Eigen and nalgebra count by columns")
+            raise Unreadable("one index of a matrix, which Eigen and nalgebra count by columns")
         if sizes and len(indices) < len(sizes) and self.unit.language != "matlab":
-            indices = [*indices, *(Part("slice", line, (None, None)) for _ in range(len(sizes) - len(indices)))]
+            indices = [*indices, *[Part("slice", 0, (None, None))] * (len(sizes) - len(indices))]
         is_column = sizes is not None and len(indices) == 2 and len(sizes) == 1 and self.unit.rules.matrix
         if is_column and self.whole(indices[1]) == self.unit.rules.first:  # v(i, 0)
             indices = indices[:1]
@@ -239,38 +239,32 @@ class Evaluator:
             return [()], ()  # of a number
         if sizes is not None and len(indices) != len(sizes):
             number = "an index of one number; what it is computed from may lack its size in [code.symbols]"
-            raise Unreadable(line, f"{len(indices)} indices of an array of {len(sizes)}" if sizes else number)
-        spots = [self.index_range(index, sizes[k] if sizes else None, line) for k, index in enumerate(indices)]
+            raise Unreadable(f"{len(indices)} indices of an array of {len(sizes)}" if sizes else number)
+        spots = [self.index_range(index, sizes[k] if sizes else None) for k, index in enumerate(indices)]
         shape = tuple(size for _, sides in spots for size in sides)
         if self.unit.language == "matlab" and len(spots) == 2 and shape and not spots[0][1]:
             shape = (1, *shape)  # a row stays one
         return [*itertools.product(*(row for row, _ in spots))], shape
 
-    def index_range(self, index: Part, size: int | None, line: int) -> tuple[list[int], Index]:
+    def index_range(self, index: Part, size: int | None) -> tuple[list[int], Index]:
         """The whole numbers that one index means, from 0, and its part of the shape."""
         first, outer = self.unit.rules.first, self.frame
+        forbid(index.kind == "slice" and size is None, "a slice of an array without a known size")
         if self.unit.language == "matlab" and size is not None:
             self.frame = {**outer, "end": Variable("end", "int", (), {(): Scalar(build_number(size), "int")})}
         try:
-            return self.index_inside(index, size, first, line)
+            ends = [None if end is None else self.whole(end) for end in index.parts if index.kind == "slice"]
+            i = 0 if ends else self.whole(index) - first
         finally:
             self.frame = outer
-
-    def index_inside(self, index: Part, size: int | None, first: int, line: int) -> tuple[list[int], Index]:
-        """The same, where ``end`` is the size."""
-        if index.kind == "slice":
-            if size is None:
-                raise Unreadable(line, "a slice of an array without a known size")
-            start, stop = index.parts
-            low = 0 if start is None else self.whole(start) - first
-            high = size if stop is None else self.whole(stop)
+        if ends and size is not None:
+            low, high = 0 if ends[0] is None else ends[0] - first, size if ends[1] is None else ends[1]
             low, high = (low + size if low < 0 else low), (high + size if high < 0 else high)
-            forbid(not 0 <= low <= high <= size, line, "a slice outside the array")
+            forbid(not 0 <= low <= high <= size, "a slice outside the array")
             return [*range(low, high)], (high - low,)
-        i = self.whole(index) - first
         if i < 0 and self.unit.language == "python" and size is not None:
             i += size
-        forbid(i < 0 or (size is not None and i >= size), line, "an index outside the array")
+        forbid(i < 0 or (size is not None and i >= size), "an index outside the array")
         return [i], ()
 
     def value(self, part: Part, wants_value: bool = True) -> Value:
@@ -290,10 +284,9 @@ class Evaluator:
                 return self.named_value(part)
             if kind == "op":
                 sign, a, b = part.parts
-                return combine(self.unit, sign, self.value(a), self.value(b), part.line)
+                return combine(self.unit, sign, self.value(a), self.value(b))
             if kind == "minus":
-                negative = require_no_wrap(map_cells(minus, self.value(part.parts[0])), part.line)
-                return require_fit(self.unit, negative, part.line)
+                return require_fit(self.unit, require_no_wrap(map_cells(minus, self.value(part.parts[0]))))
             if kind in ("index", "first"):
                 return self.entries(part)
             if kind == "call":
@@ -303,10 +296,10 @@ class Evaluator:
             if kind == "list":
                 if self.unit.language == "matlab":
                     return self.rows(part)
-                whole = self.stack([self.value(item) for item in part.parts[0]], part.line)
+                whole = self.stack([self.value(item) for item in part.parts[0]])
                 return List(whole.shape, whole.cells) if self.unit.language == "python" else whole
             if kind == "not" and self.unit.language == "rust" and part.parts[0].kind not in TRUTHS:
-                raise Unreadable(part.line, "! of what may be an integer")
+                raise Unreadable("! of what may be an integer")
             if kind == "compare" or (kind in ("both", "either", "not") and self.unit.rules.integer):
                 return Scalar(build_number(int(self.decide_known(part))), "int")
             if kind == "choose":
@@ -315,8 +308,8 @@ class Evaluator:
             if kind == "cast":
                 return self.cast(part)
         except Unreadable as refusal:
-            raise Unreadable(refusal.line or part.line, refusal.why) from None
-        raise Unreadable(part.line, part.parts[0] if kind == "refused" else f"a {kind} where a number is needed")
+            raise Unreadable(refusal.why, refusal.line or part.line) from None
+        raise Unreadable(part.parts[0] if kind == "refused" else f"a {kind} where a number is needed", part.line)
 
     def named_value(self, part: Part) -> Value:
         """The value of a name: of a variable, a macro or a constant such as pi."""
@@ -326,32 +319,32 @@ class Evaluator:
         if self.unit.language == "matlab" and name not in self.frame and name in self.unit.functions:
             return self.inline(Part("call", part.line, (name, ()), part.span), True)
         if name not in self.frame and name in self.unit.macros:
-            return self.macro(name, part.line)
+            return self.macro(name)
         if (member := self.member_of_array(part)) is not None:
             return self.entries(self.component(member))
         if name not in self.frame and name not in self.file_names and name in CONSTANTS:
             return Scalar(CONSTANTS[name])
         if "()" in name or name in NAMED_CALLS.get(self.unit.language, ()):
-            self.require_entries(name, part.line)
+            self.require_entries(name)
         variable = self.variable(name)
         if variable.number == "other" and not variable.shape and variable.all_unread is None:
-            raise Unreadable(part.line, f"{name} as a whole, of a type that is no number")
+            raise Unreadable(f"{name} as a whole, of a type that is no number")
         return self.whole_value(variable, part.line)
 
     def is_property(self, name: str) -> bool:
         """True for a member of Python that is a function of the file."""
         return self.unit.language == "python" and name.removeprefix("self.") in self.unit.functions and "." in name
 
-    def macro(self, name: str, line: int) -> Value:
+    def macro(self, name: str) -> Value:
         """An object-like macro in its place."""
         meaning = self.unit.macros[name]
         if isinstance(meaning, str) or name in self.expanding:
-            raise Unreadable(line, f"{name}: {meaning if isinstance(meaning, str) else 'a macro of itself'}")
+            raise Unreadable(f"{name}: {meaning if isinstance(meaning, str) else 'a macro of itself'}")
         self.expanding.append(name)
         try:
             return self.value(meaning)
         except Unreadable as refusal:
-            raise Unreadable(line, f"{name}: {refusal.why}") from None
+            raise Unreadable(f"{name}: {refusal.why}") from None
         finally:
             self.expanding.pop()
 
@@ -360,9 +353,9 @@ class Evaluator:
         if self.unit.language not in ("c", "cpp") or not isinstance(value, Scalar) or value.number not in LIMITS:
             return value
         kind = self.kind_of(other)
-        forbid(not kind, other.line, "a choice between numbers whose type is not known")
+        forbid(not kind, "a choice between numbers whose type is not known", other.line)
         number = "real" if kind == "real" else max(promote(kind), value.number)
-        return require_fit(self.unit, replace(value, number=number), other.line)
+        return require_fit(self.unit, replace(value, number=number))
 
     def kind_of(self, part: Part) -> str:
         """The type of a number of C that is not computed; nothing where it is not known."""
@@ -391,9 +384,9 @@ class Evaluator:
         value, kind = self.value(part.parts[1]), part.parts[0]
         if kind not in LIMITS:
             return as_real(value)
-        if not isinstance(value, Scalar) or constant_of(value) is None or not does_fit(value, kind):
-            raise Unreadable(part.line, CUT)
-        return replace(value, number=promote(kind))
+        number = demand(value, Scalar, CUT)
+        forbid(constant_of(number) is None or not does_fit(number, kind), CUT)
+        return replace(number, number=promote(kind))
 
     def entries(self, part: Part) -> Value:
         """An entry or a block of a variable."""
@@ -406,7 +399,7 @@ class Evaluator:
                 raise
             number = "list" if isinstance(base, List) else "real"
             variable = Variable("", number, base.shape, cells=dict(zip(places_of(base.shape), base.cells, strict=True)))
-            places, shape = self.resolve(variable, [*part.parts[1]], part.line)
+            places, shape = self.resolve(variable, [*part.parts[1]])
         if not shape:
             return self.read(variable, places[0], part.line)
         kind = List if variable.number == "list" else Array
@@ -419,16 +412,16 @@ class Evaluator:
             return unread  # which may be a block of any size
         if any(isinstance(cell, Array) for row in rows for cell in row):
             return join(*(join(*row, across=True) for row in rows), across=False)
-        return self.stack([self.stack(row, part.line) for row in rows], part.line)
+        return self.stack([self.stack(row) for row in rows])
 
-    def stack(self, values: list[Value], line: int) -> Array:
+    def stack(self, values: list[Value]) -> Array:
         """Numbers as a vector, vectors as the rows of a matrix."""
         shapes = {value.shape if isinstance(value, Array) else () for value in values}
-        forbid(len(shapes) != 1 or not values, line, "a list of different shapes")
+        forbid(len(shapes) != 1 or not values, "a list of different shapes")
         (shape,) = shapes
         return Array((len(values), *shape), tuple(c for v in values for c in cells_of(v)))
 
-    def linked(self, value: Part | None, statement: Part) -> Variable:
+    def linked(self, value: Part | None) -> Variable:
         """The variable to which a reference or pointer is a second name."""
         while value is not None and value.kind == "address":
             value = value.parts[0]
@@ -437,21 +430,21 @@ class Evaluator:
             return self.variable(value.parts[0])
         if value is not None and value.kind in ("index", "call", "method"):
             base, (place, *others), _ = self.targets(value)
-            forbid(others, value.line, "a block where an entry is needed")
+            forbid(others, "a block where an entry is needed", value.line)
             name = spell_entry(self.unit, base.name, place)
             base.cells.setdefault(place, self.read(base, place, value.line))
             view = Variable(name, base.number, ())
             view.cells = CellView(base, place)
             view.views.append(base)  # a write that is not read loses the whole of it: a pointer may be moved
             return view
-        raise Unreadable(statement.line, "a reference or pointer to what is no variable")
+        raise Unreadable("a reference or pointer to what is no variable")
 
     def call(self, part: Part, wants_value: bool) -> Value:
         """A known function, one of the file, or an entry ``M(i, j)``."""
         name, arguments = part.parts
         if name in self.unit.macros:
             why = self.unit.macros[name]
-            raise Unreadable(part.line, f"{name}: {why if isinstance(why, str) else 'a macro that is called'}")
+            raise Unreadable(f"{name}: {why if isinstance(why, str) else 'a macro that is called'}")
         if name not in self.frame and name in self.unit.functions:
             return self.inline(part, wants_value)
         if name not in self.frame and (sign := extreme_of(name, self.unit.language)) and len(arguments) == 2:
@@ -459,10 +452,10 @@ class Evaluator:
         if name in JOINS and self.unit.language == "python" and len(arguments) == 1 and arguments[0].kind == "list":
             return self.join_arrays(JOINS[name], arguments[0])
         if name not in self.frame and is_known(name, self.unit.language):
-            return call_known(name, [self.value(a) for a in arguments], self.unit, part.line)
+            return call_known(name, [self.value(a) for a in arguments], self.unit)
         if arguments:
             return self.entries(part)
-        self.require_entries(f"{name}()", part.line)
+        self.require_entries(f"{name}()")
         return self.whole_value(self.variable(f"{name}()"), part.line)
 
     def join_arrays(self, name: str, part: Part) -> Value:
@@ -476,17 +469,16 @@ class Evaluator:
             cells = tuple(c for value in values for c in cells_of(value))
             return Array((len(cells),), cells)
         known = {"row": {0, 1, 2}, "vstack": {1, 2}, "hstack": {2}, "concatenate": {2}}.get(name, set())
-        forbid(not sizes <= known, part.line, f"{name} of arrays of different shapes")
+        forbid(not sizes <= known, f"{name} of arrays of different shapes")
         rows = [Array((1, *v.shape), v.cells) if isinstance(v, Array) and len(v.shape) == 1 else v for v in values]
         return join(*rows, across=name in ("hstack", "row"))
 
     def extreme(self, part: Part, sign: str) -> Value:
         """The larger or the smaller of two numbers, as cases."""
-        a, b = (self.value(argument) for argument in part.parts[1])
-        if (unread := find_unread(a, b)) is not None:
+        both = [self.value(argument) for argument in part.parts[1]]
+        if (unread := find_unread(*both)) is not None:
             return unread
-        if not (isinstance(a, Scalar) and isinstance(b, Scalar)):
-            raise Unreadable(part.line, f"{part.parts[0]} of arrays")
+        a, b = (demand(value, Scalar, f"{part.parts[0]} of arrays") for value in both)
         x, y = constant_of(a), constant_of(b)
         text = " >= ".join(self.unit.text(argument) for argument in part.parts[1])
         if x is not None and y is not None:
@@ -494,7 +486,7 @@ class Evaluator:
         else:  # one condition for both, so that the larger and the smaller of the same two are told apart together
             if not self.is_split:  # (a + b + |a - b|)/2 is the larger one
                 apart = build_call("abs", add(a.tree, minus(b.tree)))
-                whole = total([a.tree, b.tree, apart if sign == ">=" else minus(apart)])
+                whole = total(a.tree, b.tree, apart if sign == ">=" else minus(apart))
                 return Scalar(divide(whole, build_number(2)))
             is_first = self.choose(Condition(text, part.line, True, ">=", a.tree, b.tree))
         result = a if is_first == (sign == ">=") else b
@@ -504,12 +496,12 @@ class Evaluator:
         """The body of a function of the file, on its arguments."""
         name, arguments = part.parts
         candidates = [f for f in self.unit.functions[name] if len(f.arguments) == len(arguments)]
-        forbid(len(candidates) != 1, part.line, f"a call of {name}, which has {len(candidates)} definitions that fit")
+        forbid(len(candidates) != 1, f"a call of {name}, which has {len(candidates)} definitions that fit")
         if name in self.calls or len(self.calls) >= INLINED:
-            raise Unreadable(part.line, f"the recursion of {name}" if name in self.calls else "calls nested too deep")
+            raise Unreadable(f"the recursion of {name}" if name in self.calls else "calls nested too deep")
         function = candidates[0]
-        forbid(any(a.name.startswith("*") for a in function.arguments), part.line, f"{name} of any number of arguments")
-        self.require_no_structure(function, arguments, part.line)
+        forbid(any(a.name.startswith("*") for a in function.arguments), f"{name} of any number of arguments")
+        self.require_no_structure(function, arguments)
         frame = {a.name: self.bind(a, given, function) for a, given in zip(function.arguments, arguments, strict=True)}
         for output in function.outputs:
             frame.setdefault(output, Variable(output))
@@ -530,18 +522,17 @@ class Evaluator:
         if function.outputs and returned is None:
             self.outputs = [self.whole_value(frame[output], part.line) for output in function.outputs]
             returned = self.outputs[0]
-        forbid(returned is None and wants_value, part.line, f"{name} returns no value")
+        forbid(returned is None and wants_value, f"{name} returns no value")
         return convert(returned, function.number, part.line) if returned is not None else Unread(part.line, "no value")
 
-    def require_no_structure(self, function: Function, arguments: tuple[Part, ...], line: int) -> None:
+    def require_no_structure(self, function: Function, arguments: tuple[Part, ...]) -> None:
         """Refuse a structure under another name: its members would be other names."""
         heads = {head_of(name) for name in names_in(*function.body) if head_of(name) != name}
         for argument, given in zip(function.arguments, arguments, strict=True):
             inner = given.parts[0] if given.kind == "address" else given
             is_same = inner.kind == "name" and inner is given and inner.parts[0] == argument.name
             is_same = is_same and argument.name not in self.aliases
-            if argument.name in heads and not is_same:
-                raise Unreadable(line, f"a structure that {function.name} knows by another name")
+            forbid(argument.name in heads and not is_same, f"a structure that {function.name} knows by another name")
 
     def whole_value(self, variable: Variable, line: int) -> Value:
         """A variable as a value."""
@@ -551,7 +542,7 @@ class Evaluator:
             kind = KINDS.get(variable.number, Array)
             return kind(variable.shape, tuple(self.read(variable, place, line) for place in places_of(variable.shape)))
         if variable.shape is None and variable.cells and () not in variable.cells:
-            raise Unreadable(line, f"{variable.name} as a whole, of unknown size")
+            raise Unreadable(f"{variable.name} as a whole, of unknown size")
         return self.read(variable, (), line)
 
     def bind(self, argument: Argument, given: Part, function: Function) -> Variable:
@@ -568,29 +559,29 @@ class Evaluator:
             if argument.shared or ((variable.shape is None or variable.shape) and not is_copy):
                 return variable
             if is_copy and variable.shape is None:
-                raise Unreadable(given.line, f"a copy of {variable.name}, of unknown size; declare it")
+                raise Unreadable(f"a copy of {variable.name}, of unknown size; declare it", given.line)
         if given.kind == "address":
-            return self.linked(given, given)
+            return self.linked(given)
         is_place = inner.kind == "index" or (inner.kind == "call" and inner.parts[0] in self.frame)
         if argument.shared and is_place:
             _, _, sides = self.targets(inner)
             if sides and may_write(self.unit, function, argument.name):
-                raise Unreadable(given.line, f"a part of an array that {function.name} may change")
+                raise Unreadable(f"a part of an array that {function.name} may change", given.line)
             if not sides and self.unit.language != "python":
-                return self.linked(inner, given)
-        is_view = given.kind in ("method", "call", "choose") and self.is_view(given) and given.parts[1] != "copy"
-        if self.unit.language == "python" and is_view and may_write(self.unit, function, argument.name):
-            raise Unreadable(given.line, f"a view of an array that {function.name} may change")
+                return self.linked(inner)
+        is_alias = given.kind in ("method", "call", "choose") and is_view(self.unit, given) and given.parts[1] != "copy"
+        if self.unit.language == "python" and is_alias and may_write(self.unit, function, argument.name):
+            raise Unreadable(f"a view of an array that {function.name} may change", given.line)
         value = self.value(given)
         if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in cells_of(value)):
-            raise Unreadable(given.line, f"an integer given to the template {function.name}, which may cut quotients")
+            raise Unreadable(f"an integer given to the template {function.name}, which may cut quotients", given.line)
         shape = value.shape if isinstance(value, Array) else ()
         variable = Variable(argument.name, "list" if isinstance(value, List) else argument.number, shape)
         if isinstance(value, Unread):
             variable.all_unread = value
             return variable
         self.write(variable, value, given)
-        if self.unit.language == "python" and variable.shape and (is_place or is_view):
+        if self.unit.language == "python" and variable.shape and (is_place or is_alias):
             share(variable, self.arrays_in(given))
         return variable
 
@@ -599,15 +590,15 @@ class Evaluator:
         base, name, arguments = part.parts
         is_array = base.kind != "name" or name == "T" or bool(self.variable_shape(base.parts[0]))
         if (is_known_method := is_method(name, len(arguments), self.unit.language)) and is_array:
-            return METHODS[name, len(arguments)](self.unit, self.value(base), *map(self.value, arguments))
+            return KNOWN[name, 1 + len(arguments)](self.unit, self.value(base), *map(self.value, arguments))
         if base.kind == "name" and self.variable_shape(base.parts[0]):
             return self.entries(self.component(part))
         if is_known_method:  # never an accessor: without its size nobody knows what it gives
-            raise Unreadable(part.line, f"{name} of what has no known size; declare it under [code.symbols]")
-        forbid(name in self.unit.functions, part.line, f"the method {name} of another object")
+            raise Unreadable(f"{name} of what has no known size; declare it under [code.symbols]")
+        forbid(name in self.unit.functions, f"the method {name} of another object")
         if base.kind == "name" and self.unit.language in ("c", "cpp"):
             return self.call(Part("call", part.line, (f"{base.parts[0]}.{name}", arguments), part.span), True)
-        raise Unreadable(part.line, f"the method {name}")
+        raise Unreadable(f"the method {name}")
 
     def member_of_array(self, part: Part) -> Part | None:
         """``v.x`` of a vector as the method of that name; None for a name that is no member of an array."""
@@ -627,7 +618,7 @@ class Evaluator:
         if not arguments and len(name) == 1 and name in letters:
             place = Part("number", part.line, (letters.index(name), "int"))
             return Part("index", part.line, (base, (place,)), part.span)
-        raise Unreadable(part.line, f"the method {name}")
+        raise Unreadable(f"the method {name}")
 
     def variable_shape(self, name: str) -> Index | None:
         """The shape of a name that is known already."""

@@ -12,19 +12,8 @@ from typing import Any
 
 from navsym.audit.cases import CASES, Case, Condition, Reading, is_contradictory, list_cases
 from navsym.audit.evaluate import CellView, Edits, Evaluator, Failing, Inputs, Returning
-from navsym.audit.form import (
-    Argument,
-    Function,
-    Part,
-    Unit,
-    head_of,
-    may_return_view,
-    may_write_by_macro,
-    mentioned_in,
-    names_in,
-    walk,
-)
-from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, does_take, find_race, is_method, may_change, names_view
+from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write_by_macro, mentioned_in, names_in, walk
+from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, does_take, find_race, is_method, is_view, may_change
 from navsym.audit.values import (
     COMPARE,
     CUT,
@@ -43,6 +32,7 @@ from navsym.audit.values import (
     combine,
     constant_of,
     convert,
+    demand,
     does_fit,
     forbid,
     is_integer,
@@ -113,7 +103,7 @@ class Machine(Evaluator):
             try:
                 getattr(self, f"run_{constant.kind}")(*constant.parts, statement=constant)
             except Unreadable as refusal:
-                unread = Unread(refusal.line or constant.line, refusal.why)
+                unread = refusal.leave(constant)
                 self.reading.refused.setdefault(unread.line, unread.why)
                 self.frame[name] = Variable(name, all_unread=unread)
         once = [constant.parts[0] for constant in self.unit.constants if constant.kind == "declare"]
@@ -171,7 +161,7 @@ class Machine(Evaluator):
         try:
             getattr(self, f"run_{statement.kind}")(*statement.parts, statement=statement)
         except Unreadable as refusal:
-            self.refuse(statement, Unread(refusal.line or statement.line, refusal.why))
+            self.refuse(statement, refusal.leave(statement))
 
     def refuse(self, statement: Part, unread: Unread) -> None:
         """Leave unread what a statement may write."""
@@ -285,7 +275,7 @@ class Machine(Evaluator):
         return names_in(target).union(*(names for several in refused for names in several))
 
     def run_unread(self, why: str, names: tuple[str, ...], statement: Part) -> None:
-        raise Unreadable(statement.line, why)
+        raise Unreadable(why)
 
     run_jump = run_unread
 
@@ -297,7 +287,7 @@ class Machine(Evaluator):
             self.lose_members(known, unread)
         self.frame[name] = Variable(name, all_unread=unread)
         self.aliases.pop(name, None)
-        raise Unreadable(statement.line, why)
+        raise Unreadable(why)
 
     def run_fail(self, why: str, statement: Part) -> None:
         raise Failing(why)
@@ -305,13 +295,13 @@ class Machine(Evaluator):
     def run_several(self, targets: tuple[Part, ...], call: Part, statement: Part) -> None:
         """``[a, b] = f(x)`` of MATLAB, for a function of the file."""
         if call.kind != "call" or call.parts[0] not in self.unit.functions or call.parts[0] in self.frame:
-            raise Unreadable(statement.line, "several names assigned at once")
+            raise Unreadable("several names assigned at once")
         self.outputs = []
         self.value(call)
-        forbid(len(self.outputs) < len(targets), statement.line, "more names than values")
+        forbid(len(self.outputs) < len(targets), "more names than values")
         for target, value in zip(targets, self.outputs[:], strict=False):
             self.note_unread(value, statement)
-            forbid(target.kind != "name", statement.line, "entries among several names assigned at once")
+            forbid(target.kind != "name", "entries among several names assigned at once")
             self.rename(target.parts[0], call, value, statement)
 
     def run_declare(
@@ -322,28 +312,28 @@ class Machine(Evaluator):
             self.shadows[-1][name] = self.frame.get(name)
         self.aliases.pop(name, None)
         if is_link:
-            self.frame[name] = self.linked(value, statement)
+            self.frame[name] = self.linked(value)
             owner = self.owner_of(value) if value is not None and not self.frame[name].shape else None
             if number == "other" and owner is not None:
                 if is_link != "const" or may_change(self.unit, self.reading.function, owner[0]):
                     self.aliases[name] = owner  # else its members keep the names by which they are called here
             elif number == "other" and (is_link != "const" or self.frame[name].shape):
-                raise Unreadable(statement.line, "a reference or pointer to a structure that is no name")
+                raise Unreadable("a reference or pointer to a structure that is no name")
             return
         if number == "other" and any(name in table for table in self.shadows[:-1]):
-            raise Unreadable(statement.line, "a structure that hides another of its name")
+            raise Unreadable("a structure that hides another of its name")
         self.require_order(*([value] if value is not None else ()))
         sizes = () if shape is None else tuple(self.whole(size) for size in shape)
         result = None if value is None else self.value(value)
         if shape is None and isinstance(result, Array):
-            forbid(number == "other", statement.line, "a structure made of a list")
+            forbid(number == "other", "a structure made of a list")
             sizes = result.shape  # auto
         elif isinstance(result, Array) and len(sizes) == 2:
             is_list = len(result.shape) == 1 and value is not None and value.kind == "list"
             fits = is_list or sizes in (self.fill(result, sizes).shape, result.shape[1:])  # type: ignore[union-attr]
-            forbid(not fits, statement.line, f"{name}, a matrix made of a row of numbers, which may be its columns")
+            forbid(not fits, f"{name}, a matrix made of a row of numbers, which may be its columns")
         elif number == "matrix" and isinstance(result, Scalar):
-            raise Unreadable(statement.line, f"{name}, a matrix of unknown size")
+            raise Unreadable(f"{name}, a matrix of unknown size")
         is_lazy = number != "matrix"
         if number in ("auto", "matrix"):
             is_quaternion = isinstance(result, Quaternion)
@@ -353,8 +343,7 @@ class Machine(Evaluator):
         if result is not None:
             self.note_unread(result, statement)
             self.write(variable, self.fill(result, sizes), statement)
-        is_cpp = self.unit.language == "cpp"
-        lazy = ("op", "minus", "method", "index", *(("name",) if is_cpp else ()))
+        lazy = ("op", "minus", "method", "index", *(("name",) if self.unit.language == "cpp" else ()))
         if is_lazy and shape is None and sizes and value is not None and value.kind in lazy:
             share(variable, self.arrays_in(value))  # auto of Eigen, computed when it is used; of an array a pointer
 
@@ -381,11 +370,11 @@ class Machine(Evaluator):
         result = self.fill_by_commas(target, value) if sign == "<<" else self.value(value)
         sign = sign.removesuffix("<<")
         if self.unit.language == "cpp" and b"Eigen" in self.unit.source and self.overlaps(value, target):
-            raise Unreadable(statement.line, "a matrix that Eigen changes while a part of it is read; write .eval()")
+            raise Unreadable("a matrix that Eigen changes while a part of it is read; write .eval()")
         if sign:
             before = first or self.value(target)
-            forbid(isinstance(before, List), statement.line, f"{sign}= of a list, which is no array")
-            result = combine(self.unit, sign, before, result, statement.line)
+            forbid(isinstance(before, List), f"{sign}= of a list, which is no array")
+            result = combine(self.unit, sign, before, result)
         self.note_unread(result, statement)
         target = self.component(member) if (member := self.member_of_array(target)) else target
         if target.kind == "name":
@@ -402,9 +391,9 @@ class Machine(Evaluator):
         variable, places, _ = self.targets(target)
         if variable.number == "list" and isinstance(result, Array) and value.kind != "list":
             lose(variable, Unread(statement.line, "a row of a list that may stand in two places"))
-            raise Unreadable(statement.line, "a row of a list that may stand in two places")
+            raise Unreadable("a row of a list that may stand in two places")
         if isinstance(result, Array) and math.prod(result.shape) != len(places):
-            raise Unreadable(statement.line, "an assignment between shapes that do not fit")
+            raise Unreadable("an assignment between shapes that do not fit")
         cells = result.cells if isinstance(result, Array) else (result,) * len(places)
         for place, cell in zip(places, cells, strict=True):
             self.write_cell(variable, place, cell, statement)
@@ -426,9 +415,9 @@ class Machine(Evaluator):
     def fill_by_commas(self, target: Part, value: Part) -> Value:
         """``M << A, b, c`` of Eigen: blocks side by side until a row is full, and then below."""
         *_, shape = self.targets(target)
-        forbid(not shape, value.line, "<< into what has no known size")
+        forbid(not shape, "<< into what has no known size", value.line)
         if names_in(target) & {*names_in(value), *(p.parts[0] for p in walk(value) if p.kind == "call")}:
-            raise Unreadable(value.line, "a matrix that is filled with its own entries")
+            raise Unreadable("a matrix that is filled with its own entries", value.line)
         rows: list[list[Value]] = [[]]
         for block in map(self.value, value.parts[0]):
             rows[-1].append(block)
@@ -442,7 +431,7 @@ class Machine(Evaluator):
         In Python two names share one array, and a slice is a view: a later write leaves the other one unread.
         """
         is_python, name = self.unit.language == "python", self.canonical(name)
-        forbid(self.is_property(name), statement.line, f"{name}, which a function of the file may set")
+        forbid(self.is_property(name), f"{name}, which a function of the file may set")
         self.rename_object(name, value, statement)
         if is_python and value.kind == "name" and isinstance(result, Array):
             self.frame[name] = self.variable(value.parts[0])
@@ -459,7 +448,7 @@ class Machine(Evaluator):
         self.frame[name] = variable
         if cells and bases and isinstance(result, List):
             share(variable, [*bases, variable])  # two of its rows may be one
-        elif cells and self.is_view(value):
+        elif cells and is_view(self.unit, value):
             share(variable, bases)
 
     def rename_object(self, name: str, value: Part, statement: Part) -> None:
@@ -475,13 +464,6 @@ class Machine(Evaluator):
         if self.unit.language == "python" and value.kind == "name":
             self.aliases[name] = (self.canonical(value.parts[0]), ".")
 
-    def is_view(self, value: Part) -> bool:
-        """True for an expression of Python whose value may share cells with an array in it."""
-        if value.kind != "call":
-            return value.kind in ("index", "method", "choose")
-        functions = self.unit.functions.get(value.parts[0], [])
-        return names_view(value.parts[0]) or any(map(may_return_view, functions))
-
     def arrays_in(self, value: Part) -> list[Variable]:
         """The arrays that an expression names."""
         hidden = (part.parts[1] for part in walk(value) if part.kind == "refused" and len(part.parts) > 1)
@@ -494,9 +476,9 @@ class Machine(Evaluator):
             return
         variable.all_unread = None
         shape = value.shape if isinstance(value, Array) else ()
-        forbid(not shape and variable.shape, statement.line, "a number assigned to an array")
+        forbid(not shape and variable.shape, "a number assigned to an array")
         if variable.shape not in (None, shape) and math.prod(variable.shape or ()) != math.prod(shape):
-            raise Unreadable(statement.line, "an assignment between shapes that do not fit")
+            raise Unreadable("an assignment between shapes that do not fit")
         if shape:
             variable.shape = variable.shape or shape
         for place, cell in zip(places_of(variable.shape or ()), cells_of(value), strict=True):
@@ -505,7 +487,7 @@ class Machine(Evaluator):
     def write_cell(self, variable: Variable, place: Index, cell: Cell, statement: Part) -> None:
         """One cell, with the line of the statement."""
         if isinstance(cell, Scalar):
-            forbid(variable.number in LIMITS and not does_fit(cell, variable.number), statement.line, CUT)
+            forbid(variable.number in LIMITS and not does_fit(cell, variable.number), CUT)
             number = promote(variable.number) if self.unit.rules.integer else cell.number
             number = "real" if number in ("quaternion", "auto") else number
             cell = Scalar(cell.tree, number, statement.line, statement)
@@ -522,7 +504,7 @@ class Machine(Evaluator):
     def run_for(self, name: str, start: Part, stop: Part, step: Part, body: Any, statement: Part) -> None:
         """A loop between constants."""
         first, end, by = map(self.whole, (start, stop, step))
-        forbid(by == 0 or len(range(first, end, by)) > STEPS, statement.line, "a loop without an end")
+        forbid(by == 0 or len(range(first, end, by)) > STEPS, "a loop without an end")
         with self.scope():
             if self.unit.language == "rust":  # where the counter is a name of its own
                 self.shadows[-1][name] = self.frame.get(name)
@@ -542,12 +524,12 @@ class Machine(Evaluator):
                 for part in step:
                     getattr(self, f"run_{part.kind}")(*part.parts, statement=part)
                 is_late = False
-        raise Unreadable(statement.line, "a loop without an end")
+        raise Unreadable("a loop without an end")
 
     def does_go_on(self, test: Part) -> bool:
         """Whether a condition between whole numbers holds; others may be rounded, or depend on inputs."""
         own = {*self.unit.functions} & mentioned_in(test)
-        forbid(own, test.line, f"a loop whose condition calls {', '.join(own)}, which may write")
+        forbid(own, f"a loop whose condition calls {', '.join(own)}, which may write")
         choices, self.choices = self.choices, None
         leaves = [side for part in walk(test) if part.kind == "compare" for side in part.parts[1:]] or [test]
         try:
@@ -557,21 +539,20 @@ class Machine(Evaluator):
             pass
         finally:
             self.choices = choices
-        raise Unreadable(test.line, "a loop that does not count from one constant to another")
+        raise Unreadable("a loop that does not count from one constant to another")
 
     def run_return(self, value: Part | None, statement: Part) -> None:
         if value is None:
             raise Returning(None)
         self.require_order(value)
-        is_tuple = self.unit.language == "python" and value.kind == "list"
         try:
             raise Returning(self.value(value))
         except Unreadable as refusal:
             if any(self.has_effect(p) or (p.kind == "method" and not self.is_plain(p)) for p in walk(value)):
                 raise
-            if is_tuple:
+            if self.unit.language == "python" and value.kind == "list":
                 raise Returning(Unread(value.line, "several arrays returned; ask for them by their names")) from None
-            unread = Unread(refusal.line or statement.line, refusal.why)  # the end is known, the value is not
+            unread = refusal.leave(statement)  # the end is known, the value is not
             self.reading.refused.setdefault(unread.line, unread.why)
             self.reading.refused_spans.add(statement.span)
             raise Returning(unread) from None
@@ -591,24 +572,24 @@ class Machine(Evaluator):
                 why = f"{name} without a use of its value: it may change what it is called on"
                 for known in names_in(base):
                     lose(self.variable(known), Unread(statement.line, why))
-                raise Unreadable(statement.line, why)
+                raise Unreadable(why)
         elif call.kind == "call" and call.parts[0] in {*HARMLESS, *PURE[self.unit.language], *self.unit.ignored}:
             if any(self.has_effect(part) for part in walk(call.parts[1])):
-                raise Unreadable(statement.line, f"an argument of {call.parts[0]} that may write")
+                raise Unreadable(f"an argument of {call.parts[0]} that may write")
             return
         elif call.kind == "call" and call.parts[0] == "memcpy" and len(call.parts[1]) == 3:
             target, source, size = call.parts[1]
             names = [self.unit.text(part) for part in (target, source)]
             if not any(self.unit.text(size).replace(" ", "") == f"sizeof({n})" and self.is_own(n) for n in names):
-                raise Unreadable(statement.line, "memcpy of other than sizeof an array that is declared here")
+                raise Unreadable("memcpy of other than sizeof an array that is declared here")
             types = [self.unit.kinds.get(re.split(r"->|\.", n)[-1], set()) for n in names_in(target, source)]
-            forbid(len(set[str]().union(*types)) > 1, statement.line, "memcpy between numbers of different types")
+            forbid(len(set[str]().union(*types)) > 1, "memcpy between numbers of different types")
             self.run_assign(target, "", source, statement)
             return
         elif call.kind == "call" and call.parts[0] == "memset" and len(call.parts[1]) == 3:
             name, size = (self.unit.text(part).replace(" ", "").lstrip("&") for part in call.parts[1][::2])
             if size != f"sizeof({name})" or (name in self.frame and not self.is_own(name)):
-                raise Unreadable(statement.line, "memset of other than sizeof an array that is declared here")
+                raise Unreadable("memset of other than sizeof an array that is declared here")
             self.reset(call.parts[1][0], "memset", call.parts[1][1:2], statement)
             return
         self.value(call, wants_value=False)
@@ -618,7 +599,7 @@ class Machine(Evaluator):
         if self.unit.language in ("c", "cpp") and (
             call := find_race(self.unit, parts, {*self.frame}, {*self.file_names})
         ):
-            raise Unreadable(call.line, "a call that writes beside others, in an order that C leaves open")
+            raise Unreadable("a call that writes beside others, in an order that C leaves open", call.line)
 
     def is_own(self, name: str) -> bool:
         """True for an array that the function declares; a pointer has another size."""
@@ -629,12 +610,12 @@ class Machine(Evaluator):
         """A whole array set to one number, or to ones on the diagonal."""
         while base.kind == "address":
             base = base.parts[0]
-        forbid(base.kind != "name", statement.line, f"{name} of what is no variable")
+        forbid(base.kind != "name", f"{name} of what is no variable")
         variable = self.variable(base.parts[0])
         if not variable.shape or variable.number == "quaternion":
-            raise Unreadable(statement.line, f"{name} of an array without a known size")
+            raise Unreadable(f"{name} of an array without a known size")
         number = self.value(arguments[0]) if arguments else Scalar(build_number(0))
-        forbid(name == "memset" and constant_of(number) != 0, statement.line, "memset to bytes that are not zero")
+        forbid(name == "memset" and constant_of(number) != 0, "memset to bytes that are not zero")
         is_identity = name in ("setIdentity", "identity")
         one = Scalar(build_number(1))
         for place in places_of(variable.shape):
@@ -649,7 +630,7 @@ class Machine(Evaluator):
         except Unreadable as refusal:
             if self.choices is None or not self.is_bold:
                 raise
-            self.refuse(test, Unread(refusal.line or test.line, refusal.why))
+            self.refuse(test, refusal.leave(test))
             return self.choose(Condition(self.unit.text(test), test.line, True, f"?{len(self.conditions)}"))
 
     def decide_known(self, test: Part) -> bool:
@@ -660,17 +641,16 @@ class Machine(Evaluator):
             return self.decide(test.parts[0]) or self.decide(test.parts[1])
         if test.kind == "not":
             return not self.decide(test.parts[0])
-        forbid(test.kind in ("refused", "list"), test.line, "a condition outside the language of audit")
+        forbid(test.kind in ("refused", "list"), "a condition outside the language of audit")
         self.require_order(test)
         sign, *sides = test.parts if test.kind == "compare" else ("!=", test)
         is_size = sides[0].kind == "call" and sides[0].parts[0] in ("fabs", "fabsf")
         if is_size and sign == "<=" and self.unit.text(sides[1]) in ("DBL_MAX", "FLT_MAX"):
             return True  # numbers are real numbers here
-        a, b = [*map(self.value, sides), Scalar(ZERO, "int")][:2]
-        if not (isinstance(a, Scalar) and isinstance(b, Scalar)):
-            raise Unreadable(test.line, "a condition on what is not read")
-        require_fit(self.unit, map_cell(lambda x, _: x, a, b), test.line)  # -1 < 1U does not hold
-        require_fit(self.unit, map_cell(lambda x, _: x, b, a), test.line)
+        both = [*map(self.value, sides), Scalar(ZERO, "int")][:2]
+        a, b = (demand(value, Scalar, "a condition on what is not read") for value in both)
+        for one, other in ((a, b), (b, a)):  # -1 < 1U does not hold
+            require_fit(self.unit, map_cell(lambda x, _: x, one, other))
         if a.tree.head == b.tree.head == NUMBER:
             return COMPARE[sign](a.tree.args[0], b.tree.args[0])
         return self.choose(Condition(self.unit.text(test), test.line, True, sign, a.tree, b.tree))
@@ -681,7 +661,7 @@ class Machine(Evaluator):
             if is_contradictory((*self.conditions, replace(condition, holds=way))):
                 return not way
         if self.choices is None:
-            raise Unreadable(condition.line, f"one of more than {CASES} cases")
+            raise Unreadable(f"one of more than {CASES} cases", condition.line)
         place = len(self.conditions)
         holds = self.choices[place] if place < len(self.choices) else True
         if place >= len(self.choices):

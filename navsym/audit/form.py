@@ -77,12 +77,25 @@ class Rules:
     integer  : True where the quotient of two integers is cut
     matrix   : True where ``*`` is the product of matrices
     entry    : how entries are written, with one index and with two
+    root     : how a square root is written
+    turned   : what is behind a transposed matrix, if the language has matrices
     """
 
     first: int = 0
     integer: bool = False
     matrix: bool = False
     entry: tuple[str, str] = ("{}[{}]", "{}[{}][{}]")
+    root: str = "sqrt({})"
+    turned: str = ""
+
+
+RULES = {
+    "c": Rules(integer=True),
+    "cpp": Rules(integer=True, matrix=True, entry=("{}({})", "{}({}, {})"), turned=".transpose()"),
+    "python": Rules(entry=("{}[{}]", "{}[{}, {}]"), root="np.sqrt({})", turned=".T"),
+    "matlab": Rules(first=1, matrix=True, entry=("{}({})", "{}({},{})"), turned="'"),
+    "rust": Rules(integer=True, matrix=True, root="{}.sqrt()", turned=".transpose()"),
+}
 
 
 @dataclass(slots=True, eq=False)
@@ -106,7 +119,6 @@ class Unit:
 
     file: str
     language: str
-    rules: Rules
     source: bytes
     functions: dict[str, list[Function]] = field(default_factory=dict)
     constants: list[Part] = field(default_factory=list)
@@ -122,6 +134,11 @@ class Unit:
     imported: dict[str, str] = field(default_factory=dict)
     declared: set[str] = field(default_factory=set)
     types: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def rules(self) -> Rules:
+        """What signs mean in its language."""
+        return RULES[self.language]
 
     def is_array(self, name: str) -> bool:
         """True for a name before parentheses that holds entries; of others two calls may give two values."""
@@ -201,18 +218,6 @@ def mentioned_in(*parts: Any) -> set[str]:
 def head_of(name: str) -> str:
     """The structure to which a member belongs: ``s`` of ``s->a.b``."""
     return name.replace("->", ".").replace("[", ".").split(".")[0]
-
-
-def may_return_view(function: Function) -> bool:
-    """True for a function of Python that may return what it was given, or a part of it."""
-    fresh = {"op", "minus", "number", "compare", "call", "refused"}
-    parts = [*walk(*function.body)]
-    values = {p.parts[0].parts[0]: p.parts[2] for p in parts if p.kind == "assign" and p.parts[0].kind == "name"}
-    for part in (p.parts[0] for p in parts if p.kind == "return"):
-        value = values.get(part.parts[0]) if part is not None and part.kind == "name" else part
-        if part is not None and (value is None or value.kind not in fresh):
-            return True
-    return False
 
 
 def spell_entry(unit: Unit, name: str, place: tuple[int, ...]) -> str:

@@ -21,6 +21,7 @@ from navsym.audit.values import (
     cells_of,
     constant_of,
     cross_product,
+    demand,
     determinant,
     divide,
     find_unread,
@@ -42,15 +43,6 @@ from navsym.audit.values import (
 )
 from navsym.language.tree import ONE, PI, ZERO, Tree, build_call, build_inverse, build_number
 
-#: Functions of one number, by their names without prefix and suffix.
-PLAIN = {
-    **{name: name for name in "sin cos tan exp log sqrt asin acos atan sinh cosh tanh".split()},
-    **{"fabs": "abs", "abs": "abs"},
-}
-#: The same of numpy.
-NUMPY = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "absolute": "abs"}
-#: Degrees to radians and back.
-ANGLES = {"deg2rad": Fraction(1, 180), "radians": Fraction(1, 180), "rad2deg": Fraction(180), "degrees": Fraction(180)}
 CONSTANTS: dict[str, Tree] = dict.fromkeys(("M_PI", "math.pi", "np.pi", "numpy.pi", "pi", "M_PI_F", "PI"), PI)
 CONSTANTS |= dict.fromkeys(("M_PI_2", "M_PI_2_F"), multiply(build_number(Fraction(1, 2)), PI))
 TWICE = build_number(2)
@@ -93,7 +85,7 @@ MAKE = re.compile(r"(?:^|::)Mat(?:rix)?(?:(\d)[fd]?|<\w+,(\d+),(\d+)>|X[fd]?)::(
 def bare_name(name: str) -> str:
     """A name of a function without namespace, module and the suffix f of C."""
     bare = PREFIX.sub("", name, count=1)
-    return bare[:-1] if bare.endswith("f") and bare[:-1] in SCALAR else bare
+    return bare[:-1] if bare.endswith("f") and bare[:-1] in NUMBERS else bare
 
 
 def names_view(name: str) -> bool:
@@ -110,8 +102,7 @@ def is_known(name: str, language: str) -> bool:
 
 def does_take(name: str, count: int, language: str) -> bool:
     """True for a known function that only reads so many arguments; one more of numpy is where it writes."""
-    bare = bare_name(name)
-    most = max((n for known, n in KNOWN if known == bare), default=2)
+    most = max((n for known, n in KNOWN if known == bare_name(name)), default=2)
     return is_known(name, language) and (language != "python" or count <= most)
 
 
@@ -143,17 +134,36 @@ def may_change(unit: Unit, function: Function, owner: str) -> bool:
     return head_of(owner) in {*map(head_of, names)}.union(*hidden)
 
 
+def may_return_view(function: Function) -> bool:
+    """True for a function of Python that may return what it was given, or a part of it."""
+    fresh = {"op", "minus", "number", "compare", "call", "refused"}
+    parts = [*walk(*function.body)]
+    values = {p.parts[0].parts[0]: p.parts[2] for p in parts if p.kind == "assign" and p.parts[0].kind == "name"}
+    for part in (p.parts[0] for p in parts if p.kind == "return"):
+        value = values.get(part.parts[0]) if part is not None and part.kind == "name" else part
+        if part is not None and (value is None or value.kind not in fresh):
+            return True
+    return False
+
+
+def is_view(unit: Unit, value: Part) -> bool:
+    """True for an expression of Python whose value may share cells with an array in it."""
+    if value.kind != "call":
+        return value.kind in ("index", "method", "choose")
+    return names_view(value.parts[0]) or any(map(may_return_view, unit.functions.get(value.parts[0], [])))
+
+
 def extreme_of(name: str, language: str) -> str:
     """``>=`` for a name of the larger of two numbers, ``<=`` for one of the smaller; else nothing."""
     return "" if not re.fullmatch(EXTREMES[language], name) else ">=" if "max" in name else "<="
 
 
-def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Value:
+def call_known(name: str, values: Sequence[Value], unit: Unit) -> Value:
     """The value of a known function."""
     if (unread := find_unread(*values)) is not None:
         return unread
     if unit.language == "cpp" and name == "abs" and ABS_OF_REALS.search(unit.source) is None:
-        raise Unreadable(line, "abs, which cuts to an integer beside <cmath>; std::abs does not")
+        raise Unreadable("abs, which cuts to an integer beside <cmath>; std::abs does not")
     values = [Array(value.shape, value.cells) if isinstance(value, List) else value for value in values]
     if (known := KNOWN.get((bare_name(name), len(values)))) is not None:
         return known(unit, *values)
@@ -162,7 +172,7 @@ def call_known(name: str, values: Sequence[Value], unit: Unit, line: int) -> Val
         sides = sizes_of(unit, *values) or tuple(int(side) for side in named if side)
         if len(sides) == 2:
             return identity_array(*sides) if found[4] == "Identity" else filled(sides, 0)
-    raise Unreadable(line, f"the function {name} with {len(values)} arguments")
+    raise Unreadable(f"the function {name} with {len(values)} arguments")
 
 
 # Each takes the source, and the values to which it is applied; a method is applied to what stands before it.
@@ -190,12 +200,8 @@ def turn(factor: Fraction) -> Known:
 
 
 def absolute(unit: Unit, value: Value) -> Value:
-    forbid(unit.language == "c", 0, "abs, which cuts to an integer in C; fabs does not")
+    forbid(unit.language == "c", "abs, which cuts to an integer in C; fabs does not")
     return whole_or_real(lambda x: build_call("abs", x))(unit, value)
-
-
-def same(unit: Unit, value: Value) -> Value:
-    return value
 
 
 def filled(shape: tuple[int, ...], number: int) -> Array:
@@ -206,33 +212,30 @@ def filled(shape: tuple[int, ...], number: int) -> Array:
 def sizes_of(unit: Unit, *values: Value) -> tuple[int, ...]:
     """The shape that arguments give: numbers, or a tuple of them."""
     numbers = [constant_of(cell) for value in values for cell in cells_of(value)]
-    forbid(any(n is None or n.denominator != 1 for n in numbers), 0, "a size that is no constant")
+    forbid(any(n is None or n.denominator != 1 for n in numbers), "a size that is no constant")
     sizes = tuple(int(n) for n in numbers if n is not None)
     return sizes * 2 if unit.language == "matlab" and len(sizes) == 1 else sizes
 
 
-def require(value: Value, dimension: int, what: str) -> Array:
-    """An array of so many sizes."""
-    if not isinstance(value, Array) or len(value.shape) != dimension:
-        raise Unreadable(0, f"{what} of what is no {'vector' if dimension == 1 else 'matrix'}")
-    return value
-
-
 def make_diagonal(unit: Unit, value: Value) -> Value:
-    cells = require(value, 1, "diag").cells
-    whole = all(isinstance(cell, Scalar) and cell.number == "int" for cell in cells)
-    zero = Scalar(build_number(0), "int" if whole else "real")
-    return make_array((len(cells),) * 2, lambda i, j: cells[i] if i == j else zero)
+    array = demand(value, Array, why := "diag of what is no vector")
+    forbid(len(array.shape) != 1, why)
+    zero = Scalar(ZERO, "int" if all(isinstance(c, Scalar) and c.number == "int" for c in array.cells) else "real")
+    return make_array(array.shape * 2, lambda i, j: array.cells[i] if i == j else zero)
 
 
 def make_outer(unit: Unit, a: Value, b: Value) -> Value:
-    if not (isinstance(a, Array) and isinstance(b, Array)):
-        raise Unreadable(0, "outer of what are no vectors")
-    return Array((len(a.cells), len(b.cells)), tuple(map_cell(multiply, x, y) for x in a.cells for y in b.cells))
+    left, right = (demand(value, Array, "outer of what are no vectors").cells for value in (a, b))
+    return Array((len(left), len(right)), tuple(map_cell(multiply, x, y) for x in left for y in right))
 
 
 def norm_of(unit: Unit, value: Value) -> Value:
-    forbid(is_matrix(value), 0, "the norm of a matrix")
+    forbid(is_matrix(value), "the norm of a matrix")
+    return length_of(value)
+
+
+def length_of(value: Value) -> Value:
+    """The root of the sum of the squares of all cells."""
     return map_cells(lambda x: build_call("sqrt", x), square_sum(value))
 
 
@@ -245,61 +248,53 @@ def dot_of(unit: Unit, a: Value, b: Value) -> Value:
     """The product of two vectors; of numpy's matrices, their product."""
     if unit.language == "python":
         return matrix_product(a, b)
-    if not (isinstance(a, Array) and isinstance(b, Array)):
-        raise Unreadable(0, "a dot product of what are no vectors")
-    if len(a.cells) != len(b.cells) or is_matrix(a) or is_matrix(b):
-        raise Unreadable(0, "a dot product of different sizes, or of matrices")
-    return matrix_product(*(Array((len(v.cells),), v.cells) for v in (a, b)))
+    left, right = (demand(value, Array, "a dot product of what are no vectors").cells for value in (a, b))
+    forbid(len(left) != len(right) or is_matrix(a) or is_matrix(b), "a dot product of different sizes, or of matrices")
+    return matrix_product(*(Array((len(cells),), cells) for cells in (left, right)))
 
 
 def normalize(unit: Unit, value: Value) -> Value:
     """A vector over its length."""
-    return map_cells(divide, value, map_cells(lambda x: build_call("sqrt", x), square_sum(value)))
+    return map_cells(divide, value, length_of(value))
 
 
 def diagonal_of(unit: Unit, value: Value) -> Array:
-    matrix = require(value, 2, "the diagonal")
+    matrix = demand(value, Array, why := "the diagonal of what is no matrix")
+    forbid(len(matrix.shape) != 2, why)
     return Array((min(matrix.shape),), tuple(matrix.at(i, i) for i in range(min(matrix.shape))))
 
 
-def trace_of(unit: Unit, value: Value) -> Value:
-    return map_cell(lambda *trees: total(list(trees)), *diagonal_of(unit, value).cells)
-
-
 def determine(unit: Unit, value: Value) -> Value:
-    n = value.shape[0] if isinstance(value, Array) else 0
-    if not isinstance(value, Array) or value.shape != (n, n) or n > LARGEST_INVERSE:
-        raise Unreadable(0, "the determinant of what is no small square matrix")
-    return map_cell(lambda *trees: determinant([list(trees[k * n : k * n + n]) for k in range(n)]), *value.cells)
+    array = demand(value, Array, why := "the determinant of what is no small square matrix")
+    forbid(array.shape != array.shape[:1] * 2 or (n := array.shape[0]) > LARGEST_INVERSE, why)
+    return map_cell(lambda *trees: determinant([list(trees[k * n : k * n + n]) for k in range(n)]), *array.cells)
 
 
 def sum_of(unit: Unit, value: Value) -> Value:
     """The sum of all entries; of a matrix MATLAB sums the columns."""
-    if not isinstance(value, Array) or (unit.language == "matlab" and is_matrix(value)):
-        raise Unreadable(0, "the sum of what is no vector")
-    return map_cell(lambda *trees: total(list(trees)), *value.cells)
+    array = demand(value, Array, why := "the sum of what is no vector")
+    forbid(unit.language == "matlab" and is_matrix(array), why)
+    return map_cell(total, *array.cells)
 
 
 def make_matrix(unit: Unit, *values: Value) -> Value:
     """The entries row by row, behind the sizes."""
     *sizes, entries = values
     shape = sizes_of(unit, *sizes)
-    if not isinstance(entries, Array) or len(entries.shape) != 1 or math.prod(shape) != len(entries.cells):
-        raise Unreadable(0, "entries that do not fit the sizes")
-    return Array(shape, entries.cells)
+    array = demand(entries, Array, why := "entries that do not fit the sizes")
+    forbid(array.shape != (math.prod(shape),), why)
+    return Array(shape, array.cells)
 
 
 def make_quaternion(unit: Unit, *values: Value) -> Value:
     """From w, i, j and k, or from w and the vector."""
     w, *cells = (cell for value in values for cell in cells_of(value))
-    forbid(len(cells) != 3, 0, "a quaternion of other than four numbers")
+    forbid(len(cells) != 3, "a quaternion of other than four numbers")
     return Quaternion((4,), (*cells, w))
 
 
 def require_quaternion(unit: Unit, value: Value) -> Quaternion:
-    if not isinstance(value, Quaternion):
-        raise Unreadable(0, "an array where a quaternion is needed")
-    return value
+    return demand(value, Quaternion, "an array where a quaternion is needed")
 
 
 def conjugate(unit: Unit, value: Value) -> Value:
@@ -322,85 +317,78 @@ def rotation_of(unit: Unit, value: Value) -> Value:
     return transpose(Array((3, 3), tuple(cells)), True)
 
 
-def as_another(unit: Unit, value: Value) -> Value:
-    """A number or a vector in another type; a matrix of nalgebra takes nested arrays as its columns."""
-    if isinstance(value, Array) and len(value.shape) != 1:
-        raise Unreadable(0, "a matrix made of another, which nalgebra may read by columns")
-    return value
-
-
 def transposed(unit: Unit, value: Value) -> Value:
     return transpose(value, unit.rules.matrix)
 
 
-#: Functions of numbers by name and number of arguments: with others they mean something else.
-NUMBERS: dict[tuple[str, int], Known] = {
-    **{(name, 1): plain(meaning) for name, meaning in PLAIN.items()}, ("abs", 1): absolute,
-    ("pow", 2): cellwise(raise_to), ("atan2", 2): plain("atan2"),
-    ("hypot", 2): cellwise(lambda x, y: build_call("sqrt", add(raise_to(x, TWICE), raise_to(y, TWICE)))),
-    ("expm1", 1): cellwise(lambda x: add(build_call("exp", x), minus(ONE))),
-    ("log1p", 1): cellwise(lambda x: build_call("log", add(ONE, x))),
-}  # fmt: skip
-#: Functions of arrays.
-ARRAYS: dict[tuple[str, int], Known] = {
-    **dict.fromkeys((("eye", 1), ("eye", 2), ("identity", 1)),
-                    lambda unit, *values: identity_array(*(sizes_of(unit, *values) * 2)[:2])),
-    **dict.fromkeys((("zeros", 1), ("zeros", 2)), lambda unit, *values: filled(sizes_of(unit, *values), 0)),
-    **dict.fromkeys((("ones", 1), ("ones", 2)), lambda unit, *values: filled(sizes_of(unit, *values), 1)),
-    **dict.fromkeys((("array", 1), ("asarray", 1), ("copy", 1)), same), ("transpose", 1): transposed,
-    **dict.fromkeys((("norm", 1), ("linalg.norm", 1)), norm_of), ("diag", 1): make_diagonal, ("outer", 2): make_outer,
-    ("cross", 2): lambda unit, a, b: cross_product(a, b), ("dot", 2): dot_of,
-    ("matmul", 2): lambda unit, a, b: operate(unit, "@", a, b, 0),
-    **dict.fromkeys((("inv", 1), ("linalg.inv", 1)), lambda unit, value: invert(value)),
-    ("linalg.solve", 2): lambda unit, a, b: matrix_product(invert(a), b), ("trace", 1): trace_of, ("sum", 1): sum_of,
-    **dict.fromkeys((("det", 1), ("linalg.det", 1)), determine),
-}  # fmt: skip
-#: Functions that only numpy has, and degrees.
-OF_NUMPY: dict[tuple[str, int], Known] = {
-    **{(name, 1): plain(meaning) for name, meaning in NUMPY.items()}, ("absolute", 1): absolute,
-    ("square", 1): whole_or_real(lambda x: raise_to(x, TWICE)),
-    ("power", 2): whole_or_real(raise_to), ("arctan2", 2): plain("atan2"),
-}  # fmt: skip
-OF_ANGLES: dict[tuple[str, int], Known] = {(name, 1): turn(factor) for name, factor in ANGLES.items()}
-#: Constructors of nalgebra and Eigen; the reader of Rust writes the sizes of a type before the entries.
-NALGEBRA: dict[tuple[str, int], Known] = {
-    ("Matrix::new", 2): make_matrix, ("Matrix::new", 3): make_matrix, ("Quaternion::new", 4): make_quaternion,
-    ("Quaternion::from_parts", 2): make_quaternion, ("Quaternion::new_unchecked", 1): require_quaternion,
-    **dict.fromkeys(
-        (("Quaternion::from_quaternion", 1), ("Quaternion::new_normalize", 1)),
-        lambda unit, value: normalize(unit, require_quaternion(unit, value)),
-    ),
-    ("Convert::into", 1): as_another,
-    ("Quaternion::identity", 0): lambda unit: Quaternion((4,), (*[Scalar(ZERO)] * 3, Scalar(ONE))),
-}  # fmt: skip
-KNOWN = NUMBERS | ARRAYS | OF_NUMPY | OF_ANGLES | NALGEBRA
-SCALAR = frozenset(name for name, _ in NUMBERS)
-#: The names that each language has.
-NAMES: dict[str, frozenset[str]] = {
-    language: SCALAR.union(others, *({name for name, _ in table} for table in tables))
-    for language, others, tables in (
-        ("c", (), ()), ("cpp", ("cross",), (NALGEBRA,)), ("rust", ("zeros", "eye"), (NALGEBRA,)),
-        ("matlab", ("deg2rad", "rad2deg"), (ARRAYS,)), ("python", (), (ARRAYS, OF_NUMPY, OF_ANGLES)),
-    )
-}  # fmt: skip
-#: Methods by name and number of arguments.
-METHODS: dict[tuple[str, int], Known] = {
-    **dict.fromkeys((("transpose", 0), ("T", 0)), transposed), **dict.fromkeys((("copy", 0), ("eval", 0)), same),
-    **dict.fromkeys((("squaredNorm", 0), ("norm_squared", 0)), lambda unit, value: square_sum(value)),
-    **dict.fromkeys((("normalized", 0), ("normalize", 0), ("unit", 0)), normalize), ("norm", 0): norm_of,
-    ("dot", 1): dot_of, ("cross", 1): ARRAYS["cross", 2], ("conjugate", 0): conjugate, ("inverse", 0): invert_any,
-    ("toRotationMatrix", 0): rotation_of, 
-    **{(name, 0): lambda unit, value, n=n: Array((n,), require_quaternion(unit, value).cells[:n])
-       for name, n in (("coeffs", 4), ("vec", 3))},
-    ("trace", 0): trace_of, ("sum", 0): sum_of, ("diagonal", 0): diagonal_of, ("determinant", 0): determine,
-    ("asDiagonal", 0): make_diagonal, ("cwiseProduct", 1): lambda unit, a, b: map_cells(multiply, a, b),
-}  # fmt: skip
+def as_another(unit: Unit, value: Value) -> Value:
+    """A number or a vector in another type; a matrix of nalgebra takes nested arrays as its columns."""
+    is_matrix = isinstance(value, Array) and len(value.shape) != 1
+    forbid(is_matrix, "a matrix made of another, which nalgebra may read by columns")
+    return value
+
+
+PLAIN = "sin cos tan exp log sqrt asin acos atan sinh cosh tanh".split()
+ALL, ARRAYS, NALGEBRA, OTHERS = "c cpp python matlab rust", "python matlab", "cpp rust", "c cpp matlab rust"
+Row = tuple[str, tuple[int, ...], str, str, Known]
+#: Functions and methods: names; numbers of arguments, that on which a method is called among them; the languages that
+#: have it as a function, where it may stand with others for several numbers; those that have it as a method; meaning.
+TABLE: tuple[Row, ...] = (
+    *((name, (1,), ALL, "", plain(name)) for name in PLAIN),
+    ("fabs", (1,), ALL, "", plain("abs")), ("abs", (1,), ALL, "", absolute), ("absolute", (1,), "python", "", absolute),
+    ("pow", (2,), ALL, "", cellwise(raise_to)), ("power", (2,), "python", "", whole_or_real(raise_to)),
+    ("square", (1,), "python", "", whole_or_real(lambda x: raise_to(x, TWICE))),
+    ("atan2", (2,), ALL, "", plain("atan2")), ("arctan2", (2,), "python", "", plain("atan2")),
+    *((f"arc{name}", (1,), "python", "", plain(f"a{name}")) for name in ("sin", "cos", "tan")),
+    ("hypot", (2,), ALL, "",
+     cellwise(lambda x, y: build_call("sqrt", add(raise_to(x, TWICE), raise_to(y, TWICE))))),
+    ("expm1", (1,), ALL, "", cellwise(lambda x: add(build_call("exp", x), minus(ONE)))),
+    ("log1p", (1,), ALL, "", cellwise(lambda x: build_call("log", add(ONE, x)))),
+    ("deg2rad", (1,), ARRAYS, "", turn(Fraction(1, 180))), ("radians", (1,), "python", "", turn(Fraction(1, 180))),
+    ("rad2deg", (1,), ARRAYS, "", turn(Fraction(180))), ("degrees", (1,), "python", "", turn(Fraction(180))),
+    ("eye", (1, 2), f"{ARRAYS} rust", "", lambda unit, *values: identity_array(*(sizes_of(unit, *values) * 2)[:2])),
+    ("identity", (1,), ARRAYS, "", lambda unit, value: identity_array(*(sizes_of(unit, value) * 2)[:2])),
+    ("zeros", (1, 2), f"{ARRAYS} rust", "", lambda unit, *values: filled(sizes_of(unit, *values), 0)),
+    ("ones", (1, 2), ARRAYS, "", lambda unit, *values: filled(sizes_of(unit, *values), 1)),
+    ("array asarray", (1,), ARRAYS, "", lambda unit, value: value),
+    ("copy", (1,), ARRAYS, ALL, lambda unit, value: value), ("eval", (1,), "", OTHERS, lambda unit, value: value),
+    ("transpose", (1,), ARRAYS, ALL, transposed), ("T", (1,), "", ALL, transposed),
+    ("norm", (1,), ARRAYS, OTHERS, norm_of), ("linalg.norm", (1,), ARRAYS, "", norm_of),
+    ("squaredNorm norm_squared", (1,), "", OTHERS, lambda unit, value: square_sum(value)),
+    ("normalized unit", (1,), "", OTHERS, normalize), ("normalize", (1,), "", "c matlab rust", normalize),
+    ("diag", (1,), ARRAYS, "", make_diagonal), ("asDiagonal", (1,), "", OTHERS, make_diagonal),
+    ("diagonal", (1,), "", ALL, diagonal_of), ("outer", (2,), ARRAYS, "", make_outer),
+    ("cross", (2,), f"{ARRAYS} cpp", OTHERS, lambda unit, a, b: cross_product(a, b)),
+    ("dot", (2,), ARRAYS, ALL, dot_of), ("matmul", (2,), ARRAYS, "", lambda unit, a, b: operate(unit, "@", a, b)),
+    ("cwiseProduct", (2,), "", OTHERS, lambda unit, a, b: map_cells(multiply, a, b)),
+    ("inv linalg.inv", (1,), ARRAYS, "", lambda unit, value: invert(value)), ("inverse", (1,), "", OTHERS, invert_any),
+    ("linalg.solve", (2,), ARRAYS, "", lambda unit, a, b: matrix_product(invert(a), b)),
+    ("trace", (1,), ARRAYS, ALL, lambda unit, value: map_cell(total, *diagonal_of(unit, value).cells)),
+    ("sum", (1,), ARRAYS, ALL, sum_of), ("det linalg.det", (1,), ARRAYS, "", determine),
+    ("determinant", (1,), "", OTHERS, determine), ("conjugate", (1,), "", OTHERS, conjugate),
+    ("toRotationMatrix", (1,), "", OTHERS, rotation_of),
+    *((name, (1,), "", OTHERS, lambda unit, value, n=n: Array((n,), require_quaternion(unit, value).cells[:n]))
+      for name, n in (("coeffs", 4), ("vec", 3))),
+    # constructors of nalgebra and Eigen; the reader of Rust writes the sizes of a type before the entries
+    ("Matrix::new", (2, 3), NALGEBRA, "", make_matrix), ("Quaternion::new", (4,), NALGEBRA, "", make_quaternion),
+    ("Quaternion::from_parts", (2,), NALGEBRA, "", make_quaternion), ("Convert::into", (1,), NALGEBRA, "", as_another),
+    ("Quaternion::new_unchecked", (1,), NALGEBRA, "", require_quaternion),
+    ("Quaternion::from_quaternion Quaternion::new_normalize", (1,), NALGEBRA, "",
+     lambda unit, value: normalize(unit, require_quaternion(unit, value))),
+    ("Quaternion::identity", (0,), NALGEBRA, "",
+     lambda unit: Quaternion((4,), (*[Scalar(ZERO)] * 3, Scalar(ONE)))),
+)  # fmt: skip
+ROWS: list[Row] = [(name, *row) for names, *row in TABLE for name in names.split()]  # type: ignore[misc]
+KNOWN: dict[tuple[str, int], Known] = {(name, n): known for name, counts, *_, known in ROWS for n in counts}
+NAMES = {language: frozenset(row[0] for row in ROWS if language in row[2].split()) for language in ALL.split()}
+#: Functions of numbers, which all languages have.
+NUMBERS = frozenset(row[0] for row in ROWS if row[2] == ALL)
+#: Methods by name and number of arguments, with their languages.
+METHODS = {(name, n - 1): where for name, counts, _, where, _ in ROWS for n in counts if where}
 #: What changes its own vector or matrix in C++, and what gives the changed one.
 IN_PLACE = {"normalize": "normalized", "transposeInPlace": "transpose"}
 
 
 def is_method(name: str, count: int, language: str) -> bool:
     """True for a method that gives a value and writes nothing."""
-    of_numpy = name in ("T", "transpose", "copy", "dot", "sum", "trace", "diagonal")
-    is_there = of_numpy if language == "python" else language != "cpp" or name not in IN_PLACE
-    return (name, count) in METHODS and is_there
+    return language in METHODS.get((name, count), "").split()

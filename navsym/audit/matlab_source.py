@@ -7,23 +7,9 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules
-from navsym.audit.syntax import (
-    OPERATORS,
-    UNARY,
-    SourceReader,
-    descend,
-    field_of,
-    find_body,
-    line_of,
-    list_above,
-    named,
-    read_decimal,
-    sign_of,
-    text_of,
-)
+from navsym.audit.form import Argument, Part
+from navsym.audit.syntax import SourceReader, descend, field_of, find_body, list_above, named, sign_of, text_of
 
-RULES = Rules(first=1, matrix=True, entry=("{}({})", "{}({},{})"))
 POWERS = ("^", ".^")
 #: Commands that write no name.
 QUIET = ("format", "hold", "close", "clc", "more", "warning", "figure", "disp", "drawnow")
@@ -37,8 +23,8 @@ OTHERS: dict[str, tuple[str, ...]] = {"~=": ("compare", "!="), "&": ("both",), "
 class Reader(SourceReader):
     """Walks the syntax tree of MATLAB."""
 
-    UNARY = UNARY | {"~": "not"}
-    OPERATORS = OPERATORS | {sign: ("op", meaning) for sign, meaning in SIGNS.items()} | OTHERS
+    UNARY = SourceReader.UNARY | {"~": "not"}
+    OPERATORS = SourceReader.OPERATORS | {sign: ("op", meaning) for sign, meaning in SIGNS.items()} | OTHERS
 
     @staticmethod
     def find_value(node: Any) -> Any:
@@ -60,16 +46,14 @@ class Reader(SourceReader):
         inner = any(child.type == "function_definition" for child in descend(node) if child.id != node.id)
         if inner or "function_definition" in list_above(node):
             statements = (self.part("jump", node, "a function in another one, which share their names", ()),)
-        function = Function(name, line_of(node), arguments, statements, outputs)
-        self.unit.functions.setdefault(name, []).append(function)
+        self.define(node, name, arguments, statements, outputs)
 
     def read_statement(self, node: Any) -> tuple[Part, ...] | None:
         match node.type:
             case "assignment":
                 return (self.assignment(node),)
             case "if_statement":
-                clauses = [c for c in named(node) if c.type in ("elseif_clause", "else_clause")]
-                return (self.chain(node, clauses),)
+                return (self.chain(node, [c for c in named(node) if c.type in ("elseif_clause", "else_clause")]),)
             case "switch_statement":
                 return self.switch(node)
             case "for_statement":
@@ -91,8 +75,7 @@ class Reader(SourceReader):
     def assignment(self, node: Any) -> Part:
         left, right = field_of(node, "left"), field_of(node, "right")
         if left.type == "multioutput_variable":
-            targets = tuple(map(self.expression, named(left)))
-            return self.part("several", node, targets, self.expression(right))
+            return self.part("several", node, self.several(named(left)), self.expression(right))
         if left.type not in ("identifier", "function_call", "field_expression"):
             return self.unread(node, "several names assigned at once")
         if left.type == "function_call" and right.type == "matrix" and not named(right):
@@ -120,8 +103,7 @@ class Reader(SourceReader):
         parts = named(iterator) if iterator is not None else []
         if len(parts) != 2 or parts[1].type != "range":
             return self.unread(node, "a loop over something else than a range")
-        ends = [self.expression(child) for child in named(parts[1])]
-        one = self.part("number", node, 1, "int")
+        ends, one = self.several(named(parts[1])), self.whole(node, 1)
         step = ends[1] if len(ends) == 3 else one
         if step.kind not in ("number", "minus"):
             return self.unread(node, "a loop with a step that is no number")
@@ -131,23 +113,16 @@ class Reader(SourceReader):
     def read_expression(self, node: Any) -> Part | None:
         match node.type:
             case "number":
-                value = read_decimal(text_of(node))
-                return self.literal(node, text_of(node), value is not None and value.denominator != 1)
+                number = self.literal(node, text_of(node), True)
+                is_whole = number.kind == "number" and number.parts[0].denominator == 1
+                return self.literal(node, text_of(node), False) if is_whole else number
             case "binary_operator":
                 sign = whole_sign(node)
                 return self.power(node) if sign in POWERS else self.operate(node, sign, *named(node))
             case "postfix_operator":
                 return self.part("method", node, self.expression(field_of(node, "operand")), "T", ())
-            case "matrix":
-                rows = [r for r in named(node) if r.type == "row"]
-                return self.part("list", node, tuple(self.row(r) for r in rows))
             case "function_call":
                 return self.call(node)
-            case "field_expression":
-                name = "".join(text_of(node).split())
-                if not name.replace(".", "").replace("_", "").isalnum():
-                    return self.refuse(node, "a member of an expression")
-                return self.part("name", node, name)
         return None
 
     def power(self, node: Any) -> Part:
@@ -165,9 +140,6 @@ class Reader(SourceReader):
             value = self.part("op", node, SIGNS[sign], value, self.expression(operand))
         return self.part("minus", node, value) if negative else value
 
-    def row(self, node: Any) -> Part:
-        return self.part("list", node, tuple(map(self.expression, named(node))))
-
     def call(self, node: Any) -> Part:
         """A function, or entries ``M(i, j)``, which look alike."""
         name = field_of(node, "name")
@@ -182,7 +154,7 @@ class Reader(SourceReader):
         if node.type == "spread_operator":
             return self.part("slice", node, None, None)
         if node.type == "range":
-            ends = [self.expression(child) for child in named(node)]
+            ends = self.several(named(node))
             return self.part("slice", node, *ends) if len(ends) == 2 else self.refuse(node, "a range with a step")
         return self.expression(node)
 

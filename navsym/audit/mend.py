@@ -20,18 +20,7 @@ from navsym.audit.values import Array, Cell, Scalar, Unread, Unreadable, Value, 
 from navsym.claims.verdict import PROVED
 from navsym.core.errors import NavsymError
 from navsym.language.printer import print_tree
-from navsym.language.tree import (
-    MINUS_ONE,
-    NUMBER,
-    POWER,
-    SYMBOL,
-    Tree,
-    build,
-    build_call,
-    build_symbol,
-    fold_tree,
-    list_names,
-)
+from navsym.language.tree import MINUS_ONE, NUMBER, POWER, SYMBOL, Tree, build, build_symbol, fold_tree, list_names
 from navsym.prove.rooms.goals import player
 
 PER_ENTRY = 4000  # changes that are tried, of a short function
@@ -48,8 +37,6 @@ SWAPS = {
     for name in family
 }
 NUMBERS = ("0", "1", "2", "3", "4")
-ROOTS = {"c": "sqrt({})", "cpp": "sqrt({})", "python": "np.sqrt({})", "matlab": "sqrt({})", "rust": "{}.sqrt()"}
-TRANSPOSED = {"rust": ".transpose()", "cpp": ".transpose()", "python": ".T", "matlab": "'"}
 
 #: First byte, byte behind the last, and the text in between.
 Edit = tuple[int, int, str]
@@ -493,7 +480,7 @@ def edit_indices(place: Place, parts: list[Part]) -> Iterator[Edit]:
 
 def edit_calls(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """sin for cos, and the like; a root less, or more."""
-    root, functions = ROOTS[place.source.unit.language], place.source.unit.functions
+    root, functions = place.source.unit.rules.root, place.source.unit.functions
     for part in parts:
         known, given = part.parts[:2] if part.kind == "call" else ("", ())
         own = (n for n in sorted(functions) if n != known and len(functions[n][0].arguments) == len(given))
@@ -537,7 +524,6 @@ def edit_factors(place: Place, parts: list[Part]) -> Iterator[Edit]:
 
 def edit_groups(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """Parentheses less, or around other operands."""
-    text = place.source.unit.text
     for part in parts:
         if part.kind != "op":
             continue
@@ -548,7 +534,7 @@ def edit_groups(place: Place, parts: list[Part]) -> Iterator[Edit]:
             if sign not in "+-":  # (x + y)*z
                 low, high = find_parentheses(place.source.unit.source, inner)
                 if low < inner.span[0]:
-                    yield low, high, text(inner)
+                    yield low, high, place.source.unit.text(inner)
                 continue
             side = inner.parts[2] if inner is a else inner.parts[1]
             low, high = sorted((side.span, other.span))[0][0], max(side.span[1], other.span[1])
@@ -590,8 +576,8 @@ def add_names(place: Place, parts: list[Part]) -> Iterator[Edit]:
 
 def add_products(place: Place, _: list[Part]) -> Iterator[Edit]:
     """A matrix, or its transpose, before the whole right side."""
-    language, text = place.source.unit.language, place.source.unit.text(place.part)
-    mark, product = TRANSPOSED.get(language), "@" if language == "python" else "*"
+    unit, text = place.source.unit, place.source.unit.text(place.part)
+    mark, product = unit.rules.turned, "@" if unit.language == "python" else "*"
     shapes = {name: variable.shape for name, variable in place.source.read().cases[0].variables.items()}
     for name in [name for name, shape in shapes.items() if mark and shape and len(shape) == 2]:
         yield *place.part.span, f"{name} {product} ({text})"
@@ -600,7 +586,7 @@ def add_products(place: Place, _: list[Part]) -> Iterator[Edit]:
 
 def edit_shapes(place: Place, parts: list[Part]) -> Iterator[Edit]:
     """A transposition more or less, and factors exchanged."""
-    mark = TRANSPOSED.get(place.source.unit.language)
+    mark = place.source.unit.rules.turned
     for part in parts:
         if mark and part.kind == "name":
             yield part.span[1], part.span[1], mark
@@ -622,9 +608,8 @@ def rewrite(source: Source, expected: Tree) -> Iterator[str]:
     def step(part: Tree, inner: list[Tree]) -> Tree:
         if not inner:
             return part
-        if part.head == POWER and part.args[1] is not MINUS_ONE and source.unit.language in ("c", "cpp"):
-            return build_call("pow", *inner)
-        return build(part.head, tuple(inner))
+        is_call = part.head == POWER and part.args[1] is not MINUS_ONE and source.unit.language in ("c", "cpp")
+        return build("pow" if is_call else part.head, tuple(inner))
 
     text, language = print_tree(fold_tree(expected, step)), source.unit.language
     if language == "python":

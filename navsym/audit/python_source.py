@@ -6,11 +6,10 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules, names_in, walk
-from navsym.audit.functions import HARMLESS, PURE, SCALAR, bare_name, is_known, is_method, names_view
-from navsym.audit.syntax import OPERATORS, SourceReader, descend, field_of, line_of, list_above, named, text_of
+from navsym.audit.form import Argument, Part, names_in, walk
+from navsym.audit.functions import HARMLESS, NUMBERS, PURE, bare_name, is_known, is_method, names_view
+from navsym.audit.syntax import OPERATORS, SourceReader, ascend, descend, field_of, list_above, named, text_of
 
-RULES = Rules(entry=("{}[{}]", "{}[{}, {}]"))
 #: Decorators that leave a function what it is.
 PLAIN_DECORATORS = re.compile(
     r"@((abc\.)?(abstractmethod|staticmethod|classmethod|property)|((nb|numba)\.)?(jit|njit)(\(.*\))?"
@@ -128,7 +127,7 @@ class Reader(SourceReader):
         if decorator is not None:
             body = (self.part("jump", decorator, "a decorator that may change the function", ()),)
         arguments = arguments[1:] if arguments and arguments[0].name == "self" else arguments
-        self.unit.functions.setdefault(name, []).append(Function(name, line_of(node), tuple(arguments), body))
+        self.define(node, name, arguments, body)
 
     def read_statement(self, node: Any) -> tuple[Part, ...] | None:
         match node.type:
@@ -155,9 +154,8 @@ class Reader(SourceReader):
         is_range = source.kind == "call" and source.parts[0] == "range" and 1 <= len(source.parts[1]) <= 3
         if name.type != "identifier" or not is_range:
             return self.unread(node, "a loop over something else than a range")
-        given = list(source.parts[1])
-        zero, one = self.part("number", node, 0, "int"), self.part("number", node, 1, "int")
-        start, stop, step = [[zero, *given, one], [*given, one], given][len(given) - 1]
+        given, zero, one = source.parts[1], self.whole(node, 0), self.whole(node, 1)
+        start, stop, step = [(zero, *given, one), (*given, one), given][len(given) - 1]
         return self.part("for", node, text_of(name), start, stop, step, self.block(field_of(node, "body")))
 
     def effect(self, node: Any) -> tuple[Part, ...]:
@@ -167,7 +165,7 @@ class Reader(SourceReader):
                 return self.assignment(node)
             case "augmented_assignment":
                 sign = text_of(field_of(node, "operator"))[:-1]
-                left, right = (self.expression(field_of(node, side)) for side in ("left", "right"))
+                left, right = self.fields(node, "left", "right")
                 return (self.part("assign", node, left, sign, right),)
             case "call":
                 return (self.part("do", node, self.expression(node)),)
@@ -195,8 +193,8 @@ class Reader(SourceReader):
         if len(targets) == 1:
             return (*first, *(self.part("assign", node, self.expression(target), "", value) for target in chain))
         if value.kind == "name":  # a, b = x
-            items = [Part("index", value.line, (value, (self.part("number", node, k, "int"),)), value.span)
-                     for k in range(len(targets))]  # fmt: skip
+            spots = ((self.whole(node, k),) for k in range(len(targets)))
+            items = [Part("index", value.line, (value, spot), value.span) for spot in spots]
         elif value.kind == "list" and len(value.parts[0]) == len(targets):
             items = [self.part("name", right, f"several@{node.start_byte}.{k}") for k in range(len(targets))]
             first = tuple(self.part("assign", node, n, "", x) for n, x in zip(items, value.parts[0], strict=True))
@@ -212,27 +210,25 @@ class Reader(SourceReader):
             case "conditional_expression":
                 then, test, other = named(node)
                 return self.part("choose", node, *map(self.expression, (test, then, other)))
-            case "list" | "tuple" | "expression_list":
-                return self.part("list", node, tuple(map(self.expression, named(node))))
             case "subscript":
                 base = self.expression(field_of(node, "value"))
-                places = tuple(self.expression(child) for child in node.children_by_field_name("subscript"))
+                places = self.several(node.children_by_field_name("subscript"))
                 if len(places) == 1 and places[0].kind == "list":
                     places = places[0].parts[0]
                 return self.part("index", node, base, places)
             case "slice":
                 return self.slice(node)
-            case "attribute":
-                return self.attribute(node)
+            case "attribute" if text_of(field_of(node, "attribute")) == "T":
+                return self.part("method", node, self.expression(field_of(node, "object")), "T", ())
             case "call":
                 return self.call(node)
         return None
 
     def operate_alone(self, node: Any, sign: str, operand: Any) -> Part:
         """``+v`` is a copy of an array, and no other name of it."""
-        zero = self.part("number", node, 0, "int")
-        copy = self.part("op", node, "+", zero, self.expression(operand)) if sign == "+" else None
-        return copy or SourceReader.operate_alone(self, node, sign, operand)
+        if sign == "+":
+            return self.part("op", node, "+", self.whole(node, 0), self.expression(operand))
+        return SourceReader.operate_alone(self, node, sign, operand)
 
     def slice(self, node: Any) -> Part:
         colons = [child.start_byte for child in node.children if child.type == ":"]
@@ -240,15 +236,6 @@ class Reader(SourceReader):
             return self.refuse(node, "a slice with a step")
         ends = {child.start_byte > colons[0]: self.expression(child) for child in named(node)}
         return self.part("slice", node, ends.get(False), ends.get(True))
-
-    def attribute(self, node: Any) -> Part:
-        """``R.T``, or a member as a name."""
-        name = text_of(field_of(node, "attribute"))
-        if name == "T":
-            return self.part("method", node, self.expression(field_of(node, "object")), "T", ())
-        name = "".join(text_of(node).split())
-        is_name = re.fullmatch(r"[^\W\d][\w.]*", name) is not None
-        return self.part("name", node, name) if is_name else self.refuse(node, "a member of an expression")
 
     def call(self, node: Any) -> Part:
         """A function or a method; keywords other than dtype=float are refused."""
@@ -287,11 +274,9 @@ class Reader(SourceReader):
 
     def has_method(self, node: Any, method: str) -> bool:
         """True where the class around a call defines a method, or there is no class around it."""
-        while node is not None and node.type != "class_definition":
-            node = node.parent
-        inner = named(field_of(node, "body")) if node is not None else []
-        names = {text_of(field_of(field_of(n, "definition") or n, "name")) for n in inner}
-        return method in names or (node is None and (self.shift < 0 or method in self.free | self.methods))
+        owner = next((above for above in ascend(node) if above.type == "class_definition"), None)
+        names = {text_of(field_of(field_of(n, "definition") or n, "name")) for n in named(field_of(owner, "body"))}
+        return method in names or (owner is None and (self.shift < 0 or method in self.free | self.methods))
 
 
 def may_be_given(node: Any) -> bool:
@@ -320,7 +305,7 @@ def may_be_array(value: Part) -> bool:
     """True for a value that may be an array, and not only a number."""
     parts = [*walk(value)]
     calls = {bare_name(p.parts[0]) for p in parts if p.kind == "call"}
-    return value.kind in ("name", "index") or any(p.kind in ("list", "method") for p in parts) or not calls <= SCALAR
+    return value.kind in ("name", "index") or any(p.kind in ("list", "method") for p in parts) or not calls <= NUMBERS
 
 
 def name_parameter(node: Any) -> str:

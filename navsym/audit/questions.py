@@ -35,6 +35,7 @@ from navsym.audit.values import (
     square_sum,
     transpose,
 )
+from navsym.core.choice import one_of
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, ShapeError, UnknownSymbolError
 from navsym.language.expression import read_tree
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
@@ -47,6 +48,7 @@ from navsym.prove.claimfile import read_claims, require_numbers
 MOST_CASES = 64
 MOST_ENTRIES = 4000
 INDEX = re.compile(r"(.*?)((?:\s*[\[(][\d\s,]+[\])])*)", re.DOTALL)
+Again = Callable[[Case], tuple[Cell, Cell]]
 MATRIX_KEYS = ("F", "G", "H", "Q", "R")
 
 #: What is said about a question in a workspace, as about a claim.
@@ -92,7 +94,7 @@ class Entry:
     expected: Cell
     conditions: tuple[Condition, ...]
     source: Source | None = None
-    again: Callable[[Case], tuple[Cell, Cell]] | None = None
+    again: Again | None = None
     asking: Asking | None = None
     key: str = ""
 
@@ -148,10 +150,7 @@ def more_keys(kind: str) -> tuple[str, ...]:
 def read_senses(question: Question) -> None:
     """Refuse a sense that a kind of question does not have, or that lacks what it needs."""
     keys, where = question.keys, join_place(question.where, "senses")
-    noise = keys.get("noise", "any")
-    if noise not in ("any", "independent"):
-        message = f'expected "any" or "independent"; got {quote(noise)}; correct it'
-        raise ExpressionSyntaxError(message, where=join_place(question.where, "noise"))
+    one_of(keys.get("noise", "any"), ("any", "independent"), join_place(question.where, "noise"))
     if "order" in keys:
         place = join_place(question.where, "order")
         table = as_table(keys["order"], place)
@@ -169,10 +168,7 @@ def read_senses(question: Question) -> None:
     }
     known = [*needs][: 2 if "noise" not in more_keys(question.kind) else None]
     for sense in as_list(keys["senses"], where) if "senses" in keys else ():
-        if sense not in known:
-            message = f"expected one of {' '.join(known)}; got {quote(sense)}; correct it"
-            raise ExpressionSyntaxError(message, where=where)
-        if not needs[sense][0]:
+        if not needs[one_of(sense, known, where)][0]:
             raise DomainError(f"expected {needs[sense][1]} for the sense {sense}; got none; declare it", where=where)
 
 
@@ -349,13 +345,10 @@ class Asking:
             if upper and len(place) == 2 and place[0] > place[1] and isinstance(is_, Unset):
                 continue  # the lower half of a symmetric matrix, which the code leaves alone
             row = (place[0] + 1, place[1] + 1) if len(place) == 2 else (place[0] + 1, 1) if place else (1, 1)
-            again = self.repeat(key, number, should)
-            entries.append(Entry(row, is_, should, self.conditions, *again, self, key))
+            entries.append(Entry(row, is_, should, self.conditions, *self.repeat(key, number, should), self, key))
         return entries
 
-    def repeat(
-        self, key: str, number: int, expected: Cell
-    ) -> tuple[Source | None, Callable[[Case], tuple[Cell, Cell]] | None]:
+    def repeat(self, key: str, number: int, expected: Cell) -> tuple[Source | None, Again | None]:
         """How to find the same entry again when the code is read with a mend."""
         listed = flatten(self.question.keys.get(key))
         at = number if len(listed) > 1 else 0
@@ -502,8 +495,7 @@ def derivative(cell: Cell, symbol: Any) -> Cell:
 def require_inside(shape: Index, place: Sequence[int], where: str) -> None:
     """Raise ShapeError for a place outside an array."""
     if len(place) != len(shape) or any(not 0 <= i < n for i, n in zip(place, shape, strict=True)):
-        message = f"expected a place inside {list(shape)}; got {list(place)}; correct it"
-        raise ShapeError(message, where=where)
+        raise ShapeError(f"expected a place inside {list(shape)}; got {list(place)}; correct it", where=where)
 
 
 def read_variable(source: Source, variable: Variable, place: Index, where: str) -> Value:
@@ -552,9 +544,5 @@ def read_claim_side(reference: Any, folder: Path, where: str) -> list[list[str]]
 def read_model_matrices(path: Path) -> dict[str, list[list[str]]]:
     """F, and H, of a linear model file as rows of texts."""
     model = Model.load(path)
-    found = {"F": model.F, "H": model.H}
-    return {
-        key: [[to_text(matrix[i, j]) for j in range(matrix.shape[1])] for i in range(matrix.shape[0])]
-        for key, matrix in found.items()
-        if matrix is not None
-    }
+    found = {key: matrix for key, matrix in (("F", model.F), ("H", model.H)) if matrix is not None}
+    return {key: [[to_text(cell) for cell in row] for row in matrix.tolist()] for key, matrix in found.items()}

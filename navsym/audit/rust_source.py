@@ -6,20 +6,10 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import Argument, Function, Part, Rules, names_in
-from navsym.audit.syntax import (
-    SourceReader,
-    descend,
-    field_of,
-    identifiers_in,
-    line_of,
-    list_above,
-    named,
-    text_of,
-    whole_kind,
-)
+from navsym.audit.form import Argument, Part, names_in
+from navsym.audit.syntax import SourceReader, ascend, descend, field_of, identifiers_in, list_above, named, text_of
+from navsym.audit.values import whole_kind
 
-RULES = Rules(integer=True, matrix=True, entry=("{}[{}]", "{}[{}][{}]"))
 REAL = ("f32", "f64", "N", "T", "R", "Real", "Self")
 WHOLE = re.compile(r"[iu](8|16|32|64|128|size)|bool")
 VECTOR = re.compile(r"(?:\w+::)*(?:S?Vector(\d)(?:<\w+>)?|SVector<\w+,(\d+)>|Point([23])<\w+>)")
@@ -102,8 +92,7 @@ class Reader(SourceReader):
                 self.unit.constants.append(self.part("declare", node, *what, value, False))
             elif node.type == "field_declaration":  # of two structures that have it differently it stays unknown
                 name, known = f"self.{text_of(field_of(node, 'name'))}", type_of(text_of(field_of(node, "type")))
-                is_new = self.unit.members.get(name, known) == known
-                self.unit.members[name] = known if is_new else ("other", None)
+                self.unit.members[name] = known if self.unit.members.get(name, known) == known else ("other", None)
         self.unit.constants.sort(key=lambda statement: statement.span)
 
     def read_function(self, node: Any) -> None:
@@ -116,8 +105,7 @@ class Reader(SourceReader):
             number, shape = type_of(kind)
             label = text_of(field_of(child, "pattern")).removeprefix("mut ")
             arguments.append(Argument(label, number, self.sizes(child, shape), "&mut" in kind.replace(" ", "")))
-        function = Function(name, line_of(node), tuple(arguments), tuple(self.body(field_of(node, "body"))))
-        self.unit.functions.setdefault(name, []).append(function)
+        self.define(node, name, arguments, tuple(self.body(field_of(node, "body"))))
 
     def body(self, node: Any) -> list[Part]:
         """The statements of a function; an expression at its end is its value."""
@@ -153,7 +141,7 @@ class Reader(SourceReader):
             case "assignment_expression" if (moved := text_of(field_of(node, "left"))) in self.pointers:
                 return (self.part("moved", node, moved, "a reference that is set again", identifiers_in(node)),)
             case "assignment_expression" | "compound_assignment_expr" if text_of(field_of(node, "operator")) in SIGNS:
-                left, right = (self.expression(field_of(node, side)) for side in ("left", "right"))
+                left, right = self.fields(node, "left", "right")
                 return (self.part("assign", node, left, text_of(field_of(node, "operator"))[:-1], right),)
             case "if_expression":
                 return (self.branch(node, self.block),)
@@ -228,7 +216,7 @@ class Reader(SourceReader):
         if name.type != "identifier" or len(ends) != 2:
             return self.unread(node, "a loop over something else than a range")
         start, stop = map(self.expression, ends)
-        one = self.part("number", node, 1, "int")
+        one = self.whole(node, 1)
         if any(text_of(child) == "..=" for child in source.children):
             stop = self.part("op", source, "+", stop, one)
         return self.part("for", node, text_of(name), start, stop, one, self.block(field_of(node, "body")))
@@ -251,14 +239,11 @@ class Reader(SourceReader):
             case "index_expression":
                 base, place = named(node)
                 places = named(place) if place.type == "tuple_expression" else [place]
-                return self.part("index", node, self.expression(base), tuple(map(self.expression, places)))
-            case "field_expression":
-                if re.fullmatch(r"[A-Za-z_][\w.]*", text_of(node)):
-                    return self.part("name", node, text_of(node))
+                return self.part("index", node, self.expression(base), self.several(places))
             case "array_expression":
                 size = field_of(node, "length")
                 times = 1 if size is None else int(text_of(size)) if text_of(size).isdigit() else 0
-                items = tuple(self.expression(child) for child in named(node) if size is None or child.id != size.id)
+                items = self.several(child for child in named(node) if size is None or child.id != size.id)
                 return self.part("list", node, items * times) if 0 < times <= 64 else None
             case "type_cast_expression":
                 number, _ = type_of(text_of(field_of(node, "type")))
@@ -278,12 +263,12 @@ class Reader(SourceReader):
             return self.refuse(node, "a choice between more than two expressions")
         if test.type in ("let_condition", "let_chain"):
             return self.refuse(node, "a condition with a pattern")
-        return self.part("choose", node, *map(self.expression, (test, blocks[0][0], blocks[1][0])))
+        return self.part("choose", node, *self.several((test, blocks[0][0], blocks[1][0])))
 
     def call(self, node: Any) -> Part:
         """A function, a method of a number as a function, a constructor as a list."""
         function = field_of(node, "function")
-        arguments = tuple(map(self.expression, named(field_of(node, "arguments"))))
+        arguments = self.several(named(field_of(node, "arguments")))
         if function.type == "generic_function":
             function = field_of(function, "function")
         if function.type == "field_expression":
@@ -305,11 +290,10 @@ class Reader(SourceReader):
         if (shape := type_of(head)[1]) and last == "from_row_slice" and arguments and arguments[0].kind == "list":
             last, arguments = "new", arguments[0].parts[0]
         if shape and last == "new" and arguments:
-            sides = (self.part("number", node, n, "int") for n in shape)
+            sides = (self.whole(node, n) for n in shape)
             return self.part("call", node, "Matrix::new", (*sides, self.part("list", node, arguments)))
         if shape and last in ("zeros", "identity", "zero") and not arguments:
-            sizes = tuple(self.part("number", node, n, "int") for n in shape)
-            return self.part("call", node, "eye" if last == "identity" else "zeros", sizes)
+            return self.part("call", node, "eye" if last == "identity" else "zeros", self.sizes(node, shape))
         if head in ("f64", "f32") and last in NUMBERS:
             return self.part("call", node, NUMBERS[last] or last, arguments)
         return self.part("call", node, name, arguments)
@@ -323,12 +307,11 @@ class Reader(SourceReader):
 
     def method(self, node: Any, function: Any, arguments: tuple[Part, ...]) -> Part:
         base, name = self.expression(field_of(function, "value")), text_of(field_of(function, "field"))
-        if base.kind == "name" and base.parts[0] == "self" and not self.is_here(node, name, True):
+        is_own = base.kind == "name" and base.parts[0] == "self"
+        if is_own and not self.is_here(node, name, True):
             return self.refuse(node, f"the method {name}, which this file defines in another place")
-        if base.kind == "name" and base.parts[0] == "self":
-            return (
-                self.part("call", node, name, arguments) if not is_open(node) else self.refuse(node, f"{name}, {OPEN}")
-            )
+        if is_own:
+            return self.refuse(node, f"{name}, {OPEN}") if is_open(node) else self.part("call", node, name, arguments)
         if name in self.own or name in self.unit.functions:
             return self.refuse(node, f"the method {name} of this file on another value")
         if name in SAME and not arguments:
@@ -347,14 +330,10 @@ def is_open(node: Any) -> bool:
 
 def place_of(node: Any) -> tuple[tuple[str, ...], list[str]]:
     """The modules around a node, and the type and the trait around it."""
-    modules, owners = list[str](), list[str]()
-    while (node := node.parent) is not None:
-        if node.type == "mod_item":
-            modules.append(text_of(field_of(node, "name")))
-        elif node.type in ("impl_item", "trait_item"):
-            nodes = (field_of(node, key) for key in ("type", "trait", "name"))
-            owners += [re.split(r"[<\s]", text_of(n))[0] for n in nodes if n is not None]
-    return tuple(modules), owners
+    modules = tuple(text_of(field_of(above, "name")) for above in ascend(node) if above.type == "mod_item")
+    types = (above for above in ascend(node) if above.type in ("impl_item", "trait_item"))
+    nodes = (field_of(above, key) for above in types for key in ("type", "trait", "name"))
+    return modules, [re.split(r"[<\s]", text_of(n))[0] for n in nodes if n is not None]
 
 
 LOOPS = ("for_expression", "while_expression", "loop_expression", "match_expression", "block", "unsafe_block")

@@ -112,18 +112,14 @@ class Table:
             used = {*list_names(code, expected)}
             near = tuple(r for r in self.scope.relations if used & {*list_names(r)} and not reading.order)
             scope = replace(self.scope, ranges=own, relations=near, order=reading.order)
-            try:
-                answer = decide_entry(code, expected, scope, rounds)
-            except NavsymError as error:
-                answer = Decision(OPEN, why=error.message)
+            answer = decide_entry(code, expected, scope, rounds)
             if not answer.status.holds:
                 break
             certificates.append(answer.certificate)
             status = max(status, answer.status, key=(PROVED, CERTIFIED).index)
         status = status if answer.status.holds else answer.status
         whole = certificates[0] if len(certificates) == 1 else {"kind": "all", "of": certificates}
-        kept = whole if status.holds else None
-        self.decided[reading] = Decision(status, certificate=kept, why=reading.note)
+        self.decided[reading] = Decision(status, certificate=whole if status.holds else None, why=reading.note)
         return self.decided[reading]
 
 
@@ -150,11 +146,8 @@ def weaken(question: Question, entries: Sequence[Entry], decisions: list[Decisio
     for table, at, k in waiting:
         decisions[k] = admit(table, at, decisions[k], admitted)
     failed = [(table, at, k) for table, at, k in waiting if not decisions[k].status.holds]
-    if (
-        not failed
-        or not all(map(is_read, entries))
-        or any(sum(map(measure, table.pair(at))) > BRIEF for table, at, _ in failed)
-    ):
+    is_brief = all(sum(map(measure, table.pair(at))) <= BRIEF for table, at, _ in failed)
+    if not failed or not is_brief or not all(map(is_read, entries)):
         return
     for sense in SENSES[2:]:
         notes = dict[int, str]()
@@ -397,10 +390,5 @@ def show(table: Table, tree: Tree) -> str:
     return table.question.names.show(print_tree(tree))
 
 
-READERS: dict[str, Any] = {
-    "tangent": read_tangent,
-    "order": read_order,
-    "approximation": read_approximation,
-    "noise-sign": read_noise,
-    "renamed": read_renamed,
-}
+WEAKER = (read_tangent, read_order, read_approximation, read_noise, read_renamed)
+READERS: dict[str, Any] = dict(zip(SENSES[2:], WEAKER, strict=True))

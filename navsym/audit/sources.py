@@ -19,20 +19,7 @@ from navsym.audit.execute import read_function
 from navsym.audit.form import Argument, Function, Part, Unit, called_in, mentioned_in, names_in, spell_entry, walk
 from navsym.audit.names import Names, squeeze
 from navsym.audit.syntax import SIZE, read_decimal
-from navsym.audit.values import (
-    Array,
-    Index,
-    Scalar,
-    Value,
-    add,
-    cross_product,
-    identity_array,
-    map_cells,
-    matrix_product,
-    minus,
-    places_of,
-    transpose,
-)
+from navsym.audit.values import Array, Index, Scalar, places_of, relate_rotation
 from navsym.core.choice import one_of
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
 from navsym.language.expression import read_tree
@@ -80,12 +67,9 @@ class Source:
     def symbol(self, spelling: str) -> Tree:
         """The symbol of an input; of a symmetric matrix that of the upper half."""
         if self.mirrored is None:
-            self.mirrored = {
-                spell_entry(self.unit, name, (i, j)): spell_entry(self.unit, name, (j, i))
-                for name in self.symmetric
-                for i, j in places_of(self.shapes[name])
-                if i > j
-            }
+            lower = ((name, i, j) for name in self.symmetric for i, j in places_of(self.shapes[name]) if i > j)
+            unit = self.unit
+            self.mirrored = {spell_entry(unit, n, (i, j)): spell_entry(unit, n, (j, i)) for n, i, j in lower}
         return self.starts.get(spelling) or self.names.symbol(self.mirrored.get(spelling, spelling))
 
     def read(self, edits: Edits | None = None) -> Reading:
@@ -141,10 +125,8 @@ def load_unit(
 
 def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | None) -> Unit:
     """A source in the one form."""
-    module = load_reader(language)
-    rules = module.RULES_OF_CPP if language == "cpp" else module.RULES
-    unit = Unit(where, language, rules, data, defined=defined)
-    reader = module.Reader(unit)
+    unit = Unit(where, language, data, defined=defined)
+    reader = load_reader(language)(unit)
     reader.read_file(reader.parse(data))
     bodies = (f.body for several in unit.functions.values() for f in several) if language == "cpp" else ()
     for part in walk(*bodies):
@@ -157,13 +139,13 @@ def read_unit(data: bytes, where: str, language: str, defined: frozenset[str] | 
 
 def read_expression(text: str, unit: Unit) -> Part:
     """One expression in the language of a source."""
-    part: Part = load_reader(unit.language).Reader.read_text(text, unit)
+    part: Part = load_reader(unit.language).read_text(text, unit)
     return part
 
 
 def load_reader(language: str) -> Any:
-    """The module of a language: its ``Reader`` and its ``RULES``."""
-    return importlib.import_module(f"navsym.audit.{'c' if language == 'cpp' else language}_source")
+    """The reader of a language, whose grammar is loaded when it is first needed."""
+    return importlib.import_module(f"navsym.audit.{'c' if language == 'cpp' else language}_source").Reader
 
 
 def find_function(unit: Unit, name: str, where: str, line: int | None = None) -> Function:
@@ -186,10 +168,8 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
     """One ``[[code]]`` block; a line tells several functions of one name apart."""
     table = as_table(block, where)
     expect_keys(table, KEYS, where)
-    name, file, asked = (
-        as_text(require_key(table, key, where), join_place(where, key), "a name")
-        for key in ("name", "file", "function")
-    )
+    given = ((key, require_key(table, key, where)) for key in ("name", "file", "function"))
+    name, file, asked = (as_text(value, join_place(where, key), "a name") for key, value in given)
     if (language := table.get("language")) is not None:
         one_of(as_text(language, join_place(where, "language"), "a language"), LANGUAGES.values(), where)
     also, defined, ignored = (read_names(table, key, where) for key in ("also", "defined", "ignored"))
@@ -237,16 +217,6 @@ def is_rotation(declaration: Any, where: str) -> bool:
     if given is not False and (given is not True or declaration.get("matrix") != [3, 3]):
         raise ShapeError("expected matrix = [3, 3] and rotation = true; got something else; correct it", where=where)
     return bool(given)
-
-
-def relate_rotation(matrix: Array) -> tuple[Tree, ...]:
-    """What is zero of a rotation: C C' - E, C' C - E, and c_i x c_j - c_k for its rows."""
-    mirror = transpose(matrix, True)
-    rows, one = [matrix.row(i) for i in range(3)], identity_array(3, 3)
-    pairs: list[tuple[Value, Value]] = [(matrix_product(matrix, mirror), one), (matrix_product(mirror, matrix), one)]
-    pairs += [(cross_product(rows[i], rows[(i + 1) % 3]), rows[(i + 2) % 3]) for i in range(3)]
-    cells = [c for p in pairs for c in map_cells(lambda a, b: add(a, minus(b)), *p).cells]  # type: ignore[union-attr]
-    return tuple(dict.fromkeys(cell.tree for cell in cells if isinstance(cell, Scalar)))
 
 
 def read_names(table: Table, key: str, where: str) -> list[str] | None:
@@ -344,9 +314,7 @@ def read_symbols(table: Table, names: Names, where: str) -> tuple[dict[str, Inde
 
 def read_start(declaration: Table, where: str) -> bool:
     """True for an array that holds zeros or the identity at the beginning, as a mapping says."""
-    if "start" in declaration and declaration["start"] not in ("zero", "identity"):
-        message = f'expected "zero" or "identity"; got {quote(declaration["start"])}; correct it'
-        raise ExpressionSyntaxError(message, where=where)
+    one_of(declaration.get("start", "zero"), ("zero", "identity"), where)
     return "start" in declaration and bool({"matrix", "vector"} & {*declaration})
 
 
@@ -396,8 +364,7 @@ def take_lines(unit: Unit, function: Function, first: int, last: int, where: str
     for name, statement in declared.items():
         if statement not in links:
             arguments[name] = argument_of(statement)
-    used = mentioned_in(*near, *links)
-    kept = tuple(replace(a, shared=True) for a in arguments.values() if a.name in used)
+    kept = tuple(replace(arguments[name], shared=True) for name in arguments if name in mentioned_in(*near, *links))
     return Function(function.name, near[0].line, kept, (*links, *near))
 
 

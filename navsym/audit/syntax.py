@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from navsym.audit.form import Part, Unit
+from navsym.audit.form import Argument, Function, Part, Unit
 from navsym.core.errors import MissingEngineError, TooLargeError
 
 DEPTH = 200
 SIZE = 2_000_000
 NODES = 400_000
+DECIMAL = re.compile(r"(?=\.?\d)\d*\.?\d*(e[+-]?\d{1,3})?", re.ASCII | re.IGNORECASE)
 COMMENTS = ("comment", "line_continuation", "line_comment", "block_comment")
 
 
@@ -93,9 +95,15 @@ def descend(node: Any) -> Iterator[Any]:
         waiting.extend(current.children)
 
 
+def ascend(node: Any) -> Iterator[Any]:
+    """The nodes around a node, the nearest first."""
+    while (node := node.parent) is not None:
+        yield node
+
+
 def list_above(node: Any) -> list[str]:
     """The kinds of the nodes around a node, the nearest first."""
-    return [] if node.parent is None else [node.parent.type, *list_above(node.parent)]
+    return [above.type for above in ascend(node)]
 
 
 def identifiers_in(node: Any) -> tuple[str, ...]:
@@ -106,23 +114,7 @@ def identifiers_in(node: Any) -> tuple[str, ...]:
 
 def read_decimal(text: str) -> Fraction | None:
     """The exact value of decimal digits, with a point and an exponent of at most three digits; None for others."""
-    head, _, exponent = text.lower().partition("e")
-    plain = head.replace(".", "", 1)
-    if not (plain.isascii() and plain.isdigit()) or len(text) > 60:
-        return None
-    power = exponent.removeprefix("+").removeprefix("-")
-    if ("e" in text.lower()) != bool(power) or (power and not (power.isascii() and power.isdigit() and len(power) < 4)):
-        return None
-    return Fraction(text)
-
-
-def whole_kind(text: str) -> str:
-    """The name in LIMITS of a type of integers of C or Rust."""
-    bits = next((bits for mark, bits in (("8", 8), ("char", 8), ("16", 16), ("short", 16)) if mark in text), 0)
-    if text == "bool":
-        return "bool"
-    is_unsigned = text.startswith(("u", "size_t"))
-    return f"{'u' * is_unsigned}int{bits}" if bits else "unsigned" if is_unsigned else "int"
+    return Fraction(text) if len(text) <= 60 and DECIMAL.fullmatch(text) else None
 
 
 #: Where the order of statements is left, in any of the grammars.
@@ -235,8 +227,14 @@ class SourceReader:
                 return self.part("number", node, int(text_of(node).lower() == "true"), "int")
             case "identifier" | "field_identifier" | "qualified_identifier" | "this" | "self" | "end_keyword":
                 return self.part("name", node, text_of(node))
-            case "parenthesized_expression" | "parenthesis":
-                return self.inside(node)
+            case "list" | "tuple" | "expression_list" | "initializer_list" | "matrix" | "row":
+                return self.part("list", node, self.several(named(node)))
+            case "attribute" | "field_expression":
+                name = "".join(text_of(node).split())
+                is_name = re.fullmatch(r"[^\W\d][\w.]*", name) is not None
+                return self.part("name", node, name) if is_name else self.refuse(node, "a member of an expression")
+            case "parenthesized_expression" | "parenthesis" if len(named(node)) == 1:
+                return self.expression(named(node)[0])
             case "binary_expression" | "binary_operator" | "boolean_operator" | "comparison_operator":
                 if len(sides := named(node)) == 2:
                     return self.operate(node, sign_of(node), *sides)
@@ -245,10 +243,22 @@ class SourceReader:
                 return self.operate_alone(node, sign_of(node), named(node)[-1])
         return None
 
-    def inside(self, node: Any) -> Part:
-        """What stands in parentheses."""
-        inner = named(node)
-        return self.expression(inner[0]) if len(inner) == 1 else self.refuse(node, "parentheses")
+    def define(self, node: Any, name: str, arguments: Iterable[Argument], body: tuple[Part, ...], *more: Any) -> None:
+        """One more function of the file."""
+        function = Function(name, line_of(node), tuple(arguments), body, *more)
+        self.unit.functions.setdefault(name, []).append(function)
+
+    def several(self, nodes: Iterable[Any]) -> tuple[Part, ...]:
+        """Expressions one by one."""
+        return tuple(map(self.expression, nodes))
+
+    def fields(self, node: Any, *names: str) -> tuple[Part, ...]:
+        """The expressions in fields of a node."""
+        return self.several(field_of(node, name) for name in names)
+
+    def whole(self, node: Any, number: int) -> Part:
+        """A whole number that the source implies."""
+        return self.part("number", node, number, "int")
 
     def operate(self, node: Any, sign: str, *operands: Any) -> Part:
         """Two operands with an operator between them."""
@@ -280,7 +290,7 @@ class SourceReader:
 
     def sizes(self, node: Any, shape: tuple[int, ...] | None) -> tuple[Part, ...] | None:
         """A shape as parts."""
-        return None if shape is None else tuple(self.part("number", node, n, "int") for n in shape)
+        return None if shape is None else tuple(self.whole(node, n) for n in shape)
 
     def part(self, kind: str, node: Any, *parts: Any) -> Part:
         """A part with its line and span."""

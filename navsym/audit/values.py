@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import product
+from typing import TypeVar
 
 from navsym.audit.form import Part, Unit
 from navsym.language.tree import (
@@ -25,6 +26,7 @@ from navsym.language.tree import (
 )
 
 Index = tuple[int, ...]
+Kind = TypeVar("Kind")
 LARGEST = 4096  # cells of one array
 TERMS = 2000  # of one sum
 LARGEST_INVERSE = 4
@@ -42,17 +44,28 @@ COMPARE: Mapping[str, Callable[[Fraction, Fraction], bool]] = {
 
 
 class Unreadable(Exception):
-    """A part of the source that is not read: the line and the reason."""
+    """A part of the source that is not read: the reason, and a line where it is not that of the innermost part."""
 
-    def __init__(self, line: int, why: str):
+    def __init__(self, why: str, line: int = 0):
         super().__init__(why)
         self.line, self.why = line, why
 
+    def leave(self, part: Part) -> Unread:
+        """What takes the place of the value of a part."""
+        return Unread(self.line or part.line, self.why)
 
-def forbid(condition: object, line: int, why: str) -> None:
+
+def forbid(condition: object, why: str, line: int = 0) -> None:
     """Raise Unreadable where a condition holds."""
     if condition:
-        raise Unreadable(line, why)
+        raise Unreadable(why, line)
+
+
+def demand(value: object, kind: type[Kind], why: str) -> Kind:
+    """The value, where it is of a kind."""
+    if not isinstance(value, kind):
+        raise Unreadable(why)
+    return value
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -186,7 +199,7 @@ def add(a: Tree, b: Tree) -> Tree:
     if a.head == b.head == NUMBER:
         return build_number(a.args[0] + b.args[0])
     terms = (*(a.args if a.head == "+" else (a,)), *(b.args if b.head == "+" else (b,)))
-    forbid(len(terms) > TERMS, 0, f"a sum of more than {TERMS} terms")
+    forbid(len(terms) > TERMS, f"a sum of more than {TERMS} terms")
     return build_sum(*terms)
 
 
@@ -218,7 +231,7 @@ def raise_to(a: Tree, b: Tree) -> Tree:
     return a if b is ONE else build_power(a, b)
 
 
-def total(trees: list[Tree]) -> Tree:
+def total(*trees: Tree) -> Tree:
     """The sum of trees."""
     result = ZERO
     for tree in trees:
@@ -232,7 +245,7 @@ def total(trees: list[Tree]) -> Tree:
 def map_cells(step: Callable[..., Tree], *values: Value) -> Value:
     """A function of the trees of numbers or arrays of one shape, cell by cell; numbers go with every cell."""
     shapes = {value.shape for value in values if isinstance(value, Array)}
-    forbid(len(shapes) > 1, 0, "arrays of different shapes")
+    forbid(len(shapes) > 1, "arrays of different shapes")
     if not shapes:
         return map_cell(step, *values)  # type: ignore[arg-type]
     (shape,) = shapes
@@ -259,18 +272,17 @@ def find_unread(*values: Value) -> Unread | None:
 
 def make_array(shape: Index, cell: Callable[..., Cell]) -> Array:
     """An array by places."""
-    forbid(math.prod(shape) > LARGEST or any(size < 0 for size in shape), 0, f"an array of more than {LARGEST} cells")
+    forbid(math.prod(shape) > LARGEST or any(size < 0 for size in shape), f"an array of more than {LARGEST} cells")
     return Array(shape, tuple(cell(*place) for place in places_of(shape)))
 
 
 def transpose(value: Value, column: bool) -> Value:
     """The transpose; of a vector the row, where the language has columns (``column``), else itself."""
-    if not isinstance(value, Array):
-        raise Unreadable(0, "the transpose of what has no known size; declare it under [code.symbols]")
-    if len(value.shape) == 1:
-        return Array((1, *value.shape), value.cells) if column else value
-    m, n = value.shape
-    return Array((n,), value.cells) if m == 1 and column else make_array((n, m), lambda i, j: value.at(j, i))
+    array = demand(value, Array, "the transpose of what has no known size; declare it under [code.symbols]")
+    if len(array.shape) == 1:
+        return Array((1, *array.shape), array.cells) if column else array
+    m, n = array.shape
+    return Array((n,), array.cells) if m == 1 and column else make_array((n, m), lambda i, j: array.at(j, i))
 
 
 def join(*values: Value, across: bool) -> Value:
@@ -281,7 +293,7 @@ def join(*values: Value, across: bool) -> Value:
     blocks = [b if len(b.shape) == 2 else Array((*b.shape, 1), b.cells) for b in blocks]
     blocks = [b for b in blocks if b.cells]  # [] joins with everything
     sides = {block.shape[0 if across else 1] for block in blocks}
-    forbid(len(sides) != 1, 0, "blocks of different sizes side by side" if blocks else "a matrix without entries")
+    forbid(len(sides) != 1, "blocks of different sizes side by side" if blocks else "a matrix without entries")
     if not across:
         return Array((sum(b.shape[0] for b in blocks), *sides), tuple(cell for b in blocks for cell in b.cells))
     (height,) = sides
@@ -297,12 +309,12 @@ def matrix_product(a: Value, b: Value) -> Value:
     if len(a.shape) == 1 and len(b.shape) == 2 and b.shape[0] == 1:
         left = (*a.shape, 1)  # a column and a row
     right = b.shape if len(b.shape) == 2 else (*b.shape, 1)
-    forbid(left[1] != right[0], 0, "a product of matrices that do not fit")
+    forbid(left[1] != right[0], "a product of matrices that do not fit")
 
     def cell(i: int, j: int) -> Cell:
         row = [a.cells[i * left[1] + k] for k in range(left[1])]
         column = [b.cells[k * right[1] + j] for k in range(left[1])]
-        return map_cell(lambda *t: total([multiply(t[k], t[k + left[1]]) for k in range(left[1])]), *row, *column)
+        return map_cell(lambda *t: total(*(multiply(t[k], t[k + left[1]]) for k in range(left[1]))), *row, *column)
 
     whole = make_array((left[0], right[1]), cell)
     if left[0] == right[1] == 1 and (len(a.shape), len(b.shape)) != (2, 2):
@@ -317,7 +329,7 @@ def determinant(rows: list[list[Tree]]) -> Tree:
     if not rows:
         return ONE
     minors = [determinant([[*row[:j], *row[j + 1 :]] for row in rows[1:]]) for j in range(len(rows))]
-    return total([multiply(x if j % 2 == 0 else minus(x), minors[j]) for j, x in enumerate(rows[0]) if x is not ZERO])
+    return total(*(multiply(x if j % 2 == 0 else minus(x), minors[j]) for j, x in enumerate(rows[0]) if x is not ZERO))
 
 
 def invert(value: Value) -> Value:
@@ -326,7 +338,7 @@ def invert(value: Value) -> Value:
         return map_cells(lambda x: divide(ONE, x), value)
     n = value.shape[0]
     if value.shape != (n, n) or n > LARGEST_INVERSE:
-        raise Unreadable(0, f"the inverse of what is no square matrix of at most {LARGEST_INVERSE} rows")
+        raise Unreadable(f"the inverse of what is no square matrix of at most {LARGEST_INVERSE} rows")
 
     def cell(i: int, j: int) -> Cell:
         def step(*trees: Tree) -> Tree:
@@ -342,8 +354,8 @@ def invert(value: Value) -> Value:
 def cross_product(a: Value, b: Value) -> Value:
     """The cross product of two vectors of three; of two rows it is a row."""
     if not (isinstance(a, Array) and isinstance(b, Array) and len(a.cells) == len(b.cells) == 3):
-        raise Unreadable(0, "a cross product of what are no three-vectors")
-    forbid(a.shape != b.shape and (1, 3) in (a.shape, b.shape), 0, "a cross product of a row and another vector")
+        raise Unreadable("a cross product of what are no three-vectors")
+    forbid(a.shape != b.shape and (1, 3) in (a.shape, b.shape), "a cross product of a row and another vector")
 
     def cell(i: int) -> Cell:
         j, k = (i + 1) % 3, (i + 2) % 3
@@ -356,8 +368,7 @@ def cross_product(a: Value, b: Value) -> Value:
 def quaternion_product(a: Quaternion, b: Quaternion) -> Quaternion:
     """Hamilton's product."""
     (u, w), (v, s) = ((Array((3,), q.cells[:3]), q.cells[3]) for q in (a, b))
-    parts = map_cells(multiply, w, v), map_cells(multiply, s, u), cross_product(u, v)
-    vector = map_cells(lambda *trees: total([*trees]), *parts)
+    vector = map_cells(total, map_cells(multiply, w, v), map_cells(multiply, s, u), cross_product(u, v))
     real = map_cells(lambda x, y: add(x, minus(y)), map_cells(multiply, w, s), matrix_product(u, v))
     return Quaternion((4,), (*cells_of(vector), *cells_of(real)))
 
@@ -368,17 +379,27 @@ def rotate(quaternion: Value, vector: Value) -> Array:
     u, w = Array((3,), quaternion.cells[:3]), quaternion.cells[3]
     t = map_cells(lambda x: multiply(build_number(2), x), cross_product(u, vector))
     parts = vector, map_cells(multiply, w, t), cross_product(u, t)
-    return map_cells(lambda *trees: total([*trees]), *parts)  # type: ignore[return-value]
+    return map_cells(total, *parts)  # type: ignore[return-value]
 
 
 def square_sum(value: Value) -> Cell:
     """The sum of the squares of all cells."""
-    return map_cell(lambda *trees: total([raise_to(t, build_number(2)) for t in trees]), *cells_of(value))
+    return map_cell(lambda *trees: total(*(raise_to(t, build_number(2)) for t in trees)), *cells_of(value))
 
 
 def identity_array(m: int, n: int) -> Array:
     """Ones on the diagonal."""
     return make_array((m, n), lambda i, j: Scalar(ONE if i == j else ZERO))
+
+
+def relate_rotation(matrix: Array) -> tuple[Tree, ...]:
+    """What is zero of a rotation: C C' - E, C' C - E, and c_i x c_j - c_k for its rows."""
+    mirror = transpose(matrix, True)
+    rows, one = [matrix.row(i) for i in range(3)], identity_array(3, 3)
+    pairs: list[tuple[Value, Value]] = [(matrix_product(matrix, mirror), one), (matrix_product(mirror, matrix), one)]
+    pairs += [(cross_product(rows[i], rows[(i + 1) % 3]), rows[(i + 2) % 3]) for i in range(3)]
+    cells = [c for p in pairs for c in map_cells(lambda a, b: add(a, minus(b)), *p).cells]  # type: ignore[union-attr]
+    return tuple(dict.fromkeys(cell.tree for cell in cells if isinstance(cell, Scalar)))
 
 
 def constant_of(value: Value) -> Fraction | None:
@@ -387,6 +408,15 @@ def constant_of(value: Value) -> Fraction | None:
 
 
 # The operators of the languages
+
+
+def whole_kind(text: str) -> str:
+    """The name in LIMITS of a type of integers of C or Rust."""
+    bits = next((bits for mark, bits in (("8", 8), ("char", 8), ("16", 16), ("short", 16)) if mark in text), 0)
+    if text == "bool":
+        return "bool"
+    is_unsigned = text.startswith(("u", "size_t"))
+    return f"{'u' * is_unsigned}int{bits}" if bits else "unsigned" if is_unsigned else "int"
 
 
 def promote(kind: str) -> str:
@@ -402,11 +432,11 @@ def does_fit(cell: Scalar, kind: str) -> bool:
     return exact.denominator == 1 and low <= exact <= high
 
 
-def require_fit(unit: Unit, value: Value, line: int) -> Value:
+def require_fit(unit: Unit, value: Value) -> Value:
     """The value, where no constant among its integers is past the ends of its type."""
     for cell in cells_of(value) if unit.rules.integer else ():
         if isinstance(cell, Scalar) and cell.number in LIMITS and not does_fit(cell, cell.number):
-            raise Unreadable(line, "integers that do not fit their type")
+            raise Unreadable("integers that do not fit their type")
     return value
 
 
@@ -426,26 +456,26 @@ def convert(value: Value, number: str, line: int) -> Value:
     return replace(value, number=promote(number))
 
 
-def combine(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
+def combine(unit: Unit, sign: str, a: Value, b: Value) -> Value:
     """The arithmetic of a language."""
-    result = operate(unit, sign, a, b, line)
-    return require_fit(unit, result if sign != "-" else require_no_wrap(result, line), line)
+    result = operate(unit, sign, a, b)
+    return require_fit(unit, result if sign != "-" else require_no_wrap(result))
 
 
-def require_no_wrap(value: Value, line: int) -> Value:
+def require_no_wrap(value: Value) -> Value:
     """A difference, which may be below zero: of unsigned numbers it has another value there."""
     if isinstance(value, Scalar) and value.number == "unsigned" and constant_of(value) is None:
-        raise Unreadable(line, "a difference of unsigned numbers, which may wrap round")
+        raise Unreadable("a difference of unsigned numbers, which may wrap round")
     return value
 
 
-def operate(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
+def operate(unit: Unit, sign: str, a: Value, b: Value) -> Value:
     """The same, whatever fits."""
     if (unread := find_unread(a, b)) is not None:
         return unread
     both, rules = isinstance(a, Array) and isinstance(b, Array), unit.rules
     if unit.language == "c" and (isinstance(a, Array) or isinstance(b, Array)):
-        raise Unreadable(line, "arithmetic with an array, which is a pointer in C")
+        raise Unreadable("arithmetic with an array, which is a pointer in C")
     if (isinstance(a, List) or isinstance(b, List)) and (joined := join_lists(sign, a, b)) is not None:
         return joined
     if sign in ("*", "@"):
@@ -454,25 +484,24 @@ def operate(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
             return quaternion_product(a, b)
         if kinds == [True, False] and both and unit.language in ("cpp", "rust") and b.shape == (3,):  # type: ignore[union-attr]
             return rotate(a, b)
-        forbid(both and any(kinds), line, "the product of a quaternion and a vector")
+        forbid(both and any(kinds), "the product of a quaternion and a vector")
         if both and unit.language == "rust" and len(a.shape) == len(b.shape) == 1:  # type: ignore[union-attr]
-            raise Unreadable(line, "the product of two columns")
-        if sign == "@" and not both:
-            raise Unreadable(line, "a product of matrices of unknown size; declare them under [code.symbols]")
+            raise Unreadable("the product of two columns")
+        forbid(sign == "@" and not both, "a product of matrices of unknown size; declare them under [code.symbols]")
         return matrix_product(a, b) if both and (sign == "@" or rules.matrix) else map_cells(multiply, a, b)
     if sign in ("+", "-"):
         if unit.language == "cpp" and isinstance(a, Array) != isinstance(b, Array):
-            raise Unreadable(line, "the sum of a number and a matrix")
+            raise Unreadable("the sum of a number and a matrix")
         return map_cells(add if sign == "+" else lambda x, y: add(x, minus(y)), a, b)
     if sign in (".*", "./", ".^"):
         return map_cells({".*": multiply, "./": divide, ".^": raise_to}[sign], a, b)
     if sign != "**":
-        return quotient(unit, sign, a, b, line)
+        return quotient(unit, sign, a, b)
     if not rules.matrix or not (isinstance(a, Array) or isinstance(b, Array)):
         return map_cells(raise_to, a, b)
     times = constant_of(b)
     if times is None or times.denominator != 1 or not 0 < times < 9 or a.shape != a.shape[:1] * 2:  # type: ignore[union-attr]
-        raise Unreadable(line, "the power of a matrix")
+        raise Unreadable("the power of a matrix")
     factors: list[Value] = [a] * int(times)
     return functools.reduce(matrix_product, factors)
 
@@ -484,23 +513,23 @@ def join_lists(sign: str, a: Value, b: Value) -> Value | None:
     (size, *rest), cells = pair[0].shape, pair[0].cells
     if len(pair) == 2 and sign == "+" and [*pair[1].shape[1:]] == rest:
         return List((size + pair[1].shape[0], *rest), cells + pair[1].cells)
-    forbid(len(pair) == 1 and sign == "*" and rest, 0, "a list repeated in a list, which shares its rows")
+    forbid(len(pair) == 1 and sign == "*" and rest, "a list repeated in a list, which shares its rows")
     if len(pair) == 1 and sign == "*" and times is not None and times.denominator == 1 and 0 < times <= LARGEST:
         return List((size * int(times), *rest), cells * int(times))
     if len(pair) == 2 or not (isinstance(a, Array) and isinstance(b, Array)):
-        raise Unreadable(0, "arithmetic of a list, which is no array")
+        raise Unreadable("arithmetic of a list, which is no array")
     return None
 
 
-def quotient(unit: Unit, sign: str, a: Value, b: Value, line: int) -> Value:
+def quotient(unit: Unit, sign: str, a: Value, b: Value) -> Value:
     """A quotient; of integers it is cut in C, which is read for constants only."""
     if isinstance(b, Array) and unit.rules.matrix:
-        forbid(unit.language != "matlab" or len(b.shape) != 2, line, "division by a matrix")
+        forbid(unit.language != "matlab" or len(b.shape) != 2, "division by a matrix")
         return matrix_product(a, invert(b))
     whole = [isinstance(v, Scalar) and v.number in LIMITS for v in (a, b)]
     if sign == "/" and not (unit.rules.integer and all(whole)):
         return as_real(map_cells(divide, a, b))
     x, y = constant_of(a), constant_of(b)
     if x is None or y is None or y == 0 or not all(whole) or x < 0 or y < 0:
-        raise Unreadable(line, "a quotient or remainder of integers that are no constants")
+        raise Unreadable("a quotient or remainder of integers that are no constants")
     return Scalar(build_number(x // y if sign != "%" else x % y), "int")

@@ -277,7 +277,7 @@ def put_zero(tree: Tree, symbol: Tree) -> Tree:
         if part is symbol:
             return ZERO
         if part.head in (SUM, PRODUCT):
-            return total(inner) if part.head == SUM else reduce(multiply, inner)
+            return total(*inner) if part.head == SUM else reduce(multiply, inner)
         if part.head == POWER:
             positive = inner[1].head == NUMBER and inner[1].args[0] > 0
             if inner[0] is ZERO and not positive:
