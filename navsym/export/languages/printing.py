@@ -53,10 +53,9 @@ def calls(prefix: str = "", suffix: str = "", **special: str) -> dict[str, str]:
     """Names of the library functions with a prefix or suffix, and those that are written otherwise."""
     names = "sin cos exp log sqrt asin acos atan sinh cosh tanh expm1".split()
     table = {name: f"{prefix}{name}{suffix}({{0}})" for name in names}
-    table |= {"abs": f"{prefix}fabs{suffix}({{0}})", "atan2": f"{prefix}atan2{suffix}({{0}}, {{1}})"}
-    table |= {"pow": f"{prefix}pow{suffix}({{0}}, {{1}})", "max": f"{prefix}fmax{suffix}({{0}}, {{1}})"}
-    table |= {"min": f"{prefix}fmin{suffix}({{0}}, {{1}})"}
-    return table | special
+    pairs = {"atan2": "atan2", "pow": "pow", "max": "fmax", "min": "fmin"}
+    table |= {name: f"{prefix}{word}{suffix}({{0}}, {{1}})" for name, word in pairs.items()}
+    return table | {"abs": f"{prefix}fabs{suffix}({{0}})"} | special
 
 
 def assignments(
