@@ -32,7 +32,7 @@ class Reading(HTMLParser):
 
     def handle_starttag(self, tag, attrs):
         self.elements.append((tag, dict(attrs)))
-        if tag not in ("meta", "link", "input", "br", "path", "circle"):
+        if tag not in ("meta", "link", "input", "br", "wbr", "path", "circle"):
             self.open.append(tag)
 
     def handle_startendtag(self, tag, attrs):

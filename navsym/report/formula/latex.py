@@ -62,7 +62,8 @@ def read_tokens(source: str) -> list[tuple[re.Match[str], int]]:
             wanted = closing.pop() if closing else ""
             if ends != ("}" if wanted == "words" else wanted):
                 raise refuse(token.group(), source)
-        if char in ("$", "#", "~", "\\") or (char == "&" and (not closing or closing[-1] not in MATRICES)):
+        is_lost = char == "&" and (not closing or closing[-1] not in MATRICES)
+        if is_lost or char in ("$", "#", "~", "\\") or not (char or "x").isprintable():
             raise refuse(token.group(), source)
         found.append((token, len(closing)))
         if char == "{":
