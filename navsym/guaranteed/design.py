@@ -41,11 +41,11 @@ from navsym.guaranteed.streaming.flow import BITS, Flow, name_measurements
 from navsym.guaranteed.streaming.guard import whole_number
 from navsym.guaranteed.streaming.memory import Row
 from navsym.guaranteed.streaming.numbers import middle, read_exact, write_rational
-from navsym.language.files import name_file
+from navsym.language.files import file_in_errors, name_file
 from navsym.language.names import quote, suggest_nearest
 from navsym.language.schema import as_table, expect_keys
 from navsym.language.tomlfile import read_toml
-from navsym.models.model import contents_of, file_in_errors
+from navsym.models.model import contents_of
 from navsym.models.modelfile import BasisFile, Measurement, ModelFile
 
 Needs = frozenset[str]

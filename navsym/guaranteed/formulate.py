@@ -24,7 +24,7 @@ from navsym.core.answers import Answer
 from navsym.core.errors import DomainError
 from navsym.guaranteed.convex import GridProblem, grid_problem
 from navsym.guaranteed.problem import GuaranteedProblem, problem_of
-from navsym.models.model import file_in_errors
+from navsym.language.files import file_in_errors
 
 if TYPE_CHECKING:
     from navsym.models.model import Model

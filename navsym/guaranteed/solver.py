@@ -33,8 +33,8 @@ from navsym.guaranteed.separation import FAR, separate_regressors
 from navsym.guaranteed.time_varying import ERROR
 from navsym.guaranteed.uniqueness import is_only_optimum
 from navsym.language.expression import to_text
+from navsym.language.files import file_in_errors
 from navsym.language.names import quote
-from navsym.models.model import file_in_errors
 
 if TYPE_CHECKING:
     from navsym.guaranteed.baselines import Comparison

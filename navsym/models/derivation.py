@@ -25,10 +25,11 @@ import sympy as sp
 from navsym.claims.display import display_latex, write_card
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, NavsymError, ShapeError
+from navsym.language.files import file_in_errors
 from navsym.language.printer import to_text
 from navsym.models.certificates import exponential_certificate, rank_certificate
 from navsym.models.linear import LinearModel, observability_matrix
-from navsym.models.model import Model, contents_of, file_in_errors
+from navsym.models.model import Model, contents_of
 from navsym.models.modelfile import BasisFile, ModelFile, piece_model
 from navsym.models.transition.exponential import (
     TransitionMatrix,

@@ -16,7 +16,6 @@ from navsym.claims.display import count_in_words, display_latex, latex_of, write
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, NavsymError, ShapeError
 from navsym.language.declarations import Parameter, read_parameters, symbols_of
 from navsym.language.expression import parse, symbol, to_text
-from navsym.language.files import file_in_errors as file_in_errors
 from navsym.language.files import write_text
 from navsym.language.names import join_place, quote, require_path, require_table
 from navsym.language.tomlfile import read_toml, toml_text

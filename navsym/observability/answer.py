@@ -16,11 +16,12 @@ from navsym.claims.statement import Box
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError
 from navsym.language.expression import parse, symbol
+from navsym.language.files import file_in_errors
 from navsym.language.names import RESERVED, join_place, quote, require_flag, require_table
 from navsym.language.values import write_entries, write_value
 from navsym.models.along import model_along_motion
 from navsym.models.linear import LinearModel, linear_row
-from navsym.models.model import Model, contents_of, file_in_errors
+from navsym.models.model import Model, contents_of
 from navsym.models.modelfile import ModelFile
 from navsym.observability.accuracy import Accuracy, ask_accuracy
 from navsym.observability.certificates import Certifier, list_nested

@@ -15,8 +15,9 @@ from navsym.guaranteed.phases.family import declared_symbol, family_of
 from navsym.guaranteed.phases.plane import find_map
 from navsym.guaranteed.problem import GuaranteedProblem
 from navsym.language.expression import parse
+from navsym.language.files import file_in_errors
 from navsym.language.values import write_value
-from navsym.models.model import contents_of, file_in_errors
+from navsym.models.model import contents_of
 from navsym.models.modelfile import BasisFile, ModelFile
 
 if TYPE_CHECKING:
