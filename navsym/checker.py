@@ -469,7 +469,7 @@ def apply_function(name: str, x: Jet, field: Any) -> Jet:
         return apply_remainder(name, x, field)
     if field is clip and name in DOMAINS and (inside := restrict(getattr(arb, name), x, *DOMAINS[name])) is not None:
         return inside
-    base = x.parts[0]
+    base = x.parts[0].divide_turns() if field is Exact else x.parts[0]
     value = getattr(base, name)() if hasattr(base, name) else base.make_atom(name)
     return x.compose(value, lambda y: evaluate(parse(DERIVATIVES[name]), {"x": y}, field))
 
@@ -540,9 +540,8 @@ class Exact:
     @staticmethod
     def make_angle(y: Exact, x: Exact) -> Exact:
         """atan2(y, x), an atom of its own."""
-        both = [y.make_atom("atan2"), x.make_atom("atan2")]
-        (size, content) = sum(m[0][0][0] for e in both for m in map(list, e.terms)), (frozenset(y), frozenset(x))
-        return Exact([(frozenset({((size, "atan2", content), 1)}), fmpq(1))])
+        (((a, _),),), (((b, _),),) = (part.divide_turns().make_atom("atan2").terms for part in (y, x))
+        return Exact([(frozenset({((a[0] + b[0], "atan2", (a[2], b[2])), 1)}), fmpq(1))])
 
     def __add__(self, other: Any) -> Exact:
         return Exact([*self, *Exact(other)])
@@ -570,10 +569,8 @@ class Exact:
             square = (self * self).divide_turns()
             if set(square.terms) == {frozenset()}:  # 1/x = x/r where x x = r, as for the root of a prime
                 return prod([self * (1 / square.terms[frozenset()])] * int(-q), start=Exact(1))
-        if any(atom == TURN for m in self.terms for atom, _ in m):
-            plain = self.divide_turns()
-            if plain.terms != self.terms:
-                return plain**q
+        if (plain := self.divide_turns()).terms != self.terms:
+            return plain**q
         (monomial, c), *more = self
         if not more and len(monomial) > 1 and c == 1 and all(fmpq(e).q == 1 and int(e) % 2 == 0 for _, e in monomial):
             squares = (Exact([(frozenset({(atom, 2)}), fmpq(1))]).make_atom("sum", q * e / 2) for atom, e in monomial)
@@ -587,8 +584,7 @@ class Exact:
 
     def exp(self, kind: str = "exp", sign: int = 1) -> Exact:
         """exp of a sum is a product; exp(x), or exp(i sign x) for the kind "cis"."""
-        x = self.divide_turns() if any(atom == TURN for m in self.terms for atom, _ in m) else self
-        return prod((self.exp_of(kind, m, c * sign) for m, c in x), start=Exact(1))
+        return prod((self.exp_of(kind, m, c * sign) for m, c in self.divide_turns()), start=Exact(1))
 
     @staticmethod
     def exp_of(kind: str, monomial: Any, c: fmpq) -> Exact:
@@ -654,6 +650,8 @@ class Exact:
 
         A rational polynomial vanishes at exp(i pi/n) if and only if the cyclotomic polynomial 2 n divides it.
         """
+        if not any(atom == TURN for m in self.terms for atom, _ in m):
+            return self
         rows = self.split_powers(TURN)
         n = int(fmpq_poly([q for _, q, _ in rows]).denom())
         require(n <= 5040, "roots of a high order")
@@ -674,7 +672,7 @@ def has_branch(content: Any) -> bool:
 
 
 PI = Exact([]).make_atom("pi")
-(((TURN, _),),) = PI.make_atom("cis").terms  # the atom exp(i pi)
+TURN = (1, "cis", frozenset(PI))  # the atom exp(i pi)
 HALF = fmpq(1, 2)
 ROOTS = {
     (p, HALF): evaluate(parse(text), {}, Exact).parts[0]
@@ -1900,48 +1898,50 @@ class Formula(Parser):
         body, self.words = self.words[k + 1 :], self.words[:k]
         return body, self.words.pop()
 
-    def read_body(self, body: list[str], kind: str, name: str, value: Term) -> tuple[Term, list[Term]]:
-        """A number with a value in the place of a name, and what has to have a value for it."""
+    def read_body(self, body: list[str], kind: str, name: str, value: Term) -> tuple[Value, list[Term]]:
+        """What stands there with a value in the place of a name, and what has to have a value for it."""
         reader, words = self.reader, self.words
         own = {} if value[0] != "symbol" else {value[1]: Range(None, None, integer=kind in ("sum", "product"))}
         names, bound, exists, box = reader.names, reader.bound, reader.exists, reader.box
         self.words, reader.exists, reader.names = ["", *body], {}, names | {name: value}
         reader.bound, reader.box = bound | dict.fromkeys(own, kind), box | own
-        term, needs = to_number(self.read_sum()), [*reader.exists]
+        found, needs = self.read_sum(), [*reader.exists]
         require(self.words == [""], f"expected a variable in {kind}")
         self.words, reader.names, reader.bound, reader.exists, reader.box = words, names, bound, exists, box
-        return term, needs
+        return found, needs
 
-    def read_question(self, kind: str) -> Term:
-        """integral(f, x, a, b), sum and product the same, limit(f, x, a): a symbol in its place, or all terms."""
+    def read_question(self, kind: str) -> Value:
+        """integral(f, x, a, b), sum and product the same, limit(f, x, a): symbols for entries of f, or all terms."""
         reader, first, whole = self.reader, len(self.reader.questions), kind in ("sum", "product")
         body, name = self.cut_body()
         taken = matches("[A-Za-z][A-Za-z0-9_]*", name) and name not in ("pi", "oo", *reader.rates, *reader.chances)
         require(taken and name not in reader.outside, f"expected the name of a number in {kind}")
         variable, ends = f"{name}'{len(reader.bound)}", list[Term]()  # no text has this name
-        term, needs = (ZERO, []) if whole else self.read_body(body, kind, name, ("symbol", variable))
+        found, needs = (ZERO, []) if whole else self.read_body(body, kind, name, ("symbol", variable))
         while self.take(","):
             ends.append(to_number(self.read_sum()))
         require(self.take(")") and len(ends) == 2 - (kind == "limit"), f"expected the ends of {kind}, and )")
         if whole and all(constant_of(end) is not None for end in ends):
             return self.write_out(kind, name, body, ends)
         if whole:
-            term, needs = self.read_body(body, kind, name, ("symbol", variable))
+            found, needs = self.read_body(body, kind, name, ("symbol", variable))
         require(not reader.fractions, f"{kind} beside a floor")
-        if reader.dead:
-            return ZERO
         reader.need(*(t for t in needs if variable not in symbols_of(t)))
-        needs = [t for t in needs if variable in symbols_of(t)]
-        own = f"{name}__{len(reader.questions) + 1}"
-        bound = {variable: ("symbol", own)}
-        inner = [q.change(lambda t: substitute(t, bound)) for q in reader.questions[first:]]
-        question = Question(
-            kind, f"value {len(reader.questions) + 1}", own, substitute(term, bound), ends[0], ends[-1],
-            tuple(substitute(t, bound) for t in needs), (),
-        )  # fmt: skip
-        reader.questions[first:] = [q._replace(within=(*q.within, question)) for q in inner]
-        reader.questions.append(question)
-        return ("symbol", question.value)
+        needs, inner = [t for t in needs if variable in symbols_of(t)], reader.questions[first:]
+        require(not isinstance(found, Matrix) or not (inner or kind == "product"), f"a matrix in {kind}")
+
+        def ask(term: Term) -> Term:
+            if reader.dead:
+                return ZERO
+            value, own = (f"{word}{len(reader.questions) + 1}" for word in ("value ", f"{name}__"))
+            asked = Question(kind, value, variable, term, ends[0], ends[-1], tuple(needs), ())
+            asked, *inside = (q.change(lambda t: substitute(t, {variable: ("symbol", own)})) for q in (asked, *inner))
+            asked = asked._replace(variable=own)
+            reader.questions[first : first + len(inner)] = [q._replace(within=(*q.within, asked)) for q in inside]
+            reader.questions.append(asked)
+            return ("symbol", value)
+
+        return change_entries(ask, found)
 
     def ask_exponential(self, x: Value) -> Value:
         """expm(A): symbols in the place of its entries."""
@@ -1956,17 +1956,14 @@ class Formula(Parser):
         reader.questions.append(Question("expm", value, own, ("matrix", *entries), ZERO, ONE, (), ()))
         return Matrix([("symbol", f"{value} {i} {j}") for j in range(len(rows))] for i in range(len(rows)))
 
-    def write_out(self, kind: str, name: str, body: list[str], ends: list[Term]) -> Term:
+    def write_out(self, kind: str, name: str, body: list[str], ends: list[Term]) -> Value:
         """A sum or product with numbers as ends; one of no terms is 0 or 1."""
-        low, high = map(constant_of, ends)
-        require(low is not None and high is not None and low.q == high.q == 1, "expected whole ends")
-        require(high - low < MOST_TERMS, "too many terms")  # type: ignore[operator]
-        unit, terms = ZERO if kind == "sum" else ONE, list[Term]()
-        for k in range(int(low), int(high) + 1):  # type: ignore[arg-type]
-            term, needs = self.read_body(body, kind, name, number(k))
-            self.reader.need(term, *needs)
-            terms.append(term)
-        return ("+" if kind == "sum" else "*", unit, *terms) if terms else unit
+        terms = list[Value]()
+        for k in list_whole(*ends):
+            found, needs = self.read_body(body, kind, name, number(k))
+            self.reader.need(*list_entries(found), *needs)
+            terms.append(found if kind == "sum" else to_number(found))
+        return change_entries(lambda *parts: combine(kind, parts), *terms) if terms else combine(kind, ())
 
     def has_sides(self, x: Term) -> bool:
         """Whether a number has the variable of an integral, which does not see where it is 0."""
@@ -2033,10 +2030,7 @@ def keep_power(narrow: Term, wide: Term) -> None:
 
 
 def is_identity(term: Term) -> bool:
-    """Whether a term is seen to vanish wherever all of it is defined.
-
-    As a quotient of polynomials in its functions, or by what is known of these.
-    """
+    """Whether a term is seen to vanish wherever it is defined: as a quotient of polynomials, or by its normal form."""
     parts = [*dict.fromkeys(list_generators(term))]
     ring = fmpq_mpoly_ctx.get([f"x{k}" for k in range(len(parts))], Ordering.degrevlex)
     top, bottom = to_quotient(term, dict(zip(parts, ring.gens(), strict=True)), ring)
@@ -2220,17 +2214,12 @@ def prove_all(proofs: Any, goals: Sequence[Goal]) -> None:
 
 
 def prove_defined(proofs: Any, goal: Goal, *terms: Term, level: int = DEFINED) -> None:
-    """The terms are defined, or more, at all points of the goal: one proof for each condition that is not its own.
-
-    Conditions of numbers that a ball decides need no proof.
-    """
-    own = set().union(*(conditions(t) for t in (goal.term, *goal.exists)))
-    own = with_weaker(own)
+    """The terms are defined, or more, in the goal: a proof for each condition, but its own and those of balls."""
+    own = with_weaker(set().union(*(conditions(t) for t in (goal.term, *goal.exists))))
     needed = [pair for pair in set_union(conditions(t, level) for t in terms) if pair not in own]
     needed = [pair for pair in needed if symbols_of(pair[1]) or not holds(pair[0], value_of(pair[1], {}))]
     same = [pair for pair in needed if any(r == pair[0] and is_identity(subtract(t, pair[1])) for r, t in own)]
-    needed = [pair for pair in needed if pair not in same]
-    prove_all(proofs, [goal._replace(term=t, relation=relation) for relation, t in needed])
+    prove_all(proofs, [goal._replace(term=t, relation=r) for r, t in needed if (r, t) not in same])
 
 
 def with_weaker(pairs: Iterable[tuple[str, Term]]) -> set[tuple[str, Term]]:
@@ -2351,11 +2340,9 @@ def prove_integers(proof: Any, goal: Goal) -> None:
 
 def fix_symbol(goal: Goal, name: str, value: Term) -> Goal:
     """The goal at one value of a symbol."""
-    term, exists, given, zeros = (
-        tuple(replace(t, ("symbol", name), value) for t in terms)
-        for terms in ((goal.term,), goal.exists, goal.given, goal.zeros)
-    )
-    return Goal(term[0], goal.relation, {k: v for k, v in goal.box.items() if k != name}, exists, given, zeros)
+    parts = ((goal.term,), goal.exists, goal.given, goal.zeros)
+    (term,), exists, given, zeros = (tuple(substitute(t, {name: value}) for t in part) for part in parts)
+    return Goal(term, goal.relation, {k: v for k, v in goal.box.items() if k != name}, exists, given, zeros)
 
 
 def prove_abstract(proof: Any, goal: Goal) -> None:
@@ -2371,9 +2358,7 @@ def prove_abstract(proof: Any, goal: Goal) -> None:
     new = {name: read_range(ranges[name]) for name in terms}
     require(not any(limit.nonzero or limit.integer for limit in new.values()), "a range that is no interval")
     form = parse(text)
-    back = reduce(lambda t, name: replace(t, ("symbol", name), terms[name]), terms, form)
-    for exponent in list_exponents(form):
-        keep_power(exponent, reduce(lambda t, name: replace(t, ("symbol", name), terms[name]), terms, exponent))
+    back = at_point(form, terms)
     prove_defined(defined, goal, back, *terms.values())
     require(is_identity(subtract(goal.term, back)), "the terms differ")
     goals = []
@@ -2460,7 +2445,6 @@ def prove_solve(proof: Any, goal: Goal) -> None:
 
 def list_definition(atom: Term, v: Term) -> list[tuple[str, Term]]:
     """What makes A = v: v has the function of which A is the inverse, and lies in the range of A."""
-    half = ("*", ("pi",), number(HALF))
     match atom:
         case ("log", u):
             return [("=", subtract(("exp", v), u))]
@@ -2470,12 +2454,12 @@ def list_definition(atom: Term, v: Term) -> list[tuple[str, Term]]:
             q = constant_of(exponent)
             return [("=", subtract(("^", v, number(q.q)), ("^", u, number(q.p)))), (">=", v)]  # type: ignore[union-attr]
         case ("asin", u):
-            return [("=", subtract(("sin", v), u)), (">=", ("+", half, v)), (">=", subtract(half, v))]
+            return [("=", subtract(("sin", v), u)), (">=", ("+", HALF_TURN, v)), (">=", subtract(HALF_TURN, v))]
         case ("acos", u):
             return [("=", subtract(("cos", v), u)), (">=", v), (">=", subtract(("pi",), v))]
         case ("atan", u):
             tangent = subtract(("*", u, ("cos", v)), ("sin", v))
-            return [("=", tangent), (">", ("+", half, v)), (">", subtract(half, v))]
+            return [("=", tangent), (">", ("+", HALF_TURN, v)), (">", subtract(HALF_TURN, v))]
         case ("atan2", y, x):
             across = subtract(("*", x, ("sin", v)), ("*", y, ("cos", v)))
             along = ("+", ("*", x, ("cos", v)), ("*", y, ("sin", v)))
@@ -2507,8 +2491,7 @@ def prove_derivative(proof: Any, goal: Goal) -> None:
     require(isinstance(point, dict) and set(point) == set(names), "the point gives every symbol of the term")
     place = {name: parse(text) for name, text in point.items()}
     require(all(is_inside(place[name], goal.box[name]) for name in names), "the point may lie outside the box")
-    at = reduce(lambda t, name: replace(t, ("symbol", name), place[name]), names, goal.term)
-    prove(value, Goal(at, "=", {}))
+    prove(value, Goal(substitute(goal.term, place), "=", {}))
 
 
 def is_inside(value: Term, limit: Range) -> bool:
@@ -3061,13 +3044,13 @@ def settle_questions(reader: Reader, goals: Parts, box: dict[str, Range], answer
     require(not bound & set(box) and "oo" not in box, "a name that is in use")
     typed = [*(t for goal in goals for t in goal[2]), *reader.exists]
     typed += [t for q in reader.questions for t in q.list_terms()]
-    pairs = [(r, t) for r, t in set_union(map(conditions, typed)) if not is_asked(t) and not bound & symbols_of(t)]
-    reader.need(*(EXISTING[r](t) for r, t in pairs))
+    pairs = ((r, t) for r, t in set_union(map(conditions, typed)) if not is_asked(t) and not bound & symbols_of(t))
+    exists = tuple(EXISTING[r](t) for r, t in pairs)
+    reader.need(*exists)
     known = [tuple(t for t in part if not is_asked(t)) for part in (reader.given, reader.zeros)]
     point, values = answers.point, dict[str, Term]()
     for question in reader.questions:
-        q, goal = question.change(lambda t: substitute(t, values)), Goal(ZERO, "=", box, (), *known)
-        goal = goal._replace(exists=tuple(EXISTING[r](t) for r, t in pairs))
+        q, goal = question.change(lambda t: substitute(t, values)), Goal(ZERO, "=", box, exists, *known)
         if point is not None:
             q, goal = q.change(lambda t: at_point(t, point)), Goal(ZERO, "=", {})
         for outer in q.within:
@@ -3163,11 +3146,29 @@ def integrate_piece(piece: Any, q: Question, goal: Goal, c: Term, d: Term) -> Te
     return subtract(ends[1], ends[0])
 
 
+def list_whole(low: Term, high: Term) -> range:
+    """The whole numbers from one number to another."""
+    a, b = constant_of(low), constant_of(high)
+    require(a is not None and b is not None and a.q == b.q == 1, "expected whole ends")
+    require(b - a < MOST_TERMS, "too many terms")  # type: ignore[operator]
+    return range(int(a), int(b) + 1)  # type: ignore[arg-type]
+
+
+def combine(kind: str, terms: Iterable[Term]) -> Term:
+    """The sum or product of some terms."""
+    return ("+", ZERO, *terms) if kind == "sum" else ("*", ONE, *terms)
+
+
 def answer_sum(entry: Any, q: Question, goal: Goal) -> Term:
     """G(high + 1) - G(low) where G(k + 1) - G(k) = f(k); of a product their quotient where G(k + 1) = f(k) G(k).
 
-    Theorem: induction over whole high >= low - 1, where there are no terms; to oo by the limit.
+    Theorem: induction over whole high >= low - 1, where there are no terms; to oo by the limit. Between numbers, as at
+    a point, "terms" are all.
     """
+    if entry == "terms":
+        rows = [[at_point(t, {q.variable: number(k)}) for t in (q.term, *q.needs)] for k in list_whole(q.low, q.high)]
+        prove_defined([], goal, *(t for row in rows for t in row))
+        return combine(q.kind, (row[0] for row in rows))
     text, defined, equal, start, count, signs = read_fields(entry, "telescoper defined equal start count signs")
     G, name, k = parse(text), q.variable, ("symbol", q.variable)
     require(is_integral(q.low, goal.box), "expected whole ends")
@@ -3443,9 +3444,8 @@ def check_counterexample(item: Any) -> None:
     require(goals, "the statement may have no value at the point")
     if zero is not None:
         (goal,), place = goals, inside[0].complete(place)
-        at = reduce(lambda t, name: replace(t, ("symbol", name), place[name]), place, goal.term)
         require(goal.relation in (">", "!="), "the statement allows 0")
-        prove(zero, Goal(at, "=", {}))
+        prove(zero, Goal(substitute(goal.term, place), "=", {}))
         return
     balls = [{name: evaluate(value, {}, arb) for name, value in case.complete(place).items()} for case in inside]
     values = [(g.relation, value_of(g.term, b)) for case, b in zip(inside, balls, strict=True) for g in case.goals]

@@ -113,7 +113,7 @@ class Verdict(Answer):
     def point_text(self) -> str:
         """The counterexample in words, ``at a = 1``, with where the difference lies."""
         point = ", ".join(f"{name} = {value}" for name, value in (self.counterexample or {}).items()) or "no symbols"
-        return f"at {point}" + (f": left - right = {self.difference.lower}…" if self.difference else "")
+        return f"at {point}" + (f": left - right {self.difference.words}" if self.difference else "")
 
     @property
     def reason(self) -> str:

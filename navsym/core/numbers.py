@@ -53,6 +53,16 @@ class Number:
         rounded = (f"{float(self):.{count}g}" for count in range(min(self.digits, 15), 18))
         return next((number for number in rounded if Fraction(number) in self), f"{self.lower} … {self.upper}")
 
+    @property
+    def words(self) -> str:
+        """What stands behind a name: ``= 2``, ``= 1.4142135…``, ``≈ 2.6``, or both ends where they share no digits."""
+        if self.lower == self.upper:
+            return f"= {self.lower.rstrip('0').rstrip('.') if '.' in self.lower else self.lower}"
+        text = str(self)
+        if "…" in text:
+            return f"in [{self.lower}, {self.upper}]"
+        return f"= {text}…" if self.lower.startswith(text) and self.upper.startswith(text) else f"≈ {text}"
+
     def __contains__(self, value: object) -> bool:
         """True when an exact number lies between the ends: ``Fraction(1, 3) in number``."""
         return isinstance(value, (int, Fraction)) and Fraction(self.lower) <= value <= Fraction(self.upper)

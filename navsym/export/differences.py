@@ -124,7 +124,7 @@ class Differences(Answers[Difference]):
         rows = []
         for record in self:
             point = ", ".join(f"{k} = {v}" for k, v in (record.worst or {}).items())
-            size = f"old - new = {record.difference.lower}…" if record.difference else ""
+            size = f"old - new {record.difference.words}" if record.difference else ""
             words = f"{size} at {point or 'every point'}" if size else record.why
             if record.assumptions:
                 words += f"; where {', '.join(record.assumptions)}"

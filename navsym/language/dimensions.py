@@ -197,7 +197,8 @@ class Inference:
             self.relate(part, inner)
             return [[{}]]
         if head in BINDERS:
-            return [[self.bound(part, [units[0][0] for units in inner])]]
+            others = [units[0][0] for units in inner[1:]]
+            return [[self.bound(part, [cell, *others]) for cell in row] for row in inner[0]]
         step: Callable[[Tree, list[Units]], Units] | None = getattr(self, f"step_{STEPS.get(head, head)}", None)
         if step is not None:
             return step(part, inner)

@@ -105,7 +105,9 @@ class Unification:
             return frame, frame
         if head in ("zeros", "diag", "rot"):
             return self.fresh(), self.fresh()
-        if head in BINDERS or head in ("index", "norm", "det", "trace", "qmul", "conj", "row"):
+        if head in BINDERS:
+            return inner[0]
+        if head in ("index", "norm", "det", "trace", "qmul", "conj", "row"):
             return None
         return arrays[0] if arrays else None
 

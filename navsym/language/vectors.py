@@ -55,10 +55,10 @@ TAKES: dict[str, tuple[str, int, int]] = {
 }
 #: Functions with a variable of their own, in words, and how many arguments.
 BINDERS = {
-    "integral": ("a number, its variable and two ends", 4),
-    "sum": ("a number, its variable and two ends", 4),
+    "integral": ("a value, its variable and two ends", 4),
+    "sum": ("a value, its variable and two ends", 4),
     "product": ("a number, its variable and two ends", 4),
-    "limit": ("a number, its variable and a point", 3),
+    "limit": ("a value, its variable and a point", 3),
 }
 INFINITE = "oo"
 WIDE = re.compile(r"[@\[\]]|\.\s*T\b|\b(?:" + "|".join((*TAKES, *BINDERS)) + r")\s*\(")
@@ -120,6 +120,10 @@ class ValueReader(Reader):
             return None if (a[0], b[1]) == (1, 1) else (a[0], b[1])
         if part.head in TAKES:
             return self.size_of_call(at, part, sizes)
+        if part.head in BINDERS:
+            if any(sizes[1:]) or (part.head == "product" and sizes[0]):
+                self.refuse_shapes(at, f"{part.head} of {BINDERS[part.head][0]}", sizes, "correct the call")
+            return sizes[0]
         if part.head in FUNCTIONS and any(sizes):
             self.refuse_shapes(at, f"{part.head} of a number", sizes, "take it of an entry, such as v[1]")
         return None

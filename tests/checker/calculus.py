@@ -219,6 +219,11 @@ INTEGRALS = [
     row("integral(log(a)*x, x, 0, 1)", "log(a)/2", [integral(piece("log(a)*x__1**2/2"))], "", {"a": "1"}, a=LINE),
     row("integral(0*log(a)*x, x, 0, 1)", "0", [integral(piece("0"))], "no value at the witness", {"a": "-1"}, a=LINE),
     row("integral(0/x, x, -1, 1)", "0", [integral(piece("0"))], "expected 1 entries"),
+    row("integral([x, 1], x, 0, 1)", "[1/2, 1]", [integral(piece("x__1**2/2")), integral(piece("x__2"))], proofs=(I, I)),
+    row("integral([x, 1], x, 0, 1)", "[1/2, 1]", [integral(piece("x__1**2/2"))], "without an answer", proofs=(I, I)),
+    row("integral([1/x, 1], x, 0, 1)[2]", "1", [integral(piece("log(x__1)")), integral(piece("x__2"))], "entries"),
+    row("integral([0/x, 1], x, 0, 1)[2]", "1", [integral(piece("0")), integral(piece("x__2"))], "entries"),
+    row("integral([integral(x, y, 0, 1)], x, 0, 1)", "[1/2]", [], "a matrix in integral"),
     row("integral(exp(-x)*integral(y, y, 0, 1), x, 0, oo)", "1/2", [
         integral(piece("y__1**2/2")), integral(piece("-exp(-x__2)/2", (0, 1))),
     ]),
@@ -252,6 +257,10 @@ SUMS = [
     row("sum(k, k, 1, a)", "0", [sum_by("k__1*(k__1 - 1)/2")], "whole ends", {"a": "1"}, a=LINE),
     row("sum(k, k, 1, 1/2)", "0", [], "whole ends"),
     row("sum(k, k, 1/2, 2)", "0", [], "whole ends"),
+    row("sum(k, k, 1, n)", "n*(n + 1)/2", ["terms"], "whole ends", {"n": "1"}, n=COUNT),
+    row("sum([k, 1], k, 1, 3)", "[6, 3]", [], proofs=(I, I)),
+    row("product([k, 1], k, 1, 3)", "[6, 1]", [], "expected a number", proofs=(I, I)),
+    row("product([k, 1], k, 1, n)", "[6, 1]", [], "a matrix in product", {"n": "1"}, (I, I), n=COUNT),
     row("sum(k, k, 1, 3) + product(k, k, 1, 3)", "12", []),
     row("sum(k, k, 2, 1) + product(k, k, 2, 1)", "1", []),
     row("sum(0*k, k, 1, 400)", "0", []),
@@ -364,6 +373,11 @@ REFUTED = [
     (stated("integral([x, log(y)][1], x, 0, 1)", "=", "1", y=LINE), {"y": "-1"}, [integral(piece("x__1**2/2"))],
      "no value at the point"),
     (state("x", "=", "1", x=LINE), ["x"], None, "expected numbers by symbol"),
+    (state("sum(1/k, k, 1, n)", "=", "n", n=COUNT), {"n": "2"}, ["terms"], ""),
+    (state("product(k, k, 1, n)", "=", "6", n=COUNT), {"n": "3"}, ["terms"], "not seen"),
+    (state("sum(1/(k - 2), k, 1, n)", "=", "0", n=COUNT), {"n": "3"}, ["terms"], "expected 1 entries"),
+    (state("sum(k, k, 1, n)", "=", "0", n=COUNT), {"n": "401"}, ["terms"], "too many terms"),
+    (state("sum((a - 1)**k, k, 1, n)", "=", "5", a=LINE, n=COUNT), {"a": "0", "n": "2"}, ["terms"], "another exponent"),
 ]  # fmt: skip
 #: Proofs by the other rules, each with a premise that is false, or a place that matters.
 XYZ, MINUS, SEVEN = {"x": "1", "y": "1", "z": "1"}, {"x": "-1"}, ["6", "8", []]

@@ -354,9 +354,8 @@ let rec power (a : form) q =
 
 let single (m : Monomial.t) = match m with [ (i, q) ] when Q.equal q Q.one -> Some (Hashtbl.find atoms i) | _ -> None
 
-let product_of_terms f (a : form) =
-  let a = if meets_the_circle a then reduce_on_the_circle a else a in
-  Terms.fold (fun m c p -> multiply p (f m c)) a unit_form
+let turned (a : form) = if meets_the_circle a then reduce_on_the_circle a else a
+let product_of_terms f (a : form) = Terms.fold (fun m c p -> multiply p (f m c)) (turned a) unit_form
 
 let exp_form =
   product_of_terms (fun m c ->
@@ -429,7 +428,7 @@ let tail_form name k a =
   multiply (add full (negative (start 0 Q.one nothing))) (power a (Q.of_int (-k)))
 
 let function_form name a =
-  let two = Q.of_int 2 in
+  let two = Q.of_int 2 and a = turned a in
   let hyperbolic sign = scale half (add (exp_form a) (scale (Q.of_int sign) (exp_form (negative a)))) in
   match name with
   | "exp" -> exp_form a
@@ -466,7 +465,7 @@ let rec normal t : form =
       match !constant b with
       | Some q -> power (normal a) q
       | None -> exp_form (multiply (normal b) (log_form (normal a))))
-  | Fun ("atan2", [ y; x ]) -> of_atom (Atan2 (key (normal y), key (normal x)))
+  | Fun ("atan2", [ y; x ]) -> of_atom (Atan2 (key (turned (normal y)), key (turned (normal x))))
   | Fun (name, [ x ]) -> function_form name (normal x)
   | Fun (name, _) -> outside "function %s" name
 

@@ -101,6 +101,16 @@ let combine make values =
   | Scalar _ -> Scalar (make (List.map (entry 0 0) values))
   | Matrix m -> Matrix (List.mapi (fun i row -> List.mapi (fun j _ -> make (List.map (entry i j) values)) row) m)
 
+(* The whole numbers from one number to another, and a sum or product of terms *)
+let list_whole low high =
+  match (!constant low, !constant high) with
+  | Some a, Some b when is_whole a && is_whole b ->
+      if Q.geq (Q.sub b a) (Q.of_int 400) then refuse "more than 400 terms";
+      List.init (max 0 (Z.to_int (Q.sub b a).Q.num + 1)) (fun i -> Num (Q.add a (Q.of_int i)))
+  | _ -> refuse "expected whole ends"
+
+let join_terms kind terms = if kind = "sum" then Sum (zero :: terms) else Prod (one :: terms)
+
 let sum_of_parts = function [ t ] -> t | l -> Sum l
 let product_of_parts = function [ t ] -> t | l -> Prod l
 
@@ -689,7 +699,7 @@ and cut_body r =
   in
   go 0 []
 
-(* A number with a value in the place of a name, and what has to have a value for it *)
+(* What stands there with a value in the place of a name, and what has to have a value for it *)
 and read_body context depth kind body name value =
   let { said; bound; box; places; _ } = context in
   context.said <- [];
@@ -700,16 +710,16 @@ and read_body context depth kind body name value =
       context.box <- (v, { Goal.anything with integer = kind = "sum" || kind = "product" }) :: box
   | _ -> ());
   let r = { rest = body; depth } in
-  let t = scalar kind (deeper r (read_sum context)) in
+  let v = deeper r (read_sum context) in
   if next r <> End then refuse "%s: expected a variable" kind;
   let needs = List.rev context.said in
   context.said <- said;
   context.bound <- bound;
   context.box <- box;
   context.places <- places;
-  (t, needs)
+  (v, needs)
 
-(* integral(f, x, a, b), sum and product the same, limit(f, x, a): a symbol in its place, or all terms *)
+(* integral(f, x, a, b), sum and product the same, limit(f, x, a): a symbol for each entry of f, or all terms *)
 and read_question context kind r =
   let first = List.length context.questions and whole = kind = "sum" || kind = "product" in
   let body = cut_body r in
@@ -724,34 +734,35 @@ and read_question context kind r =
   if List.length ends <> if kind = "limit" then 1 else 2 then refuse "%s: another number of ends" kind;
   let low = List.hd ends and high = List.nth ends (List.length ends - 1) in
   match (whole, !constant low, !constant high) with
-  | true, Some a, Some b ->
-      if not (is_whole a && is_whole b) then refuse "expected whole ends";
-      if Q.geq (Q.sub b a) (Q.of_int 400) then refuse "%s: more than 400 terms" kind;
-      let term i =
-        let t, needs = read (Num (Q.add a (Q.of_int i))) in
-        List.iter (say context) (t :: needs);
-        t
+  | true, Some _, Some _ ->
+      let term k =
+        let v, needs = read k in
+        List.iter (say context) (entries v @ needs);
+        if kind = "sum" then v else Scalar (scalar kind v)
       in
-      let count = max 0 (Z.to_int (Q.sub b a).Q.num + 1) in
-      let unit = if kind = "sum" then zero else one in
-      let terms = List.rev (List.fold_left (fun l i -> term i :: l) [] (List.init count Fun.id)) in
-      Scalar (if count = 0 then unit else if kind = "sum" then Sum (unit :: terms) else Prod (unit :: terms))
+      let numbers = list_whole low high in
+      if numbers = [] then Scalar (join_terms kind [])
+      else combine (join_terms kind) (List.rev (List.fold_left (fun l k -> term k :: l) [] numbers))
   | _ ->
-      let t, needs = match early with Some found -> found | None -> read (Sym variable) in
+      let v, needs = match early with Some found -> found | None -> read (Sym variable) in
       if context.fractions <> [] then refuse "%s beside a floor" kind;
-      if context.quiet then Scalar zero
-      else begin
+      let last = List.length context.questions in
+      (match v with
+      | Matrix _ when last > first || kind = "product" -> refuse "%s of a matrix beside a question" kind
+      | _ -> ());
+      let own_needs, others = List.partition (fun t -> Names.mem variable (symbols t)) needs in
+      if not context.quiet then List.iter (say context) others;
+      let ask t =
         let number = List.length context.questions + 1 in
         let own = Printf.sprintf "%s__%d" k number and value = Printf.sprintf "value %d" number in
         let change = put [ (variable, Sym own) ] in
-        let own_needs, others = List.partition (fun t -> Names.mem variable (symbols t)) needs in
-        List.iter (say context) others;
         let q = { kind; value; variable = own; terms = [ change t ]; low; high; needs = List.map change own_needs; within = [] } in
-        let put_inside i inner = if i < first then inner else
+        let put_inside i inner = if i < first || i >= last then inner else
           let inner = change_question change inner in { inner with within = inner.within @ [ q ] } in
         context.questions <- List.mapi put_inside context.questions @ [ q ];
-        Scalar (Sym value)
-      end
+        Sym value
+      in
+      map (fun t -> if context.quiet then zero else ask t) v
 
 (* where(condition, a, b): what is read in the branch that is not taken leaves no trace. *)
 and read_where context r =

@@ -50,7 +50,9 @@ def list_candidates(question: Any, goal: Any) -> Iterator[Callable[[], Entry]]:
         "limit": list_limits,
         "expm": list_exponentials,
     }
-    return makers[question.kind](question, goal)
+    if question.kind in ("sum", "product") and not player.symbols_of(("+", question.low, question.high)):
+        yield lambda: "terms"
+    yield from makers[question.kind](question, goal)
 
 
 # Integrals

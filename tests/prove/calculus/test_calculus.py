@@ -173,6 +173,39 @@ def test_a_cut_at_a_symbol_or_with_a_limit_and_a_pole_of_the_tangent_are_taken(t
     assert nav.prove(f"{text} = {false}", a=a).status == REFUTED
 
 
+@pytest.mark.parametrize(
+    ("text", "true", "false", "symbols"),
+    [
+        ("integral([[1, x], [0, 1]] @ [[0, 0], [0, c]] @ [[1, x], [0, 1]].T, x, 0, T)", "c*[[T**3/3, T**2/2], [T**2/2, T]]",
+         "c*[[T**3/3, T**2/2], [T**2/3, T]]", {"T": "positive", "c": "positive"}),
+        ("integral(skew(w) @ v, s, 0, T)", "T*cross(w, v)", "T*cross(v, w)",
+         {"v": {"vector": 3}, "w": {"vector": 3}, "T": "positive"}),
+        ("sum(k*C @ v, k, 1, n)", "n*(n + 1)/2*C @ v", "n*(n + 1)/2*C.T @ v",
+         {"C": {"rotation": "b to n"}, "v": {"vector": 3}, "n": {"integer": ["1", "oo"]}}),
+        ("limit([sin(x)/x, cos(x)], x, 0)", "[1, 1]", "[1, 0]", {}),
+    ],
+)  # fmt: skip
+def test_integrals_sums_and_limits_of_matrices_are_taken_entry_by_entry(text, true, false, symbols):
+    assert nav.prove(f"{text} = {true}", **symbols).status == PROVED
+    assert nav.prove(f"{text} = {false}", **symbols).status == REFUTED
+
+
+@pytest.mark.parametrize(
+    "text", ["sum(1/k, k, 1, n) <= log(n + 1)", "sum(1/k**2, k, 1, n) <= 3/2", "product(1 + 1/k**2, k, 1, n) < 3"]
+)
+def test_a_false_statement_on_a_sum_without_a_closed_form_falls_at_a_whole_number(text):
+    verdict = nav.prove(text, n={"integer": ["1", "oo"]})
+    assert verdict.status == REFUTED and verdict.certificate["answers"] == ["terms"] and nav.check(verdict).accepted
+
+
+def test_formulas_in_sines_that_are_equal_have_equal_functions():
+    same = "sin(x)*cos(y) - cos(x)*sin(y)", "sin(x - y)"
+    for function in ("atan2({}, z)", "atan2(z, {})", "erf({})", "log(2 + {})", "asin(({})/2)"):
+        left, right = (function.format(side) for side in same)
+        assert nav.prove(f"{left} = {right}").status == PROVED
+        assert nav.prove(f"{left} = {right.replace('-', '+')}").status == REFUTED
+
+
 def test_cuts_are_found_at_absolute_values():
     assert nav.prove("integral(abs(x - 1), x, -1, 2) = 5/2").status in (PROVED, CERTIFIED)
     assert nav.prove("integral(abs(x - 1), x, -1, 2) = 3/2").status == REFUTED
@@ -204,7 +237,9 @@ def test_calculus_is_printed_as_on_paper(text, latex):
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        ("integral(x, x, 0) = 1", "a number, its variable and two ends"),
+        ("integral(x, x, 0) = 1", "a value, its variable and two ends"),
+        ("product([k, 1], k, 1, 3) = [6, 1]", "product of a number, its variable and two ends; got a vector of 2"),
+        ("sum(k, k, 1, [2, 3]) = 1", "sum of a value, its variable and two ends"),
         ("integral(x, 2, 0, 1) = 1", "the name of a number as the variable"),
         ("integral(x, x + 1, 0, 1) = 1", "the name of a number as the variable"),
         ("integral(x, pi, 0, 1) = 1", "the name of a number as the variable"),
