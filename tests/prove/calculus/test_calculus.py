@@ -176,7 +176,8 @@ def test_a_cut_at_a_symbol_or_with_a_limit_and_a_pole_of_the_tangent_are_taken(t
 @pytest.mark.parametrize(
     ("text", "true", "false", "symbols"),
     [
-        ("integral([[1, x], [0, 1]] @ [[0, 0], [0, c]] @ [[1, x], [0, 1]].T, x, 0, T)", "c*[[T**3/3, T**2/2], [T**2/2, T]]",
+        ("integral([[1, x], [0, 1]] @ [[0, 0], [0, c]] @ [[1, x], [0, 1]].T, x, 0, T)",
+         "c*[[T**3/3, T**2/2], [T**2/2, T]]",
          "c*[[T**3/3, T**2/2], [T**2/3, T]]", {"T": "positive", "c": "positive"}),
         ("integral(skew(w) @ v, s, 0, T)", "T*cross(w, v)", "T*cross(v, w)",
          {"v": {"vector": 3}, "w": {"vector": 3}, "T": "positive"}),
