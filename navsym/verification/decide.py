@@ -200,10 +200,9 @@ def decide_or_grant(statement: Statement, seconds: float = SECONDS) -> Verdict:
 def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict: Verdict) -> Record:
     """The record of a claim: name, both sides as text, verdict and certificate, as plain data.
 
-    statement : None when deriving it was stopped; the sides are then empty
+    statement : None when deriving it was stopped: both sides are empty; a kept verdict may have another claim's scope
     """
     printed, derived = ("", "") if statement is None else sides(statement)
-    # A kept verdict may be that of another claim with the same statement: its scope is told anew.
     scope = statement.derived.scope if isinstance(statement, Property) else verdict.scope.partition("; ")[0]
     return Record(
         id=claim.id,
