@@ -46,12 +46,15 @@ PAPER = Paper(
     beyond="4.11.nonzero-beyond range.* position.*",
     causes={"4.4": "4.3.u2"},
     left_out={
-        "after (1.1): all y_i are of one order": "no figures of the errors are given",
+        "after (1.1): all y_i are of one order, beta_3 of a higher one": "no figures of the errors are given",
+        "(1.1): U beta_3; before (2.7): sgn of an impulse": "conventions: U in units of omega_0; signs of the weights",
         "section 3: position correction has l = m, hence unique algorithms": "a result of [9], whose model and range "
         "of T are not printed; position.y2 has l = 3 for m = 4 and T >= 2 pi",
         "section 4.1: S0 satisfies the lemma of [9]": "the lemma is not printed; 4.4* proves the optimum without it",
         "section 3: steps 1 to 4 of the algorithm": "3.remark1 and 4.1, 4.4*, 4.10, 3.6* "
         "with 4.13; for any system they rest on the theorems of [9-11], which are quoted",
+        "after (4.12): the algorithms are unique by (4.11)": "of y1 too: weights live on the contacts of any one dual, "
+        "here (4.6) alone (4.6.same-instants, unique.*), and det N != 0 (4.11.nonzero) leaves one solution",
         "(4.14) and (4.16) are easily realised": "a judgement",
         "(2.5): Phi_H as any piecewise continuous function": "2.6.piecewise, 2.D.piecewise, 3.1.piecewise take "
         "polynomials of degree 2 on two pieces",

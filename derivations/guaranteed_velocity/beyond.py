@@ -141,7 +141,7 @@ def contacts(dual: tuple, below: sp.Expr, above: sp.Expr) -> Equation:
 
 
 # Every optimal weight function lives on the contacts of every optimal dual, so that the estimate is unique for
-# T < 2 pi. The argument from (4.11) does not apply, since the dual (1, 0, 0) touches everywhere.
+# T < 2 pi. For T <= 4 pi/3 the argument from (4.11) serves as well: the dual of 4.6.same-instants has three contacts.
 velocity_touches_once = claim(
     "range.y1.contacts",
     "y1, every T: 1 - x.H = sin^2(s/2), s = T - tau, for the dual (1, 0, 1/2): for T < 2 pi one contact.",

@@ -5,9 +5,10 @@ from itertools import product
 import sympy as sp
 
 from navsym.claims import PROVED, Bound, Equation, Finding, Property, claim, state
+from navsym.language.expression import to_text
 from navsym.prove.identities.normal_form import vanishes_identically
 from navsym.prove.signs.bounds import Sign, prove_sign
-from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, weights
+from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, tau, weights
 
 sigma = sp.Symbol("sigma", positive=True)
 s, b = sp.symbols("s b", real=True)
@@ -200,7 +201,7 @@ name_of_the_problem = claim(
     "After (2.7): its objective belongs to the best correlation, -1 for two weights of one sign.",
     lambda: objective(-1),
     slip="paper",
-    reason="the introduction and [3] call it the problem of the worst correlation, and so it is",
+    reason="the introduction, which cites [3] too, calls it the problem of the worst correlation, and so it is",
 )
 name_of_the_problem_corrected = claim(
     "2.7.name*",
@@ -211,7 +212,7 @@ name_of_the_problem_corrected = claim(
 
 def modulus(weight: sp.Expr) -> sp.Expr:
     """|weight| on the stated range, by its proved sign."""
-    positive = prove_sign(weight, {T: (sp.Rational(1, 10), sp.pi / 2)}).at_least(Sign.NONNEGATIVE)
+    positive = prove_sign(weight, STATED).at_least(Sign.NONNEGATIVE)
     return weight if positive else -weight
 
 
@@ -256,31 +257,35 @@ def weights_solve_the_system():
 
 number_of_contacts = claim(
     "3.2.contacts",
-    "The dual polynomial of each of the three states touches its bounds at no more than m = 3 instants.",
-    lambda: Property(printed=(True, True, True), derived=finitely_many_contacts(), unsaid=ZEROS),
+    "The optimal duals (1, 0, 0) of y1 and the alternating one of y2, y3 touch their bounds at m = 3 instants at most.",
+    lambda: Property((True, True, True), finitely_many_contacts(), say_contacts("!=")),
     slip="paper",
     reason="for y1 the optimal dual (1, 0, 0) gives |X.H| = 1 at every instant; l <= m holds for a basis only",
 )
 number_of_contacts_corrected = claim(
     "3.2.contacts*",
-    "The dual of y1 touches at every instant, those of y2 and y3 at finitely many (three for T <= pi/2: unique.*).",
-    lambda: Property(printed=(False, True, True), derived=finitely_many_contacts(), unsaid=ZEROS),
+    "The dual (1, 0, 0) of y1 touches at every instant, the alternating one at finitely many (three: unique.*).",
+    lambda: Property((False, True, True), finitely_many_contacts(), say_contacts("=")),
 )
 
 
-ZEROS = "that zeros are finitely many follows from an identity that does not hold"
+def slope_at_the_start() -> sp.Expr:
+    """d(x.H)/dtau at tau = 0, x the alternating dual: it is 2 cot(T/4), so that 1 - (x.H)^2 has finitely many zeros."""
+    return sp.diff((alternating().T * H())[0], tau).subs(tau, 0)
 
 
 def finitely_many_contacts() -> Finding:
-    """Whether 1 - (x.H)^2 is not identically zero, for the optimal duals of y1, y2, y3."""
-    duals = (sp.Matrix([1, 0, 0]), alternating(), alternating())
-    squares = [1 - ((x.T * H())[0]) ** 2 for x in duals]
-    return Finding(
-        tuple(not vanishes_identically(square) for square in squares),
-        "normal form of 1 - (x.H)^2",
-        PROVED,
-        "an analytic function that is not identically zero has finitely many zeros on [0, T]",
-    )
+    """Whether x.H, analytic in tau, is no constant: for the optimal duals (1, 0, 0) of y1, alternating of y2 and y3."""
+    moves = vanishes_identically(slope_at_the_start() - 2 * sp.cot(T / 4))
+    still = vanishes_identically(H()[0] - 1)
+    return Finding((not still, moves, moves), "slope of x.H at tau = 0", PROVED, "all T in (0, pi/2]")
+
+
+def say_contacts(relation: str) -> tuple[dict, ...]:
+    """That 1 - (x.H)^2 stands in this relation to 0 for y1, and that x.H has a slope for y2 and y3."""
+    slope, stated = to_text(slope_at_the_start()), {"T": ["0", "pi/2", ["open-low"]]}
+    ends = state(slope, "=", "2*cot(T/4)", stated), state("2*cot(T/4)", ">", "0", stated)
+    return state(to_text(1 - H()[0] ** 2), relation, "0"), *ends
 
 
 def sums_of_weights(weights_: tuple) -> tuple:

@@ -11,6 +11,8 @@ from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, T, alte
 U2_PRINTED = sp.sin(T / 4) ** 2 / sp.cos(T / 2)
 U3_PRINTED = sp.tan(T / 2)
 L1_PRINTED = sp.sin(T / 4) ** 2 / sp.cos(T / 2)
+#: The range of validity that the paper states, in a statement.
+RANGE = {"T": ["0", "pi/2", ["open-low"]]}
 
 
 def deviation() -> sp.Expr:
@@ -39,6 +41,8 @@ def rotated() -> sp.Matrix:
     return sp.Matrix([vector[2], vector[0], vector[1]])
 
 
+#: Of determinant 1; that of an exchange is -1.
+CYCLE = sp.Matrix([[0, 0, 1], [1, 0, 0], [0, 1, 0]])
 permuted = claim(
     "4.1",
     "The permuted H, as printed.",
@@ -52,22 +56,8 @@ permuted_corrected = claim(
 permutation_is_a_cycle = claim(
     "4.1.order",
     "(4.1) is the cyclic shift (H3, H1, H2), where remark 3.1 speaks of one exchange; nothing depends on it.",
-    lambda: Property(
-        printed="cycle", derived=permutation_kind(), unsaid="a name is compared, and statements are about numbers"
-    ),
+    lambda: Equation([sp.cos(T - tau) - 1, 1, sp.sin(T - tau), 1], [*(CYCLE * H()), CYCLE.det()]),
 )
-
-
-def permutation_kind() -> Finding:
-    """Parity of the permutation that turns H into the printed order of its components."""
-    order = [component_kind(entry) for entry in (sp.cos(T - tau) - 1, sp.Integer(1), sp.sin(T - tau))]
-    fixed = sum(place == source for place, source in enumerate(order))
-    return Finding("exchange" if fixed == 1 else "cycle", "matching of components", PROVED, f"order {order}")
-
-
-def component_kind(entry: sp.Expr) -> int:
-    """Which component of the derived H an entry is."""
-    return next(k for k, h in enumerate(H()) if vanishes_identically(h - entry))
 
 
 @claim("4.2")
@@ -166,20 +156,20 @@ instants_of_each_state = claim(
         printed=(1, 3, 3),
         derived=instants_in_use(),
         meaning=tuple(
-            state(to_text(w), "=", "0", {"T": ["0", None, ["open-low"]]})
-            if vanishes_identically(w)
-            else state(to_text(w), "!=", "0", {"T": ["1", "1", []]})
-            for index in range(3)
-            for w in weights(index)
+            state(to_text(w), sign, "0", RANGE)
+            for index, signs in enumerate(("==>", "<><", "<><"))
+            for w, sign in zip(weights(index), signs, strict=True)
         ),
     ),
 )
 
 
 def instants_in_use() -> Finding:
-    """Number of weights that are not identically zero."""
-    counts = tuple(sum(not vanishes_identically(w) for w in weights(state)) for state in range(3))
-    return Finding(counts, "normal form of the weights", PROVED, "all T with det N != 0")
+    """Number of weights that have a sign on the stated range; the others have to vanish identically."""
+    signs = [[proved_sign(w) for w in weights(index)] for index in range(3)]
+    others = [w for index, row in enumerate(signs) for w, sign in zip(weights(index), row, strict=True) if not sign]
+    counts = tuple(sum(map(abs, row)) for row in signs) if all(map(vanishes_identically, others)) else None
+    return Finding(counts, "signs and normal forms of the weights", PROVED, "all T in (0, pi/2]")
 
 
 # -- (4.7) to (4.9) ---------------------------------------
@@ -223,8 +213,7 @@ def optimal_deviation(state: int) -> sp.Expr:
 def signs_of_the_weights():
     """The weights of y2 alternate -, +, - on the stated range, as optimal_deviation takes for granted."""
     found = tuple(proved_sign(weight) for weight in weights(1))
-    signs, stated = zip(weights(1), "<><", strict=True), {"T": ["0", "pi/2", ["open-low"]]}
-    meaning = tuple(state(to_text(weight), sign, "0", stated) for weight, sign in signs)
+    meaning = tuple(state(to_text(weight), sign, "0", RANGE) for weight, sign in zip(weights(1), "<><", strict=True))
     return fact((-1, 1, -1), found, "signs of the product forms", PROVED, scope="T in (0, pi/2]", meaning=meaning)
 
 

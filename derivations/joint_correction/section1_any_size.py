@@ -56,6 +56,7 @@ def of_every_size(left: str, right: str, *given: str) -> Callable[[], Property]:
 SHIFT_A, SHIFT_B = "A @ G = Theta @ A", "B @ G = Phi_x @ A + Phi_z @ B"
 SHIFTS = ("A_u @ G = F @ A_u + F_o @ A_v", "A_v @ G = Theta_u @ A_u + Theta_v @ A_v", "B_w @ G = D_u @ A_u + D_w @ B_w")
 GX, GZ1, GZ2 = "C1 @ Theta @ inv(C1)", "C2 @ Phi_x @ inv(C1)", "C2 @ Phi_z @ inv(C2)"
+FROM_U, FROM_V, FROM_W = "inv(C11)@(C11@A_u)", "inv(C12)@(C12@A_v)", "inv(C22)@(C22@B_w)"
 
 #: number, title, left side, right side, relations
 STATEMENTS = (
@@ -98,9 +99,9 @@ STATEMENTS = (
         SHIFT_A,
         SHIFT_B,
     ),
-    ("1.14.u", "du/dt", "C11 @ A_u @ G", "C11@F@inv(C11)@(C11@A_u) + C11@F_o@inv(C12)@(C12@A_v)", *SHIFTS),
-    ("1.14.v", "dv/dt", "C12 @ A_v @ G", "C12@Theta_u@inv(C11)@(C11@A_u) + C12@Theta_v@inv(C12)@(C12@A_v)", *SHIFTS),
-    ("1.14.w", "dw/dt", "C22 @ B_w @ G", "C22@D_u@inv(C11)@(C11@A_u) + C22@D_w@inv(C22)@(C22@B_w)", *SHIFTS),
+    ("1.14.u", "du/dt = G_u1 u + G_u2 v", "C11 @ A_u @ G", f"C11@F@{FROM_U} + C11@F_o@{FROM_V}", *SHIFTS),
+    ("1.14.v", "dv/dt = G_v1 u + G_v2 v", "C12 @ A_v @ G", f"C12@Theta_u@{FROM_U} + C12@Theta_v@{FROM_V}", *SHIFTS),
+    ("1.14.w", "dw/dt = G_w1 u + G_w2 w", "C22 @ B_w @ G", f"C22@D_u@{FROM_U} + C22@D_w@{FROM_W}", *SHIFTS),
 )
 
 ANY_SIZE: tuple[Claim, ...] = tuple(

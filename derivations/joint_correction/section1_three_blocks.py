@@ -155,7 +155,7 @@ def choice_of_i():
     best = best_split(overlapping().found)
     method = "all determinants of a_1 ... a_i, b_1 ... b_j"
     unsaid = "a least value over all bases is found by trying them"
-    return fact((2, 2), (best.i, best.j), method, PROVED, scope="n = 4, m = 3, l = 4", unsaid=unsaid)
+    return fact((2, 2), (best.i, best.j), method, PROVED, scope="l = 4", unsaid=unsaid)
 
 
 @claim("1.14.gains_unique")

@@ -6,7 +6,7 @@ from navsym.claims import PROVED, Equation, Finding, claim, fact, state
 from navsym.models.linear import LinearModel
 from navsym.observability.splits import companion, last_row
 from navsym_papers.joint_correction.matrices import exact_inverse, unit_row, write_matrix
-from navsym_papers.joint_correction.section1_chains import SIZES, characteristic, coefficients, rank_of, say_affine
+from navsym_papers.joint_correction.section1_chains import characteristic, coefficients, rank_of, say_affine
 from navsym_papers.joint_correction.section1_systems import (
     System,
     coefficients_of_polynomial,
@@ -36,7 +36,7 @@ def enough_vectors():
         sizes = [part.dimension for part in s.found.measurements]
         ranks += [(LinearModel(s.G, None, s.model.H[i, :]), sizes[i]) for i in (0, 1)]
         relations.append((f"{s.n} - {sizes[0]}", "<=", str(sizes[1])))
-    finding = Finding(found, "exact dimensions of the chains", PROVED, scope=SIZES)
+    finding = Finding(found, "exact dimensions of the chains", PROVED)
     return say_ranks((True,) * 5, finding, ranks, *relations)
 
 
@@ -165,8 +165,7 @@ def second_gain_is_unique():
         jacobian = sp.Matrix(values).jacobian(K)
         meaning += say_affine(values, K, C2.det())
         found = found and rank_of(jacobian) == size and not any(jacobian.has(symbol) for symbol in K)
-    method = "the coefficients are affine in K_z with an invertible matrix"
-    scope = "n - m = 1, 2, 3, all phi"
+    method, scope = "the coefficients are affine in K_z with an invertible matrix", "n - m = 1, 2, 3, all phi"
     return fact(True, found, method, PROVED, scope=scope, assumptions=("det C_2 != 0",), meaning=meaning)
 
 
@@ -216,9 +215,9 @@ def exact_first_stage_leaves_a_free_second():
 
 @claim("1.two_stage.linear")
 def influence_is_proportional():
-    """What an error of x at t_1 leaves in z at t is proportional to it: small when it is small.
+    """m = n - m = 1: what an error of x at t_1 leaves in z at t is proportional to it, small when it is small.
 
-    m = n - m = 1: error of z after time t for the error e of x at t_1, poles a and b different.
+    Error of z after time t for the error e of x at t_1, poles a and b different.
     """
     a, b, t = sp.symbols("a b t", positive=True)
     drive, e, factor = sp.symbols("phi e c", real=True)

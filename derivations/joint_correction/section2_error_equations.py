@@ -258,7 +258,7 @@ correction_time_high = claim(
 
 @claim("2.scale.period", expect=CERTIFIED)
 def correction_is_short():
-    """tau_h <= 3 is at most a twentieth of the period 2 pi/mu of the motion when mu <= 0.1."""
+    """tau_h <= 3 is at most a twentieth of the period 2 pi/mu of the motion, for mu from 0.001 to 0.1."""
     mu = sp.Symbol("mu", positive=True)
     return Bound(sp.Integer(60), "<", 2 * sp.pi / mu, {mu: (sp.Rational(1, 1000), sp.Rational(1, 10))})
 

@@ -368,10 +368,9 @@ position_only = claim(
         ),
     ),
 )
-# The polynomial keeps the factor p^2 (p^2 + 1)^2 of the uncorrected Schuler errors.
 position_only_by_zeroing_oscillates = claim(
     "3.situations.zeroing",
-    "Only position with K^c = 0.",
+    "Only position with K^c = 0: the polynomial keeps the factor p^2 (p^2 + 1)^2, the Schuler errors are undamped.",
     lambda: Equation(
         p**2 * (p**2 + 1) ** 2 * ((p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))),
         polynomial_of(joint_error_matrix((sp.Integer(0),) * 6, PLAIN)),

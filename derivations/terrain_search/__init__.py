@@ -11,9 +11,6 @@ say everything: G = sum g g', M1 = sum k g g', M2 = sum k^2 g g'. A velocity err
 C v, C = G^-1 M1. The scalar t_G of the paper is the Rayleigh quotient v'M1 v / v'G v; its extremes are the
 eigenvalues of C, always real; the quadratic (12) is the condition that v be an eigenvector. Turning the
 track about C instead of t_G makes the two stages together the joint least-squares solution.
-
-Slips without a claim of their own, since nothing can be computed from them: the text calls (10) "solution
-(6)" and (9) "(9*)", and the index of the velocity step in (8) is illegible.
 """
 
 from navsym.claims import Paper
@@ -38,8 +35,8 @@ PAPER = Paper(
     ),
     remarks=(
         "1.height 6.rest 9.family 9.small 10.after 10.before 10.sufficient 10.unique 10.flat 11.beta 12.linear* "
-        "bias.mirror bias.only_way bias.units cost.experiment cost.total middle.trace noise roots.both roots.values "
-        "roots.range roots.gram roots.solvable flat mean.* interval.half interval.whole sigma.mean sigma.table "
+        "bias.mirror bias.only_way bias.units cost.experiment grid.experiment cost.total middle.trace noise roots.both "
+        "roots.values roots.gram roots.solvable flat mean.* interval.half interval.whole sigma.mean sigma.table "
         "sigmaV.cell sigmaV.floor table.bias* table.close.mean table.grid* table.percent table.runs* "
         "table.quantisation table.acceleration* table.real_time table.sequential"
     ),
@@ -90,6 +87,11 @@ PAPER = Paper(
         "accuracy close to that of the joint search": "by table 1 only (table.close)",
         "the editors' questions in the manuscript": "no statements of the authors; one asks for the time of t_G: "
         "O(n) operations by 12.linear, O(n^2) by the printed double sums",
+        "below the bias: joint estimation is the only way to remove it": "a judgement; bias.only_way shows the instant "
+        "at which the position search is right on average",
+        "below table 1: practically the same time, a considerable advantage; existing computers": "judgements",
+        "the hypotheses (delta x_i, delta y_i) for (delta x_i, delta y_j), solution (6) for (10), (9*) for (9), the "
+        "bracket missing in (6)": "letters, nothing to compute",
         "the index of the velocity step in (8)": "illegible in the copy",
         "(3), (14): delta x*, delta y* as errors": "a convention of sign: what is added to the indicated position has "
         "the sign opposite to the error of (1)",

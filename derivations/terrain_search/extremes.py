@@ -88,7 +88,7 @@ def a_root_is_an_eigenvector():
 
 @claim("roots.range")
 def every_value_lies_between_the_roots():
-    """det(M1 - t_G G) = -(W / v'Gv)^2, so t_G lies between the roots of det(M1 - t G) in every direction."""
+    """One root gives t_min, the other t_max: det(M1 - t_G G) = -(W / v'Gv)^2 is 0 at the roots, else negative."""
     v = sp.Matrix([beta_x, beta_y])
     A2, A1, A0 = form_sums(G, M)
     W = A2 * beta_x**2 + A1 * beta_x * beta_y + A0 * beta_y**2

@@ -88,8 +88,8 @@ crossing_as_printed = claim(
     "The coarse track meets the true one at some t: the displacement C v - t v vanishes for t = t_G.",
     lambda: Equation([sp.Integer(0)] * 2, list(centre() * v - ((v.T * M1 * v)[0] / (v.T * G * v)[0]) * v)),
     slip="paper",
-    reason="in two dimensions C v is not along v, so the coarse and the true track are skew: they meet only when v "
-    "is an eigenvector of C; by hand: C = diag(0, 1), v = (1, 1): (0, 1) - t (1, 1) never vanishes",
+    reason="in two dimensions C v is not along v in general, so that the two tracks are in one place at no instant, "
+    "unless v is an eigenvector of C; by hand: C = diag(0, 1), v = (1, 1): (0, 1) - t (1, 1) never vanishes",
 )
 crossing_in_the_mean = claim(
     "crossing.exists*",

@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.claims import OPEN, Claim, Equation, Paper, Record, Statement, Verdict
+from navsym.claims import OPEN, Claim, Equation, Paper, Property, Record, Statement, Verdict
 from navsym.core.sandbox import Exhausted, Failed, require_jobs, require_limits, run_limited, run_many
 from navsym.prove.grant import write_statements
 from navsym.prove.ladder import decide
@@ -166,11 +166,10 @@ def record_of(
     statement = claim.derive()
     texts = write_statements(statement)
     key = hash_statement(statement, texts)
-    verdict: Verdict | None = None
     if stored is not None and stored.statement == key:
-        verdict = verdict_of(stored)
-    elif kept is not None:
-        verdict = grant_kept(key, texts, kept, seconds / SHARE)
+        verdict: Verdict | None = verdict_of(stored)
+    else:
+        verdict = None if kept is None else grant_kept(key, texts, kept, seconds / SHARE)
     is_known = verdict is not None
     if verdict is None:
         verdict = decide(statement, seconds=SEARCH)
@@ -201,9 +200,10 @@ def decide_or_grant(statement: Statement, seconds: float = SECONDS) -> Verdict:
 def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict: Verdict) -> Record:
     """The record of a claim: name, both sides as text, verdict and certificate, as plain data.
 
-    statement : None when deriving it was stopped; the sides are then empty
+    statement : None when deriving it was stopped: both sides are empty; a kept verdict may have another claim's scope
     """
     printed, derived = ("", "") if statement is None else sides(statement)
+    scope = statement.derived.scope if isinstance(statement, Property) else verdict.scope.partition("; ")[0]
     return Record(
         id=claim.id,
         paper=paper.module,
@@ -212,7 +212,7 @@ def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict
         status=verdict.status,
         expect=verdict.status if claim.either and verdict.status.holds else claim.expect,
         method=verdict.method,
-        scope=paper.scope_of(claim.number, verdict.scope),
+        scope=paper.scope_of(claim.number, scope),
         assumptions=tuple(verdict.assumptions),
         printed=printed,
         derived=derived,

@@ -264,3 +264,12 @@ def test_a_writer_waits_for_another(papers):
 def test_the_key_does_not_depend_on_the_process(papers):
     papers.add("tiny", statement="Equation(sp.expand((x + 1)**4), (1 + x)**4)")
     assert len({papers.verify()["tiny:1"].statement for _ in range(2)}) == 1
+
+
+def test_equal_statements_of_two_papers_have_scopes_of_their_own(papers):
+    papers.add("sized")
+    papers.add("plain")
+    text = (papers.folder / "sized.py").read_text()
+    papers.write("sized.py", text.replace("equations=()", 'equations=(), scopes={"1": "n = 8"}'))
+    scopes = {name: papers.verify(name).claims[0].scope for name in ("sized", "plain", "sized")}
+    assert scopes == {"sized": "all real x; n = 8", "plain": "all real x"}
