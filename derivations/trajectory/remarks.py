@@ -143,8 +143,7 @@ normalisation_always_improves = claim(
     lambda: refute_gain(Fraction(1), TABLE_CASES + RADIUS_CHANNEL, RADIUS_CHANNEL[0]),
     slip="paper",
     reason="unit columns are not the best scaling: in the radius channel (rho = 1) with tau = 0.65 s, n = 5, the "
-    "normalised matrix is the worse one; nearly optimal is all that holds in general (it is 1/0.877 times the "
-    "other)",
+    "normalised matrix is the worse one (1/0.877 times the other)",
 )
 normalisation_improves_the_table = claim(
     "experiment.better*",
