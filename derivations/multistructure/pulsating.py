@@ -264,7 +264,7 @@ def what_is_enough():
 def first_mode_in_the_sums() -> tuple[sp.Matrix, list[sp.Expr]]:
     """(17), (12) and (13) for one state and two modes: g, X and P, and the weight, mean and variance of mode 1."""
     g, a, b, c = mixture(2)
-    mean = g[0] * a[0] + g[1] * a[1]
+    mean = sum(w * x for w, x in zip(g, a, strict=True))
     variance = sum(right_side_of_13(2)).subs(dict(zip(b, a, strict=True)), simultaneous=True)
     return sp.Matrix([g[0], mean, variance]), [sp.Symbol("w_0", positive=True), a[0], c[0]]
 
