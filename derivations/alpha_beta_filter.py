@@ -27,6 +27,7 @@ PAPER = Paper(
         "2": "the form of the filter: alpha corrects the position, beta / T the velocity",
         "3": "the tracking index Lambda = sigma_w T^2 / sigma_v",
     },
+    left_out={"the alpha-beta-gamma tracker": "another model; this module has position and velocity alone"},
 )
 
 T = sp.Symbol("T", positive=True)  # period
@@ -222,34 +223,35 @@ def other_root_is_not_stable():
     return Equation(-4 * r, 4 - 2 * first - second, RATIO)
 
 
-def discriminant_of_the_filter() -> sp.Expr:
-    """Discriminant of the characteristic polynomial at the optimal gains, in r."""
+def discriminant_of_the_filter(first: sp.Expr, second: sp.Expr) -> sp.Expr:
+    """Discriminant of the characteristic polynomial at the gains alpha and beta, in r."""
     z = sp.Symbol("z", real=True)
-    loop = closed_loop().subs(dict(zip((alpha, beta), gains(), strict=True)), simultaneous=True)
+    loop = closed_loop().subs({alpha: first, beta: second}, simultaneous=True)
     return sp.Poly((z * sp.eye(2) - loop).det(), z).discriminant()
 
 
 @claim(
     "remark.critical",
     expect=REFUTED,
-    reason="a remark often met in documentation: the optimal gains give complex roots unless r <= 3 - 2 sqrt(2)",
+    reason="the optimal gains give complex roots unless r <= 3 - 2 sqrt(2); critically damped is half of their beta",
 )
 def optimal_gains_are_called_critical():
     """The optimal relation (5) makes the filter critically damped: the discriminant of (12) is zero."""
-    return Equation(sp.Integer(0), discriminant_of_the_filter(), RATIO)
+    return Equation(sp.Integer(0), discriminant_of_the_filter(*gains()), RATIO)
 
 
 @claim("remark.critical*")
 def discriminant_of_optimal_gains():
     """The discriminant is -(1 - r)^2 (6 r - 1 - r^2): negative, hence oscillating, for r > 3 - 2 sqrt(2)."""
-    return Equation(-((1 - r) ** 2) * (6 * r - 1 - r**2), discriminant_of_the_filter(), RATIO)
+    return Equation(-((1 - r) ** 2) * (6 * r - 1 - r**2), discriminant_of_the_filter(*gains()), RATIO)
 
 
 @claim("remark.critical-relation")
 def critical_relation():
     """Critically damped is beta = 2 - alpha - 2 sqrt(1 - alpha), half of the optimal beta."""
     first, second = gains()
-    return Equation(2 * (2 - first - 2 * sp.sqrt(1 - first)), second, RATIO)
+    critical = 2 - first - 2 * sp.sqrt(1 - first)
+    return Equation([0, 2 * critical], [discriminant_of_the_filter(first, critical), second], RATIO)
 
 
 @claim("index-one")

@@ -64,8 +64,8 @@ explain("4.Phi")
 
 # %% [markdown]
 # ## The curse of dimension
-# Certified condition numbers beside what double precision makes of them. Unit columns ($N_s$) help; the integer
-# matrix $N_f$ is beyond double precision from n = 13 on.
+# Certified condition numbers beside what double precision makes of them. Unit columns ($N_s$) help; that of the integer
+# matrix $N_f$ exceeds $2^{52}$ from n = 12 on.
 
 # %%
 orders = list(range(2, 31, 2))
@@ -219,8 +219,9 @@ figure
 
 # %% [markdown]
 # ## Printed figures against the rerun
-# A speed error of 0.019 m/s on the straight course is what the printed gain gives; 0.090 m/s while yawing is not.
-# Angles are printed in degrees that must be radians.
+# With the printed gain 0.090 m/s while yawing does not come out. On the first straight course noise alone does not give
+# 0.019 m/s; on the second the figure depends on where one begins to count. Angles are printed in degrees that must be
+# radians.
 
 # %%
 for row in rerun(runs=2):
@@ -239,9 +240,9 @@ explain("experiment.sigma_v.yaw.100")
 explain("experiment.sigma_phi.100")
 
 # %% [markdown]
-# No other gain helps. Let $S$ be the answer of the innovation to the measurement. For every stable gain the mean of
-# $\log |S|^2$ over the unit circle is zero: an answer that is small at the yawing is large elsewhere, and noise of the
-# position is the price.
+# No other constant gain helps. Let $S$ be the answer of the innovation to the measurement. For every stable gain the
+# mean of $\log |S|^2$ over the unit circle is zero: an answer that is small at the yawing is large elsewhere, and noise
+# of the position is the price.
 
 # %%
 explain("experiment.together.100")
@@ -249,7 +250,7 @@ explain("experiment.together.100")
 # %% [markdown]
 # ## Three speeds, one algorithm
 # On a straight course the speed enters neither the innovations nor the criterion, and off it the error can only grow
-# with the speed: the printed errors of 2, 100 and 300 m/s were not made by one gain. And the criterion as printed
+# with the speed: the printed errors of 2, 100 and 300 m/s are no mean squares of one gain. And the criterion as printed
 # compares the measurement with the estimate before the step, which no candidate of that step can change.
 
 # %%

@@ -136,7 +136,7 @@ explain("13.every")
 explain("13.middle")
 
 # %% [markdown]
-# Partial estimates need not be stored, as promised, but the adders must be: two means and two covariances.
+# Partial estimates need not be stored, as promised, but the adders must be: a mean and a covariance.
 
 # %%
 explain("17.memory")
@@ -307,7 +307,7 @@ interact(
 )
 
 # %% [markdown]
-# Nor is a confident mode enough for the Gaussian approximation; the modes must also stay near each other.
+# Nor is a confident mode enough for the Gaussian approximation; the others must also stay near it, and not be wide.
 
 # %%
 explain("near")

@@ -9,9 +9,6 @@ decided by counting, by one exact example, or by an integral in balls.
 
 ``conditions`` has what stands in words between the equations; ``forgetting`` goes beyond the paper: how wrong the
 probabilities of the modes can be, and for how long.
-
-Slips without a claim of their own, since nothing can be computed from them: the text below (11) says "in the form (1)"
-for the form (11), and "the j-th step" above (12) for the k-th.
 """
 
 from navsym.claims import Paper
@@ -25,6 +22,8 @@ PAPER = Paper(
     language="Ukrainian",
     equations=tuple(str(number) for number in range(1, 22)),
     definitions={
+        "1": "the equation of errors in general: it defines S; its arguments and its shape are claimed beside it",
+        "2": "the same without the errors of the parameters; what follows is claimed beside it",
         "4": "the switching state model itself: matrices A, G and the mode I(k) are given",
         "6": "the switching measurement model itself; it defines H, V and R",
     },
@@ -40,6 +39,7 @@ PAPER = Paper(
     ),
     beyond="10.forgets* 10.error* 17.error* K.exact K.fold K.longer",
     scopes={
+        "17.memory": "one state, two modes",
         "19": "3 modes",
         **dict.fromkeys(
             ("8.joseph", "8.posterior", "18.exponent", "18.normaliser"), "(states, measurements) (1,1), (2,1), (1,2)"
@@ -55,6 +55,8 @@ PAPER = Paper(
         "(8) to (21) for any number of modes and values": "claimed for the numbers that each title names",
         "below (4): W(k)": "its covariance is not printed",
         "(3): the dots over S1 and S2": "part of two names: the printed definitions are partial derivatives, no rates",
-        "below (21): the polygaussian filter with I N_c Gaussians": "its weights of pairs are not printed",
+        "below (21): a prior that is a weighted sum of Gaussians": "its weights for each mode are not printed",
+        "below (11): in the form (1); above (12): on the j-th step": "(11) and k; nothing is computed from them",
+        "(3) acceptable in most cases, (4) more adequate, K by statistical modelling": "judgements and advice",
     },
 )

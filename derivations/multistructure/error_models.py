@@ -203,8 +203,8 @@ def sensor_part() -> sp.Matrix:
 @claim(
     "2.growth.every",
     slip="paper",
-    reason="true on straight courses; on a circle the rate turns with the course, its mean is zero, the error comes "
-    "back; by hand: the integral of cos over a whole turn is 0",
+    reason="true on straight courses; on a circle the rate turns with the course, its mean is zero, the error of the "
+    "latitude comes back; by hand: the integral of cos over a whole turn is 0",
 )
 def every_sensor_error_grows_on_every_course():
     """Below (2), for every course: after a turn at constant rate a constant sensor error is left in the latitude."""

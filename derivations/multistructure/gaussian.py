@@ -28,7 +28,7 @@ def inverse(A: sp.Matrix) -> sp.Matrix:
 
 @claim("8.predict")
 def prediction():
-    """Between (13) and (14): A m and A P A^T + Q are the moments of x(k), for one and two states.
+    """Between (13) and (14): A P A^T + Q is the covariance of x(k), A P that with x(k-1), for one and two states.
 
     The information matrix of (x(k), x(k-1)) read off the two exponents, times the covariance that Kalman's
     prediction says, is the identity.

@@ -81,8 +81,8 @@ def markov():
 
 @claim(
     "14",
-    slip="scan",
-    reason="P[I(k) = 1] is one number for all modes; the letter i was read as the digit 1, and ij as j; by hand: "
+    slip="undecidable",
+    reason="P[I(k) = 1] is one number for all modes; the digit 1 stands for the letter i, and j for ij; by hand: "
     "probabilities 1/2, 1/3, 1/6 would all be 1/2",
 )
 def forgetful_printed():

@@ -9,6 +9,7 @@ from navsym.claims import CERTIFIED, PROVED, Bound, Claim, Equation, Finding, Pr
 from navsym.language.expression import to_text
 from navsym_papers.multistructure import examples, finite
 from navsym_papers.multistructure.finite import Step, step
+from navsym_papers.multistructure.moments import mixture, right_side_of_13
 from navsym_papers.multistructure.recursion import UNIT
 
 RUN = "a program is run and what it does is counted"
@@ -50,8 +51,9 @@ def product_of(
         return Equation(parts, [finite.partial(s, 0, i) for s, i in cases])
 
     reason = (
-        f"an equals sign stands between the fraction and the integral where (8) has a product{like}; by hand: a "
-        "measurement that says nothing makes the fraction 1, and the posterior is the integral"
+        f"an equals sign stands between the fraction and the integral where (8) has a product{like}; the copy has one "
+        "behind the product sign of (8), too; by hand: a measurement that says nothing makes the fraction 1, and the "
+        "posterior is the integral"
     )
     title = f"({number}) as printed: pi^i equals the fraction, and equals the integral."
     right = f"({number}) with the product of fraction and integral: (8) under ({condition}) [I,n = 2,2 3,2 2,3]."
@@ -88,7 +90,7 @@ def mode_probability_of_the_fold():
 
 @claim("13.sequences")
 def weighing_of_sequences():
-    """Below (13): the optimal estimate weighs partial ones by probabilities of mode sequences [I,n = 2,2 3,2 2,3]."""
+    """Below (13): the optimal estimate weighs partial ones by g of sequences, here of two modes [I,n = 2,2 3,2 2,3]."""
     for s in finite.every_size():
         value = [sp.Symbol(f"xi_{x}", real=True) for x in s.X]
         evidence = s.probability(Y=0)
@@ -259,55 +261,30 @@ def what_is_enough():
     return Bound((bound - parts) * (bound + parts), ">=", 0, {share: (0, sp.Rational(1, 10)), square: (0, None)})
 
 
-@claim("near.moments")
-def near_moments():
-    """The fold of N(0, 1) and epsilon of N(d, P): mean epsilon d, variance 1 + e (P - 1) + e (1 - e) d^2."""
-    other = sp.Symbol("P", positive=True)
-    mean = share * gap
-    return Equation(
-        [mean, 1 + share * (other - 1) + share * (1 - share) * gap**2],
-        [share * gap, (1 - share) * (1 + mean**2) + share * (other + (gap - mean) ** 2)],
-    )
+def first_mode_in_the_sums() -> tuple[sp.Matrix, list[sp.Expr]]:
+    """(17), (12) and (13) for one state and two modes: g, X and P, and the weight, mean and variance of mode 1."""
+    g, a, b, c = mixture(2)
+    mean = sum(w * x for w, x in zip(g, a, strict=True))
+    variance = sum(right_side_of_13(2)).subs(dict(zip(b, a, strict=True)), simultaneous=True)
+    return sp.Matrix([g[0], mean, variance]), [sp.Symbol("w_0", positive=True), a[0], c[0]]
 
 
-def memory(cases):
-    """Floats that the one-pass filter keeps beyond one Kalman filter, measured for (modes, states)."""
-    from navsym.multimodel.bank import Bank
-    from navsym_papers.multistructure.experiment.memory import floats_in_use
-
-    extra = []
-    for modes, n in cases:
-        unit = [[int(a == b) for b in range(n)] for a in range(n)]
-        model = {"F": unit, "Q": unit, "H": unit[:1], "R": [[1]]}
-        switch = [[1 / modes] * modes] * modes
-        made = Bank(
-            [model] * modes, switch, {"mean": [0] * n, "covariance": unit, "probabilities": [1 / modes] * modes}
-        )
-        single, pulsating = floats_in_use(made, made.means[0][:1])
-        extra.append(pulsating - single)
-    return tuple(extra)
-
-
-CASES = [(modes, n) for modes in (2, 3, 8) for n in (1, 2, 6)]
-
-
-def numbers_kept(printed) -> Property:
-    """What is printed beside what is counted, case by case."""
-    method, scope = "arrays of the one-pass filter counted", "I = 2, 3, 8; n = 1, 2, 6"
-    return fact(tuple(printed(*case) for case in CASES), memory(CASES), method, PROVED, scope=scope, unsaid=RUN)
-
-
-memory_printed = claim(
+@claim(
     "17.memory",
-    "Pulsating needs more memory than Kalman only for the I probabilities of (17).",
-    lambda: numbers_kept(lambda modes, n: modes),
     slip="paper",
     reason="beside the probabilities of (17) the sums of (12) and (13) that are being built must be kept, while every "
-    "model starts from the same estimate; by hand: one state and two modes need at least a mean, a variance and a sum "
-    "of weights more, 5 numbers and not 2",
+    "model starts from the same estimate; by hand: one state and two modes need a mean and a variance more, 4 "
+    "numbers and not 2",
 )
-memory_corrected = claim(
-    "17.memory*",
-    "Our program keeps beyond Kalman: I probabilities, a sum of weights, two means, two covariances; I = 2, 3, 8.",
-    lambda: numbers_kept(lambda modes, n: modes + 1 + 2 * (n + n * n)),
-)
+def probabilities_are_enough():
+    """Pulsating needs more memory than Kalman only for (17): the mean of a mode that is done does not enter X and P."""
+    sums, (_, mean, _) = first_mode_in_the_sums()
+    return Equation([0, 0], list(sums[1:, :].diff(mean)))
+
+
+@claim("17.memory*")
+def what_must_be_kept():
+    """Of a mode that is done g, X and P need weight, mean and variance: slopes of determinant v w^2/(w + v)^4."""
+    sums, kept = first_mode_in_the_sums()
+    w, v = sp.symbols("w_0 w_1", positive=True)
+    return Equation(v * w**2 / (w + v) ** 4, sums.jacobian(kept).det())

@@ -19,13 +19,14 @@ PAPER = Paper(
     definitions={},
     beside=(
         "1.degree 3.nilpotent 3.nonzero 4.hadamard 4.smaller_step 5.independent 6.Phif.* 6.Nf.elements "
-        "6.N[sp]* 6.D 6.more_stages"
+        "6.N[sp]* 6.D 6.more_stages algorithm.P.not_covariance experiment.figures experiment.violated.* "
+        "experiment.distortion experiment.better experiment.gain"
     ),
     remarks=(
         "4.Phi.series 6.D.orders 6.Nf.row_step 6.Np.rows 6.first_stage.worse 6.second_stage earth.ellipse "
         "algorithm.NQ.power algorithm.field algorithm.J.* experiment.heading experiment.parts experiment.stop "
         "experiment.physical experiment.one_gain.* experiment.sigma_v.straight.100.noise experiment.sigma_v.2 "
-        "experiment.sigma_v.300 experiment.sigma_v.yaw.100.full experiment.together*"
+        "experiment.sigma_v.300 experiment.sigma_v.yaw.100.full experiment.together* experiment.gain.exponent"
     ),
     beyond="limit.* window.* table.curse* table.n2.closed table.n2.best 6.Nf.det* experiment.straight.*",
     causes={

@@ -132,7 +132,7 @@ def rate_has(printed: str, quantity: str) -> Property:
 
 speed_error_unit_printed = claim(
     "experiment.sigma_v.unit",
-    "The error of the speed V_2 at |V| = 100 m/s is printed in metres.",
+    "The error of the speed V_2 at |V| = 100 m/s is a length, printed in metres.",
     lambda: rate_has("m", "m"),
     slip="paper",
     reason="an error of V_2 is in m/s; the same figures for 2 and 300 m/s are printed with m/s",

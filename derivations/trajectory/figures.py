@@ -100,7 +100,7 @@ def sample_scatter(count: int) -> tuple[flint.arb, flint.arb]:
 
 @claim("experiment.sigma_v.straight.100.noise", expect=CERTIFIED)
 def straight_speed_error_is_not_noise_alone():
-    """|V| = 100 m/s, straight course: 0.019 m/s is not within three standard deviations of what noise alone gives."""
+    """|V| = 100 m/s, first straight course: 0.019 m/s is not within three deviations of what noise alone gives."""
     steps = int((1000 - Fraction("168.8")) / TAU)
     variance, scatter = sample_scatter(steps)
     away = (exact(Fraction("0.019")) ** 2 - variance) / scatter

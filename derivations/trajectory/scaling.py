@@ -152,7 +152,7 @@ def say_entries(rows: list[dict[tuple[int, int], int]]) -> tuple[dict, ...]:
 
 @claim("6.Phif.triangular")
 def transition_is_triangular():
-    """Phi_f is upper triangular with integer elements, Phi_f,ii = 1 and Phi_f,1j = 1."""
+    """Phi_f is upper triangular with integer elements, Phi_f,ii = 1 and Phi_f,1j = 1; n = 30."""
     Phi, places = transitions(), [(i, j) for i in range(LARGEST) for j in range(LARGEST)]
     holds = all(Phi[i, j].is_Integer and (j >= i or Phi[i, j] == 0) for i, j in places)
     holds = holds and all(Phi[i, j] == 1 for i, j in places if i in (0, j))
@@ -188,7 +188,9 @@ recurrence_printed = claim(
     reason="the first index is i + 1: with i + i, i = 2, j = 3 the rule asks Phi_4,4 = 2 + 1, but it is 1",
 )
 recurrence = claim(
-    "6.Phif.recurrence*", "Phi_(i+1, j+1) = Phi_ij + Phi_(i+1)j: Pascal's triangle.", lambda: recurrence_holds(1)
+    "6.Phif.recurrence*",
+    "Phi_(i+1, j+1) = Phi_ij + Phi_(i+1)j: Pascal's triangle of n = 30.",
+    lambda: recurrence_holds(1),
 )
 
 
@@ -226,7 +228,7 @@ recurrence_range = claim(
 
 @claim("6.Nf.elements")
 def observability_elements():
-    """N_f,ij = i^(j-1)."""
+    """N_f,ij = i^(j-1); n = 16."""
     found = tuple(int(x) for x in N_f(16))
     printed = tuple(i**j for i in range(1, 17) for j in range(16))
     rows = [[f"{i}**{j}" for j in range(16)] for i in range(1, 17)]

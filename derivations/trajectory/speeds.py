@@ -104,7 +104,7 @@ def one_gain(figures: dict[int, tuple[str, str]]) -> Finding:
 # The error falls from 0.06 at 2 m/s to 0.019 at 100 m/s and rises to 0.08 at 300 m/s: with one gain it cannot fall.
 several_gains_on_straight_courses = claim(
     "experiment.one_gain.straight",
-    "No one gain gives the printed errors of straight courses at 2, 100 and 300 m/s: the runs were tuned apart.",
+    "No one gain has mean squares N + V^2 S that are the printed ones on straight courses at 2, 100 and 300 m/s.",
     lambda: Property(
         printed=False,
         derived=one_gain(STRAIGHT),
@@ -116,7 +116,7 @@ several_gains_on_straight_courses = claim(
 # From 0.07 at 2 m/s and 0.090 at 100 m/s one gain makes at least 0.16 m/s at 300 m/s.
 several_gains_while_yawing = claim(
     "experiment.one_gain.yawing",
-    "No one gain gives the printed errors of yawing at 2, 100 and 300 m/s.",
+    "No one gain has mean squares N + V^2 S that are the printed ones while yawing at 2, 100 and 300 m/s.",
     lambda: Property(
         printed=False,
         derived=one_gain(YAWING),

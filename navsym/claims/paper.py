@@ -89,12 +89,12 @@ def equation_of(number: str, equations: Iterable[str]) -> str | None:
 
 
 def compare_equations(paper: Paper, claims: Iterable[Claim]) -> Coverage:
-    """Compare the paper's list of equations with the claims made about it."""
-    touched = {equation_of(claim.number, paper.equations) for claim in claims}
-    claimed = tuple(e for e in paper.equations if e in touched)
-    definitions = tuple(e for e in paper.equations if e in paper.definitions and e not in touched)
-    missing = tuple(e for e in paper.equations if e not in touched and e not in paper.definitions)
-    return Coverage(claimed, definitions, missing)
+    """Compare the paper's list of equations with the claims made about it; a definition has none on its formula."""
+    about = {(equation_of(claim.number, paper.equations), paper.kind_of(claim.number)) for claim in claims}
+    definitions = tuple(e for e in paper.equations if e in paper.definitions and (e, "printed") not in about)
+    touched = {equation for equation, _ in about} - {*definitions}
+    missing = tuple(e for e in paper.equations if e not in touched and e not in definitions)
+    return Coverage(tuple(e for e in paper.equations if e in touched), definitions, missing)
 
 
 def papers_folder() -> Path:

@@ -34,7 +34,6 @@ SAME: dict[tuple[str, str], str] = {
     ("terrain_search:6.rest", "tk - tG -> tk + tG"): "without a velocity the time since the fix moves nothing",
     ("joint_correction:1.6.gain_unique", "G - K * row -> G + K * row"): "what is unique in -K is so in K",
     ("joint_correction:3.3.y1", "x[1]: 1 -> 0"): "none of the four rows holds y_4, for which x_2 stands",
-    ("multistructure:17.memory", "made.means[0]: 0 -> 1"): "all modes start alike, and numbers are counted",
     (
         "trajectory:algorithm.J.still",
         "ahead + gain * (measured - ahead[0]) -> ahead - gain * (measured - ahead[0])",

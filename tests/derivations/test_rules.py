@@ -16,6 +16,7 @@ from navsym.claims import (
     Finding,
     Property,
     claims_of,
+    compare_equations,
     equation_of,
     state,
 )
@@ -66,6 +67,10 @@ def test_an_equation_has_the_colour_of_its_own_formula(name):
         for record in records_about(equation, paper.equations, records(name)):
             assert record.kind == "printed" and record.cause is None
             assert equation_of(record.number, paper.equations) == equation
+
+
+def test_a_sentence_beside_a_definition_claims_no_formula():
+    assert compare_equations(*read("multistructure")).definitions == ("1", "2", "4", "6")
 
 
 @pytest.mark.parametrize("value", [UNDECIDED, None, (True, UNDECIDED)])
