@@ -61,9 +61,10 @@ class Reader(SourceReader):
     """Walks the syntax tree of C and C++.
 
     locals : the names that the function being read declares
-    pointers : those of them that are pointers
+    pointers, arrays : those of them that are pointers or arrays, and arrays
     scopes : name of a function -> the namespaces and classes in which the file defines it
     opened : classes and namespaces whose names are taken elsewhere, too
+    directives : the names of macros
     hidden : first byte of a name that stands in the tree as a number, since the grammar would take it for a type
     """
 
@@ -72,6 +73,8 @@ class Reader(SourceReader):
 
     locals: set[str] = field(default_factory=set)
     pointers: set[str] = field(default_factory=set)
+    arrays: set[str] = field(default_factory=set)
+    directives: set[str] = field(default_factory=set)
     hidden: dict[int, str] = field(default_factory=dict)
     scopes: dict[str, set[tuple[str, ...]]] = field(default_factory=dict)
     opened: set[str] = field(default_factory=set)
@@ -105,6 +108,8 @@ class Reader(SourceReader):
         inner = (n for n in descend(root) if n.type == "identifier" and n.parent.type in (*DECLARING, "enumerator"))
         heads = ((n, field_of(n.parent, "declarator") or field_of(n.parent, "name")) for n in inner)
         others = {text_of(n) for n, head in heads if head is None or head.id == n.id}
+        macros = (n for n in descend(root) if n.type in ("preproc_def", "preproc_function_def"))
+        self.directives = {text_of(field_of(n, "name")) for n in macros}
         for node in descend(root) if self.unit.language == "cpp" else ():
             if node.type == "function_definition" and (head := head_of_function(node)) is not None:
                 name = text_of(field_of(head, "declarator")).split("::")[-1]
@@ -138,6 +143,8 @@ class Reader(SourceReader):
         is_inside = "function_definition" in list_above(node) and "field" not in node.type
         for child in node.children_by_field_name("declarator") if not is_inside else ():
             name, members = self.declared(field_of(child, "declarator") or child)[0], self.unit.members
+            if any(n.type == "bitfield_clause" for n in named(node)):  # which holds less than its type
+                self.unit.overlaid.add(name)
             members[name] = (kind if members.get(name, (kind,))[0] == kind else "other", None)
 
     def read_enumerators(self, node: Any) -> None:
@@ -175,6 +182,7 @@ class Reader(SourceReader):
         kinds = (*POINTER, "array_declarator")
         self.locals = {name for _, name in pairs}
         self.pointers = {name for c, name in pairs if c.type in kinds or c.parent.type in kinds}
+        self.arrays = {name for c, name in pairs if "array_declarator" in (c.type, c.parent.type)}
         is_template = node.parent is not None and node.parent.type == "template_declaration"
         head = field_of(node.parent, "parameters") if is_template else None
         types = {text_of(n) for n in descend(head) if n.type == "type_identifier"} if head is not None else set()
@@ -183,15 +191,20 @@ class Reader(SourceReader):
         start = tuple(self.part("unread", c, "the list of members before a constructor", ()) for c in before)
         is_plain = field_of(node, "declarator").type == "function_declarator" and field_of(node, "type") is not None
         number = number_of(self.type_of(node)) if is_plain else "auto"
-        self.define(node, name, arguments, start + self.block(body), (), number)
+        whole = start + self.block(body)
+        if not all(p.type.endswith("parameter_declaration") for p in parameters):
+            whole = (self.part("jump", node, "parameters outside the language of audit", ()),)
+        self.define(node, name, arguments, whole, (), number)
 
     def argument(self, node: Any, types: set[str]) -> Argument:
         """A parameter with its sizes; pointers, references and arrays are shared with the caller.
 
         types : those of a template, which are those of what is given
         """
-        kind = self.type_of(node)
-        name, sizes, shared = self.declared(field_of(node, "declarator"))
+        kind, inner = self.type_of(node), field_of(node, "declarator")
+        name, sizes, shared = self.declared(inner)
+        if inner is not None and any(n.type == "function_declarator" for n in descend(inner)):  # it is only called
+            return Argument(next((text_of(n) for n in descend(inner) if n.type == "identifier"), ""), "other", ())
         shape = sizes or self.sizes(node, shape_of_type(kind))
         return Argument(name, "auto" if kind in types else number_of(kind), shape, shared)
 
@@ -263,9 +276,15 @@ class Reader(SourceReader):
         """``switch`` as ``if``: a case goes on into the next one unless it ends in a jump."""
         value = field_of(field_of(node, "condition"), "value") or next(iter(named(field_of(node, "condition"))), None)
         cases, test = named(field_of(node, "body")), self.expression(value)
-        kinds = {case.type for case in cases} | {part.kind for part in walk(test)} - {"name", "number", "index", "op"}
+        inner = (n for case in cases for n in descend(case) if n.type in ("case_statement", "..."))
+        is_odd = any(n.type == "..." or n.parent.parent.type != "switch_statement" for n in inner)
+        kinds = (
+            ({"odd"} if is_odd else set[str]())
+            | {case.type for case in cases}
+            | {part.kind for part in walk(test)} - {"name", "number", "index", "op"}
+        )
         if kinds - {"case_statement"}:
-            return self.unread(node, "a switch over a call, or with statements before its first case")
+            return self.unread(node, "a switch over a call, or with other statements around its cases")
         following, other = tuple[Part, ...](), tuple[Part, ...]()
         ways: list[tuple[Any, tuple[Part, ...]]] = []
         for case in reversed(cases):
@@ -311,8 +330,9 @@ class Reader(SourceReader):
                 start = items[0] if len(items) == 1 else whole
             else:
                 start = None if value is None else self.expression(value)
-            if inner.type == "structured_binding_declarator":
-                done.append(self.unread(child, "several names declared at once"))
+            is_list = value is not None and value.type in ("argument_list", "initializer_list")
+            if inner.type == "structured_binding_declarator" or (is_list and number_of(kind) == "other"):
+                done.append(self.unread(child, "several names declared at once, or an object made of a list"))
                 continue
             if inner.type == "function_declarator":  # Vector3f v(a, b, c), which the grammar takes for a function
                 items = tuple(map(self.taken_for_parameter, named(field_of(inner, "parameters"))))
@@ -406,8 +426,10 @@ class Reader(SourceReader):
                 if not re.fullmatch(r"[\w.:\[\]()>\- ]*", owner) or COMPUTED.search(owner):
                     return self.refuse(node, "a member of an expression")
                 name = re.sub(r"\s", "", text_of(node))
-                if self.unit.overlaid & {*re.findall(r"\w+", name)}:
+                if self.unit.overlaid & {*(words := re.findall(r"\w+", name))}:
                     return self.refuse(node, "a member of a union, which shares its place with others")
+                if self.directives & {*words}:
+                    return self.refuse(node, "a member whose name is a macro, too")
                 first = re.match(r"(\w+)\[0\]\.", name)
                 if first and re.search(rf"\b{first[1]}\s*->".encode(), self.unit.source):
                     return self.refuse(node, f"{name} beside {first[1]}->, which is the same")
@@ -426,6 +448,8 @@ class Reader(SourceReader):
             case "pointer_expression":
                 sign = text_of(field_of(node, "operator"))
                 pointed = self.expression(field_of(node, "argument"))
+                if sign == "&" and pointed.kind == "name" and pointed.parts[0] in self.pointers - self.arrays:
+                    return self.part("refused", node, "the address of a pointer", identifiers_in(node), True, False)
                 if sign == "&":
                     return self.part("address", node, pointed)
                 if pointed.kind == "name":

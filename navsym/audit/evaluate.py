@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any, ClassVar
 
 from navsym.audit.cases import Condition, Reading
-from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write, names_in, spell_entry, walk
+from navsym.audit.form import Argument, Function, Part, Unit, head_of, names_in, spell_entry, walk
 from navsym.audit.functions import CONSTANTS, KNOWN, NAMED_CALLS, call_known, extreme_of, is_known, is_method, is_view
 from navsym.audit.values import (
     CUT,
@@ -47,6 +47,7 @@ from navsym.audit.values import (
     share,
     total,
 )
+from navsym.audit.writes import changed_in, sources_of
 from navsym.language.tree import Tree, build_call, build_number
 
 TRUTHS = ("compare", "both", "either", "not")
@@ -83,6 +84,7 @@ class Evaluator:
     frame   : the names of the running function
     aliases : reference or pointer to a structure -> the structure, and the sign before a member of it
     shadows : what a block's own names have hidden, one table for each block
+    ended   : the names of blocks that have ended
     outputs : what the last function of MATLAB that was read returned
     """
 
@@ -108,6 +110,7 @@ class Evaluator:
     conditions: list[Condition] = field(default_factory=list)
     other_ways: list[list[bool]] = field(default_factory=list)
     shadows: list[dict[str, Variable | None]] = field(default_factory=list)
+    ended: dict[str, Variable] = field(default_factory=dict)
     calls: list[str] = field(default_factory=list)
     expanding: list[str] = field(default_factory=list)
     steps: int = 0
@@ -127,6 +130,8 @@ class Evaluator:
             return self.frame[name]
         if name in self.file_names:
             return self.file_names[name]
+        if name in self.unit.macros:
+            raise Unreadable(f"{name}, a macro where a variable is needed")
         if name not in self.globals:
             shape, head = self.shapes.get(name), head_of(name)
             if head in self.lost_heads:
@@ -200,6 +205,8 @@ class Evaluator:
             forbid(indices and any(index.kind == "slice" for index in part.parts[1]), "an index of a block")
             indices = [*part.parts[1], *indices]
             part = part.parts[0]
+        if self.member_of_array(part) is not None:
+            raise Unreadable("an entry of a member of an array")
         if part.kind == "call":
             is_own = part.parts[0] in self.unit.functions and part.parts[0] not in self.frame
             forbid(is_own, f"the call of {part.parts[0]} where a variable is needed")
@@ -547,7 +554,7 @@ class Evaluator:
 
     def bind(self, argument: Argument, given: Part, function: Function) -> Variable:
         """A parameter of an inlined function: the caller's own variable, or a copy of a value."""
-        inner = given.parts[0] if given.kind == "address" else given
+        inner, changed = given.parts[0] if given.kind == "address" else given, changed_in(self.unit, function).changed
         is_number = argument.shared and self.unit.language == "cpp" and argument.number == "real"
         if is_number and given is inner and self.kind_of(inner) in LIMITS:
             argument = replace(argument, shared=False)  # const double & is a copy of an integer
@@ -555,7 +562,7 @@ class Evaluator:
             variable = self.variable(inner.parts[0])
             if argument.shape is not None and variable.shape is None and not variable.cells:
                 variable.shape = tuple(self.whole(size) for size in argument.shape)
-            is_copy = not argument.shared and given.kind != "address" and may_write(self.unit, function, argument.name)
+            is_copy = not argument.shared and given.kind != "address" and argument.name in changed
             if argument.shared or ((variable.shape is None or variable.shape) and not is_copy):
                 return variable
             if is_copy and variable.shape is None:
@@ -565,12 +572,12 @@ class Evaluator:
         is_place = inner.kind == "index" or (inner.kind == "call" and inner.parts[0] in self.frame)
         if argument.shared and is_place:
             _, _, sides = self.targets(inner)
-            if sides and may_write(self.unit, function, argument.name):
+            if sides and argument.name in changed:
                 raise Unreadable(f"a part of an array that {function.name} may change", given.line)
             if not sides and self.unit.language != "python":
                 return self.linked(inner)
         is_alias = given.kind in ("method", "call", "choose") and is_view(self.unit, given) and given.parts[1] != "copy"
-        if self.unit.language == "python" and is_alias and may_write(self.unit, function, argument.name):
+        if self.unit.language == "python" and is_alias and argument.name in changed:
             raise Unreadable(f"a view of an array that {function.name} may change", given.line)
         value = self.value(given)
         if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in cells_of(value)):
@@ -582,7 +589,7 @@ class Evaluator:
             return variable
         self.write(variable, value, given)
         if self.unit.language == "python" and variable.shape and (is_place or is_alias):
-            share(variable, self.arrays_in(given))
+            share(variable, self.arrays_in(sources_of(given)))
         return variable
 
     def method(self, part: Part) -> Value:

@@ -19,6 +19,8 @@ MODULES = {"numpy": "np.", "math": "math.", "numpy.linalg": "np.linalg."}
 NUMERIC = ("numpy", "math", "autograd.numpy", "jax.numpy")
 #: Names with a meaning of their own, which a file may use for something else.
 NAMES = ("np", "numpy", "math", "abs", "max", "min", "float", "range")
+#: What may write any name of the module, or a member of what it is given.
+RUNNING, ANY = ("exec", "eval", "globals", "vars", "locals", "setattr", "delattr"), "*"
 AGAIN = "a function whose name stands for something else later"
 
 
@@ -89,6 +91,11 @@ class Reader(SourceReader):
                 bound = [text_of(field_of(n, "alias") or n) for n in names if text_of(n) != "numpy"]
             elif node.type in ("named_expression", "as_pattern_target"):
                 bound = [text_of(named(node)[0])] if named(node) else []
+                self.changed |= {*bound}
+            elif node.type == "call" and text_of(field_of(node, "function")) in RUNNING:
+                given = named(field_of(node, "arguments"))[:1]
+                bound = [*map(text_of, given)] if "attr" in text_of(field_of(node, "function")) else [*NAMES, ANY]
+                self.changed |= {*bound}
             elif node.type == "aliased_import" and text_of(field_of(node, "name")) not in NUMERIC:
                 bound = [text_of(field_of(node, "alias"))]
             self.rebound |= {*bound} & {*NAMES, *self.unit.imported}
@@ -113,7 +120,7 @@ class Reader(SourceReader):
                     if statement.parts[0].kind == "name":
                         assigned.setdefault(statement.parts[0].parts[0], []).append(statement)
         for name, many in assigned.items():
-            is_open = name in self.changed or (name in self.given and may_be_array(many[0].parts[2]))
+            is_open = bool({name, ANY} & self.changed) or (name in self.given and may_be_array(many[0].parts[2]))
             if len(many) == 1 and not is_class and not many[0].parts[1] and not is_open:
                 self.unit.constants += many
             for function in self.unit.functions.get(name, []):
@@ -212,8 +219,8 @@ class Reader(SourceReader):
                 return self.part("choose", node, *map(self.expression, (test, then, other)))
             case "subscript":
                 base = self.expression(field_of(node, "value"))
-                places = self.several(node.children_by_field_name("subscript"))
-                if len(places) == 1 and places[0].kind == "list":
+                places = self.several(inner := node.children_by_field_name("subscript"))
+                if len(inner) == 1 and inner[0].type == "tuple":
                     places = places[0].parts[0]
                 return self.part("index", node, base, places)
             case "slice":
