@@ -54,6 +54,7 @@ TRUTHS = ("compare", "both", "either", "not")
 JOINS = {f"{module}.{name}": name for module in ("np", "numpy") for name in "hstack vstack concatenate block".split()}
 KINDS: dict[str, type[Array]] = {"quaternion": Quaternion, "list": List}
 INLINED = 12
+UNDECIDED = "which stands under a condition of the preprocessor that is not decided"
 
 #: Source spelling of an input -> its symbol.
 Inputs = Callable[[str], Tree]
@@ -325,6 +326,7 @@ class Evaluator:
             return self.inline(Part("call", part.line, (name.removeprefix("self."), ()), part.span), True)
         if self.unit.language == "matlab" and name not in self.frame and name in self.unit.functions:
             return self.inline(Part("call", part.line, (name, ()), part.span), True)
+        forbid(name not in self.frame and not self.unit.knows(name, part), f"{name}, {UNDECIDED}")
         if name not in self.frame and name in self.unit.macros:
             return self.macro(name)
         if (member := self.member_of_array(part)) is not None:
@@ -449,6 +451,7 @@ class Evaluator:
     def call(self, part: Part, wants_value: bool) -> Value:
         """A known function, one of the file, or an entry ``M(i, j)``."""
         name, arguments = part.parts
+        forbid(name not in self.frame and not self.unit.knows(name, part), f"{name}, {UNDECIDED}")
         if name in self.unit.macros:
             why = self.unit.macros[name]
             raise Unreadable(f"{name}: {why if isinstance(why, str) else 'a macro that is called'}")
@@ -503,6 +506,9 @@ class Evaluator:
         """The body of a function of the file, on its arguments."""
         name, arguments = part.parts
         candidates = [f for f in self.unit.functions[name] if len(f.arguments) == len(arguments)]
+        near = [f for f in candidates if f.region is None or f.region[0] <= part.span[0] < f.region[1]]
+        forbid(candidates and not near, f"{name}, {UNDECIDED}")
+        candidates = near
         forbid(len(candidates) != 1, f"a call of {name}, which has {len(candidates)} definitions that fit")
         if name in self.calls or len(self.calls) >= INLINED:
             raise Unreadable(f"the recursion of {name}" if name in self.calls else "calls nested too deep")

@@ -58,7 +58,12 @@ class Argument:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Function:
-    """A function as it is written; ``outputs`` are the names that MATLAB returns, ``number`` is what others return."""
+    """A function as it is written.
+
+    outputs : the names that MATLAB returns
+    number  : what others return
+    region  : the bytes of the source in which it is known, where it is not known in all of it
+    """
 
     name: str
     line: int
@@ -66,6 +71,7 @@ class Function:
     body: tuple[Part, ...]
     outputs: tuple[str, ...] = ()
     number: str = "auto"
+    region: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +121,7 @@ class Unit:
     kinds     : name of a variable of C -> the types with which it is declared
     imported  : what names of numpy and math are called in Python
     effects   : what functions may write, as far as it was asked
+    regions   : name that is not known in all of the source -> the bytes in which it is
     """
 
     file: str
@@ -135,6 +142,7 @@ class Unit:
     declared: set[str] = field(default_factory=set)
     types: dict[str, str] = field(default_factory=dict)
     effects: dict[Function, Any] = field(default_factory=dict)
+    regions: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
 
     @property
     def rules(self) -> Rules:
@@ -144,6 +152,10 @@ class Unit:
     def is_array(self, name: str) -> bool:
         """True for a name before parentheses that holds entries; of others two calls may give two values."""
         return name.replace("->", ".") in self.declared or name in self.members
+
+    def knows(self, name: str, part: Part) -> bool:
+        """True for a name that is known at a part, and not only under conditions of the preprocessor."""
+        return name not in self.regions or any(a <= part.span[0] < b for a, b in self.regions[name])
 
     def locate(self, line: int) -> tuple[str, int]:
         """The file of a line, and its number there."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from navsym.audit.form import Argument, Part, names_in, walk
-from navsym.audit.functions import HARMLESS, NUMBERS, PURE, bare_name, is_known, is_method, names_view
+from navsym.audit.functions import CONSTANTS, HARMLESS, NUMBERS, PURE, bare_name, is_known, is_method, names_view
 from navsym.audit.syntax import OPERATORS, SourceReader, ascend, descend, field_of, list_above, named, text_of
 
 #: Decorators that leave a function what it is.
@@ -89,6 +89,7 @@ class Reader(SourceReader):
                 is_known = node.parent.type == "module" and text_of(field_of(node, "module_name")) in MODULES
                 names = () if is_known else node.children_by_field_name("name")
                 bound = [text_of(field_of(n, "alias") or n) for n in names if text_of(n) != "numpy"]
+                self.rebound |= {*bound} & {*CONSTANTS}
             elif node.type in ("named_expression", "as_pattern_target"):
                 bound = [text_of(named(node)[0])] if named(node) else []
                 self.changed |= {*bound}
@@ -225,6 +226,10 @@ class Reader(SourceReader):
                 return self.part("index", node, base, places)
             case "slice":
                 return self.slice(node)
+            case "attribute" | "identifier" if (
+                text_of(node) in CONSTANTS and text_of(node).split(".")[0] in self.rebound
+            ):
+                return self.refuse(node, f"{text_of(node)}, which this file uses for something else")
             case "attribute" if text_of(field_of(node, "attribute")) == "T":
                 return self.part("method", node, self.expression(field_of(node, "object")), "T", ())
             case "call":
