@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED, Argument, Part, names_in, walk
+from navsym.audit.form import NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED, Argument, Part, Unit, names_in, walk
 from navsym.audit.functions import METHODS
 from navsym.audit.syntax import SourceReader, ascend, descend, field_of, identifiers_in, list_above, named, text_of
 from navsym.audit.values import LIMITS, whole_kind
@@ -18,6 +19,8 @@ MATRIX = re.compile(
     r"(?:\w+::)*(?:(?:Square)?Matrix([2-9]|[1-5]\d)[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
 )
 NAMED = ("preproc_def", "enumerator")
+ODD = ("union_specifier", "bitfield_clause")  # whose members share their place, or hold less than their type
+WAYS = ("preproc_if", "preproc_ifdef", "preproc_elif", "preproc_elifdef", "preproc_else")
 SCOPES = ("namespace_definition", "struct_specifier", "class_specifier")
 #: Comments and texts, what is no blank, and the lines of the preprocessor.
 HIDING = re.compile(rb"(?s)//(?:\\\r?\n|[^\n])*|/\*.*?(?:\*/|\Z)|R\"\w*\(.*?\)\w*\"|\"(?:\\.|[^\"\\\n])*\"|'\\?.'")
@@ -61,9 +64,11 @@ class Reader(SourceReader):
     """Walks the syntax tree of C and C++.
 
     locals : the names that the function being read declares
-    pointers : those of them that are pointers
+    pointers, arrays : those of them that are pointers or arrays, and arrays
     scopes : name of a function -> the namespaces and classes in which the file defines it
     opened : classes and namespaces whose names are taken elsewhere, too
+    directives : the names of macros
+    nodes      : of the tree
     hidden : first byte of a name that stands in the tree as a number, since the grammar would take it for a type
     """
 
@@ -72,21 +77,26 @@ class Reader(SourceReader):
 
     locals: set[str] = field(default_factory=set)
     pointers: set[str] = field(default_factory=set)
+    arrays: set[str] = field(default_factory=set)
+    directives: set[str] = field(default_factory=set)
+    nodes: list[Any] = field(default_factory=list)
     hidden: dict[int, str] = field(default_factory=dict)
     scopes: dict[str, set[tuple[str, ...]]] = field(default_factory=dict)
     opened: set[str] = field(default_factory=set)
 
     def parse(self, source: bytes) -> Any:
         """The tree of a source in which no variable is taken for a type, as ``b`` is in ``a*(b) - c``."""
-        source, known = source if self.shift else drop_ways(source, self.unit.defined), self.unit.variables
+        source, known = source if self.shift else drop_ways(source, self.unit), self.unit.variables
         root, text = SourceReader.parse(self, source), bytearray(source)
+        self.nodes = [*descend(root)]
         if not self.shift:  # of a file, not of one expression
-            known |= list_variables(root)
-            unions = (inner for node in descend(root) if node.type == "union_specifier" for inner in descend(node))
-            self.unit.types |= list_types(root)
+            known |= list_variables(self.nodes)
+            odd = [n if n.type == "union_specifier" else n.parent for n in self.nodes if n.type in ODD]
+            unions = (inner for node in odd for inner in descend(node))
+            self.unit.types |= list_types(self.nodes)
             self.unit.overlaid |= {text_of(inner) for inner in unions if inner.type == "field_identifier"}
         for _ in range(ROUNDS):
-            casts = [field_of(field_of(n, "type"), "type") for n in descend(root) if n.type == "cast_expression"]
+            casts = [field_of(field_of(n, "type"), "type") for n in self.nodes if n.type == "cast_expression"]
             found = [n for n in casts if n is not None and n.type == "type_identifier" and text_of(n) in known]
             if not found:
                 break
@@ -94,38 +104,63 @@ class Reader(SourceReader):
                 self.hidden[node.start_byte] = text_of(node)
                 text[node.start_byte : node.end_byte] = b"1" * len(node.text)
             root = SourceReader.parse(self, bytes(text))
+            self.nodes = [*descend(root)]
         return root
 
     @staticmethod
     def find_value(node: Any) -> Any:
         return field_of(field_of(node, "declarator"), "value") if node.type == "declaration" else None
 
+    def region_of(self, node: Any) -> tuple[int, int] | None:
+        """The way of an undecided ``#if`` around a definition, or the function around an inner one."""
+        for above in ascend(node):
+            if above.type in WAYS:
+                other = field_of(above, "alternative")
+                return above.start_byte, above.end_byte if other is None else other.start_byte
+            if above.type == "function_definition":
+                return above.start_byte, above.end_byte
+        return None
+
+    def restrict(self, node: Any, *names: str) -> None:
+        """Note where names are known that are defined at a node."""
+        if (region := self.region_of(node)) is not None:
+            for name in names:
+                self.unit.regions.setdefault(name, []).append(region)
+
     def read_file(self, root: Any) -> None:
         """Functions, constants and macros, also inside namespaces and classes."""
-        inner = (n for n in descend(root) if n.type == "identifier" and n.parent.type in (*DECLARING, "enumerator"))
+        inner = (n for n in self.nodes if n.type == "identifier" and n.parent.type in (*DECLARING, "enumerator"))
         heads = ((n, field_of(n.parent, "declarator") or field_of(n.parent, "name")) for n in inner)
         others = {text_of(n) for n, head in heads if head is None or head.id == n.id}
-        for node in descend(root) if self.unit.language == "cpp" else ():
+        macros = (n for n in self.nodes if n.type in ("preproc_def", "preproc_function_def"))
+        self.directives = {text_of(field_of(n, "name")) for n in macros}
+        for node in self.nodes if self.unit.language == "cpp" else ():
             if node.type == "function_definition" and (head := head_of_function(node)) is not None:
                 name = text_of(field_of(head, "declarator")).split("::")[-1]
                 self.scopes.setdefault(name, set()).add(scope_of(node))
+            elif is_constant(node):
+                for child in node.children_by_field_name("declarator"):
+                    name = text_of(field_of(child, "declarator") or child)
+                    self.scopes.setdefault(name, set()).add(scope_of(node))
             elif node.type in ("base_class_clause", "using_declaration"):
                 self.opened |= {*re.findall(r"\w+", text_of(node))}
-        for node in descend(root):
+        for node in self.nodes:
             if node.type == "function_definition":
                 self.read_function(node)
             elif node.type == "preproc_def":
                 self.read_macro(node)
             elif node.type == "preproc_function_def":
                 self.unit.macros[text_of(field_of(node, "name"))] = "a macro with arguments"
+                self.restrict(node, text_of(field_of(node, "name")))
             elif node.type == "preproc_call" and text_of(node).startswith("#undef"):
                 self.unit.macros[text_of(named(node)[-1]).strip()] = UNDEFINED
             elif node.type == "enumerator_list":
                 self.read_enumerators(node)
             elif node.type in ("field_declaration", "declaration"):
-                is_const = any(text_of(child) in ("const", "constexpr") for child in node.children)
-                if node.type == "declaration" and is_const and "function_definition" not in list_above(node):
-                    self.unit.constants += [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
+                if is_constant(node):
+                    done = [s for s in self.declaration(node) if s.kind == "declare" and s.parts[3]]
+                    self.unit.constants += done
+                    self.restrict(node, *(s.parts[0] for s in done))
                 else:
                     self.read_field(node)
         self.unit.constants.sort(key=lambda statement: statement.span)
@@ -150,6 +185,7 @@ class Reader(SourceReader):
             previous = self.expression(given) if given is not None else self.part("op", child, "+", previous, one)
             name = text_of(field_of(child, "name"))
             self.unit.constants.append(self.part("declare", child, name, "int", (), previous, False))
+            self.restrict(child, name)
 
     def read_macro(self, node: Any) -> None:
         """An object-like macro; a second definition refuses the name."""
@@ -162,6 +198,7 @@ class Reader(SourceReader):
         if twice is not None and (twice.parts[0] != "*" or twice.parts[1].span != (0, 1)):
             meaning = "a macro whose operators have no parentheses around them"
         self.unit.macros[name] = TWO_DEFINITIONS if name in self.unit.macros else meaning
+        self.restrict(node, name)
 
     def read_function(self, node: Any) -> None:
         declarator, body = head_of_function(node), field_of(node, "body")
@@ -175,6 +212,7 @@ class Reader(SourceReader):
         kinds = (*POINTER, "array_declarator")
         self.locals = {name for _, name in pairs}
         self.pointers = {name for c, name in pairs if c.type in kinds or c.parent.type in kinds}
+        self.arrays = {name for c, name in pairs if "array_declarator" in (c.type, c.parent.type)}
         is_template = node.parent is not None and node.parent.type == "template_declaration"
         head = field_of(node.parent, "parameters") if is_template else None
         types = {text_of(n) for n in descend(head) if n.type == "type_identifier"} if head is not None else set()
@@ -183,15 +221,20 @@ class Reader(SourceReader):
         start = tuple(self.part("unread", c, "the list of members before a constructor", ()) for c in before)
         is_plain = field_of(node, "declarator").type == "function_declarator" and field_of(node, "type") is not None
         number = number_of(self.type_of(node)) if is_plain else "auto"
-        self.define(node, name, arguments, start + self.block(body), (), number)
+        whole = start + self.block(body)
+        if not all(p.type.endswith("parameter_declaration") for p in parameters):
+            whole = (self.part("jump", node, "parameters outside the language of audit", ()),)
+        self.define(node, name, arguments, whole, (), number)
 
     def argument(self, node: Any, types: set[str]) -> Argument:
         """A parameter with its sizes; pointers, references and arrays are shared with the caller.
 
         types : those of a template, which are those of what is given
         """
-        kind = self.type_of(node)
-        name, sizes, shared = self.declared(field_of(node, "declarator"))
+        kind, inner = self.type_of(node), field_of(node, "declarator")
+        name, sizes, shared = self.declared(inner)
+        if inner is not None and any(n.type == "function_declarator" for n in descend(inner)):  # it is only called
+            return Argument(next((text_of(n) for n in descend(inner) if n.type == "identifier"), ""), "other", ())
         shape = sizes or self.sizes(node, shape_of_type(kind))
         return Argument(name, "auto" if kind in types else number_of(kind), shape, shared)
 
@@ -263,9 +306,15 @@ class Reader(SourceReader):
         """``switch`` as ``if``: a case goes on into the next one unless it ends in a jump."""
         value = field_of(field_of(node, "condition"), "value") or next(iter(named(field_of(node, "condition"))), None)
         cases, test = named(field_of(node, "body")), self.expression(value)
-        kinds = {case.type for case in cases} | {part.kind for part in walk(test)} - {"name", "number", "index", "op"}
+        inner = (n for case in cases for n in descend(case) if n.type in ("case_statement", "..."))
+        is_odd = any(n.type == "..." or n.parent.parent.type != "switch_statement" for n in inner)
+        kinds = (
+            ({"odd"} if is_odd else set[str]())
+            | {case.type for case in cases}
+            | {part.kind for part in walk(test)} - {"name", "number", "index", "op"}
+        )
         if kinds - {"case_statement"}:
-            return self.unread(node, "a switch over a call, or with statements before its first case")
+            return self.unread(node, "a switch over a call, or with other statements around its cases")
         following, other = tuple[Part, ...](), tuple[Part, ...]()
         ways: list[tuple[Any, tuple[Part, ...]]] = []
         for case in reversed(cases):
@@ -311,8 +360,9 @@ class Reader(SourceReader):
                 start = items[0] if len(items) == 1 else whole
             else:
                 start = None if value is None else self.expression(value)
-            if inner.type == "structured_binding_declarator":
-                done.append(self.unread(child, "several names declared at once"))
+            is_list = value is not None and value.type in ("argument_list", "initializer_list")
+            if inner.type == "structured_binding_declarator" or (is_list and number_of(kind) == "other"):
+                done.append(self.unread(child, "several names declared at once, or an object made of a list"))
                 continue
             if inner.type == "function_declarator":  # Vector3f v(a, b, c), which the grammar takes for a function
                 items = tuple(map(self.taken_for_parameter, named(field_of(inner, "parameters"))))
@@ -388,6 +438,8 @@ class Reader(SourceReader):
 
     def read_expression(self, node: Any) -> Part | None:
         match node.type:
+            case "identifier" if (name := text_of(node)) not in self.locals and not self.is_seen(node, name):
+                return self.refuse(node, f"{name}, which this file defines in another place")
             case "number_literal" if node.start_byte in self.hidden:
                 return self.part("name", node, self.hidden[node.start_byte])
             case "qualified_identifier" if text_of(node).startswith("::"):
@@ -406,8 +458,10 @@ class Reader(SourceReader):
                 if not re.fullmatch(r"[\w.:\[\]()>\- ]*", owner) or COMPUTED.search(owner):
                     return self.refuse(node, "a member of an expression")
                 name = re.sub(r"\s", "", text_of(node))
-                if self.unit.overlaid & {*re.findall(r"\w+", name)}:
+                if self.unit.overlaid & {*(words := re.findall(r"\w+", name))}:
                     return self.refuse(node, "a member of a union, which shares its place with others")
+                if self.directives & {*words}:
+                    return self.refuse(node, "a member whose name is a macro, too")
                 first = re.match(r"(\w+)\[0\]\.", name)
                 if first and re.search(rf"\b{first[1]}\s*->".encode(), self.unit.source):
                     return self.refuse(node, f"{name} beside {first[1]}->, which is the same")
@@ -426,6 +480,8 @@ class Reader(SourceReader):
             case "pointer_expression":
                 sign = text_of(field_of(node, "operator"))
                 pointed = self.expression(field_of(node, "argument"))
+                if sign == "&" and pointed.kind == "name" and pointed.parts[0] in self.pointers - self.arrays:
+                    return self.part("refused", node, "the address of a pointer", identifiers_in(node), True, False)
                 if sign == "&":
                     return self.part("address", node, pointed)
                 if pointed.kind == "name":
@@ -490,10 +546,14 @@ class Reader(SourceReader):
 
     def own_call(self, node: Any, name: str, arguments: tuple[Part, ...]) -> Part:
         """A call; a function that the file defines in a namespace or class is known there only."""
-        around, known = scope_of(node), self.scopes.get(name, set())
-        if self.shift < 0 or not known or any(s == around[: len(s)] or s[-1] in self.opened for s in known):
+        if self.is_seen(node, name):
             return self.part("call", node, name, arguments)
         return self.refuse(node, f"the function {name}, which this file defines in another place")
+
+    def is_seen(self, node: Any, name: str) -> bool:
+        """True at a node inside a namespace or class that defines a name, or where all of the file sees it."""
+        around, known = scope_of(node), self.scopes.get(name, set())
+        return self.shift < 0 or not known or any(s == around[: len(s)] or s[-1] in self.opened for s in known)
 
     def block_of(self, node: Any, base: Part, method: str, arguments: tuple[Part, ...]) -> Part | None:
         """``M.block<p, q>(i, j)``, ``M.block(i, j, p, q)``, ``M.row(i)`` and the like as slices; None for others."""
@@ -527,13 +587,15 @@ class Reader(SourceReader):
         return self.part("slice", node, *((self.part("minus", node, size), None) if is_last else (None, size)))
 
 
-def drop_ways(source: bytes, defined: frozenset[str] | None) -> bytes:
+def drop_ways(source: bytes, unit: Unit) -> bytes:
     """The source with blanks for what the preprocessor surely leaves out, and for the conditions that say so.
 
-    defined : names that it knows beside those of the file; None where nobody has said it
+    A file says that a name is not defined by defining it itself: ``#ifndef NAME`` before ``#define NAME``.
     """
+    defined, own = unit.defined, "__cplusplus"
     bare, text, before = HIDING.sub(lambda found: BLACK.sub(b" ", found[0]), source), bytearray(source), 0
-    known, doubtful, states = {*(defined or ())}, set[str](), list[str]()  # "on", "off", "past" behind "on", or "open"
+    known = {*(defined or ()), *([own] if unit.language == "cpp" else ())}
+    doubtful, states = set[str](), list[str]()  # "on", "off", "past" behind "on", or "open"
 
     def state_of(word: str, rest: str) -> str:
         """Of the lines behind a condition; "open" where it is no number and no name of which something is known."""
@@ -541,13 +603,14 @@ def drop_ways(source: bytes, defined: frozenset[str] | None) -> bytes:
             word, rest = "ifndef" if name[1] else "ifdef", name[2]
         if word == "if":
             return "open" if not re.fullmatch("[0-9]+", rest) else "on" if int(rest) else "off"
-        is_open = rest in doubtful or (defined is None and rest not in known)
+        is_open = rest in doubtful or (defined is None and rest not in {own, *known})
         return "open" if is_open else "on" if (rest in known) == (word == "ifdef") else "off"
 
     def blank(start: int, end: int) -> None:
         text[start:end] = BLACK.sub(b" ", text[start:end])
 
-    for found in DIRECTIVE.finditer(bare):
+    directives = [*DIRECTIVE.finditer(bare)]
+    for found, following in itertools.zip_longest(directives, directives[1:]):
         word, rest = (part.decode("utf-8", "replace").strip() for part in found.groups())
         if {"off", "past"} & {*states}:
             blank(before, found.start())
@@ -562,6 +625,9 @@ def drop_ways(source: bytes, defined: frozenset[str] | None) -> bytes:
             continue
         new = "past" if old in ("on", "past") else old if old == "open" else "on"
         new = state_of(word.removeprefix("el"), rest) if "if" in word and old in ("", "off") else new
+        if word == "ifndef" and new == "open" and rest not in doubtful and following is not None:
+            is_own = following[1] == b"define" and following[2].split()[:1] == [rest.encode()]
+            new = "on" if is_own else new
         if word != "endif":
             states.append(new)
         if is_hidden or "open" not in (old, new if word != "endif" else ""):
@@ -579,6 +645,12 @@ def head_of_function(node: Any) -> Any:
     return head
 
 
+def is_constant(node: Any) -> bool:
+    """True for the declaration of a constant outside of functions."""
+    is_const = any(text_of(child) in ("const", "constexpr") for child in node.children)
+    return node.type == "declaration" and is_const and "function_definition" not in list_above(node)
+
+
 def scope_of(node: Any) -> tuple[str, ...]:
     """The namespaces and classes around a node, those before the name of the function among them."""
     names = list[str]()
@@ -590,12 +662,12 @@ def scope_of(node: Any) -> tuple[str, ...]:
     return tuple(names)
 
 
-def list_types(root: Any) -> dict[str, str]:
-    """What names of types stand for that a source defines; nothing is known of one with two meanings."""
+def list_types(nodes: list[Any]) -> dict[str, str]:
+    """What names of types stand for that a source defines; nothing is known of two meanings, or in an ``#if``."""
     types: dict[str, str] = {}
-    templates = (node for node in descend(root) if node.type.endswith("type_parameter_declaration"))
+    templates = (node for node in nodes if node.type.endswith("type_parameter_declaration"))
     open_types = {text_of(inner) for node in templates for inner in named(node)}
-    for node in descend(root):
+    for node in nodes:
         is_class = node.type in ("struct_specifier", "class_specifier") and node.parent.type != "template_declaration"
         if is_class and any(inner.type == "operator_name" for inner in descend(node)):
             types[text_of(field_of(node, "name"))] = "own"  # with operators of its own, also where its name is known
@@ -604,15 +676,16 @@ def list_types(root: Any) -> dict[str, str]:
             is_plain = name.type == "type_identifier"
             meaning = text_of(field_of(node, "type")) if is_plain else "pointer"
             name = next((n for n in descend(name) if n.type == "type_identifier"), name)
+            meaning = meaning if not {*WAYS} & {*list_above(node)} else "several types"
             if meaning not in open_types and not re.search(rf"\b{text_of(name)}\b", meaning):
                 types[text_of(name)] = meaning if types.get(text_of(name), meaning) == meaning else "several types"
     return types
 
 
-def list_variables(root: Any) -> set[str]:
+def list_variables(nodes: list[Any]) -> set[str]:
     """The names of a source that are declared or defined as values, and never as types."""
     values, types = set[str](), set[str]()
-    for node in descend(root):
+    for node in nodes:
         name = node if node.type == "identifier" else field_of(node, "name") if node.type in NAMED else None
         if name is not None and node.parent is not None and (node.type in NAMED or node.parent.type in DECLARING):
             values.add(text_of(name))

@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any, ClassVar
 
 from navsym.audit.cases import Condition, Reading
-from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write, names_in, spell_entry, walk
+from navsym.audit.form import Argument, Function, Part, Unit, head_of, names_in, spell_entry, walk
 from navsym.audit.functions import CONSTANTS, KNOWN, NAMED_CALLS, call_known, extreme_of, is_known, is_method, is_view
 from navsym.audit.values import (
     CUT,
@@ -47,12 +47,14 @@ from navsym.audit.values import (
     share,
     total,
 )
+from navsym.audit.writes import changed_in, sources_of
 from navsym.language.tree import Tree, build_call, build_number
 
 TRUTHS = ("compare", "both", "either", "not")
 JOINS = {f"{module}.{name}": name for module in ("np", "numpy") for name in "hstack vstack concatenate block".split()}
 KINDS: dict[str, type[Array]] = {"quaternion": Quaternion, "list": List}
 INLINED = 12
+UNDECIDED = "which stands under a condition of the preprocessor that is not decided"
 
 #: Source spelling of an input -> its symbol.
 Inputs = Callable[[str], Tree]
@@ -83,6 +85,7 @@ class Evaluator:
     frame   : the names of the running function
     aliases : reference or pointer to a structure -> the structure, and the sign before a member of it
     shadows : what a block's own names have hidden, one table for each block
+    ended   : the names of blocks that have ended
     outputs : what the last function of MATLAB that was read returned
     """
 
@@ -108,6 +111,7 @@ class Evaluator:
     conditions: list[Condition] = field(default_factory=list)
     other_ways: list[list[bool]] = field(default_factory=list)
     shadows: list[dict[str, Variable | None]] = field(default_factory=list)
+    ended: dict[str, Variable] = field(default_factory=dict)
     calls: list[str] = field(default_factory=list)
     expanding: list[str] = field(default_factory=list)
     steps: int = 0
@@ -127,6 +131,8 @@ class Evaluator:
             return self.frame[name]
         if name in self.file_names:
             return self.file_names[name]
+        if name in self.unit.macros:
+            raise Unreadable(f"{name}, a macro where a variable is needed")
         if name not in self.globals:
             shape, head = self.shapes.get(name), head_of(name)
             if head in self.lost_heads:
@@ -200,6 +206,8 @@ class Evaluator:
             forbid(indices and any(index.kind == "slice" for index in part.parts[1]), "an index of a block")
             indices = [*part.parts[1], *indices]
             part = part.parts[0]
+        if self.member_of_array(part) is not None:
+            raise Unreadable("an entry of a member of an array")
         if part.kind == "call":
             is_own = part.parts[0] in self.unit.functions and part.parts[0] not in self.frame
             forbid(is_own, f"the call of {part.parts[0]} where a variable is needed")
@@ -318,6 +326,7 @@ class Evaluator:
             return self.inline(Part("call", part.line, (name.removeprefix("self."), ()), part.span), True)
         if self.unit.language == "matlab" and name not in self.frame and name in self.unit.functions:
             return self.inline(Part("call", part.line, (name, ()), part.span), True)
+        forbid(name not in self.frame and not self.unit.knows(name, part), f"{name}, {UNDECIDED}")
         if name not in self.frame and name in self.unit.macros:
             return self.macro(name)
         if (member := self.member_of_array(part)) is not None:
@@ -442,6 +451,7 @@ class Evaluator:
     def call(self, part: Part, wants_value: bool) -> Value:
         """A known function, one of the file, or an entry ``M(i, j)``."""
         name, arguments = part.parts
+        forbid(name not in self.frame and not self.unit.knows(name, part), f"{name}, {UNDECIDED}")
         if name in self.unit.macros:
             why = self.unit.macros[name]
             raise Unreadable(f"{name}: {why if isinstance(why, str) else 'a macro that is called'}")
@@ -496,6 +506,9 @@ class Evaluator:
         """The body of a function of the file, on its arguments."""
         name, arguments = part.parts
         candidates = [f for f in self.unit.functions[name] if len(f.arguments) == len(arguments)]
+        near = [f for f in candidates if f.region is None or f.region[0] <= part.span[0] < f.region[1]]
+        forbid(candidates and not near, f"{name}, {UNDECIDED}")
+        candidates = near
         forbid(len(candidates) != 1, f"a call of {name}, which has {len(candidates)} definitions that fit")
         if name in self.calls or len(self.calls) >= INLINED:
             raise Unreadable(f"the recursion of {name}" if name in self.calls else "calls nested too deep")
@@ -547,7 +560,7 @@ class Evaluator:
 
     def bind(self, argument: Argument, given: Part, function: Function) -> Variable:
         """A parameter of an inlined function: the caller's own variable, or a copy of a value."""
-        inner = given.parts[0] if given.kind == "address" else given
+        inner, changed = given.parts[0] if given.kind == "address" else given, changed_in(self.unit, function).changed
         is_number = argument.shared and self.unit.language == "cpp" and argument.number == "real"
         if is_number and given is inner and self.kind_of(inner) in LIMITS:
             argument = replace(argument, shared=False)  # const double & is a copy of an integer
@@ -555,7 +568,7 @@ class Evaluator:
             variable = self.variable(inner.parts[0])
             if argument.shape is not None and variable.shape is None and not variable.cells:
                 variable.shape = tuple(self.whole(size) for size in argument.shape)
-            is_copy = not argument.shared and given.kind != "address" and may_write(self.unit, function, argument.name)
+            is_copy = not argument.shared and given.kind != "address" and argument.name in changed
             if argument.shared or ((variable.shape is None or variable.shape) and not is_copy):
                 return variable
             if is_copy and variable.shape is None:
@@ -565,12 +578,12 @@ class Evaluator:
         is_place = inner.kind == "index" or (inner.kind == "call" and inner.parts[0] in self.frame)
         if argument.shared and is_place:
             _, _, sides = self.targets(inner)
-            if sides and may_write(self.unit, function, argument.name):
+            if sides and argument.name in changed:
                 raise Unreadable(f"a part of an array that {function.name} may change", given.line)
             if not sides and self.unit.language != "python":
                 return self.linked(inner)
         is_alias = given.kind in ("method", "call", "choose") and is_view(self.unit, given) and given.parts[1] != "copy"
-        if self.unit.language == "python" and is_alias and may_write(self.unit, function, argument.name):
+        if self.unit.language == "python" and is_alias and argument.name in changed:
             raise Unreadable(f"a view of an array that {function.name} may change", given.line)
         value = self.value(given)
         if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in cells_of(value)):
@@ -582,7 +595,7 @@ class Evaluator:
             return variable
         self.write(variable, value, given)
         if self.unit.language == "python" and variable.shape and (is_place or is_alias):
-            share(variable, self.arrays_in(given))
+            share(variable, self.arrays_in(sources_of(given)))
         return variable
 
     def method(self, part: Part) -> Value:

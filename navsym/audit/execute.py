@@ -6,14 +6,14 @@ import contextlib
 import functools
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from navsym.audit.cases import CASES, Case, Condition, Reading, is_contradictory, list_cases
 from navsym.audit.evaluate import CellView, Edits, Evaluator, Failing, Inputs, Returning
-from navsym.audit.form import Argument, Function, Part, Unit, head_of, may_write_by_macro, mentioned_in, names_in, walk
-from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, does_take, find_race, is_method, is_view, may_change
+from navsym.audit.form import Argument, Function, Part, Unit, called_in, head_of, mentioned_in, names_in, walk
+from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, is_view
 from navsym.audit.values import (
     COMPARE,
     CUT,
@@ -46,6 +46,7 @@ from navsym.audit.values import (
     require_fit,
     share,
 )
+from navsym.audit.writes import Writes, changed_in, find_race, is_naming, list_links, sources_of, written_by
 from navsym.core.errors import TooLargeError
 from navsym.language.tree import NUMBER, ZERO, build_number
 
@@ -122,7 +123,7 @@ class Machine(Evaluator):
         except Failing:
             has_failed = True
         value = None if returned is None else convert(returned, function.number, function.line)
-        return Case(tuple(self.conditions), {**self.globals, **self.frame}, value, has_failed)
+        return Case(tuple(self.conditions), {**self.ended, **self.globals, **self.frame}, value, has_failed)
 
     def make_argument(self, argument: Argument) -> Variable:
         """A parameter of the function that is audited: an input."""
@@ -146,6 +147,8 @@ class Machine(Evaluator):
             yield
         finally:
             for name, hidden in self.shadows.pop().items():
+                if self.shadows and name in self.frame:  # nobody reads on behind the body of a function
+                    self.ended[name] = self.frame.pop(name)
                 if hidden is not None:
                     self.frame[name] = hidden
 
@@ -167,52 +170,28 @@ class Machine(Evaluator):
         """Leave unread what a statement may write."""
         self.reading.refused.setdefault(unread.line, unread.why)
         self.reading.refused_spans.add(statement.span)
-        targets: set[str] = set()
-        hidden = (part.parts[1] for part in walk(statement) if part.kind in ("unread", "refused") and part.parts[1:])
-        words = names_in(statement).union(*hidden) - {*self.frame}
-        is_hidden = any(may_write_by_macro(self.unit, word, self.has_effect) for word in words)
-        for part in walk(statement):
-            if part.kind == "assign" and not (part is statement and self.lose_entries(part, unread)):
-                targets |= self.root_names(part.parts[0])
-            elif part.kind in ("declare", "for"):
-                is_open = part.kind == "declare" and part.parts[4] is True  # what is written there is written elsewhere
-                targets |= {part.parts[0], *(names_in(part) if is_open else ())}
-                if part.kind == "declare" and part.parts[1] in ("auto", "other") and part.parts[3] is not None:
-                    targets |= {variable.name for variable in self.arrays_in(part.parts[3])}  # a view of them
-            elif part.kind == "several":
-                targets = targets.union(*map(self.root_names, part.parts[0]))
-            elif part.kind == "unread":
-                targets.update(part.parts[1])
-            elif part.kind == "address":
-                targets |= mentioned_in(part)
-            elif part.kind in ("call", "method") and not self.is_plain(part):
-                is_c = self.unit.language == "c"  # which gives a called function a copy of a number
-                given = names_in(part) | (mentioned_in(part) & {*self.frame})  # v(0) may be given as a reference
-                targets |= {name for name in given if not (is_c and self.variable_shape(name) == ())}
-            may_leave = part.kind == "refused" and part.parts[3:] == (True,)
-            name = part.parts[0] if part.kind == "call" else ""  # of a macro, or of what looks like one, with a return
-            may_leave |= name in self.unit.macros
-            may_leave |= name.isupper() and name not in self.frame and not self.is_plain(part)
-            if part.kind in ("jump", "fail") or may_leave:
-                self.stop(unread)
-            if part.kind == "unread" or self.has_effect(part):
-                self.lose(unread)
-            if part.kind == "refused" and self.has_effect(part):
-                targets.update(part.parts[1])
-            if part.kind == "call" and self.is_closure(part.parts[0]):
-                targets |= {*self.frame}
-        if "this" in targets:
+        is_entry = statement.kind == "assign" and self.lose_entries(statement, unread)
+        writes = self.written_by(*(statement.parts[1:] if is_entry else (statement,)))
+        if writes.others or "this" in writes.names:
             self.lose(unread)
-        for name in {*targets, *(self.canonical(name + ".").rstrip(".->") for name in targets)}:
-            if name in self.frame or name not in self.file_names:
+        closures = [name for name in called_in(statement) if self.is_closure(name)]
+        names = {*writes.names, *(self.frame if closures else ())}
+        names |= {self.canonical(name + ".").rstrip(".->") for name in names}
+        for name in names | {base for n in names if self.variable_shape(base := n.rpartition(".")[0])}:
+            if name in self.frame or name not in {*self.file_names, *self.unit.macros}:
                 lose(self.variable(name), unread)
                 self.lose_members(name, unread)
-        if self.unit.language == "python" and statement.kind == "assign" and statement.parts[0].kind == "name":
-            variable = Variable(statement.parts[0].parts[0], all_unread=unread)  # it may be a view
-            share(variable, self.arrays_in(statement.parts[2]))
-            self.frame[variable.name] = variable
-        if is_hidden or any(part.kind == "return" for part in walk(statement)):
+        for name, sources in list_links(self.unit, statement) if is_naming(self.unit, statement) else ():
+            variable = self.frame[self.canonical(name)] = Variable(self.canonical(name), all_unread=unread)
+            share(variable, self.arrays_in(sources))
+        if writes.leaves:
             self.stop(unread)
+
+    def written_by(self, *parts: Part) -> Writes:
+        """What parts may write here."""
+        entries = {name for name in self.frame if not self.is_closure(name)}
+        numbers = {name for name in mentioned_in(*parts) if self.variable_shape(name) == ()}
+        return written_by(self.unit, *parts, entries=entries, numbers=numbers)
 
     def lose_entries(self, statement: Part, unread: Unread) -> bool:
         """True where an assignment that is not read can only write known entries, which are unread now."""
@@ -246,33 +225,10 @@ class Machine(Evaluator):
         for variable in self.globals.values():
             variable.all_unread = variable.all_unread or unread
 
-    def is_plain(self, part: Part) -> bool:
-        """True for a call that writes nothing: of a known function or method, or an entry ``M(i, j)``."""
-        if part.kind == "method":
-            return is_method(part.parts[1], len(part.parts[2]), self.unit.language)
-        name = part.parts[0]
-        is_entry = name in self.frame and not self.is_closure(name)
-        is_pure = name in HARMLESS or name in PURE.get(self.unit.language, ())
-        return is_entry or is_pure or does_take(name, len(part.parts[1]), self.unit.language)
-
     def is_closure(self, name: str) -> bool:
         """True for a name that is called though its value is not read: it may hold a function that writes any name."""
         known = self.frame.get(name) or self.globals.get(name)
         return known is not None and known.all_unread is not None
-
-    def has_effect(self, part: Part) -> bool:
-        """True for an expression that may write more than the target of its statement."""
-        return any(part.parts[2:]) if part.kind == "refused" else part.kind == "call" and not self.is_plain(part)
-
-    def root_names(self, target: Part) -> set[str]:
-        """The variable of a target; all names in one that is not understood."""
-        while target.kind in ("index", "method", "first"):
-            target = target.parts[0]
-        if target.kind in ("name", "call"):
-            is_member = target.kind == "name" and self.member_of_array(target) is not None
-            return {str(target.parts[0]), *([target.parts[0].rpartition(".")[0]] if is_member else ())}
-        refused = (part.parts[1:2] for part in walk(target) if part.kind == "refused")
-        return names_in(target).union(*(names for several in refused for names in several))
 
     def run_unread(self, why: str, names: tuple[str, ...], statement: Part) -> None:
         raise Unreadable(why)
@@ -315,7 +271,8 @@ class Machine(Evaluator):
             self.frame[name] = self.linked(value)
             owner = self.owner_of(value) if value is not None and not self.frame[name].shape else None
             if number == "other" and owner is not None:
-                if is_link != "const" or may_change(self.unit, self.reading.function, owner[0]):
+                changed = changed_in(self.unit, self.reading.function).changed
+                if is_link != "const" or head_of(owner[0]) in {*map(head_of, changed)}:
                     self.aliases[name] = owner  # else its members keep the names by which they are called here
             elif number == "other" and (is_link != "const" or self.frame[name].shape):
                 raise Unreadable("a reference or pointer to a structure that is no name")
@@ -345,7 +302,9 @@ class Machine(Evaluator):
             self.write(variable, self.fill(result, sizes), statement)
         lazy = ("op", "minus", "method", "index", *(("name",) if self.unit.language == "cpp" else ()))
         if is_lazy and shape is None and sizes and value is not None and value.kind in lazy:
-            share(variable, self.arrays_in(value))  # auto of Eigen, computed when it is used; of an array a pointer
+            share(
+                variable, self.arrays_in(sources_of(value))
+            )  # auto of Eigen, computed when it is used; of an array a pointer
 
     def note_unread(self, value: Value, statement: Part) -> None:
         """Keep in mind an assignment of what is not read."""
@@ -436,7 +395,7 @@ class Machine(Evaluator):
         if is_python and value.kind == "name" and isinstance(result, Array):
             self.frame[name] = self.variable(value.parts[0])
             return
-        bases = self.arrays_in(value) if is_python else []
+        bases = self.arrays_in(sources_of(value)) if is_python else []
         if is_python and value.kind == "call" and value.parts[0] in self.unit.functions:
             bases += [v for known, v in self.frame.items() if "." in known and v.shape]  # a member that it returns
         number = "list" if isinstance(result, List) else "real"
@@ -448,7 +407,7 @@ class Machine(Evaluator):
         self.frame[name] = variable
         if cells and bases and isinstance(result, List):
             share(variable, [*bases, variable])  # two of its rows may be one
-        elif cells and is_view(self.unit, value):
+        elif is_view(self.unit, value):
             share(variable, bases)
 
     def rename_object(self, name: str, value: Part, statement: Part) -> None:
@@ -464,10 +423,9 @@ class Machine(Evaluator):
         if self.unit.language == "python" and value.kind == "name":
             self.aliases[name] = (self.canonical(value.parts[0]), ".")
 
-    def arrays_in(self, value: Part) -> list[Variable]:
-        """The arrays that an expression names."""
-        hidden = (part.parts[1] for part in walk(value) if part.kind == "refused" and len(part.parts) > 1)
-        return [self.variable(name) for name in mentioned_in(value).union(*hidden) if self.variable_shape(name)]
+    def arrays_in(self, names: Iterable[str]) -> list[Variable]:
+        """The arrays among names, and what may be one."""
+        return [self.variable(name) for name in names if self.variable_shape(name) or self.is_closure(name)]
 
     def write(self, variable: Variable, value: Value, statement: Part) -> None:
         """A whole variable."""
@@ -528,8 +486,7 @@ class Machine(Evaluator):
 
     def does_go_on(self, test: Part) -> bool:
         """Whether a condition between whole numbers holds; others may be rounded, or depend on inputs."""
-        own = {*self.unit.functions} & mentioned_in(test)
-        forbid(own, f"a loop whose condition calls {', '.join(own)}, which may write")
+        forbid(self.written_by(test), "a loop whose condition may write")
         choices, self.choices = self.choices, None
         leaves = [side for part in walk(test) if part.kind == "compare" for side in part.parts[1:]] or [test]
         try:
@@ -548,7 +505,7 @@ class Machine(Evaluator):
         try:
             raise Returning(self.value(value))
         except Unreadable as refusal:
-            if any(self.has_effect(p) or (p.kind == "method" and not self.is_plain(p)) for p in walk(value)):
+            if self.written_by(value):
                 raise
             if self.unit.language == "python" and value.kind == "list":
                 raise Returning(Unread(value.line, "several arrays returned; ask for them by their names")) from None
@@ -574,7 +531,7 @@ class Machine(Evaluator):
                     lose(self.variable(known), Unread(statement.line, why))
                 raise Unreadable(why)
         elif call.kind == "call" and call.parts[0] in {*HARMLESS, *PURE[self.unit.language], *self.unit.ignored}:
-            if any(self.has_effect(part) for part in walk(call.parts[1])):
+            if self.written_by(*call.parts[1]):
                 raise Unreadable(f"an argument of {call.parts[0]} that may write")
             return
         elif call.kind == "call" and call.parts[0] == "memcpy" and len(call.parts[1]) == 3:

@@ -5,9 +5,8 @@ A part knows the bytes of the source from which it came. Nothing is evaluated he
 
 from __future__ import annotations
 
-import functools
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -59,7 +58,12 @@ class Argument:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Function:
-    """A function as it is written; ``outputs`` are the names that MATLAB returns, ``number`` is what others return."""
+    """A function as it is written.
+
+    outputs : the names that MATLAB returns
+    number  : what others return
+    region  : the bytes of the source in which it is known, where it is not known in all of it
+    """
 
     name: str
     line: int
@@ -67,6 +71,7 @@ class Function:
     body: tuple[Part, ...]
     outputs: tuple[str, ...] = ()
     number: str = "auto"
+    region: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +120,8 @@ class Unit:
     types     : name of a type that the file defines -> what it stands for, in C
     kinds     : name of a variable of C -> the types with which it is declared
     imported  : what names of numpy and math are called in Python
+    effects   : what functions may write, as far as it was asked
+    regions   : name that is not known in all of the source -> the bytes in which it is
     """
 
     file: str
@@ -134,6 +141,8 @@ class Unit:
     imported: dict[str, str] = field(default_factory=dict)
     declared: set[str] = field(default_factory=set)
     types: dict[str, str] = field(default_factory=dict)
+    effects: dict[Function, Any] = field(default_factory=dict)
+    regions: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
 
     @property
     def rules(self) -> Rules:
@@ -143,6 +152,10 @@ class Unit:
     def is_array(self, name: str) -> bool:
         """True for a name before parentheses that holds entries; of others two calls may give two values."""
         return name.replace("->", ".") in self.declared or name in self.members
+
+    def knows(self, name: str, part: Part) -> bool:
+        """True for a name that is known at a part, and not only under conditions of the preprocessor."""
+        return name not in self.regions or any(a <= part.span[0] < b for a, b in self.regions[name])
 
     def locate(self, line: int) -> tuple[str, int]:
         """The file of a line, and its number there."""
@@ -171,38 +184,6 @@ def walk(*parts: Any) -> Iterator[Part]:
 def names_in(*parts: Any) -> set[str]:
     """The names that parts read or write."""
     return {inner.parts[0] for inner in walk(*parts) if inner.kind == "name"}
-
-
-def may_write(unit: Unit, function: Function, name: str) -> bool:
-    """True for a function that may write to a parameter of its own; one that only reads it may share the caller's."""
-    kinds = ("name", "index", "call")  # v(0) may be given as a reference to a function of the file
-    for part in walk(*function.body):
-        is_link = part.kind == "declare" and part.parts[4]
-        is_open = is_link or part.kind in ("do", "address", "refused", "unread")
-        written = part.parts[:1] if part.kind == "assign" else (part,) if is_open else ()
-        many = kinds[: None if part.parts[0] in unit.functions else 1] if part.kind == "call" else ()
-        if name in mentioned_in(*(a for a in part.parts[1] if a.kind in many) if many else (), *written):
-            return True
-    return False
-
-
-@functools.lru_cache(1024)
-def has_effects(function: Function) -> bool:
-    """True for a function that may write to what is not its own."""
-    parts = [*walk(*function.body)]
-    own = {a.name for a in function.arguments if not a.shared}
-    own |= {p.parts[0] for p in parts if p.kind == "for" or (p.kind == "declare" and not p.parts[4])}
-    targets = mentioned_in(*(p.parts[0] for p in parts if p.kind == "assign"))
-    return not targets <= own or any(p.kind in ("do", "moved", "unread", "jump", "refused") for p in parts)
-
-
-def may_write_by_macro(unit: Unit, word: str, has_effect: Callable[[Part], bool], around: tuple[str, ...] = ()) -> bool:
-    """True for a macro whose text may write to something or leave the function."""
-    meaning = unit.macros.get(word, "") if word not in around else ""
-    if isinstance(meaning, str):
-        return meaning in HIDDEN_MACROS
-    writes = any(part.kind in ("refused", "address") or has_effect(part) for part in walk(meaning))
-    return writes or any(may_write_by_macro(unit, inner, has_effect, (*around, word)) for inner in names_in(meaning))
 
 
 def called_in(*parts: Any) -> set[str]:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from navsym.audit.form import Function, Part, Unit, called_in, has_effects, head_of, mentioned_in, names_in, walk
+from navsym.audit.form import Function, Part, Unit, walk
 from navsym.audit.values import (
     LARGEST_INVERSE,
     Array,
@@ -104,34 +104,6 @@ def does_take(name: str, count: int, language: str) -> bool:
     """True for a known function that only reads so many arguments; one more of numpy is where it writes."""
     most = max((n for known, n in KNOWN if known == bare_name(name)), default=2)
     return is_known(name, language) and (language != "python" or count <= most)
-
-
-def find_race(unit: Unit, parts: tuple[Part, ...], local: set[str], fixed: set[str]) -> Part | None:
-    """An operand with a call that writes what another operand reads, or may read; None where there is none."""
-    own = unit.functions
-    writing = {n for n in called_in(*parts) & own.keys() if any(map(has_effects, own[n]))}
-    for node in (Part("list", 0, parts), *walk(*parts)) if writing else ():
-        kinds = ("op", "compare", "call", "method", "index", "list")
-        sides = [p for x in node.parts for p in (x if isinstance(x, tuple) else (x,)) if isinstance(p, Part)]
-        for side in sides if node.kind in kinds else ():
-            given = [mentioned_in(*p.parts[1]) for p in walk(side) if p.kind == "call" and p.parts[0] in writing]
-            rest = mentioned_in(*(other for other in sides if other is not side)) if given else set()
-            rest -= fixed | {*unit.macros, *CONSTANTS}
-            shared = {*map(head_of, rest)} & {*map(head_of, set[str]().union(*given))}
-            if shared or any(n not in local and not is_known(n, unit.language) for n in rest):
-                return side
-    return None
-
-
-def may_change(unit: Unit, function: Function, owner: str) -> bool:
-    """True for a structure that the function, or one that it calls, may write to."""
-    parts = [*walk(*function.body)]
-    called = [f.body for p in parts if p.kind == "call" for f in unit.functions.get(p.parts[0], ())]
-    changing = ("assign", "moved", "address", "do", "unread", "jump", "refused")
-    changed = (p for p in [*parts, *walk(*called)] if p.kind in changing)
-    names = {n for p in changed for n in (names_in(p.parts[0]) if p.kind == "assign" else names_in(p))}
-    hidden = (p.parts[1] for p in parts if p.kind in ("unread", "jump", "refused") and len(p.parts) > 1)
-    return head_of(owner) in {*map(head_of, names)}.union(*hidden)
 
 
 def may_return_view(function: Function) -> bool:

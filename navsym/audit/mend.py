@@ -12,11 +12,12 @@ from typing import Any
 
 from navsym.audit.decide import Scope, decide_entry, draw_points
 from navsym.audit.evaluate import Edits, Evaluator
-from navsym.audit.form import Function, Part, Unit, has_effects, mentioned_in, names_in, spell_entry, walk
+from navsym.audit.form import Function, Part, Unit, mentioned_in, names_in, spell_entry, walk
 from navsym.audit.names import squeeze
 from navsym.audit.questions import Entry, NotThereError
 from navsym.audit.sources import Source, read_expression
 from navsym.audit.values import Array, Cell, Scalar, Unread, Unreadable, Value, cells_of
+from navsym.audit.writes import written_outside
 from navsym.claims.verdict import PROVED
 from navsym.core.errors import NavsymError
 from navsym.language.printer import print_tree
@@ -354,7 +355,7 @@ def sift(mends: list[Mend], entry: Entry, source: Source, probes: list[dict[str,
 
 def may_write_more(unit: Unit, part: Part) -> bool:
     """True for an expression with a call of a function of the file that may write to what is not its own."""
-    return any(has_effects(f) for name in mentioned_in(part) for f in unit.functions.get(name, ()))
+    return any(written_outside(unit, f) for name in mentioned_in(part) for f in unit.functions.get(name, ()))
 
 
 class Gap:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from navsym.audit.form import Argument, Part, names_in, walk
-from navsym.audit.functions import HARMLESS, NUMBERS, PURE, bare_name, is_known, is_method, names_view
+from navsym.audit.functions import CONSTANTS, HARMLESS, NUMBERS, PURE, bare_name, is_known, is_method, names_view
 from navsym.audit.syntax import OPERATORS, SourceReader, ascend, descend, field_of, list_above, named, text_of
 
 #: Decorators that leave a function what it is.
@@ -19,6 +19,8 @@ MODULES = {"numpy": "np.", "math": "math.", "numpy.linalg": "np.linalg."}
 NUMERIC = ("numpy", "math", "autograd.numpy", "jax.numpy")
 #: Names with a meaning of their own, which a file may use for something else.
 NAMES = ("np", "numpy", "math", "abs", "max", "min", "float", "range")
+#: What may write any name of the module, or a member of what it is given.
+RUNNING, ANY = ("exec", "eval", "globals", "vars", "locals", "setattr", "delattr"), "*"
 AGAIN = "a function whose name stands for something else later"
 
 
@@ -87,8 +89,14 @@ class Reader(SourceReader):
                 is_known = node.parent.type == "module" and text_of(field_of(node, "module_name")) in MODULES
                 names = () if is_known else node.children_by_field_name("name")
                 bound = [text_of(field_of(n, "alias") or n) for n in names if text_of(n) != "numpy"]
+                self.rebound |= {*bound} & {*CONSTANTS}
             elif node.type in ("named_expression", "as_pattern_target"):
                 bound = [text_of(named(node)[0])] if named(node) else []
+                self.changed |= {*bound}
+            elif node.type == "call" and text_of(field_of(node, "function")) in RUNNING:
+                given = named(field_of(node, "arguments"))[:1]
+                bound = [*map(text_of, given)] if "attr" in text_of(field_of(node, "function")) else [*NAMES, ANY]
+                self.changed |= {*bound}
             elif node.type == "aliased_import" and text_of(field_of(node, "name")) not in NUMERIC:
                 bound = [text_of(field_of(node, "alias"))]
             self.rebound |= {*bound} & {*NAMES, *self.unit.imported}
@@ -113,7 +121,7 @@ class Reader(SourceReader):
                     if statement.parts[0].kind == "name":
                         assigned.setdefault(statement.parts[0].parts[0], []).append(statement)
         for name, many in assigned.items():
-            is_open = name in self.changed or (name in self.given and may_be_array(many[0].parts[2]))
+            is_open = bool({name, ANY} & self.changed) or (name in self.given and may_be_array(many[0].parts[2]))
             if len(many) == 1 and not is_class and not many[0].parts[1] and not is_open:
                 self.unit.constants += many
             for function in self.unit.functions.get(name, []):
@@ -212,12 +220,16 @@ class Reader(SourceReader):
                 return self.part("choose", node, *map(self.expression, (test, then, other)))
             case "subscript":
                 base = self.expression(field_of(node, "value"))
-                places = self.several(node.children_by_field_name("subscript"))
-                if len(places) == 1 and places[0].kind == "list":
+                places = self.several(inner := node.children_by_field_name("subscript"))
+                if len(inner) == 1 and inner[0].type == "tuple":
                     places = places[0].parts[0]
                 return self.part("index", node, base, places)
             case "slice":
                 return self.slice(node)
+            case "attribute" | "identifier" if (
+                text_of(node) in CONSTANTS and text_of(node).split(".")[0] in self.rebound
+            ):
+                return self.refuse(node, f"{text_of(node)}, which this file uses for something else")
             case "attribute" if text_of(field_of(node, "attribute")) == "T":
                 return self.part("method", node, self.expression(field_of(node, "object")), "T", ())
             case "call":

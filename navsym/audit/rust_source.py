@@ -28,6 +28,7 @@ QUIET = "println eprintln debug_assert debug_assert_eq assert assert_eq trace de
 
 #: A text, and what may write in the arguments of a macro.
 STRING, WRITING = re.compile(r'"(\\.|[^"\\])*"'), re.compile(r"(?<![=!<>])=(?!=)|mut\b")
+ELSEWHERE, INSIDE = "which this file defines in another place", ("self", "Self", "crate", "super")
 OPEN = "which each type of a trait may define otherwise"
 SIGNS = ("", "+=", "-=", "*=", "/=", "%=")
 
@@ -57,6 +58,7 @@ class Reader(SourceReader):
     own, methods : the functions of the file, and those of a type
     places       : each with the modules around it and its type
     pointers     : references that the function being read declares
+    foreign      : names that ``use`` brings from elsewhere, or under another name
     """
 
     HEAD = "const A: f64 = "
@@ -66,6 +68,7 @@ class Reader(SourceReader):
     methods: set[str] = field(default_factory=set)
     places: set[tuple[str, tuple[str, ...], str]] = field(default_factory=set)
     pointers: set[str] = field(default_factory=set)
+    foreign: set[str] = field(default_factory=set)
 
     @staticmethod
     def find_value(node: Any) -> Any:
@@ -81,7 +84,16 @@ class Reader(SourceReader):
             modules, owners = place_of(node)
             self.places.add((text_of(field_of(node, "name")), modules, owners[0] if owners else ""))
         constants = [node for node in nodes if node.type == "const_item" and not is_open(node)]
-        self.unit.variables |= {text_of(field_of(node, "name")) for node in constants}
+        for node in constants:
+            self.unit.variables.add(name := text_of(field_of(node, "name")))
+            if (region := self.region_of(node)) is not None:
+                self.unit.regions.setdefault(name, []).append(region)
+            modules, owners = place_of(node)
+            self.places.add((name, modules, owners[0] if owners else ""))
+        for node in (node for node in nodes if node.type == "use_declaration"):
+            is_known = re.match(r"use\s+(std|core)::f(32|64)::consts\b", text_of(node)) is not None
+            renamed = {text_of(field_of(n, "alias")) for n in descend(node) if n.type == "use_as_clause"}
+            self.foreign |= renamed | {*(identifiers_in(node) if not is_known else ())}
         for node in nodes:
             if node.type == "function_item":
                 self.read_function(node)
@@ -95,8 +107,17 @@ class Reader(SourceReader):
                 self.unit.members[name] = known if self.unit.members.get(name, known) == known else ("other", None)
         self.unit.constants.sort(key=lambda statement: statement.span)
 
+    def region_of(self, node: Any) -> tuple[int, int] | None:
+        """The item itself where it is compiled under a condition, or the function around an inner one."""
+        if is_conditional(node):
+            return node.start_byte, node.end_byte
+        outer = next((above for above in ascend(node) if above.type == "function_item"), None)
+        return None if outer is None else (outer.start_byte, outer.end_byte)
+
     def read_function(self, node: Any) -> None:
         name, arguments = text_of(field_of(node, "name")), []
+        head = field_of(node, "type_parameters")
+        types = {text_of(n) for n in descend(head) if n.type == "type_identifier"} if head is not None else set()
         given = (n for n in descend(node) if n.type in ("parameter", "let_declaration"))
         links = (n for n in given if "reference" in getattr(field_of(n, "type") or field_of(n, "value"), "type", ""))
         self.pointers = {text_of(field_of(n, "pattern")).removeprefix("mut ") for n in links}
@@ -104,12 +125,15 @@ class Reader(SourceReader):
             kind = text_of(field_of(child, "type"))
             number, shape = type_of(kind)
             label = text_of(field_of(child, "pattern")).removeprefix("mut ")
+            number = "auto" if {*re.findall(r"\w+", kind)} & types and number == "real" else number
             arguments.append(Argument(label, number, self.sizes(child, shape), "&mut" in kind.replace(" ", "")))
         self.define(node, name, arguments, tuple(self.body(field_of(node, "body"))))
 
     def body(self, node: Any) -> list[Part]:
         """The statements of a function; an expression at its end is its value."""
         nodes = [child for child in named(node) if child.type != "attribute_item"]
+        if nodes and is_conditional(nodes[-1]):
+            return [*(s for child in nodes for s in self.statement(child))]
         done = [s for child in nodes[:-1] for s in self.statement(child)]
         if not nodes:
             return done
@@ -129,6 +153,8 @@ class Reader(SourceReader):
         return self.part("return", node, None if node.type == "unit_expression" else self.expression(node))
 
     def read_statement(self, node: Any) -> tuple[Part, ...] | None:
+        if is_conditional(node) and not node.type.endswith("_item"):
+            return (self.unread(node, "a statement that is compiled under a condition"),)
         if node.type == "let_declaration":
             return self.declaration(node)
         if node.type in ("attribute_item", "empty_statement", "use_declaration"):
@@ -228,10 +254,18 @@ class Reader(SourceReader):
                 bare = re.sub(r"(f32|f64|[iu](8|16|32|64|128|size))$", "", text)
                 is_real = node.type == "float_literal" or text.endswith(("f32", "f64"))
                 return self.literal(node, bare.removesuffix("."), is_real)
+            case "identifier" if (name := text_of(node)) in {*self.unit.variables, "PI"}:
+                is_hidden = name in self.foreign or not self.is_here(node, name, False)
+                return self.refuse(node, f"{name}, {ELSEWHERE}") if is_hidden else None
             case "scoped_identifier":
                 name, last = "".join(text_of(node).split()), text_of(field_of(node, "name"))
-                is_own = last in self.unit.variables and not name.startswith(("std::", "core::"))
-                return self.part("name", node, last if is_own else "M_PI" if last == "PI" else name)
+                head = name.split("::")[-2]
+                words = {w for own, at, owner in self.places if own == last for w in (*at, owner)} | {*INSIDE}
+                if last in self.unit.variables and head in words:
+                    return self.part("name", node, last)
+                return self.part(
+                    "name", node, "M_PI" if re.fullmatch(r"((std|core)::)?(f32::|f64::)?consts::PI", name) else name
+                )
             case "reference_expression":
                 return self.expression(field_of(node, "value"))
             case "unary_expression":
@@ -275,8 +309,8 @@ class Reader(SourceReader):
             return self.method(node, function, arguments)
         name = re.sub(r"::<[^:]*>(?=::|$)|<[^:]*>(?=::|$)|\s", "", text_of(function))
         head, _, last = name.rpartition("::")
-        if head in ("", "Self") and not self.is_here(node, last, bool(head)):
-            return self.refuse(node, f"the function {last}, which this file defines in another place")
+        if head in ("", "Self") and (last in self.foreign - self.methods or not self.is_here(node, last, bool(head))):
+            return self.refuse(node, f"the function {last}, {ELSEWHERE}")
         if head == "Self" and is_open(node):
             return self.refuse(node, f"{name}, {OPEN}")
         if not head or head == "Self":
@@ -326,6 +360,14 @@ class Reader(SourceReader):
 def is_open(node: Any) -> bool:
     """True inside a trait, where each type may have another method or constant of a name."""
     return "trait_item" in list_above(node)
+
+
+def is_conditional(node: Any) -> bool:
+    """True behind an attribute that lets a compiler leave it out."""
+    while (node := node.prev_named_sibling) is not None and node.type == "attribute_item":
+        if re.match(r"#\s*\[\s*cfg\b", text_of(node)):
+            return True
+    return False
 
 
 def place_of(node: Any) -> tuple[tuple[str, ...], list[str]]:

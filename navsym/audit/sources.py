@@ -17,6 +17,7 @@ from navsym.audit.cases import Reading
 from navsym.audit.evaluate import Edits
 from navsym.audit.execute import read_function
 from navsym.audit.form import Argument, Function, Part, Unit, called_in, mentioned_in, names_in, spell_entry, walk
+from navsym.audit.functions import CONSTANTS
 from navsym.audit.names import Names, squeeze
 from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import Array, Index, Scalar, places_of, relate_rotation
@@ -231,7 +232,7 @@ def list_inputs(source: Source, whole: Function) -> set[str]:
     variables = [v for case in cases for v in case.variables.values()]
     own = {v.name for v in variables if not v.is_input} | {*unit.macros, *unit.functions}
     own |= {constant.parts[0] for constant in unit.constants if constant.kind == "declare"}
-    named = {argument.name for argument in whole.arguments} | {*source.shapes} | names_in(*whole.body)
+    named = {argument.name for argument in whole.arguments} | {*source.shapes} | (names_in(*whole.body) - {*CONSTANTS})
     return {v.name for v in variables if v.is_input} | (named - own)
 
 

@@ -243,9 +243,14 @@ class SourceReader:
                 return self.operate_alone(node, sign_of(node), named(node)[-1])
         return None
 
+    def region_of(self, node: Any) -> tuple[int, int] | None:
+        """The bytes in which a name is known that is defined at a node; None where it is everywhere."""
+        return None
+
     def define(self, node: Any, name: str, arguments: Iterable[Argument], body: tuple[Part, ...], *more: Any) -> None:
         """One more function of the file."""
-        function = Function(name, line_of(node), tuple(arguments), body, *more)
+        number = more[1] if len(more) > 1 else "auto"
+        function = Function(name, line_of(node), tuple(arguments), body, (*more, ())[0], number, self.region_of(node))
         self.unit.functions.setdefault(name, []).append(function)
 
     def several(self, nodes: Iterable[Any]) -> tuple[Part, ...]:
