@@ -141,7 +141,7 @@ def reset_column(flow: Mechanisation, role: str, component: int) -> dict[str, li
     before = multiply(small, C) if in_frame else multiply(C, small)
     after = multiply(back, before) if in_frame else multiply(before, back)
     velocity, position = (
-        take_out(flow, flow.shift(vector, both[name], C, before), correction[name], before, after)
+        take_out(flow, name, flow.shift(name, vector, both[name], C, before), correction[name], before, after)
         for name, vector in (("velocity", truth.velocity), ("position", truth.position))
     )
     left = flow.compare(State(after, velocity, position, truth.constants), truth)
@@ -149,14 +149,12 @@ def reset_column(flow: Mechanisation, role: str, component: int) -> dict[str, li
     return {RESET_MARK + name: [part.mixed for part in left[name]] for name in ROLES}
 
 
-def take_out(flow: Mechanisation, estimate: Vector, correction: Vector, before: Grid, after: Grid) -> Vector:
+def take_out(
+    flow: Mechanisation, role: str, estimate: Vector, correction: Vector, before: Grid, after: Grid
+) -> Vector:
     """An estimated vector without its correction: the inverse of the definition of its error."""
-    if flow.card.vector_error == "body":
-        return add_vectors(estimate, negate(apply(after, correction)))
-    rest = add_vectors(estimate, negate(correction))
-    if flow.card.vector_error == "rotated":
-        return apply(multiply(after, transpose(before)), rest)
-    return rest
+    S, R = flow.sides(role, after, before)
+    return apply(transpose(S), add_vectors(estimate, negate(apply(R, correction))))
 
 
 def full_column(flow: Mechanisation, role: str, component: int) -> dict[str, list[Any]]:

@@ -318,19 +318,22 @@ class Mechanisation:
         turned = multiply(small, attitude) if card.attitude_error == "frame" else multiply(attitude, small)
         return State(
             turned,
-            self.shift(velocity, error["velocity"], attitude, turned),
-            add_vectors(x.position, moved) if self.is_geodetic else self.shift(x.position, moved, attitude, turned),
+            self.shift("velocity", velocity, error["velocity"], attitude, turned),
+            self.shift("position", x.position, moved, attitude, turned),
             {name: add_vectors(value, error[name]) for name, value in x.constants.items()},
             azimuth,
         )
 
-    def shift(self, vector: Vector, error: Vector, attitude: Grid, turned: Grid) -> Vector:
-        """The estimated vector."""
-        if self.card.vector_error == "body":
-            return add_vectors(vector, apply(attitude, error))
-        if self.card.vector_error == "rotated":
-            vector = apply(multiply(turned, transpose(attitude)), vector)
-        return add_vectors(vector, error)
+    def shift(self, role: str, vector: Vector, error: Vector, attitude: Grid, turned: Grid) -> Vector:
+        """The estimated vector S v + R e, by the true and the estimated attitude."""
+        S, R = self.sides(role, attitude, turned)
+        return add_vectors(apply(S, vector), apply(R, error))
+
+    def sides(self, role: str, attitude: Grid, turned: Grid) -> tuple[Grid, Grid]:
+        """S, by which the truth is turned, and R, by which the error is brought to the frame."""
+        turns, resolved = self.card.vector(role)
+        S = multiply(turned, transpose(attitude)) if turns else identity()
+        return S, (turned if turns else attitude) if resolved else identity()
 
     def compare(self, estimate: State, x: State) -> dict[str, Vector]:
         """The error of an estimate; every sign is plus."""
@@ -338,26 +341,23 @@ class Mechanisation:
         moved = add_vectors(estimate.position, negate(x.position))
         frame = self.reference(x, estimate)
         attitude, velocity = multiply(frame, x.attitude), apply(frame, x.velocity)
-        inverse = transpose(attitude)
-        outer = multiply(estimate.attitude, inverse)
-        small = outer if card.attitude_error == "frame" else multiply(inverse, estimate.attitude)
+        pair = estimate.attitude, transpose(attitude)
+        small = multiply(*(pair if card.attitude_error == "frame" else reversed(pair)))
         if not self.is_geodetic:
-            moved = self.unshift(estimate.position, x.position, outer, inverse)
+            moved = self.unshift("position", estimate.position, x.position, attitude, estimate.attitude)
         elif card.position_error == "metres":
             moved = apply(self.turn(x), [part * unit for part, unit in zip(moved, self.metres(x), strict=True)])
         return {
             "attitude": self.unskew(small),
-            "velocity": self.unshift(estimate.velocity, velocity, outer, inverse),
+            "velocity": self.unshift("velocity", estimate.velocity, velocity, attitude, estimate.attitude),
             "position": moved,
             **{name: add_vectors(value, negate(x.constants[name])) for name, value in estimate.constants.items()},
         }
 
-    def unshift(self, estimate: Vector, vector: Vector, outer: Grid, inverse: Grid) -> Vector:
+    def unshift(self, role: str, estimate: Vector, vector: Vector, attitude: Grid, turned: Grid) -> Vector:
         """The error of an estimated vector."""
-        if self.card.vector_error == "rotated":
-            vector = apply(outer, vector)
-        error = add_vectors(estimate, negate(vector))
-        return apply(inverse, error) if self.card.vector_error == "body" else error
+        S, R = self.sides(role, attitude, turned)
+        return apply(transpose(R), add_vectors(estimate, negate(apply(S, vector))))
 
     def half(self) -> Nilpotent:
         """A half as a coefficient."""
@@ -375,7 +375,7 @@ class Mechanisation:
         role, component : the state whose error is eps
         """
         flow, error = self, unit_error(role, component)
-        plain = self.card.attitude_error == "frame" and self.card.vector_error != "body"
+        plain = self.card.attitude_error == "frame" and not self.card.vector("velocity")[1]
         if plain and not role.endswith("_scale"):  # C stands beside C' alone; a scale belongs to an axis of the body
             flow, error = self.turn_body(), self.turn_errors([constant(row) for row in self.world.C], error)
         truth = flow.truth()
@@ -393,8 +393,7 @@ class Mechanisation:
         """Errors in other axes of the body, where they are resolved in it."""
         roles = {"attitude"} if self.card.attitude_error == "body" else set()
         roles |= {"gyro_bias", "accelerometer_bias"}
-        if self.card.vector_error == "body":
-            roles |= {"velocity"} if self.is_geodetic else {"velocity", "position"}
+        roles |= {name for name in ("velocity", "position") if self.card.vector(name)[1]}
         return {name: apply(A, v) if name in roles else v for name, v in errors.items()}
 
 

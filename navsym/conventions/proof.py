@@ -44,7 +44,7 @@ class Prover:
 
     def block_texts(self, card: Card, block: Block, sign: Fraction) -> list[list[str]]:
         """The card's block in the user's names."""
-        still = card.earth == "none" and card.earth_rate in (None, DROPPED) and card.vector_error != "rotated"
+        still = card.earth == "none" and card.earth_rate in (None, DROPPED) and not card.vector("velocity")[0]
         # Without gravity among the terms a flat Earth that does not turn is an inertial frame.
         if still and not block[0].startswith((MEASURED_MARK, RESET_MARK)):
             names = ("attitude_error", "vector_error", "position_error")

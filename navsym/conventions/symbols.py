@@ -28,7 +28,7 @@ from navsym.conventions.mechanisation import (
     plus_height,
     rotate_about_pole,
 )
-from navsym.conventions.nilpotent import rotate, times
+from navsym.conventions.nilpotent import constant, rotate, times
 from navsym.conventions.reading import HIDDEN, Problem
 from navsym.core.exact import to_fmpq
 from navsym.core.rational_functions import Quotient, Ratio, cancel_fraction
@@ -40,7 +40,7 @@ NUMERAL = re.compile(r"-?\d+(/\d+)?")
 
 GENERATORS = (
     *(f"c{i}{j}" for i in range(3) for j in range(3)),
-    *(f"{name}{k}" for name in ("f", "b", "w", "v", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp") for k in range(3)),
+    *(f"{name}{k}" for name in ("f", "b", "w", "v", "u", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp") for k in range(3)),
     *"sin cos east ahead turned straight wander_sin wander_cos".split(),
     *"h RN RE third mean slope rate gravity pull radius".split(),
 )
@@ -142,6 +142,8 @@ class Formulas:
         gravity = add_centrifugal(card, gravity, earth, r)
         mean = self.symbol("mean", f"sqrt(({self.texts['RN']})*({self.texts.get('RE', self.texts['RN'])}))")
         w, v, slope = self.vector("w", "angular_rate"), self.vector("v", "velocity"), self.text("radius_slope")
+        if "velocity_body" in given and "velocity" not in given:
+            v = rotate([constant(row) for row in C], self.vector("u", "velocity_body"))
         motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.symbol("slope", slope)
         return World(
             *motion,
