@@ -53,8 +53,6 @@ class Passage:
 
     def turn(self) -> Grid:
         """Rotation from the axes of the source to those of the card."""
-        if self.target.card.frame != LEVEL:
-            return identity()
         target, source = ([constant(row) for row in AXES[card.axes]] for card in (self.target.card, self.source.card))
         return multiply(target, transpose(source))
 

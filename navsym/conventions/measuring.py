@@ -31,17 +31,13 @@ from navsym.conventions.nilpotent import (
     negate,
     skew,
     subtract,
+    times,
     transpose,
 )
 
 #: What a measurement shows -> the number of its rows.
 MEASURED: Mapping[str, int] = {
-    "position": 3,
-    "velocity": 3,
-    "body_velocity": 3,
-    "zero_velocity": 3,
-    "attitude": 3,
-    "vector": 3,
+    **dict.fromkeys("position velocity body_velocity zero_velocity attitude vector".split(), 3),
     "height": 1,
 }
 #: Noises: of the sensors' outputs, and the drives of their biases and scales.
@@ -120,7 +116,7 @@ def noise_column(flow: Mechanisation, noise: str, component: int) -> dict[str, l
     if noise in CONSTANTS:
         return {name: [int(name == noise and k == component) for k in range(3)] for name in ROLES}
     column = flow.column(f"{noise}_bias", component)
-    return {name: [-x if type(x) is int else x * -1 for x in parts] for name, parts in column.items()}
+    return {name: [times(-1, x) for x in parts] for name, parts in column.items()}
 
 
 def reset_column(flow: Mechanisation, role: str, component: int) -> dict[str, list[Any]]:
@@ -149,9 +145,7 @@ def reset_column(flow: Mechanisation, role: str, component: int) -> dict[str, li
     return {RESET_MARK + name: [part.mixed for part in left[name]] for name in ROLES}
 
 
-def take_out(
-    flow: Mechanisation, role: str, estimate: Vector, correction: Vector, before: Grid, after: Grid
-) -> Vector:
+def take_out(flow: Mechanisation, role: str, estimate: Vector, correction: Vector, before: Grid, after: Grid) -> Vector:
     """An estimated vector without its correction: the inverse of the definition of its error."""
     S, R = flow.sides(role, after, before)
     return apply(transpose(S), add_vectors(estimate, negate(apply(R, correction))))

@@ -39,8 +39,9 @@ from navsym.conventions.nilpotent import (
     values_of,
 )
 
-#: Columns: north, east, down in the axes.
+#: Columns: north, east, down in the axes; the third axis is vertical.
 AXES: Mapping[str | None, tuple[tuple[int, int, int], ...]] = {
+    None: ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
     "NED": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
     "ENU": ((0, 1, 0), (1, 0, 0), (0, 0, -1)),
     "NWU": ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
@@ -205,8 +206,8 @@ class Mechanisation:
         down = NOTHING if self.card.azimuth == WANDER else -east * sine / (across * cosine)
         rate = apply(turn, [east / across, -north / meridian, down])
         if self.world.transport is not None:
-            names = self.world.transport
-            rate = [Nilpotent(name, *part.parts()[1:]) for name, part in zip(names, rate, strict=True)]
+            pairs = zip(self.world.transport, rate, strict=True)
+            rate = [Nilpotent(name, part.error, part.rate, part.mixed) for name, part in pairs]
         return rate
 
     def gravity(self, x: State) -> Vector:
@@ -404,14 +405,9 @@ def unit_error(role: str, component: int) -> dict[str, Vector]:
 
 def axes_rows(card: Card, sine: Any, cosine: Any) -> list[list[Any]]:
     """Rotation from north, east, down to the axes, by sine and cosine of the wander angle where the card has one."""
-    rows: list[list[Any]] = [list(row) for row in AXES[card.axes or "NED"]]
-    if card.azimuth == WANDER:
-        for k, (ahead, aside, _) in enumerate(rows):
-            if ahead:
-                rows[k] = [cosine, sine, 0]
-            elif aside:
-                rows[k] = [-sine, cosine, 0] if aside > 0 else [sine, -cosine, 0]
-    return rows
+    turned = [[cosine, sine, 0], [-sine, cosine, 0], [0, 0, 1]] if card.azimuth == WANDER else AXES[None]
+    picked = [next((x, k) for k, x in enumerate(row) if x) for row in AXES[card.axes]]
+    return [[x if side > 0 else -x for x in turned[k]] for side, k in picked]
 
 
 def level_rows(sine: Nilpotent, cosine: Nilpotent, east: Nilpotent, ahead: Nilpotent) -> Grid:

@@ -40,7 +40,11 @@ NUMERAL = re.compile(r"-?\d+(/\d+)?")
 
 GENERATORS = (
     *(f"c{i}{j}" for i in range(3) for j in range(3)),
-    *(f"{name}{k}" for name in ("f", "b", "w", "v", "u", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp") for k in range(3)),
+    *(
+        f"{name}{k}"
+        for name in ("f", "b", "w", "v", "u", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp")
+        for k in range(3)
+    ),
     *"sin cos east ahead turned straight wander_sin wander_cos".split(),
     *"h RN RE third mean slope rate gravity pull radius".split(),
 )
@@ -176,29 +180,20 @@ class Formulas:
         """mu/|r|^3, and gravity in the frame or along down."""
         size = len(self.problem.quantities.get("gravity", ()))
         central = self.card.gravity_gradient == "central"
-        if self.card.frame == "local-level":
-            down = self.down() if size == 3 else self.symbol("gravity", self.text("gravity"))
-            return self.symbol("pull", None), [down]
-        if "gravitational_parameter" in self.problem.quantities:
-            pull = self.symbol("pull", self.text("gravitational_parameter")) / (radius * radius * radius)
-        else:
-            pull = self.symbol("pull", None)
-        if size == 3:
-            return pull, [pull * x * -1 for x in r] if central else self.vector("g", "gravity")
-        if central and "gravitational_parameter" in self.problem.quantities:
+        if self.card.frame == "local-level":  # of three components the last one is vertical
+            down = self.symbol("gravity", self.text("gravity", size - 1))
+            return self.symbol("pull", None), [down * AXES[self.card.axes][2][2] if size == 3 else down]
+        mu = self.text("gravitational_parameter")
+        pull = self.symbol("pull", mu) / (radius * radius * radius if mu else 1)
+        if central and (size == 3 or mu):
             return pull, [pull * x * -1 for x in r]
+        if size == 3:
+            return pull, self.vector("g", "gravity")
         scalar = self.symbol("gravity", self.text("gravity"))
         if self.card.gravity_gradient == "normal":
             return pull, [scalar * x for x in normal]
-        if size == 1 and "gravitational_parameter" not in self.problem.quantities:
-            pull = scalar / radius
+        pull = scalar / radius if size == 1 and not mu else pull
         return pull, [scalar * x / radius * -1 for x in r]
-
-    def down(self) -> Ratio:
-        """Gravity along down from its components in the axes."""
-        column = [row[2] for row in AXES[self.card.axes]]
-        place = next(k for k, x in enumerate(column) if x)
-        return self.symbol("gravity", self.text("gravity", place)) * column[place]
 
     def earth_rate(self, sine: Ratio, cosine: Ratio, rows: list[list[Any]]) -> list[Ratio]:
         """The Earth's rate in the frame, or (north, down)."""
