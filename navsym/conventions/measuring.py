@@ -64,14 +64,11 @@ def measure_position(flow: Mechanisation, estimate: State, x: State) -> Vector:
     """Position of the end of the lever arm, in the units of the card's position error."""
     moved = add_vectors(estimate.position, negate(x.position))
     arm = apply(subtract(estimate.attitude, x.attitude), constant(flow.world.arm))
-    if not flow.is_geodetic:
-        return add_vectors(moved, arm)
-    metres = flow.metres(x)
-    if flow.card.position_error == "metres":
-        along = [part * unit for part, unit in zip(moved, metres, strict=True)]
-        return add_vectors(apply(flow.turn(x), along), arm)
-    ned = apply(transpose(flow.turn(x)), arm)
-    return add_vectors(moved, [part / unit for part, unit in zip(ned, metres, strict=True)])
+    if flow.is_geodetic and flow.card.position_error == "metres":
+        moved = flow.to_metres(x, moved)
+    elif flow.is_geodetic:
+        arm = flow.from_metres(x, arm)
+    return add_vectors(moved, arm)
 
 
 def spin(flow: Mechanisation, x: State) -> Vector:

@@ -260,20 +260,23 @@ class Mechanisation:
 
     def position_rate(self, x: State) -> Vector:
         """Rate of the position."""
-        if not self.is_geodetic:
-            return x.velocity
-        north, east, down = apply(transpose(self.turn(x)), x.velocity)
-        _, cosine = self.trigonometry(x)
-        meridian, across = self.radii(x)
-        return [north / meridian, east / (across * cosine), -down]
+        return self.from_metres(x, x.velocity) if self.is_geodetic else x.velocity
 
     # Errors: from a truth and an error to an estimate, and back
 
     def metres(self, x: State) -> Vector:
         """Metres along north, east, down per unit of latitude, longitude and height."""
         meridian, across = self.radii(x)
-        _, cosine = self.trigonometry(x)
-        return [meridian, across * cosine, Nilpotent(-1)]
+        return [meridian, across * self.trigonometry(x)[1], Nilpotent(-1)]
+
+    def to_metres(self, x: State, moved: Vector) -> Vector:
+        """Metres along the axes of a small change of latitude, longitude and height."""
+        return apply(self.turn(x), [part * unit for part, unit in zip(moved, self.metres(x), strict=True)])
+
+    def from_metres(self, x: State, moved: Vector) -> Vector:
+        """The small change of latitude, longitude and height of metres along the axes."""
+        ned = apply(transpose(self.turn(x)), moved)
+        return [part / unit for part, unit in zip(ned, self.metres(x), strict=True)]
 
     def reference(self, x: State, estimate: State) -> Grid:
         """Rotation from the true frame to that in which the errors are resolved.
@@ -309,8 +312,7 @@ class Mechanisation:
         card = self.card
         moved = error["position"]
         if self.is_geodetic and card.position_error == "metres":
-            along = apply(transpose(self.turn(x)), moved)
-            moved = [part / unit for part, unit in zip(along, self.metres(x), strict=True)]
+            moved = self.from_metres(x, moved)
         azimuth = x.azimuth + self.least_turn(x, moved)
         frame = self.reference(x, replace(x, position=add_vectors(x.position, moved), azimuth=azimuth))
         attitude = multiply(frame, x.attitude)
@@ -347,7 +349,7 @@ class Mechanisation:
         if not self.is_geodetic:
             moved = self.unshift("position", estimate.position, x.position, attitude, estimate.attitude)
         elif card.position_error == "metres":
-            moved = apply(self.turn(x), [part * unit for part, unit in zip(moved, self.metres(x), strict=True)])
+            moved = self.to_metres(x, moved)
         return {
             "attitude": self.unskew(small),
             "velocity": self.unshift("velocity", estimate.velocity, velocity, attitude, estimate.attitude),

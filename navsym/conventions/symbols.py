@@ -255,7 +255,7 @@ class Formulas:
         if above == "0" or bottom == 1:
             return above
         below = self.write_terms({tuple(map(int, e)): Fraction(str(c)) for e, c in bottom.to_dict().items()})
-        return f"({above})/({below})"
+        return f"{protect(above)}/{protect(below)}"
 
     def write_terms(self, terms: Mapping[tuple[int, ...], Fraction]) -> str:
         """A polynomial as text."""
