@@ -275,7 +275,7 @@ class Formulas:
 
 def protect(text: str) -> str:
     """A text as a factor: in parentheses unless it is a name or a call."""
-    simple = text.replace("_", "").isalnum() or (text[:4] in ("sin(", "cos(") and text.count("(") == 1)
+    simple = text.replace("_", "").isalnum() or (text[:4] in ("sin(", "cos(") and text.find(")") == len(text) - 1)
     return text if simple else f"({text})"
 
 

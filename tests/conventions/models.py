@@ -314,6 +314,17 @@ def pronto() -> dict[str, Any]:
     return document("vapgb", blocks, quantities, {"frame": "inertial", "error": "truth - estimate"})
 
 
+def minnesota() -> dict[str, Any]:
+    """University of Minnesota, EKF_15state_quat.cxx: half angles; gravity decreases on the way down."""
+    quantities = {"specific_force_body": F_B, "angular_rate": W_B, "rotation": C, "gravity": "g", "radii": ["R"]}
+    blocks = {
+        "pv": E, "vp": [["0"] * 3, ["0"] * 3, ["0", "0", "-2*g/R"]], "va": scale("-2", mul(C, skew(F_B))),
+        "vb": neg(C), "aa": neg(skew(W_B)), "ag": scale("-1/2", E), "bb": diag(["-1/T"] * 3), "gg": diag(["-1/T"] * 3),
+    }  # fmt: skip
+    known = {"frame": "local-level", "axes": "NED", "error": "truth - estimate"}
+    return document("pvabg", blocks, quantities, known, T="positive", **declared(quantities))
+
+
 def left_invariant() -> dict[str, Any]:
     """Barrau and Bonnabel; Hartley et al. 2020: left-invariant error with biases."""
     quantities = {"specific_force_body": F_B, "angular_rate": W_B, "rotation": C}
@@ -495,6 +506,7 @@ PUBLISHED = {
     "right invariant": right_invariant,
     "left invariant": left_invariant,
     "pronto": pronto,
+    "Minnesota": minnesota,
     "MSCKF": msckf,
     "PSINS": psins,
     "NaveGo": navego,

@@ -87,6 +87,7 @@ def test_a_published_model_of_a_local_level_has_the_card_of_its_source(name):
 
 CONFLICTS = {
     "LINS, before issue 4": {("attitude", "attitude")},
+    "Minnesota": {("velocity", "position")},
     "eskf-gps-imu-fusion, with feedback": {("attitude", "gyro_bias"), ("velocity", "accelerometer_bias")},
     "pyins": {("attitude", "attitude"), ("velocity", "velocity"), ("attitude", "position")},
 }
