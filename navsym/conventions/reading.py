@@ -255,12 +255,12 @@ def read_quantities(value: Any, names: Mapping[str, Any], where: str) -> dict[st
     for name, items in table.items():
         place, sizes = join_place(where, name), QUANTITIES[name]
         cells = list_cells(items, place)
-        quantities[name] = tuple(read_cell(cell, names, spot) for cell, spot in cells)
         rows = [isinstance(row, list) and len(row) for row in items] if len(cells) == 9 else [3, 3, 3]
         if len(cells) not in sizes or rows != [3, 3, 3]:
             wanted = f"{' or '.join(map(str, sizes))} components"
             wanted = "three rows of three entries" if name == "rotation" else wanted
             raise ShapeError(f"expected {wanted}; got {len(cells)} entries; correct {name}", where=place)
+        quantities[name] = tuple(read_cell(cell, names, spot) for cell, spot in cells)
     if {"rotation", "quaternion"} <= set(quantities):
         raise DuplicateError("expected rotation or quaternion; got both; remove one of them", where=where)
     return quantities
