@@ -257,7 +257,8 @@ def state_conflict(outcome: Outcome, mismatch: Mismatch, comparison: Comparison,
     rows, columns = (prover.problem.places(side) for side in block)
     with precision(BITS):
         sign = comparison.block_sign(card, block)
-    expected = prover.block_texts(plain_card(card), block, sign)
+    ways = (prover.block_texts(plain_card(card), block, sign, rates) for rates in (True, False))
+    expected = min(ways, key=lambda rows: (HIDDEN in repr(rows), len(repr(rows))))
     written = print_matrix(prover.problem.block(*block))
     places = [(rows.index(i), columns.index(j)) for i, j in mismatch.entries]
     verdicts = (prover.compare(plain_card(card), written[i][j], expected[i][j]).status for i, j in places)

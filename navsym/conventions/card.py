@@ -14,6 +14,7 @@ WHOLE, HALF = "angle", "half angle"
 NORTH, WANDER = "north", "wander"
 HAMILTON, FORWARD, BACKWARD = "Hamilton", "body to frame", "frame to body"
 SENSORS = ("gyro", "accelerometer")
+IN_BODY = "velocity in body"
 MEASURED_LESS, PREDICTED_LESS = "measurement - prediction", "prediction - measurement"
 
 RADII = tuple(n + h for n in ("R", "RN", "RE", "sqrt(RN*RE)", "third radius") for h in (" + h", ""))
@@ -30,7 +31,7 @@ FIELDS: Mapping[str, tuple[str, tuple[str, ...]]] = {
     "angle": ("angle", ("phi", "psi")),
     "bias_sign": ("error of the biases", (ESTIMATE, TRUTH)),
     "scale_sign": ("error of the scale factors", (ESTIMATE, TRUTH)),
-    "vector_error": ("vector errors", ("difference", "rotated", "body")),
+    "vector_error": ("vector errors", ("difference", "rotated", "body", IN_BODY)),
     "position_error": ("position error", ("metres", "geodetic")),
     "innovation": ("innovation", (MEASURED_LESS, PREDICTED_LESS)),
     "arm_rate": ("Earth rate of lever arms", (KEPT, "value", DROPPED)),
@@ -73,7 +74,8 @@ class Card:
     gravity_radius   : R of the vertical gradient, in words; of the radial one where there are two radii
     position_error   : ``metres`` along the axes, or ``geodetic`` (latitude, longitude, height)
     vector_error     : ``difference``; ``rotated``: the truth is turned by the attitude error first (right invariant);
-                       ``body``: the difference is resolved in the body (left invariant)
+                       ``body``: the difference is resolved in the body (left invariant); ``velocity in body``: that
+                       of the velocities by their components in the body, C_est' v_est - C' v, and of the positions
     innovation       : what H multiplies the error to; None without H
     arm_rate         : the Earth's rate in the turning of a lever arm: kept, its value without its change, or dropped
     quaternion_algebra, quaternion_direction, quaternion_order : i j = k (Hamilton) or i j = -k (JPL), what the
@@ -131,6 +133,16 @@ class Card:
         same = (self.quaternion_algebra == HAMILTON) == (self.quaternion_direction == FORWARD)
         order = {"quaternion_order": self.quaternion_order}
         return {"quaternion_algebra": HAMILTON, "quaternion_direction": FORWARD if same else BACKWARD, **order}
+
+    def vector(self, role: str) -> tuple[bool, bool]:
+        """Whether the true vector is turned by the attitude error first, and whether the error is resolved in the body.
+
+        Over a curved Earth a position is neither.
+        """
+        flat = self.frame != "local-level" or self.earth == "none"
+        word = self.vector_error if role == "velocity" or (role == "position" and flat) else ""
+        word = "" if (role, word) == ("position", IN_BODY) else word
+        return word in ("rotated", IN_BODY), word in ("body", IN_BODY)
 
     def signs(self) -> dict[str, Fraction]:
         """Role -> +1 where the state is estimate minus truth (for an attitude: the sign of its rotation), else -1.

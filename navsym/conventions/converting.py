@@ -223,6 +223,7 @@ class Converter:
             if len(given.get("gravity", ())) == 3 and self.source.frame == LEVEL == flow.card.frame:
                 gravity = apply(whole.turn(x), [NOTHING, NOTHING, *gravity])
             vectors = {"velocity": x.velocity, "known_vector": constant(world.seen)}
+            vectors["velocity_body"] = apply(transpose(x.attitude), x.velocity)
             vectors["earth_rate"] = whole.earth_rate(x) if level else constant(world.earth_rate)
             vectors |= {"specific_force": apply(x.attitude, constant(world.f)), "gravity": gravity}
             there = (whole.transport_rate(x), []) if level else ([], constant(world.r))

@@ -53,8 +53,6 @@ class Passage:
 
     def turn(self) -> Grid:
         """Rotation from the axes of the source to those of the card."""
-        if self.target.card.frame != LEVEL:
-            return identity()
         target, source = ([constant(row) for row in AXES[card.axes]] for card in (self.target.card, self.source.card))
         return multiply(target, transpose(source))
 
@@ -87,8 +85,7 @@ class Passage:
         tilted = multiply(R, add(identity(), skew(apply(flow.turn(x), flow.tilt(x, estimate)))))
         velocity = apply(R, x.velocity)
         r = [Nilpotent(at, 0, v.value) for at, v in zip(self.centre(), velocity, strict=True)]
-        along = [part * unit for part, unit in zip(moved, flow.metres(x), strict=True)]
-        there = add_vectors(r, apply(R, apply(flow.turn(x), along)))
+        there = add_vectors(r, apply(R, flow.to_metres(x, moved)))
         truth = replace(x, attitude=multiply(R, x.attitude), velocity=velocity, position=r)
         outer = multiply(tilted, estimate.attitude)
         return replace(estimate, attitude=outer, velocity=apply(tilted, estimate.velocity), position=there), truth
@@ -125,8 +122,7 @@ class Passage:
         azimuth = Nilpotent(0, 0, flow.azimuth_rate(at, rate).value)
         at = replace(at, position=[Nilpotent(0, 0, part.value) for part in rate], azimuth=azimuth)
         R = transpose(flow.level(at))
-        away = apply(transpose(flow.turn(at)), apply(R, add_vectors(estimate.position, negate(x.position))))
-        moved = [part / unit for part, unit in zip(away, flow.metres(at), strict=True)]
+        moved = flow.from_metres(at, apply(R, add_vectors(estimate.position, negate(x.position))))
         place: dict[str, Any] = {
             "position": add_vectors(at.position, moved),
             "azimuth": at.azimuth + flow.least_turn(at, moved),

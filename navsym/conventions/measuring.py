@@ -31,17 +31,13 @@ from navsym.conventions.nilpotent import (
     negate,
     skew,
     subtract,
+    times,
     transpose,
 )
 
 #: What a measurement shows -> the number of its rows.
 MEASURED: Mapping[str, int] = {
-    "position": 3,
-    "velocity": 3,
-    "body_velocity": 3,
-    "zero_velocity": 3,
-    "attitude": 3,
-    "vector": 3,
+    **dict.fromkeys("position velocity body_velocity zero_velocity attitude vector".split(), 3),
     "height": 1,
 }
 #: Noises: of the sensors' outputs, and the drives of their biases and scales.
@@ -68,14 +64,11 @@ def measure_position(flow: Mechanisation, estimate: State, x: State) -> Vector:
     """Position of the end of the lever arm, in the units of the card's position error."""
     moved = add_vectors(estimate.position, negate(x.position))
     arm = apply(subtract(estimate.attitude, x.attitude), constant(flow.world.arm))
-    if not flow.is_geodetic:
-        return add_vectors(moved, arm)
-    metres = flow.metres(x)
-    if flow.card.position_error == "metres":
-        along = [part * unit for part, unit in zip(moved, metres, strict=True)]
-        return add_vectors(apply(flow.turn(x), along), arm)
-    ned = apply(transpose(flow.turn(x)), arm)
-    return add_vectors(moved, [part / unit for part, unit in zip(ned, metres, strict=True)])
+    if flow.is_geodetic and flow.card.position_error == "metres":
+        moved = flow.to_metres(x, moved)
+    elif flow.is_geodetic:
+        arm = flow.from_metres(x, arm)
+    return add_vectors(moved, arm)
 
 
 def spin(flow: Mechanisation, x: State) -> Vector:
@@ -120,7 +113,7 @@ def noise_column(flow: Mechanisation, noise: str, component: int) -> dict[str, l
     if noise in CONSTANTS:
         return {name: [int(name == noise and k == component) for k in range(3)] for name in ROLES}
     column = flow.column(f"{noise}_bias", component)
-    return {name: [-x if type(x) is int else x * -1 for x in parts] for name, parts in column.items()}
+    return {name: [times(-1, x) for x in parts] for name, parts in column.items()}
 
 
 def reset_column(flow: Mechanisation, role: str, component: int) -> dict[str, list[Any]]:
@@ -141,7 +134,7 @@ def reset_column(flow: Mechanisation, role: str, component: int) -> dict[str, li
     before = multiply(small, C) if in_frame else multiply(C, small)
     after = multiply(back, before) if in_frame else multiply(before, back)
     velocity, position = (
-        take_out(flow, flow.shift(vector, both[name], C, before), correction[name], before, after)
+        take_out(flow, name, flow.shift(name, vector, both[name], C, before), correction[name], before, after)
         for name, vector in (("velocity", truth.velocity), ("position", truth.position))
     )
     left = flow.compare(State(after, velocity, position, truth.constants), truth)
@@ -149,14 +142,10 @@ def reset_column(flow: Mechanisation, role: str, component: int) -> dict[str, li
     return {RESET_MARK + name: [part.mixed for part in left[name]] for name in ROLES}
 
 
-def take_out(flow: Mechanisation, estimate: Vector, correction: Vector, before: Grid, after: Grid) -> Vector:
+def take_out(flow: Mechanisation, role: str, estimate: Vector, correction: Vector, before: Grid, after: Grid) -> Vector:
     """An estimated vector without its correction: the inverse of the definition of its error."""
-    if flow.card.vector_error == "body":
-        return add_vectors(estimate, negate(apply(after, correction)))
-    rest = add_vectors(estimate, negate(correction))
-    if flow.card.vector_error == "rotated":
-        return apply(multiply(after, transpose(before)), rest)
-    return rest
+    S, R = flow.sides(role, after, before)
+    return apply(transpose(S), add_vectors(estimate, negate(apply(R, correction))))
 
 
 def full_column(flow: Mechanisation, role: str, component: int) -> dict[str, list[Any]]:

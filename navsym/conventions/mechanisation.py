@@ -39,8 +39,9 @@ from navsym.conventions.nilpotent import (
     values_of,
 )
 
-#: Columns: north, east, down in the axes.
+#: Columns: north, east, down in the axes; the third axis is vertical.
 AXES: Mapping[str | None, tuple[tuple[int, int, int], ...]] = {
+    None: ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
     "NED": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
     "ENU": ((0, 1, 0), (1, 0, 0), (0, 0, -1)),
     "NWU": ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
@@ -205,8 +206,8 @@ class Mechanisation:
         down = NOTHING if self.card.azimuth == WANDER else -east * sine / (across * cosine)
         rate = apply(turn, [east / across, -north / meridian, down])
         if self.world.transport is not None:
-            names = self.world.transport
-            rate = [Nilpotent(name, *part.parts()[1:]) for name, part in zip(names, rate, strict=True)]
+            pairs = zip(self.world.transport, rate, strict=True)
+            rate = [Nilpotent(name, part.error, part.rate, part.mixed) for name, part in pairs]
         return rate
 
     def gravity(self, x: State) -> Vector:
@@ -259,20 +260,23 @@ class Mechanisation:
 
     def position_rate(self, x: State) -> Vector:
         """Rate of the position."""
-        if not self.is_geodetic:
-            return x.velocity
-        north, east, down = apply(transpose(self.turn(x)), x.velocity)
-        _, cosine = self.trigonometry(x)
-        meridian, across = self.radii(x)
-        return [north / meridian, east / (across * cosine), -down]
+        return self.from_metres(x, x.velocity) if self.is_geodetic else x.velocity
 
     # Errors: from a truth and an error to an estimate, and back
 
     def metres(self, x: State) -> Vector:
         """Metres along north, east, down per unit of latitude, longitude and height."""
         meridian, across = self.radii(x)
-        _, cosine = self.trigonometry(x)
-        return [meridian, across * cosine, Nilpotent(-1)]
+        return [meridian, across * self.trigonometry(x)[1], Nilpotent(-1)]
+
+    def to_metres(self, x: State, moved: Vector) -> Vector:
+        """Metres along the axes of a small change of latitude, longitude and height."""
+        return apply(self.turn(x), [part * unit for part, unit in zip(moved, self.metres(x), strict=True)])
+
+    def from_metres(self, x: State, moved: Vector) -> Vector:
+        """The small change of latitude, longitude and height of metres along the axes."""
+        ned = apply(transpose(self.turn(x)), moved)
+        return [part / unit for part, unit in zip(ned, self.metres(x), strict=True)]
 
     def reference(self, x: State, estimate: State) -> Grid:
         """Rotation from the true frame to that in which the errors are resolved.
@@ -308,8 +312,7 @@ class Mechanisation:
         card = self.card
         moved = error["position"]
         if self.is_geodetic and card.position_error == "metres":
-            along = apply(transpose(self.turn(x)), moved)
-            moved = [part / unit for part, unit in zip(along, self.metres(x), strict=True)]
+            moved = self.from_metres(x, moved)
         azimuth = x.azimuth + self.least_turn(x, moved)
         frame = self.reference(x, replace(x, position=add_vectors(x.position, moved), azimuth=azimuth))
         attitude = multiply(frame, x.attitude)
@@ -318,19 +321,22 @@ class Mechanisation:
         turned = multiply(small, attitude) if card.attitude_error == "frame" else multiply(attitude, small)
         return State(
             turned,
-            self.shift(velocity, error["velocity"], attitude, turned),
-            add_vectors(x.position, moved) if self.is_geodetic else self.shift(x.position, moved, attitude, turned),
+            self.shift("velocity", velocity, error["velocity"], attitude, turned),
+            self.shift("position", x.position, moved, attitude, turned),
             {name: add_vectors(value, error[name]) for name, value in x.constants.items()},
             azimuth,
         )
 
-    def shift(self, vector: Vector, error: Vector, attitude: Grid, turned: Grid) -> Vector:
-        """The estimated vector."""
-        if self.card.vector_error == "body":
-            return add_vectors(vector, apply(attitude, error))
-        if self.card.vector_error == "rotated":
-            vector = apply(multiply(turned, transpose(attitude)), vector)
-        return add_vectors(vector, error)
+    def shift(self, role: str, vector: Vector, error: Vector, attitude: Grid, turned: Grid) -> Vector:
+        """The estimated vector S v + R e, by the true and the estimated attitude."""
+        S, R = self.sides(role, attitude, turned)
+        return add_vectors(apply(S, vector), apply(R, error))
+
+    def sides(self, role: str, attitude: Grid, turned: Grid) -> tuple[Grid, Grid]:
+        """S, by which the truth is turned, and R, by which the error is brought to the frame."""
+        turns, resolved = self.card.vector(role)
+        S = multiply(turned, transpose(attitude)) if turns else identity()
+        return S, (turned if turns else attitude) if resolved else identity()
 
     def compare(self, estimate: State, x: State) -> dict[str, Vector]:
         """The error of an estimate; every sign is plus."""
@@ -338,26 +344,23 @@ class Mechanisation:
         moved = add_vectors(estimate.position, negate(x.position))
         frame = self.reference(x, estimate)
         attitude, velocity = multiply(frame, x.attitude), apply(frame, x.velocity)
-        inverse = transpose(attitude)
-        outer = multiply(estimate.attitude, inverse)
-        small = outer if card.attitude_error == "frame" else multiply(inverse, estimate.attitude)
+        pair = estimate.attitude, transpose(attitude)
+        small = multiply(*(pair if card.attitude_error == "frame" else reversed(pair)))
         if not self.is_geodetic:
-            moved = self.unshift(estimate.position, x.position, outer, inverse)
+            moved = self.unshift("position", estimate.position, x.position, attitude, estimate.attitude)
         elif card.position_error == "metres":
-            moved = apply(self.turn(x), [part * unit for part, unit in zip(moved, self.metres(x), strict=True)])
+            moved = self.to_metres(x, moved)
         return {
             "attitude": self.unskew(small),
-            "velocity": self.unshift(estimate.velocity, velocity, outer, inverse),
+            "velocity": self.unshift("velocity", estimate.velocity, velocity, attitude, estimate.attitude),
             "position": moved,
             **{name: add_vectors(value, negate(x.constants[name])) for name, value in estimate.constants.items()},
         }
 
-    def unshift(self, estimate: Vector, vector: Vector, outer: Grid, inverse: Grid) -> Vector:
+    def unshift(self, role: str, estimate: Vector, vector: Vector, attitude: Grid, turned: Grid) -> Vector:
         """The error of an estimated vector."""
-        if self.card.vector_error == "rotated":
-            vector = apply(outer, vector)
-        error = add_vectors(estimate, negate(vector))
-        return apply(inverse, error) if self.card.vector_error == "body" else error
+        S, R = self.sides(role, attitude, turned)
+        return apply(transpose(R), add_vectors(estimate, negate(apply(S, vector))))
 
     def half(self) -> Nilpotent:
         """A half as a coefficient."""
@@ -375,7 +378,7 @@ class Mechanisation:
         role, component : the state whose error is eps
         """
         flow, error = self, unit_error(role, component)
-        plain = self.card.attitude_error == "frame" and self.card.vector_error != "body"
+        plain = self.card.attitude_error == "frame" and not self.card.vector("velocity")[1]
         if plain and not role.endswith("_scale"):  # C stands beside C' alone; a scale belongs to an axis of the body
             flow, error = self.turn_body(), self.turn_errors([constant(row) for row in self.world.C], error)
         truth = flow.truth()
@@ -393,8 +396,7 @@ class Mechanisation:
         """Errors in other axes of the body, where they are resolved in it."""
         roles = {"attitude"} if self.card.attitude_error == "body" else set()
         roles |= {"gyro_bias", "accelerometer_bias"}
-        if self.card.vector_error == "body":
-            roles |= {"velocity"} if self.is_geodetic else {"velocity", "position"}
+        roles |= {name for name in ("velocity", "position") if self.card.vector(name)[1]}
         return {name: apply(A, v) if name in roles else v for name, v in errors.items()}
 
 
@@ -405,14 +407,9 @@ def unit_error(role: str, component: int) -> dict[str, Vector]:
 
 def axes_rows(card: Card, sine: Any, cosine: Any) -> list[list[Any]]:
     """Rotation from north, east, down to the axes, by sine and cosine of the wander angle where the card has one."""
-    rows: list[list[Any]] = [list(row) for row in AXES[card.axes or "NED"]]
-    if card.azimuth == WANDER:
-        for k, (ahead, aside, _) in enumerate(rows):
-            if ahead:
-                rows[k] = [cosine, sine, 0]
-            elif aside:
-                rows[k] = [-sine, cosine, 0] if aside > 0 else [sine, -cosine, 0]
-    return rows
+    turned = [[cosine, sine, 0], [-sine, cosine, 0], [0, 0, 1]] if card.azimuth == WANDER else AXES[None]
+    picked = [next((x, k) for k, x in enumerate(row) if x) for row in AXES[card.axes]]
+    return [[x if side > 0 else -x for x in turned[k]] for side, k in picked]
 
 
 def level_rows(sine: Nilpotent, cosine: Nilpotent, east: Nilpotent, ahead: Nilpotent) -> Grid:

@@ -77,10 +77,6 @@ class Nilpotent:
         error, rate, mixed = linear
         return Nilpotent(one, error, rate, plus(mixed, curved))
 
-    def parts(self) -> tuple[Any, Any, Any, Any]:
-        """The four coefficients."""
-        return self.value, self.error, self.rate, self.mixed
-
     def advance(self, rate: Nilpotent) -> Nilpotent:
         """``x + tau * rate``, for a rate without tau."""
         return self + Nilpotent(0, 0, rate.value, rate.error)

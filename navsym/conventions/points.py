@@ -103,9 +103,10 @@ def relate(problem: Problem, card: Card) -> tuple[Mapping[str, Tree], Mapping[st
         if name in given and all(tree.head == SYMBOL for tree in given[name]):
             bind(name, texts)
             del wanted[name]
-    if {"specific_force", "specific_force_body"} <= set(given):
-        C, body = ([print_tree(tree) for tree in given[name]] for name in ("rotation", "specific_force_body"))
-        bind("specific_force", [" + ".join(f"({C[3 * i + k]})*({body[k]})" for k in range(3)) for i in range(3)])
+    for name in ("specific_force", "velocity"):
+        if {name, f"{name}_body"} <= set(given):
+            C, body = ([print_tree(tree) for tree in given[n]] for n in ("rotation", f"{name}_body"))
+            bind(name, [" + ".join(f"({C[3 * i + k]})*({body[k]})" for k in range(3)) for i in range(3)])
     for name, vector in list_relations(problem, card).items():
         if len(given.get(name, ())) == len(vector):
             bind(name, vector)

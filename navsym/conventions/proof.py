@@ -7,6 +7,7 @@ a rotation by three angles, the force in the frame by that in the body, the rate
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from itertools import chain
@@ -36,20 +37,18 @@ class Prover:
 
     def __init__(self, problem: Problem):
         self.problem = problem
-        self.formulas = cache(lambda card: Formulas(problem, card))
+        rest = {name: trees for name, trees in problem.quantities.items() if name != "transport_rate"}
+        self.formulas = cache(
+            lambda card, rates=True: Formulas(problem if rates else replace(problem, quantities=rest), card)
+        )
         self.decide = cache(self.decide_texts)
         with precision(BITS):
             self.free_values = draw_values(problem, 99)
         self.certificates: list[Mapping[str, Any]] = []
 
-    def block_texts(self, card: Card, block: Block, sign: Fraction) -> list[list[str]]:
-        """The card's block in the user's names."""
-        still = card.earth == "none" and card.earth_rate in (None, DROPPED) and card.vector_error != "rotated"
-        # Without gravity among the terms a flat Earth that does not turn is an inertial frame.
-        if still and not block[0].startswith((MEASURED_MARK, RESET_MARK)):
-            names = ("attitude_error", "vector_error", "position_error")
-            card = Card("inertial", **{name: getattr(card, name) for name in names}, **card.quaternion())
-        return self.formulas(narrow_card(card, block[1])).block(*block, sign)
+    def block_texts(self, card: Card, block: Block, sign: Fraction, rates: bool = True) -> list[list[str]]:
+        """The card's block in the user's names; without those of a transport rate it is written by the velocity."""
+        return self.formulas(narrow_card(card, block[1]), rates).block(*block, sign)
 
     def is_right(self, card: Card, block: Block, sign: Fraction) -> bool:
         """True where the prover grants that the blocks are equal."""

@@ -30,7 +30,9 @@ from navsym.models.modelfile import BESIDE, STEP, TABLES, read_ranges
 
 #: Quantities -> the numbers of components that they may have.
 QUANTITIES: Mapping[str, tuple[int, ...]] = {
-    **dict.fromkeys("specific_force specific_force_body angular_rate velocity position transport_rate".split(), (3,)),
+    **dict.fromkeys(
+        "specific_force specific_force_body angular_rate velocity velocity_body position transport_rate".split(), (3,)
+    ),
     **dict.fromkeys("latitude longitude earth_angle wander_angle height radius_slope".split(), (1,)),
     **dict.fromkeys(("lever_arm", "known_vector", *(f"{role}_correction" for role in CORRECTED)), (3,)),
     **{"rotation": (9,), "quaternion": (4,), "earth_rate": (1, 3), "gravity": (1, 3), "radii": (1, 2, 3)},

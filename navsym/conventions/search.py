@@ -84,12 +84,12 @@ def narrow_card(card: Card, role: str) -> Card:
     """The card without the fields that have no influence on the columns of a role (a test compares them)."""
     plain = replace(plain_card(card), innovation=None, **card.quaternion())
     level = card.frame == "local-level"
-    turned = role == "attitude" and card.vector_error == "rotated" and not level  # the position turns with the attitude
+    turned = role == "attitude" and card.vector("position")[0]  # the position turns with the attitude
     if role == "position" or turned:
         return plain
     if role in CONSTANTS or role.startswith(NOISE_MARK):
         plain = replace(plain, angle=None, earth_rate=None, transport_rate=None, arm_rate=None)
-    if role == "attitude" and card.vector_error != "rotated":
+    if role == "attitude" and not card.vector("velocity")[0]:
         plain = replace(plain, angle=None)
     if level or card.gravity_gradient not in ("central", "normal"):  # these settle gravity itself
         plain = replace(plain, gravity_gradient="none")
@@ -128,9 +128,11 @@ class Comparison:
         """Three columns of F of a card with every sign plus."""
         return self.computed(narrow_card(card, role), role, number)
 
-    def compute_columns(self, card: Card, role: str, number: int) -> list[dict[str, list[Any]]]:
-        """The same, without looking whether they are there already."""
-        world = self.point(key_of_points(card), number).world
+    def compute_columns(
+        self, card: Card, role: str, number: int, key: Card | None = None
+    ) -> list[dict[str, list[Any]]]:
+        """The same, without looking whether they are there already; ``key`` tells points of another card."""
+        world = self.point(key or key_of_points(card), number).world
         return [full_column(Mechanisation(card, world), role, k) for k in range(3)]
 
     def evaluate_block(self, key: Card, block: Block, number: int) -> list[list[Any]]:
@@ -352,7 +354,8 @@ def has_evidence(card: Card, comparison: Comparison, blocks: Sequence[Block]) ->
         if block in card.dropped:
             continue
         row, column = block
-        here, there = (comparison.columns(c, column, 0) for c in (plain, flat))
+        here = comparison.columns(plain, column, 0)
+        there = comparison.computed(narrow_card(flat, column), column, 0, key_of_points(plain))
         pairs = ((here[k][row][i], there[k][row][i]) for k in range(3) for i in range(3))
         if any(not is_same(x, y) for x, y in pairs):
             return True

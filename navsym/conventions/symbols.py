@@ -28,7 +28,7 @@ from navsym.conventions.mechanisation import (
     plus_height,
     rotate_about_pole,
 )
-from navsym.conventions.nilpotent import rotate, times
+from navsym.conventions.nilpotent import constant, rotate, times
 from navsym.conventions.reading import HIDDEN, Problem
 from navsym.core.exact import to_fmpq
 from navsym.core.rational_functions import Quotient, Ratio, cancel_fraction
@@ -40,7 +40,11 @@ NUMERAL = re.compile(r"-?\d+(/\d+)?")
 
 GENERATORS = (
     *(f"c{i}{j}" for i in range(3) for j in range(3)),
-    *(f"{name}{k}" for name in ("f", "b", "w", "v", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp") for k in range(3)),
+    *(
+        f"{name}{k}"
+        for name in ("f", "b", "w", "v", "u", "r", "g", "t", "e", "l", "m", "ca", "cv", "cp")
+        for k in range(3)
+    ),
     *"sin cos east ahead turned straight wander_sin wander_cos".split(),
     *"h RN RE third mean slope rate gravity pull radius".split(),
 )
@@ -142,6 +146,8 @@ class Formulas:
         gravity = add_centrifugal(card, gravity, earth, r)
         mean = self.symbol("mean", f"sqrt(({self.texts['RN']})*({self.texts.get('RE', self.texts['RN'])}))")
         w, v, slope = self.vector("w", "angular_rate"), self.vector("v", "velocity"), self.text("radius_slope")
+        if "velocity_body" in given and "velocity" not in given:
+            v = rotate([constant(row) for row in C], self.vector("u", "velocity_body"))
         motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.symbol("slope", slope)
         return World(
             *motion,
@@ -174,29 +180,20 @@ class Formulas:
         """mu/|r|^3, and gravity in the frame or along down."""
         size = len(self.problem.quantities.get("gravity", ()))
         central = self.card.gravity_gradient == "central"
-        if self.card.frame == "local-level":
-            down = self.down() if size == 3 else self.symbol("gravity", self.text("gravity"))
-            return self.symbol("pull", None), [down]
-        if "gravitational_parameter" in self.problem.quantities:
-            pull = self.symbol("pull", self.text("gravitational_parameter")) / (radius * radius * radius)
-        else:
-            pull = self.symbol("pull", None)
-        if size == 3:
-            return pull, [pull * x * -1 for x in r] if central else self.vector("g", "gravity")
-        if central and "gravitational_parameter" in self.problem.quantities:
+        if self.card.frame == "local-level":  # of three components the last one is vertical
+            down = self.symbol("gravity", self.text("gravity", size - 1))
+            return self.symbol("pull", None), [down * AXES[self.card.axes][2][2] if size == 3 else down]
+        mu = self.text("gravitational_parameter")
+        pull = self.symbol("pull", mu) / (radius * radius * radius if mu else 1)
+        if central and (size == 3 or mu):
             return pull, [pull * x * -1 for x in r]
+        if size == 3:
+            return pull, self.vector("g", "gravity")
         scalar = self.symbol("gravity", self.text("gravity"))
         if self.card.gravity_gradient == "normal":
             return pull, [scalar * x for x in normal]
-        if size == 1 and "gravitational_parameter" not in self.problem.quantities:
-            pull = scalar / radius
+        pull = scalar / radius if size == 1 and not mu else pull
         return pull, [scalar * x / radius * -1 for x in r]
-
-    def down(self) -> Ratio:
-        """Gravity along down from its components in the axes."""
-        column = [row[2] for row in AXES[self.card.axes]]
-        place = next(k for k, x in enumerate(column) if x)
-        return self.symbol("gravity", self.text("gravity", place)) * column[place]
 
     def earth_rate(self, sine: Ratio, cosine: Ratio, rows: list[list[Any]]) -> list[Ratio]:
         """The Earth's rate in the frame, or (north, down)."""
@@ -258,7 +255,7 @@ class Formulas:
         if above == "0" or bottom == 1:
             return above
         below = self.write_terms({tuple(map(int, e)): Fraction(str(c)) for e, c in bottom.to_dict().items()})
-        return f"({above})/({below})"
+        return f"{protect(above)}/{protect(below)}"
 
     def write_terms(self, terms: Mapping[tuple[int, ...], Fraction]) -> str:
         """A polynomial as text."""
@@ -278,7 +275,7 @@ class Formulas:
 
 def protect(text: str) -> str:
     """A text as a factor: in parentheses unless it is a name or a call."""
-    simple = text.replace("_", "").isalnum() or (text[:4] in ("sin(", "cos(") and text.count("(") == 1)
+    simple = text.replace("_", "").isalnum() or (text[:4] in ("sin(", "cos(") and text.find(")") == len(text) - 1)
     return text if simple else f"({text})"
 
 

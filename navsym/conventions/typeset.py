@@ -28,14 +28,12 @@ def define_error(role: str, card: Card) -> str:
             rf"\left(E {card.rotation_sign} {'2 ' * (card.attitude_size == HALF)}[{letter(role, card)} \times]\right)"
         )
         return rf"\hat C = {small} C" if card.attitude_error == "frame" else rf"\hat C = C {small}"
-    kind = role.rpartition("_")[2]
+    kind, way = role.rpartition("_")[2], card.vector(role)
     x, error = LETTERS[role], {"bias": card.bias_sign, "scale": card.scale_sign}.get(kind, card.error)
-    plain = kind in ("bias", "scale") or (role == "position" and card.frame == "local-level" and card.earth != "none")
-    turned = "" if plain else card.vector_error
-    true = rf"\hat C C^T {x}" if turned == "rotated" else x
-    left, right = (rf"\hat {x}", true) if error == ESTIMATE else (true, rf"\hat {x}")
-    difference = rf"C^T \left({left} - {right}\right)" if turned == "body" else f"{left} - {right}"
-    return f"{letter(role, card)} = {difference}"
+    pair = [rf"\hat {x}", rf"\hat C C^T {x}" if way == (True, False) else x]
+    pair = [rf"\hat C^T {pair[0]}", f"C^T {x}"] if way == (True, True) else pair
+    difference = " - ".join(pair if error == ESTIMATE else reversed(pair))
+    return f"{letter(role, card)} = " + (rf"C^T \left({difference}\right)" if way == (False, True) else difference)
 
 
 def card_latex(card: Card, roles: Sequence[str] = ()) -> str:

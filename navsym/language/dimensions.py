@@ -216,9 +216,8 @@ class Inference:
 
     def product(self, inner: list[Units]) -> Units:
         """Numbers and at most one array."""
-        array = max(inner, key=lambda units: len(units) * len(units[0]))
-        others = [units[0][0] for units in inner if units is not array]
-        return [[multiply(cell, *others) for cell in row] for row in array]
+        array, *others = sorted(inner, key=lambda units: -len(units) * len(units[0]))  # equal factors are one object
+        return [[multiply(cell, *(units[0][0] for units in others)) for cell in row] for row in array]
 
     def power(self, part: Tree, base: Cell, exponent: Cell) -> Cell:
         """A power: with an exponent that is no number the base has no unit, unless the exponent is a whole number."""

@@ -301,6 +301,30 @@ def right_invariant() -> dict[str, Any]:
     return document("avpgb", blocks, quantities, {"frame": "inertial"})
 
 
+def pronto() -> dict[str, Any]:
+    """Pronto, rbis.cpp: velocity in the body; a correction is added, or multiplied to the quaternion from the right."""
+    u, g = ["u1", "u2", "u3"], ["g1", "g2", "g3"]
+    quantities = {"specific_force_body": F_B, "angular_rate": W_B, "rotation": C, "velocity_body": u, "gravity": g}
+    seen = [" + ".join(f"{C[k][i]}*{g[k]}" for k in range(3)) for i in range(3)]
+    spin = neg(skew(W_B))
+    blocks = {
+        "vv": spin, "va": skew(seen), "aa": spin, "pv": C, "pa": neg(mul(C, skew(u))), "vg": neg(skew(u)),
+        "vb": neg(E), "ag": neg(E),
+    }  # fmt: skip
+    return document("vapgb", blocks, quantities, {"frame": "inertial", "error": "truth - estimate"})
+
+
+def minnesota() -> dict[str, Any]:
+    """University of Minnesota, EKF_15state_quat.cxx: half angles; gravity decreases on the way down."""
+    quantities = {"specific_force_body": F_B, "angular_rate": W_B, "rotation": C, "gravity": "g", "radii": ["R"]}
+    blocks = {
+        "pv": E, "vp": [["0"] * 3, ["0"] * 3, ["0", "0", "-2*g/R"]], "va": scale("-2", mul(C, skew(F_B))),
+        "vb": neg(C), "aa": neg(skew(W_B)), "ag": scale("-1/2", E), "bb": diag(["-1/T"] * 3), "gg": diag(["-1/T"] * 3),
+    }  # fmt: skip
+    known = {"frame": "local-level", "axes": "NED", "error": "truth - estimate"}
+    return document("pvabg", blocks, quantities, known, T="positive", **declared(quantities))
+
+
 def left_invariant() -> dict[str, Any]:
     """Barrau and Bonnabel; Hartley et al. 2020: left-invariant error with biases."""
     quantities = {"specific_force_body": F_B, "angular_rate": W_B, "rotation": C}
@@ -481,6 +505,8 @@ PUBLISHED = {
     "psi angle": psi_level,
     "right invariant": right_invariant,
     "left invariant": left_invariant,
+    "pronto": pronto,
+    "Minnesota": minnesota,
     "MSCKF": msckf,
     "PSINS": psins,
     "NaveGo": navego,

@@ -176,6 +176,8 @@ class Flight:
         def vector(estimate: Any, true: Any) -> Any:
             if card.vector_error == "rotated":
                 return e * (estimate - y["C"] * C.T * true)
+            if card.vector_error == "velocity in body" and true is v:
+                return e * (y["C"].T * estimate - C.T * true)
             return e * (C.T * (estimate - true)) if card.vector_error == "body" else e * (estimate - true)
 
         if card.frame == "local-level" and card.earth != "none":

@@ -34,6 +34,7 @@ CARDS: dict[str, dict[str, Any]] = {
     "Sola, global error": {"attitude_error": "frame", "rotation_sign": "+", "bias_sign": PLUS},
     "right invariant": {"attitude_error": "frame", "vector_error": "rotated", "bias_sign": PLUS},
     "left invariant": {"attitude_error": "body", "vector_error": "body", "bias_sign": PLUS},
+    "pronto": {"attitude_error": "body", "vector_error": "velocity in body", "rotation_sign": "-", "bias_sign": MINUS},
     "MSCKF": {"attitude_error": "body", "error": MINUS, "rotation_sign": "-", "bias_sign": MINUS},
     "msckf_vio": {"attitude_error": "body", "error": MINUS, "rotation_sign": "-", "bias_sign": MINUS},
     "OpenVINS": {"attitude_error": "body", "error": MINUS, "rotation_sign": "-", "bias_sign": MINUS},
@@ -44,7 +45,7 @@ CARDS: dict[str, dict[str, Any]] = {
     "LINS": {"attitude_error": "body", "rotation_sign": "+", "bias_sign": PLUS},
     "eskf-gps-imu-fusion": {"attitude_error": "frame", "error": PLUS, "rotation_sign": "-", "bias_sign": MINUS},
 }
-ALONE = ("MSCKF", "msckf_vio", "OpenVINS", "slam_in_autonomous_driving")  # their source says what an error is
+ALONE = ("pronto", "MSCKF", "msckf_vio", "OpenVINS", "slam_in_autonomous_driving")  # their source says what an error is
 LEVEL: dict[str, dict[str, Any]] = {
     "Groves, local level": {
         "axes": "NED",
@@ -86,6 +87,7 @@ def test_a_published_model_of_a_local_level_has_the_card_of_its_source(name):
 
 CONFLICTS = {
     "LINS, before issue 4": {("attitude", "attitude")},
+    "Minnesota": {("velocity", "position")},
     "eskf-gps-imu-fusion, with feedback": {("attitude", "gyro_bias"), ("velocity", "accelerometer_bias")},
     "pyins": {("attitude", "attitude"), ("velocity", "velocity"), ("attitude", "position")},
 }

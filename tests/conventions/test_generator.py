@@ -134,6 +134,12 @@ def test_formulas_have_the_values_of_the_generator():
         compare_formulas(problem, card, pick.choice(("velocity", "attitude", "gyro_bias")))
 
 
+def test_a_quotient_is_written_as_it_is_read():
+    formulas = Formulas(full_problem(), EXACT[0])
+    value = formulas.world.v[0] / (formulas.world.cos * formulas.world.RN)
+    assert formulas.read(formulas.write(value)) == value
+
+
 def compare_formulas(problem: Any, card: Card, column: str) -> None:
     with precision(BITS):
         point = draw_point(problem, key_of_points(card), 2)

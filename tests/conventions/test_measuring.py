@@ -114,16 +114,23 @@ def corrected(card: Card, C: Any, v: Any, error: Any, correction: Any) -> Any:
     """Attitude and velocity error that are left, stacked, after a correction is taken out; every sign plus."""
     p, dv = error[:3], error[3:]
     before = exp(p) * C if card.attitude_error == "frame" else C * exp(p)
-    shifted = {"difference": v + dv, "rotated": before * C.T * v + dv, "body": v + C * dv}[card.vector_error]
+    turned = before * C.T * v
+    shifted = {
+        "difference": v + dv, "rotated": turned + dv, "body": v + C * dv, "velocity in body": turned + before * dv,
+    }[card.vector_error]  # fmt: skip
     q, dq = correction[:3], correction[3:]
     after = exp(-q) * before if card.attitude_error == "frame" else before * exp(-q)
     taken = {
         "difference": shifted - dq,
         "rotated": (before * after.T) ** -1 * (shifted - dq),
         "body": shifted - after * dq,
+        "velocity in body": after * (before.T * shifted - dq),
     }[card.vector_error]
     small = after * C.T if card.attitude_error == "frame" else C.T * after
-    left = {"difference": taken - v, "rotated": taken - after * C.T * v, "body": C.T * (taken - v)}[card.vector_error]
+    left = {
+        "difference": taken - v, "rotated": taken - after * C.T * v, "body": C.T * (taken - v),
+        "velocity in body": after.T * taken - C.T * v,
+    }[card.vector_error]  # fmt: skip
     return mp.matrix([*log(small), *left])
 
 
@@ -150,7 +157,7 @@ def test_the_reset_is_the_derivative_of_what_a_correction_leaves(side, vector):
             assert max(abs(x - y) for x, y in zip(got, expected, strict=True)) < 1e-9, (j, got, expected)
 
 
-@pytest.mark.parametrize("vector", CHOICES["vector_error"][1:])
+@pytest.mark.parametrize("vector", ["rotated", "body"])
 def test_a_reset_over_a_curved_earth_leaves_the_position_alone(vector):
     """Latitude, longitude and height are not turned with the attitude: no correction couples their errors to others."""
     cards = [card for card in EXACT if card.frame == "local-level" and card.earth != "none"]

@@ -83,7 +83,7 @@ METRE, SECOND, SPEED = {"unit": "m"}, {"unit": "s"}, {"unit": "m/s"}
         "max(h, v) = h", "where(h < T, h, h) = h", "sqrt(h) = h", "diff(h*T, T) = h*T", "integral(v, T, 0, h) = h",
         "norm([h, v, 1]) = 0", "floor(h) = 1",
         "erf(h/T) = 0", "expm([[1, h], [h, 1]]) = zeros(2, 2)", "cov(h, T) = h**2", "det([[h, v], [v, h]]) = 0",
-        "[h, v] = [v, h]", "dot([h, h], [v, T]) = 0",
+        "[h, v] = [v, h]", "dot([h, h], [v, T]) = 0", "h*h = h", "h*v*h = h*v",
     ],
 )  # fmt: skip
 def test_a_meaningless_formula_is_an_error_that_names_both_sides(wrong):
@@ -100,7 +100,7 @@ def test_a_meaningless_formula_is_an_error_that_names_both_sides(wrong):
        
         "integral(v, T, 0, h/v) = h", "0 = h", "h + 0 = h", "inv([[h, v], [v*h, v**2]]) @ [h, h*v] = [1, h/v]",
         "a*b = h", "h = a + 2*h", "2**3*h = h", "h**2*T**(-2) = v**2", "cov(h, T) = h*T",
-        "expm([[0, T], [0, 0]]) = [[1, T], [0, 1]]", "floor(h/(v*T)) = 0", "E(h**2) = cov(h)",
+        "expm([[0, T], [0, 0]]) = [[1, T], [0, 1]]", "floor(h/(v*T)) = 0", "E(h**2) = cov(h)", "h*h = h**2", "h*[v, h]*h = h**2*[v, h]",
     ],
 )  # fmt: skip
 def test_a_formula_that_means_something_is_left_alone(right):
