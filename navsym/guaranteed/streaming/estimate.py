@@ -217,7 +217,7 @@ def enclose_radius(low: arb, high: arb) -> Number:
         return Number("0", "1e-1000")
     margin = fmpq(1, 10**28)
     below, above = to_fmpq(low.lower()), to_fmpq(high.upper())
-    lower = decimal(below - abs(below) * margin, DIGITS, -1)
+    lower = decimal(max(below - abs(below) * margin, fmpq(0)), DIGITS, -1)
     return Number(lower, decimal(above + abs(above) * margin, DIGITS, 1))
 
 
