@@ -215,12 +215,12 @@ def prove_closed_form(
     What had to be taken for granted on the way (a divisor that may vanish inside the range) leaves a guess OPEN.
     """
     best: ClosedForm | None = None
-    limit = Budget.of(seconds)
+    limit, (T, value, ends) = Budget.of(seconds), signed_parameter(family.parameter, lower, upper)
     for k, guess in enumerate(guesses):
         mine = limit.share(1 / (len(guesses) - k)).left()
         if mine < LEAST:
             break
-        verdict = decide_pair(family, guess, lower, upper, mine)
+        verdict = decide_form(family, guess, {family.parameter: value}, {T: ends}, mine)
         if verdict.assumptions:
             verdict = Verdict(OPEN, "none", evidence=f"not shown: {', '.join(verdict.assumptions)}")
         done = replace(guess, verdict=verdict)
@@ -385,12 +385,6 @@ def solve_weights(
         return None
     solved = solve_by_cramer(N, family.functional, rows[: N.cols], range(N.cols))
     return None if solved is None else tuple(solved)
-
-
-def decide_pair(family: Family, guess: ClosedForm, lower: sp.Expr, upper: sp.Expr, seconds: float) -> Verdict:
-    """The ladder's verdict on the pair for all values between the ends."""
-    T, value, ends = signed_parameter(family.parameter, lower, upper)
-    return decide_form(family, guess, {family.parameter: value}, {T: ends}, seconds)
 
 
 def decide_form(
