@@ -241,7 +241,7 @@ def write_exclusion(why: Exclusion) -> dict[str, Any] | None:
                     "epoch": write_rational(members[0].t),
                     "H": [combine_entries(factors, [line[k] for line in texts]) for k in columns],  # type: ignore[index]
                     "z": combine_entries(factors, [row.z for row in members]),
-                    "sigma": upper_end(sigma, DIGITS) if own is None else write_rational(own),
+                    "sigma": upper_end(sigma, 50) if own is None else write_rational(own),
                 }
             )
     return {
