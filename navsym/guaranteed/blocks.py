@@ -31,8 +31,9 @@ from navsym.language.names import quote
 from navsym.models.modelfile import NORMS
 
 BITS, DIGITS, PLACES = 320, 24, 60
-#: A weight below zero costs so many times what it would as a measurement, where none is allowed.
-FAR = 10**12
+#: A weight below zero costs so many times what it would as a measurement, where none is allowed; more where that is
+#: too little.
+FAR = (10**12, 10**24, 10**48)
 #: The dual is drawn in by this part of itself before it is rounded, so that it stays admissible noise.
 SHRINK = 1 - fmpq(1, 10**50)
 #: Weights that cost less than this part of the largest are zero; bounds that differ by less have met.
@@ -273,8 +274,11 @@ def find_optimum(parts: Sequence[Part], functional: fmpq_mat) -> tuple[list[list
     kept = independent_columns(parts, functional)
     narrow = [part._replace(H=fmpq_mat([[row[k] for k in kept] for row in part.H.tolist()])) for part in parts]
     P = fmpq_mat(len(kept), 1, [functional[k, 0] for k in kept])
-    x, proposed = propose_optimum(narrow, P)
-    weights = balance_weights(narrow, P, proposed)
+    for far in FAR:
+        x, proposed = propose_optimum(narrow, P, far)
+        weights = balance_weights(narrow, P, proposed)
+        if all(part.norm != "nonpositive" or w[0] >= 0 for part, w in zip(narrow, weights, strict=True)):
+            break
     costs = [part.cost(w) for part, w in zip(narrow, weights, strict=True)]
     whole_cost = sum(costs, arb(0))
     dual, worth = bound_below(narrow, P, x)
@@ -329,12 +333,12 @@ def certify_optimum(parts: Sequence[Part], functional: fmpq_mat) -> dict[str, An
     return write_certificate(parts, functional, weights, dual, value)
 
 
-def propose_optimum(parts: Sequence[Part], P: fmpq_mat) -> tuple[list[fmpq], list[list[fmpq]]]:
+def propose_optimum(parts: Sequence[Part], P: fmpq_mat, far: int) -> tuple[list[fmpq], list[list[fmpq]]]:
     """A dual and weights block by block, near the optimum; zeros where none is found, on which nothing rests."""
     ends = [sum(part.H.nrows() for part in parts[:k]) for k in range(len(parts) + 1)]
     spans = list(pairwise(ends))
     rows = [arb_mat([row]) for part in parts for row in part.H.tolist()]
-    sigma = [e for part in parts for e in part.reach()]
+    sigma = [e * (far if part.norm == "nonpositive" else 1) for part in parts for e in part.reach()]
     scaled = np.array([[float((e / s).mid()) for e in v.entries()] for v, s in zip(rows, sigma, strict=True)])
     cones = [
         (p.cone, range(a, b)) for p, (a, b) in zip(parts, spans, strict=True) if p.norm in ("l1", "l2") and b > a + 1
@@ -385,10 +389,10 @@ def state_problem(
         P.append(bound)
     if free:
         raise DomainError("expected a target that is not zero; got zeros; every estimate of it is free", where="target")
-    far = FAR * max(to_fmpq(e.upper()) for part in parts for e in part.reach())
+    reach = max(to_fmpq(e.upper()) for part in parts for e in part.reach())
     for k, sign in left.items():
         row = fmpq_mat(1, len(P), [sign if j == k else fmpq(0) for j in range(len(P))])
-        parts.append(Part(row, "nonpositive", fmpq_mat(1, 1, [far])))
+        parts.append(Part(row, "nonpositive", fmpq_mat(1, 1, [reach])))
     return parts, fmpq_mat(len(P), 1, P)
 
 

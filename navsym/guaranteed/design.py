@@ -36,6 +36,7 @@ from navsym.core.numbers import Number
 from navsym.guaranteed.baselines import LP_SOLVERS, Comparison, compare_on_grid
 from navsym.guaranteed.convex import GridProblem
 from navsym.guaranteed.problem import list_sums
+from navsym.guaranteed.search.cones import largest
 from navsym.guaranteed.streaming.exchange import Cloud, Optimum, bounds_of, exchange, rehearse, solve_basis, to_doubles
 from navsym.guaranteed.streaming.flow import BITS, Flow, name_measurements
 from navsym.guaranteed.streaming.guard import whole_number
@@ -511,8 +512,11 @@ class Market:
         return list(needed.values())
 
     def least_dual(self) -> arb_mat:
-        """The dual of all rows, which bounds every selection."""
-        return self.round_dual(self.optimum(set(range(len(self.rows)))).dual, arb(1 - self.margin))
+        """The dual of all rows, which bounds every selection; drawn in as far as its rounded numbers need."""
+        x = self.round_dual(self.first.dual, arb(1))
+        sizes = [abs(f) / row.sigma for f, row in zip((self.table * x).entries(), self.rows, strict=True)]
+        x = self.round_dual(self.first.dual, arb(1 - self.margin) / largest([arb(1), *sizes]) ** 4)
+        return x * 0 if self.refused(x) else x
 
     def list_points(self, pairs: Sequence[tuple[int, arb]], dual: arb_mat, cost: arb) -> tuple[DesignPoint, ...]:
         """The support with its sensitivities: ``dV/dsigma = |w|``, ``dV/dt = -w h'(t) . x``."""

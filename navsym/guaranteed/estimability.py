@@ -79,9 +79,12 @@ def unobservable_directions(found: ModelFile) -> list[UnobservableDirection]:
 
 def is_zero_matrix(matrix: Iterable[sp.Expr]) -> bool:
     """Every entry is proved to be zero."""
-    return all(
-        entry == 0 or decide(Equation(sp.sympify(entry, strict=True), sp.S.Zero)).status is PROVED for entry in matrix
-    )
+    return all(is_equal(sp.sympify(entry, strict=True), sp.S.Zero) for entry in matrix)
+
+
+def is_equal(x: sp.Expr, y: sp.Expr) -> bool:
+    """x = y, proved."""
+    return x == y or decide(Equation(x, y)).status is PROVED
 
 
 def prove_kernel(found: ModelFile, piece: Piece, end: sp.Expr) -> tuple[sp.Matrix, list[int]] | None:
@@ -196,11 +199,11 @@ def drop_dependent(problem: GuaranteedProblem, kept: list[int], index: int, coef
     kind ``"open"`` where neither this nor the relation can be proved.
     """
     k, balls = kept[index], dict(zip(kept, coefficients, strict=False))
-    direction = integrated_direction(problem, kept) if problem.model else exact_direction(problem, k, balls)
+    direction = integrated_direction(problem.model, kept) if problem.model else exact_direction(problem, k, balls)
     if direction is None:
         raise undecided_error(problem, k, balls)
     change = sum((c * problem.functional[j] for j, c in direction.entries.items()), sp.S.Zero)
-    if decide(Equation(change, sp.S.Zero)).status is not PROVED:
+    if not is_equal(change, sp.S.Zero):
         if enclose(change, bits=DECIDING).contains(0):
             raise undecided_error(problem, k, balls)
         entries = [direction.entries.get(j, sp.S.Zero) for j in range(len(problem.functional))]
@@ -213,15 +216,18 @@ def drop_dependent(problem: GuaranteedProblem, kept: list[int], index: int, coef
 
 
 def exact_direction(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> NullDirection | None:
-    """The direction of the proved relation of the regressor k."""
-    relation = prove_relation(problem, k, balls)
-    return None if relation is None else NullDirection({j: -c for j, c in relation.items()} | {k: sp.S.One}, k)
+    """Exact c with ``H_k = sum c_j H_j`` on all measurements at all times, as a direction; None without a proof."""
+    involved = [j for j, c in balls.items() if not abs(c) < TINY]
+    near = {j: c for j in involved if (c := recognised(balls[j])) is not None}
+    relation = near if len(near) == len(involved) else solve_at_times(problem, k, involved)
+    if relation is None or not is_relation_proved(problem, k, relation):
+        return None
+    return NullDirection({j: -c for j, c in relation.items()} | {k: sp.S.One}, k)
 
 
-def integrated_direction(problem: GuaranteedProblem, kept: Sequence[int]) -> NullDirection | None:
+def integrated_direction(model: ModelFile, kept: Sequence[int]) -> NullDirection | None:
     """A direction of an integrated model, proved from F and h, whose own unknown is left."""
-    assert problem.model is not None
-    known = (d for d in unobservable_directions(problem.model) if d.at in kept)
+    known = (d for d in unobservable_directions(model) if d.at in kept)
     return next((NullDirection({j: c for j, c in enumerate(d.entries) if c != 0}, d.at) for d in known), None)
 
 
@@ -237,17 +243,6 @@ def undecided_error(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -
         f"direction [{', '.join(near)}]; leave that unknown out or rewrite equal functions alike",
         kind="open",
     )
-
-
-def prove_relation(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> Relation | None:
-    """Exact c with ``H_k = sum c_j H_j`` on all measurements at all times, or None where there is no proof."""
-    involved = [j for j, c in balls.items() if not abs(c) < TINY]
-    near = {j: recognised(balls[j]) for j in involved}
-    if all(c is not None for c in near.values()):
-        relation: Relation | None = {j: c for j, c in near.items() if c is not None}
-    else:
-        relation = solve_at_times(problem, k, involved)
-    return relation if relation is not None and is_relation_proved(problem, k, relation) else None
 
 
 def recognised(x: arb) -> sp.Rational | None:
@@ -284,9 +279,5 @@ def rows_of_full_rank(values: np.ndarray, count: int) -> list[int] | None:
 
 def is_relation_proved(problem: GuaranteedProblem, k: int, relation: Relation) -> bool:
     """The relation is proved for every measurement on every stretch."""
-    for stretch in problem.stretches:
-        for row in stretch.rows:
-            other = sum((c * row[j] for j, c in relation.items()), sp.S.Zero)
-            if decide(Equation(row[k], other)).status is not PROVED:
-                return False
-    return True
+    rows = [row for stretch in problem.stretches for row in stretch.rows]
+    return all(is_equal(row[k], sum((c * row[j] for j, c in relation.items()), sp.S.Zero)) for row in rows)

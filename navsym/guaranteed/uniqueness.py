@@ -17,16 +17,14 @@ import numpy as np
 import sympy as sp
 from flint import arb, arb_mat, fmpq, fmpq_mat
 
-from navsym.claims import PROVED, Equation
 from navsym.core.balls import enclose, precision
 from navsym.core.exact import EIGHT, rational_near, to_fmpq, to_rational
 from navsym.core.simplex import independent_rows
 from navsym.guaranteed.certificate.basis import Basis, unit_fraction
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem, Touch, prove_panel_bound
 from navsym.guaranteed.certificate.fixed import flatten_contacts
-from navsym.guaranteed.estimability import is_zero_matrix
+from navsym.guaranteed.estimability import is_equal, is_zero_matrix
 from navsym.guaranteed.search.exchange import Contacts, add_places, interior_dual
-from navsym.prove.ladder import decide
 
 BITS = 256
 NOTHING = arb(2) ** -200
@@ -54,26 +52,22 @@ def exact_places(problem: PanelProblem, contacts: Contacts, x: Sequence[sp.Ratio
     places: list[ContactPlace] = []
     for k, panel in enumerate(problem.panels):
         f = sp.expand(sum((c * h for c, h in zip(x, panel.functions, strict=True)), sp.S.Zero))
-        sign = flat_sign(panel, f)
-        if sign:
+        sign = 1 if bool(enclose(f.subs(panel.variable, (panel.start + panel.end) / 2)) > 0) else -1
+        if is_equal(f, sign * panel.sigma):
             places += [ContactPlace(k, fmpq(j, SAMPLES), sign) for j in range(SAMPLES + 1)]
             continue
-        reached = [place for place in guess_places(contacts, k, panel, f) if is_reached(panel, f, place)]
-        known = [replace(place, flat=has_zero_slope(panel, f, place)) for place in reached]
-        mine = [place for place in known if place.flat or place.at in (0, 1)]
+        mine, slope = list[ContactPlace](), f.diff(panel.variable)
+        for place in guess_places(contacts, k, panel, f):
+            here = {panel.variable: exact_time(panel, place)}
+            if is_equal(f.subs(here), place.sign * panel.sigma):
+                flat = is_equal(slope.subs(here), sp.S.Zero)
+                mine += [replace(place, flat=flat)] if flat or place.at in (0, 1) else []
         with precision(BITS):
             balls = [enclose(c, bits=BITS) for c in x]
             if prove_panel_bound(panel, balls, [place.touch for place in mine]) is None:
                 return None
         places += mine
     return places
-
-
-def flat_sign(panel: Panel, f: sp.Expr) -> int:
-    """The sign with which f is its bound on the whole panel, 0 when it is not."""
-    value = enclose(f.subs(panel.variable, (panel.start + panel.end) / 2))
-    sign = 1 if bool(value > 0) else -1
-    return sign if decide(Equation(f, sign * panel.sigma)).status is PROVED else 0
 
 
 def guess_places(contacts: Contacts, k: int, panel: Panel, f: sp.Expr) -> list[ContactPlace]:
@@ -86,18 +80,6 @@ def guess_places(contacts: Contacts, k: int, panel: Panel, f: sp.Expr) -> list[C
         value = f.subs(panel.variable, panel.start + (panel.end - panel.start) * best)
         found[to_fmpq(best)] = 1 if bool(enclose(value) > 0) else -1
     return [ContactPlace(k, share, sign) for share, sign in found.items()]
-
-
-def is_reached(panel: Panel, f: sp.Expr, place: ContactPlace) -> bool:
-    """The bound is reached there exactly."""
-    value = f.subs(panel.variable, exact_time(panel, place))
-    return decide(Equation(value, place.sign * panel.sigma)).status is PROVED
-
-
-def has_zero_slope(panel: Panel, f: sp.Expr, place: ContactPlace) -> bool:
-    """The slope there is zero; it may also be at an end."""
-    slope = f.diff(panel.variable).subs(panel.variable, exact_time(panel, place))
-    return decide(Equation(slope, sp.S.Zero)).status is PROVED
 
 
 def exact_time(panel: Panel, place: ContactPlace) -> sp.Expr:
@@ -113,11 +95,11 @@ def has_interior_weights(problem: PanelProblem, places: Sequence[ContactPlace]) 
     values, signs = rational_columns(problem, places), [p.sign for p in places]
     N, P = signed_columns(problem, places)
     rank = P.size if values is None else values[0].rank()
-    weights = most_interior_weights(N, P) if len(places) > rank else None
-    order = None if weights is None else independent_first(N, rank)
-    if weights is None or order is None:
+    inner = widest_weights(N, P, np.ones((len(places), 1)), 1.0) if len(places) > rank else None
+    order = None if inner is None or not inner[1][0] > 1e-9 else independent_first(N, rank)
+    if inner is None or order is None:
         return False
-    fixed = {i: signs[i] * fmpq(round(float(weights[i]) * 2**40), 2**40) for i in order[rank:]}
+    fixed = {i: signs[i] * fmpq(round(float(inner[0][i]) * 2**40), 2**40) for i in order[rank:]}
     with precision(BITS):
         solve = solve_in_balls if values is None else partial(solve_exactly, values)
         solved = solve(problem, places, order[:rank], fixed)
@@ -168,12 +150,6 @@ def signed_columns(problem: PanelProblem, places: Sequence[ContactPlace]) -> tup
     return np.array(N).T, np.array(P)
 
 
-def largest_support(N: np.ndarray, P: np.ndarray) -> list[int]:
-    """Columns that some nonnegative solution of ``N w = P`` uses."""
-    found = widest_weights(N, P, np.eye(N.shape[1]), 1e-3)
-    return [] if found is None else np.flatnonzero(found[1] > 1e-7).tolist()
-
-
 def widest_weights(
     N: np.ndarray, P: np.ndarray, shares: np.ndarray, most: float
 ) -> tuple[np.ndarray, np.ndarray] | None:
@@ -203,12 +179,6 @@ def rational_columns(problem: PanelProblem, places: Sequence[ContactPlace]) -> t
     return fmpq_mat(len(places), m, numbers[:-m]).transpose(), fmpq_mat(m, 1, numbers[-m:])
 
 
-def most_interior_weights(N: np.ndarray, P: np.ndarray) -> np.ndarray | None:
-    """Positive weights with ``N w = P`` whose smallest is as large as can be."""
-    found = widest_weights(N, P, np.ones((N.shape[1], 1)), 1.0)
-    return found[0] if found is not None and found[1][0] > 1e-9 else None
-
-
 def independent_first(N: np.ndarray, m: int) -> list[int] | None:
     """Columns ordered so that the first m are independent; None when there are no m of them."""
     chosen = independent_rows(N.T, m, 1e-8).tolist()
@@ -232,8 +202,9 @@ def is_only_optimum(problem: PanelProblem, basis: Basis, contacts: Contacts, dua
     """True when the optimal estimator is proved to be the only one, False when another is, else None."""
     simple = [c for x in dual if (c := rational_near(x, LARGEST, EIGHT)) is not None]
     exact = (exact_places(problem, contacts, simple) if len(simple) == len(dual) else None) or []
-    used = largest_support(*signed_columns(problem, exact)) if exact else []
-    if used and has_interior_weights(problem, [exact[i] for i in used]):
+    some = widest_weights(*signed_columns(problem, exact), np.eye(len(exact)), 1e-3) if exact else None
+    used = [] if some is None else [place for place, room in zip(exact, some[1], strict=True) if room > 1e-7]
+    if used and has_interior_weights(problem, used):
         return False
     if any(panel.values for panel in problem.panels):
         return None

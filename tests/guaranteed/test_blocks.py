@@ -231,6 +231,12 @@ def test_bounded_sums_and_weights_cost_what_a_convex_solver_finds_and_are_kept_e
     assert bind > 7
 
 
+def test_a_constraint_that_makes_the_error_twenty_orders_larger_is_kept():
+    blocks = [nav.Block([["1"]]), nav.Block([["1e-20"]])]
+    found = nav.solve_blocks(blocks, ["1"], constraints=[([["1"], ["0"]], "<=", "1/2")])
+    assert float(found.value) == pytest.approx(5e19, rel=1e-15) and found.check()
+
+
 def test_a_certificate_with_a_weight_below_zero_is_refused():
     """Of 1 and 2 the second alone is best; at most 1/3 of both together needs the first below zero."""
     blocks = [nav.Block([[1]], 1, "linf"), nav.Block([[2]], 1, "linf")]

@@ -285,3 +285,12 @@ def test_times_of_any_scale_have_their_design(span):
     model = nav.Model(states="x v", F=[["0", "1"], ["0", "0"]], H=["x"], targets={"q": "v"})
     found = nav.design(model, times=[0, span], budget=2)
     assert Fraction(found.value.lower) <= 2 / Fraction(span) <= Fraction(found.value.upper) and found.check()
+
+
+def test_a_design_that_stays_open_has_a_lower_bound_that_holds():
+    """All three instants are needed, and the weights are the only ones: rounded numbers keep no bound by themselves."""
+    F = [["0", "-1e-6", "0"], ["0", "0", "-1e-6"], ["0"] * 3]
+    model = nav.Model("x y z", F, ["x + 2e8*y + z"], "3", targets={"g": "x + y - z"})
+    found = nav.design(model, times=["0", "1", "2"], budget=3)
+    assert Fraction(found.value.lower) <= 479999997600002375999988000003 <= Fraction(found.value.upper)
+    assert found.check().accepted

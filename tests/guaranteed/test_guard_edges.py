@@ -109,6 +109,24 @@ def test_contradictions_are_noticed_before_the_state_is_determined(H, target, ep
         assert guard.step([0] * len(H), t=k) == twin.step([0] * len(H), t=k)
 
 
+def test_data_that_leave_no_room_inside_have_a_radius_from_both_sides():
+    """Two readings of b are two bounds apart: b is 1 in every explanation, and c from -1 to 1."""
+    model = nav.Model("b c", [["0", "0"], ["0", "0"]], ["b", "b", "c"], targets={"sum": "b + c"})
+    guard = nav.Guard(model, outliers=1)
+    last = [guard.step([0, 2, 0], t=k) for k in range(3)][-1]
+    assert last.value == 1.0 and 1 - Fraction(1, 10**20) < Fraction(last.radius.lower) <= 1
+
+
+def test_a_contradiction_that_doubles_do_not_see_is_noticed_also_after_a_restart():
+    """The readings differ by three bounds and are 4e16 of them."""
+    guard = nav.Guard(nav.Model("b c", [["0", "0"], ["0", "0"]], ["b", "c"], targets={"b": "b"}))
+    guard.step([44709930429851095, 0], t=0)
+    for one in (guard, nav.Guard.load(guard.save())):
+        one.step([44709930429851096, 0], t=1)
+        with pytest.raises(InconsistentError):
+            one.step([44709930429851098, None], t=2)
+
+
 def test_what_is_no_contradiction_before_the_state_is_determined_is_taken():
     guard = nav.Guard(nav.Model(**MOVING, H=["x", "x", "v"], sigma=["1", "1", "1"]))
     for k, z in enumerate([0, 100]):

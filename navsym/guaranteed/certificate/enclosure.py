@@ -360,11 +360,6 @@ def split_cell(cell: PanelCell) -> list[PanelCell]:
     return parts
 
 
-def taylor_order(m: int) -> int:
-    """Order of the Taylor bounds: above the degree of m monomials, so that their remainder vanishes."""
-    return min(24, max(ORDER, m + 2))
-
-
 def interval_ball(lower: fmpq, upper: fmpq) -> arb:
     """A ball around an interval with exact ends."""
     return arb((lower + upper) / 2) + arb((upper - lower) / 2) * arb(0, 1)
@@ -491,8 +486,11 @@ def shift_polynomial(model: arb_poly, anew: Expansion, cell: PanelCell, centre: 
 
 
 def expand_cell(panel: Panel, x: Sequence[arb], cell: PanelCell, centre: fmpq, radius: fmpq) -> list[arb]:
-    """Taylor coefficients of f in w, fraction ``centre + radius w``; the last one holds over the whole cell."""
-    order = taylor_order(len(x))
+    """Taylor coefficients of f in w, fraction ``centre + radius w``; the last one holds over the whole cell.
+
+    Their order is above the degree of as many monomials, so that the remainder of these vanishes.
+    """
+    order = min(24, max(ORDER, len(x) + 2))
     point = panel.dual_polynomial(x, arb(centre), radius, order - 1)
     wide = panel.dual_polynomial(x, interval_ball(cell.lower, cell.upper), radius, order)
     return [*point, wide[order]]

@@ -196,18 +196,23 @@ def certify_touch(
             return None
         value = dot_product(z[:m], problem.target())
         lower, upper = lower_end(value, digits + 4), upper_end(value, digits + 4)
+        costs, radii = (weights_as_costs(problem, found, *a) for a in ((middles, places + loss + 8), (spread, 3, 1)))
+        at, first = put_ends(found, middles, [ENDS.get(end, "") for end in end_names(found)]), len(z) - len(found.v)
+        # A place at an end is an unknown for the checker, too, with an equation of its own.
+        wide = put_ends(found, radii, [min(radii, key=from_decimal)] * len(found.v))
         solution = {
             "from": "0",
             "to": "0",
             "basis": [[str(int(i == j)) for i in range(m)] for j in range(m)],
             "dual": [[c] for c in middles[:m]],
-            "contacts": contact_rows(found, weights_as_costs(problem, found, middles, places + loss + 8)),
-            "radius": radii_with_ends(found, weights_as_costs(problem, found, spread, 3, 1)),
+            "contacts": [
+                {"panel": k, "at": [v], "weight": [w]} for k, v, w in zip(found.panel, at, costs[first:], strict=True)
+            ],
+            "radius": [*radii[:m], *wide, *radii[first:]],
         }
         document = certificate_header(problem, "touch", bits, cells, lower, upper) | {"pieces": [solution]}
-        return CertifiedOptimum(
-            from_decimal(lower), from_decimal(upper), ball_support(found, z), tuple(z[:m]), True, document
-        )
+        support = tuple(zip(found.panel, put_ends(found, z, found.v), z[first:], strict=True))
+        return CertifiedOptimum(from_decimal(lower), from_decimal(upper), support, tuple(z[:m]), True, document)
 
 
 def solution_unknowns(found: ContactSolution) -> list[arb]:
@@ -330,23 +335,10 @@ def weights_as_costs(
     ]
 
 
-def contact_rows(found: ContactSolution, middles: Sequence[str]) -> list[dict[str, Any]]:
-    places = put_ends(found, middles, [ENDS.get(end, "") for end in end_names(found)])
-    rows = zip(found.panel, places, middles[len(middles) - len(found.v) :], strict=True)
-    return [{"panel": k, "at": [at], "weight": [w]} for k, at, w in rows]
-
-
 def put_ends(found: ContactSolution, z: Sequence[Any], ends: Sequence[Any]) -> list[Any]:
     """The places among the unknowns z, and for the contacts that do not move what stands in ``ends``."""
     free = iter(z[len(found.dual) :])
     return [next(free) if inner else end for inner, end in zip(found.inner, ends, strict=True)]
-
-
-def radii_with_ends(found: ContactSolution, radius: Sequence[str]) -> list[str]:
-    """Radii of all unknowns: a place at an end is one for the checker, too, with an equation of its own."""
-    m, l = len(found.dual), len(found.v)
-    places = put_ends(found, radius, [min(radius, key=from_decimal)] * l)
-    return [*radius[:m], *places, *radius[len(radius) - l :]]
 
 
 #: The ends of a panel as a certificate names them.
@@ -356,10 +348,6 @@ ENDS = {"from": "0", "to": "1"}
 def end_names(found: ContactSolution) -> list[str]:
     """On which ends of their panels contacts sit: "from", "to", or "no"."""
     return ["no" if inner else "to" if v == 1 else "from" for v, inner in zip(found.v, found.inner, strict=True)]
-
-
-def ball_support(found: ContactSolution, z: Sequence[arb]) -> tuple[tuple[int, arb, arb], ...]:
-    return tuple(zip(found.panel, put_ends(found, z, found.v), z[len(z) - len(found.v) :], strict=True))
 
 
 # -- two-sided ---------------------------------------

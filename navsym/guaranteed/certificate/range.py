@@ -78,17 +78,13 @@ class RangeProof:
 
 
 def range_document(problem: PanelProblem, parameter: str, pieces: Sequence[RangePiece]) -> dict[str, Any]:
-    """The certificate of pieces that lie next to each other."""
-    head = certificate_header(problem, "range", BITS, sum(p.cells for p in pieces), *value_bounds(pieces))
-    ends = {"parameter": parameter, "from": write_rational(pieces[0].lower), "to": write_rational(pieces[-1].upper)}
-    return head | ends | {"pieces": [p.row for p in pieces]}
-
-
-def value_bounds(pieces: Sequence[RangePiece]) -> tuple[str, str]:
-    """Decimals below and above the optimum of every piece, with room for a checker whose balls are wider."""
+    """The certificate of pieces that lie next to each other; its bounds leave room for a checker with wider balls."""
     low, high = (min(to_fmpq(p.value.lower()) for p in pieces), max(to_fmpq(p.value.upper()) for p in pieces))
     room = max(abs(low), abs(high)) / ROOM
-    return decimal(low - room, 9, -1), decimal(high + room, 9, 1)
+    ends = decimal(low - room, 9, -1), decimal(high + room, 9, 1)
+    head = certificate_header(problem, "range", BITS, sum(p.cells for p in pieces), *ends)
+    over = {"parameter": parameter, "from": write_rational(pieces[0].lower), "to": write_rational(pieces[-1].upper)}
+    return head | over | {"pieces": [p.row for p in pieces]}
 
 
 # -- one piece ---------------------------------------------------------------------------------------

@@ -12,13 +12,13 @@ import numpy as np
 import sympy as sp
 from flint import arb, arb_mat
 
-from navsym.claims import PROVED, Equation
 from navsym.core.balls import enclose, precision
 from navsym.core.exact import decimal, lower_end, to_fmpq, to_rational, upper_end
 from navsym.guaranteed.certificate.basis import make_basis, unit_fraction
 from navsym.guaranteed.certificate.enclosure import PanelProblem, dot_product
 from navsym.guaranteed.certificate.fixed import certify_touch, stationary_fraction
 from navsym.guaranteed.certificate.polish import ContactSolution, sharpen_contacts
+from navsym.guaranteed.estimability import is_equal
 from navsym.guaranteed.phases import walk
 from navsym.guaranteed.phases.closed_forms import BITS, GOAL, ClosedForm
 from navsym.guaranteed.phases.family import Family, U
@@ -27,7 +27,6 @@ from navsym.guaranteed.phases.recognise import recognise_constant
 from navsym.guaranteed.phases.walk import walk_to
 from navsym.guaranteed.search.exchange import Contacts
 from navsym.language.expression import to_text
-from navsym.prove.ladder import decide
 
 DIGITS = 34
 #: A root belongs to a change that the scan saw this near, relative.
@@ -131,7 +130,7 @@ def recognise_root(expression: sp.Expr, T: sp.Symbol, guess: float, reach: float
         except (ValueError, ZeroDivisionError):
             return None
         found = recognise_constant(sp.Rational(mpmath.nstr(root, 55))) if near else None
-    if found is None or decide(Equation(top.subs(T, found), sp.S.Zero)).status is not PROVED:
+    if found is None or not is_equal(top.subs(T, found), sp.S.Zero):
         return None
     return None if enclose(bottom.subs(T, found), bits=200).contains(0) else found
 

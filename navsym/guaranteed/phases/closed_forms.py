@@ -95,7 +95,7 @@ def power_law_dual(
 
 
 BITS = 320
-GOAL = 1e-60
+GOAL, NOTHING = 1e-60, 1e-20
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -215,12 +215,12 @@ def prove_closed_form(
     What had to be taken for granted on the way (a divisor that may vanish inside the range) leaves a guess OPEN.
     """
     best: ClosedForm | None = None
-    limit = Budget.of(seconds)
+    limit, (T, value, ends) = Budget.of(seconds), signed_parameter(family.parameter, lower, upper)
     for k, guess in enumerate(guesses):
         mine = limit.share(1 / (len(guesses) - k)).left()
         if mine < LEAST:
             break
-        verdict = decide_pair(family, guess, lower, upper, mine)
+        verdict = decide_form(family, guess, {family.parameter: value}, {T: ends}, mine)
         if verdict.assumptions:
             verdict = Verdict(OPEN, "none", evidence=f"not shown: {', '.join(verdict.assumptions)}")
         done = replace(guess, verdict=verdict)
@@ -239,7 +239,7 @@ def propose_duals(
     bound at an end.
     """
     rows, right = contact_equations(family, span, places)
-    rank = int(np.linalg.matrix_rank(numeric_matrix(family, rows, lengths[0]), tol=1e-9))
+    rank = len(first_independent_rows(numeric_matrix(family, rows, lengths[0])))
     for columns in itertools.combinations(range(len(rows[0])), rank):
         yield from solve_dual(family, rows, right, columns, lengths)
     free = len(rows[0]) - rank
@@ -313,9 +313,9 @@ def solve_dual(
         return
     for T in lengths:
         A, b = numeric_matrix(family, rows, T)[:, columns], numeric_matrix(family, [right], T)[0]
-        x = np.zeros(m)
-        x[columns] = np.linalg.lstsq(A, b, rcond=None)[0]
-        if np.abs(A @ x[columns] - b).max() > 1e-9 or not is_feasible(family, T, x):
+        x, size = np.zeros(m), np.abs(A).max(axis=0) + 1e-300
+        x[columns] = np.linalg.lstsq(A / size, b, rcond=None)[0] / size
+        if np.abs(A @ x[columns] - b).max() > 1e-9 * np.abs(b).max() or not is_feasible(family, T, x):
             return
     solved = solve_by_cramer(sp.Matrix(rows), right, picked, columns)
     if solved is not None:
@@ -335,8 +335,11 @@ def is_feasible(family: Family, T: sp.Rational, x: np.ndarray) -> bool:
 
 
 def first_independent_rows(A: np.ndarray) -> list[int]:
-    """Indices of rows that span the row space, greedily."""
+    """Indices of rows that span the row space, greedily; rows and columns may have units of any size."""
     picked: list[int] = []
+    for axis in (0, 1):
+        size = np.abs(A).max(axis=axis, keepdims=True)
+        A = A / np.where(size > NOTHING * size.max(), size, 1.0)  # a cosine that vanishes is not scaled up
     for i in range(A.shape[0]):
         if np.linalg.matrix_rank(A[[*picked, i]], tol=1e-9) > len(picked):
             picked.append(i)
@@ -385,12 +388,6 @@ def solve_weights(
         return None
     solved = solve_by_cramer(N, family.functional, rows[: N.cols], range(N.cols))
     return None if solved is None else tuple(solved)
-
-
-def decide_pair(family: Family, guess: ClosedForm, lower: sp.Expr, upper: sp.Expr, seconds: float) -> Verdict:
-    """The ladder's verdict on the pair for all values between the ends."""
-    T, value, ends = signed_parameter(family.parameter, lower, upper)
-    return decide_form(family, guess, {family.parameter: value}, {T: ends}, seconds)
 
 
 def decide_form(

@@ -8,7 +8,7 @@ two-sided certificates.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
@@ -139,6 +139,8 @@ def cut_at_holes(
     """The parts of a regime between its holes, each with the pieces, slivers and values that lie in it."""
     marks = [limits[0], *(edge for hole in holes for edge in hole), limits[3]]
     parts, name = [], regime.family.parameter.name
+    # A range certificate stands alone or with the identities that tie it to the problem.
+    starts = [to_fmpq(sp.Rational(c.get("of", [c])[0]["from"])) for c in regime.certificates]
     for a, b in zip(marks[::2], marks[1::2], strict=True):
         runs = [run for run in covered(done.pieces) if a <= run[0] and run[1] <= b]
         slivers = tuple(s for s in regime.slivers if a <= s.start and s.end <= b)
@@ -150,7 +152,7 @@ def cut_at_holes(
             lower=regime.lower if a == limits[0] else to_rational(a),
             upper=regime.upper if b == limits[3] else to_rational(b),
             table=tuple(row for row in regime.table if a <= to_fmpq(sp.Rational(row[name])) <= b),
-            certificates=tuple(c for c in regime.certificates if a <= certified_start(c) < b),
+            certificates=tuple(c for at, c in zip(starts, regime.certificates, strict=True) if a <= at < b),
             slivers=slivers,
             status=OPEN if run is None else CERTIFIED,
             held=run,
@@ -158,11 +160,6 @@ def cut_at_holes(
         )
         parts.append(part)
     return parts
-
-
-def certified_start(certificate: Mapping[str, Any]) -> fmpq:
-    """The value at which a range certificate starts, alone or with the identities that tie it to the problem."""
-    return to_fmpq(sp.Rational(certificate.get("of", [certificate])[0]["from"]))
 
 
 def follow_within(family: Family, span: PatternInterval, limits: RegimeLimits, limit: Budget, name: str) -> RangeProof:

@@ -68,7 +68,9 @@ def phases(
     if twice is not None:
         raise DuplicateError(f"expected one value; got two of {twice}; give one", where=f"phases: {twice}")
     given = {**(values or {}), **parameters}
-    refuse_problem(model)
+    if isinstance(model, GuaranteedProblem):
+        message = "expected a model with a free parameter; got a problem, whose numbers are all given; give the model"
+        raise DomainError(message, where="phases: model")
     pairs = {name: value for name, value in given.items() if isinstance(value, (tuple, list))}
     names = names_of_parameters(pairs, parameter)
     fixed = {name: value for name, value in given.items() if name not in pairs}
@@ -78,19 +80,14 @@ def phases(
         family = family_of(contents, target, *names)
         answer: Phases | PhaseMap
         if second:
-            refuse_options(quick, unique)
+            if quick or unique:
+                message = "expected one range with it; got two; leave it out, or give one parameter a value"
+                raise DomainError(message, where=f"phases: {'quick' if quick else 'unique'}")
             beside = declared_symbol(contents, names[1])
             answer = find_map(family, beside, first, second[0], Budget.of(seconds), progress)
         else:
             answer = find_phases(family, *first, certify=not quick, unique=unique, seconds=seconds, progress=progress)
     return replace(answer, question=Question(model, target, fixed))
-
-
-def refuse_problem(model: Any) -> None:
-    """Raises DomainError for a problem without a free parameter."""
-    if isinstance(model, GuaranteedProblem):
-        message = "expected a model with a free parameter; got a problem, whose numbers are all given; give the model"
-        raise DomainError(message, where="phases: model")
 
 
 def names_of_parameters(pairs: Mapping[str, Any], parameter: str | Sequence[str]) -> list[str]:
@@ -100,14 +97,6 @@ def names_of_parameters(pairs: Mapping[str, Any], parameter: str | Sequence[str]
         got = ", ".join(map(str, names)) or "none"
         raise DomainError(f"expected a range, or two; got those of {got}; give values to the others", where="phases")
     return names
-
-
-def refuse_options(quick: bool, unique: bool) -> None:
-    """Raises DomainError for options that a map does not have."""
-    for name, value in (("quick", quick), ("unique", unique)):
-        if value:
-            message = "expected one range with it; got two; leave it out, or give one parameter a value"
-            raise DomainError(message, where=f"phases: {name}")
 
 
 def range_ends(contents: ModelFile | BasisFile, name: str, pair: Sequence[Any] | None) -> Ends:

@@ -17,10 +17,11 @@ from itertools import combinations, groupby, pairwise
 
 import sympy as sp
 
-from navsym.claims import OPEN, PROVED, REFUTED, Equation
+from navsym.claims import OPEN, REFUTED
 from navsym.core.balls import enclose
 from navsym.core.errors import NavsymError
 from navsym.core.exact import to_rational
+from navsym.guaranteed.estimability import is_equal
 from navsym.guaranteed.phases.answer import Curve, Meeting, Part, PhaseMap, Regime
 from navsym.guaranteed.phases.boundaries import boundary_events, recognise_root
 from navsym.guaranteed.phases.budget import Budget
@@ -37,7 +38,6 @@ from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.patterns import Pattern, PatternInterval
 from navsym.guaranteed.phases.recognise import simple_place
 from navsym.guaranteed.phases.singular_values import need_order, need_range
-from navsym.prove.ladder import decide
 
 #: Slices at first; one more within this part of the range from each end; and the parts of the range down to which
 #: slices are put between different orders of patterns, and beside orders that few have.
@@ -112,7 +112,8 @@ def find_map(
     need_order(*second_ends)
     steps = StepCounter(progress, 0)
     slices = cut_slices(family, second, first_ends, second_ends, limit.share(1 / 2), steps)
-    bands = [lift_band(family, second, group, limit.share(1 / 4)) for group in group_slices(slices)]
+    groups = [list(run) for _, run in groupby(slices, key=lambda one: one.order)]
+    bands = [lift_band(family, second, group, limit.share(1 / 4)) for group in groups]
     cuts = cut_range(bands, second, first_ends, second_ends)
     parts: list[Part] = []
     for k, (band, (before, after)) in enumerate(zip(bands, pairwise(cuts), strict=False)):
@@ -219,17 +220,6 @@ def sketch_slice(family: Family, value: sp.Rational, ends: Ends, limit: Budget, 
     except NavsymError:
         return None
     return Slice(value, tuple(spans), tuple(places), tuple(singular)) if spans else None
-
-
-def group_slices(slices: Sequence[Slice]) -> list[list[Slice]]:
-    """Neighbours with one order of patterns together."""
-    groups: list[list[Slice]] = []
-    for one in slices:
-        if groups and groups[-1][-1].order == one.order:
-            groups[-1].append(one)
-        else:
-            groups.append([one])
-    return groups
 
 
 # From slices to formulas
@@ -496,11 +486,6 @@ def find_meetings(curves: Sequence[Curve], cuts: Sequence[Ends], first: sp.Symbo
             if len({c.at for c in near}) > 1 and new:
                 found.append(Meeting(first.name, at, second.name, z, tuple(c.equation for c in near)))
     return found
-
-
-def is_equal(x: sp.Expr, y: sp.Expr) -> bool:
-    """x = y, proved."""
-    return x == y or decide(Equation(x, y)).status is PROVED
 
 
 def to_double(x: sp.Expr) -> float:

@@ -16,7 +16,7 @@ from navsym.core.balls import enclose
 from navsym.core.errors import DomainError, NavsymError, NotEstimableError
 from navsym.core.exact import lower_end, to_fraction, to_rational, upper_end
 from navsym.guaranteed.certificate.basis import DependentError, make_basis
-from navsym.guaranteed.estimability import recognised
+from navsym.guaranteed.estimability import is_equal, recognised
 from navsym.guaranteed.phases.boundaries import Boundary
 from navsym.guaranteed.phases.family import Family, U
 from navsym.language.expression import to_text
@@ -206,7 +206,7 @@ def singularity_reason(family: Family, value: sp.Expr) -> str | None:
     """Why the problem is singular there, or None when it is not."""
     name = f"{family.parameter.name} = {value}"
     lengths = dict.fromkeys(family.at(stop - start, value) for start, stop in family.panels)
-    if any(decide(Equation(length, sp.S.Zero)).status is PROVED for length in lengths):
+    if any(is_equal(length, sp.S.Zero) for length in lengths):
         return f"{family.stretch_name} has no length at {name}"
     parts = {
         "a regressor": [h for row in family.rows for h in row],

@@ -113,9 +113,13 @@ def solve_touching(
             return None
         J[m : m + k, :m] = np.vstack([to_array(n) for n in normals])
         J[:m, m:], J[:m, :m] = J[m:, :m].T, sum(float(f) * K for f, K in zip(u, kernels, strict=True))
-        move = np.linalg.lstsq(J, F, rcond=1e-11)[0]
-        z = (z - arb_mat(size, 1, move.tolist())).mid()
-        if np.abs(move).max() <= TINY * max(abs(float(e)) for e in z.entries()):
+        high = np.abs(J).max(axis=1)  # units of unknowns may be far apart
+        high[high == 0.0] = 1.0
+        wide = (np.abs(J) / high[:, None]).max(axis=0)
+        wide[wide == 0.0] = 1.0
+        move = np.linalg.lstsq(J / np.outer(high, wide), F / high, rcond=1e-11)[0]
+        z = (z - arb_mat(size, 1, (move / wide).tolist())).mid()
+        if np.abs(move).max() <= TINY * np.abs(to_array(z).ravel() * wide).max():
             return z.entries()  # type: ignore[no-any-return]
     return None
 

@@ -256,7 +256,8 @@ def merge_rows(
     for k in order:
         if groups:
             last = groups[-1][-1]
-            near = abs(u[basis[k]] - u[basis[last]]) <= 2.6 * reach * node_spacing(nodes, u[basis[k]])
+            after = int(np.clip(np.searchsorted(nodes, u[basis[k]]), 1, nodes.size - 1))
+            near = abs(u[basis[k]] - u[basis[last]]) <= 2.6 * reach * (nodes[after] - nodes[after - 1])
             if near and panel[basis[k]] == panel[basis[last]] and weights[k] * weights[last] > 0:
                 groups[-1].append(int(k))
                 continue
@@ -271,12 +272,6 @@ def end_or_mean(u: Array, weights: Array) -> float:
     """The weighted mean of places u (l,) in [-1, 1], or the outermost of them when the mean is at an end."""
     mean = float((u * weights).sum() / weights.sum())
     return float(u[np.abs(u).argmax()]) if abs(mean) > 1.0 - 1e-9 else mean
-
-
-def node_spacing(nodes: Array, u: float) -> float:
-    """Distance of the two search nodes around u."""
-    k = int(np.clip(np.searchsorted(nodes, u), 1, nodes.size - 1))
-    return float(nodes[k] - nodes[k - 1])
 
 
 def fit_contacts(panels: Panels, start: tuple[Ints, Array, Array, Array], x: Array) -> Contacts:

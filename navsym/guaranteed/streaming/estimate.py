@@ -217,7 +217,7 @@ def enclose_radius(low: arb, high: arb) -> Number:
         return Number("0", "1e-1000")
     margin = fmpq(1, 10**28)
     below, above = to_fmpq(low.lower()), to_fmpq(high.upper())
-    lower = decimal(below - abs(below) * margin, DIGITS, -1)
+    lower = decimal(max(below - abs(below) * margin, fmpq(0)), DIGITS, -1)
     return Number(lower, decimal(above + abs(above) * margin, DIGITS, 1))
 
 
@@ -241,7 +241,7 @@ def write_exclusion(why: Exclusion) -> dict[str, Any] | None:
                     "epoch": write_rational(members[0].t),
                     "H": [combine_entries(factors, [line[k] for line in texts]) for k in columns],  # type: ignore[index]
                     "z": combine_entries(factors, [row.z for row in members]),
-                    "sigma": upper_end(sigma, DIGITS) if own is None else write_rational(own),
+                    "sigma": upper_end(sigma, 50) if own is None else write_rational(own),
                 }
             )
     return {

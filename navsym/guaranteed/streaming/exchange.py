@@ -242,8 +242,8 @@ def stack(rows: Iterable[arb_mat], m: int = 0) -> arb_mat:
 def complete_basis(cloud: Cloud, lines: Array, near: Sequence[int]) -> list[int]:
     """Rows that make a basis of some independent lines: of those near, if these are enough; fewer where none do."""
     rows, first = cloud.scaled, cloud.first
-    lack = rows.shape[1] - len(lines)
-    turn = np.linalg.qr(lines.T)[0]
+    lack, units = rows.shape[1] - len(lines), np.abs(rows).max(axis=0) + 1e-300
+    rows, turn = rows / units, np.linalg.qr((lines / units).T)[0]
     for places in (near, [i + first for i in range(len(rows)) if cloud.may_use(i + first)]):
         rest = rows[np.array(places) - first]
         size = np.linalg.norm(rest, axis=1).max()
@@ -287,7 +287,9 @@ def exchange_rows(cloud: Cloud, target: arb_mat, basis: Sequence[int], signs: Se
             return found
         leave, along = leaving_place(found, cloud, *entering)
         if leave < 0:
-            found.ray = ray_of(found, *entering, along)
+            enter, sign = entering
+            found.ray = {i: -a * sign for i, a in zip(found.basis, along, strict=True) if not a.is_zero()}
+            found.ray[enter] = arb(sign)
             return found if cost_of(cloud, found.ray) < 0 else None
         found.basis[leave], found.signs[leave] = entering
         found = solve_basis(cloud, target, found.basis, found.signs)
@@ -383,12 +385,6 @@ def leaving_place(found: Optimum, cloud: Cloud, enter: int, sign: int) -> tuple[
             if step < least or (step == least and slope > pivot):
                 best, least, pivot = k, step, slope
     return best, along
-
-
-def ray_of(found: Optimum, enter: int, sign: int, along: Sequence[arb]) -> dict[int, arb]:
-    """Weights with ``sum w v = 0``: the entering row and what the basis has to give for it."""
-    ray = {i: -a * sign for i, a in zip(found.basis, along, strict=True) if not a.is_zero()}
-    return {**ray, enter: arb(sign)}
 
 
 def cost_of(cloud: Cloud, weights: dict[int, arb]) -> arb:

@@ -15,14 +15,14 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
-from flint import arb, arb_mat, fmpq
+from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from navsym.core.errors import InconsistentError
 from navsym.core.exact import to_fmpq
 from navsym.guaranteed.streaming.exchange import Cloud, Optimum, cost_of, exchange
 from navsym.guaranteed.streaming.flow import in_row_space, pivot_columns
 from navsym.guaranteed.streaming.memory import Memory
-from navsym.guaranteed.streaming.numbers import to_float
+from navsym.guaranteed.streaming.numbers import NUMBER, read_exact, to_float
 from navsym.guaranteed.streaming.scarce import MOST, reduced_cloud
 
 Epochs = frozenset[int]
@@ -86,7 +86,10 @@ class Search:
             return
         if found.ray is not None:
             rows = [i for i, w in found.ray.items() if not w.is_zero()]
-            self.refuted[excluded] = [combination_of(cloud, i) for i in (*found.basis, rows[-1])]
+            parts = ((i, *cloud.parts(i)) for i in (*found.basis, rows[-1]))
+            self.refuted[excluded] = [
+                Combination(tuple(at), tuple(map(to_fmpq, a.entries())), cloud.sigma[i]) for i, at, a in parts
+            ]
         else:
             rows = [i for i, w in zip(found.basis, found.weights.entries(), strict=True) if not w.is_zero()]
             self.note(fresh, target, cloud, excluded, found)
@@ -153,13 +156,25 @@ class Search:
             part = arb(((outside - 1) / (outside - inside)).upper()).max(arb(0))
             if inside < 1 and part < NEAR:  # without room inside nothing is known to be a state
                 return (goal * (end + (middle - end) * part))[0, 0]  # type: ignore[no-any-return]
-        return arb("-inf")
+        return self.reach_exactly(cloud, found)
 
-
-def combination_of(cloud: Cloud, i: int) -> Combination:
-    """A row or a combination as it stays when the exchange goes on."""
-    places, factors = cloud.parts(i)
-    return Combination(tuple(places), tuple(map(to_fmpq, factors.entries())), cloud.sigma[i])
+    def reach_exactly(self, cloud: Cloud, found: Optimum) -> arb:
+        """The value of the dual where that is a state in rational numbers: states may have no room inside at all."""
+        memory, flow, known = self.memory, self.memory.flow, {}
+        goal = [flow.exact_target(k) for k in range(len(flow.functional))]
+        for i, row in enumerate(memory.rows):
+            if i >= cloud.first and cloud.may_use(i):
+                known[i] = flow.exact_row(row.j, row.t, memory.times[-1]), row.z, row.text
+        lines = [line for line, *_ in known.values()]
+        if cloud.cones or None in lines or None in goal or not all(NUMBER.fullmatch(s) for *_, s in known.values()):
+            return arb("-inf")
+        columns = pivot_columns([known[i][0] for i in found.basis])  # type: ignore[misc]
+        table = [[known[i][0][c] for c in columns] for i in found.basis]  # type: ignore[index]
+        right = [[known[i][1] + s * read_exact(known[i][2], "")] for i, s in zip(found.basis, found.signs, strict=True)]
+        x = fmpq_mat(table).solve(fmpq_mat(right)).entries()
+        value = lambda line: sum((line[c] * e for c, e in zip(columns, x, strict=True)), fmpq(0))  # noqa: E731
+        holds = all(abs(value(line) - z) <= read_exact(sigma, "") for line, z, sigma in known.values())
+        return arb(value(goal)) * self.side if holds else arb("-inf")
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,7 +27,7 @@ from navsym.guaranteed.streaming.exchange import (
 )
 from navsym.guaranteed.streaming.explanations import Combination, contradiction, explain_data
 from navsym.guaranteed.streaming.flow import BITS, Flow
-from navsym.guaranteed.streaming.memory import MOST_ROWS, Memory, Row
+from navsym.guaranteed.streaming.memory import MOST_ROWS, STRIDE, Memory, Row
 from navsym.guaranteed.streaming.numbers import middle, read_exact, to_float, write_rational
 from navsym.guaranteed.streaming.scarce import find_contradiction, solve_scarce
 from navsym.language.names import quote
@@ -113,7 +113,7 @@ class Guard:
         self.signs: list[int] = []
         self.solved: Optimum | None = None
         self.plan: Plan | None = None
-        self.state: np.ndarray | None = None
+        self.state: arb_mat | None = None
         self.epochs = 0
         self.alike = 0
         self.pattern: Any = None
@@ -165,7 +165,7 @@ class Guard:
                 self.memory.take_back(mark)
                 raise
             self.epochs += 1
-            if self.memory.is_due():
+            if self.length is not None and self.memory.gone >= max(self.length, STRIDE):
                 self.move_hints(self.memory.refer_within_doubles)
         return answer
 
@@ -381,16 +381,15 @@ class Guard:
     # Data that contradict each other
 
     def is_explained(self, new: int) -> bool:
-        """Whether doubles see that the state near the data keeps the bounds of all rows from a place on."""
-        memory = self.memory
-        if self.state is None:
-            return False
-        gap = memory.scaled[new : len(memory.rows)] @ self.state - memory.shifted[new : len(memory.rows)]
-        together = [(cone, np.array(at) - new) for cone, at in memory.cones if at[0] >= new]
-        return bool((np.abs(gap) <= 1.0).all()) and all(cone.estimate(gap[at]) <= 1.0 for cone, at in together)
+        """Whether the state that keeps the bounds of the rows before keeps those of all rows from a place on."""
+        cloud, rows = self.memory.cloud(data=True, first=new), range(new, len(self.memory.rows))
+        return self.state is not None and bool(cloud.gauge(self.state, rows) <= 1)
 
     def need_consistent(self, fresh: int) -> None:
-        """Raise InconsistentError where it is proved that no state keeps all bounds; look only where doubles doubt."""
+        """Raise InconsistentError where no state is proved to keep all bounds; look where the last one does not.
+
+        In balls: doubles see nothing where measurements are 1e15 times their bounds.
+        """
         memory = self.memory
         if self.is_explained(len(memory.rows) - fresh):
             return
@@ -403,9 +402,8 @@ class Guard:
             if found.ray is not None:
                 rows = [memory.rows[i] for i, w in cloud.spread(found).items() if not w.contains(0)]
                 raise contradiction((row.t for row in rows), 0)
-            ends.append(np.array([middle(e) for e in found.dual.entries()]))
-        if np.isfinite(ends).all():
-            self.state = (ends[0] + ends[1]) / 2.0
+            ends.append(found.dual)
+        self.state = ((ends[0] + ends[1]) / 2).mid()
 
     def need_scarcely_consistent(self, at: fmpq) -> None:
         """The same where the measurements do not determine the state."""

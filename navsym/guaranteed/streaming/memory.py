@@ -143,13 +143,6 @@ class Memory:
                 self.forget()
             self.since = self.times[self.oldest]
 
-    def end_epoch(self, at: fmpq, count: int) -> None:
-        """Note an epoch whose rows are in."""
-        self.times.append(at)
-        self.counts.append(count)
-        start = len(self.rows) - count
-        self.cones += list_cones(self.flow, self.rows[start:], start)
-
     def put(self, row: Row) -> None:
         """A row at the end of all lists."""
         n = len(self.rows)
@@ -193,10 +186,6 @@ class Memory:
         flow = self.flow
         return vars(self).copy(), len(self.times), len(self.rows), (flow.stride, flow.columns, flow.size)
 
-    def is_due(self) -> bool:
-        """Whether half of what is kept has left the memory."""
-        return self.length is not None and self.gone >= max(self.length, STRIDE)
-
     def refer(self, reference: fmpq) -> None:
         """Drop what has left, and refer everything to a time."""
         times, counts, rows = self.times[self.oldest :], self.counts[self.oldest :], self.rows[self.first :]
@@ -224,11 +213,15 @@ class Memory:
             self.carry = self.flow.transition(self.reference, at)  # type: ignore[arg-type]
             for _ in range(count):
                 self.put(next(entries))
-            self.end_epoch(at, count)
+            self.times.append(at)
+            self.counts.append(count)
+            start = len(self.rows) - count
+            self.cones += list_cones(self.flow, self.rows[start:], start)
 
-    def cloud(self, *, data: bool = False, active: Any = None) -> Cloud:
-        """The rows in memory as the exchange takes them, with the measurements where they matter."""
-        window = slice(self.first, len(self.rows))
+    def cloud(self, *, data: bool = False, first: int | None = None) -> Cloud:
+        """The rows in memory, or from a place on, as the exchange takes them; with measurements where they matter."""
+        first = self.first if first is None else first
+        window = slice(first, len(self.rows))
         return Cloud(
             self.vectors,
             self.sigmas,
@@ -236,9 +229,8 @@ class Memory:
             self.data if data else (),
             self.shifted[window] if data else None,
             self.wide,
-            self.first,
-            active,
-            [pair for pair in self.cones if pair[1][0] >= self.first],
+            first,
+            cones=[pair for pair in self.cones if pair[1][0] >= first],
         )
 
     def target(self) -> arb_mat:

@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from flint import arb, fmpq
 
 from navsym.core.balls import precision
@@ -52,11 +51,7 @@ def write_state(guard: Guard, path: str | os.PathLike[str] | None) -> dict[str, 
         "rows": [[row.j, write_rational(row.z), write_optional(row.own)] for row in memory.rows[memory.first :]],
         "alike": guard.alike,
         "pattern": [write_optional(step), [[j, write_optional(s)] for j, s in own]],
-        "hint": {
-            "basis": [i - memory.first for i in guard.basis],
-            "signs": list(guard.signs),
-            "state": None if guard.state is None else [float(x) for x in guard.state],
-        },
+        "hint": {"basis": [i - memory.first for i in guard.basis], "signs": list(guard.signs)},
     }
     if path is not None:
         write_text(require_path(path, "Guard.save: path"), json.dumps(document, separators=(",", ":")) + "\n")
@@ -145,20 +140,13 @@ def read_row(guard: Guard, at: fmpq, entry: Any, where: str) -> Row:
 
 
 def take_hint(guard: Guard, hint: Any) -> None:
-    """The last support and a state near the data: where the search begins."""
+    """The last support, where the search begins."""
     basis = [i if i in range(-MOST_ROWS, 0) else need_count(i) for i in hint["basis"]]  # rows may have left the memory
     signs = [int(s) for s in hint["signs"]]
     fits = len(basis) in (0, guard.flow.size) and len(set(basis)) == len(basis)
     if not fits or any(i >= len(guard.memory) for i in basis) or not set(signs) <= {1, -1}:
         raise ValueError("hint")
     guard.basis, guard.signs = basis, signs if len(signs) == len(basis) else []
-    if hint["state"] is not None:
-        guard.state = np.array([float(x) for x in hint["state"]])
-        if guard.state.shape != (guard.flow.size,):
-            raise ValueError("hint")
-        with precision(BITS):
-            if not guard.is_explained(guard.memory.first):
-                guard.state = None
 
 
 def read_optional(value: Any, where: str) -> fmpq | None:
