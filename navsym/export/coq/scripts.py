@@ -199,8 +199,7 @@ def write_unit(key: tuple[str, bool], denominator: int) -> str:
 
 def write_sum(turns: Mapping[str, int]) -> str:
     """A sum of texts, each repeated or subtracted."""
-    pieces = [f"({u})" if n > 0 else f"- ({u})" for u, n in turns.items() for _ in range(abs(n))]
-    return " + ".join(pieces) or "0"
+    return " + ".join(f"({u})" if n > 0 else f"- ({u})" for u, n in turns.items() for _ in range(abs(n))) or "0"
 
 
 def write_exponentials(parts: list[Term], script: Script) -> None:
@@ -443,7 +442,8 @@ def complete_square(term: Term) -> Mapping[str, Any] | None:
         products = [("*", checker.number(q), *(("^", x, checker.number(k)) for x, k in row if k)) for q, row in rows]
         return checker.make_sum(*products) if products else checker.ZERO
 
-    for (_, name), x in zip(generators, ring.gens(), strict=False):
+    plain = generators * (bottom.is_constant() and all(g[0] == "symbol" for g in generators))
+    for (_, name), x in zip(plain, ring.gens(), strict=False):
         slope = top.derivative(str(x)) / bottom.leading_coefficient()
         double = slope.derivative(str(x))
         if double.is_constant() and double != 0 and double.leading_coefficient() > 0:
