@@ -14,7 +14,7 @@ from typing import Any
 from navsym import checker
 from navsym.checker import Question, Term, Value
 from navsym.export.coq.scripts import prove_equality
-from navsym.export.coq.terms import RELATIONS, RESERVED, Unwritten, write_term
+from navsym.export.coq.terms import RELATIONS, RESERVED, Unwritten, subterms, write_term
 
 Names = Mapping[str, str]
 ENDS = {checker.INFINITY: "Rbar_locally p_infty", checker.negate(checker.INFINITY): "Rbar_locally m_infty"}
@@ -49,7 +49,8 @@ class Slope(tuple[Any, ...]):
     def prove(self, names: Names) -> list[str]:
         """A proof that the derivative is what the checker has; those inside of the function are so nearby."""
         inner, word, place = self.bind(names)
-        within, last = [*list_slopes(self.of)], "apply is_derive_unique; derive."
+        unfold = "unfold tanh, sinh, cosh; " * ("tanh" in str(self.of))
+        within, last = [*list_slopes(self.of)], f"apply is_derive_unique; {unfold}derive."
         if not within:
             return [last]
         varies = {self.by} if self.by else set(self.rates)
@@ -140,14 +141,10 @@ def name_questions(questions: Iterable[Question], names: dict[str, str]) -> dict
         own = q.variable.rpartition("__")[0]
         while own in RESERVED or own in names.values():
             own += "_"
-        ends = [ENDS.get(end) or write_term(end, names) for end in (q.low, q.high)]
-        open_ended = {q.low, q.high} & set(ENDS)
-        ends = [
-            e if t in ENDS else f"at_point ({e})" if open_ended else e
-            for e, t in zip(ends, (q.low, q.high), strict=True)
-        ]
+        finite = "at_point ({})" if {q.low, q.high} & set(ENDS) else "{}"
+        ends = [ENDS.get(end) or finite.format(write_term(end, names)) for end in (q.low, q.high)]
         function = f"(fun {own} : R => {write_term(q.term, {**names, q.variable: own})})"
-        word = f"{q.kind}_over" if q.kind != "integral" else "RInt_gen" if open_ended else "RInt"
+        word = f"{q.kind}_over" if q.kind != "integral" else "RInt_gen" if finite != "{}" else "RInt"
         names |= {q.value: f"{word} {function} ({ends[0]}) ({ends[1]})"}
     return names
 
@@ -157,7 +154,8 @@ def put_answer(q: Question, entry: Mapping[str, Any], value: Term, names: Names)
     yield f"assert (D : {names[q.value]} = {write_term(value, names)})."
     yield from put_integral(q, entry, names) if q.kind == "integral" else put_sum(q, entry, names)
     yield "cbv beta. real_equation. }"
-    yield "try rewrite D in *; clear D; as_real."
+    start = "rewrite atan_0; " * (("atan", checker.ZERO) in subterms(value))
+    yield f"try rewrite D in *; clear D; {start}as_real."
 
 
 def put_sum(q: Question, entry: Mapping[str, Any], names: Names) -> Iterator[str]:

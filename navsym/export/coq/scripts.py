@@ -11,7 +11,7 @@ from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from navsym import checker
 from navsym.checker import Range, Term
-from navsym.export.coq.terms import Unwritten, subterms, write_term
+from navsym.export.coq.terms import Unwritten, defined, ranges, subterms, write_term
 
 #: Fractions of pi whose sine and cosine are rules of the library, by the denominator.
 OF_PI = {k: (f"sin_PI{k if k > 1 else ''}", f"cos_PI{k if k > 1 else ''}") for k in (1, 2, 3, 4, 6)}
@@ -78,6 +78,8 @@ def prove_equality(terms: Iterable[Term], names: Mapping[str, str]) -> list[str]
     ways += [f"{rewrites}field; nonzero", f"field_simplify{rules}; first [ field; nonzero | nonzero ]"]
     ways += [f"whole_roots; field{rules}; nonzero"] if rules else []
     ways += ["by_signs"] if any(part[0] == "abs" for part in parts) else []
+    inverse = "rewrite ?exp_plus, ?exp_Ropp, !exp_ln by positive; field; nonzero"
+    ways += [inverse] if any(part[0] == "exp" and "'log'" in str(part) for part in parts) else []
     return [*script.lines, f"first [ {' | '.join(f'solve [{way}]' for way in ways)} ]."]
 
 
@@ -197,8 +199,7 @@ def write_unit(key: tuple[str, bool], denominator: int) -> str:
 
 def write_sum(turns: Mapping[str, int]) -> str:
     """A sum of texts, each repeated or subtracted."""
-    pieces = [f"({u})" if n > 0 else f"- ({u})" for u, n in turns.items() for _ in range(abs(n))]
-    return " + ".join(pieces) or "0"
+    return " + ".join(f"({u})" if n > 0 else f"- ({u})" for u, n in turns.items() for _ in range(abs(n))) or "0"
 
 
 def write_exponentials(parts: list[Term], script: Script) -> None:
@@ -331,6 +332,8 @@ class Follower:
             texts = (proof["from"], proof["to"]) if rule == "rewrite" else (own["atom"], own["value"])
             old, new = map(checker.parse, texts)
             if old[0] in ("abs", "sqrt"):
+                roots = [part for part in subterms(term) if part[0] == old[0]]
+                old = next((p for p in roots if checker.is_identity(checker.subtract(p[1], old[1]))), old)
                 square = ["{", *prove_equality((new, old[1]), self.names), "}"]
                 lines = [f"apply {old[0]}_by_square.", *square, *self.go(own["proofs"][1], new, ">=")]
                 rest = self.go(proof.get("proof", {}), checker.replace(term, old, new), relation)
@@ -345,22 +348,71 @@ class Follower:
             one = term if proof["sign"] == 1 else checker.negate(term)
             return [f"enough ({self.say(one, '>')}) by lra.", *self.go(proof["proof"], one, ">")]
         if rule == "sum":
-            lines = []
-            for k, (part, premise) in enumerate(zip(checker.list_terms(term), proof["proofs"], strict=True)):
-                sign = ">" if relation == ">" and k == proof["strict"] else ">="
-                lines += [f"assert ({self.say(part, sign)}).", "{", *self.go(premise, part, sign), "}"]
-            return [*lines, "lra."]
+            parts = enumerate(zip(proof["proofs"], checker.list_terms(term), strict=True))
+            return [*self.know(*((*p, relation if k == proof["strict"] else ">=") for k, p in parts)), "lra."]
+        own = complete_square(term) if rule == "cones" else proof
+        if own and own.get("rule") in ("squares", "quadratic"):
+            return self.square(own, relation)
+        if rule == "split":
+            x, place = proof["symbol"], checker.parse(proof["at"])
+            lines = [f"destruct (Rle_or_lt {self.names[x]} ({write_term(place, self.names)}))."]
+            for end, part in zip(("high", "low"), proof["proofs"], strict=True):
+                side = {**self.box, x: self.box[x]._replace(**{end: place, f"open_{end}": False})}
+                lines += ["{", *Follower(side, self.names).go(part, term, relation), "}"]
+            return lines
+        if rule == "slope" and not (relation == ">" and proof["strict"]):
+            return self.climb(proof, term, relation)
+        if rule == "bounded":
+            waves = dict.fromkeys(part for part in subterms(term) if part[0] in ("sin", "cos"))
+            bounds = [f"pose proof ({f.upper()}_bound ({write_term(x, self.names)}))." for f, x in waves]
+            return [*bounds, *prove_bound(self.box, self.names, by_balls=False)]
+        if rule == "identity":
+            return ["apply Req_le_sym.", *prove_equality((term,), self.names)]
         if rule == "product":
             return self.split(proof["factors"], checker.list_factors(term), term, relation)
-        if squared := complete_square(term) if rule == "cones" else None:
-            scale, root, other = squared
-            factors = checker.list_factors(other)
-            entries = [None if factor[0] == "^" else (1, proof) for factor in factors]
-            lines = [f"assert ({self.say(other, relation)}).", "{"]
-            lines += [*self.split(entries, factors, other, relation), "}"]
-            lines += self.change(("*", scale, term), ("+", ("^", root, checker.number(2)), other), ["ring."])[:-1]
-            return [*lines, f"assert (Q := pow2_ge_0 ({write_term(root, self.names)})). lra."]
         return prove_bound(self.box, self.names, rule == "balls")
+
+    def know(self, *premises: tuple[Any, Term, str]) -> list[str]:
+        """Lines that prove premises one after the other."""
+        said = ((self.say(term, sign), self.go(proof, term, sign)) for proof, term, sign in premises)
+        return [line for fact, proof in said for line in (f"assert ({fact}).", "{", *proof, "}")]
+
+    def square(self, proof: Mapping[str, Any], relation: str) -> list[str]:
+        """L >= |R| by L^2 >= R^2, or A v^2 + B v + C >= 0 by 4 A C >= B^2."""
+        if proof["rule"] == "squares":
+            x, y = parts = [checker.parse(proof[side]) for side in ("left", "right")]
+            premises = [(checker.subtract(("*", x, x), ("*", y, y)), relation), (x, ">=")]
+        else:
+            a, b, c = parts = [t if isinstance(t, tuple) else checker.parse(t) for t in proof["coefficients"]]
+            rest = checker.subtract(("*", checker.number(4), a, c), ("*", b, b))
+            premises, parts = [(a, ">="), (c, ">="), (rest, relation)], [*parts, ("symbol", proof["symbol"])]
+        lines = self.know(*((own, *said) for own, said in zip(proof["proofs"], premises, strict=True) if own))
+        texts = " ".join(f"({write_term(part, self.names)})" for part in parts)
+        sides = " ".join(["ltac:(intros; lra)"] * len(premises))
+        lemma = f"{proof['rule']}_{'above' if relation == '>' else 'not_below'}"
+        return [*lines, f"assert (Q := {lemma} {texts} {sides}).", "first [ lra | by_fraction Q ]."]
+
+    def climb(self, proof: Mapping[str, Any], term: Term, relation: str) -> list[str]:
+        """A function by its value at an end of the range of a symbol, from which it does not fall."""
+        x, is_high = proof["symbol"], proof["end"] == 1
+        closed = {"open_high" if is_high else "open_low": False, "nonzero": False, "integer": False}
+        limit, u, slope = self.box[x]._replace(**closed), f"{self.names[x]}_", checker.differentiate(term, x)
+        end, change = (limit.high, checker.negate(slope)) if is_high else (limit.low, slope)
+        start, inner = checker.replace(term, ("symbol", x), end), Follower(self.box, {**self.names, x: u})
+        f, g = (f"(fun {u} : R => {write_term(t, inner.names)})" for t in (term, slope))
+        facts = [f"assert ({fact}) by lra." for fact in ranges({x: limit}, inner.names)]
+        facts += [f"try assert ({fact}) by side." for fact in defined([slope], inner.names)]
+        (first, last), place = ("right", "left") if is_high else ("left", "right"), write_term(end, self.names)
+        way = f"({place}) - {self.names[x]}" if is_high else f"{self.names[x]} - ({place})"
+        return [
+            *(f"assert ({self.say(start, relation)}).", "{", "rewrite ?ln_1, ?atan_0."),
+            *(*self.go(proof["floor"], start, relation), "}"),
+            f"enough ({write_term(start, self.names)} <= {write_term(term, self.names)}) by lra.",
+            f"apply (rises {f} {g} ({place})); intros {u} U; rewrite Rmin_{first}, Rmax_{last} in U by lra.",
+            *("destruct U. pose proof PI2_3_2.", *facts, "split; cbv beta.", "{ derive. }"),
+            f"enough (P : {inner.say(change, '>=')}) by (assert (M := Rmult_le_pos _ ({way}) P ltac:(lra)); lra).",
+            *inner.go(proof["slope"], change, ">="),
+        ]
 
     def split(self, entries: Iterable[Any], factors: list[Term], term: Term, relation: str) -> list[str]:
         """A product of factors that are positive, or negative ones with their signs."""
@@ -379,28 +431,34 @@ class Follower:
         return [*lines, "first [ solve [ positive ] | solve [ nonzero ] ]."]
 
 
-def complete_square(term: Term) -> tuple[Term, Term, Term] | None:
-    """4 a, 2 a x + b and 4 a c - b^2 in squares and a factor, for a term a x^2 + b x + c with a number a > 0."""
+def complete_square(term: Term) -> Mapping[str, Any] | None:
+    """The rule ``quadratic`` for a polynomial of degree 2 in a symbol, with a positive number before its square."""
     generators = [*dict.fromkeys(checker.list_generators(term))]
     ring = fmpq_mpoly_ctx.get([f"x{k}" for k in range(len(generators))] or ["x0"])
     top, bottom = checker.to_quotient(term, dict(zip(generators, ring.gens(), strict=False)), ring)
 
     def write(polynomial: fmpq_mpoly) -> Term:
         rows = ((q, zip(generators, map(int, powers), strict=False)) for powers, q in polynomial.terms())
-        return checker.make_sum(
-            *(("*", checker.number(q), *(("^", x, checker.number(k)) for x, k in row if k)) for q, row in rows)
-        )
+        products = [("*", checker.number(q), *(("^", x, checker.number(k)) for x, k in row if k)) for q, row in rows]
+        return checker.make_sum(*products) if products else checker.ZERO
 
-    for k in range(len(generators) if bottom == 1 else 0):
-        slope = top.derivative(k)
-        double = slope.derivative(k)
+    plain = generators * (bottom.is_constant() and all(g[0] == "symbol" for g in generators))
+    for (_, name), x in zip(plain, ring.gens(), strict=False):
+        slope = top.derivative(str(x)) / bottom.leading_coefficient()
+        double = slope.derivative(str(x))
         if double.is_constant() and double != 0 and double.leading_coefficient() > 0:
-            rest = top.discriminant(k) * -1
+            linear = slope - double * x
+            constant = top / bottom.leading_coefficient() - (slope + linear) * x / 2
+            rest = 2 * double * constant - linear**2
             squares = [(factor, power // 2 * 2) for factor, power in rest.factor()[1] if power > 1]
             for factor, power in squares:
                 rest //= factor**power
-            roots = [("^", write(factor), checker.number(power)) for factor, power in squares]
-            return checker.number(2 * double.leading_coefficient()), write(slope), ("*", *roots, write(rest))
+            product = ("*", *(("^", write(f), checker.number(k)) for f, k in squares), write(rest))
+            entries = [None if f[0] == "^" else [1, {"rule": "cones"}] for f in checker.list_factors(product)]
+            last = {"rule": "equal", "to": product, "proof": {"rule": "product", "factors": entries}}
+            proofs = [{"rule": "balls"}, None, last if rest != 0 else {"rule": "identity"}]
+            parts = [write(double / 2), write(linear), write(constant)]
+            return {"rule": "quadratic", "symbol": name, "coefficients": parts, "proofs": proofs}
     return None
 
 
@@ -409,20 +467,22 @@ def factor_roots(proof: Mapping[str, Any], term: Term) -> Mapping[str, Any]:
     if proof.get("rule") != "roots":
         return proof
     top, bottom = checker.to_fraction(term)
-    if bottom.degree() > 0 or sum(e for _, e in top.factor()[1]) < 2:
+    (scale, over), (unit, under) = top.factor(), bottom.factor()
+    if len(over) + len(under) == 1 and (over + under)[0][1] == 1:
         return proof
     low, high = (None if proof[end] is None else checker.read_number(proof[end]) for end in ("from", "to"))
     place, symbol = checker.inner_number(low, high), ("symbol", *checker.symbols_of(term))
-    while top(place) == 0:
+    while (top * bottom)(place) == 0:
         place = checker.inner_number(place, high)
-    factors, entries = [checker.number(top.factor()[0] / bottom[0])], list[Any]([None])
-    for factor, power in top.factor()[1]:
+    factors, entries = [checker.number(scale / unit)], list[Any]([None])
+    for factor, power, sign in (*((*pair, 1) for pair in over), *((*pair, -1) for pair in under)):
         rows = enumerate(factor.coeffs())
         base = checker.make_sum(*(("*", checker.number(q), ("^", symbol, checker.number(k))) for k, q in rows))
-        for _ in range(power // 2):
-            factors, entries = [*factors, ("^", base, checker.number(2))], [*entries, None]
+        factors += [("^", base, checker.number(2 * sign))] * (power // 2)
+        entries += [None] * (power // 2)
         if power % 2:
-            factors, entries = [*factors, base], [*entries, [1 if factor(place) > 0 else -1, {"rule": "balls"}]]
+            factors += [base if sign > 0 else ("^", base, checker.MINUS_ONE)]
+            entries += [[1 if factor(place) > 0 else -1, {"rule": "balls"}]]
     return {"rule": "equal", "to": ("*", *factors), "proof": {"rule": "product", "factors": entries}}
 
 

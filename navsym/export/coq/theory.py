@@ -26,7 +26,7 @@ from navsym.export.coq.words import write_words
 #: How numbers are compared: by polynomials alone, or by balls of few digits, then of many.
 PLAIN = "Ltac few_digits := lra.\nLtac many_digits := lra.\n"
 #: Files with lemmas and tactics, in the order in which they rest on one another.
-LEMMAS = ("tactics.v", "calculus.v", "condition.v", "words.v")
+LEMMAS = ("tactics.v", "calculus.v", "bounds.v", "condition.v", "words.v")
 #: Letters of a theory: larger ones take Coq many minutes.
 MOST_LETTERS = 2_000_000
 Said = list[tuple[Term, str, Term]]
@@ -47,10 +47,8 @@ def write_theory(certificate: Mapping[str, Any]) -> str:
     parts = certificate.get("of", []) if certificate.get("kind") == "all" else [certificate]
     theorems, libraries = [], set[str]()
     for place, part in enumerate(parts, start=1):
-        if part.get("kind") not in ("proof", "counterexample", "condition", "words"):
-            message = (
-                f"expected a certificate of a statement; got one of kind {part.get('kind')}; check it without kernel"
-            )
+        if (kind := part.get("kind")) not in ("proof", "counterexample", "condition", "words"):
+            message = f"expected a certificate of a statement; got one of kind {kind}; check it without kernel"
             raise DomainError(message)
         try:
             if part["kind"] == "condition":
@@ -102,6 +100,8 @@ class Stated(NamedTuple):
             yield "Interval"
         if self.questions or any(list_slopes(*said, *self.case.terms)):
             yield "calculus.v"
+        if any(f"'rule': '{rule}'" in str(part.get("proofs")) for rule in ("slope", "squares", "quadratic", "cones")):
+            yield from ("calculus.v", "bounds.v")
 
 
 def read_cases(part: Mapping[str, Any]) -> Iterator[Stated]:
@@ -122,10 +122,8 @@ def read_cases(part: Mapping[str, Any]) -> Iterator[Stated]:
             reader.need(*checker.list_entries(reader.read(text)))
         x, y = (reader.read(statement[side]) for side in ("left", "right"))
         says = say(x, statement["relation"], y, limit)
-        kept = {
-            id(s)
-            for s in list_all(*(t for a, _, b in says for t in (a, b)), *reader.exists, *reader.given, *reader.zeros)
-        }
+        seen = *(t for a, _, b in says for t in (a, b)), *reader.exists, *reader.given, *reader.zeros
+        kept = set(map(id, list_all(*seen)))
         if any(id(s) not in kept for s in reader.marked) or (reader.marked and reader.questions):
             raise Unwritten("a derivative inside of what the checker reads")
         goals = checker.state_goals(x, statement["relation"], y, limit)
