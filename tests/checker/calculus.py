@@ -219,7 +219,9 @@ INTEGRALS = [
     row("integral(log(a)*x, x, 0, 1)", "log(a)/2", [integral(piece("log(a)*x__1**2/2"))], "", {"a": "1"}, a=LINE),
     row("integral(0*log(a)*x, x, 0, 1)", "0", [integral(piece("0"))], "no value at the witness", {"a": "-1"}, a=LINE),
     row("integral(0/x, x, -1, 1)", "0", [integral(piece("0"))], "expected 1 entries"),
-    row("integral([x, 1], x, 0, 1)", "[1/2, 1]", [integral(piece("x__1**2/2")), integral(piece("x__2"))], "", {}, (I, I)),
+    row("integral([x, a], x, 0, 1)", "[1/2, a]", [
+        integral(piece("x__1**2/2")), integral(piece("a*x__2")),
+    ], "", {"a": "1"}, (I, I), a=LINE),
     row("integral([x, 1], x, 0, 1)", "[1/2, 1]", [integral(piece("x__1**2/2"))], "without an answer", proofs=(I, I)),
     row("integral([1/x, 1], x, 0, 1)[2]", "1", [integral(piece("log(x__1)")), integral(piece("x__2"))], "entries"),
     row("integral([0/x, 1], x, 0, 1)[2]", "1", [integral(piece("0")), integral(piece("x__2"))], "entries"),

@@ -25,7 +25,7 @@ from navsym.prove.rooms.goals import (
     write_term,
 )
 
-Entry = dict[str, Any]
+Entry = dict[str, Any] | str
 MOST_ORDER = 6
 TROUBLE = (
     ValueError, TypeError, NotImplementedError, ArithmeticError, AttributeError, KeyError, RecursionError,
