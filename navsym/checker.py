@@ -1927,21 +1927,21 @@ class Formula(Parser):
             found, needs = self.read_body(body, kind, name, ("symbol", variable))
         require(not reader.fractions, f"{kind} beside a floor")
         reader.need(*(t for t in needs if variable not in symbols_of(t)))
-        needs, inner = [t for t in needs if variable in symbols_of(t)], reader.questions[first:]
-        require(not isinstance(found, Matrix) or not (inner or kind == "product"), f"a matrix in {kind}")
+        needs, own = [t for t in needs if variable in symbols_of(t)], f"{name}__{len(reader.questions) + 1}"
+        bound = {variable: ("symbol", own)}
+        around = Question(kind, "", own, ZERO, ends[0], ends[-1], tuple(substitute(t, bound) for t in needs), ())
+        inner = [q.change(lambda t: substitute(t, bound)) for q in reader.questions[first:]]
+        reader.questions[first:] = [q._replace(within=(*q.within, around)) for q in inner]
 
         def ask(term: Term) -> Term:
             if reader.dead:
                 return ZERO
-            value, own = (f"{word}{len(reader.questions) + 1}" for word in ("value ", f"{name}__"))
-            asked = Question(kind, value, variable, term, ends[0], ends[-1], tuple(needs), ())
-            asked, *inside = (q.change(lambda t: substitute(t, {variable: ("symbol", own)})) for q in (asked, *inner))
-            asked = asked._replace(variable=own)
-            reader.questions[first : first + len(inner)] = [q._replace(within=(*q.within, asked)) for q in inside]
-            reader.questions.append(asked)
-            return ("symbol", value)
+            reader.questions.append(
+                around._replace(value=f"value {len(reader.questions) + 1}", term=substitute(term, bound))
+            )
+            return ("symbol", reader.questions[-1].value)
 
-        return change_entries(ask, found)
+        return change_entries(ask, found if kind != "product" else to_number(found))
 
     def ask_exponential(self, x: Value) -> Value:
         """expm(A): symbols in the place of its entries."""

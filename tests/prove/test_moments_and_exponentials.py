@@ -83,6 +83,24 @@ def test_a_formula_is_proved_and_its_spoiled_form_refuted(true, false, given):
     assert refuted.check().accepted
 
 
+def test_the_noise_of_a_step_of_six_states_in_symbols_is_an_integral_of_exponentials():
+    """Three positions with speeds that decay at rates a, b, c: the integral of expm(A s) Q expm(A s).T."""
+    rates, size = "abc", range(6)
+    rows = [[{i + 3: "1" if i < 3 else "0"}.get(j, "0") for j in size] for i in size]
+    noise, step = [["0"] * 6 for _ in size], [["0"] * 6 for _ in size]
+    for k, r in enumerate(rates):
+        rows[k + 3][k + 3], noise[k + 3][k + 3] = f"-{r}", f"q*{r}"
+        first, second = f"(1 - exp(-{r}*T))", f"(1 - exp(-2*{r}*T))"
+        step[k][k] = f"q/{r}*(T - 2*{first}/{r} + {second}/(2*{r}))"
+        step[k][k + 3] = step[k + 3][k] = f"q*({first}/{r} - {second}/(2*{r}))"
+        step[k + 3][k + 3] = f"q*{second}/2"
+    A, Q, S = ("[" + ", ".join(f"[{', '.join(row)}]" for row in matrix) + "]" for matrix in (rows, noise, step))
+    given = dict.fromkeys(("T", "q", *rates), "positive")
+    text = f"integral(expm(s*{A}) @ {Q} @ expm(s*{A}).T, s, 0, T)"
+    assert nav.prove(f"{text} = {S}", **given).status == "PROVED"
+    assert nav.prove(f"{text} = {S.replace('/2]', '/3]')}", **given).status == "REFUTED"
+
+
 @pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(2, 6))])
 def test_an_exponential_of_numbers_agrees_with_scipy(seed):
     """Matrices with real and complex eigenvalues; the entries lie in intervals about those of scipy."""

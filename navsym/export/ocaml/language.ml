@@ -746,20 +746,18 @@ and read_question context kind r =
   | _ ->
       let v, needs = match early with Some found -> found | None -> read (Sym variable) in
       if context.fractions <> [] then refuse "%s beside a floor" kind;
-      let last = List.length context.questions in
-      (match v with
-      | Matrix _ when last > first || kind = "product" -> refuse "%s of a matrix beside a question" kind
-      | _ -> ());
+      if kind = "product" then ignore (scalar kind v);
       let own_needs, others = List.partition (fun t -> Names.mem variable (symbols t)) needs in
       if not context.quiet then List.iter (say context) others;
+      let own = Printf.sprintf "%s__%d" k (List.length context.questions + 1) in
+      let change = put [ (variable, Sym own) ] in
+      let around = { kind; value = ""; variable = own; terms = []; low; high; needs = List.map change own_needs; within = [] } in
+      let put_inside i inner = if i < first then inner else
+        let inner = change_question change inner in { inner with within = inner.within @ [ around ] } in
+      context.questions <- List.mapi put_inside context.questions;
       let ask t =
-        let number = List.length context.questions + 1 in
-        let own = Printf.sprintf "%s__%d" k number and value = Printf.sprintf "value %d" number in
-        let change = put [ (variable, Sym own) ] in
-        let q = { kind; value; variable = own; terms = [ change t ]; low; high; needs = List.map change own_needs; within = [] } in
-        let put_inside i inner = if i < first || i >= last then inner else
-          let inner = change_question change inner in { inner with within = inner.within @ [ q ] } in
-        context.questions <- List.mapi put_inside context.questions @ [ q ];
+        let value = Printf.sprintf "value %d" (List.length context.questions + 1) in
+        context.questions <- context.questions @ [ { around with value; terms = [ change t ] } ];
         Sym value
       in
       map (fun t -> if context.quiet then zero else ask t) v
