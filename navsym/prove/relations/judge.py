@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from itertools import chain, combinations, islice
 from typing import Any
 
-from flint import arb, ctx
+from flint import arb, ctx, fmpq
 
 from navsym.claims.formula import Formula
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Verdict
@@ -28,6 +28,7 @@ from navsym.prove.words.judge import decide_words
 
 POINTS = 16
 EDGES = 6  # absolute values and conditions of a case that are 0 at some points
+FAR = (1, 8, 30, 100, 399)  # whole numbers at which sums are written out
 FEW = 4  # points at which an exact zero is sought
 PRECISIONS = (64, 512)
 TROUBLE = (*REFUSALS, NavsymError, ArithmeticError, RecursionError)
@@ -208,8 +209,12 @@ def refute_at_points(claim: TextClaim, document: Document) -> Verdict | None:
     """REFUTED where the questions of a statement have answers at a point, if not at all of them."""
     box = {name: player.read_range(limits) for name, limits in document["symbols"].items()}
     kinds = {name: kind for name, kind in claim.kinds.items() if {e for row in kind[1] for e in row} <= set(box)}
-    points = draw_special_points(box, (), kinds, MOST_POINTS)
-    for point in chain(islice(draw_corner_points(box, kinds), 1), points) if box else [{}]:
+    points = [*islice(draw_corner_points(box, kinds), 1), *draw_special_points(box, (), kinds, MOST_POINTS)]
+    whole = [name for name, limit in box.items() if limit.integer]
+    points += [points[-1] | dict.fromkeys(whole, fmpq(n)) for n in FAR if whole]
+    for point in points if box else [{}]:
+        if not all(player.is_inside(player.number(value), box[name]) for name, value in point.items()):
+            continue
         place = {name: player.parse(text) for name, text in write_point(point).items()}
         try:
             cases, _, _ = read_with_answers(document, place)
