@@ -14,8 +14,7 @@ from itertools import chain
 from typing import Any
 
 from navsym.claims.verdict import OPEN, PROVED, Verdict
-from navsym.conventions.card import DROPPED, Card
-from navsym.conventions.measuring import MEASURED_MARK, RESET_MARK
+from navsym.conventions.card import Card
 from navsym.conventions.mechanisation import CONSTANTS
 from navsym.conventions.points import BITS, draw_values, evaluate, relate, substitute
 from navsym.conventions.reading import Problem, print_matrix

@@ -100,7 +100,8 @@ def test_a_meaningless_formula_is_an_error_that_names_both_sides(wrong):
        
         "integral(v, T, 0, h/v) = h", "0 = h", "h + 0 = h", "inv([[h, v], [v*h, v**2]]) @ [h, h*v] = [1, h/v]",
         "a*b = h", "h = a + 2*h", "2**3*h = h", "h**2*T**(-2) = v**2", "cov(h, T) = h*T",
-        "expm([[0, T], [0, 0]]) = [[1, T], [0, 1]]", "floor(h/(v*T)) = 0", "E(h**2) = cov(h)", "h*h = h**2", "h*[v, h]*h = h**2*[v, h]",
+        "expm([[0, T], [0, 0]]) = [[1, T], [0, 1]]", "floor(h/(v*T)) = 0", "E(h**2) = cov(h)",
+        "h*h = h**2", "h*[v, h]*h = h**2*[v, h]",
     ],
 )  # fmt: skip
 def test_a_formula_that_means_something_is_left_alone(right):
