@@ -38,7 +38,8 @@ along the motion, and no row is typed.
   constant the body is aligned with north, east, down.
 * Ranks hold over an interval, for generic parameters. A star: no other condition than those listed lowers the rank. A
   question mark: proved from below only.
-* An empty place is a cell that takes more than a minute: on the way its rows get thousands of terms.
+* An empty place is a cell that takes more than a minute: on the way its rows, or what its certificates have to say,
+  get thousands of terms.
 * A rank that the checker does not grant stands as unchecked, with the reason: directions that are too long to write, no
   short sums of the zeros of the condition for what has to vanish with them, or no exact point on the condition.
 * Each rank is that of textbook error equations in other coordinates, too, modulo a prime
