@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from navsym.report.atlas_page import list_sheets  # noqa: E402
-from navsym.studies.atlas.kept import Cell, atlas  # noqa: E402
+from navsym.studies.atlas.kept import RANK, Cell, atlas  # noqa: E402
 from navsym.studies.atlas.published import PUBLISHED  # noqa: E402
 from navsym.studies.atlas.scenes import cell_names  # noqa: E402
 from tests.studies.atlas_cells import compute_cell, keep_atlas  # noqa: E402
@@ -38,7 +38,10 @@ along the motion, and no row is typed.
   constant the body is aligned with north, east, down.
 * Ranks hold over an interval, for generic parameters. A star: no other condition than those listed lowers the rank. A
   question mark: proved from below only.
-* An empty place is a cell that takes more than a minute.
+* An empty place is a cell that takes more than a minute: on the way its rows, or what its certificates have to say,
+  get thousands of terms.
+* A rank that the checker does not grant stands as unchecked, with the reason: directions that are too long to write, no
+  short sums of the zeros of the condition for what has to vanish with them, or no exact point on the condition.
 * Each rank is that of textbook error equations in other coordinates, too, modulo a prime
   (`tests/studies/test_atlas.py`).
 
@@ -86,11 +89,15 @@ def mark(cell: Cell | None) -> str:
 
 def describe(cell: Cell) -> Iterator[str]:
     """What a cell says."""
-    yield f"**{cell.name}**: rank {cell.rank} of {cell.size}\n"
+
+    def note(key: str) -> str:
+        return f", unchecked: {cell.unchecked[key]}" if key in cell.unchecked else ""
+
+    yield f"**{cell.name}**: rank {cell.rank} of {cell.size}{note(RANK)}\n"
     for direction in cell.unobservable:
         yield wrap(f"not shown: {direction}")
     for condition, rank in cell.drops.items():
-        yield wrap(f"`{condition}`: {'a smaller rank' if rank is None else f'rank {rank}'}")
+        yield wrap(f"`{condition}`: {'a smaller rank' if rank is None else f'rank {rank}'}{note(condition)}")
     if not cell.complete:
         yield wrap(f"the list may be incomplete: sets of points left undecided: {cell.open}")
     yield ""

@@ -89,7 +89,7 @@ def overview(data: Mapping[str, Any]) -> str:
     """The dimension that each measurement observes, and the unobservable directions."""
     verdict = "observable" if data["observable"] else "NOT observable"
     directions = data["unobservable_directions"]
-    checked = "granted by the checker" if data["checked"] else "unchecked"
+    checked = "granted by the checker" if data["checked"] else f"unchecked: {data['unchecked']}"
     rows = [[m["name"], str(m["dimension"]), ", ".join(m["companion"])] for m in data["measurements"]]
     lines = [f"{data['n']} states, joint dimension {data['joint_dimension']}: {verdict} ({checked})\n"]
     lines.append(table(["measurement", "dimension", "companion"], rows))
@@ -131,7 +131,8 @@ def drop_row(drop: Mapping[str, Any]) -> list[str]:
     where = " and ".join(f"{zero} = 0" for zero in drop["zeros"])
     excluded = " (excluded by declaration)" if drop["excluded_by_declaration"] else ""
     left = "" if drop["rank"] is None else str(drop["rank"])
-    listed, checked = "proved" if drop["complete"] else "not proved", "granted" if drop["checked"] else "unchecked"
+    listed = "proved" if drop["complete"] else "not proved"
+    checked = "granted" if drop["checked"] else f"unchecked: {drop['unchecked']}"
     return [drop["subspace"], where + excluded, left, listed, checked]
 
 

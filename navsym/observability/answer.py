@@ -24,7 +24,6 @@ from navsym.models.linear import LinearModel, linear_row
 from navsym.models.model import Model, contents_of
 from navsym.models.modelfile import ModelFile
 from navsym.observability.accuracy import Accuracy, ask_accuracy
-from navsym.observability.certificates import Certifier, list_nested
 from navsym.observability.chains import (
     JointObservability,
     MeasurementObservability,
@@ -34,8 +33,8 @@ from navsym.observability.chains import (
     observe_jointly,
     prove_rank,
 )
-from navsym.observability.document import as_html, as_latex, document_of_observability
-from navsym.observability.inputs import certify_inputs, observe_driven
+from navsym.observability.document import as_html, as_latex, document_of_observability, list_proofs
+from navsym.observability.inputs import observe_driven
 from navsym.observability.null_space import NullSpace, follow_directions, read_points
 from navsym.observability.pieces import observe_pieces
 from navsym.observability.rank_drops import RankDrop, find_drops
@@ -232,14 +231,7 @@ class Observability(Answer):
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """The generic rank and every rank that is left on a drop, as far as the checker grants them."""
-        if self.contents is not None and self.inputs:
-            driven = certify_inputs(self.contents, self.joint)
-            return [driven] if driven is not None else []
-        if self.joint.written is None:
-            return []
-        certifier = Certifier.of(self.model)
-        listed = [certifier.certify_rank(self.joint), *map(certifier.certify_drop, list_nested(self.rank_drops))]
-        return [item for item in listed if item is not None]
+        return [item for item in list_proofs(self).values() if not isinstance(item, str)]
 
     def latex(self) -> str:
         """The decomposition as a fragment of LaTeX, one display for each formula."""

@@ -2,7 +2,8 @@
 
 A rank is granted by a point that attains it and by columns that no row sees (``check_observability``). A drop is the
 same with zeros beside: where they vanish the columns stay unseen, because every remainder is a sum of the zeros. Here
-point, columns and factors are found; the checker alone grants them. What finds no certificate stands as unchecked.
+point, columns and factors are found; the checker alone grants them. What finds no certificate stands as unchecked, with
+the reason.
 """
 
 from __future__ import annotations
@@ -11,12 +12,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import product
+from itertools import count, product
 from math import lcm, prod
 from typing import Any
 
 import numpy as np
 import sympy as sp
+from flint import Ordering, fmpq_mpoly_ctx
 from sympy.polys.polyerrors import BasePolynomialError
 
 from navsym import checker
@@ -30,14 +32,19 @@ from navsym.observability.chains import JointObservability
 from navsym.observability.linear import Matrix, null_vectors, scalar_product
 from navsym.observability.motion import Motion, motion_of
 from navsym.observability.rank_drops import RankDrop
-from navsym.observability.reduction import System
+from navsym.observability.reduction import System, lies_in_ideal
 from navsym.observability.ring import Poly, Ring
 from navsym.observability.tree import linear_places
 
 #: Points tried, terms of the columns and of all remainders, and bits for each state.
 POINTS, COLUMN_TERMS, TERMS, BITS = 6, 1500, 30000, 96
 #: Rounds of divisions by all zeros, and steps of Newton's method.
-DIVISIONS, NEWTON = 12, 25
+DIVISIONS, NEWTON = 20, 25
+#: Why there is no certificate.
+NO_DIRECTIONS, NO_RANK, IN_PASSING = "no directions were found", "the rank was not found", "it holds in passing"
+LONG, NO_SHARES, NO_POINT = "long directions", "no short sums of the zeros were found", "no exact point was found"
+#: Largest product of numerator and denominator under a root.
+LARGE = 2**100
 #: Values of angles that an equation names.
 TURNS = (sp.Integer(0), sp.pi, sp.pi / 2, -sp.pi / 2)
 
@@ -73,7 +80,7 @@ class Statement:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Certifier:
-    """Proposes certificates of one model; ``certify`` and its like return what the checker grants, or None."""
+    """Proposes certificates of one model; ``certify`` and its like return what the checker grants, or why nothing."""
 
     model: LinearModel
     motion: Motion
@@ -88,7 +95,7 @@ class Certifier:
 
     def certify(
         self, rank: int, columns: Matrix, system: System, places: Sequence[int], nonzero: System | None = None
-    ) -> dict[str, Any] | None:
+    ) -> dict[str, Any] | str:
         """That the measurements in some places show ``rank`` dimensions where the system vanishes.
 
         columns : n - rank columns that none of them sees there
@@ -97,29 +104,29 @@ class Certifier:
         units = nonzero or []
         motion = replace(self.motion, ring=self.motion.ring.with_units(units)) if units else self.motion
         said = Statement(self.model, motion, self.rows, self.bottoms, places, system, rank, units)
-        if sum(len(x) for column in columns for x in column) > COLUMN_TERMS:
-            return None
-        try:
-            return next((item for item in propose(said, columns) if is_granted(item)), None)
-        except NavsymError:
-            return None
+        with suppress(NavsymError):
+            columns, free = diagonal_columns(columns, motion.size, motion.ring, system)
+            if len(columns) != motion.size - rank:
+                return LONG
+            shares = factors_of(said, columns, free, said.zeros) if said.zeros else []
+            proposed = propose(said, columns, free, shares or [])
+            return NO_SHARES if shares is None else next(filter(is_granted, proposed), NO_POINT)
+        return LONG
 
-    def certify_rank(self, joint: JointObservability) -> dict[str, Any] | None:
+    def certify_rank(self, joint: JointObservability) -> dict[str, Any] | str:
         """The generic rank of all measurements together."""
-        columns = joint.chains.directions
-        if columns is None:
-            return None
-        return self.certify(joint.joint_dimension, columns, [], range(len(self.rows)))
+        found = joint.chains.directions
+        return NO_DIRECTIONS if found is None else self.certify(joint.joint_dimension, found, [], range(len(self.rows)))
 
-    def certify_drop(self, drop: RankDrop) -> dict[str, Any] | None:
+    def certify_drop(self, drop: RankDrop) -> dict[str, Any] | str:
         """A drop that lasts, with the rank that is left on it."""
         names = self.model.measurements
         places = range(len(names)) if drop.subspace == "joint" else [names.index(drop.subspace)]
         found = [self.certify(leaf.rank, leaf.unseen, leaf.system, places, leaf.nonzero) for leaf in drop.leaves]
-        parts = [item for item in found if item is not None]
-        if not parts or len(parts) < len(found):
-            return None
-        return parts[0] if len(parts) == 1 else {"kind": "all", "of": parts}
+        reasons = [item for item in found if isinstance(item, str)]
+        if reasons or not found:
+            return next(iter(reasons), NO_RANK if drop.lasting else IN_PASSING)
+        return found[0] if len(found) == 1 else {"kind": "all", "of": found}
 
 
 def list_nested(drops: Iterable[RankDrop]) -> Iterator[RankDrop]:
@@ -137,14 +144,11 @@ def is_granted(item: Mapping[str, Any]) -> bool:
         return False
 
 
-def propose(said: Statement, columns: Matrix) -> Iterator[dict[str, Any]]:
-    """Certificates with a few points each."""
-    ring, n = said.ring, said.motion.size
-    columns, free = diagonal_columns(columns, n, ring)
-    zeros = said.zeros
-    shares = factors_of(said, columns, free, zeros) if zeros else []
-    if shares is None or len(columns) != n - said.rank:
-        return
+def propose(
+    said: Statement, columns: Matrix, free: Sequence[int], shares: list[list[sp.Expr]]
+) -> Iterator[dict[str, Any]]:
+    """Certificates with a point each."""
+    ring, n, zeros = said.ring, said.motion.size, said.zeros
     H, named = said.model.H.extract(list(said.places), list(range(n))), [ring.expression(f) for f in zeros]
     null = sp.Matrix(len(columns), n, [ring.expression(x) for column in columns for x in column])
     known = sp.Mul(*(ring.condition(f) for f in said.nonzero))
@@ -199,21 +203,27 @@ def symbols_and_rates(model: LinearModel, matrices: Sequence[sp.MatrixBase]) -> 
     return sorted(found, key=str), {s: rates[s] for s in sorted(rates, key=str)}
 
 
-def diagonal_columns(columns: Matrix, n: int, ring: Ring) -> tuple[Matrix, list[int]]:
-    """Columns with the same span of which each has a place where the others are zero, and these places."""
-    places = free_places(columns, n)
-    if len(places) < len(columns) and sum(len(x) for column in columns for x in column) <= COLUMN_TERMS:
+def diagonal_columns(columns: Matrix, n: int, ring: Ring, system: System | None = None) -> tuple[Matrix, list[int]]:
+    """Columns with the same span of which each has a place where the others are zero, and these places; else none.
+
+    Where the system vanishes, none vanishes in its place.
+    """
+    if sum(len(x) for column in columns for x in column) > COLUMN_TERMS:
+        return [], []
+    places = free_places(columns, n, system or [])
+    if len(places) < len(columns):
         columns = null_vectors(null_vectors(columns, n, ring), n, ring)
-        places = free_places(columns, n)
+        places = free_places(columns, n, system or [])
     return (columns, places) if len(places) == len(columns) else ([], [])
 
 
-def free_places(columns: Matrix, n: int) -> list[int]:
+def free_places(columns: Matrix, n: int, system: System) -> list[int]:
     """For each column the place of its shortest entry where all others are zero; fewer where one has none."""
     found = []
     for column in columns:
         own = [k for k in range(n) if column[k] != 0 and all(c is column or c[k] == 0 for c in columns)]
-        found += [min(own, key=lambda k: len(column[k]))] if own else []
+        own.sort(key=lambda k: len(column[k]))
+        found += next(([k] for k in own if not lies_in_ideal(column[k], system)), [])
     return found
 
 
@@ -274,7 +284,10 @@ def as_combination(value: Poly, zeros: System, said: Statement) -> tuple[list[Po
         parts, unit = [part * scale for part in parts], unit * scale
         parts[k] = (value * scale - rest) / f
         value = rest
-    return (parts, unit) if said.motion.reduced(value) == 0 else divide_on(value, zeros, parts, unit)
+    if said.motion.reduced(value) == 0:
+        return parts, unit
+    tried = (divide_on(value, zeros, parts, unit, order) for order in (ring.context.ordering(), Ordering.lex))
+    return next((found for found in tried if found is not None), None)
 
 
 def own_variables(system: System, ring: Ring) -> list[int | None]:
@@ -286,23 +299,23 @@ def own_variables(system: System, ring: Ring) -> list[int | None]:
     return found
 
 
-def divide_on(value: Poly, zeros: System, parts: list[Poly], unit: Poly) -> tuple[list[Poly], Poly] | None:
-    """Go on by division by all zeros in turn: it ends with 0 where they are a Groebner basis; None where it does not.
-
-    A factor makes room for the leading coefficients.
-    """
-    scale, parts = lcm(*(abs(int(f.leading_coefficient())) for f in zeros)), list(parts)
+def divide_on(
+    value: Poly, zeros: System, parts: list[Poly], unit: Poly, order: Ordering
+) -> tuple[list[Poly], Poly] | None:
+    """Go on by division by all zeros in turn, which ends with 0 where they are a Groebner basis; None elsewhere."""
+    whole = value.context()
+    ring = fmpq_mpoly_ctx.get(whole.names(), order)
+    rest, *divisors = (ring.from_dict(f.to_dict()) for f in (value, *zeros))
+    found = [ring.from_dict({}) for _ in zeros]
     for _ in range(DIVISIONS):
-        before = value
-        for k, f in enumerate(zeros):
-            quotient, value = divmod(value, f)
-            parts[k] += quotient
-        if value == 0:
-            return parts, unit
-        if value == before and scale == 1:
-            return None
-        value, unit, parts = value * scale, unit * scale, [part * scale for part in parts]
-    return None
+        for k, f in enumerate(divisors):
+            quotient, rest = divmod(rest, f)
+            found[k] += quotient
+    if rest != 0:
+        return None
+    scale = lcm(*(int(c.q) for quotient in found for c in quotient.coeffs()))
+    quotients = [whole.from_dict({powers: int(c * scale) for powers, c in q.to_dict().items()}) for q in found]
+    return [part * scale + q for part, q in zip(parts, quotients, strict=True)], unit * scale
 
 
 # Points
@@ -314,11 +327,13 @@ def points_on(zeros: System, said: Statement, symbols: Sequence[sp.Symbol]) -> I
     angles = sorted({s for text in texts for f in text.atoms(sp.sin, sp.cos) for s in f.free_symbols}, key=str)
     turns = [(TURNS[k] if k < len(TURNS) else 4 * sp.atan(sp.Rational(1, k)),) * len(angles) for k in range(POINTS)]
     turns += [values for values in product(TURNS, repeat=2) if len({*values}) == len(angles) == 2]
-    for k, values in enumerate(turns):
-        size = 7 if k % 2 else 1
+    for (fine, values), k in zip(product((500, 1), turns), count()):
+        size = 7 if k % 2 and fine > 1 else 1
         signed = [size if k == 0 or (i + k) % 3 else -size for i in range(len(symbols))]
         at = {
             s: sp.Rational(sp.prime(2 * i + k + 3), c * (7 * i + 2 * k + 9))
+            if fine > 1
+            else c * ((5 * i + 3 * k) % 17 + 2)
             for i, (s, c) in enumerate(zip(symbols, signed, strict=True))
         }
         at |= dict(zip(angles, values, strict=True))
@@ -326,16 +341,20 @@ def points_on(zeros: System, said: Statement, symbols: Sequence[sp.Symbol]) -> I
         rest = [value for value in here if value != 0]
         if all(value.free_symbols for value in rest):
             with suppress(BasePolynomialError, np.linalg.LinAlgError):
-                yield at | (solve_near(rest, at, k) if rest else {})
+                found = solve_near(rest, at, k, fine) if rest else {}
+                yield from [] if found is None else [at | found]
 
 
-def solve_near(zeros: list[sp.Expr], at: Mapping[Any, sp.Expr], turn: int) -> dict[Any, sp.Expr]:
-    """Rational values near a point, or roots, at which polynomials vanish; none where they were not found.
+def solve_near(
+    zeros: list[sp.Expr], at: Mapping[Any, sp.Expr], turn: int, fine: int = 500
+) -> dict[Any, sp.Expr] | None:
+    """Rational values near a point, or roots, at which polynomials vanish; None where they were not found.
 
     Newton's steps find the way in floats, and how many variables depend there on the others; exact algebra solves for
     these, those of low degree if possible.
 
     turn : place of the symbol that comes first
+    fine : largest denominator of what is free
     """
     names = sorted(set().union(*(zero.free_symbols for zero in zeros)), key=str)
     names = names[turn % len(names) :] + names[: turn % len(names)]
@@ -350,7 +369,7 @@ def solve_near(zeros: list[sp.Expr], at: Mapping[Any, sp.Expr], turn: int) -> di
     own: list[int] = []
     for j in order:
         own += [j] if np.linalg.matrix_rank(J[:, [*own, j]], tol=1e-6) > len(own) else []
-    found = {names[j]: sp.Rational(Fraction(near[j]).limit_denominator(500)) for j in order if j not in own}
+    found = {names[j]: sp.Rational(Fraction(near[j]).limit_denominator(fine)) for j in order if j not in own}
     basis = sp.groebner([zero.subs(found) for zero in zeros], *(names[j] for j in own), order="lex", domain="QQ")
     for zero in reversed(basis.exprs):
         left = [names[j] for j in own if names[j] in zero.free_symbols and names[j] not in found]
@@ -359,7 +378,8 @@ def solve_near(zeros: list[sp.Expr], at: Mapping[Any, sp.Expr], turn: int) -> di
             found[left[0]] = -c[1] / c[0]
         elif len(c) == 3 and (root := c[1] ** 2 - 4 * c[0] * c[2]).is_nonnegative:
             found[left[0]] = (sp.sqrt(root) - c[1]) / (2 * c[0])
-    return found
+    long = any(r.base.is_Rational and r.base.p * r.base.q > LARGE for x in found.values() for r in x.atoms(sp.Pow))
+    return None if long or len(found) < len(names) else found
 
 
 def value_near(f: sp.Poly, point: Any) -> float:

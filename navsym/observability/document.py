@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from html import escape
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from navsym.language.expression import to_text
-from navsym.observability.certificates import Certifier
+from navsym.observability.certificates import Certifier, list_nested
 from navsym.observability.chains import MeasurementObservability
+from navsym.observability.inputs import certify_inputs
 from navsym.observability.rank_drops import RankDrop
 from navsym.observability.splits import Split
 from navsym.observability.two_stage import Stage, StageGains
@@ -18,9 +20,13 @@ if TYPE_CHECKING:
     from navsym.observability.answer import Observability
 
 
+#: Of the rank, whose key is None, and of every drop: its certificate, or why there is none.
+Proofs = Mapping[RankDrop | None, Mapping[str, Any] | str]
+
+
 def document_of_observability(answer: Observability) -> dict[str, Any]:
     """The answer as JSON data; every expression is text of the language of files."""
-    certifier = Certifier.of(answer.model) if answer.joint.written is not None else None
+    proofs = list_proofs(answer)
     data: dict[str, Any] = {
         "n": len(answer.states),
         "states": list(answer.states),
@@ -32,12 +38,12 @@ def document_of_observability(answer: Observability) -> dict[str, Any]:
         "observable_functionals": list(answer.observable_functionals),
         "redundant": list(answer.redundant),
         "proved": answer.joint.proved,
-        "checked": bool(answer.certificates() if answer.inputs else certifier and certifier.certify_rank(answer.joint)),
+        **proof_data(proofs[None]),
         "model": answer.kind,
         "inputs": list(answer.inputs),
-        "instant": instant_data(answer, certifier),
+        "instant": instant_data(answer, proofs),
         "pieces": [dict(piece) for piece in answer.pieces],
-        "rank_drops": [drop_data(drop, certifier) for drop in answer.rank_drops if drop.lasting],
+        "rank_drops": [drop_data(drop, proofs) for drop in answer.rank_drops if drop.lasting],
         "rank_drops_complete": dict(answer.rank_drops_complete),
         "rank_drops_open": {name: list(systems) for name, systems in answer.rank_drops_open.items() if systems},
         "assumptions": [f"{to_text(a)} != 0" for a in answer.joint.assumptions],
@@ -50,14 +56,35 @@ def document_of_observability(answer: Observability) -> dict[str, Any]:
     return data | ({"restore": restoration_data(answer)} if answer.restoration is not None else {})
 
 
-def instant_data(answer: Observability, certifier: Certifier | None) -> dict[str, Any] | None:
+def list_proofs(answer: Observability) -> Proofs:
+    """What the checker grants of the rank, whose key is None, and of every drop, or why it grants nothing."""
+    if answer.contents is not None and answer.inputs:
+        return {None: certify_inputs(answer.contents, answer.joint) or "no feedback or no derivatives were found"}
+    if answer.joint.written is None:
+        return {None: "a model in pieces" if answer.pieces else "long rows"}
+    certifier = Certifier.of(answer.model)
+    drops = {drop: certifier.certify_drop(drop) for drop in list_nested(answer.rank_drops)}
+    return {None: certifier.certify_rank(answer.joint), **drops}
+
+
+def proof_data(proof: Mapping[str, Any] | str) -> dict[str, Any]:
+    """Whether there is a proof, or why there is none."""
+    return {"checked": False, "unchecked": proof} if isinstance(proof, str) else {"checked": True}
+
+
+def describe_proof(proof: Mapping[str, Any] | str) -> str:
+    """The same in words."""
+    return f"unchecked: {proof}" if isinstance(proof, str) else "granted by the checker"
+
+
+def instant_data(answer: Observability, proofs: Proofs) -> dict[str, Any] | None:
     """What is known at one instant, from a measurement and its derivatives there; None for a constant model.
 
     Over an interval the rank is lost where the parameters are such that a drop lasts; at an instant also in passing.
     """
     if answer.joint.written is None or answer.kind in ("constant", "discrete"):
         return None
-    passing = [drop_data(drop, certifier) for drop in answer.rank_drops if not drop.lasting]
+    passing = [drop_data(drop, proofs) for drop in answer.rank_drops if not drop.lasting]
     return {"rank": answer.rank, "rank_drops": passing, "frozen_rank": answer.frozen_rank}
 
 
@@ -85,11 +112,11 @@ def measurement_data(measurement: MeasurementObservability) -> dict[str, Any]:
     }
 
 
-def drop_data(drop: RankDrop, certifier: Certifier | None) -> dict[str, Any]:
+def drop_data(drop: RankDrop, proofs: Proofs) -> dict[str, Any]:
     """One rank drop, its condition as one polynomial.
 
     Over real parameters the squares of several sum to zero exactly where all of them vanish; ``zeros`` lists them.
-    ``checked`` says that the checker grants the smaller rank on them.
+    ``checked`` says that the checker grants the smaller rank on them, ``unchecked`` why it does not.
     """
     zeros = [to_text(zero) for zero in drop.zeros]
     text = zeros[0] if len(zeros) == 1 else " + ".join(f"({zero})**2" for zero in zeros)
@@ -101,9 +128,9 @@ def drop_data(drop: RankDrop, certifier: Certifier | None) -> dict[str, Any]:
         "complete": drop.complete,
         "excluded_by_declaration": drop.excluded,
         "rank": drop.rank,
-        "checked": certifier is not None and certifier.certify_drop(drop) is not None,
+        **proof_data(proofs[drop]),
         "lost_basis": text_rows(drop.directions),
-        "inside": [drop_data(inner, certifier) for inner in drop.inside],
+        "inside": [drop_data(inner, proofs) for inner in drop.inside],
         "inside_complete": drop.whole,
     } | ({"nonzero": nonzero} if nonzero else {})
 
@@ -151,7 +178,7 @@ def text_rows(matrix: sp.MatrixBase) -> list[list[str]]:
 Formula = tuple[str, str, sp.Basic]
 
 
-def captioned_formulas(answer: Observability) -> list[Formula]:
+def captioned_formulas(answer: Observability, proofs: Proofs) -> list[Formula]:
     """Captions and equations of the answer, in the order in which they are read."""
     chosen, gains = answer.split, answer.gains
     listed: list[Formula] = []
@@ -169,7 +196,7 @@ def captioned_formulas(answer: Observability) -> list[Formula]:
     if answer.unobservable_basis.rows:
         listed.append(("not observed by any measurement", "N", answer.unobservable_basis))
     for drop in answer.rank_drops:
-        text = "proved complete" if drop.complete else "perhaps not complete"
+        text = f"{'proved' if drop.complete else 'perhaps not'} complete; {describe_proof(proofs[drop])}"
         but = f" and {', '.join(map(str, drop.nonzero))} do not" if drop.nonzero else ""
         caption = f"the rank of {drop.subspace} drops where all of these vanish{but} ({text})"
         listed.append((caption, "d", row_matrix(drop.zeros)))
@@ -196,7 +223,7 @@ def row_matrix(values: tuple[sp.Expr, ...]) -> sp.ImmutableMatrix:
 def as_latex(answer: Observability) -> str:
     r"""A document fragment: one ``\[ \]`` display for every formula."""
     lines = [f"% states: {', '.join(answer.states)}"]
-    for caption, name, value in captioned_formulas(answer):
+    for caption, name, value in captioned_formulas(answer, list_proofs(answer)):
         literal = "".join("\\" + c if c in "_%&#$" else c for c in caption)
         lines += [rf"\paragraph{{{literal}}}", rf"\[ {name} = {sp.latex(value)} \]"]
     return "\n".join(lines) + "\n"
@@ -206,7 +233,7 @@ def as_html(answer: Observability, title: str) -> str:
     """A page of its own; formulas as MathML, every text escaped."""
     from sympy.printing.mathml import mathml
 
-    verdict = "observable" if answer.observable else "not observable"
+    verdict, proofs = "observable" if answer.observable else "not observable", list_proofs(answer)
     parts = [
         "<!DOCTYPE html>",
         '<html lang="en"><head><meta charset="utf-8">',
@@ -214,10 +241,10 @@ def as_html(answer: Observability, title: str) -> str:
         "<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}math{font-size:1.1em}</style></head><body>",
         f"<h1>{escape(title)}</h1>",
         f"<p>{len(answer.states)} states ({escape(', '.join(answer.states))}): {verdict}, joint dimension "
-        f"{answer.rank}.</p>",
+        f"{answer.rank} ({escape(describe_proof(proofs[None]))}).</p>",
     ]
     parts += [f"<p>Unobservable direction: {escape(direction)}</p>" for direction in answer.unobservable]
-    for caption, _, value in captioned_formulas(answer):
+    for caption, _, value in captioned_formulas(answer, proofs):
         parts.append(f"<h2>{escape(caption)}</h2>")
         parts.append(f'<math xmlns="http://www.w3.org/1998/Math/MathML">{mathml(value, printer="presentation")}</math>')
     return "\n".join([*parts, "</body></html>", ""])

@@ -194,7 +194,7 @@ def certify_inputs(contents: ModelFile, joint: JointObservability) -> dict[str, 
         above = Certifier.of(closed).certify_rank(found)
     except NavsymError:
         return None
-    return {"kind": "all", "of": [above, *below]} if above is not None else None
+    return {"kind": "all", "of": [above, *below]} if isinstance(above, dict) else None
 
 
 def close_loop(model: LinearModel, G: sp.Matrix, D: sp.Matrix, joint: JointObservability) -> LinearModel | None:
@@ -245,4 +245,5 @@ def certify_matrix(M: sp.Matrix) -> dict[str, Any] | None:
     rows, motion = certifier.rows, certifier.motion
     chosen = independent_places(at_point(rows, motion.points(1)[0]))
     columns = null_vectors([rows[k] for k in chosen], M.cols, motion.ring)
-    return certifier.certify(len(chosen), columns, [], range(len(rows)))
+    item = certifier.certify(len(chosen), columns, [], range(len(rows)))
+    return item if isinstance(item, dict) else None

@@ -11,6 +11,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -267,9 +268,7 @@ class View:
             if not leaves:
                 listed.append(self.make_drop(zeros))
                 continue
-            lost = [
-                lost_columns(leaf, self.generic.unseen, ring) if self.generic is not None else [] for leaf in leaves
-            ]
+            lost = [self.lost_on(leaf) for leaf in leaves]
             sizes = [sum(len(entry) for column in columns for entry in column) for columns in lost]
             short = lost[0] if all(columns == lost[0] for columns in lost) and sizes[0] <= DIRECTION_TERMS else []
             entries = [ring.expression(entry) for column in short for entry in column]
@@ -290,6 +289,12 @@ class View:
             for zeros, leaf in partial
             if zeros
         ]
+
+    def lost_on(self, leaf: Leaf) -> Matrix:
+        """Columns that are lost on a leaf; none where they are long."""
+        with suppress(TooLargeError):
+            return lost_columns(leaf, self.generic.unseen, self.motion.ring) if self.generic is not None else []
+        return []
 
     def is_vague(self, system: System) -> bool:
         """True where functions may depend on each other: exp(a t) and exp(w t) are one where a = w."""

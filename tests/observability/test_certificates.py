@@ -9,8 +9,9 @@ import sympy as sp
 
 import navsym as nav
 from navsym import checker
+from navsym.cli.main import run
 from navsym.models.linear import LinearModel
-from navsym.observability.certificates import Certifier, is_granted, list_nested, solve_near
+from navsym.observability.certificates import LONG, NO_SHARES, Certifier, is_granted, list_nested, solve_near
 
 REAL = "real"
 
@@ -97,11 +98,10 @@ def test_an_attitude_on_its_manifold_is_granted():
 
 
 def test_what_is_too_long_stands_as_unchecked():
-    from navsym.observability.certificates import Certifier
     from tests.benchmarks.observability import navigation_errors
 
     model = navigation_errors()
-    assert Certifier.of(model).certify(12, [[Certifier.of(model).motion.clock ** 9] * 15] * 3, [], range(3)) is None
+    assert Certifier.of(model).certify(12, [[Certifier.of(model).motion.clock ** 9] * 15] * 3, [], range(3)) == LONG
 
 
 def test_what_must_not_vanish_may_move():
@@ -110,10 +110,10 @@ def test_what_must_not_vanish_may_move():
     certifier = Certifier.of(LinearModel(sp.Matrix([[0, m], [0, 0]]), None, sp.Matrix([[1, 0]]), rates={m: k}))
     moving = certifier.motion.ring.context.gen(certifier.motion.ring.places[m])
     item = certifier.certify(2, [], [], [0], [moving])
-    assert item is not None and item["statement"]["rates"].keys() == {"m", "tt"}
+    assert not isinstance(item, str) and item["statement"]["rates"].keys() == {"m", "tt"}
     (zero,) = item["statement"]["zeros"]
     assert sp.sympify(zero) == sp.Symbol("m") * sp.Symbol("tt") - 1
-    assert certifier.certify(2, [], [moving], [0], [moving]) is None
+    assert certifier.certify(2, [], [moving], [0], [moving]) == NO_SHARES
 
 
 @pytest.mark.parametrize("turn", range(3))
@@ -139,4 +139,42 @@ def test_drops_where_two_angles_differ_by_a_quarter_turn_are_granted():
     answer = nav.observe(nav.Model("x y", F=[["0", "cos(A - B)"], ["sin(A + B)", "0"]], H=["x"], A=REAL, B=REAL))
     certifier, joint = Certifier.of(answer.model), [drop for drop in answer.rank_drops if drop.subspace == "joint"]
     items = [certifier.certify_drop(drop) for drop in joint]
-    assert len(items) == 2 and all(item is not None and checker.check(item) for item in items)
+    assert len(items) == 2 and all(not isinstance(item, str) and checker.check(item) for item in items)
+
+
+def ask(H, rank, columns, zeros):
+    """A certificate for constant states."""
+    certifier = Certifier.of(LinearModel(sp.zeros(H.cols), None, H, time=sp.Dummy("still", real=True)))
+    ring = certifier.motion.ring
+    written = [[ring.quotient(sp.sympify(x)).top for x in column] for column in columns]
+    return certifier.certify(rank, written, [ring.quotient(zero).top for zero in zeros], range(H.rows))
+
+
+def test_a_direction_is_not_measured_in_a_place_where_it_vanishes_with_the_zeros():
+    a, b = sp.symbols("a b", real=True)
+    item = ask(sp.Matrix([[b, a]]), 1, [[-a, b]], [a])
+    assert item["free"] == [1] and checker.check(item)
+
+
+def test_points_are_whole_numbers_where_the_roots_of_fractions_are_too_long_for_the_checker():
+    names = "p1 p2 p3 q1 q2 q3 r1 r2 r3"
+    p, u, q, r, v, s, x, w, y = sp.symbols(names, real=True)
+    circle = (p**2 + q**2) * (r * y - s * x) + (p * s - q * r) * (x**2 + y**2) - (r**2 + s**2) * (p * y - q * x)
+    item = ask(sp.Matrix([[circle + u - v, v - w]]), 0, [[1, 0], [0, 1]], [u - v, v - w, sp.expand(circle)])
+    assert checker.check(item) and all("/" not in item["point"][name] for name in ("p2", "q2", "r2"))
+
+
+def test_what_the_checker_does_not_grant_is_printed_with_its_reason(tmp_path, capsys):
+    F = [["0", "f", "1"], ["0", "0", "0"], ["0", "0", "0"]]
+    model = nav.Model("v tilt bias", F=F, H=["v"], f=REAL, r=REAL, s=REAL, rates={"f": "r", "r": "s"})
+    model.save(tmp_path / "moving.toml")
+    answer = nav.observe(model)
+    passing = answer.document()["instant"]["rank_drops"]
+    assert passing and {drop["unchecked"] for drop in passing} == {"it holds in passing"}
+    assert "unchecked: it holds in passing" in answer.page() and "granted by the checker" in answer.latex()
+    assert run(["observe", str(tmp_path / "moving.toml")]) == 0
+    assert "unchecked: it holds in passing" in " ".join(capsys.readouterr().out.split())
+    legs = nav.Model(
+        "v tilt", pieces=[("0", "1", [["0", "f"], ["0", "0"]]), ("1", "2", [["0", "1"], ["0", "0"]])], H=["v"], f=REAL
+    )
+    assert nav.observe(legs).document()["unchecked"] == "a model in pieces"

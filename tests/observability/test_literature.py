@@ -101,4 +101,4 @@ def test_a_published_answer_is_found(example):
     f, h = ([part.strip() for part in listed] for listed in parts)
     answer = nav.observe(nav.Model(states, dynamics=f, H=h, **further))
     assert (answer.rank, answer.joint.proved) == (rank, True)
-    assert Certifier.of(answer.model).certify_rank(answer.joint) is not None
+    assert Certifier.of(answer.model).certify_rank(answer.joint)["kind"] == "observability"

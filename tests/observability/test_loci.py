@@ -8,9 +8,10 @@ import random
 import pytest
 import sympy as sp
 
+from navsym.core.errors import TooLargeError
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
-from navsym.observability.rank_drops import all_loci, compositions, drops_by_staircases
+from navsym.observability.rank_drops import all_loci, compositions, drops_by_staircases, find_drops
 from tests.observability.twins import drops_and_completeness, drops_by_minors, rank_drops, staircases
 
 a, b, c, w = sp.symbols("a b c w", real=True)
@@ -306,3 +307,13 @@ def test_a_dense_system_has_all_its_drops_also_over_a_finite_field(seed):
         numbers = [[int(x.subs(symbols[0], value)) % p for x in F[i, :]] for i in range(8)]
         smaller = rank_modulo(krylov_modulo(numbers, [int(x) % p for x in model.H], p), p) < 8
         assert smaller == any(all(f.eval(value) % p == 0 for f in system) for system in conditions)
+
+
+def test_a_drop_whose_lost_directions_are_too_long_is_listed_without_them(monkeypatch):
+    def refuse(*given):
+        raise TooLargeError("expected rows that can be written; got too many terms; fix some parameters")
+
+    monkeypatch.setattr("navsym.observability.rank_drops.lost_columns", refuse)
+    found = observe_jointly(LinearModel(sp.Matrix([[0, a], [0, 0]]), None, sp.Matrix([[1, 0]])))
+    joint = [drop for drop in find_drops(found).drops if drop.subspace == "joint"]
+    assert [(drop.condition, drop.rank, drop.directions.rows) for drop in joint] == [("a = 0", 1, 0)]

@@ -219,7 +219,7 @@ def test_what_a_drop_excepts_leaves_its_rank_at_all_other_points_and_is_granted(
         assert all(value_modulo(factor, point) for factor in drop.nonzero)
         rows = residue_chains([chain.vectors[0] for chain in chains.chains], chains.motion, [*point.values()])
         assert residue_rank(rows) == drop.rank < joint.joint_dimension
-    granted = [item for item in map(certifier.certify_drop, drops) if item is not None]
+    granted = [item for item in map(certifier.certify_drop, drops) if not isinstance(item, str)]
     assert granted and all("statement" in item for item in granted)
     for item in granted:
         *zeros, last = item["statement"]["zeros"]

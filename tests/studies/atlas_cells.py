@@ -6,8 +6,9 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import sympy as sp
@@ -19,10 +20,23 @@ from navsym.observability.directions import independent_columns, is_closed
 from navsym.observability.linear import PRIME, at_point
 from navsym.observability.motion import residue_chains
 from navsym.observability.pieces import independent_rows, is_spanned
-from navsym.observability.rank_drops import DropList, View, closed_systems, conditions_on, join_conditions
+from navsym.observability.rank_drops import DropList, RankDrop, View, closed_systems, conditions_on, join_conditions
 from navsym.observability.tree import leaf_on, search_drops
-from navsym.studies.atlas.kept import KEPT, Cell, atlas
-from navsym.studies.atlas.scenes import ARM, Aiding, Scene, cell_names, error_model, g, list_columns, parts_of
+from navsym.studies.atlas.kept import KEPT, RANK, Cell, atlas
+from navsym.studies.atlas.scenes import (
+    ARM,
+    EARTH,
+    Aiding,
+    Scene,
+    cell_names,
+    derivative,
+    error_model,
+    g,
+    heading,
+    list_columns,
+    parts_of,
+    roll,
+)
 
 #: Cases looked at for the exceptional set of a cell, and letters of a condition that is written.
 NODES, LETTERS = 150, 160
@@ -34,21 +48,25 @@ def compute_cell(name: str) -> Cell:
     """A cell of the atlas from nothing but its name."""
     scene, aiding = parts_of(name)
     model = error_model(scene, aiding)
-    guesses = (vector for _, vector in (*symmetries(scene, aiding), *single_states(scene, aiding)))
-    joint = prove_by_guesses(observe_jointly(model), guesses)
+    named = (vector for _, vector in (*symmetries(scene, aiding), *single_states(scene, aiding)))
+    joint = prove_by_guesses(observe_jointly(model), [*named, *further_guesses(scene, aiding)])
     found = find_joint_drops(joint, nonzero_symbols(scene), NODES)
     certifier = Certifier.of(model)
-    granted = [certifier.certify_rank(joint), *map(certifier.certify_drop, found.drops)]
+    drops: dict[str, RankDrop] = {}
+    for drop in found.drops:
+        drops[shorten(drop.condition, drops)] = drop
+    proofs = {RANK: certifier.certify_rank(joint), **{key: certifier.certify_drop(drop) for key, drop in drops.items()}}
+    granted = [None if isinstance(item, str) else item for item in proofs.values()]
     return Cell(
         name,
         size=model.size,
         rank=joint.joint_dimension,
         proved=joint.proved,
         unobservable=tuple(name_basis(joint, scene, aiding)),
-        drops={shorten(drop.condition): drop.rank for drop in found.drops},
+        drops={key: drop.rank for key, drop in drops.items()},
         complete=found.complete["joint"],
         open=len(found.open["joint"]),
-        checked=sum(item is not None for item in granted),
+        unchecked={key: item for key, item in proofs.items() if isinstance(item, str)},
         certificate=hashlib.sha256(json.dumps(granted, sort_keys=True).encode()).hexdigest()[:32],
     )
 
@@ -93,9 +111,11 @@ def find_joint_drops(found: JointObservability, known: Iterable[sp.Symbol], node
     return DropList(tuple(drops), {"joint": not cases.open}, {"joint": left})
 
 
-def shorten(condition: str) -> str:
-    """A condition that can be read: a long one is cut."""
-    return condition if len(condition) <= LETTERS else f"{condition[: LETTERS - 2]} …"
+def shorten(condition: str, others: Container[str] = ()) -> str:
+    """A condition that can be read: a long one is cut, and has a number where others begin alike."""
+    text = condition if len(condition) <= LETTERS else f"{condition[: LETTERS - 2]} …"
+    numbered = (f"{text} ({k})" for k in itertools.count(2))
+    return next(name for name in itertools.chain([text], numbered) if name not in others)
 
 
 def nonzero_symbols(scene: Scene) -> list[sp.Symbol]:
@@ -173,6 +193,31 @@ def symmetries(scene: Scene, aiding: Aiding) -> Iterator[tuple[str, list[sp.Expr
         yield f"common shift along {words}", vector_of(aiding, {"position": unit} | dict.fromkeys(landmarks, unit))
     scaled = {"velocity": velocity, "accelerometer_bias": -scene.acceleration, "camera arm": arm}
     yield "scale", vector_of(aiding, scaled | landmarks)
+
+
+def further_guesses(scene: Scene, aiding: Aiding) -> Iterator[list[sp.Expr]]:
+    """Changes without a name: an arm that turns with the body, a delay, a change of scale about a point, the Earth."""
+    turn, down, forward = scene.turn, scene.C * scene.gravity / g, sp.Matrix([1, 0, 0])
+    arm = sp.Matrix(ARM) if scene.in_body else sp.zeros(3, 1)
+    for unit in (sp.Matrix([int(i == j) for i in range(3)]) for j in range(3)):
+        pull = turn.cross(turn.cross(unit)) + derivative(turn, scene.rates).cross(unit)
+        moved = {"position": unit, "velocity": turn.cross(unit), "accelerometer_bias": -pull, "camera arm": -unit}
+        yield vector_of(aiding, moved)
+        for point in scene.points:
+            yield vector_of(aiding, {"position": unit.cross(point)})
+    yaw, lean = scene.rates.get(heading, sp.Integer(0)), scene.rates.get(roll, sp.Integer(0))
+    late = {"delay": sp.Matrix([1]), "camera angle": -lean * forward, "camera arm": -lean * forward.cross(arm)}
+    yield vector_of(aiding, late | {"attitude": -yaw * down})
+    landmarks = {f"landmark {k}": point + arm for k, point in enumerate(scene.points, start=1)}
+    yield vector_of(aiding, late | {block: yaw * down.cross(point) for block, point in landmarks.items()})
+    still = {block: turn.cross(point) for block, point in landmarks.items()}
+    yield vector_of(aiding, {"delay": sp.Matrix([1])} | still)
+    for point in scene.points:
+        grown = {"position": -point - arm, "velocity": scene.C * scene.velocity, "camera arm": arm}
+        yield vector_of(aiding, grown | {"accelerometer_bias": -scene.acceleration})
+        axis = sp.Matrix([EARTH[0], 0, EARTH[1]])
+        across = g * sp.Matrix([point[2] * EARTH[0], 0, -point[0] * EARTH[0]])
+        yield vector_of(aiding, {"velocity": across, "attitude": 2 * axis.dot(point) * axis})
 
 
 def vector_of(aiding: Aiding, parts: Mapping[str, sp.Matrix]) -> list[sp.Expr]:

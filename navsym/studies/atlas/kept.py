@@ -16,6 +16,8 @@ from navsym.models.model import Model
 
 #: The cells as they were computed: name -> all of a cell but its name.
 KEPT = Path(__file__).with_name("atlas.json")
+#: The key of the generic rank among what is unchecked.
+RANK = "rank"
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +31,7 @@ class Cell(Shown):
     drops        : condition -> rank that is left there, None where it was not found
     complete     : True where these are proved to be all conditions, for gravity and depths that are not zero
     open         : number of sets of points at which nothing was decided
-    checked      : number of ranks that the checker grants, of ``1 + len(drops)``
+    unchecked    : "rank" or a condition -> why the checker does not grant this rank; it grants all others
     certificate  : hash of what the checker read
     """
 
@@ -41,8 +43,13 @@ class Cell(Shown):
     drops: Mapping[str, int | None]
     complete: bool
     open: int
-    checked: int
+    unchecked: Mapping[str, str]
     certificate: str
+
+    @property
+    def checked(self) -> int:
+        """Number of ranks that the checker grants, of ``1 + len(drops)``."""
+        return 1 + len(self.drops) - len(self.unchecked)
 
     @property
     def model(self) -> Model:
