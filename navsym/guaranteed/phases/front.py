@@ -68,11 +68,8 @@ def phases(
     if twice is not None:
         raise DuplicateError(f"expected one value; got two of {twice}; give one", where=f"phases: {twice}")
     given = {**(values or {}), **parameters}
-    if isinstance(model, GuaranteedProblem):
-        message = "expected a model with a free parameter; got a problem, whose numbers are all given; give the model"
-        raise DomainError(message, where="phases: model")
     pairs = {name: value for name, value in given.items() if isinstance(value, (tuple, list))}
-    names = names_of_parameters(pairs, parameter)
+    names = names_of_parameters(model, pairs, parameter, {"quick": quick, "unique": unique})
     fixed = {name: value for name, value in given.items() if name not in pairs}
     with file_in_errors(model):
         contents = contents_of(model, None, fixed, "phases")
@@ -80,9 +77,6 @@ def phases(
         family = family_of(contents, target, *names)
         answer: Phases | PhaseMap
         if second:
-            if quick or unique:
-                message = "expected one range with it; got two; leave it out, or give one parameter a value"
-                raise DomainError(message, where=f"phases: {'quick' if quick else 'unique'}")
             beside = declared_symbol(contents, names[1])
             answer = find_map(family, beside, first, second[0], Budget.of(seconds), progress)
         else:
@@ -90,12 +84,20 @@ def phases(
     return replace(answer, question=Question(model, target, fixed))
 
 
-def names_of_parameters(pairs: Mapping[str, Any], parameter: str | Sequence[str]) -> list[str]:
-    """The one or two parameters that vary. Raises DomainError."""
+def names_of_parameters(
+    model: Any, pairs: Mapping[str, Any], parameter: str | Sequence[str], options: Mapping[str, bool]
+) -> list[str]:
+    """The one or two parameters that vary. Raises DomainError, also for options that a map does not have."""
+    if isinstance(model, GuaranteedProblem):
+        message = "expected a model with a free parameter; got a problem, whose numbers are all given; give the model"
+        raise DomainError(message, where="phases: model")
     names = [*pairs] or ([parameter] if isinstance(parameter, str) else [*parameter])
     if not 1 <= len(set(names)) == len(names) <= 2:
         got = ", ".join(map(str, names)) or "none"
         raise DomainError(f"expected a range, or two; got those of {got}; give values to the others", where="phases")
+    for name in (name for name, value in options.items() if value and len(names) == 2):
+        message = "expected one range with it; got two; leave it out, or give one parameter a value"
+        raise DomainError(message, where=f"phases: {name}")
     return names
 
 
