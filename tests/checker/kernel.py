@@ -154,14 +154,14 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=60, help="processor time for one theory")
     parser.add_argument("--first", type=int, help="so many entries of the book")
     options = parser.parse_args()
-    counts, seconds = Counter[str](), 0.0
+    counts, seconds, began = Counter[str](), 0.0, time.monotonic()
     items = read_ledger() if options.what == "ledger" else read_book(options.first)
     for row in replay_all(items, options.kept, options.seconds):
         counts[row["status"]] += 1
         seconds += row["seconds"]
         if row["status"] != "PROVED":
             print(row["name"], row["status"], row["seconds"], row["why"])
-    print(dict(counts), f"{seconds:.0f} s of processor time")
+    print(dict(counts), f"{seconds:.0f} s of processor time for theories, {time.monotonic() - began:.0f} s in all")
 
 
 if __name__ == "__main__":
