@@ -291,8 +291,8 @@ class Reader(SourceReader):
         """``switch`` as ``if``: a case goes on into the next one unless it ends in a jump."""
         value = field_of(field_of(node, "condition"), "value") or next(iter(named(field_of(node, "condition"))), None)
         cases, test = named(field_of(node, "body")), self.expression(value)
-        inner = (n for case in cases for n in descend(case) if n.type in ("case_statement", "..."))
-        is_odd = any(n.type == "..." or n.parent.parent.type != "switch_statement" for n in inner)
+        labels = (n for case in cases for n in descend(case) if n.type in ("case_statement", "..."))
+        is_odd = any(n.type == "..." or n.parent.parent.type != "switch_statement" for n in labels)
         kinds = (
             ({"odd"} if is_odd else set[str]())
             | {case.type for case in cases}
@@ -342,12 +342,11 @@ class Reader(SourceReader):
             if is_call or (value is not None and value.type == "initializer_list" and sizes is None):
                 items = self.several(named(value))  # v(a, b), v{a + b}
                 whole = self.part("list", value, items) if items or not is_call else None
-                start = items[0] if len(items) == 1 else whole
+                start = items[0] if len(items) == 1 and number_of(kind) != "other" else whole
             else:
                 start = None if value is None else self.expression(value)
-            is_list = value is not None and value.type in ("argument_list", "initializer_list")
-            if inner.type == "structured_binding_declarator" or (is_list and number_of(kind) == "other"):
-                done.append(self.unread(child, "several names declared at once, or an object made of a list"))
+            if inner.type == "structured_binding_declarator":
+                done.append(self.unread(child, "several names declared at once"))
                 continue
             if inner.type == "function_declarator":  # Vector3f v(a, b, c), which the grammar takes for a function
                 items = tuple(map(self.taken_for_parameter, named(field_of(inner, "parameters"))))
