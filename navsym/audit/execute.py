@@ -409,7 +409,7 @@ class Machine(Evaluator):
         self.frame[name] = variable
         if cells and bases and isinstance(result, List):
             share(variable, [*bases, variable])  # two of its rows may be one
-        elif is_view(self.unit, value):
+        elif (cells or isinstance(result, Unread)) and is_view(self.unit, value):
             share(variable, bases)
 
     def rename_object(self, name: str, value: Part, statement: Part) -> None:
