@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
 import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED, Argument, Part, Unit, names_in, walk
+from navsym.audit.form import NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED, Argument, Part, names_in, walk
 from navsym.audit.functions import METHODS
+from navsym.audit.preprocessor import WAYS, drop_ways, region_of
 from navsym.audit.syntax import SourceReader, ascend, descend, field_of, identifiers_in, list_above, named, text_of
 from navsym.audit.values import LIMITS, whole_kind
 
@@ -20,14 +20,7 @@ MATRIX = re.compile(
 )
 NAMED = ("preproc_def", "enumerator")
 ODD = ("union_specifier", "bitfield_clause")  # whose members share their place, or hold less than their type
-WAYS = ("preproc_if", "preproc_ifdef", "preproc_elif", "preproc_elifdef", "preproc_else")
 SCOPES = ("namespace_definition", "struct_specifier", "class_specifier")
-#: Comments and texts, what is no blank, and the lines of the preprocessor.
-HIDING = re.compile(rb"(?s)//(?:\\\r?\n|[^\n])*|/\*.*?(?:\*/|\Z)|R\"\w*\(.*?\)\w*\"|\"(?:\\.|[^\"\\\n])*\"|'\\?.'")
-BLACK = re.compile(rb"[^\s]")
-DIRECTIVE = re.compile(
-    rb"(?<!\\\n)(?<!\\\r\n)^[ \t]*#[ \t]*((?:el)?if(?:n?def)?|else|endif|define|undef)\b([^\n]*)", re.MULTILINE
-)
 DECLARING = (
     "init_declarator declaration parameter_declaration array_declarator pointer_declarator reference_declarator "
     "field_declaration"
@@ -111,15 +104,7 @@ class Reader(SourceReader):
     def find_value(node: Any) -> Any:
         return field_of(field_of(node, "declarator"), "value") if node.type == "declaration" else None
 
-    def region_of(self, node: Any) -> tuple[int, int] | None:
-        """The way of an undecided ``#if`` around a definition, or the function around an inner one."""
-        for above in ascend(node):
-            if above.type in WAYS:
-                other = field_of(above, "alternative")
-                return above.start_byte, above.end_byte if other is None else other.start_byte
-            if above.type == "function_definition":
-                return above.start_byte, above.end_byte
-        return None
+    region_of = staticmethod(region_of)
 
     def restrict(self, node: Any, *names: str) -> None:
         """Note where names are known that are defined at a node."""
@@ -306,8 +291,8 @@ class Reader(SourceReader):
         """``switch`` as ``if``: a case goes on into the next one unless it ends in a jump."""
         value = field_of(field_of(node, "condition"), "value") or next(iter(named(field_of(node, "condition"))), None)
         cases, test = named(field_of(node, "body")), self.expression(value)
-        inner = (n for case in cases for n in descend(case) if n.type in ("case_statement", "..."))
-        is_odd = any(n.type == "..." or n.parent.parent.type != "switch_statement" for n in inner)
+        labels = (n for case in cases for n in descend(case) if n.type in ("case_statement", "..."))
+        is_odd = any(n.type == "..." or n.parent.parent.type != "switch_statement" for n in labels)
         kinds = (
             ({"odd"} if is_odd else set[str]())
             | {case.type for case in cases}
@@ -357,12 +342,11 @@ class Reader(SourceReader):
             if is_call or (value is not None and value.type == "initializer_list" and sizes is None):
                 items = self.several(named(value))  # v(a, b), v{a + b}
                 whole = self.part("list", value, items) if items or not is_call else None
-                start = items[0] if len(items) == 1 else whole
+                start = items[0] if len(items) == 1 and number_of(kind) != "other" else whole
             else:
                 start = None if value is None else self.expression(value)
-            is_list = value is not None and value.type in ("argument_list", "initializer_list")
-            if inner.type == "structured_binding_declarator" or (is_list and number_of(kind) == "other"):
-                done.append(self.unread(child, "several names declared at once, or an object made of a list"))
+            if inner.type == "structured_binding_declarator":
+                done.append(self.unread(child, "several names declared at once"))
                 continue
             if inner.type == "function_declarator":  # Vector3f v(a, b, c), which the grammar takes for a function
                 items = tuple(map(self.taken_for_parameter, named(field_of(inner, "parameters"))))
@@ -585,56 +569,6 @@ class Reader(SourceReader):
         if size.kind != "number" or size.parts[0] < 1:
             return self.refuse(node, "a number of cells that is no number")
         return self.part("slice", node, *((self.part("minus", node, size), None) if is_last else (None, size)))
-
-
-def drop_ways(source: bytes, unit: Unit) -> bytes:
-    """The source with blanks for what the preprocessor surely leaves out, and for the conditions that say so.
-
-    A file says that a name is not defined by defining it itself: ``#ifndef NAME`` before ``#define NAME``.
-    """
-    defined, own = unit.defined, "__cplusplus"
-    bare, text, before = HIDING.sub(lambda found: BLACK.sub(b" ", found[0]), source), bytearray(source), 0
-    known = {*(defined or ()), *([own] if unit.language == "cpp" else ())}
-    doubtful, states = set[str](), list[str]()  # "on", "off", "past" behind "on", or "open"
-
-    def state_of(word: str, rest: str) -> str:
-        """Of the lines behind a condition; "open" where it is no number and no name of which something is known."""
-        if (name := re.fullmatch(r"(!?)\s*defined\s*\(?\s*(\w+)\s*\)?", rest)) and word == "if":
-            word, rest = "ifndef" if name[1] else "ifdef", name[2]
-        if word == "if":
-            return "open" if not re.fullmatch("[0-9]+", rest) else "on" if int(rest) else "off"
-        is_open = rest in doubtful or (defined is None and rest not in {own, *known})
-        return "open" if is_open else "on" if (rest in known) == (word == "ifdef") else "off"
-
-    def blank(start: int, end: int) -> None:
-        text[start:end] = BLACK.sub(b" ", text[start:end])
-
-    directives = [*DIRECTIVE.finditer(bare)]
-    for found, following in itertools.zip_longest(directives, directives[1:]):
-        word, rest = (part.decode("utf-8", "replace").strip() for part in found.groups())
-        if {"off", "past"} & {*states}:
-            blank(before, found.start())
-        before = found.end()
-        old = states.pop() if word.startswith("e") and states else ""
-        is_hidden = bool({"off", "past"} & {*states})
-        if word in ("define", "undef"):
-            if is_hidden:
-                blank(*found.span())
-            elif name := re.match(r"\w+", rest):
-                (doubtful.add if "open" in states else known.add if word == "define" else known.discard)(name[0])
-            continue
-        new = "past" if old in ("on", "past") else old if old == "open" else "on"
-        new = state_of(word.removeprefix("el"), rest) if "if" in word and old in ("", "off") else new
-        if word == "ifndef" and new == "open" and rest not in doubtful and following is not None:
-            is_own = following[1] == b"define" and following[2].split()[:1] == [rest.encode()]
-            new = "on" if is_own else new
-        if word != "endif":
-            states.append(new)
-        if is_hidden or "open" not in (old, new if word != "endif" else ""):
-            blank(*found.span())
-        elif old == "off":  # the first way of which nothing is known
-            text[slice(*found.span(1))] = found[1].removeprefix(b"el").rjust(len(word))
-    return bytes(text)
 
 
 def head_of_function(node: Any) -> Any:

@@ -183,7 +183,9 @@ class Machine(Evaluator):
                 self.lose_members(name, unread)
         for name, sources in list_links(self.unit, statement) if is_naming(self.unit, statement) else ():
             variable = self.frame[self.canonical(name)] = Variable(self.canonical(name), all_unread=unread)
-            share(variable, self.arrays_in(sources))
+            is_object = statement.kind == "declare" and statement.parts[1] == "other"  # which may keep references
+            known = [v for n in sources if is_object and (v := self.frame.get(n) or self.globals.get(n)) is not None]
+            share(variable, known or self.arrays_in(sources))
         if writes.leaves:
             self.stop(unread)
 
@@ -407,7 +409,7 @@ class Machine(Evaluator):
         self.frame[name] = variable
         if cells and bases and isinstance(result, List):
             share(variable, [*bases, variable])  # two of its rows may be one
-        elif is_view(self.unit, value):
+        elif (cells or isinstance(result, Unread)) and is_view(self.unit, value):
             share(variable, bases)
 
     def rename_object(self, name: str, value: Part, statement: Part) -> None:
@@ -450,6 +452,9 @@ class Machine(Evaluator):
             number = "real" if number in ("quaternion", "auto") else number
             cell = Scalar(cell.tree, number, statement.line, statement)
         variable.cells[place] = cell
+        owner = self.frame.get(head_of(variable.name), variable)
+        if owner is not variable and owner.views:
+            lose(owner, Unread(statement.line, "a member of what may be another name"))
         if not isinstance(variable.cells, CellView):  # which has no cells of its own
             lose_views(variable, Unread(statement.line, "a view of an array that has changed; write a copy"))
 

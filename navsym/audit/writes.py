@@ -121,7 +121,8 @@ def written_by_call(unit: Unit, part: Part, entries: Container[str], numbers: Co
     for function in fitting:
         inside = written_outside(unit, function)
         given_to = {a.name: value for a, value in zip(function.arguments, arguments, strict=True)}
-        own = mentioned_in(*(given_to[n] for n in {*map(head_of, inside.changed)} & given_to.keys()))
+        touched = given_to.keys() if inside.others else {*map(head_of, inside.changed)} & given_to.keys()
+        own = mentioned_in(*(given_to[n] for n in touched))
         outer = {n for n in inside.changed if head_of(n) not in given_to}
         done, others = done | own | outer, others or inside.others or bool(outer)
     return Writes(changed=frozenset(done), others=others, leaves=name in unit.macros)

@@ -115,7 +115,7 @@ def test_an_unknown_call_leaves_unread_what_does_not_belong_to_the_function(tmp_
         ("void g(S *s) { s->a = 2; }\nvoid f(float &y) { S t; t.a = 1; g(&t); y = t.a; }",
          "a structure that g knows by another name"),
         ("namespace a { const float k = 1; } namespace b { const float k = 2; }\nvoid f(float &y) { y = k; }",
-         "k, which has several values in this file"),
+         "k, which this file defines in another place"),
         ("union U { float x; float v[1]; };\nvoid f(float a, float &y) { U u; u.x = 2; u.v[0] = a; y = u.x; }",
          "a member of a union, which shares its place with others"),
     ],
