@@ -259,6 +259,14 @@ def test_blocks_that_a_model_drops_are_named_by_its_conversion():
     assert found.target.dropped == ()
 
 
+def test_a_velocity_in_the_body_turns_with_the_body_and_the_earth():
+    changes = {"vector_error": "velocity in body", "attitude_error": "body"}
+    problem = read_problem(document_of(LEVEL, "pvagb", PLACED | {"velocity": ["v1", "v2", "v3"]}))
+    found = convert(problem, LEVEL, changes)
+    assert found.proved and not found.neglected_entries()
+    assert found.F[3][4] == "c13*cos(L)*W - c33*sin(L)*W + w3"  # -(w + C' W) x u
+
+
 WANDER = PLACED | {"wander_angle": "alpha", "velocity": ["v1", "v2", "v3"]}
 TURNED = replace(LEVEL, azimuth="wander")
 
