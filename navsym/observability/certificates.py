@@ -314,7 +314,7 @@ def divide_on(
     if rest != 0:
         return None
     scale = lcm(*(int(c.q) for quotient in found for c in quotient.coeffs()))
-    quotients = [whole.from_dict({powers: int(c * scale) for powers, c in q.to_dict().items()}) for q in found]
+    quotients = [whole.from_dict({powers: int((c * scale).p) for powers, c in q.to_dict().items()}) for q in found]
     return [part * scale + q for part, q in zip(parts, quotients, strict=True)], unit * scale
 
 
@@ -333,7 +333,7 @@ def points_on(zeros: System, said: Statement, symbols: Sequence[sp.Symbol]) -> I
         at = {
             s: sp.Rational(sp.prime(2 * i + k + 3), c * (7 * i + 2 * k + 9))
             if fine > 1
-            else c * ((5 * i + 3 * k) % 17 + 2)
+            else sp.Integer(c * ((5 * i + 3 * k) % 17 + 2))
             for i, (s, c) in enumerate(zip(symbols, signed, strict=True))
         }
         at |= dict(zip(angles, values, strict=True))

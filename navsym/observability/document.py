@@ -63,8 +63,10 @@ def list_proofs(answer: Observability) -> Proofs:
     if answer.joint.written is None:
         return {None: "a model in pieces" if answer.pieces else "long rows"}
     certifier = Certifier.of(answer.model)
-    drops = {drop: certifier.certify_drop(drop) for drop in list_nested(answer.rank_drops)}
-    return {None: certifier.certify_rank(answer.joint), **drops}
+    found: dict[RankDrop | None, Mapping[str, Any] | str] = {None: certifier.certify_rank(answer.joint)}
+    for drop in list_nested(answer.rank_drops):
+        found[drop] = certifier.certify_drop(drop)
+    return found
 
 
 def proof_data(proof: Mapping[str, Any] | str) -> dict[str, Any]:
