@@ -687,3 +687,9 @@ def test_rows_that_doubles_do_not_tell_apart_have_two_bounds_that_meet(digits):
     lower, upper = Fraction(found.value.lower), Fraction(found.value.upper)
     square = (1 + 1 / small) ** 2 + 1 / small**2  # the weights (1 + 1/small, -1/small) are the only ones
     assert lower**2 <= square <= upper**2 and upper - lower <= upper / 10**20 and found.check()
+
+
+def test_units_of_unknowns_that_are_far_apart_leave_no_gap():
+    blocks = [nav.Block([[1, 3e15], [0, 6e15]], [2, 1]), nav.Block([[2, 1e15], [-2, 0], [2, 0]], [2, 5, 1])]
+    value = nav.solve_blocks(blocks, [1, 1e15]).value
+    assert Fraction(value.upper) - Fraction(value.lower) <= Fraction(value.upper) / 10**20

@@ -117,6 +117,13 @@ def test_data_that_leave_no_room_inside_have_a_radius_from_both_sides():
     assert last.value == 1.0 and 1 - Fraction(1, 10**20) < Fraction(last.radius.lower) <= 1
 
 
+def test_a_contradiction_by_a_part_of_1e26_is_excluded_with_a_certificate():
+    guard = nav.Guard(nav.Model("b", [["0"]], ["2*b", "-1000000*b"]), outliers=1)
+    guard.step([None, 2000000], t=0)
+    last = guard.step([-3, "2000001.00000000000000000001"], t=1)
+    assert last.excluded == (1.0,) and last.check().accepted
+
+
 def test_a_contradiction_that_doubles_do_not_see_is_noticed_also_after_a_restart():
     """The readings differ by three bounds and are 4e16 of them."""
     guard = nav.Guard(nav.Model("b c", [["0", "0"], ["0", "0"]], ["b", "c"], targets={"b": "b"}))

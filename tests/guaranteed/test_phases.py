@@ -8,6 +8,7 @@ from fractions import Fraction
 import pytest
 import sympy as sp
 
+import navsym as nav
 from navsym import checker
 from navsym.claims import CERTIFIED
 from navsym.core.errors import DomainError, NotEstimableError
@@ -269,3 +270,14 @@ def test_a_change_does_not_rest_on_a_closed_form_that_is_not_proved(monkeypatch)
     assert {r.status for r in answer.regimes} == {CERTIFIED}
     assert change.at is None and change.proved
     assert sp.Rational(change.lower) <= 4 * sp.pi / 3 <= sp.Rational(change.upper)
+
+
+def test_a_closed_form_is_proved_whatever_the_unit_of_the_measurements():
+    F = [["0", "1", "0"], ["0", "0", "1"], ["0"] * 3]
+    for unit in ("1", "1/1000000000000"):
+        h = [f"({unit})*(x + a)"]
+        model = nav.Model("x v a", F, h, "1000000", interval="T", targets={"g": "x + v + 2*a"}, T=("0", "20"))
+        (regime,) = nav.phases(model, T=("1/2", "4")).regimes
+        T = regime.family.parameter
+        assert regime.status == nav.PROVED
+        assert sp.simplify(regime.value * sp.Rational(unit) * T**2 / (T + 4) ** 2) == 10**6
