@@ -356,9 +356,9 @@ class Follower:
         if rule == "split":
             x, place = proof["symbol"], checker.parse(proof["at"])
             lines = [f"destruct (Rle_or_lt {self.names[x]} ({write_term(place, self.names)}))."]
-            for end, part in zip(("high", "low"), proof["proofs"], strict=True):
-                side = {**self.box, x: self.box[x]._replace(**{end: place, f"open_{end}": False})}
-                lines += ["{", *Follower(side, self.names).go(part, term, relation), "}"]
+            halves = self.box[x]._replace(high=place, open_high=False), self.box[x]._replace(low=place, open_low=False)
+            for half, part in zip(halves, proof["proofs"], strict=True):
+                lines += ["{", *Follower({**self.box, x: half}, self.names).go(part, term, relation), "}"]
             return lines
         if rule == "slope" and not (relation == ">" and proof["strict"]):
             return self.climb(proof, term, relation)
@@ -394,9 +394,9 @@ class Follower:
 
     def climb(self, proof: Mapping[str, Any], term: Term, relation: str) -> list[str]:
         """A function by its value at an end of the range of a symbol, from which it does not fall."""
-        x, is_high = proof["symbol"], proof["end"] == 1
+        x, is_high, box = proof["symbol"], proof["end"] == 1, dict[str, Any](self.box)
         closed = {"open_high" if is_high else "open_low": False, "nonzero": False, "integer": False}
-        limit, u, slope = self.box[x]._replace(**closed), f"{self.names[x]}_", checker.differentiate(term, x)
+        limit, u, slope = box[x]._replace(**closed), f"{self.names[x]}_", checker.differentiate(term, x)
         end, change = (limit.high, checker.negate(slope)) if is_high else (limit.low, slope)
         start, inner = checker.replace(term, ("symbol", x), end), Follower(self.box, {**self.names, x: u})
         f, g = (f"(fun {u} : R => {write_term(t, inner.names)})" for t in (term, slope))
