@@ -34,6 +34,7 @@ from navsym.audit.values import (
     convert,
     demand,
     does_fit,
+    find_unread,
     forbid,
     is_integer,
     join,
@@ -379,8 +380,10 @@ class Machine(Evaluator):
         forbid(not shape, "<< into what has no known size", value.line)
         if names_in(target) & {*names_in(value), *(p.parts[0] for p in walk(value) if p.kind == "call")}:
             raise Unreadable("a matrix that is filled with its own entries", value.line)
-        rows: list[list[Value]] = [[]]
-        for block in map(self.value, value.parts[0]):
+        rows, blocks = list[list[Value]]([[]]), [*map(self.value, value.parts[0])]
+        if (unread := find_unread(*blocks)) is not None:
+            return unread
+        for block in blocks:
             rows[-1].append(block)
             if join(*rows[-1], across=True).shape[1:] == ((*shape, 1)[1],):  # type: ignore[union-attr]
                 rows.append([])

@@ -68,7 +68,9 @@ def list_links(unit: Unit, part: Part) -> Iterator[tuple[str, set[str]]]:
     if part.kind == "declare" and part.parts[3] is not None:
         if part.parts[4] or part.parts[1] in ("auto", "other"):
             yield part.parts[0], sources_of(part.parts[3])
-    elif part.kind == "assign" and (part.parts[2].kind in ("name", "list", "refused") or is_view(unit, part.parts[2])):
+    elif part.kind == "assign" and unit.language == "python":
+        if part.parts[2].kind not in ("name", "list", "refused") and not is_view(unit, part.parts[2]):
+            return
         yield from ((root, sources_of(part.parts[2])) for root in roots_of(unit, part.parts[0], ()))
 
 
