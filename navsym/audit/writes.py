@@ -9,7 +9,7 @@ from collections.abc import Container, Iterator
 from dataclasses import dataclass
 
 from navsym.audit.form import HIDDEN_MACROS, Function, Part, Unit, called_in, head_of, mentioned_in, names_in, walk
-from navsym.audit.functions import CONSTANTS, HARMLESS, PURE, does_take, is_known, is_method, is_view
+from navsym.audit.functions import CONSTANTS, HARMLESS, PURE, does_take, extreme_of, is_known, is_method, is_view
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,6 +173,7 @@ def is_plain(unit: Unit, part: Part, entries: Container[str] = ()) -> bool:
     if name in entries:
         return True
     is_pure = name in HARMLESS or name in PURE.get(language, ()) or does_take(name, len(part.parts[1]), language)
+    is_pure |= bool(extreme_of(name, language))
     return is_pure and name not in unit.functions
 
 
