@@ -61,7 +61,7 @@ class Verdict(Answer):
     >>> import navsym as nav
     >>> verdict = nav.prove("2*sin(a) = sin(2*a)")
     >>> verdict
-    <REFUTED: 2*sin(a) = sin(2*a); exact point, ball arithmetic; at a = 1: left - right = 0.7736445427901113179…>
+    <REFUTED: 2*sin(a) = sin(2*a); exact point, ball arithmetic; at a = 1: left - right = 0.77364454279011131…>
     >>> verdict.holds, dict(verdict.counterexample)
     (False, {'a': '1'})
     >>> nav.prove("(a - b)*(a + b) = a**2 - b**2").certificate["kind"]
