@@ -13,7 +13,13 @@ if TYPE_CHECKING:
 
 
 def command(
-    file: str, *, symbols: Path | None = None, out: Path | None = None, declare: bool = False, json_: bool = False
+    file: str,
+    *,
+    symbols: Path | None = None,
+    out: Path | None = None,
+    definitions: bool = False,
+    declare: bool = False,
+    json_: bool = False,
 ) -> int:
     """Read the formulas of a document. Status 1 when one of them is refused.
 
@@ -25,8 +31,9 @@ def command(
         sys.stdin.buffer.read(4_000_001).decode("utf-8", "replace") if file == "-" else Path(file), symbols=symbols
     )
     if out is not None:
-        write_text(out, reading.claims())
-        remark(f"{len(reading.read)} claims in {out}")
+        text = reading.claims(definitions=definitions)
+        write_text(out, text)
+        remark(f"{text.count('[[claim]]')} claims in {out}")
     if declare:
         emit({**reading.document(), "declarations": reading.declarations()}, as_json=json_, text=reading.declarations)
     else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, overload
 
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from navsym.prove.claimfile import ClaimFile
 
 SECONDS = 20.0
+#: The end of a sum that is a name, beside a whole number.
+END = re.compile(r"\s*(?:\d+\s*\*\s*)?([A-Za-z]\w*)\s*(?:[+-]\s*\d+\s*)?", re.ASCII)
 RELATION = re.compile(r"!=|<=|>=|==|=<|=>|<>|~=|[=<>]|[\u2260\u2264\u2265]")
 
 #: Called after each claim of a file with its verdict and the number of claims.
@@ -74,7 +76,8 @@ def prove(
                 claim file (TOML). A side is text, an exact number, a sympy expression, or rows or a matrix of these.
     relation  : one of ``= != < <= > >=``
     symbols   : declarations: ``T=("0", "2*pi")`` for a closed range, ``"real"``, ``"positive"``, ``"nonnegative"``,
-                ``"nonzero"``, or a table such as ``u={"vector": 3}``; without one real, or as sympy assumes
+                ``"nonzero"``, or a table such as ``u={"vector": 3}``; without one real, or as sympy assumes, and where
+                it ends a sum or a product a whole number from 1
     box       : name -> range, inside the declaration of that symbol
     tolerance : of a printed numeral, half a unit of its last digit: ``|left - right| <= tolerance``
     exists    : expression, or list of them, that must have a value: points where one has none do not count
@@ -210,6 +213,12 @@ def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, An
     moments = [text for value in given.values() for text in list_moments(value)]
     known = dict(given) | dict.fromkeys(order or ())
     words = dict.fromkeys(sorted((symbols_in((*texts, *moments), known) - dimensions) | slopes.keys()), "real")
+    words |= {
+        name: {"integer": ["1", "oo"]}
+        for text in texts
+        for name in list_ends(side_text(text))
+        if name in words.keys() - given.keys()
+    }
     words |= read_assumptions((sides.left, sides.right, *existing), "prove")
     declared = {name: write_declaration(value, f"prove: {name}") for name, value in given.items()}
     for name in declared.keys() - words.keys():
@@ -228,6 +237,18 @@ def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, An
         block["tolerance"] = write_value(beside["tolerance"], "prove: tolerance")
     symbols = Symbols.read(table, "prove", slopes)
     return ClaimFile(symbols.parameters, (read_claim(block, symbols, "prove"),))
+
+
+def list_ends(text: str) -> Iterator[str]:
+    """The names that end sums and products, as ``n`` and ``n - 1``: they count, and without a declaration from 1."""
+    for call in re.finditer(r"\b(?:sum|product)\s*\(", text):
+        depth, pieces = 0, [""]
+        for letter in text[call.end() :]:
+            depth += (letter in "([") - (letter in ")]")
+            if depth < 0:
+                break
+            pieces = [*pieces, ""] if letter == "," and not depth else [*pieces[:-1], pieces[-1] + letter]
+        yield from (end[1] for end in map(END.fullmatch, pieces[2:4]) if end)
 
 
 def list_dimensions(value: Any) -> list[str]:

@@ -26,7 +26,7 @@ from navsym.core.numbers import Number
 from navsym.language.expression import to_text
 from navsym.language.names import INVERSES
 from navsym.prove.equations import list_entries, shape_of
-from navsym.prove.rooms.goals import draw_points, player, simple_point, write_term
+from navsym.prove.rooms.goals import as_term, draw_points, player, simple_point, write_term
 from navsym.prove.sampling.points import ranges_of, write_range
 from navsym.prove.search import SECONDS, find_proof, rules_of
 from navsym.prove.wording import decimal_ends
@@ -34,6 +34,8 @@ from navsym.prove.wording import decimal_ends
 UNCHECKED = "unchecked: no certificate of this statement"
 BITS, MORE_BITS = (128, 1024, 8192), (20_000, 190_000)
 POINTS = 18
+#: Letters of a coordinate that is short enough for a reader.
+SHORT = 3
 SHARE = "share"
 #: Kinds of certificates that give a statement its verdict.
 GRANTS = ("proof", "counterexample", "condition", "observability", "words", "sized")
@@ -228,10 +230,44 @@ def grant_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict
             for name, limits in document["symbols"].items()
         }
         try:
-            return replace(verdict, certificate=refute_document(documents, document, place))
+            refuted = replace(verdict, certificate=refute_document(documents, document, place))
         except REFUSALS as refusal:
             why = str(refusal)
+            continue
+        shorter = shorten_point(document, place) if len(documents) == 1 else place
+        return refuted if shorter == place else refute_shortly(refuted, document, shorter)
     return withdraw(verdict, why)
+
+
+def refute_shortly(verdict: Verdict, document: Document, point: Mapping[str, str]) -> Verdict:
+    """The refutation at a shorter point; as it is where the checker does not follow there."""
+    try:
+        certificate = refute_document([document], document, point)
+    except REFUSALS:
+        return verdict
+    difference = difference_at(document, point)
+    return replace(verdict, counterexample=point, difference=difference, certificate=certificate)
+
+
+def shorten_point(document: Document, point: Mapping[str, str]) -> dict[str, str]:
+    """The point with whole numbers for roots, multiples of pi and long fractions, where the statement fails there."""
+    (case, *others), box = player.read_statement(document)
+    shorter = dict(point)
+    for name in () if others else [name for name, text in point.items() if len(text) > SHORT and name in box]:
+        for number in (fmpq(n, d) for n, d in ((1, 1), (2, 1), (3, 1), (1, 2), (-1, 1))):
+            trial = shorter | write_point({name: number})
+            if player.is_inside(player.number(number), box[name]) and fails_at(case, trial):
+                shorter = trial
+                break
+    return shorter
+
+
+def fails_at(case: Any, point: Mapping[str, str]) -> bool:
+    """Whether all terms of a case have values at a point, and balls show that one of its goals fails."""
+    place = {name: player.Jet(player.value_of(player.parse(text), {})) for name, text in point.items()}
+    if not all(player.value_of(term, place).is_finite() for term in case.terms):
+        return False
+    return any(player.FAILURES[goal.relation](player.value_of(goal.term, place)) for goal in case.goals)
 
 
 def refute_document(documents: Sequence[Document], document: Document, point: Mapping[str, str]) -> Document:
@@ -327,9 +363,9 @@ def defined_points(terms: Sequence[Any], box: Mapping[str, Any]) -> Iterator[tup
             yield point, place
 
 
-def write_point(point: Mapping[str, fmpq]) -> dict[str, str]:
+def write_point(point: Mapping[str, Any]) -> dict[str, str]:
     """A point as text, by name."""
-    return {name: write_term(player.number(value)) for name, value in point.items()}
+    return {name: write_term(as_term(value)) for name, value in point.items()}
 
 
 def judge_without_proof(documents: Sequence[Document], document: Document, verdict: Verdict) -> Verdict:

@@ -218,3 +218,32 @@ def test_a_scope_names_the_hypotheses_and_the_small_number_of_an_order():
     assert nav.prove("x = 1", x="real", given=["x = 1"]).scope == "all real x with x = 1"
     projection = nav.prove("P @ P @ P = P", P={"matrix": ["n", "n"]}, given=["P @ P = P"])
     assert projection.scope == "all P in R^(n x n) with P @ P = P"
+
+
+@pytest.mark.parametrize(
+    ("statement", "given", "symbols", "status"),
+    [
+        ("K*S*K = K*P", ["K = P/(P + R)", "S = P + R"], {"P": "positive", "R": "positive"}, "PROVED"),
+        ("K*S = P", ["K = P/S", "S = P + R"], {"P": "positive", "R": "positive"}, "PROVED"),
+        ("K*S = R", ["K = P/S", "S = P + R"], {"P": "positive", "R": "positive"}, "REFUTED"),
+        ("N*W**2 = a*W", ["W = sqrt(1 - e**2*sin(p)**2)", "N = a/W"], {"e": ("0", "1/2"), "a": "positive"}, "PROVED"),
+        ("N*W = a**2", ["W = sqrt(1 - e**2*sin(p)**2)", "N = a/W"], {"e": ("0", "1/2"), "a": "positive"}, "REFUTED"),
+        ("N >= a", ["N = a/W", "W = sqrt(1 - e**2*sin(p)**2)"], {"e": ("0", "1/2"), "a": "positive"}, "CERTIFIED"),
+    ],
+)
+def test_hypotheses_that_build_on_each_other_have_points_in_their_order(statement, given, symbols, status):
+    assert nav.prove(statement, given=given, **symbols).status == status
+
+
+def test_a_name_at_the_end_of_a_sum_counts_from_one_unless_it_is_declared():
+    assert "n in [1, oo) whole" in repr(nav.prove("sum(k, k, 1, n) = n*(n + 1)/2"))
+    assert nav.prove("product(2, k, 0, n - 1) = 2**n").status == nav.PROVED
+    assert nav.prove("sum(k, k, 1, n) = n**2").status == nav.REFUTED
+    assert "n in [2, oo)" in repr(nav.prove("sum(k, k, 1, n) = n*(n + 1)/2", n={"integer": ["2", "oo"]}))
+    assert "all T in (0, oo)" in repr(nav.prove("integral(k, k, 1, T) = T**2/2 - 1/2", T="positive"))
+
+
+def test_a_counterexample_has_short_numbers_where_they_do():
+    found = nav.prove("K = P/(P + R)")
+    assert all(len(value) < 4 for value in found.counterexample.values()) and found.check()
+    assert nav.prove("x**2 != 2", x=("7/5", "3/2")).counterexample == {"x": "sqrt(2)"}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 #: Nesting of groups, fractions and roots.
@@ -48,11 +48,13 @@ def degrees(text: str, at: int) -> Part:
 
 
 def list_unknown(part: Part) -> list[Part]:
-    """The names in a part that nobody declared."""
+    """The names in a part that nobody declared; ``"whole"`` stands behind a name that is the end of a sum."""
     found = [part] if part.head == "unknown" else []
-    for inner in part.args:
+    for place, inner in enumerate(part.args):
         if isinstance(inner, Part):
-            found += list_unknown(inner)
+            names = list_unknown(inner)
+            ends = part.head == "sum" and place > 2
+            found += [replace(name, args=(*name.args[:2], "whole")) for name in names] if ends else names
     return found
 
 

@@ -6,7 +6,7 @@ import html
 import os
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import PurePath
 from typing import Any
 
@@ -26,6 +26,8 @@ from navsym.language.tomlfile import toml_text
 
 SIZE = 4_000_000  # bytes of a document
 FORMULAS = 20_000
+#: A whole power of e, which may be a name.
+EXPONENT = re.compile(r"(?<![A-Za-z\\])e\s*\^\s*(?:\{\s*)?\d")
 #: A string with one of these holds formulas among other text.
 DELIMITED = re.compile(
     r"(?<!\\)\$|\\\[|\\\(|\\begin\{(?:equation|align|gather|eqnarray|multline|displaymath|flalign|split)"
@@ -44,6 +46,7 @@ class ReadFormula:
     latex        : in one line, with the macros of the document expanded
     trouble      : line and column of the trouble
     unknown      : name -> LaTeX, of the names that nobody declared
+    whole        : those of them that end sums and products
     order        : name and order of ``+ O(x^k)`` at the end of the right side, which ``right`` leaves out
     """
 
@@ -61,6 +64,7 @@ class ReadFormula:
     trouble: tuple[int, int] | None = None
     unknown: tuple[tuple[str, str], ...] = ()
     order: tuple[str, int] | None = None
+    whole: tuple[str, ...] = ()
 
     @property
     def text(self) -> str:
@@ -111,6 +115,10 @@ class Reading(Answer):
         """The names that nobody declared, each once."""
         return tuple(dict.fromkeys(name for formula in self.formulas for name, _ in formula.unknown))
 
+    def propose(self, name: str) -> Any:
+        """The declaration of a name that nobody declared: real, or a whole number from 1 where it ends a sum."""
+        return {"integer": ["1", "oo"]} if any(name in formula.whole for formula in self.formulas) else "real"
+
     def __repr__(self) -> str:
         return f"<{len(self.read)} of {len(self.formulas)} formulas read>"
 
@@ -126,20 +134,26 @@ class Reading(Answer):
         counts = {"read": len(self.read), "refused": len(self.formulas) - len(self.read)}
         return {"formulas": [f.document() for f in self.formulas], **counts, "undeclared": list(self.undeclared)}
 
-    def claims(self) -> str:
+    def claims(self, *, definitions: bool = False) -> str:
         """A claim file (TOML) with the formulas that are read: symbols, and each claim with its place and its LaTeX.
 
-        Raises EmptyError when none is read.
+        definitions : take ``K = P/(P + R)``, where K stands nowhere before, as a definition: no claim of its own, but
+                      written for K in the formulas behind it
+
+        Raises EmptyError when none is read, or nothing but definitions.
         """
         if not self.read:
             raise EmptyError("expected a formula that is read; got none; declare its symbols", where="read: out")
-        used = {name for formula in self.read for name in formula.symbols}
+        formulas = self.insert_definitions() if definitions else self.read
+        if not formulas:
+            raise EmptyError("expected a claim; got definitions only; read them as claims", where="read: definitions")
+        used = {name for formula in formulas for name in formula.symbols}
         used |= {v for name, v in self.notation.functions.items() if name in used}
         symbols = {name: value for name, value in self.notation.written.items() if name in used}
         rates = {name: rate for name, rate in self.notation.rates.items() if name in used}
         blocks: list[dict[str, Any]] = []
         ids: set[str] = set()
-        for formula in self.read:
+        for formula in formulas:
             stem = re.sub(r"[^A-Za-z0-9_.-]", "", PurePath(formula.file).stem)[:40].lstrip("_.-") or "formula"
             count = sum(name.startswith(f"{stem}:{formula.line}.") for name in ids) + 1
             ids.add(label := f"{stem}:{formula.line}.{count}")
@@ -149,6 +163,28 @@ class Reading(Answer):
             blocks.append({"id": label, **keys, **beside})
         return toml_text({"symbols": symbols, **({"rates": rates} if rates else {}), "claim": blocks})
 
+    def insert_definitions(self) -> tuple[ReadFormula, ...]:
+        """The formulas without the definitions, ``name = value`` of a name that is new, with the value for the name.
+
+        A name with a value in itself, with a rate, or with an index somewhere, is none that is defined.
+        """
+        values: dict[str, str] = {}
+        seen, claims = set(self.notation.rates), []
+        for formula in self.read:
+            name, sides = str(formula.left), [str(formula.left), str(formula.right)]
+            is_new = name in formula.symbols and name not in seen and not re.search(rf"\b{name}\b", sides[1])
+            indexed = is_new and any(re.search(rf"\b{name}\[", one.text) for one in self.read)
+            for known in reversed(values):
+                sides = [re.sub(rf"\b{known}\b", f"({values[known]})", side) for side in sides]
+            seen |= {*formula.symbols}
+            if is_new and not indexed and formula.relation == "=" and formula.order is None:
+                values[name] = sides[1]
+                continue
+            names = {*re.findall(r"[A-Za-z]\w*", " ".join(sides))}
+            symbols = tuple(name for name in self.notation.written if name in names)
+            claims.append(replace(formula, left=sides[0], right=sides[1], symbols=symbols))
+        return tuple(claims)
+
     def declarations(self) -> str:
         """A skeleton (TOML) of the declarations that are missing, with what is declared already."""
         symbols, latex = dict(self.notation.written), dict(self.notation.spellings)
@@ -157,11 +193,13 @@ class Reading(Answer):
             safe = f"{name}_" if name in RESERVED else name
             safe = f"{safe}1" if safe.endswith("_") else safe
             if NAME.fullmatch(safe) and safe not in symbols:
-                symbols[safe] = "real"
+                symbols[safe] = self.propose(name)
                 if re.fullmatch(r"[A-Za-z]{2,}|\\mathbf\{[A-Za-z]{2,}\}", spelled):
                     questions += f"# Is {spelled} a product or a name? For a product, declare its letters.\n"
                 if plain_spelling(spelled) != safe:
                     latex[safe] = spelled
+        if "e" not in symbols and any(EXPONENT.search(formula.latex) for formula in self.formulas):
+            questions += "# e in e^2 is Euler's number; declare e where it is a name, such as an eccentricity.\n"
         rates = dict(self.notation.rates)
         head = "# Declare each name: real, positive, a range, { vector = 3 }, { matrix = [3, 3] } and so on.\n"
         tables = {"symbols": symbols, **({"latex": latex} if latex else {}), **({"rates": rates} if rates else {})}
@@ -262,7 +300,7 @@ def read_with_reals(source: str, symbols: Mapping[str, Any], latex: Mapping[str,
     unknown = {name: spelled for formula in reading.formulas for name, spelled in formula.unknown}
     if not unknown or any(re.fullmatch("[A-Za-z]{2,}", spelled) for spelled in unknown.values()):
         return reading
-    return read(source, symbols=dict(symbols) | dict.fromkeys(unknown, "real"), latex=latex)
+    return read(source, symbols=dict(symbols) | {name: reading.propose(name) for name in unknown}, latex=latex)
 
 
 @dataclass(frozen=True, slots=True)
@@ -330,7 +368,9 @@ def read_relation(relation: Relation, places: list[int], notation: Notation, lin
         spot = lines.place(places[min(max(refusal.at, 0), len(places) - 1)])
         why = f"line {spot[0]}, column {spot[1]}: {refusal}"
         pairs = tuple(dict.fromkeys((str(u.args[0]), str(u.args[1])) for u in unknown))
-        return ReadFormula(lines.name, row, column, source, "REFUSED", why, None, None, None, (), latex, spot, pairs)
+        whole = tuple(dict.fromkeys(str(u.args[0]) for u in unknown if "whole" in u.args[2:]))
+        said = ("REFUSED", why, None, None, None, (), latex, spot, pairs)
+        return ReadFormula(lines.name, row, column, source, *said, whole=whole)
 
 
 def is_whole(notation: Notation, name: str) -> bool:

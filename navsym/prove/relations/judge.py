@@ -21,7 +21,7 @@ from navsym.core.errors import NavsymError
 from navsym.prove.calculus.answers import MOST_POINTS, read_with_answers
 from navsym.prove.grant import BITS, IDENTITY, REFUSALS, Document, grant, refute_document, withdraw, write_point
 from navsym.prove.relations.points import Rows, draw_corner_points, draw_special_points
-from navsym.prove.rooms.goals import player, subterms, to_sympy, write_term
+from navsym.prove.rooms.goals import as_term, player, subterms, to_sympy, write_term
 from navsym.prove.search import EASY, find_proof, rules_of
 from navsym.prove.wording import decimal_ends, expression_text
 from navsym.prove.words.judge import decide_words
@@ -132,7 +132,7 @@ def list_points(claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]) 
         pairs = combinations(case.given[:EDGES], 2)  # where two hypotheses >= 0 meet, bounds are attained
         edges = (draw_special_points(here, (*case.zeros, *ends), kinds, 2) for ends in (*((t,) for t in met), *pairs))
         for point in chain(draw_special_points(here, case.zeros, kinds, count), corners, *edges):
-            place = {name: player.number(value) for name, value in point.items()}
+            place = {name: as_term(value) for name, value in point.items()}
             try:
                 if all(player.is_inside(place[name], box[name]) for name in box) and player.lies_in(case, place):
                     yield point, case
@@ -175,14 +175,14 @@ def refute_at_zero(
 
 def evaluate_point(case: Any, point: Mapping[str, Any]) -> dict[str, Any]:
     """A point, with the fractions of the case, for the evaluation in balls."""
-    place = case.complete({name: player.number(value) for name, value in point.items()})
+    place = case.complete({name: as_term(value) for name, value in point.items()})
     return {name: player.evaluate(value, {}, arb) for name, value in place.items()}
 
 
 def refute(claim: TextClaim, document: Document, point: Mapping[str, Any]) -> Verdict:
     """REFUTED at a point, when the checker grants it."""
     written = write_point(point)
-    shown = {claim.shown.get(name, name): str(value) for name, value in point.items()}
+    shown = {claim.shown.get(name, name): text for name, text in written.items()}
     verdict = Verdict(REFUTED, "exact point, ball arithmetic", "one point", (), "", shown)
     try:
         certificate = refute_document(claim.documents, document, written)
@@ -198,7 +198,7 @@ def refute(claim: TextClaim, document: Document, point: Mapping[str, Any]) -> Ve
 def describe_lost_order(document: Document, point: Mapping[str, Any], shown: Mapping[str, str]) -> dict[str, Any]:
     """What a refuted order says: the lowest derivative that differs at 0. Its value is no left - right."""
     ((name, order),) = document["order"].items()
-    (case, *_), _, _ = read_with_answers(document, {n: player.number(value) for n, value in point.items()})
+    (case, *_), _, _ = read_with_answers(document, {n: as_term(value) for n, value in point.items()})
     values = [player.value_of(goal.term, evaluate_point(case, point)) for goal in case.goals]
     low = min(i % order for i, value in enumerate(values) if player.FAILURES["="](value))
     words = f"left - right is no O({name}**{order}): both sides differ in the derivative of order {low} at {name} = 0"

@@ -6,17 +6,21 @@ Other hypotheses are solved for a symbol with a rational root. A point is a prop
 from __future__ import annotations
 
 import random
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from itertools import combinations
 from math import isqrt
 from typing import Any
 
 from flint import fmpq
 
-from navsym.prove.rooms.goals import draw_points, player
+from navsym.prove.relations.cofactors import list_values
+from navsym.prove.rooms.goals import as_term, draw_points, player
 
-Point = dict[str, fmpq]
+#: Rational numbers, and terms for the symbols that hypotheses give: ``W`` by ``W = sqrt(1 - e**2)``.
+Point = dict[str, Any]
 Rows = Sequence[Sequence[str]]
 
 
@@ -50,11 +54,11 @@ def draw_special_points(
             fixed.update(
                 entries if kind in ("rotation", "quaternion", "orthogonal", "positive") or (values and k % 3) else ()
             )
-        for zero in sorted(zeros, key=lambda zero: len(player.symbols_of(zero))):
+        for zero, names in order_hypotheses(zeros, box):
             for kind, rows in kinds.values() if k % 3 else ():
                 if kind == "vector" and player.symbols_of(zero) <= {name for row in rows for name in row}:
                     stretch(zero, point)
-            solve_for_one(zero, point, fixed, k)
+            solve_for_one(zero, names, point, box, fixed, k)
         yield point
 
 
@@ -143,7 +147,7 @@ def transpose(rows: list[list[fmpq]]) -> list[list[fmpq]]:
 
 def stretch(zero: Any, point: Point) -> None:
     """Move a vector along its line to where a hypothesis on its length holds, if that is a rational number."""
-    here = {name: player.number(point[name]) for name in player.symbols_of(zero)}
+    here = {name: as_term(point[name]) for name in player.symbols_of(zero)}
     values = [player.constant_of(player.substitute(zero, place)) for place in (dict.fromkeys(here, player.ZERO), here)]
     if None in values or values[0] == values[1] or values[0] == 0:
         return
@@ -153,18 +157,54 @@ def stretch(zero: Any, point: Point) -> None:
         point.update({name: root * point[name] for name in here})
 
 
-def solve_for_one(zero: Any, point: Point, fixed: set[str], k: int) -> None:
-    """Move one symbol to a rational root of the hypothesis, the k-th of them in turn; it is not moved again."""
-    for name in sorted(player.symbols_of(zero) - fixed, reverse=True):
-        term = player.substitute(zero, {n: player.number(v) for n, v in point.items() if n != name})
+def order_hypotheses(zeros: Sequence[Any], box: Mapping[str, Any]) -> list[tuple[Any, list[str]]]:
+    """The hypotheses in the order to solve them, with the names to solve for.
+
+    A name that stands in one of them alone is solved for after the others, which do not change by it. A name that is
+    equal to the rest of its hypothesis comes first, then one without a range.
+    """
+    left, last = sorted(zeros, key=lambda zero: len(player.symbols_of(zero))), []
+
+    def rank(zero: Any, name: str) -> int:
+        if any(own[1] == name and name not in player.symbols_of(value) for own, value, _ in list_values(zero)):
+            return 0
+        return 1 if name not in box or box[name].low is box[name].high is None else 2
+
+    while left:
+        counts = Counter(name for zero in left for name in player.symbols_of(zero))
+        alone = [{name for name in player.symbols_of(zero) if counts[name] == 1} for zero in left]
+        ranks = [min((rank(zero, name) for name in names), default=3) for zero, names in zip(left, alone, strict=True)]
+        place = ranks.index(min(ranks))
+        zero = left.pop(place)
+        names = alone[place] or player.symbols_of(zero)
+        last.append((zero, sorted(sorted(names, reverse=True), key=partial(rank, zero))))
+    return last[::-1]
+
+
+def solve_for_one(
+    zero: Any, names: Sequence[str], point: Point, box: Mapping[str, Any], fixed: set[str], k: int
+) -> None:
+    """Move one symbol to a rational root of the hypothesis, the k-th of them in turn; it is not moved again.
+
+    Where there is none, a symbol that the hypothesis is equal to has its value.
+    """
+    others = sorted(player.symbols_of(zero) - {*names}, reverse=True)
+    for name in (name for name in (*names, *others) if name not in fixed):
+        term = player.substitute(zero, {n: as_term(v) for n, v in point.items() if n != name})
         try:
             if name not in player.symbols_of(term):
                 continue
             top, bottom = player.to_fraction(term)
         except (player.Refused, ZeroDivisionError):
+            values = [value for own, value, _ in list_values(term) if own[1] == name and not player.symbols_of(value)]
+            if values and player.is_inside(values[0], box[name]):
+                point[name] = values[0]
+                fixed.add(name)
+                return
             continue
         roots = [-line[0] / line[1] for line, _ in top.factor()[1] if line.degree() == 1] if top else []
         roots = sorted(root for root in roots if bottom(root) != 0)
+        roots = [root for root in roots if name not in box or player.is_inside(player.number(root), box[name])]
         if roots:
             point[name] = roots[k % len(roots)]
             fixed.add(name)

@@ -263,6 +263,11 @@ def inner_point(limit: Any, k: int, i: int) -> arb:
 
 
 @functools.lru_cache(maxsize=4096)
+def as_term(value: Any) -> Term:
+    """A coordinate of a point as a term: a rational number, or a term already."""
+    return value if isinstance(value, tuple) else player.number(value)
+
+
 def simple_point(limit: Any, k: int) -> fmpq:
     """A simple rational number in a range, if it is wide."""
     numbers = [fmpq(n, d) for d in (1, 2, 4, 10) for n in (0, 1, -1, 3, -3, 7)][k:]

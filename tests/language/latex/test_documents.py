@@ -368,3 +368,46 @@ def test_claims_take_their_latex_and_source_along():
     assert len(claims_from({"symbols": {"x": "real"}, "claim": [block]}).claims) == 1
     with pytest.raises(NavsymError, match="text"):
         claims_from({"symbols": {"x": "real"}, "claim": [{**block, "printed": ["x"]}]})
+
+
+RADII = r"""$K = \frac{P}{P + R}$, $S = P + R$ and $K S = P$. With $w = \sin a$, $\frac{dw}{da} = \cos a$;
+$W = \cos a$, $W^2 + w^2 = 1$."""
+POSITIVE = {"P": "positive", "R": "positive"}
+
+
+def test_definitions_are_written_for_their_names_in_the_claims_behind_them(tmp_path):
+    reading = nav.read(RADII, symbols={"K": "real", "S": "real", "a": "real", "w": "real", "W": "real", **POSITIVE})
+    (tmp_path / "claims.toml").write_text(reading.claims(definitions=True))
+    verdicts = nav.prove(tmp_path / "claims.toml")
+    assert [v.status for v in verdicts] == [nav.PROVED] * 3
+    (tmp_path / "spoiled.toml").write_text(reading.claims(definitions=True).replace("cos(a)", "sin(2*a)"))
+    assert [v.status for v in nav.prove(tmp_path / "spoiled.toml")] == [nav.PROVED, nav.REFUTED, nav.REFUTED]
+    assert reading.claims().count("[[claim]]") == 7
+
+
+@pytest.mark.parametrize(
+    ("latex", "claims"),
+    [
+        ("$x + y = 2$, $x = y$", 2),  # x stands before
+        ("$x = x y$", 1),  # and in its own value
+        ("$v = u + u$, $v_1 = 2 u_1$", 2),  # an entry of it is used
+        (r"$x \le y$, $y = z$", 2),
+        (r"$\dot x = y$, $x = z$, $z = y$", 3),  # x has a rate
+    ],
+)
+def test_what_only_looks_like_a_definition_stays_a_claim(latex, claims):
+    names = {"x": "real", "y": "real", "z": "real", "u": {"vector": 2}, "v": {"vector": 2}}
+    reading = nav.read(latex, symbols=names, rates={"x": "y"})
+    assert reading.claims(definitions=True).count("[[claim]]") == claims
+
+
+def test_a_document_of_definitions_has_no_claim():
+    with pytest.raises(NavsymError, match="definitions only"):
+        nav.read("$x = y$", symbols={"x": "real", "y": "real"}).claims(definitions=True)
+
+
+def test_the_skeleton_has_whole_numbers_at_the_ends_of_sums_and_asks_what_e_is():
+    skeleton = nav.read(r"\sum_{k=1}^{n} e^2 k = y").declarations()
+    assert 'n = { integer = ["1", "oo"] }' in skeleton and 'y = "real"' in skeleton and "declare e where" in skeleton
+    assert "declare e" not in nav.read(r"e^{-t} = y").declarations()
+    assert nav.prove(r"\sum_{k=1}^{n} k = \frac{n(n + 1)}{2}").status == nav.PROVED
