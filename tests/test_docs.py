@@ -81,6 +81,7 @@ def test_the_blocks_are_found():
     assert sum(kind == "sh" for path in RUNNING for kind, _ in blocks(path)) >= 6
 
 
+@pytest.mark.long
 def test_the_site_builds_without_a_warning(tmp_path):
     for needed in ("sphinx", "myst_nb", "furo"):
         pytest.importorskip(needed)

@@ -31,6 +31,7 @@ def table(tmp_path):
     return tmp_path
 
 
+@pytest.mark.long
 def test_every_case_is_counted_once_and_what_fails_is_named(table):
     batches = cases.make_batches(table, "test_table.py", 3)
     assert [len(batch.items[1]) for batch in batches] == [3, 1]

@@ -24,6 +24,7 @@ guided = pytest.mark.skipif(
 )
 
 
+@pytest.mark.long
 @guided
 def test_guided_inputs_are_read_or_refused_and_what_reached_new_lines_is_kept(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path))

@@ -26,6 +26,7 @@ def list_faults(numbers):
     return faults
 
 
+@pytest.mark.long
 def test_no_verdict_at_an_edge_is_wrong():
     assert list_faults(range(len(NAMES))) == []
 

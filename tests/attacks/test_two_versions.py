@@ -77,6 +77,7 @@ def verified(folders, store):
     return [json.loads(said)["claims"] for said, _ in told], [remark for _, remark in told]
 
 
+@pytest.mark.long
 def test_the_certificates_of_one_version_are_checked_by_the_other_and_none_is_lost(versions, tmp_path):
     first, _ = verified(versions, tmp_path / "store")
     again, remarks = verified(versions, tmp_path / "store")

@@ -94,6 +94,7 @@ def test_words_inside_formulas_cannot_command_latex():
     assert not re.search(r"[<>]", latex_of((sp.Symbol("x"), 2)))
 
 
+@pytest.mark.long
 def test_what_is_no_verdict_shows_itself_as_a_table_too():
     import navsym as nav
 

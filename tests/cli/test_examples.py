@@ -31,6 +31,7 @@ def test_the_profile_of_the_example_brings_the_track_back(capsys, method, metres
     assert found["unique"] is True
 
 
+@pytest.mark.long
 def test_the_speed_of_the_example_is_twelve_metres_a_second(capsys):
     found = answer(capsys, "track", str(EXAMPLES / "drive.csv"))
     east, north, _ = found["velocity"][len(found["velocity"]) // 3]

@@ -80,7 +80,9 @@ def told_by(study, **options):
 @pytest.mark.parametrize(
     ("module", "name", "options"),
     [
-        ("navsym_papers.multistructure.experiment.study", "study", {"runs": 2, "steps": 2}),
+        pytest.param(
+            "navsym_papers.multistructure.experiment.study", "study", {"runs": 2, "steps": 2}, marks=pytest.mark.long
+        ),
         pytest.param("navsym_papers.trajectory.experiment.study", "study", {"runs": 1}, marks=pytest.mark.long),
         ("navsym_papers.joint_correction.experiment.study", "study", {}),
     ],

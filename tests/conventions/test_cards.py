@@ -247,6 +247,7 @@ def test_terms_that_the_target_has_and_the_model_has_not_are_named(card, whole, 
     assert "named entries" in repr(found) and found.document()["neglected"] == [list(r) for r in found.neglected]
 
 
+@pytest.mark.long
 def test_blocks_that_a_model_drops_are_named_by_its_conversion():
     document = document_of(LEVEL, "pvagb", PLACED)
     for i in (6, 7, 8):
@@ -259,6 +260,7 @@ def test_blocks_that_a_model_drops_are_named_by_its_conversion():
     assert found.target.dropped == ()
 
 
+@pytest.mark.long
 def test_a_velocity_in_the_body_turns_with_the_body_and_the_earth():
     changes = {"vector_error": "velocity in body", "attitude_error": "body"}
     problem = read_problem(document_of(LEVEL, "pvagb", PLACED | {"velocity": ["v1", "v2", "v3"]}))
@@ -290,6 +292,7 @@ def test_axes_that_wander_and_the_psi_angle_are_left_and_reached_exactly(card, q
     assert found.proved and not found.neglected_entries()
 
 
+@pytest.mark.long
 def test_a_model_with_axes_that_wander_has_that_card_and_no_other():
     document = document_of(TURNED, "pvagb", WANDER)
     assert {(c.azimuth, c.axes, c.angle) for c in cards_of(document)} == {("wander", "NED", "phi")}
@@ -320,6 +323,7 @@ def test_a_conversion_leaves_as_code_in_both_directions(tmp_path):
 # -- LaTeX ------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_blocks_in_latex_are_the_blocks_of_the_model_again():
     conversion = nav.conventions(EXAMPLES / "conventions.toml").convert(attitude_error="body", error="truth - estimate")
     lines = conversion.latex().split("\n")

@@ -299,6 +299,7 @@ def test_scale_factors_are_converted():
     assert conversion.proved and conversion.F[6][15] == "w1"
 
 
+@pytest.mark.long
 def test_mended_rows_have_names_of_the_file_where_that_can_be():
     words = {
         "frame": "local-level", "axes": "NWU", "error": MINUS, "rotation_sign": "+", "angle": "psi",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 import sympy as sp
 
 import navsym as nav
@@ -36,6 +37,7 @@ def derive(parameters, azimuth="north", **quantities):
     return sp.Matrix([[sp.sympify(e, locals=plain) for e in row] for row in model["F"]]), model["states"]
 
 
+@pytest.mark.long
 def test_both_horizontal_channels_at_rest_are_the_schuler_channel_of_the_examples():
     """y1 = velocity/(R w), y2 = tilt, y3 = tilt rate/w in the time w t, w**2 = g/R, without accelerometer errors."""
     F, states = derive("", velocity=["0"] * 3, latitude="0", specific_force=["0", "0", "w**2*R"])
@@ -48,6 +50,7 @@ def test_both_horizontal_channels_at_rest_are_the_schuler_channel_of_the_example
         assert (T * F + w * schuler * T).applyfunc(sp.cancel) != sp.zeros(*T.shape)
 
 
+@pytest.mark.long
 def test_axes_that_wander_over_a_sphere_at_rest_give_the_error_equations_of_1979():
     """alpha = -a, beta = alpha - gamma, gamma = (-r2, r1)/R, dp = alpha' - nu, along every motion at a known height.
 

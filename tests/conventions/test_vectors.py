@@ -103,6 +103,7 @@ def test_a_block_that_reads_the_quaternion_in_another_way_is_named():
         assert [(c.block, c.status) for c in answer.conflicts] == [(("velocity", "accelerometer_bias"), "PROVED")]
 
 
+@pytest.mark.long
 def test_a_card_with_a_quaternion_gives_the_model_and_converts_it():
     document = with_quaternion("rot(q)")
     card = nav.conventions(document).cards[0]

@@ -90,6 +90,7 @@ def test_what_sleeps_is_ended_by_the_clock(monkeypatch):
     assert 1 <= time.monotonic() - began < 20
 
 
+@pytest.mark.long
 def test_a_busy_machine_does_not_use_up_the_time_of_a_child(monkeypatch):
     """Eight children at once on few cores: by the clock each takes longer than its limit, by its own time none does."""
     monkeypatch.setattr(sandbox, "PATIENCE", 100)  # the machine may be busy with others too

@@ -35,6 +35,7 @@ def test_an_estimator_is_a_function_of_its_measurements(drift, tmp_path):
     assert value == pytest.approx(float(drift.value), rel=1e-15)
 
 
+@pytest.mark.long
 def test_phases_are_functions_of_the_parameter(tmp_path):
     found = nav.phases(MODEL, "drift", T=("2", "4"))
     nav.export(found, to="python", out=tmp_path)

@@ -80,6 +80,7 @@ def test_a_corrupted_operator_of_every_ready_made_function_is_caught(language: s
     assert not corruption.campaign(list(READY), [language], 1, tmp_path)["left"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["trajectory", "earth"])
 def test_a_corrupted_operator_of_ready_made_code_is_caught(name: str, tmp_path: Path) -> None:
     found = corruption.campaign([name], [n for n in QUICK if n != "c"], 1, tmp_path)

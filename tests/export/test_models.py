@@ -357,6 +357,7 @@ def test_ranges_are_saved_and_read_back(tmp_path):
     assert nav.Model.load(tmp_path / "m.toml").document() == model.document()
 
 
+@pytest.mark.long
 @needs_compilers
 def test_words_of_languages_and_libraries_never_collide(tmp_path):
     """States, parameters and measurements with names of C, of its library and of the code's own arrays."""

@@ -76,6 +76,7 @@ def test_polynomials_of_low_degree_have_larger_errors_that_are_not_far_from_the_
     assert max(weights / piece.error for _, weights, piece in seen) > sp.Rational(1, 100)
 
 
+@pytest.mark.long
 def test_a_regime_without_a_closed_form_is_exported_compiled_and_replayed(found, tmp_path):
     out = tmp_path / "code"
     short = nav.phases(nav.Model(**CHANNEL), T=("2", "2.02"))

@@ -112,6 +112,7 @@ def attack(seed, count, seconds=2):
     return statuses, found
 
 
+@pytest.mark.long
 def test_no_verdict_on_a_random_claim_is_contradicted():
     statuses, found = attack(seed=1, count=50)
     assert not found, found

@@ -50,6 +50,7 @@ def test_the_document_of_an_estimator_is_that_of_the_verb(model, estimator, tmp_
     assert json.loads(json.dumps(estimator.document())) == printed(capsys, *words)
 
 
+@pytest.mark.long
 def test_the_document_of_phases_is_that_of_the_verb(model, regimes, tmp_path, capsys):
     path = tmp_path / "model.toml"
     model.save(path)

@@ -135,6 +135,7 @@ def test_a_dual_that_is_constant_with_coefficients_of_no_round_numbers_is_certif
     assert accepted(found) == "gap"
 
 
+@pytest.mark.long
 def test_a_stiff_motion_that_cancels_hundreds_of_digits_ends_with_two_bounds():
     """Cells of three thousand bits are dear: fewer are tried, and what is known comes back within seconds."""
     fast = sp.exp(1000 - 1000 * t)

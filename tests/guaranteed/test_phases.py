@@ -198,6 +198,7 @@ def test_a_parameter_that_the_file_does_not_have_is_refused():
         find_phases(family(VELOCITY, "y1"), sp.Integer(-1), sp.Integer(1))
 
 
+@pytest.mark.long
 def test_a_change_at_zero_is_found_and_the_mirrored_regime_has_its_closed_form():
     document = {
         "model": {"name": "triple", "states": ["x", "v", "a"], "F": [["0", "1", "0"], ["0", "0", "1"], ["0"] * 3]},
@@ -263,6 +264,7 @@ def test_a_pattern_is_followed_to_where_its_weight_at_an_end_vanishes():
     assert events.certify_touch(problem, make_basis(problem), found, 160, 1600) is not None
 
 
+@pytest.mark.long
 def test_a_change_does_not_rest_on_a_closed_form_that_is_not_proved(monkeypatch):
     monkeypatch.setattr(changes, "prove_form", lambda *_: None)
     answer = find_phases(family(VELOCITY, "y2"), sp.Integer(4), sp.Rational(9, 2))

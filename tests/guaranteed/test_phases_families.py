@@ -103,6 +103,7 @@ def test_where_estimability_is_lost_inside_the_range_it_is_split_and_said_so():
     assert edge.at == 0 and "dependent" in edge.why
 
 
+@pytest.mark.long
 def test_a_range_below_zero_is_proved_like_its_mirror():
     answer = solved(basis(["1", "(1-exp(-p*u))/p"], ["0", "2"], ["0", "1"]), -1, 1)
     assert answer.uncovered == () and {r.status.holds for r in answer.regimes} == {True}
@@ -155,6 +156,7 @@ def test_a_dual_that_two_contacts_leave_free_is_held_at_an_end_of_the_other_meas
     assert regimes(answer) == [("1/10", "4", "p"), ("4", "10", "4")]
 
 
+@pytest.mark.long
 def test_where_many_are_optimal_the_closed_form_next_to_it_is_continued():
     triple = {
         "model": {"name": "triple", "states": ["x", "v", "a"], "F": [["0", "1", "0"], ["0", "0", "1"], ["0"] * 3]},

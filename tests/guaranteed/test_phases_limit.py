@@ -129,6 +129,7 @@ def test_a_pole_at_zero_or_another_function_has_no_scaled_form(h, scaled):
     assert (echelon_form(family) is not None) == scaled
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seconds", [300.0, 12.0])
 def test_between_the_pieces_from_zero_on_and_those_from_the_middle_nothing_is_lost(monkeypatch, seconds):
     found = range_.follow_pattern

@@ -110,6 +110,7 @@ def test_ten_thousand_points_of_three_channels_have_the_optimum_of_one_parameter
     assert disagreements_on_slices(found, 34, 100, 5) == (3400, 0)
 
 
+@pytest.mark.long
 def test_two_sensors_share_the_rectangle_along_a_curve(triple):
     """Velocities give the acceleration with 2 p/T, positions with 16/T**2: the curve is T = 8/p."""
     values = [str(parts[0].regime.value) for parts in triple.regions]

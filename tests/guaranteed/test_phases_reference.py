@@ -93,6 +93,7 @@ IN_EVERY_RUN = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", IN_EVERY_RUN)
 def test_where_many_estimators_are_optimal_boundaries_are_those_of_the_value_and_no_others(case):
     document, rows, sigma, target, ends, boundaries = CASES[case]

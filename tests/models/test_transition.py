@@ -140,6 +140,7 @@ def test_roots_without_closed_form_are_summed_and_still_solve_the_equation():
     assert all(abs(complex(X[i, j]) - expected[i][j]) < 1e-13 for i in range(3) for j in range(3))
 
 
+@pytest.mark.long
 @settings(max_examples=10, deadline=None)
 @given(st.lists(st.integers(-3, 3), min_size=9, max_size=9))
 def test_any_integer_matrix_has_its_exponential(entries):

@@ -85,6 +85,7 @@ def test_too_many_points_are_refused_before_they_are_taken():
     assert chain_determinant([(row, 8)], matrix, ring) is None
 
 
+@pytest.mark.long
 def test_a_dense_system_with_parameters_in_single_entries_is_listed_completely():
     """Eight states without a zero; four parameters stand in one entry each. Pivots and minors left it open."""
     source = random.Random(5)

@@ -83,6 +83,7 @@ def test_a_formula_is_proved_and_its_spoiled_form_refuted(true, false, given):
     assert refuted.check().accepted
 
 
+@pytest.mark.long
 def test_the_noise_of_a_step_of_six_states_in_symbols_is_an_integral_of_exponentials():
     """Three positions with speeds that decay at rates a, b, c: the integral of expm(A s) Q expm(A s).T."""
     rates, size = "abc", range(6)

@@ -86,6 +86,7 @@ def test_peaks_and_dips_are_found_before_anything_is_confirmed(text, symbols):
     assert nav.prove(text, **symbols).status == REFUTED
 
 
+@pytest.mark.long
 def test_an_error_inside_the_search_is_no_verdict_of_its_own():
     verdict = nav.prove("sum(x**k, k, 0, oo) = 1/(1 - x)", x=("-1/2", "1/2"))
     assert verdict.status == nav.OPEN and "symbolic power" not in verdict.evidence

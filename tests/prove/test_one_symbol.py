@@ -70,6 +70,7 @@ def test_equality_at_a_root_without_a_formula_is_no_point_of_a_certificate(polyn
     assert decide(Bound((x**5 - x - 1) ** 2, ">", sp.Integer(0), {x: (2, None)})).status == PROVED
 
 
+@pytest.mark.long
 def test_ends_of_a_range_are_compared_exactly_with_roots():
     assert status(x**2 - 2, ">=", sp.sqrt(2)) == PROVED
     assert status(x**2 - 2 - THIN, ">=", sp.sqrt(2)) == REFUTED

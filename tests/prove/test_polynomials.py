@@ -145,6 +145,7 @@ def test_absolute_values_are_taken_in_both_cases():
     assert not is_proved(sp.sqrt(x**2 - 2 * x + 1), x - 1)
 
 
+@pytest.mark.long
 def test_a_bound_that_is_monotone_in_one_symbol_may_come_within_a_hair_of_zero_in_the_other():
     s, u, cos, sin = sp.Symbol("s", positive=True), sp.Symbol("u", real=True), sp.cos, sp.sin
     top = sp.Rational("3.6609754434249038385")

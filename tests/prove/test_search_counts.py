@@ -32,6 +32,7 @@ def slow_down(monkeypatch, factor):
     monkeypatch.setattr(search.time, "process_time", lambda: factor * clock())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("way", SIDES)
 def test_a_sign_that_is_proved_is_proved_in_the_same_way_on_a_machine_that_is_five_times_slower(way, monkeypatch):
     slow_down(monkeypatch, 5)

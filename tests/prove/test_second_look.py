@@ -145,6 +145,7 @@ def test_a_bound_that_fails_by_little_around_an_irrational_point_is_refuted():
     assert decide(Bound((x**3 - x - 1) ** 2 - TINY, ">", sp.Integer(0), {x: (1, 2)})).status == REFUTED
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "statement",
     [

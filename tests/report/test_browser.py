@@ -223,6 +223,7 @@ def test_a_browser_that_dies_is_an_error_and_not_a_wait(tmp_path):
     lost.close()
 
 
+@pytest.mark.long
 def test_the_page_of_an_audit_is_quiet_and_coloured_by_verdict(shown):
     page = shown({"audit.html": audit_page(nav.audit("examples/audit/yaw_jacobian.toml"))}, "audit.html")
     assert not page.trouble

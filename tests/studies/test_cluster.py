@@ -74,6 +74,7 @@ def test_two_workers_on_a_scheduler_give_the_bits_of_one_process(scheduler, tmp_
     assert [path.read_bytes() for path in shards[0]] == [path.read_bytes() for path in shards[1]]
 
 
+@pytest.mark.long
 def test_a_worker_killed_midway_changes_nothing(scheduler, tmp_path):
     address, processes = scheduler
     processes += workers(address, 2, tmp_path)

@@ -302,6 +302,7 @@ def test_isolated_outliers_are_left_out_and_harm_nothing():
     assert np.abs(found.velocity - clean.velocity).max() < 4 * clean.velocity_sd.max()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("method", ["window", "guaranteed", "smoother"])
 def test_neighbouring_outliers_and_outliers_beside_gaps_harm_little(method):
     t, _, measured = simulated(1, sigma=1.0)

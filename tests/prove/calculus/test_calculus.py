@@ -219,6 +219,7 @@ def test_cuts_are_found_at_absolute_values():
     assert nav.prove("integral(abs(x - 1), x, -1, 2) = 3/2").status == REFUTED
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("integrand", "ends", "value"),
     [("sin(x)", "0, 2*pi", "4"), ("cos(x) - 1/2", "0, pi", "sqrt(3) + pi/6"), ("log(x)", "1/2, 2", "3*log(2)/2 - 1/2"),
