@@ -26,6 +26,7 @@ from navsym.language.tomlfile import toml_text
 
 SIZE = 4_000_000  # bytes of a document
 FORMULAS = 20_000
+SIGNS = {"<=": r"\le", ">=": r"\ge", "!=": r"\neq"}
 #: A whole power of e, which may be a name.
 EXPONENT = re.compile(r"(?<![A-Za-z\\])e\s*\^\s*(?:\{\s*)?\d")
 #: A string with one of these holds formulas among other text.
@@ -349,7 +350,8 @@ def read_relation(relation: Relation, places: list[int], notation: Notation, lin
 
     def join(texts: list[str]) -> str:
         """Both sides in one line."""
-        return " ".join((texts[0] if left is right else f"{texts[0]} {relation.sign} {texts[1]}").split())[:2_000]
+        sign = SIGNS.get(relation.sign, relation.sign)
+        return " ".join((texts[0] if left is right else f"{texts[0]} {sign} {texts[1]}").split())[:2_000]
 
     printed = [lines.text[places[s.start] : places[s.start + len(s.text)]].strip() for s in (left, right)]
     source, latex = join(printed), join([left.text, right.text])
