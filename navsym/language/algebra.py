@@ -126,11 +126,23 @@ def evaluate_freely(tree: Tree, values: dict[Tree, sp.Expr]) -> sp.Expr:
     return values[tree]
 
 
+#: What is left to be done, and its name in the language.
+BINDERS: dict[type[Any], str] = {
+    sp.Sum: "sum",
+    sp.Product: "product",
+    sp.Integral: "integral",
+    sp.Limit: "limit",
+    sp.Derivative: "diff",
+}
+
+
 # -- from sympy ---------------------------------------------------------------------
 
 
-def from_sympy(expression: Any) -> Tree:
+def from_sympy(expression: Any, calculus: bool = False) -> Tree:
     """The tree that shows an expression of sympy in the usual order, with divisors below one line.
+
+    Sums, products, integrals, limits and derivatives that are left to be done are calls where ``calculus`` is allowed.
 
     Raises ExpressionSyntaxError for a class that the language does not have, by its name; DomainError for floats,
     with their exact spelling; DuplicateError for two symbols of one name; TooLargeError for numbers above 4,000 digits.
@@ -144,6 +156,8 @@ def from_sympy(expression: Any) -> Tree:
     except (sp.SympifyError, TypeError):
         refuse(expression)
     require_one_symbol_per_name(expression)
+    if not calculus and (found := sorted(expression.atoms(*BINDERS), key=str)):
+        refuse(found[0])
     trees: dict[Any, Tree] = {}
     parts: dict[Any, list[sp.Basic]] = {}
     waiting = [expression]
@@ -197,7 +211,36 @@ def shown_parts(e: sp.Basic) -> list[sp.Basic]:
         return [factor.base if has_minus(factor) else factor for factor in split_coefficient(e)[1]]
     if isinstance(e, sp.Pow):
         return [e.base] if e.exp.is_Rational else [e.base, e.exp]
+    if type(e) in BINDERS:
+        return [e.args[0], *(part for limits in list_limits(e) for part in limits if not part.is_infinite)]
     return list(e.args) if isinstance(e, sp.Function) else []
+
+
+def list_limits(e: sp.Basic) -> list[tuple[sp.Basic, ...]]:
+    """The variables of a sum, an integral, a limit or a derivative, each with its ends or its point."""
+    if isinstance(e, sp.Limit):
+        if str(e.args[3]) != "+-" and not e.args[2].is_infinite:
+            refuse_side(e)
+        return [tuple(e.args[1:3])]
+    if isinstance(e, sp.Derivative):
+        return [(x,) for x, count in e.variable_count for _ in range(int(count))]
+    if any(len(limits) != 3 for limits in e.limits):
+        message = f"expected both ends of each variable; got {quote(str(e))}; write them, as in (x, 0, 1)"
+        raise ExpressionSyntaxError(message)
+    return [tuple(limits) for limits in e.limits]
+
+
+def refuse_side(e: sp.Basic) -> NoReturn:
+    """Raise the error for a limit from one side."""
+    raise ExpressionSyntaxError(f'expected a limit from both sides; got {quote(str(e))}; write dir="+-"')
+
+
+def show_end(end: sp.Basic, trees: Mapping[Any, Tree]) -> Tree:
+    """A variable, an end or a point, which may lie at infinity."""
+    if not end.is_infinite:
+        return trees[end]
+    infinite = build(SYMBOL, ("oo",))
+    return infinite if end is sp.oo else build_product(MINUS_ONE, infinite)
 
 
 def show(e: sp.Basic, parts: list[sp.Basic], trees: Mapping[Any, Tree]) -> Tree:
@@ -216,6 +259,11 @@ def show(e: sp.Basic, parts: list[sp.Basic], trees: Mapping[Any, Tree]) -> Tree:
         return show_product(e, trees)
     if isinstance(e, sp.Pow):
         return show_power(e, e.exp, trees)
+    if type(e) in BINDERS:
+        tree = trees[e.args[0]]
+        for limits in list_limits(e):
+            tree = build_call(BINDERS[type(e)], tree, *(show_end(part, trees) for part in limits))
+        return tree
     name = NAMES.get(type(e))
     if name is None or len(e.args) != (2 if name == "atan2" else 1):
         refuse(e)

@@ -36,14 +36,16 @@ class Text(NamedTuple):
     divisor: Text | None = None
 
 
-def to_text(expression: sp.Expr) -> str:
+def to_text(expression: sp.Expr, calculus: bool = False) -> str:
     """Text of the language of files that means the expression: ``sin(T/2)**2``, ``3/4``, ``sqrt(x)``.
+
+    With ``calculus`` it may hold sums, integrals, limits and derivatives: ``integral(exp(-t), t, 0, oo)``.
 
     ``parse(to_text(e), symbols) == e`` for every expression that the language can build.
     Raises ExpressionSyntaxError on anything outside the language (I, infinities, Piecewise, names that are not ASCII),
     DomainError on floating-point numbers, DuplicateError on two symbols of one name and TooLargeError on size.
     """
-    return print_tree(from_sympy(expression))
+    return print_tree(from_sympy(expression, calculus))
 
 
 def to_python(expression: sp.Expr) -> str:

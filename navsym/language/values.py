@@ -22,6 +22,8 @@ from navsym.language.printer import to_text
 
 #: Longest whole number or fraction: Python itself refuses to write one of more than 4,300 digits.
 MOST_BITS = 12_000
+#: Where the whole numbers begin that sympy assumes.
+WHOLE: dict[str, dict[str, bool]] = {"-oo": {}, "0": {"nonnegative": True}, "1": {"positive": True}}
 #: What a symbol of sympy without assumptions is taken for, and what stronger words include.
 STRONGER = {"positive": ("nonnegative", "nonzero", "real"), "nonnegative": ("real",), "nonzero": ("real",), "real": ()}
 
@@ -61,7 +63,7 @@ def write_expression(value: sp.Basic, where: str) -> str:
     if floats:
         raise float_error(float(floats[0]), where)
     try:
-        return to_text(value)
+        return to_text(value, calculus=True)
     except NavsymError as error:
         raise error.at(where) from None
 
@@ -90,7 +92,7 @@ def write_declaration(value: Any, where: str) -> Any:
     )
 
 
-def read_assumptions(values: Iterable[Any], where: str) -> dict[str, str]:
+def read_assumptions(values: Iterable[Any], where: str) -> dict[str, Any]:
     """Name -> word of the symbols in expressions of sympy: what their assumptions say.
 
     Raises DomainError for two symbols of one name, and for assumptions that no declaration expresses.
@@ -114,13 +116,16 @@ def symbols_in_values(values: Iterable[Any]) -> Iterable[sp.Symbol]:
             yield from symbols_in_values(value)
 
 
-def declaration_word(symbol: sp.Symbol, where: str) -> str:
+def declaration_word(symbol: sp.Symbol, where: str) -> Any:
     """The declaration that says what sympy assumes of a symbol; one without assumptions is real."""
     if symbol == sp.Symbol(symbol.name):
         return "real"
     for word, assumptions in SIGNS.items():
         if symbol == sp.Symbol(symbol.name, real=True, **assumptions):
             return word
+    for low, assumptions in WHOLE.items():
+        if symbol == sp.Symbol(symbol.name, integer=True, **assumptions):
+            return {"integer": [low, "oo"]}
     assumed = ", ".join(name for name, value in sorted(symbol._assumptions_orig.items()) if value)
     words = " or ".join(SIGNS)
     message = (

@@ -212,14 +212,13 @@ def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, An
     dimensions = {side for value in given.values() for side in list_dimensions(value)} - given.keys()
     moments = [text for value in given.values() for text in list_moments(value)]
     known = dict(given) | dict.fromkeys(order or ())
-    words = dict.fromkeys(sorted((symbols_in((*texts, *moments), known) - dimensions) | slopes.keys()), "real")
-    words |= {
-        name: {"integer": ["1", "oo"]}
-        for text in texts
-        for name in list_ends(side_text(text))
-        if name in words.keys() - given.keys()
-    }
-    words |= read_assumptions((sides.left, sides.right, *existing), "prove")
+    words: dict[str, Any] = dict.fromkeys(
+        sorted((symbols_in((*texts, *moments), known) - dimensions) | slopes.keys()), "real"
+    )
+    ends = {name for text in texts for name in list_ends(side_text(text))} & words.keys() - given.keys()
+    assumed = read_assumptions((sides.left, sides.right, *existing), "prove")
+    words |= {name: {"integer": ["1", "oo"]} for name in ends}
+    words |= {name: word for name, word in assumed.items() if word != "real" or name not in ends}
     declared = {name: write_declaration(value, f"prove: {name}") for name, value in given.items()}
     for name in declared.keys() - words.keys():
         message = (

@@ -255,7 +255,7 @@ def shorten_point(document: Document, point: Mapping[str, str]) -> dict[str, str
     shorter = dict(point)
     for name in () if others else [name for name, text in point.items() if len(text) > SHORT and name in box]:
         for number in (fmpq(n, d) for n, d in ((1, 1), (2, 1), (3, 1), (1, 2), (-1, 1))):
-            trial = shorter | write_point({name: number})
+            trial = shorter | {name: str(number)}
             if player.is_inside(player.number(number), box[name]) and fails_at(case, trial):
                 shorter = trial
                 break

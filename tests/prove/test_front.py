@@ -14,10 +14,11 @@ import sympy as sp
 import navsym as nav
 from navsym.claims import Bound, Equation, Property
 from navsym.cli.main import run
+from navsym.language.printer import to_text
 from navsym.prove.ladder import decide
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "formulas.toml"
-FREE, WHOLE = sp.Symbol("x"), sp.Symbol("x", integer=True)
+FREE, EVEN = sp.Symbol("x"), sp.Symbol("x", even=True)
 REAL, POSITIVE = sp.Symbol("x", real=True), sp.Symbol("x", positive=True)
 
 
@@ -81,7 +82,7 @@ def test_a_float_is_refused_with_its_exact_spelling(value):
         (("a", "=", None), {}, "syntax", "prove: right"),
         (("a", "==", "b"), {}, "syntax", "prove: relation"),
         (("a", 3, "b"), {}, "syntax", "prove: relation"),
-        ((WHOLE, "=", 1), {}, "domain", "prove"),
+        ((EVEN, "=", 1), {}, "domain", "prove"),
         ((True, "=", 1), {}, "syntax", "prove: left"),
         ((sp.oo, "=", 1), {}, "syntax", "prove: left"),
         ((sp.sin, "=", 1), {}, "syntax", "prove: left"),
@@ -247,3 +248,38 @@ def test_a_counterexample_has_short_numbers_where_they_do():
     found = nav.prove("K = P/(P + R)")
     assert all(len(value) < 4 for value in found.counterexample.values()) and found.check()
     assert nav.prove("x**2 != 2", x=("7/5", "3/2")).counterexample == {"x": "sqrt(2)"}
+
+
+X, N, T = sp.Symbol("x"), sp.Symbol("n", integer=True, positive=True), sp.Symbol("T", positive=True)
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "false"),
+    [
+        (sp.Sum(X, (X, 1, N)), N * (N + 1) / 2, N**2),
+        (sp.Product(2, (X, 1, N)), 2**N, 2 ** (N + 1)),
+        (sp.Integral(sp.exp(-T * X), (X, 0, sp.oo)), 1 / T, T),
+        (sp.Integral(X * T, (X, 0, 1), (T, 0, 2)), 1, 2),
+        (sp.Derivative(X**5, (X, 3)), 60 * X**2, 20 * X**3),
+        (sp.Limit(sp.sin(X) / X, X, 0, "+-"), 1, 0),
+        (sp.Limit((1 + X) / (2 * X), X, -sp.oo), sp.Rational(1, 2), 1),
+    ],
+)
+def test_what_sympy_leaves_to_be_done_is_read_and_decided(left, right, false):
+    assert nav.prove(left, "=", right).status == nav.PROVED
+    assert nav.prove(left, "=", false).status == nav.REFUTED
+
+
+@pytest.mark.parametrize(
+    ("left", "message"),
+    [
+        (sp.Integral(X, X), "both ends"),
+        (sp.Limit(abs(X) / X, X, 0), "from both sides"),
+        (sp.Derivative(sp.Function("f")(X), X), "got f"),
+    ],
+)
+def test_what_sympy_leaves_to_be_done_without_ends_or_values_is_refused(left, message):
+    with pytest.raises(nav.NavsymError, match=message):
+        nav.prove(left, "=", 1)
+    with pytest.raises(nav.NavsymError, match=r"got (Integral|Limit|Derivative)"):
+        to_text(left)

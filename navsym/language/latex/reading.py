@@ -371,8 +371,8 @@ def read_relation(relation: Relation, places: list[int], notation: Notation, lin
         why = f"line {spot[0]}, column {spot[1]}: {refusal}"
         pairs = tuple(dict.fromkeys((str(u.args[0]), str(u.args[1])) for u in unknown))
         whole = tuple(dict.fromkeys(str(u.args[0]) for u in unknown if "whole" in u.args[2:]))
-        said = ("REFUSED", why, None, None, None, (), latex, spot, pairs)
-        return ReadFormula(lines.name, row, column, source, *said, whole=whole)
+        none = (None, None, None, ())
+        return ReadFormula(lines.name, row, column, source, "REFUSED", why, *none, latex, spot, pairs, whole=whole)
 
 
 def is_whole(notation: Notation, name: str) -> bool:
