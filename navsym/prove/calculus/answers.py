@@ -7,7 +7,8 @@ checker on it, and the search fills the holes; what the rule refuses is no answe
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from itertools import islice
 from typing import Any
 
@@ -80,10 +81,24 @@ def play(make: Callable[[], Any], question: Any, goal: Any, seconds: float) -> t
 
 def read_with_answers(document: Document, point: Mapping[str, Any] | None = None, seconds: float = SECONDS) -> Any:
     """The cases of a statement, its box and the answers of its questions; raises Refused."""
-    answers, before = Search(point, seconds), ctx.prec
-    ctx.prec = BITS[0]  # as the checker will read it
-    try:
+    answers = Search(point, seconds)
+    with at_precision():
         cases, box = player.read_statement(document, answers)
+    return cases, box, answers.found
+
+
+def settle_entries(reader: Any, entries: Iterable[Any], box: Mapping[str, Any]) -> list[Any]:
+    """The terms that a reader has read, with the values of the questions in them; raises Refused."""
+    with at_precision():
+        goals = player.settle_questions(reader, [(entry, "=", (entry,)) for entry in entries], box, Search())
+    return [term for term, _, _ in goals]
+
+
+@contextmanager
+def at_precision() -> Iterator[None]:
+    """The precision at which the checker will read."""
+    before, ctx.prec = ctx.prec, BITS[0]
+    try:
+        yield
     finally:
         ctx.prec = before
-    return cases, box, answers.found
