@@ -527,7 +527,7 @@ class ValueWriter(LatexWriter):
         if part.head in BINDERS:
             return self.spell_bound(part.head, texts, self.enclose(inner[0], TIGHT))
         if part.head == "where":
-            return Text(rf"\begin{{cases}}{texts[1]} & {texts[0]} \\ {texts[2]}\end{{cases}}", WHOLE)
+            return Text(rf"\begin{{cases}}{texts[1]} & {texts[0]} \\ {texts[2]} & \text{{otherwise}}\end{{cases}}", WHOLE)
         if part.head == "diff":
             order = "" if len(texts) < 3 else f"^{{{texts[2]}}}"
             return Text(
