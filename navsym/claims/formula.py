@@ -81,26 +81,12 @@ def side_text(side: Side) -> str:
 
 
 def side_latex(side: Side, names: Mapping[str, Any]) -> str:
-    """A side in LaTeX, as the algebra holds it; the names are letters of real numbers."""
-    import sympy as sp
-
-    from navsym.language.expression import parse, symbol
-    from navsym.language.names import INVERSES
+    """A side in LaTeX, as it was written."""
     from navsym.language.shapes import read_shape
-    from navsym.language.vectors import is_wide, print_value_latex, read_value
+    from navsym.language.vectors import print_value_latex, read_value
 
-    used = names_of(side)
-    wide = (
-        is_wide(side_text(side)) or used & INVERSES.keys() or any(isinstance(names[n], dict) for n in used & {*names})
-    )
-    if wide:
-        shapes = [shape for name, value in names.items() for shape in read_shape(name, value, {*names}, "")]
-        return print_value_latex(read_value(side_text(side), {shape.name: shape.size for shape in shapes}).tree)
-    if isinstance(side, list):
-        rows = [row if isinstance(row, list) else [row] for row in side]
-        lines = r" \\ ".join(" & ".join(side_latex(cell, names) for cell in row) for row in rows)
-        return rf"\begin{{bmatrix}}{lines}\end{{bmatrix}}"
-    return str(sp.latex(parse(str(side), {name: symbol(name) for name in names})))
+    sizes = {shape.name: shape.size for n, value in names.items() for shape in read_shape(n, value, {*names}, "")}
+    return print_value_latex(read_value(side_text(side), sizes).tree)
 
 
 def chain_latex(chain: str, names: Mapping[str, Any]) -> str:

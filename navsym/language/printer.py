@@ -19,7 +19,7 @@ from navsym.language.arithmetic import BITS
 from navsym.language.tree import MINUS_ONE, NUMBER, ONE, POWER, PRODUCT, SUM, SYMBOL, Tree, build, fold_tree
 
 ENCLOSURES = {"sqrt": r"\sqrt{{{}}}", "abs": r"\left|{}\right|", "exp": r"e^{{{}}}"}
-KNOWN_TO_LATEX = frozenset("sin cos tan cot sec csc log sinh cosh tanh".split())
+TO_LATEX = {name: rf"\{name}" for name in "sin cos tan cot sec csc sinh cosh tanh".split()} | {"log": r"\ln"}
 GREEK = frozenset(
     "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi rho sigma tau phi chi psi omega".split()
 )
@@ -219,7 +219,7 @@ class LatexWriter(Writer):
             return Text(rf"\{part.head}", WHOLE)
         if part.head in ENCLOSURES:
             return Text(ENCLOSURES[part.head].format(arguments[0]), RAISED if part.head == "exp" else WHOLE)
-        name = rf"\{part.head}" if part.head in KNOWN_TO_LATEX else rf"\operatorname{{{part.head}}}"
+        name = TO_LATEX.get(part.head, rf"\operatorname{{{part.head}}}")
         return Text(rf"{name}\left({', '.join(arguments)}\right)", WHOLE)
 
     def enclose(self, part: Text, floor: int) -> str:

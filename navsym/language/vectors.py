@@ -502,7 +502,9 @@ class ValueWriter(LatexWriter):
         if part.head == SYMBOL and part.args[0] == INFINITE:
             return Text(r"\infty", WHOLE)
         if part.head == "@":
-            return Text(rf"{self.enclose(inner[0], TIGHT)} \, {self.enclose(inner[1], RAISED)}", TIGHT)
+            minus = texts[0].startswith("-") and part.args[0].head == PRODUCT  # (-A) B is -A B
+            before = texts[0] if minus else self.enclose(inner[0], TIGHT)
+            return Text(rf"{before} \, {self.enclose(inner[1], RAISED)}", LOOSE if minus else TIGHT)
         if part.head in ("T", "transpose", "inv", "conj"):
             raised = {"T": r"\top", "transpose": r"\top", "inv": "-1", "conj": "*"}[part.head]
             return Text(f"{self.enclose(inner[0], WHOLE)}^{{{raised}}}", RAISED)
@@ -521,13 +523,15 @@ class ValueWriter(LatexWriter):
             written = FORMS[part.head].format(*(self.enclose(text, LOOSE if closed else RAISED) for text in inner))
             return Text(written, WHOLE if closed else TIGHT)
         if part.head == "eye":
-            return Text(rf"I_{{{texts[0]}}}", WHOLE)
+            return Text(rf"\mathbf{{I}}_{{{texts[0]}}}", WHOLE)
         if part.head == "zeros":
-            return Text(rf"0_{{{texts[0]} \times {texts[1]}}}", WHOLE)
+            return Text(rf"\mathbf{{0}}_{{{texts[0]} \times {texts[1]}}}", WHOLE)
         if part.head in BINDERS:
             return self.spell_bound(part.head, texts, self.enclose(inner[0], TIGHT))
         if part.head == "where":
-            return Text(rf"\begin{{cases}}{texts[1]} & {texts[0]} \\ {texts[2]}\end{{cases}}", WHOLE)
+            return Text(
+                rf"\begin{{cases}}{texts[1]} & {texts[0]} \\ {texts[2]} & \text{{otherwise}}\end{{cases}}", WHOLE
+            )
         if part.head == "diff":
             order = "" if len(texts) < 3 else f"^{{{texts[2]}}}"
             return Text(

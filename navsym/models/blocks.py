@@ -7,7 +7,7 @@ dynamics and targets then have one entry for each state of the list, which is a 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from math import prod
 from typing import Any
@@ -17,7 +17,7 @@ from navsym.language.expression import read_tree
 from navsym.language.names import join_place, quote
 from navsym.language.printer import print_tree
 from navsym.language.schema import SIDE, Table, as_list, as_table, as_text
-from navsym.language.shapes import Shape, name_entries, read_shape
+from navsym.language.shapes import RANGES, Shape, name_entries, read_shape
 from navsym.language.tree import (
     NUMBER,
     PRODUCT,
@@ -32,7 +32,7 @@ from navsym.language.tree import (
     fold_tree,
     list_parts,
 )
-from navsym.language.vectors import describe_size, is_wide, read_value
+from navsym.language.vectors import describe_size, is_wide, list_free_names, read_value
 
 #: Parts that have a value wherever their own parts have one.
 PLAIN = {NUMBER, SYMBOL, SUM, PRODUCT}
@@ -98,7 +98,8 @@ class Writer:
         self.arrays: dict[str, tuple[tuple[str, ...], ...]] = {}
         self.scalars: set[str] = {"t"}
         place = join_place(where, "parameters")
-        declared = as_table(document.get("parameters", {}), place)
+        self.declared = declared = as_table(document.get("parameters", {}), place)
+        self.rates = as_table(document.get("rates", {}), join_place(where, "rates"))
         self.parameters = dict(self.declare(declared, place))
         place, model = join_place(join_place(where, "model"), "states"), document.get("model", {})
         states = as_list(model.get("states", [*list_roles(document)]), place, "a list of names")
@@ -159,29 +160,51 @@ class Writer:
         """The entries of a text, as texts; a number as it is written."""
         if not isinstance(text, str) or not (is_wide(text) or self.names_array(text)):
             return str(text) if isinstance(text, int) and not isinstance(text, bool) else text  # type: ignore[no-any-return]
+        from navsym.prove.calculus.answers import settle_entries
         from navsym.prove.grant import write_numerals
+        from navsym.prove.relations.reading import require_rates
         from navsym.prove.rooms.goals import player, write_term
 
         states = [name for name, entries in self.sizes if entries == (name,)] if hasattr(self, "sizes") else []
         known = dict.fromkeys([*self.scalars, *(name for name in states if isinstance(name, str))])
-        read_value(text, known | {name: (len(rows), len(rows[0])) for name, rows in self.arrays.items()}, where=here)
-        names = {name: ("symbol", name) for name in known}
+        sizes = known | {name: (len(rows), len(rows[0])) for name, rows in self.arrays.items()}
+        tree = read_value(text, sizes, where=here).tree
+        slopes: dict[str, str | None] = {}
+        if {"diff", "dot_"} & {part.head for part in list_parts(tree)}:  # a state has a rate, but none that is known
+            slopes = dict.fromkeys(sizes.keys() - self.declared.keys()) | {"t": "1"}
+            slopes |= {name: write_numerals(str(rate)) for name, rate in self.rates.items() if name in sizes}
+            require_rates([tree], slopes, here)
+        names: dict[str, Any] = {name: ("symbol", name) for name in known}
         names |= {
             name: player.Matrix([[("symbol", entry) for entry in row] for row in rows])
             for name, rows in self.arrays.items()
         }
+        used = list_free_names(tree) & names.keys()
         try:
-            reader = player.Reader(names, {}, [])
+            reader = player.Reader(names if slopes else {name: names[name] for name in used}, slopes, [])
             value = reader.read(write_numerals(text))
+            box = {name: player.read_range(ends) for name, ends in self.list_limits(used)} if reader.questions else {}
+            entries = settle_entries(reader, player.list_entries(value), box)
         except player.Refused as refusal:
             raise DomainError(
                 f"expected a formula of numbers; got {quote(text)}: {refusal}; write it out", where=here
             ) from None
-        if reader.choices:
-            raise DomainError(f"expected no cases; got {quote(text)}; a model is one formula", where=here)
+        texts = [write_term(entry) for entry in entries]
+        if reader.choices or reader.fractions or any("erf(" in text for text in texts):
+            message = f"expected no cases, floor and erf; got {quote(text)}; a model is one formula"
+            raise DomainError(message, where=here)
         if not isinstance(value, player.Matrix):
-            return str(write_term(value))
-        return [[tidy(write_term(entry)) for entry in row] for row in value.rows]
+            return texts[0]
+        columns = len(value.rows[0])
+        return [[*map(tidy, texts[k : k + columns])] for k in range(0, len(texts), columns)]
+
+    def list_limits(self, names: Iterable[str]) -> Iterator[tuple[str, list[Any]]]:
+        """The ranges of the numbers behind these names, in the words of the checker; states are real."""
+        for name in names:
+            if name in self.declared:
+                yield from self.read_shape(name, self.declared[name], {}, name)[0].ranges.items()
+            else:
+                yield from ((entry, RANGES["real"]) for row in self.arrays.get(name, ((name,),)) for entry in row)
 
     def names_array(self, text: str) -> bool:
         return not self.arrays.keys().isdisjoint(re.findall(r"[A-Za-z]\w*", text))

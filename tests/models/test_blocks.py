@@ -6,6 +6,7 @@ import pytest
 import sympy as sp
 
 import navsym as nav
+from navsym.language.expression import parse
 
 BLOCKS = {
     "states": ["phi[3]", "dv[3]", "d"],
@@ -115,3 +116,35 @@ def test_what_does_not_fit_is_said_with_its_place(change, where, words) -> None:
     with pytest.raises(nav.NavsymError) as caught:
         nav.Model(**(BLOCKS | change))
     assert caught.value.where.startswith(where) and words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "entry"),
+    [
+        ("integral(exp(-s/tau), s, 0, t)", "tau - tau*exp(-t/tau)"),
+        ("integral(x, x, 0, a)", "a**2/2"),
+        ("expm(-t/tau*eye(2))[2,2]", "exp(-t/tau)"),
+        ("limit((1 - cos(a*s))/s**2, s, 0)", "a**2/2"),
+        ("sum(k*a, k, 1, 3)", "6*a"),
+        ("dot_(a*t)", "a + b*t"),
+        ("dot_(w)[2]", "w_3"),
+        ("dot_(b)", "expected a rate below dot_; got none of b"),
+        ("dot_(x)", "no rate is known"),
+        ("integral(sin(s)/s, s, 0, t)", "no closed form of the integral was found"),
+        ("floor(a)", "expected no cases, floor and erf"),
+        ("erf(a)", "expected no cases, floor and erf"),
+    ],
+)
+def test_calculus_in_a_model_is_that_of_claims(text, entry) -> None:
+    names = {"a": "real", "b": "real", "tau": "positive", "w": {"vector": 3}}
+    rates = {"a": "b", "w": "cross(w, [1, 0, 0])"}
+    model = {"states": "x y", "F": [[text, "1"], ["0", "0"]], "H": [["1", "0"]], "rates": rates, "parameters": names}
+    if "expected" in entry or entry.startswith("no "):
+        with pytest.raises(nav.NavsymError, match=entry):
+            nav.Model(**model)
+        return
+    found = nav.Model(**model)._contents.pieces[0].F[0, 0]
+    known = {name: sp.Symbol(name, real=True) for name in ("a", "b", "t", "w_3")} | {
+        "tau": sp.Symbol("tau", positive=True)
+    }
+    assert found == parse(entry, known)

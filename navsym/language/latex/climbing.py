@@ -392,9 +392,9 @@ class Climber(ClusterReader):
                 self.refuse("a function without subscript")
             name = f"log_{base}"
         self.place = here.after
+        self.open_braces()
         if self.look() in ("(", "[", "{<"):
             return Part("call", (name, power, True, *self.listed()), at)
-        self.open_braces()
         if self.look().isdigit():
             number = self.numeral()
             self.open_braces()

@@ -400,6 +400,17 @@ class Explainer:
             return Term(f"expm({text})", WHOLE, shapes[0])
         if name == "skew" and len(shapes) == 1 and is_space_vector(shapes[0]):
             return Term(f"skew({text})", WHOLE, ("3", "3"))
+        if name == "rot" and shapes in ([("4", "1")], [("?", "1")]):
+            return Term(f"rot({text})", WHOLE, ("3", "3"))
+        if name == "E" and len(shapes) == 1:
+            return Term(f"E({text})", WHOLE, shapes[0])
+        if (
+            name == "cov"
+            and len({shape[1:] for shape in shapes}) == 1
+            and shapes[0][1:] in ((), ("1",))
+            and len(shapes) < 3
+        ):
+            return Term(f"cov({text})", WHOLE, (*shapes[0][:1], *shapes[-1][:1]))
         if name == "diag" and not any(shapes):
             return Term(f"diag({text})", WHOLE, (str(len(shapes)),) * 2)
         wanted = 2 if name == "atan2" else len(shapes) if name in ("min", "max") and len(shapes) > 1 else 1

@@ -40,7 +40,7 @@ SIZES = frozenset(f"{size}{side}" for size in ("big", "Big", "bigg", "Bigg") for
 CALLS: Mapping[str, str] = {name: name for name in FUNCTIONS} | dict(
     arcsin="asin", arccos="acos", arctan="atan", ln="log", arctan2="atan2", sgn="sign", sign="sign", tr="trace",
     arsinh="asinh", arcosh="acosh", artanh="atanh", Tr="trace", trace="trace", det="det", diag="diag", skew="skew",
-    erf="erf", min="min", max="max", expm="expm",
+    erf="erf", min="min", max="max", expm="expm", rot="rot", E="E", cov="cov", Cov="cov",
 )  # fmt: skip
 #: Commands of LaTeX that are functions; other names of functions stand in ``\operatorname`` or ``\mathrm``.
 COMMANDS = frozenset("sin cos tan cot sec csc exp ln log sinh cosh tanh arcsin arccos arctan det min max".split())

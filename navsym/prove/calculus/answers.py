@@ -7,14 +7,15 @@ checker on it, and the search fills the holes; what the rule refuses is no answe
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
-from itertools import islice
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from itertools import chain, islice
 from typing import Any
 
 from flint import ctx
 
 from navsym.prove.calculus import candidates
-from navsym.prove.calculus.candidates import Signs, list_candidates
+from navsym.prove.calculus.candidates import Signs, guess_integrals, list_candidates
 from navsym.prove.grant import BITS, REFUSALS, Document
 from navsym.prove.rooms.goals import Hole, player, values_of
 from navsym.prove.search import SECONDS, find_filled, plain
@@ -40,8 +41,9 @@ take_sign, player.ask_sign = player.ask_sign, guess_sign
 class Search(player.Answers):  # type: ignore[misc,name-defined]
     """Answers that are sought when they are asked for; those that were found stay for the next case."""
 
-    def __init__(self, point: Mapping[str, Any] | None = None, seconds: float = SECONDS):
+    def __init__(self, point: Mapping[str, Any] | None = None, seconds: float = SECONDS, sides: Sequence[str] = ()):
         super().__init__([], None if point is None else dict(point))
+        self.sides = sides
         self.deadline, self.found, self.known = time.process_time() + seconds, list[Any](), dict[Any, Any]()
 
     def settle(self, question: Any, goal: Any) -> Any:
@@ -57,7 +59,8 @@ class Search(player.Answers):  # type: ignore[misc,name-defined]
     def seek(self, question: Any, goal: Any) -> tuple[Any, Any] | None:
         """The first answer and its value."""
         try:
-            for make in islice(list_candidates(question, goal), MOST_CANDIDATES):
+            guesses = guess_integrals(question, self.sides) if question.kind == "integral" else ()
+            for make in chain(guesses, islice(list_candidates(question, goal), MOST_CANDIDATES)):
                 found = play(make, question, goal, self.deadline - time.process_time())
                 if found is not None:
                     return found
@@ -80,10 +83,24 @@ def play(make: Callable[[], Any], question: Any, goal: Any, seconds: float) -> t
 
 def read_with_answers(document: Document, point: Mapping[str, Any] | None = None, seconds: float = SECONDS) -> Any:
     """The cases of a statement, its box and the answers of its questions; raises Refused."""
-    answers, before = Search(point, seconds), ctx.prec
-    ctx.prec = BITS[0]  # as the checker will read it
-    try:
+    answers = Search(point, seconds, [document["left"], document["right"]])
+    with at_precision():
         cases, box = player.read_statement(document, answers)
+    return cases, box, answers.found
+
+
+def settle_entries(reader: Any, entries: Iterable[Any], box: Mapping[str, Any]) -> list[Any]:
+    """The terms that a reader has read, with the values of the questions in them; raises Refused."""
+    with at_precision():
+        goals = player.settle_questions(reader, [(entry, "=", (entry,)) for entry in entries], box, Search())
+    return [term for term, _, _ in goals]
+
+
+@contextmanager
+def at_precision() -> Iterator[None]:
+    """The precision at which the checker will read."""
+    before, ctx.prec = ctx.prec, BITS[0]
+    try:
+        yield
     finally:
         ctx.prec = before
-    return cases, box, answers.found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import pairwise, product
 from typing import Any
 
@@ -157,7 +157,7 @@ def list_antiderivatives(question: Any, goal: Any, pair: Any, signs: list[int]) 
             if found is None:
                 continue
             form = turn_logarithms(choose_branch(found).subs(back), question, goal, pair)
-            text = from_sympy(form)
+            text = from_sympy(lower_exponentials(form, x, pair))
         except (NavsymError, *TROUBLE):
             continue
         if text not in seen:
@@ -187,6 +187,34 @@ def turn_logarithms(form: Any, question: Any, goal: Any, pair: Any) -> Any:
         if sign_at_middle(term, question, goal, pair) < 0:
             found[part] = sp.log(-part.args[0])
     return form.xreplace(found)
+
+
+def lower_exponentials(form: Any, x: Any, pair: Any) -> Any:
+    """A quotient with exponentials that fall towards its far end: over the largest one of the divisor there."""
+    if not any(map(player.is_infinite, pair)):
+        return form
+    top, bottom = (sp.expand(part) for part in sp.fraction(sp.together(form)))
+    factors = [
+        [e.args[0] for e in sp.Mul.make_args(term) if isinstance(e, sp.exp)] for term in sp.Add.make_args(bottom)
+    ]
+    rates = [sp.diff(sp.Add(*inside), x) for inside in factors]
+    if not (any(rates) and all(rate.is_number for rate in rates)):
+        return form
+    share = sp.exp(-x * (min(rates) if player.is_infinite(pair[0]) else max(rates)))
+    return sp.expand(top * share) / sp.expand(bottom * share)
+
+
+def guess_integrals(question: Any, sides: Iterable[str]) -> Iterator[Callable[[], Entry]]:
+    """The other side of an equation, with the variable in the place of the upper end, as an antiderivative."""
+    end, x = question.high, ("symbol", question.variable)
+    for text in sides if end[0] == "symbol" and end != player.INFINITY else ():
+        try:
+            form = player.substitute(player.parse(text), {end[1]: x})
+        except player.Refused:
+            continue
+        if question.variable in player.symbols_of(form):
+            for plain in (True, False):
+                yield functools.partial(make_integral, [], (write_term(form),), [(0, 0)], plain)
 
 
 def integrate_slowly(f: Any, x: Any) -> Any:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import random
+import re
 
 import numpy as np
 import pytest
 
 import navsym as nav
+from navsym.claims.formula import Formula
 from tests.language.latex.printed_trees import FUNCTIONS, SYMBOLS, VALUES, Printer
 
 
@@ -40,3 +42,35 @@ def test_random_formulas_keep_their_value():
 @pytest.mark.long
 def test_two_thousand_random_formulas_keep_their_value():
     assert read_back(range(1_000, 3_000)) == {}
+
+
+V, M, N = {"vector": 3}, {"matrix": [2, 2]}, {"matrix": ["n", "n"]}
+CONSTRUCTS = {
+    "cross(u, v) - skew(u) @ v = zeros(3, 1)": {"u": V, "v": V},
+    "det(inv(A)) = 1/det(A)": {"A": M},
+    "inv(P @ R).T = inv(R @ P).T": {"P": N, "R": N},
+    "rot(qmul(p, q)) = rot(p) @ rot(q)": {"p": {"quaternion": "any"}, "q": {"quaternion": "any"}},
+    "conj(conj(q)) = q + q[2]*q": {"q": {"quaternion": "any"}},
+    "trace(A) = A[1,1] + A[2,2]": {"A": M},
+    "norm(u + v) <= norm(u) + norm(v)": {"u": V, "v": V},
+    "diag(a, b) = eye(2)": {"a": "real", "b": "real"},
+    "diff(x**3, x, 2) = 6*x": {"x": "real"},
+    "integral(exp(-s/c), s, 0, b) = c*(1 - exp(-b/c))": {"c": "positive", "b": "real"},
+    "sum(k**2, k, 1, n) = n*(n + 1)*(2*n + 1)/6": {"n": {"integer": ["1", "oo"]}},
+    "product(k/(k + 1), k, 1, n) = 1/(n + 1)": {"n": {"integer": ["1", "oo"]}},
+    "limit(sin(x)/x, x, oo) = 0": {},
+    "where(x > 0, log(x), -x) = max(x, 0) + min(x, 0)": {"x": "real"},
+    "sign(x)*abs(x) = floor(x) + erf(x)": {"x": "real"},
+    "expm(x*A) = expm(A)": {"x": "real", "A": M},
+    "cov(w, x) = E(w*x) - E(w)*E(x)": {"w": {"random": {"cov": "1"}}, "x": {"random": {"cov": "1"}}},
+    "atan2(sin(a), cos(a)) = asin(a)": {"a": "real"},
+    "y - x**2/2 + z = z*(y - 3*x)": {"x": "real", "y": "real", "z": "real"},
+}
+
+
+@pytest.mark.parametrize("text", CONSTRUCTS)
+def test_the_latex_that_a_construct_shows_is_read_as_the_construct(text):
+    left, relation, right = re.fullmatch("(.*) (=|<=) (.*)", text).groups()
+    shown = Formula(left, relation, right, CONSTRUCTS[text])._repr_latex_()
+    (formula,) = nav.read(shown, symbols=CONSTRUCTS[text]).formulas
+    assert (formula.left, formula.relation, formula.right) == (left, relation, right), (shown, formula.why)

@@ -231,6 +231,20 @@ def test_absolute_values_of_waves_and_logarithms_are_integrated_from_zero_to_zer
 
 
 @pytest.mark.parametrize(
+    ("text", "true", "false", "given"),
+    [
+        ("integral(1/cos(x), x, 0, L)", "log((1 + sin(L))/cos(L))", "log((1 - sin(L))/cos(L))", {"L": ("0", "3/2")}),
+        ("integral(sqrt(1 + x**2), x, 0, T)", "(T*sqrt(1 + T**2) + log(T + sqrt(1 + T**2)))/2", "T", {"T": "positive"}),
+        ("integral(exp(-x)/(1 + exp(-x))**2, x, -oo, y)", "1/(1 + exp(-y))", "1/(1 + exp(y))", {}),
+    ],
+)
+def test_the_other_side_is_tried_as_an_antiderivative_and_exponentials_fall_at_infinity(text, true, false, given):
+    verdict = nav.prove(f"{text} = {true}", **given)
+    assert verdict.status == PROVED and verdict.check().accepted
+    assert nav.prove(f"{text} = {false}", **given).status == REFUTED
+
+
+@pytest.mark.parametrize(
     ("text", "latex"),
     [
         ("integral(exp(-x), x, 0, oo)", r"\int_{0}^{\infty} "),
