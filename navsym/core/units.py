@@ -202,7 +202,7 @@ def scale_of(text: str, unit: str, where: str) -> tuple[Fraction, Powers]:
     ((Fraction(1, 648000), {'pi': Fraction(1, 1)}), (Fraction(381, 1250000), {}))
     """
     powers = read_unit(text, where)
-    wanted = read_unit(unit, where) if unit else {key: n for key, n in powers.items() if key in BASES}
+    wanted: Powers = read_unit(unit, where) if unit else {key: n for key, n in powers.items() if key in BASES}
     scale = combine([(powers, 1), (wanted, -1)])
     if not scale.keys().isdisjoint(BASES):
         raise DomainError(f"expected a quantity in {unit}; got one in {text}; correct it", where=where)

@@ -267,8 +267,8 @@ class Model:
     def read(self, values: Mapping[str, Any] | None = None) -> ModelFile | BasisFile:
         """The exact contents, with values put in for some parameters.
 
-        values : parameter -> exact number, inside its declaration; with a unit (``"90 min"``, a quantity of pint) in the
-                 unit that is declared, else in SI
+        values : parameter -> exact number, inside its declaration; ``"90 min"`` and quantities of pint are converted to
+                 the unit that is declared, else to SI
 
         Raises UnknownSymbolError for a name that is no parameter, DomainError for a value outside.
         """
