@@ -23,7 +23,8 @@ A first session
 Conventions
 -----------
 
-* Radians, seconds and metres; degrees and hours only in reports, printed numerals and files that say so.
+* Radians, seconds and metres; degrees and hours only in reports, printed numerals and files that say so. A quantity of
+  pint, or a value such as ``"90 min"``, is converted to the unit that is declared, else to SI.
 * Local axes are east, north, up (x, y, z) unless a model names others. An error is estimate minus truth; an innovation
   is measurement minus prediction. Where a formula needs quaternions they are Hamilton's, scalar first.
 * ``dx/dt = F x``, ``z = H x + r``; Phi carries a state forward; P, Q and R are covariances.

@@ -53,6 +53,8 @@ def test_every_block_runs_in_order(path, tmp_path, monkeypatch, capsys):
                 assert program == "navsym" and run(words) == 0, (line, capsys.readouterr())
             said = spaced(capsys.readouterr().out)
         elif kind == "python":
+            if "import pint" in body:
+                pytest.importorskip("pint", reason="pint is not installed: pip install 'navsym[units]'")
             script.append(body)
     if script:
         run_script(script)

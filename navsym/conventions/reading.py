@@ -26,7 +26,7 @@ from navsym.language.schema import (
 )
 from navsym.language.tree import MINUS_ONE, ONE, ZERO, Tree, build_sum, build_symbol
 from navsym.language.tree import replace as replace_parts
-from navsym.models.modelfile import BESIDE, STEP, TABLES, read_ranges
+from navsym.models.modelfile import BESIDE, TABLES, read_ranges
 
 #: Quantities -> the numbers of components that they may have.
 QUANTITIES: Mapping[str, tuple[int, ...]] = {
@@ -156,7 +156,7 @@ def read_problem(document: Table, where: str = "") -> Problem:
         quantities=read_quantities(document.get("quantities", {}), parameters, join_place(where, "quantities")),
         known=read_known(document.get("known", {}), join_place(where, "known")),
         unused=(*(name for name in UNUSED if name in document and not (name == "measurement" and "H" in more)), *free),
-        ranges=read_ranges(document, (*states, *parameters, STEP), where),
+        ranges=read_ranges(document, states, parameters, where),
         own=read_known(document.get("card", {}), join_place(where, "card")),
         **more,
     )

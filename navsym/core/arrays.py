@@ -6,6 +6,7 @@ so that the code behind them may trust shapes and finiteness and never has to lo
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError
+from navsym.core.units import convert_number, is_quantity, unit_text
 
 Array = NDArray[np.float64]
 #: A shape; None stands for a size that is not prescribed.
@@ -24,16 +26,17 @@ SLACK = 1e-9
 ASYMMETRY = 1e-12
 
 
-def as_array(name: str, value: Any, shape: Shape, why: str) -> Array:
+def as_array(name: str, value: Any, shape: Shape, why: str, unit: str = "") -> Array:
     """A read-only float copy of ``value``, of the given shape and without NaN or infinities.
 
     name  : what the caller calls it; opens every error message
     shape : expected sizes, None where any positive size will do
     why   : what the axes are, "one entry per measurement"
+    unit  : what quantities of pint are converted to; SI where it is empty
 
-    Raises ShapeError, EmptyError (no entries), NotFiniteError.
+    Raises ShapeError, EmptyError (no entries), NotFiniteError, and DomainError for a quantity of another dimension.
     """
-    return freeze(need_finite(name, need_shape(name, as_floats(name, value, why), shape, why)))
+    return freeze(need_finite(name, need_shape(name, as_floats(name, value, why, unit), shape, why)))
 
 
 def need_shape(name: str, array: Array, shape: Shape, why: str) -> Array:
@@ -58,8 +61,18 @@ def need_finite(name: str, array: Array) -> Array:
     return array
 
 
-def as_floats(name: str, value: Any, why: str) -> Array:
+def without_units(value: Any, where: str, unit: str = "") -> Any:
+    """Quantities of pint as floats in a unit, or in SI, also inside lists; everything else as it is."""
+    if is_quantity(value):
+        return convert_number(np.asarray(value.magnitude, dtype=np.float64), unit_text(value), unit, where)[()]
+    if isinstance(value, list | tuple) and "pint" in sys.modules:
+        return [without_units(item, where, unit) for item in value]
+    return value
+
+
+def as_floats(name: str, value: Any, why: str, unit: str = "") -> Array:
     """A float copy of nested sequences of numbers; ragged rows, truth values and words are a ShapeError."""
+    value = without_units(value, name, unit)
     try:
         raw = np.asarray(value)
         if raw.dtype.kind not in "iufO" or (raw.dtype == object and any(isinstance(v, bool | str) for v in raw.flat)):

@@ -6,8 +6,12 @@ or line) and a message of the form *expected …; got …; remedy*. Nothing else
 
 from __future__ import annotations
 
+import difflib
 import re
+from collections.abc import Iterable
 
+#: Longest name.
+NAME_LENGTH = 64
 #: Foreign text inside a message: it stands in quotes and may hold anything, semicolons too.
 QUOTED = re.compile(r"(?<![^\s(\[=:])(['\"]).*?\1(?![A-Za-z])")
 
@@ -18,6 +22,39 @@ def printable(text: str) -> str:
     Names and values of a file stand in messages; they can neither steer a terminal nor feign a second line.
     """
     return "".join(char if char.isprintable() else repr(char)[1:-1] for char in text)
+
+
+def quote(value: object, limit: int = 40) -> str:
+    """Foreign text as it may stand in a message: quoted, escaped, ASCII only, and cut."""
+    if isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e15:
+        return repr(value)
+    text = value if isinstance(value, str) else f"{type(value).__name__} {shorten_repr(value, limit)}"
+    cut = text[:limit]
+    return ascii(cut) + (f" ... ({len(text)} characters)" if len(text) > limit else "")
+
+
+def shorten_repr(value: object, limit: int) -> str:
+    """``repr`` of small things only: that of a huge integer or a deep list costs time or fails."""
+    if isinstance(value, int) and value.bit_length() > 200:
+        return f"of {value.bit_length()} bits"
+    if isinstance(value, (list, tuple, dict)):
+        return f"of {len(value)} entries"
+    try:
+        return repr(value)[:limit]
+    except Exception:  # an object of somebody else, which cannot say what it is
+        return "without a text"
+
+
+def suggest_nearest(name: str, known: Iterable[str]) -> str:
+    """``"did you mean 'omega'?"``, or the list of what there is."""
+    choices = sorted(known)
+    if not choices:
+        return "nothing is declared here"
+    close = difflib.get_close_matches(str(name)[:NAME_LENGTH], choices[:5000], n=1, cutoff=0.6)
+    if close:
+        return f"did you mean {close[0]!r}?"
+    rest = "" if len(choices) <= 8 else f" and {len(choices) - 8} more"
+    return "known are " + ", ".join(repr(choice[:NAME_LENGTH]) for choice in choices[:8]) + rest
 
 
 class NavsymError(Exception):

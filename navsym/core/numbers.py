@@ -5,6 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import takewhile
+from typing import Any
+
+from navsym.core.errors import MissingEngineError
+from navsym.core.units import BASES, convert_number, read_unit
 
 #: Fewer shared digits than these are no picture of a number: 1.6999 … 1.7001 would be 1.
 FEW = 4
@@ -66,6 +70,25 @@ class Number:
     def __contains__(self, value: object) -> bool:
         """True when an exact number lies between the ends: ``Fraction(1, 3) in number``."""
         return isinstance(value, (int, Fraction)) and Fraction(self.lower) <= value <= Fraction(self.upper)
+
+    def quantity(self, unit: str, registry: Any = None) -> Any:
+        """A number of a unit, such as ``"deg/h"`` or ``"mg"``, as a quantity of pint in SI: its middle as a double.
+
+        registry : that of pint in which it is one; by default that of the application
+
+        Raises MissingEngineError without pint, DomainError for a text that is no unit.
+        """
+        if registry is None:
+            try:
+                import pint
+            except ImportError:
+                message = "expected the package pint for quantities; got none; pip install 'navsym[units]'"
+                raise MissingEngineError(message, where="quantity") from None
+            registry = pint.get_application_registry()
+        powers = {key: float(n) for key, n in read_unit(unit, "quantity: unit").items() if key in BASES}
+        return registry.Quantity(
+            convert_number(float(self), unit, "", "quantity: unit"), registry.UnitsContainer(powers)
+        )
 
     def document(self) -> dict[str, str]:
         """``{"lower", "upper"}``, as in the documents of the verbs."""

@@ -24,11 +24,11 @@ from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, N
 from navsym.core.numbers import Number
 from navsym.core.tables import Table
 from navsym.export.parts import overlap
-from navsym.language.expression import parse, parse_noting, symbol
+from navsym.language.expression import parse_noting, symbol
 from navsym.language.files import read_text
 from navsym.language.names import quote, require_table
 from navsym.language.tokens import Source, tokenize
-from navsym.language.values import write_value
+from navsym.language.values import read_constant, write_value
 from navsym.prove.claimfile import (
     FileClaim,
     claims_from,
@@ -204,7 +204,7 @@ def exact_range(name: str, ends: Any) -> tuple[sp.Expr, sp.Expr]:
     where = f"diff: {name}"
     if not isinstance(ends, (tuple, list)) or len(ends) != 2:
         raise ShapeError(f'expected two ends; got {quote(ends)}; write {name}=("0", "1")', where=where)
-    lower, upper = (parse(write_value(end, where), {}, where=where) for end in ends)
+    lower, upper = (read_constant(end, where) for end in ends)
     return lower, upper
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, TooLargeError
+from navsym.core.units import drop_unit
 from navsym.language.arithmetic import sign_of_constant
 from navsym.language.expression import Expr, Symbol, symbol
 from navsym.language.names import quote, suggest_nearest
@@ -29,6 +30,7 @@ class Parameter:
     symbol       : real, and positive or nonnegative where the declaration says so
     lower, upper : exact ends of its range, None where it has none (closed where given)
     kind         : "range", or the word of the declaration
+    unit         : in which its values are; SI where it is empty
     """
 
     name: str
@@ -36,6 +38,7 @@ class Parameter:
     lower: Expr | None
     upper: Expr | None
     kind: Kind
+    unit: str = ""
 
 
 def read_parameters(table: Table, where: str) -> dict[str, Parameter]:
@@ -70,12 +73,13 @@ def advise_on_declaration(value: Any, name: str) -> str:
     return "correct it"
 
 
-def read_range(value: Any, where: str) -> tuple[Expr, Expr]:
-    """Two exact numbers, the first below the second."""
+def read_range(value: Any, where: str, unit: str = "") -> tuple[Expr, Expr]:
+    """Two exact numbers, the first below the second; ``"9 km"`` is one too, in a unit or in SI."""
     ends = as_list(value, where, "a range of two numbers")
     if len(ends) != 2:
         raise ShapeError(f"expected a range of two numbers; got {len(ends)}; give both ends", where=where)
-    lower, upper = (read_entry(end, {}, join_place(where, i)) for i, end in enumerate(ends))
+    places = [join_place(where, i) for i in range(2)]
+    lower, upper = (read_entry(drop_unit(end, at, unit), {}, at) for end, at in zip(ends, places, strict=True))
     if sign_of_constant(upper - lower) == 0:
         message = f"expected two different numbers; got {cut_text(lower)} twice; write a constant in place of the name"
         raise DomainError(message, where=where)

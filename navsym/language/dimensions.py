@@ -15,11 +15,11 @@ from itertools import chain, permutations
 from typing import Any
 
 from navsym.core.errors import DomainError
+from navsym.core.units import Powers, combine, print_unit, read_unit
 from navsym.language.names import FUNCTIONS
 from navsym.language.printer import TIGHT, WHOLE, Text, Writer
 from navsym.language.shapes import Shape
 from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, SYMBOL, Tree, build, fold_tree, list_names, list_parts
-from navsym.language.units import Powers, combine, print_unit, read_unit
 from navsym.language.vectors import BINDERS, INFINITE, RELATIONS
 
 #: The unit of a part: ("unit", base) and ("name", symbol) -> exponent. None is zero, which has every unit.

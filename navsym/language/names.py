@@ -5,7 +5,6 @@ Apart from :mod:`navsym.language.schema` because files of numbers need no reader
 
 from __future__ import annotations
 
-import difflib
 import os
 import re
 import unicodedata
@@ -13,6 +12,7 @@ from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from navsym.core.errors import NAME_LENGTH as NAME_LENGTH
 from navsym.core.errors import (
     DomainError,
     DuplicateError,
@@ -21,12 +21,11 @@ from navsym.core.errors import (
     TooLargeError,
     UnknownSymbolError,
 )
+from navsym.core.errors import quote as quote
+from navsym.core.errors import suggest_nearest as suggest_nearest
 
 # Names that a file may declare, and how foreign text is quoted in a message.
 
-
-#: Longest name.
-NAME_LENGTH = 64
 
 #: The inverse hyperbolic functions as logarithms with values at the same points: all engines see these.
 INVERSES = {"asinh": "log(x + sqrt(x**2 + 1))", "acosh": "log(x + sqrt(x**2 - 1))", "atanh": "log((1 + x)/(1 - x))/2"}
@@ -64,44 +63,11 @@ def check_name(name: object, *, where: str = "") -> str:
     return name
 
 
-def quote(value: object, limit: int = 40) -> str:
-    """Foreign text as it may stand in a message: quoted, escaped, ASCII only, and cut."""
-    if isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e15:
-        return repr(value)
-    text = value if isinstance(value, str) else f"{type(value).__name__} {shorten_repr(value, limit)}"
-    cut = text[:limit]
-    return ascii(cut) + (f" ... ({len(text)} characters)" if len(text) > limit else "")
-
-
-def shorten_repr(value: object, limit: int) -> str:
-    """``repr`` of small things only: that of a huge integer or a deep list costs time or fails."""
-    if isinstance(value, int) and value.bit_length() > 200:
-        return f"of {value.bit_length()} bits"
-    if isinstance(value, (list, tuple, dict)):
-        return f"of {len(value)} entries"
-    try:
-        return repr(value)[:limit]
-    except Exception:  # an object of somebody else, which cannot say what it is
-        return "without a text"
-
-
 def describe_character(char: str) -> str:
     """A character with its code and its Unicode name, so that look-alikes show."""
     code = f"U+{ord(char):04X}"
     name = unicodedata.name(char, "")
     return f"{char!a} ({code} {name})" if name else f"{char!a} ({code})"
-
-
-def suggest_nearest(name: str, known: Iterable[str]) -> str:
-    """``"did you mean 'omega'?"``, or the list of what there is."""
-    choices = sorted(known)
-    if not choices:
-        return "nothing is declared here"
-    close = difflib.get_close_matches(str(name)[:NAME_LENGTH], choices[:5000], n=1, cutoff=0.6)
-    if close:
-        return f"did you mean {close[0]!r}?"
-    rest = "" if len(choices) <= 8 else f" and {len(choices) - 8} more"
-    return "known are " + ", ".join(repr(choice[:NAME_LENGTH]) for choice in choices[:8]) + rest
 
 
 Table = Mapping[str, Any]

@@ -13,12 +13,12 @@ from itertools import combinations
 from typing import Any
 
 from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, TooLargeError
+from navsym.core.units import drop_unit, read_unit
 from navsym.language.declarations import SIGNS, read_range
 from navsym.language.expression import Expr
 from navsym.language.names import NAME, RESERVED, check_name, expect_keys, quote
 from navsym.language.printer import to_text
 from navsym.language.schema import SIDE, as_list, as_table, as_text, describe_value, join_place, read_entry, require_key
-from navsym.language.units import read_unit
 
 #: What a table may say.
 KINDS = ("vector", "matrix", "rotation", "quaternion", "integer")
@@ -123,7 +123,7 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
     if "random" in value:
         random = read_random(value, len(rows), kind, where)
         return [Shape(name, rows, kind, {}, random=random, unit=unit, frame=frame)]
-    limits = read_limits(kind, value, where)
+    limits = read_limits(kind, value, unit, where)
     shape = Shape(
         name,
         rows,
@@ -230,7 +230,7 @@ def name_entries(name: str, size: Any, symmetric: bool, taken: Collection[str]) 
         mark += "_"
 
 
-def read_limits(kind: str, value: Mapping[str, Any], where: str) -> list[Any]:
+def read_limits(kind: str, value: Mapping[str, Any], unit: str, where: str) -> list[Any]:
     """The range of every entry in the words of the checker."""
     place = join_place(where, "range")
     if kind == "integer":
@@ -242,8 +242,8 @@ def read_limits(kind: str, value: Mapping[str, Any], where: str) -> list[Any]:
         return [low, high, ["integer"]]
     if "range" in value and kind == "scalar":
         if INFINITY & {str(end) for end in as_list(value["range"], place)}:
-            return read_long_range(value["range"], place)
-        low, high = read_range(value["range"], place)
+            return read_long_range(value["range"], place, unit)
+        low, high = read_range(value["range"], place, unit)
         return [to_text(low), to_text(high), []]
     if "range" in value:
         raise DomainError(f"expected a range of a number; got one of a {kind}; state it by given", where=place)
@@ -254,12 +254,13 @@ def read_limits(kind: str, value: Mapping[str, Any], where: str) -> list[Any]:
     return RANGES[word]
 
 
-def read_long_range(value: Any, where: str) -> list[Any]:
+def read_long_range(value: Any, where: str, unit: str) -> list[Any]:
     """A range with oo as an end."""
     ends = as_list(value, where, "a range of two ends")
     if len(ends) != 2 or ends[0] == "oo" or ends[1] == "-oo":
         raise ShapeError(f'expected a range such as ["0", "oo"]; got {describe_value(value)}; correct it', where=where)
-    return [*(None if end in INFINITY else to_text(read_entry(end, {}, where)) for end in ends), []]
+    texts = [None if end in INFINITY else to_text(read_entry(drop_unit(end, where, unit), {}, where)) for end in ends]
+    return [*texts, []]
 
 
 def read_end(value: Any, where: str) -> str | None:

@@ -7,8 +7,7 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from navsym.core.errors import DomainError
-from navsym.language.names import shorten_repr
+from navsym.core.errors import DomainError, shorten_repr
 
 T = TypeVar("T")
 

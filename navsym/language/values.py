@@ -6,7 +6,9 @@ down and read again like a file, so that no object of the algebra gets behind th
 
 from __future__ import annotations
 
+import math
 import numbers
+import re
 from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
@@ -15,8 +17,10 @@ from typing import Any
 import sympy as sp
 
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, TooLargeError
+from navsym.core.units import convert_text, drop_unit, is_quantity, unit_text
 from navsym.language.algebra import float_error
 from navsym.language.declarations import SIGNS
+from navsym.language.expression import Expr, parse
 from navsym.language.names import join_place, quote
 from navsym.language.printer import to_text
 
@@ -24,12 +28,16 @@ from navsym.language.printer import to_text
 MOST_BITS = 12_000
 #: Where the whole numbers begin that sympy assumes.
 WHOLE: dict[str, dict[str, bool]] = {"-oo": {}, "0": {"nonnegative": True}, "1": {"positive": True}}
+#: Places behind the name of an array: ``v_1`` or ``P__1_2``.
+ENTRY = re.compile(r"(?:_+\d+)+$", re.ASCII)
 #: What a symbol of sympy without assumptions is taken for, and what stronger words include.
 STRONGER = {"positive": ("nonnegative", "nonzero", "real"), "nonnegative": ("real",), "nonzero": ("real",), "real": ()}
 
 
-def write_value(value: Any, where: str) -> str:
+def write_value(value: Any, where: str, unit: str = "") -> str:
     """Text of an exact value; text itself stays as it is.
+
+    unit : what quantities of pint are converted to, exactly; SI where it is empty
 
     Raises DomainError for a float and shows its exact spelling, ExpressionSyntaxError for any other kind of value.
 
@@ -38,6 +46,13 @@ def write_value(value: Any, where: str) -> str:
     """
     if isinstance(value, str):
         return value
+    if is_quantity(value):
+        number = value.magnitude
+        if isinstance(number, float) and abs(number) < math.inf:
+            remedy = f'write Fraction("{Fraction(repr(float(number)))}") in its place'
+            message = f"expected an exact magnitude; got the float {float(number)!r} of {unit_text(value)}; {remedy}"
+            raise DomainError(message, where=where)
+        return convert_text(write_value(number, where), unit_text(value), unit, where)
     if isinstance(value, sp.Basic):
         return write_expression(value, where)
     if isinstance(value, bool):
@@ -68,28 +83,47 @@ def write_expression(value: sp.Basic, where: str) -> str:
         raise error.at(where) from None
 
 
-def write_entries(value: Any, where: str) -> Any:
+def read_constant(value: Any, where: str, unit: str = "") -> Expr:
+    """The exact number that a value means, in a unit or in SI: ``"pi/2"``, ``Fraction(1, 3)``, ``"3 deg/h"``.
+
+    Raises the errors of :func:`write_value` and of the reader, and DomainError for a quantity of another dimension.
+    """
+    return parse(drop_unit(write_value(value, where, unit), where, unit), {}, where=where)
+
+
+def write_entries(value: Any, where: str, unit: str = "") -> Any:
     """Text of a value, or nested lists of texts for a list, a matrix of sympy or an array of numpy.
 
     >>> write_entries([[0, Fraction(-1, 2)], ["a", "b"]], "F")
     [['0', '-1/2'], ['a', 'b']]
     """
-    rows = value.tolist() if hasattr(value, "tolist") else value
+    rows = value.tolist() if hasattr(value.magnitude if is_quantity(value) else value, "tolist") else value
     if isinstance(rows, (list, tuple)):
-        return [write_entries(row, join_place(where, i)) for i, row in enumerate(rows)]
-    return write_value(rows, where)
+        return [write_entries(row, join_place(where, i), unit) for i, row in enumerate(rows)]
+    return write_value(rows, where, unit)
 
 
-def write_declaration(value: Any, where: str) -> Any:
-    """A declaration as ``[symbols]`` has it: a word, or a range of two texts from a pair of exact numbers."""
+def write_declaration(value: Any, where: str, unit: str = "") -> Any:
+    """A declaration as ``[symbols]`` has it: a word, or a range of two texts from a pair of exact numbers.
+
+    unit : of the ends of a range of quantities; a table says its own
+    """
     if isinstance(value, (tuple, list)):
-        return [write_value(end, join_place(where, i)) for i, end in enumerate(value)]
+        return [write_value(end, join_place(where, i), unit) for i, end in enumerate(value)]
+    if isinstance(value, Mapping) and isinstance(value.get("range"), (tuple, list)):
+        return {**value, "range": write_declaration(value["range"], join_place(where, "range"), value.get("unit", ""))}
     if isinstance(value, (str, Mapping)):
         return value
     expected = f'a range such as ("1/2", "2") or one of {", ".join(SIGNS)}'
     raise ExpressionSyntaxError(
         f"expected {expected}; got {quote(value)}; declare it in one of these ways", where=where
     )
+
+
+def declared_unit(name: str, declared: Any) -> str:
+    """The unit that a table declares for a name, or for the array of which it is an entry; empty where it has none."""
+    own = declared.get(name, declared.get(ENTRY.sub("", name))) if isinstance(declared, Mapping) else None
+    return str(own.get("unit", "")) if isinstance(own, Mapping) else ""
 
 
 def read_assumptions(values: Iterable[Any], where: str) -> dict[str, Any]:

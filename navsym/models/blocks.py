@@ -118,7 +118,8 @@ class Writer:
             (shape,) = self.read_shape(name, value, declared, here)
             if shape.kind == "scalar":
                 self.scalars.add(name)
-                yield name, value.get("range", value.get("sign", "real"))
+                limits = shape.ranges[name][:2]
+                yield name, limits if "range" in value and None not in limits else value.get("sign", "real")
                 continue
             self.arrays[name] = shape.rows
             yield from ((entry, "real") for entry in dict.fromkeys(entry for row in shape.rows for entry in row))

@@ -18,8 +18,9 @@ from navsym.language.declarations import Parameter, read_parameters, symbols_of
 from navsym.language.expression import parse, symbol, to_text
 from navsym.language.files import write_text
 from navsym.language.names import join_place, quote, require_path, require_table
+from navsym.language.shapes import KINDS
 from navsym.language.tomlfile import read_toml, toml_text
-from navsym.language.values import read_assumptions, write_declaration, write_entries, write_value
+from navsym.language.values import declared_unit, read_assumptions, write_declaration, write_entries, write_value
 from navsym.language.vectors import is_wide
 from navsym.models.linear import LinearModel, linear_row
 from navsym.models.modelfile import BasisFile, ModelFile, linear_model, model_from, need_fixed, read_model
@@ -118,14 +119,13 @@ class Model:
             if relations is not None:
                 document["model"]["relations"] = relations
             document["parameters"] = declarations
-            for key, write, table in (
-                ("rates", write_value, rates),
-                ("inputs", write_entries, inputs),
-                ("ranges", write_entries, ranges),
-            ):
+            for key, table in (("rates", rates), ("inputs", inputs), ("ranges", ranges)):
                 if table is not None:
                     rows = require_table(table, f"Model: {key}").items()
-                    document[key] = {name: write(value, f"Model: {key}.{name}") for name, value in rows}
+                    units = declarations if key == "ranges" else {}
+                    document[key] = {
+                        n: write_entries(value, f"Model: {key}.{n}", declared_unit(n, units)) for n, value in rows
+                    }
             linear = names if dynamics is None else None
             document["measurement"] = measurement_blocks(H, sigma, measurements, linear, declarations)
             if not isinstance(blocks, list | tuple):
@@ -267,15 +267,15 @@ class Model:
     def read(self, values: Mapping[str, Any] | None = None) -> ModelFile | BasisFile:
         """The exact contents, with values put in for some parameters.
 
-        values : parameter -> exact number, inside its declaration
+        values : parameter -> exact number, inside its declaration; ``"90 min"`` and quantities of pint are converted to
+                 the unit that is declared, else to SI
 
         Raises UnknownSymbolError for a name that is no parameter, DomainError for a value outside.
         """
         if not values:
             return self._contents
         with places_of_arguments():
-            given = {name: write_value(value, join_place("Model: values", name)) for name, value in values.items()}
-            return model_from(self._document, "Model", given)
+            return model_from(self._document, "Model", values)
 
     def with_values(self, **values: Any) -> Model:
         """The model with exact values in place of some parameters.
@@ -406,7 +406,7 @@ def contents_of(
     given = {**values, **parameters}
     try:
         if isinstance(model, str | os.PathLike):
-            found = read_model(model, {name: write_value(value, f"--set {name}") for name, value in given.items()})
+            found = read_model(model, given)
         else:
             found = as_model(model, f"{where}: model").read(given)
         if where != "observe":
@@ -482,7 +482,7 @@ def declarations_of(
 
 def need_sign(name: str, word: str, declaration: Any) -> None:
     """DomainError where sympy has simplified by a sign that the declaration does not grant."""
-    symbol = read_parameters({name: declaration}, "Model: parameters")[name].symbol
+    symbol = known_symbols({name: declaration})[name]
     granted = {"positive": symbol.is_nonnegative, "nonnegative": symbol.is_nonnegative, "nonzero": symbol.is_nonzero}
     if not granted[word]:
         got = f"a symbol of sympy that is {word}, declared {declaration}"
@@ -578,7 +578,9 @@ def read_row(row: Any, states: Sequence[str], known: Mapping[str, sp.Symbol], wh
 
 def known_symbols(declared: Mapping[str, Any]) -> dict[str, sp.Symbol]:
     """The declared parameters as symbols."""
-    numbers = {name: value for name, value in declared.items() if not isinstance(value, Mapping)}
+    tables = {name: value for name, value in declared.items() if isinstance(value, Mapping)}
+    signs = {name: value.get("sign", "real") for name, value in tables.items() if not value.keys() & {*KINDS}}
+    numbers = {name: value for name, value in declared.items() if name not in tables} | signs
     return symbols_of(read_parameters(numbers, "Model: parameters"))
 
 
@@ -632,10 +634,10 @@ def document_of(contents: ModelFile | BasisFile) -> dict[str, Any]:
 
 
 def declaration_of(parameter: Parameter) -> Any:
-    """A range as two texts, or the word."""
-    if parameter.lower is None or parameter.upper is None:
-        return parameter.kind
-    return [to_text(parameter.lower), to_text(parameter.upper)]
+    """A range as two texts, or the word; a table where it has a unit."""
+    ranged = parameter.lower is not None and parameter.upper is not None
+    plain = [to_text(parameter.lower), to_text(parameter.upper)] if ranged else parameter.kind
+    return {"range" if ranged else "sign": plain, "unit": parameter.unit} if parameter.unit else plain
 
 
 def copy_as_texts(value: Any) -> Any:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, ShapeError, UnknownSymbolError
+from navsym.core.units import drop_unit
 from navsym.language.arithmetic import sign_of_constant
 from navsym.language.declarations import (
     Parameter,
     box_of,
     cut_text,
     read_parameters,
+    read_range,
     require_order,
     require_positive,
     symbols_of,
@@ -37,6 +39,7 @@ from navsym.language.schema import (
     require_key,
 )
 from navsym.language.tomlfile import read_toml
+from navsym.language.values import declared_unit, write_value
 from navsym.models.blocks import write_out
 from navsym.models.linear import LinearModel
 
@@ -271,20 +274,24 @@ NORMS = ("l2", "linf", "l1")
 STEP = "dt"
 
 
-def read_model(path: str | os.PathLike[str], values: Mapping[str, str] | None = None) -> ModelFile | BasisFile:
+def read_model(path: str | os.PathLike[str], values: Mapping[str, Any] | None = None) -> ModelFile | BasisFile:
     """The model or basis of a TOML file.
 
-    values : parameter -> exact value as text, put in its place everywhere (``--set T=2.5``)
+    values : parameter -> exact value, put in its place everywhere (``--set T=2.5``, ``--set "T=90 min"``)
 
     Raises a NavsymError whose ``where`` names the file and the key.
     """
     return model_from(read_toml(path), name_file(path), values)
 
 
-def model_from(document: Table, where: str = "", values: Mapping[str, str] | None = None) -> ModelFile | BasisFile:
+def model_from(document: Table, where: str = "", values: Mapping[str, Any] | None = None) -> ModelFile | BasisFile:
     """Like :func:`read_model` for a document in memory, with the same errors."""
-    document, place = write_out(document, where), join_place(where, "parameters")
-    parameters = read_parameters(as_table(document.get("parameters", {}), place), place)
+    declared, place = document.get("parameters"), join_place(where, "parameters")
+    document = write_out(document, where)
+    parameters = {
+        name: replace(parameter, unit=declared_unit(name, declared))
+        for name, parameter in read_parameters(as_table(document.get("parameters", {}), place), place).items()
+    }
     known = dict(symbols_of(parameters)) | read_values(values or {}, parameters)
     free = {name: parameter for name, parameter in parameters.items() if name not in (values or {})}
     if "basis" in document:
@@ -295,16 +302,17 @@ def model_from(document: Table, where: str = "", values: Mapping[str, str] | Non
     return read_system(document, where, free, known)
 
 
-def read_values(values: Mapping[str, str], parameters: Mapping[str, Parameter]) -> dict[str, Expr]:
-    """Exact numbers that replace parameters, each inside what the file declares."""
+def read_values(values: Mapping[str, Any], parameters: Mapping[str, Parameter]) -> dict[str, Expr]:
+    """Exact numbers that replace parameters, each inside what the file declares, in its unit."""
     given = {}
-    for name, text in values.items():
+    for name, raw in values.items():
         where = f"--set {quote(name)[1:-1]}"
         if name not in parameters:
             hint = suggest_nearest(name, parameters)
             message = f"expected a declared parameter; got {quote(name)}; correct it: {hint}"
             raise UnknownSymbolError(message, where=where)
-        value = parse(text, {}, where=where)
+        text = write_value(raw, where, parameters[name].unit)
+        value = parse(drop_unit(text, where, parameters[name].unit), {}, where=where)
         if not admitted(value, parameters[name]):
             message = f"expected a value in the declared range of {name}; got {quote(text)}; correct it"
             raise DomainError(message, where=where)
@@ -357,7 +365,7 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
         targets=read_targets(document, known, states, where) if kind == "F" else {},
         rates=read_rates(document, moving, parameters, where),
         inputs=inputs,
-        ranges=read_ranges(document, (*states, *parameters, STEP), where) if kind == "F" else {},
+        ranges=read_ranges(document, states, parameters, where) if kind == "F" else {},
         **read_motion(model, driven, moving, kind, len(states), place),
     )
 
@@ -432,9 +440,11 @@ def read_inputs(
     return found
 
 
-def read_ranges(document: Table, names: tuple[str, ...], where: str) -> dict[str, tuple[Expr, Expr]]:
+def read_ranges(
+    document: Table, states: tuple[str, ...], parameters: Mapping[str, Parameter], where: str
+) -> dict[str, tuple[Expr, Expr]]:
     """The [ranges] table: what the inputs of exported code may be; two exact numbers for each."""
-    place = join_place(where, "ranges")
+    place, names = join_place(where, "ranges"), (*states, *parameters, STEP)
     found = {}
     for name, value in as_table(document.get("ranges", {}), place).items():
         here = join_place(place, name)
@@ -443,8 +453,7 @@ def read_ranges(document: Table, names: tuple[str, ...], where: str) -> dict[str
             raise UnknownSymbolError(
                 f"expected a state, a parameter or dt; got {quote(name)}; correct it: {hint}", where=here
             )
-        low, high = read_vector(value, {}, here, 2, "the ends of a range")
-        require_order(low, high, here)
+        low, high = read_range(value, here, parameters[name].unit if name in parameters else "")
         if name == STEP:
             require_positive(low, "the least step", here)
         found[name] = (low, high)

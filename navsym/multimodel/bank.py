@@ -261,7 +261,8 @@ def spaced(table: Any, times: Any, step: Any) -> tuple[list[Any], NDArray[np.int
     [0, 3]
     """
     rows = list(table)
-    t = arrays.as_array("times", times, (len(rows),), "one for each row of measurements")
+    t = arrays.as_array("times", times, (len(rows),), "one for each row of measurements", "s")
+    step = arrays.without_units(step, "step", "s")
     gaps = np.diff(t)
     if (gaps <= 0.0).any():
         k = int(np.flatnonzero(gaps <= 0.0)[0])
@@ -289,8 +290,7 @@ def spaced(table: Any, times: Any, step: Any) -> tuple[list[Any], NDArray[np.int
 
 def table_of(values: Any, p: int) -> Array:
     """Rows of p numbers as an array of floats, NaN for None."""
-    if hasattr(values, "to_numpy"):  # a DataFrame or a Series
-        values = values.to_numpy()
+    values = arrays.without_units(values.to_numpy() if hasattr(values, "to_numpy") else values, "measurements")
     if isinstance(values, np.ndarray) and values.dtype.kind in "fiu" and values.ndim == 2:
         if values.shape[1] != p:
             raise ShapeError(f"measurements: expected {p} columns, one per row of H; got {values.shape[1]}; match H")

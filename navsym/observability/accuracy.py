@@ -21,9 +21,8 @@ from navsym.core.balls import enclose, precision
 from navsym.core.errors import DomainError, EmptyError, UnknownSymbolError
 from navsym.core.exact import decimal, from_decimal, lower_end, to_fmpq, upper_end
 from navsym.core.numbers import Number
-from navsym.language.expression import parse
 from navsym.language.names import quote, suggest_nearest
-from navsym.language.values import write_value
+from navsym.language.values import read_constant
 from navsym.models.modelfile import ModelFile
 from navsym.observability.certificates import is_granted
 from navsym.observability.chains import JointObservability, need_observable
@@ -302,7 +301,7 @@ def read_values(given: Mapping[str, Any], known: Collection[str], where: str) ->
         if name not in known:
             remedy = suggest_nearest(str(name), known)
             raise UnknownSymbolError(f"expected a name of the model; got {quote(str(name))}; {remedy}", where=where)
-    return {name: parse(write_value(value, where), {}, where=f"{where}: {name}") for name, value in given.items()}
+    return {name: read_constant(value, f"{where}: {name}") for name, value in given.items()}
 
 
 def is_narrow(value: Number | None) -> bool:

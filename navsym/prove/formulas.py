@@ -193,6 +193,7 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
 def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any]) -> ClaimFile:
     """One formula as a claim file, with the box, tolerance and existing expressions beside it."""
     from navsym.language.values import (
+        declared_unit,
         merge_declarations,
         read_assumptions,
         write_declaration,
@@ -226,7 +227,10 @@ def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, An
         )
         raise UnknownSymbolError(message, where=f"prove: {name}")
     table, narrowed = merge_declarations(words, declared, "prove")
-    narrowed |= {name: write_declaration(ends, f"prove: box.{name}") for name, ends in beside["box"].items()}
+    narrowed |= {
+        name: write_declaration(ends, f"prove: box.{name}", declared_unit(name, declared))
+        for name, ends in beside["box"].items()
+    }
     block: dict[str, Any] = {"id": "formula", "box": narrowed}
     block |= {"chain": left} if sides.chain else {"left": left, "relation": sides.relation, "right": right}
     block |= {"exists": exists} if exists else {}

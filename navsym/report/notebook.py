@@ -17,6 +17,7 @@ from navsym.core.errors import DomainError, MissingEngineError, NavsymError, Sha
 from navsym.language.declarations import read_range
 from navsym.language.names import quote
 from navsym.language.printer import to_text
+from navsym.language.values import write_declaration
 from navsym.models.model import Model
 from navsym.report.plots import plot
 
@@ -104,7 +105,7 @@ def read_ends(model: Model, ranges: dict[str, Any]) -> dict[str, tuple[Any, Any]
             if not isinstance(ends, list | tuple) or len(ends) != 2:
                 remedy = f'write {name}=("1", "6"), or nav.solve(model, {name}="5") for one value'
                 raise ShapeError(f"expected two ends of a slider; got {quote(ends)}; {remedy}", where=where)
-            found[name] = read_range([*ends], where)
+            found[name] = read_range(write_declaration(ends, where, parameter.unit), where, parameter.unit)
         elif parameter.lower is None or parameter.upper is None:
             message = f'expected two ends of {name}; got {parameter.kind}; write {name}=("1/2", "2")'
             raise DomainError(message, where="explore")

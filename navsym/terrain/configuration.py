@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from navsym.core.arrays import without_units
 from navsym.core.errors import DomainError, EmptyError, NavsymError, ShapeError
 from navsym.language.names import only_keys, quote
 from navsym.terrain.heights import Array, TerrainMap, vector
@@ -57,18 +58,23 @@ def read_search(
     if config.get("interpolation", "bilinear") != "bilinear":
         raise DomainError(f"interpolation: expected bilinear; got {config['interpolation']!r:.40}; leave it out")
     terrain, place = map_of(block(config, "map"), folder)
-    return terrain, track_of(block(config, "track"), folder, place), grid_of(config, velocity_needed), place
+    length = "deg" if place is not None and place.metres != (1.0, 1.0) else "m"
+    track = track_of(block(config, "track", length), folder, place)
+    return terrain, track, grid_of(config, velocity_needed, length), place
 
 
-def block(config: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    """A table of the configuration that must be there."""
+def block(config: Mapping[str, Any], name: str, length: str = "m") -> Mapping[str, Any]:
+    """A table of the configuration that must be there.
+
+    length : unit of x and y of the map, in which quantities of pint go on
+    """
     value: Any = config.get(name)
-    if not isinstance(value, Mapping) and hasattr(value, "keys") and hasattr(value, "__getitem__"):  # a data frame
-        return {key: value[key] for key in value.keys()}  # noqa: SIM118
-    if not isinstance(value, Mapping):
+    if not (hasattr(value, "keys") and hasattr(value, "__getitem__")):  # a mapping or a data frame
         got = "nothing" if value is None else type(value).__name__
         raise ShapeError(f"{name}: expected a table; got {got}; add it", where=name)
-    return value
+    units = {"t": "s", "lat": "deg", "lon": "deg", **dict.fromkeys(("x", "y", "x0", "y0", "dx", "dy"), length)}
+    units |= {"step": f"{length}/s" if name == "velocity" else length, "half_count": "1"}
+    return {key: without_units(value[key], f"{name}.{key}", units.get(key, "m")) for key in value.keys()}  # noqa: SIM118
 
 
 def entry(table: Mapping[str, Any], name: str, where: str) -> Any:
@@ -148,19 +154,19 @@ def on_map(latitude: Array, longitude: Array, place: OnEarth | None) -> tuple[Ar
     return (longitude - place.lon0) * place.per_degree[0], (latitude - place.lat0) * place.per_degree[1]
 
 
-def grid_of(config: Mapping[str, Any], velocity_needed: bool) -> Hypotheses:
+def grid_of(config: Mapping[str, Any], velocity_needed: bool, length: str) -> Hypotheses:
     """Hypotheses of position and, where they are needed or given, of velocity."""
-    places = steps_of(config, "position")
+    places = steps_of(config, "position", length)
     still = not velocity_needed and "velocity" not in config
-    speeds = [] if still else steps_of(config, "velocity")
+    speeds = [] if still else steps_of(config, "velocity", length)
     try:
         return Hypotheses(*places, *speeds)
     except NavsymError as error:
         raise error.at("position, velocity") if not error.where else error from None
 
 
-def steps_of(config: Mapping[str, Any], name: str) -> list[Any]:
+def steps_of(config: Mapping[str, Any], name: str, length: str) -> list[Any]:
     """Step and half count of a table of hypotheses."""
-    table = block(config, name)
+    table = block(config, name, length)
     only_keys(table, KEYS_OF_GRID, name)
     return [entry(table, key, name) for key in KEYS_OF_GRID]

@@ -28,6 +28,7 @@ from navsym.core.errors import (
 from navsym.core.exact import to_fraction
 from navsym.core.numbers import Number
 from navsym.core.tables import Table
+from navsym.core.units import drop_unit
 from navsym.language.names import quote
 from navsym.models.earth import observability_rows, power_rows
 from navsym.trajectory.enclosure import Enclosure, exponent_of, square_root
@@ -441,7 +442,7 @@ def condition(
     for name, number in (("n", n), ("digits", digits)):
         if isinstance(number, bool) or not isinstance(number, int):
             raise DomainError(f"expected an integer; got {quote(number)}; give one", where=f"condition: {name}")
-    tau, rho = read_exactly(tau, "condition: tau"), read_exactly(rho, "condition: rho")
+    tau, rho = read_exactly(tau, "condition: tau", "s"), read_exactly(rho, "condition: rho", "1/m")
     parts = {}
     try:
         check_request(n, rho, tau)
@@ -454,17 +455,14 @@ def condition(
     return Conditions(n, tau, rho, digits, **parts)
 
 
-def read_exactly(value: Any, where: str) -> Fraction:
+def read_exactly(value: Any, where: str, unit: str) -> Fraction:
     """The exact number of a decimal or a fraction, between 1e-100 and 1e100 or zero.
 
     value : text such as ``"1/6371000"``, an int, a Fraction or a Decimal
     """
-    if isinstance(value, str):
-        text = value.strip()
-    else:
-        from navsym.language.values import write_value
+    from navsym.language.values import write_value
 
-        text = write_value(value, where)
+    text = drop_unit(write_value(value, where, unit), where, unit).strip()
     if not QUOTIENT.fullmatch(text):
         message = f"expected a decimal or a fraction such as 1/6371000; got {text[:60]!r}; write it so"
         raise ExpressionSyntaxError(message, where=where)

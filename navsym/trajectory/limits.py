@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from navsym.core.answers import Answer, named
-from navsym.core.arrays import Array, as_array, freeze
+from navsym.core.arrays import Array, as_array, freeze, without_units
 from navsym.core.errors import DomainError, TooLargeError
 from navsym.core.tables import Table
 from navsym.language.names import quote
@@ -156,7 +156,8 @@ def limits(
     [0.0, 6.0]
     """
     order, bound = bounded_derivative(acceleration, jerk)
-    noise, bound = real_number(noise, "noise"), real_number(bound, BOUNDED[order][0])
+    noise, bound = real_number(noise, "noise", "m"), real_number(bound, BOUNDED[order][0], f"m/s^{order}")
+    step, memory = (v if v is None else real_number(v, name, "s") for v, name in ((step, "step"), (memory, "memory")))
     for name, value in (("noise", noise), (BOUNDED[order][0], bound)):
         if not LEAST < value < 1 / LEAST:
             between = f"a positive number between {LEAST:g} and {1 / LEAST:g}"
@@ -166,8 +167,9 @@ def limits(
     return Limits(noise, BOUNDED[order][0], bound, rows, sampled_limits(noise, bound, order, step, memory))
 
 
-def real_number(value: float | None, name: str) -> float:
-    """The number itself; DomainError for what is none, with the name of the argument."""
+def real_number(value: Any, name: str, unit: str) -> float:
+    """The number itself, a quantity of pint in a unit; DomainError for what is none, with the name of the argument."""
+    value = without_units(value, f"limits: {name}", unit)
     if isinstance(value, bool) or not isinstance(value, int | float | np.number):
         raise DomainError(f"expected a number; got {quote(value)}; give one", where=f"limits: {name}")
     return float(value)
@@ -213,7 +215,7 @@ def sampled_limits(noise: float, bound: float, order: int, step: float | None, m
 def available_ages(noise: float, bound: float, order: int, step: float, memory: float | None) -> Array:
     """Ages of the positions at hand, (n,) seconds: no more of them than can help."""
     for name, value in (("step", step), ("memory", memory)):
-        if value is not None and not (math.isfinite(real_number(value, name)) and value > 0):
+        if value is not None and not (math.isfinite(value) and value > 0):
             message = f"expected a positive number of seconds; got {value}; correct it"
             raise DomainError(message, where=f"limits: {name}")
     useful = float(best_ages(noise, bound, order)[-1]) / step + NEAR

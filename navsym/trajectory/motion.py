@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from navsym.core.answers import Answer, named, plain
-from navsym.core.arrays import Array, freeze
+from navsym.core.arrays import Array, freeze, without_units
 from navsym.core.errors import DomainError
 from navsym.language.files import file_in_errors, write_text
 from navsym.language.names import quote
@@ -193,8 +193,9 @@ def with_reference(found: Track, reference: Any) -> Track:
     return replace(found, nees=nees, warnings=(*found.warnings, str(nees.lag)))
 
 
-def settings_of(method: str | None, window: float | None, order: int, gate: float, sigma: float | None) -> Settings:
+def settings_of(method: str | None, window: Any, order: int, gate: float, sigma: Any) -> Settings:
     """The settings of a call: a window asks for the sliding window, every other method has to be named."""
+    window, sigma = without_units(window, "track: window", "s"), without_units(sigma, "track: sigma", "m")
     for name, value in (("window", window), ("gate", gate), ("sigma", sigma)):
         if value is None:
             continue

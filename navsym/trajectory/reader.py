@@ -165,7 +165,9 @@ def read_columns(data: Any, policy: Policy | str = "strict") -> TrackFile:
     log = new_log("track", policy)
     try:
         columns = columns_in(data, log)
-        values = [as_floats("data", column, "one entry per row").ravel().tolist() for column in columns]
+        units = [own.name or usual for own, usual in zip(log.units, ("s", "deg", "deg", "m"), strict=True)]
+        pairs = zip(columns, units, strict=True)
+        values = [as_floats("data", column, "one entry per row", unit).ravel().tolist() for column, unit in pairs]
     except NavsymError as error:
         raise error if error.where else error.at(log.where) from None
     if len({len(column) for column in values}) > 1:

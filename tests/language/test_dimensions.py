@@ -10,12 +10,12 @@ import pytest
 
 import navsym as nav
 from navsym.core.errors import DomainError, NavsymError
+from navsym.core.units import print_unit, read_unit
 from navsym.language.algebra import from_sympy
 from navsym.language.dimensions import infer_units
 from navsym.language.frames import infer_frames
 from navsym.language.shapes import Shape, read_shape
 from navsym.language.tree import build
-from navsym.language.units import print_unit, read_unit
 from navsym.language.vectors import read_hypothesis
 from navsym.prove.claimfile import claims_from
 from tests.derivations.statements import PAPERS

@@ -21,8 +21,9 @@ from navsym.guaranteed.phases.closed_forms import ClosedForm
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.narrow import Sliver
 from navsym.guaranteed.phases.patterns import PatternInterval
-from navsym.language.expression import parse, to_text
-from navsym.language.values import write_value
+from navsym.language.expression import to_text
+from navsym.language.values import read_constant
+from navsym.models.model import contents_of
 
 if TYPE_CHECKING:
     from navsym.guaranteed.solver import Estimator
@@ -257,9 +258,11 @@ def solve_at(
         got, names = ", ".join(values) or "none", ", ".join(f"{name}=…" for name in ranges)
         one = "one value of" if len(ranges) == 1 else "values of"
         raise DomainError(f"expected {one} {', '.join(ranges)}; got {got}; write at({names})", where=where)
-    texts = {name: write_value(value, f"{where}: {name}") for name, value in values.items()}
+    units = {p.name: p.unit for p in contents_of(question.model, None, {}, where).parameters.values()}
+    points = {name: read_constant(value, f"{where}: {name}", units.get(name, "")) for name, value in values.items()}
+    texts = {name: to_text(at) for name, at in points.items()}
     for name, (lower, upper) in ranges.items():
-        at = parse(texts[name], {}, where=f"{where}: {name}")
+        at = points[name]
         if not (bool(enclose(at - lower) >= 0) and bool(enclose(upper - at) >= 0)):
             ends = f"{end_text(lower)} to {end_text(upper)}"
             message = f"expected a value from {ends}; got {texts[name]}; choose one"

@@ -14,9 +14,8 @@ from navsym.guaranteed.phases.driver import Ends, find_phases
 from navsym.guaranteed.phases.family import declared_symbol, family_of
 from navsym.guaranteed.phases.plane import find_map
 from navsym.guaranteed.problem import GuaranteedProblem
-from navsym.language.expression import parse
 from navsym.language.files import file_in_errors
-from navsym.language.values import write_value
+from navsym.language.values import read_constant
 from navsym.models.model import contents_of
 from navsym.models.modelfile import BasisFile, ModelFile
 
@@ -111,7 +110,8 @@ def range_ends(contents: ModelFile | BasisFile, name: str, pair: Sequence[Any] |
         if len(pair) != 2:
             got = f"{len(pair)}"
             raise ExpressionSyntaxError(f'expected two ends; got {got}; write {name}=("0", "2*pi")', where=where)
-        lower, upper = (parse(write_value(end, where), {}, where=where) for end in pair)
+        unit = next((p.unit for p in contents.parameters.values() if p.name == name), "")
+        lower, upper = (read_constant(end, where, unit) for end in pair)
         return lower, upper
     for symbol, ends in contents.box.items():
         if symbol.name == name and None not in ends:

@@ -9,9 +9,10 @@ from typing import Any
 
 from flint import arb, fmpq
 
-from navsym.core.errors import DomainError, ExpressionSyntaxError, NotFiniteError, TooLargeError
+from navsym.core.arrays import without_units
+from navsym.core.errors import DomainError, ExpressionSyntaxError, NotFiniteError, TooLargeError, quote
 from navsym.core.exact import to_fmpq
-from navsym.language.names import quote
+from navsym.core.units import drop_unit, is_quantity, scale_of, unit_text
 
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d{1,3})?|[+-]?\d+/\d*[1-9]\d*", re.ASCII)
 WORDS = frozenset("nan inf +inf -inf infinity +infinity -infinity".split())
@@ -35,13 +36,26 @@ def read_exact(value: Any, where: str) -> fmpq:
 def read_number(value: Any, where: str) -> fmpq:
     """The same for a number of any size."""
     if isinstance(value, str):
-        return read_decimal(value.strip(), where)
+        return read_decimal(drop_unit(value, where).strip(), where)
+    if is_quantity(value):
+        return read_quantity(value, where)
     if isinstance(value, bool) or not isinstance(value, Real):
         message = f"expected a number; got {quote(value)}; give text, an int, a Fraction or a float"
         raise DomainError(message, where=where)
     if isinstance(value, Integral | Rational):
         return to_fmpq(Fraction(int(value.numerator), int(value.denominator)))
     return read_decimal(repr(float(value)), where)
+
+
+def read_quantity(value: Any, where: str) -> fmpq:
+    """A quantity of pint in SI: the number itself, or the nearest double of a float times pi or a root."""
+    whole, roots = scale_of(unit_text(value), "", where)
+    if not roots:
+        return read_number(value.magnitude, where) * to_fmpq(whole)
+    if not isinstance(value.magnitude, float):
+        got = f"{quote(str(value))}, which is none in SI"
+        raise DomainError(f"expected a rational number; got {got}; give its decimal in SI", where=where)
+    return read_number(float(without_units(value, where)), where)
 
 
 def read_decimal(text: str, where: str) -> fmpq:

@@ -449,5 +449,5 @@ def limit_scalar(name: str, ends: Any, shape: Shape, place: str) -> list[Any]:
     if shape.kind != "scalar" or shape.ranges[name][:2] != [None, None]:
         message = f"expected a real scalar; got {name}, which has entries or a range; narrow its declaration"
         raise DomainError(message, where=place)
-    low, high = read_range(ends, place)
+    low, high = read_range(ends, place, shape.unit)
     return [to_text(low), to_text(high), list(shape.ranges[name][2])]

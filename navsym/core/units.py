@@ -1,14 +1,17 @@
-"""Units as text: a small table of SI and of what navigators write, read into powers of base units and of scales."""
+"""Units as text: a small table of SI and of what navigators write, read into powers of base units and of scales.
+
+Quantities of pint come in as such a text: of pint nothing is used but a magnitude and names of units.
+"""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
-from typing import NoReturn
+from math import pi, prod
+from typing import Any, NoReturn
 
-from navsym.core.errors import DomainError, TooLargeError
-from navsym.language.names import quote, suggest_nearest
+from navsym.core.errors import DomainError, TooLargeError, quote, suggest_nearest
 
 #: Base unit, or a prime factor of a scale, or pi -> its exponent. The radian is 1.
 Powers = dict[str | int, Fraction]
@@ -29,9 +32,25 @@ TABLE: Mapping[str, tuple[str, int, str]] = {
     "N": ("1", 0, "kg m/s^2"), "J": ("1", 0, "kg m^2/s^2"), "W": ("1", 0, "kg m^2/s^3"),
     "V": ("1", 0, "kg m^2/s^3/A"), "T": ("1", 0, "kg/s^2/A"), "uT": ("1/1000000", 0, "T"),
     "nT": ("1/1000000000", 0, "T"), "G": ("1/10000", 0, "T"), "Pa": ("1", 0, "kg/m/s^2"), "hPa": ("100", 0, "Pa"),
-    "mbar": ("100", 0, "Pa"), "kPa": ("1000", 0, "Pa"), "bar": ("100000", 0, "Pa"),
+    "mbar": ("100", 0, "Pa"), "kPa": ("1000", 0, "Pa"), "bar": ("100000", 0, "Pa"), "gram": ("1/1000", 0, "kg"),
+    "week": ("604800", 0, "s"), "inch": ("0.0254", 0, "m"), "mile": ("1609.344", 0, "m"),
 }  # fmt: skip
-MARK = re.compile(r"\s*(?:(?P<word>[A-Za-z%]+|1)|(?P<power>\^|\*\*)|(?P<sign>[*/()·]))")
+#: Long names, which are those of pint, and the powers of ten of their prefixes.
+NAMES = {
+    "meter": "m", "second": "s", "gram": "gram", "ampere": "A", "kelvin": "K", "mole": "mol", "candela": "cd",
+    "radian": "rad", "steradian": "sr", "percent": "%", "degree": "deg", "arcminute": "arcmin", "arcsecond": "arcsec",
+    "grade": "gon", "turn": "rev", "minute": "min", "hour": "h", "hertz": "Hz", "foot": "ft", "nautical_mile": "nmi",
+    "knot": "kn", "kilometer_per_hour": "km/h", "revolutions_per_minute": "rev/min", "standard_gravity": "g",
+    "galileo": "Gal", "newton": "N", "joule": "J", "watt": "W", "volt": "V", "tesla": "T", "gauss": "G",
+    "pascal": "Pa", "bar": "bar",
+}  # fmt: skip
+PREFIXES = {
+    "": 0, "giga": 9, "mega": 6, "kilo": 3, "hecto": 2, "deci": -1, "centi": -2, "milli": -3, "micro": -6, "nano": -9,
+}  # fmt: skip
+#: A number, and one before a unit; ``2 pi`` is none.
+NUMBER = re.compile(r"[+-]?(?:\d++(?:\.\d*+)?+|\.\d++)(?:[eE][+-]?\d{1,3})?+(?:/[1-9]\d*+)?+", re.ASCII)
+AMOUNT = re.compile(rf"\s*({NUMBER.pattern})\s*((?!pi\b)[A-Za-z%].*)", re.ASCII)
+MARK = re.compile(r"\s*(?:(?P<word>[A-Za-z%_]+|1)|(?P<power>\^|\*\*)|(?P<sign>[*/()·]))")
 EXPONENT = re.compile(r"\s*(?:\(\s*(?P<inner>[+-]?\d{1,2}(?:/[1-9]\d?)?)\s*\)|(?P<number>[+-]?\d{1,2}))")
 LONGEST = 100
 
@@ -62,12 +81,22 @@ def read_word(word: str, where: str) -> Powers:
     """A unit by its name."""
     if word in BASES:
         return {word: Fraction(1)}
+    prefix = next((p for p in PREFIXES if word.startswith(p) and word.removeprefix(p) in NAMES), None)
+    if word not in TABLE and prefix is not None:
+        unit = read_unit(NAMES[word.removeprefix(prefix)], where)
+        return combine([(factorise(Fraction(10) ** PREFIXES[prefix]), 1), (unit, 1)])
     if word not in TABLE:
         message = f"expected a unit such as m/s, rad, deg/h or mg; got {quote(word)}; correct it"
-        raise DomainError(f"{message}: {suggest_nearest(word, (*BASES, *TABLE))}", where=where)
+        raise DomainError(f"{message}: {suggest_nearest(word, (*BASES, *TABLE, *NAMES))}", where=where)
     factor, turns, of = TABLE[word]
-    pi: Powers = {"pi": Fraction(turns)} if turns else {}
-    return combine([(factorise(Fraction(factor)), 1), (pi, 1), (read_unit(of, where) if of else {}, 1)])
+    turn: Powers = {"pi": Fraction(turns)} if turns else {}
+    return combine([(factorise(Fraction(factor)), 1), (turn, 1), (read_unit(of, where) if of else {}, 1)])
+
+
+def split_scale(powers: Powers) -> tuple[Fraction, Powers]:
+    """The scale of a unit: a fraction, and the powers of pi and of roots beside it."""
+    roots = {key: n for key, n in powers.items() if key == "pi" or (key not in BASES and n.denominator > 1)}
+    return prod((Fraction(k) ** int(powers[k]) for k in powers.keys() - roots - {*BASES}), start=Fraction(1)), roots
 
 
 def read_unit(text: str, where: str = "") -> Powers:
@@ -136,19 +165,70 @@ def print_unit(powers: Powers) -> str:
     >>> print_unit(read_unit("deg/h")), print_unit({})
     ('pi/648000 1/s', '1')
     """
-    scale = Fraction(1)
-    turns = Fraction(0)
+    scale, roots = split_scale(powers)
+    turns = roots.pop("pi", Fraction(0))
     above: list[str] = []
     below: list[str] = []
     for key, n in powers.items():
-        if key == "pi":
-            turns = n
-        elif isinstance(key, int):
-            scale *= Fraction(key) ** int(n) if n.denominator == 1 else 1
-        else:
+        if key in BASES or key in roots:
             power = "" if abs(n) == 1 else f"^{abs(n)}" if n.denominator == 1 else f"^({abs(n)})"
             (above if n > 0 else below).append(f"{key}{power}")
     unit = "/".join([" ".join(above) or ("1" if below else ""), *below])
-    pi = {0: "", 1: "pi"}.get(turns.numerator if turns.denominator == 1 else -1, f"pi^{turns}")
-    number = f"{pi}/{scale.denominator}" if pi and scale.numerator == 1 else f"{scale}{pi}"
+    turn = {0: "", 1: "pi"}.get(turns, f"pi^({turns})")  # type: ignore[call-overload]
+    number = f"{turn}/{scale.denominator}" if turn and scale.numerator == 1 else f"{scale}{turn}"
     return " ".join(part for part in ("" if number in ("1", "") else number, unit) if part) or "1"
+
+
+# Numbers with units
+
+
+def is_quantity(value: Any) -> bool:
+    """Whether a value is a quantity of pint, which is not loaded to find that out."""
+    return hasattr(type(value), "unit_items")
+
+
+def unit_text(quantity: Any) -> str:
+    """The unit of a quantity of pint as text; pint writes a square root as a float."""
+    powers = ((name, Fraction(n).limit_denominator(99)) for name, n in quantity.unit_items())
+    return " ".join(name if n == 1 else f"{name}^({n})" for name, n in powers) or "1"
+
+
+def scale_of(text: str, unit: str, where: str) -> tuple[Fraction, Powers]:
+    """What one of a unit is in another, or in SI where that is empty: a fraction, and powers of pi and of roots.
+
+    Raises DomainError that names both units where their dimensions differ.
+
+    >>> scale_of("deg/h", "", ""), scale_of("ft", "km", "")
+    ((Fraction(1, 648000), {'pi': Fraction(1, 1)}), (Fraction(381, 1250000), {}))
+    """
+    powers = read_unit(text, where)
+    wanted: Powers = read_unit(unit, where) if unit else {key: n for key, n in powers.items() if key in BASES}
+    scale = combine([(powers, 1), (wanted, -1)])
+    if not scale.keys().isdisjoint(BASES):
+        raise DomainError(f"expected a quantity in {unit}; got one in {text}; correct it", where=where)
+    return split_scale(scale)
+
+
+def convert_number(number: Any, text: str, unit: str, where: str) -> Any:
+    """A float, or an array of them, of a unit in another one, or in SI."""
+    whole, roots = scale_of(text, unit, where)
+    root = prod((pi if key == "pi" else float(key)) ** float(n) for key, n in roots.items())
+    return number * float(whole.numerator) / float(whole.denominator) * root
+
+
+def convert_text(number: str, text: str, unit: str, where: str) -> str:
+    """The exact number of a unit, or of SI, in a number of another unit."""
+    whole, roots = scale_of(text, unit, where)
+    exact = NUMBER.fullmatch(number)
+    factors = [str(Fraction(number) * whole) if exact else f"({number})*({whole})"]
+    return "*".join([*factors, *(f"{key}" if n == 1 else f"{key}**({n})" for key, n in roots.items())])
+
+
+def drop_unit(text: Any, where: str, unit: str = "") -> Any:
+    """A text that is a number with a unit as the number in another unit, or in SI; everything else as it is.
+
+    >>> drop_unit("3 deg/h", ""), drop_unit("90 min", "", "h"), drop_unit("pi/2", "")
+    ('1/216000*pi', '3/2', 'pi/2')
+    """
+    found = AMOUNT.fullmatch(text) if isinstance(text, str) and len(text) <= 2 * LONGEST else None
+    return text if found is None else convert_text(found[1], found[2], unit, where)
