@@ -169,7 +169,8 @@ def main(passes=6, every=4):
         for _ in range(passes):
             for axis in AXES:
                 total += inject(rng, *recorded(axis), outliers)
-        print(f"(b) K = {outliers}: {dict(sorted(total.items()))}", flush=True)
+        wrong = {name: total[name] for name in ("violated", "wrong", "refused")}
+        print(f"(b) K = {outliers}: {dict(sorted(total.items())) | wrong}", flush=True)
         assert not (total["violated"] or total["wrong"] or total["refused"])
         whole += total
     print(f"(b) {whole['injected']} faults, {whole['epochs']} epochs")
