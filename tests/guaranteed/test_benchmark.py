@@ -8,7 +8,7 @@ import sympy as sp
 
 from navsym.core.errors import DomainError
 from navsym.guaranteed.phases.family import Family, U
-from tests.benchmarks import guaranteed, guaranteed_campaign
+from tests.benchmarks import guaranteed, guaranteed_campaign, guard
 from tests.benchmarks.lengths import values_for_lengths
 
 
@@ -21,6 +21,12 @@ def velocity(state):
 def test_the_benchmark_prints_ratios(capsys):
     guaranteed.main(count=100, rounds=1, lengths=10)
     assert capsys.readouterr().out.count("cvxpy/this") == 22
+
+
+def test_an_epoch_of_the_guard_has_the_value_of_general_solvers(capsys):
+    guard.main(count=80, every=20, rounds=1, cases=[(3, 16, 0.1)])
+    shown = capsys.readouterr().out
+    assert shown.count("times)") == 3 and float(shown.split()[-1]) < 1e-6
 
 
 def test_a_small_campaign_has_no_contradiction_and_goes_on_where_it_stopped(tmp_path, capsys):

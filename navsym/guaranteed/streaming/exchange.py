@@ -14,6 +14,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import repeat
+from math import isfinite
 
 import numpy as np
 from flint import arb, arb_mat
@@ -104,19 +106,18 @@ class Cloud:
         rows = rows / np.maximum(np.abs(rows).max(axis=1), 1e-300)[:, None]
         return [int(places[k]) + self.first for k in independent_rows(rows, m)]
 
-    def suspects(self, x: Array, radii: Array) -> list[int]:
-        """Rows whose bound is not seen to be kept in doubles by all vectors of a ball, the worst first."""
-        f = self.scaled @ x
-        rounding = ROUNDING * (len(x) + 4)
-        slack = np.abs(self.scaled) @ (np.abs(x) * rounding + radii) + self.wide * (np.abs(x) + radii).sum() + 1e-12
+    def suspects(self, x: Array, radii: Array, known: Sequence[int] = ()) -> list[int]:
+        """Rows whose bound is not seen to be kept in doubles by all vectors of a ball, the worst first, but for some."""
+        rounding, far = ROUNDING * (len(x) + 4), np.abs(x)
+        size = np.abs(self.scaled @ x if self.shifted is None else self.scaled @ x - self.shifted)
+        slack = np.abs(self.scaled) @ (far * rounding + radii) + (self.wide * float((far + radii).sum()) + 1e-12)
         if self.shifted is not None:
-            f = f - self.shifted
-            slack = slack + np.abs(self.shifted) * rounding
-        size = np.abs(f)
-        seen = ~(size + slack <= 1.0)
+            slack += np.abs(self.shifted) * rounding
+        kept = size + slack <= 1.0
         if self.active is not None:
-            seen &= self.active
-        places = np.flatnonzero(seen)
+            kept |= ~self.active
+        kept[[i - self.first for i in known]] = True
+        places = np.flatnonzero(~kept)
         if len(places) > 1:
             places = places[np.argsort(-size[places], kind="stable")]
         return [int(i) + self.first for i in places]
@@ -298,41 +299,45 @@ def exchange_rows(cloud: Cloud, target: arb_mat, basis: Sequence[int], signs: Se
 
 def to_doubles(row: arb_mat) -> Array:
     """The middles of a row of balls."""
-    return np.array([float(e.mid()) for e in row.entries()])
+    return np.array([float(e) for e in row.entries()])
 
 
 def rehearse(cloud: Cloud, target: Array, basis: list[int], signs: list[int]) -> tuple[list[int], list[int]]:
     """The same exchange in doubles: a better start, or the same where doubles do not see the way."""
-    rows, first = cloud.scaled, cloud.first
-    places = np.array(basis) - first
+    rows, first, shifted = cloud.scaled, cloud.first, cloud.shifted
+    places = [i - first for i in basis]
     try:
-        inverse = np.linalg.inv(rows[places])
+        inverse = np.linalg.inv(rows.take(places, axis=0))
     except np.linalg.LinAlgError:
         return basis, signs
-    weights = target @ inverse
-    side = np.where(weights == 0.0, signs or 1.0, np.sign(weights))
+    weights = target.dot(inverse)
+    side = np.array(
+        [s if w == 0.0 else 1.0 if w > 0.0 else -1.0 for w, s in zip(weights.tolist(), signs or repeat(1.0))]
+    )
     for _ in range(4 * len(basis) + 8):
-        f = rows @ (inverse @ (side if cloud.shifted is None else side + cloud.shifted[places]))
-        if cloud.shifted is not None:
-            f -= cloud.shifted
+        f = rows.dot(inverse.dot(side if shifted is None else side + shifted[places]))
+        if shifted is not None:
+            f -= shifted
         size = np.abs(f) if cloud.active is None else np.abs(f) * cloud.active
         enter = int(size.argmax())
         if not size[enter] < np.inf:
             return basis, signs
         if size[enter] <= 1.0 + 1e-9 or enter in places:
             break
-        along, towards = rows[enter] @ inverse, 1.0 if f[enter] > 0.0 else -1.0
-        slopes = side * along * towards
-        steps = np.where(slopes > 1e-9, np.abs(weights), np.inf) / np.maximum(slopes, 1e-9)
-        leave = int(steps.argmin())
-        if steps[leave] == np.inf:
+        along, towards = rows[enter].dot(inverse), 1.0 if f[enter] > 0.0 else -1.0
+        leave, least = -1, np.inf
+        for k, (a, w, s) in enumerate(zip(along.tolist(), weights.tolist(), side.tolist(), strict=True)):
+            slope = s * a * towards
+            if slope > 1e-9 and abs(w) / slope < least:
+                leave, least = k, abs(w) / slope
+        if leave < 0:
             break
         column = inverse[:, leave] / along[leave]
         along[leave] -= 1.0
         inverse -= column[:, None] * along  # Sherman and Morrison
         places[leave], side[leave] = enter, towards
-        weights = target @ inverse
-    return [int(k) + first for k in places], [int(s) for s in side]
+        weights = target.dot(inverse)
+    return [k + first for k in places], [int(s) for s in side]
 
 
 def solve_basis(cloud: Cloud, target: arb_mat, basis: list[int], signs: list[int]) -> Optimum | None:
@@ -355,16 +360,15 @@ def price_basis(cloud: Cloud, target: arb_mat, basis: list[int], signs: list[int
 
 def violated_row(cloud: Cloud, found: Optimum, *, bland: bool = False) -> tuple[int, int] | None:
     """The row that breaks its bound most, as doubles order them, or the first; None where none is seen to."""
-    x = np.array([float(e.mid()) for e in found.dual.entries()])
-    radii = np.array([float(e.rad()) for e in found.dual.entries()]) * (1.0 + ROUNDING)
+    entries = found.dual.entries()
+    x, radii = [*map(float, entries)], [float(e.rad()) for e in entries]
     found.ratio = arb(1)
-    if np.isfinite(x).all() and np.isfinite(radii).all():
-        suspects = cloud.suspects(x, radii)
+    if all(map(isfinite, x + radii)):
+        suspects = cloud.suspects(np.array(x), np.array(radii) * (1.0 + ROUNDING), found.basis)
     else:  # doubles see nothing here
-        suspects = [i for i in range(cloud.first, len(cloud.vectors)) if cloud.may_use(i)]
+        rows = range(cloud.first, len(cloud.vectors))
+        suspects = [i for i in rows if cloud.may_use(i) and i not in found.basis]
     for i in sorted(suspects) if bland else suspects:
-        if i in found.basis:
-            continue
         value, bound = cloud.excess(i, found.dual), cloud.sigma[i]
         if value > bound or value < -bound:
             return i, 1 if value > 0 else -1

@@ -211,7 +211,7 @@ class Flow:
 
     def exponential(self, piece: int, span: fmpq) -> arb_mat:
         """exp(F span), remembered."""
-        key = (piece, int(span.p), int(span.q))
+        key = (piece, span.p, span.q)
         found = self.memory.get(key)
         if found is None:
             found = (self.systems[piece] * arb(span)).exp()

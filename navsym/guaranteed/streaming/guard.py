@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -159,7 +160,7 @@ class Guard:
                 self.move_hints(lambda: self.memory.add(at, taken))
                 self.note_pattern(at, taken)
                 self.change_kinds()
-                answer = replace(self.answer(at, len(taken)), since=self.memory.restart)
+                answer, since = self.answer(at, len(taken)), self.memory.restart
             except BaseException:
                 self.__dict__.update(before)
                 self.memory.take_back(mark)
@@ -167,7 +168,7 @@ class Guard:
             self.epochs += 1
             if self.length is not None and self.memory.gone >= max(self.length, STRIDE):
                 self.move_hints(self.memory.refer_within_doubles)
-        return answer
+        return answer if since is None else replace(answer, since=since)
 
     def next_time(self, t: Any) -> fmpq:
         """The time of the epoch, later than the last."""
@@ -264,8 +265,8 @@ class Guard:
         plan = self.plan or solve_scarce(self.flow, self.memory.rows[self.memory.first :], at)
         if plan is None:
             return Estimate(to_float(at), self.target, None, self.radius_kind)
-        value, count = middle(plan.value()), len(plan.support())
-        if not np.isfinite([value, middle(plan.upper)]).all():
+        value, count = middle(plan.value()), sum(not w.contains(0) for w in plan.weights)
+        if not isfinite(value) or not isfinite(middle(plan.upper)):
             message = f"expected a target and a radius within the range of doubles; got {quote(self.target)} beyond it"
             raise TooLargeError(f"{message}; measure earlier, or take another unit", where=f"t = {to_float(at):.12g}")
         return Estimate(
@@ -305,26 +306,25 @@ class Guard:
                 found = solve_basis(cloud, target, self.basis, self.signs)
             if found is not None and violated_row(cloud, found) is None:
                 self.solved, self.signs = found, found.signs
-                return self.make_plan(at, found)
-        start = moved_basis(self.basis, memory.rows, memory.first)
-        support = cheaper_start(cloud, target, [self.basis if kept else [], start])
+                return self.make_plan(at, found, cloud)
+        support = moved_basis(self.basis, memory.rows, memory.first)
+        if kept:
+            support = cheaper_start(cloud, target, [self.basis, support])
         found = exchange(cloud, target, support) if support else None
         if found is None:
             start = cloud.start() or []
             found = exchange(cloud, target, start) if start else None
         self.solved = found
         self.basis, self.signs = (found.basis, found.signs) if found else ([], [])
-        return None if found is None else self.make_plan(at, found)
+        return None if found is None else self.make_plan(at, found, cloud)
 
-    def make_plan(self, at: fmpq, found: Optimum, cloud: Cloud | None = None) -> Plan:
-        """The weights as the estimate keeps them; ``cloud`` is that of the exchange where it combined rows."""
-        memory, weights = self.memory, dict(zip(self.basis, found.weights.entries(), strict=False))
-        window = Window(memory.rows, memory.first, len(memory.rows))
-        if cloud is not None:
-            weights = cloud.spread(found)
-        places = [i - memory.first for i in weights]
-        lower, upper = bounds_of(cloud or memory.cloud(), found)
-        return Plan(self.flow, at, window, self.flow.columns, places, self.signs, [*weights.values()], lower, upper)
+    def make_plan(self, at: fmpq, found: Optimum, cloud: Cloud) -> Plan:
+        """The weights as the estimate keeps them."""
+        rows, first = self.memory.rows, self.memory.first
+        weights = cloud.spread(found) if cloud.cones else dict(zip(found.basis, found.weights.entries(), strict=True))
+        window, places = Window(rows, first, len(rows)), [i - first for i in weights]
+        bounds = bounds_of(cloud, found)
+        return Plan(self.flow, at, window, self.flow.columns, places, self.signs, [*weights.values()], *bounds)
 
     def interval(self) -> Number | None:
         """All values of the target at the last epoch that the data allow, as an enclosure from both sides.
@@ -469,7 +469,12 @@ class Window(Sequence[Any]):
 
 def moved_basis(basis: Sequence[int], rows: Sequence[Row], first: int) -> list[int]:
     """The support as it moves on with time, each row to the next of its measurement; empty where two become one."""
-    moved = [next((k for k in range(max(i + 1, first), len(rows)) if rows[k].j == rows[i].j), i) for i in basis]
+    moved = []
+    for i in basis:
+        k, j = max(i + 1, first), rows[i].j
+        while k < len(rows) and rows[k].j != j:
+            k += 1
+        moved.append(k if k < len(rows) else i)
     return moved if len(set(moved)) == len(moved) and min(moved, default=0) >= first else []
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from navsym.core.errors import TooLargeError
 from navsym.guaranteed.search.cones import Cone
 from navsym.guaranteed.streaming.exchange import Cloud
 from navsym.guaranteed.streaming.flow import Flow, Together
-from navsym.guaranteed.streaming.numbers import middle, to_float, write_rational
+from navsym.guaranteed.streaming.numbers import to_float, write_rational
 
 MOST_ROWS = 200_000
 #: Steps whose transitions are one stride, see Flow.long_exponential.
@@ -151,12 +152,12 @@ class Memory:
             self.shifted = np.concatenate([self.shifted, np.zeros_like(self.shifted)])
         h = self.flow.row(row.j, row.t)
         vector = self.flow.cut(h if self.carry is None else h * self.carry)
-        parts = [e / row.sigma for e in vector.entries()]
-        scaled, shifted = [*map(middle, parts)], middle(arb(row.z) / row.sigma)
-        if not np.isfinite(shifted):
+        parts, z = (vector / row.sigma).entries(), arb(row.z)
+        scaled, shifted = [*map(float, parts)], float(z / row.sigma)
+        if not isfinite(shifted):
             message = "expected z/sigma within the range of doubles; got an overflow; scale z"
             raise TooLargeError(message, where="Guard")
-        if not np.isfinite(scaled).all():
+        if not all(map(isfinite, scaled)):
             raise OverflowError("regressors")
         self.scaled[n] = scaled
         self.wide = max(self.wide, *(float(e.rad()) for e in parts))
@@ -164,7 +165,7 @@ class Memory:
         self.rows.append(row)
         self.vectors.append(vector)
         self.sigmas.append(row.sigma)
-        self.data.append(arb(row.z))
+        self.data.append(z)
 
     def take_back(self, before: tuple[Any, ...]) -> None:
         """The state that :meth:`mark` described."""

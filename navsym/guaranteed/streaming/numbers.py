@@ -43,7 +43,7 @@ def read_number(value: Any, where: str) -> fmpq:
         message = f"expected a number; got {quote(value)}; give text, an int, a Fraction or a float"
         raise DomainError(message, where=where)
     if isinstance(value, Integral | Rational):
-        return to_fmpq(Fraction(int(value.numerator), int(value.denominator)))
+        return to_fmpq(value)
     return read_decimal(repr(float(value)), where)
 
 
@@ -83,4 +83,4 @@ def to_float(q: fmpq) -> float:
 
 def middle(x: arb) -> float:
     """The double nearest to the middle of a ball."""
-    return float(x.mid())
+    return float(x)
