@@ -24,11 +24,12 @@ k = sp.symbols("k1:10", real=True)
 
 
 def say_ranks(
-    printed: Any, finding: Finding, ranks: Iterable[tuple[LinearModel, int]], *relations: tuple[str, str, str]
+    printed: Any, finding: Finding, ranks: Iterable[tuple[LinearModel, int]], *relations: tuple[Any, ...]
 ) -> Property:
     """A property that follows from ranks, which the checker grants one by one, and from relations between them.
 
-    ranks : models with the rank that all their measurements show together
+    ranks     : models with the rank that all their measurements show together
+    relations : what :func:`state` takes, true at 1; a matrix on the right stands there by entries
     """
     parts = []
     for model, rank in ranks:
@@ -40,7 +41,8 @@ def say_ranks(
     meaning = [part["statement"] for part in parts] + [state(*relation) for relation in relations]
     for text in meaning[len(parts) :]:
         rule = {"rule": "identity"} if text["relation"] == "=" else {"rule": "balls", "bits": 64, "cells": 0}
-        parts.append({"kind": "proof", "statement": text, "bits": 128, "witness": {}, "proofs": [rule]})
+        witness, rules = dict.fromkeys(text["symbols"], "1"), [rule] * (1 + text["right"].count(","))
+        parts.append({"kind": "proof", "statement": text, "bits": 128, "witness": witness, "proofs": rules})
     certificate = parts[0] if len(parts) == 1 else {"kind": "all", "of": parts}
     return Property(printed, replace(finding, certificate=certificate), tuple(meaning))
 

@@ -2,11 +2,20 @@
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, claim, fact
+from navsym.claims import PROVED, Equation, Finding, claim
 from navsym.observability.splits import companion, last_row
 from navsym_papers.joint_correction.matrices import corner, exact_inverse, shift, to_lowest_terms, unit_row
 from navsym_papers.joint_correction.section1_chains import coefficients, theta_of
-from navsym_papers.joint_correction.section1_systems import System, flat, free, k, overlapping, polynomial_of
+from navsym_papers.joint_correction.section1_systems import (
+    System,
+    flat,
+    free,
+    k,
+    overlapping,
+    polynomial_of,
+    say_ranks,
+    seen_at_once,
+)
 
 #: Splits i, j of the overlapping system (n = 4, m = 3) that have all three parts.
 CASES = ((2, 2), (1, 3))
@@ -154,8 +163,10 @@ def choice_of_i():
 
     best = best_split(overlapping().found)
     method = "all determinants of a_1 ... a_i, b_1 ... b_j"
-    unsaid = "a least value over all bases is found by trying them"
-    return fact((2, 2), (best.i, best.j), method, PROVED, scope="l = 4", unsaid=unsaid)
+    basis = sp.Matrix.vstack(overlapping().chain(1, 2), overlapping().chain(2, 2))
+    finding = Finding((best.i, best.j), method, PROVED, scope="l = 4")
+    larger = [(f"2 + abs({i} - 2)", ">", "2") for i in (0, 1, 3)]  # of i and 4 - i
+    return say_ranks((2, 2), finding, [(seen_at_once(basis), 4)], *larger)
 
 
 @claim("1.14.gains_unique")

@@ -17,6 +17,7 @@ from navsym_papers.joint_correction.section1_systems import (
     k,
     polynomial_of,
     say_ranks,
+    seen_at_once,
     systems,
 )
 
@@ -48,18 +49,22 @@ def chains_complete_each_other():
     k = n - m. By Cayley and Hamilton M^k b is a combination of the first k vectors, whatever M
     and b are, so that a dependence among them would keep every later vector in the same span.
     """
-    identities = []
+    identities, relations = [], []
     for size in (1, 2, 3):
         M = sp.Matrix(size, size, lambda r, s, size=size: g[r * size + s])
         theta = characteristic(M)
         power = [M**j for j in range(size + 1)]
         total = sum((t * power[j] for j, t in enumerate(theta)), sp.zeros(size, size))
         identities += [sp.expand(x) == 0 for x in power[size] - total]
-    full = tuple(rank_of(sp.Matrix.vstack(s.chain(1, s.m), s.chain(2, s.rest))) == s.n for s in systems())
+        written = " @ ".join([write_matrix(M)] * size)
+        relations.append((written, "=", write_matrix(total), {x.name: [None, None, []] for x in g[: size**2]}))
+    chains = [sp.Matrix.vstack(s.chain(1, s.m), s.chain(2, s.rest)) for s in systems()]
+    full = tuple(rank_of(rows) == rows.cols for rows in chains)
     method = "Cayley-Hamilton in the quotient by the first chain"
-    scope = "n - m = 1, 2, 3 with all entries symbolic, every m"
-    unsaid = "that a chain is a basis wherever a pair is observable is said of all sizes"
-    return fact(True, all(identities) and all(full), method, PROVED, scope=scope, unsaid=unsaid)
+    finding = Finding(
+        all(identities) and all(full), method, PROVED, scope="n - m = 1, 2, 3 with all entries symbolic, every m"
+    )
+    return say_ranks(True, finding, [(seen_at_once(rows), rows.cols) for rows in chains], *relations)
 
 
 @claim("1.8.one_to_one")
@@ -80,8 +85,9 @@ def transformation_is_invertible():
 def output_row_of_z_printed():
     """g_z^T = (1 0 ... 0)^T C_2^-1, as printed: a column times a matrix."""
     size = 2
-    method, unsaid = "shapes of the factors, n - m = 2", "sides of shapes that do not fit have no value"
-    return fact(True, unit_row(size).T.cols == free("z", size).rows, method, PROVED, scope="n - m = 2", unsaid=unsaid)
+    columns, rows = unit_row(size).T.cols, free("z", size).rows
+    meaning = [state(str(columns), "=", str(rows))]  # a product has a value only where these two counts agree
+    return fact(True, columns == rows, "shapes of the factors", PROVED, scope="n - m = 2", meaning=meaning)
 
 
 @claim("1.10.gz*")

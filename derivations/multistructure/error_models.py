@@ -35,19 +35,15 @@ def changes_at(formula: sp.Expr, variable: sp.Symbol, order: int, point: dict) -
     return state(f"diff({to_text(formula)}, {variable.name}, {order})", "!=", "0", symbols)
 
 
-arguments_corrected = claim(
-    "1.arguments",
-    "(1): S is a function of coordinates, their errors, sensor errors and readings, and of nothing else.",
-    lambda: fact(
-        True,
-        S.free_symbols
-        <= ({*RECKONING.reckoned, *RECKONING.errors, *RECKONING.sensor_errors, *RECKONING.readings, model.radius}),
-        "free symbols of the derived right side",
-        PROVED,
-        scope="course and log on a sphere",
-        unsaid="which symbols a formula has is read off it, not its value",
-    ),
-)
+@claim("1.arguments")
+def arguments_corrected():
+    """(1): S is a function of coordinates, their errors, sensor errors and readings, and of nothing else."""
+    known = {*RECKONING.reckoned, *RECKONING.errors, *RECKONING.sensor_errors, *RECKONING.readings, model.radius}
+    method, scope = "free symbols of the derived right side", "course and log on a sphere"
+    symbols = {s.name: [None, None, []] for s in {*S.free_symbols, sp.Symbol("z")}}
+    # z is anything else
+    meaning = [state(f"diff({to_text(rate)}, z)", "=", "0", symbols) for rate in S]
+    return fact(True, S.free_symbols <= known, method, PROVED, scope=scope, meaning=meaning)
 
 
 @claim("3")

@@ -14,7 +14,7 @@ from navsym.claims import CERTIFIED, PROVED, Finding, Property, claim, fact
 from navsym.multimodel.exact import Kit, Leaf, Model, run_exactly
 from navsym.multimodel.schemes import filters_at, scheme
 from navsym_papers.multistructure import examples
-from navsym_papers.multistructure.pulsating import MODELS, SWITCHING, differs, leaves_by_tree
+from navsym_papers.multistructure.pulsating import MODELS, SWITCHING, differs, leaves_by_tree, say_sequences
 
 RUN = "a program is run and what it does is counted"
 NO_FORM = "integrals over a measurement of ratios of Gaussian sums have no closed form"
@@ -33,7 +33,7 @@ def number_in_an_interval():
         "sequences enumerated, filters scheduled",
         PROVED,
         scope="I = 1..4, K = 1..5, four intervals",
-        unsaid=RUN,
+        meaning=[say_sequences(modes, K, modes**K) for modes, K in cases],
     )
 
 
@@ -43,7 +43,13 @@ def cost_of_pulsating():
     cases = [(modes, k) for modes in (2, 3, 4) for k in (1, 2, 3, 4)]
     found = tuple((filters_at(scheme("pulsating"), modes, 1, k), leaves_by_tree(modes, k, 1)) for modes, k in cases)
     method, scope = "filters scheduled, sequences enumerated", "I = 2..4, k = 1..4"
-    return fact(tuple((modes, modes**k) for modes, k in cases), found, method, PROVED, scope=scope, unsaid=RUN)
+    printed = tuple((modes, modes**k) for modes, k in cases)
+    meaning = [
+        say_sequences(modes, *pair)
+        for (modes, k), own in zip(cases, printed, strict=True)
+        for pair in zip((1, k), own, strict=True)
+    ]
+    return fact(printed, found, method, PROVED, scope=scope, meaning=meaning)
 
 
 #: A state that keeps or changes its sign, measured once, at step 1, by a good or a poor sensor.

@@ -1,13 +1,16 @@
 """Equations (20)-(21): modes that never switch, and the polygaussian filter."""
 
+from itertools import combinations
+
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, claim, fact
+from navsym.claims import PROVED, Equation, claim, fact, state
 from navsym.multimodel.exact import ExactStep, Leaf, Model, run_exactly
 from navsym.multimodel.schemes import scheme
 from navsym_papers.multistructure import finite, pulsating
 from navsym_papers.multistructure.examples import ANY_DENSITY, scalar
 from navsym_papers.multistructure.finite import Step, step
+from navsym_papers.multistructure.pulsating import say_sequences
 from navsym_papers.multistructure.recursion import UNIT
 
 RUN = "a program is run and what it does is counted"
@@ -111,9 +114,15 @@ def living_sequences():
     """Under (19) only I of the I^(k+1) sequences have a positive probability, at every step (I = 3, k to 3)."""
     _, exact = polygaussian_and_exact()
     alive = tuple(len(living(step)) for step in exact)
-    return fact(
-        (3, 3, 3), alive, "leaves of positive weight counted", PROVED, scope="one model, I = 3, k = 1..3", unsaid=RUN
-    )
+    scope = "one model, I = 3, k = 1..3"
+    meaning = [part for k in (1, 2, 3) for part in (say_sequences(3, k + 1, 3 ** (k + 1)), say_walks(3, k))]
+    return fact((3, 3, 3), alive, "leaves of positive weight counted", PROVED, scope=scope, meaning=meaning)
+
+
+def say_walks(modes: int, steps: int) -> dict:
+    """That as many sequences as there are modes have only ones of (19) for transition probabilities."""
+    ones = [1] * modes
+    return state(f"[{ones}]" + f" @ eye({modes})" * steps + f" @ {[[one] for one in ones]}", "=", str(modes))
 
 
 @claim("21.optimal")
@@ -134,9 +143,16 @@ prior = claim(
         "different Gaussians of the exact tree counted",
         PROVED,
         scope="two modes, L = 1..3, one step",
-        unsaid=RUN,
+        meaning=[part for L in (1, 2, 3) for part in (say_sequences(2 * L, 1, 2 * L), say_different(L))],
     ),
 )
+
+
+def say_different(summands: int) -> dict:
+    """That the Gaussians differ, each from each, in mean or variance."""
+    pairs = combinations(sorted(different_gaussians(summands), key=str), 2)
+    parts = [f"(({a[-2]} - ({b[-2]}))**2 + ({a[-1]} - ({b[-1]}))**2)" for a, b in pairs]
+    return state("*".join(parts), "!=", "0")
 
 
 def different_gaussians(summands: int) -> set[tuple[sp.Expr, ...]]:

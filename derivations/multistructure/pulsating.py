@@ -12,8 +12,6 @@ from navsym_papers.multistructure.finite import Step, step
 from navsym_papers.multistructure.moments import mixture, right_side_of_13
 from navsym_papers.multistructure.recursion import UNIT
 
-RUN = "a program is run and what it does is counted"
-
 
 def forgetful_steps():
     """Steps under (14), all sizes."""
@@ -110,6 +108,14 @@ def leaves_by_tree(modes: int, steps: int, roots: int) -> int:
     return len(sequences)
 
 
+def say_sequences(modes: int, steps: int, count: int) -> dict:
+    """That there are so many sequences: the sum of ones over all of them."""
+    text = "1"
+    for k in range(1, steps + 1):
+        text = f"sum({text}, i{k}, 1, {modes})"
+    return state(text, "=", str(count))
+
+
 GRID = [(modes, steps) for modes in (1, 2, 3, 4) for steps in range(6)]
 
 
@@ -122,7 +128,7 @@ number_of_sequences = claim(
         "sequences enumerated",
         PROVED,
         scope="I = 1..4, k = 0..5; every step multiplies by I, so for all by induction",
-        unsaid=RUN,
+        meaning=[say_sequences(modes, steps + 1, modes ** (steps + 1)) for modes, steps in GRID],
     ),
 )
 

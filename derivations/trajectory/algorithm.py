@@ -185,7 +185,6 @@ def field_size_power():
     return fact(powers, found, "enumeration", PROVED, scope="n = 1..7", meaning=meaning)
 
 
-COUNTED = "the different values of a list are counted, and statements are about one value"
 #: What the counts are made for: other centres give other numbers.
 FIELD_SCOPE = "n = 5, centre 1, 1/3, ..., 1/9, start f = 0, P = E, R = 1, tau = 0.2, row of ones as printed"
 
@@ -224,17 +223,30 @@ def terms(n: int, row: list[int], residual_after: bool) -> list[tuple[Fraction, 
     return values
 
 
-def counted(printed: int | tuple[int, ...], *found: set[Fraction]) -> Property:
-    """How many different values each set has, with its ends as evidence."""
-    ends = "; ".join(f"{float(min(values)):.9g} to {float(max(values)):.9g}" for values in found)
-    count = tuple(map(len, found)) if len(found) > 1 else len(found[0])
-    return fact(printed, count, "exact enumeration", PROVED, scope=FIELD_SCOPE, evidence=ends, unsaid=COUNTED)
+def counted(values: set[Fraction]) -> tuple[int, str, dict]:
+    """How many different values there are, their ends, and that the roots of the gaps between them are positive."""
+    gaps = [f"sqrt({b} - {a})" for a, b in pairwise(sorted(values))]
+    return len(values), f"{float(min(values)):.9g} to {float(max(values)):.9g}", state("*".join(gaps), ">", "0")
+
+
+def count_values(count: int) -> Property:
+    found, ends, text = counted(criteria(5, [1] * 5, residual_after=False))
+    return fact(count, found, "exact enumeration", PROVED, scope=FIELD_SCOPE, evidence=ends, meaning=[text])
+
+
+def count_first_terms(counts: tuple[int, int]) -> Property:
+    """The first of them has no gain in it: its derivative is zero."""
+    sets = [{first for first, _ in terms(5, [1] * 5, after)} for after in (False, True)]
+    found, ends, text = counted(sets[1])
+    meaning = [state("diff(nu**2, K)", "=", "0", {"nu": [None, None, []], "K": [None, None, []]}), text]
+    both = len(sets[0]), found
+    return fact(counts, both, "exact enumeration", PROVED, scope=FIELD_SCOPE, evidence=ends, meaning=meaning)
 
 
 field_values = claim(
     "algorithm.field",
     "For one centre and one start the 3^5 candidates give as many values of J (equal elements would merge some).",
-    lambda: counted(3**5, criteria(5, [1] * 5, residual_after=False)),
+    lambda: count_values(3**5),
 )
 
 
@@ -242,7 +254,7 @@ field_values = claim(
 first_term_of_the_criterion = claim(
     "algorithm.J.first",
     "With x*_k, as printed, the first term of J is one number for all candidates; with x*_(k+1) it takes 216 values.",
-    lambda: counted((1, 216), *({first for first, _ in terms(5, [1] * 5, after)} for after in (False, True))),
+    lambda: count_first_terms((1, 216)),
 )
 
 

@@ -9,7 +9,6 @@ import sympy as sp
 from navsym.claims import PROVED, Equation, Property, claim, fact, state
 from navsym_papers.trajectory import model
 
-FOLLOWED = "what rules reach is found by following them to the end"
 
 rho, tau = sp.symbols("rho tau", positive=True)
 
@@ -211,10 +210,21 @@ def reached(allowed) -> int:
     return sum(j > i for i, j in known)
 
 
+def say_range(allowed) -> Property:
+    """That the rules lead to the printed matrix; an element that no rule names, unlike those known, is any number."""
+    Phi = [["1"] * PRINTED, *([int(i == j) for j in range(PRINTED)] for i in range(1, PRINTED))]
+    symbols = {f"p{i}{j}": [None, None, []] for j in range(PRINTED) for i in range(1, j) if not allowed(i - 1, j - 1)}
+    for j in range(1, PRINTED):
+        for i in range(1, j):
+            Phi[i][j] = f"p{i}{j}" if f"p{i}{j}" in symbols else f"({Phi[i - 1][j - 1]} + {Phi[i][j - 1]})"
+    meaning = [state(write_rows(Phi), "=", write_rows(model.pascal_rows(PRINTED)), symbols)]
+    return fact(10, reached(allowed), "closure of the rules", PROVED, scope="n = 5", meaning=meaning)
+
+
 recurrence_range_printed = claim(
     "6.Phif.range",
     "The recurrence for i >= j determines all 10 elements above the diagonal (n = 5).",
-    lambda: fact(10, reached(lambda i, j: i >= j), "closure of the rules", PROVED, scope="n = 5", unsaid=FOLLOWED),
+    lambda: say_range(lambda i, j: i >= j),
     slip="undecidable",
     reason="for i >= j the recurrence only says 0 = 0 + 0 and 1 = 1 + 0: six of the ten elements above the "
     "diagonal stay undetermined; the range has to be i <= j",
@@ -222,7 +232,7 @@ recurrence_range_printed = claim(
 recurrence_range = claim(
     "6.Phif.range*",
     "The recurrence for i <= j determines all 10 elements above the diagonal (n = 5).",
-    lambda: fact(10, reached(lambda i, j: i <= j), "closure of the rules", PROVED, scope="n = 5", unsaid=FOLLOWED),
+    lambda: say_range(lambda i, j: i <= j),
 )
 
 

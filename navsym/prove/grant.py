@@ -19,7 +19,7 @@ import sympy as sp
 from flint import arb, fmpq
 
 from navsym import checker
-from navsym.claims.statement import Bound, Equation, Optimum, Property, Statement
+from navsym.claims.statement import Bound, Equation, Optimum, Property, Statement, state
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
 from navsym.core.errors import NavsymError
 from navsym.core.numbers import Number
@@ -56,9 +56,13 @@ def write_statements(statement: Statement) -> list[Document] | None:
     try:
         if isinstance(statement, Optimum):
             return write_optimum(statement)
-        if isinstance(statement, (Equation, Bound)) and shape_of(statement.printed) == shape_of(statement.derived):
-            exists, limit, symbols = write_beside(statement)
-            return [write_entry(statement, *sides, exists, limit, symbols) for sides in list_sides(statement)]
+        if isinstance(statement, (Equation, Bound)):
+            shapes = shape_of(statement.printed), shape_of(statement.derived)
+            if shapes[0] == shapes[1]:
+                exists, limit, symbols = write_beside(statement)
+                return [write_entry(statement, *sides, exists, limit, symbols) for sides in list_sides(statement)]
+            if isinstance(statement, Equation) and len(shapes[0]) == len(shapes[1]):  # equal matrices have equal sizes
+                return [state(str(m), "=", str(n)) for m, n in zip(*shapes, strict=True)]
     except (NavsymError, *REFUSALS):
         pass
     return [dict(text) for text in statement.meaning] or None if isinstance(statement, Property) else None
