@@ -45,12 +45,17 @@ def shorten_repr(value: object, limit: int) -> str:
         return "without a text"
 
 
+#: Tables that files of the other kind have in their place.
+ELSEWHERE = {"symbols": "parameters", "parameters": "symbols"}
+
+
 def suggest_nearest(name: str, known: Iterable[str]) -> str:
     """``"did you mean 'omega'?"``, or the list of what there is."""
     choices = sorted(known)
     if not choices:
         return "nothing is declared here"
-    close = difflib.get_close_matches(str(name)[:NAME_LENGTH], choices[:5000], n=1, cutoff=0.6)
+    close = [other for other in (ELSEWHERE.get(str(name)),) if other in choices]
+    close = close or difflib.get_close_matches(str(name)[:NAME_LENGTH], choices[:5000], n=1, cutoff=0.6)
     if close:
         return f"did you mean {close[0]!r}?"
     rest = "" if len(choices) <= 8 else f" and {len(choices) - 8} more"

@@ -256,3 +256,8 @@ def test_a_constant_among_the_parameters_is_refused_with_the_way_to_write_it(dec
     with pytest.raises(NavsymError) as refused:
         model_from(document)
     assert advice in str(refused.value)
+
+
+def test_the_table_of_names_of_a_claim_file_is_called_parameters_here():
+    with pytest.raises(NavsymError, match="did you mean 'parameters'"):
+        read('[symbols]\ng = "positive"\n[model]\nstates = ["x"]\nF = [["g"]]\n')
