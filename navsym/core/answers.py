@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, fields, is_dataclass
+from dataclasses import asdict, fields, is_dataclass, replace
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Self, TypeVar, overload
 
 from navsym.core.errors import UnknownSymbolError
 from navsym.core.tables import Shown
@@ -76,7 +76,7 @@ class Answer(Shown):
 class Answers(Answer, Generic[Part]):
     """Base of answers of several parts: the first field of the class has them, in order.
 
-    They are counted, gone through, and taken by their place or by their id.
+    They are counted, gone through, and taken by their place, by their id, or some of them by a slice.
     """
 
     __slots__ = ()
@@ -93,11 +93,18 @@ class Answers(Answer, Generic[Part]):
     def __iter__(self) -> Iterator[Part]:
         return iter(self.parts)
 
-    def __getitem__(self, wanted: int | str) -> Part:
+    @overload
+    def __getitem__(self, wanted: int | str) -> Part: ...
+    @overload
+    def __getitem__(self, wanted: slice) -> Self: ...
+    def __getitem__(self, wanted: int | str | slice) -> Any:
+        """A part by its place or its id; the same kind of collection for a slice."""
+        if isinstance(wanted, slice):
+            return replace(self, **{fields(self)[0].name: self.parts[wanted]})  # type: ignore[type-var, arg-type]
         if isinstance(wanted, int):
             return self.parts[wanted]
         known = {getattr(part, "id", None): part for part in reversed(self.parts)}
-        if wanted not in known:
+        if not isinstance(wanted, str) or wanted not in known:
             listed = ", ".join(str(name) for name in [*known][:-9:-1]) or "nothing, the list is empty"
             raise UnknownSymbolError(f"expected the id of a part, such as {listed}; got {wanted!r}; correct it")
         return known[wanted]

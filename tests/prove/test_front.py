@@ -250,6 +250,16 @@ def test_a_counterexample_has_short_numbers_where_they_do():
     assert nav.prove("x**2 != 2", x=("7/5", "3/2")).counterexample == {"x": "sqrt(2)"}
 
 
+def test_verdicts_are_taken_by_place_id_and_slice():
+    verdicts = nav.prove(EXAMPLE)
+    first, *rest = verdicts
+    assert verdicts[0] is first and verdicts[first.id] is first and [*verdicts[1:]] == rest
+    assert type(verdicts[:1]) is type(verdicts) and verdicts[:0].document()["claims"] == []
+    for wanted in ("nothing", 1.5, [1]):
+        with pytest.raises(nav.NavsymError, match="the id of a part"):
+            verdicts[wanted]
+
+
 X, N, T = sp.Symbol("x"), sp.Symbol("n", integer=True, positive=True), sp.Symbol("T", positive=True)
 
 

@@ -27,6 +27,7 @@ from navsym.language.tomlfile import toml_text
 SIZE = 4_000_000  # bytes of a document
 FORMULAS = 20_000
 SIGNS = {"<=": r"\le", ">=": r"\ge", "!=": r"\neq"}
+BOLD = re.compile(r"(?:\\[a-z]+\s*\{\s*)*\\(?:mathbf|boldsymbol|bm)\s*\{?\s*(\\?[A-Za-z]+)")
 #: A whole power of e, which may be a name.
 EXPONENT = re.compile(r"(?<![A-Za-z\\])e\s*\^\s*(?:\{\s*)?\d")
 #: A string with one of these holds formulas among other text.
@@ -187,14 +188,23 @@ class Reading(Answer):
         return tuple(claims)
 
     def declarations(self) -> str:
-        """A skeleton (TOML) of the declarations that are missing, with what is declared already."""
+        """A skeleton (TOML) of the declarations that are missing, with what is declared already.
+
+        Bold capitals are proposed as matrices, other bold letters as vectors, and a bold I as the unit matrix.
+        """
         symbols, latex = dict(self.notation.written), dict(self.notation.spellings)
         questions = ""
         for name, spelled in (pair for formula in self.formulas for pair in formula.unknown):
             safe = f"{name}_" if name in RESERVED else name
             safe = f"{safe}1" if safe.endswith("_") else safe
-            if NAME.fullmatch(safe) and safe not in symbols:
+            bold = BOLD.match(spelled)
+            if bold and bold[1] == "I" and name == "I":
+                latex["eye"] = spelled
+            elif NAME.fullmatch(safe) and safe not in symbols:
+                is_matrix = bold is not None and bold[1].lstrip("\\")[:1].isupper()
                 symbols[safe] = self.propose(name)
+                if bold:
+                    symbols[safe] = {"matrix": ["?", "?"]} if is_matrix else {"vector": "?"}
                 if re.fullmatch(r"[A-Za-z]{2,}|\\mathbf\{[A-Za-z]{2,}\}", spelled):
                     questions += f"# Is {spelled} a product or a name? For a product, declare its letters.\n"
                 if plain_spelling(spelled) != safe:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import random
+import re
 import sys
 import time
 
@@ -262,7 +263,7 @@ def test_the_claim_file_that_is_written_is_decided(tmp_path, capsys):
 
 
 def test_declared_skeletons_read_what_they_were_made_from(tmp_path):
-    text = r"$$\dot{L} = \frac{v_N}{R_{N} + h}$$ $$\hat{x}_{k|k-1} = \mathbf{F} x' + P_k^-$$"
+    text = r"$$\dot{L} = \frac{v_N}{R_{N} + h}$$ $$\hat{x}_{k|k-1} = F x' + P_k^-$$"
     table = tmp_path / "s.toml"
     first = nav.read(text)
     assert first.undeclared == ("L", "v_N", "R_N", "h", "hat_x_k_km1", "F", "x_prime", "P_k_m")
@@ -411,3 +412,26 @@ def test_the_skeleton_has_whole_numbers_at_the_ends_of_sums_and_asks_what_e_is()
     assert 'n = { integer = ["1", "oo"] }' in skeleton and 'y = "real"' in skeleton and "declare e where" in skeleton
     assert "declare e" not in nav.read(r"e^{-t} = y").declarations()
     assert nav.prove(r"\sum_{k=1}^{n} k = \frac{n(n + 1)}{2}").status == nav.PROVED
+
+
+KALMAN = r"""\begin{align} \mathbf{S} &= \mathbf{H}\mathbf{P}\mathbf{H}^T + \mathbf{R} \\
+\mathbf{K} &= \mathbf{P}\mathbf{H}^T \mathbf{S}^{-1} \end{align} and the update $\mathbf{P}^+ = (\mathbf{I} -
+\mathbf{K}\mathbf{H})\mathbf{P}$ is $\mathbf{P}^+ = \mathbf{P} - \mathbf{K}\mathbf{S}\mathbf{K}^T$ or
+$\mathbf{P}^+ = (\mathbf{I} - \mathbf{K}\mathbf{H})\mathbf{P}(\mathbf{I} - \mathbf{K}\mathbf{H})^T +
+\mathbf{K}\mathbf{R}\mathbf{K}^T$."""
+
+
+def test_a_page_on_the_kalman_update_goes_from_latex_to_verdicts_for_any_size(tmp_path):
+    skeleton = nav.read(KALMAN).declarations()
+    assert 'H = { matrix = ["?", "?"] }' in skeleton and 'eye = "\\\\mathbf{I}"' in skeleton
+    table = skeleton.replace('"?", "?"', '"n", "n"').replace("P_p", "U")
+    for name, size in (("H", '"m", "n"'), ("K", '"n", "m"'), ("S", '"m", "m"'), ("R", '"m", "m"')):
+        table = table.replace(f'{name} = {{ matrix = ["n", "n"]', f"{name} = {{ matrix = [{size}]")
+    for name in "PRS":
+        table = re.sub(rf"(?m)^({name} = .*\]) }}", r"\1, symmetric = true, positive = true }", table)
+    (tmp_path / "symbols.toml").write_text(table)
+    reading = nav.read(KALMAN, symbols=tmp_path / "symbols.toml")
+    (tmp_path / "claims.toml").write_text(reading.claims(definitions=True))
+    (tmp_path / "spoiled.toml").write_text(reading.claims(definitions=True).replace("H.T + R", "H.T - R", 1))
+    assert [v.status for v in nav.prove(tmp_path / "claims.toml")] == [nav.PROVED] * 2
+    assert nav.PROVED not in {v.status for v in nav.prove(tmp_path / "spoiled.toml")[:1]}
