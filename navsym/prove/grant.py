@@ -26,7 +26,7 @@ from navsym.core.numbers import Number
 from navsym.language.expression import to_text
 from navsym.language.names import INVERSES
 from navsym.prove.equations import list_entries, shape_of
-from navsym.prove.rooms.goals import as_term, draw_points, player, simple_point, write_term
+from navsym.prove.rooms.goals import as_term, draw_points, player, simple_point, subterms, write_term
 from navsym.prove.sampling.points import ranges_of, write_range
 from navsym.prove.search import SECONDS, find_proof, rules_of
 from navsym.prove.wording import decimal_ends
@@ -36,6 +36,7 @@ BITS, MORE_BITS = (128, 1024, 8192), (20_000, 190_000)
 POINTS = 18
 #: Letters of a coordinate that is short enough for a reader.
 SHORT = 3
+WAVES = ("sin", "cos", "tan", "cot", "sec", "csc")
 SHARE = "share"
 #: Kinds of certificates that give a statement its verdict.
 GRANTS = ("proof", "counterexample", "condition", "observability", "words", "sized")
@@ -254,10 +255,15 @@ def refute_shortly(verdict: Verdict, document: Document, point: Mapping[str, str
 
 
 def shorten_point(document: Document, point: Mapping[str, str]) -> dict[str, str]:
-    """The point with whole numbers for roots, multiples of pi and long fractions, where the statement fails there."""
+    """The point with whole numbers for roots, multiples of pi and long fractions, where the statement fails there.
+
+    Beside sines and their like an angle stays a multiple of pi.
+    """
     (case, *others), box = player.read_statement(document)
+    is_wave = any(part[0] in WAVES for term in case.terms for part in subterms(term))
+    kept = {name for name, text in point.items() if len(text) <= SHORT or (is_wave and "pi" in text)}
     shorter = dict(point)
-    for name in () if others else [name for name, text in point.items() if len(text) > SHORT and name in box]:
+    for name in [n for n in point if n in box and n not in kept] if not others else ():
         for number in (fmpq(n, d) for n, d in ((1, 1), (2, 1), (3, 1), (1, 2), (-1, 1))):
             trial = shorter | {name: str(number)}
             if player.is_inside(player.number(number), box[name]) and fails_at(case, trial):
