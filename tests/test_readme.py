@@ -185,7 +185,7 @@ SAID = {
     "guaranteed_velocity:4.14.y2": "paper",
     "guaranteed_velocity:4.3.u2": "undecidable",
     "joint_correction:2.8.x6": "undecidable",
-    "joint_correction:1.10.gz": "paper",
+    "joint_correction:1.10.gz": "undecidable",
     "joint_correction:3.3.y1": "scan",
     "multistructure:11": "paper",
     "multistructure:12": "paper",

@@ -55,7 +55,7 @@ PAPER = Paper(
         "with 4.13; for any system they rest on the theorems of [9-11], which are quoted",
         "after (4.12): the algorithms are unique by (4.11)": "of y1 too: weights live on the contacts of any one dual, "
         "here (4.6) alone (4.6.same-instants, unique.*), and det N != 0 (4.11.nonzero) leaves one solution",
-        "(4.14) and (4.16) are easily realised": "a judgement",
+        "(4.14) and (4.16) are easily realised; section 3: the difference from least squares": "judgements",
         "(2.5): Phi_H as any piecewise continuous function": "2.6.piecewise, 2.D.piecewise, 3.1.piecewise take "
         "polynomials of degree 2 on two pieces",
         "(3.1): both problems have one value, for every system": "proved for this one and every T, by 4.13 and range.*",

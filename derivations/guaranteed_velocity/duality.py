@@ -52,9 +52,9 @@ general_regressor_of_three_states = claim(
 
 @claim("2.5")
 def estimate_from_impulses():
-    """Impulses make the integral of Phi z the sum of Phi_j z(tau_j): boxes of width e, as e goes to 0 (3 instants).
+    """Impulses make the integral of Phi z the sum of Phi_j z(tau_j): z quadratic, boxes of width e -> 0, 3 instants.
 
-    For measurements c0 + c1 tau + c2 tau^2; the integral of Phi_j/e over a box is (Z(tau_j + e/2) - Z(tau_j - e/2))
+    The integral of Phi_j/e over a box is (Z(tau_j + e/2) - Z(tau_j - e/2))
     Phi_j/e with the antiderivative Z, and its limit is a derivative with respect to e.
     """
     c0, c1, c2, e, s = sp.symbols("c0 c1 c2 e s", real=True)

@@ -211,7 +211,7 @@ def optimal_deviation(state: int) -> sp.Expr:
 
 @claim("4.8.signs")
 def signs_of_the_weights():
-    """The weights of y2 alternate -, +, - on the stated range, as optimal_deviation takes for granted."""
+    """The weights of y2 alternate -, +, - on the stated range, so that 1/L3 is -Phi_21 + Phi_22 - Phi_23."""
     found = tuple(proved_sign(weight) for weight in weights(1))
     meaning = tuple(state(to_text(weight), sign, "0", RANGE) for weight, sign in zip(weights(1), "<><", strict=True))
     return fact((-1, 1, -1), found, "signs of the product forms", PROVED, scope="T in (0, pi/2]", meaning=meaning)

@@ -67,6 +67,6 @@ PAPER = Paper(
         "section 2, list of dimensionless quantities: nu_i for omega_i, no w_i^c and r_i^c": "names of symbols",
         "section 3.1: with position, velocity is hardly needed": "a judgement; sensors.position says what is missing",
         "the simulation showed the algorithm to be acceptable": "no figures are printed",
-        "words of the scan: юбщий, реакционного, Ройтберг, Шакогъко, r_i^h for r_i^M": "spelling of the copy",
+        "words of the scan: юбщий, реакционного, Ройтберг, Шакогъко, r_i^h for r_i^M, -K_1^h": "spelling of the copy",
     },
 )

@@ -77,7 +77,7 @@ def transformation_is_invertible():
 
 @claim(
     "1.10.gz",
-    slip="paper",
+    slip="undecidable",
     reason="a transposed row (1 0 ... 0)^T cannot be multiplied by C_2^-1 unless n - m = 1; in (1.5) and after "
     "(1.14) the same row stands without the transposition; by hand: for n - m = 2 a (2, 1) column stands before a "
     "(2, 2) matrix",

@@ -107,9 +107,9 @@ def steady_variance(S: sp.Expr) -> sp.Expr:
     """
     variables = a, b, d = sp.symbols("a b d", real=True)
     A = sp.Matrix([[-1, 0], [1 + S, -1]])
-    noise = sp.Matrix([[2, -S], [-S, 1 + S**2]])
+    B = sp.Matrix([[1, -1, 0], [0, S, -1]])  # of q, r_1, r_2
     P = sp.Matrix([[a, b], [b, d]])
-    system = A * P + P * A.T + noise
+    system = A * P + P * A.T + B * B.T
     rows = sp.Matrix([system[0, 0], system[0, 1], system[1, 1]])
     matrix = rows.jacobian(variables)
     values = matrix.LUsolve(-rows.subs({variable: 0 for variable in variables}))
@@ -122,8 +122,8 @@ def first_stage_of_the_variant_ignores_sigma2():
     found, meaning = True, list[dict]()
     for m, rest in PAIRS[:4]:
         b = general(m, rest)
-        meaning += say_free(b["Gx"] - b["Kx"] * b["gx"], b["upper"][:, m:], b["Kz"])
-        rows = sp.Matrix.hstack(b["Gx"] - b["Kx"] * b["gx"], b["upper"][:, m:])
-        found = found and not any(rows.has(symbol) for symbol in b["Kz"])
-        found = found and all(sp.expand(value) == 0 for value in b["upper"][:, m:])
+        itself, other = b["Gx"] - b["Kx"] * b["gx"], b["upper"][:, m:]
+        meaning += say_free(itself, other, b["Kz"])
+        found = found and not sp.Matrix.hstack(itself, other).has(*b["Kz"])
+        found = found and all(sp.expand(value) == 0 for value in other)
     return fact(True, found, "entries of the first rows", PROVED, meaning=meaning)

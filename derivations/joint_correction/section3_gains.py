@@ -236,7 +236,7 @@ def decay_rate(lambda_value: sp.Rational, kappa_value: sp.Rational) -> sp.Ration
 # To leading order, l = lambda_c; this is minus the link polynomial at p = -l, times i kappa.
 decay_for_a_small_link = claim(
     "3.coupled.small_link",
-    "For a small link the poles leave -lambda_c by the cube roots of 2 i kappa l^2 (1 + l^2).",
+    "For a small link the six poles leave -lambda_c by the cube roots of 2 i kappa l^2 (1 + l^2) and of its negative.",
     lambda: Equation(-2 * lam**2 * (1 + lam**2), sp.expand(link_polynomial(p).subs(p, -lam))),
 )
 
@@ -306,10 +306,7 @@ def whole_polynomial():
 
 @claim("3.bias.velocity")
 def steady_error_of_the_velocity_stage():
-    """Constant terms d_2 in x_2' and d_3 in x_3' leave known steady errors of one channel.
-
-    They are d_2 + d_3 - 3 d_3/l^2, (1 - 3 l^2) d_3/l^3 and 3 d_3/l with l = lambda_c.
-    """
+    """Constant d_2 in x_2', d_3 in x_3' leave d_2 + d_3 - 3 d_3/l^2, (1 - 3 l^2) d_3/l^3, 3 d_3/l (l = lambda_c)."""
     d2, d3 = sp.symbols("d_2 d_3", real=True)
     steady = sp.Matrix([d2 + d3 - 3 * d3 / lam**2, (1 - 3 * lam**2) * d3 / lam**3, 3 * d3 / lam])
     return Equation(list(velocity_block(VELOCITY_GAINS) * steady), [sp.Integer(0), -d2, -d3])

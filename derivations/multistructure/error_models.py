@@ -115,7 +115,7 @@ type_printed = claim(
     "4.type",
     "(4): the models that (4) switches between are of type (2) (course and log, one step).",
     lambda: Equation(sp.eye(2), discretised(RECKONING.linear_parts()[0], tau), SPHERE),
-    slip="paper",
+    slip="undecidable",
     reason="below (5) the models of (4) are said to be of type (2), but (2) without position errors on the right "
     "gives the identity for their block of A; it is (3) that (4) samples; by hand: due east at 45 degrees with v "
     "tau = R the entry below the diagonal is sqrt(2), not 0",

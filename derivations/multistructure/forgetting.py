@@ -47,7 +47,7 @@ def kappa() -> sp.Expr:
 # For p11 p22 >= p12 p21 the multiplier lies between 0 and kappa < 1; else the modes change places, kappa its size.
 modes_are_forgotten = claim(
     "10.forgets",
-    "(10) with rho^i, two modes: an error of the log-odds is multiplied by kappa less a square over a positive number.",
+    "(10) with rho^i, two modes: an error of log-odds is multiplied by kappa (1 - a square over a positive number).",
     lambda: Equation(
         kappa() * (1 - (a * c * x - b * d) ** 2 / ((a**2 * x + b**2) * (c**2 * x + d**2))), amplification(CHAIN)
     ),

@@ -79,7 +79,7 @@ def UNIT(s: Step):
 
 @claim(
     "8.definition",
-    slip="paper",
+    slip="undecidable",
     reason="the denominator sums over i as well, which gives the joint density of state and mode; given i(k) the "
     "sum runs over j alone, as (8) itself has it; by hand: two modes that fit equally well would each have half of "
     "a density",

@@ -90,6 +90,7 @@ PAPER = Paper(
         "below the bias: joint estimation is the only way to remove it": "a judgement; bias.only_way shows the instant "
         "at which the position search is right on average",
         "below table 1: practically the same time, a considerable advantage; existing computers": "judgements",
+        "below (10): the slope says how likely tracks are told apart": "no probability is given; 10.informative",
         "the hypotheses (delta x_i, delta y_i) for (delta x_i, delta y_j), solution (6) for (10), (9*) for (9), the "
         "bracket missing in (6)": "letters, nothing to compute",
         "the index of the velocity step in (8)": "illegible in the copy",

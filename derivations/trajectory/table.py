@@ -67,7 +67,7 @@ def in_printed_format(found: Enclosure, printed: str) -> str:
 
 
 def round_places(x: Fraction, places: int) -> str:
-    text = str(int(x * 10**places + Fraction(1, 2))).rjust(places + 1, "0")
+    text = str(int(x * 10**places + Fraction(1, 2)))
     return f"{text[:-places]}.{text[-places:]}"
 
 

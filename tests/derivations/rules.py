@@ -5,14 +5,17 @@ They hold for the papers here (``test_rules``) and are broken one by one by a sm
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from fractions import Fraction
+from pathlib import Path
 from typing import get_args
 
 from navsym.claims import CONFIRMED, OPEN, REFUTED, Claim, Paper, compare_equations
-from navsym.claims.claim import Slip
+from navsym.claims.claim import Slip, collect_pairs
 from navsym.claims.record import Record
 from navsym.prove.grant import UNCHECKED
 
@@ -107,6 +110,40 @@ def certificates_that_lack_without_a_reason(judged: Judged) -> list[str]:
     return [r.id for r in bare if r.certificate or not re.search(re.escape(UNCHECKED) + r" \(\w.{10,}\)", r.evidence)]
 
 
+def statements_of(tree: ast.Module) -> list[tuple[int, list[ast.expr]]]:
+    """The printed and the derived side of every statement of a file, with its line."""
+    found = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("Equation", "Property", "fact"):
+            named = [word.value for word in node.keywords if word.arg in ("printed", "derived")]
+            found.append((node.lineno, [*node.args, *named][:2]))
+        elif isinstance(node, ast.Yield) and isinstance(node.value, ast.Tuple):
+            found.append((node.lineno, node.value.elts))
+    return [(line, sides) for line, sides in found if len(sides) == 2]
+
+
+def sides_of_one_expression(judged: Judged) -> list[str]:
+    """What stands on both sides in the same words holds whatever the model is."""
+    sources = {claim.derive.__code__.co_filename for claim in judged.claims} - {collect_pairs.__code__.co_filename}
+    files = sorted(map(Path, sources))
+    read = [(file, statements_of(ast.parse(file.read_text(encoding="utf-8")))) for file in files]
+    assert any(found for _, found in read)
+    return [f"{file.name}:{line}" for file, found in read for line, (a, b) in found if ast.dump(a) == ast.dump(b)]
+
+
+def tolerances_wider_than_half_a_unit(judged: Judged) -> list[str]:
+    """A figure is a whole number of units, twice the tolerance; what joins several figures says *within the digits*."""
+    wrong = []
+    for r in judged.records:
+        if r.status.holds and " +- " in r.printed and "within the digits" not in r.title:
+            figures, _, tolerance = r.printed.rpartition(" +- ")
+            unit = 2 * Fraction(tolerance)
+            whole = all((Fraction(x) / unit).denominator == 1 for x in re.findall(r"-?\d+(?:/\d+)?", figures))
+            power = {str(n).rstrip("0") for n in (unit.numerator, unit.denominator)} == {"1"}
+            wrong += [] if whole and power else [r.id]
+    return wrong
+
+
 RULES: tuple[Callable[[Judged], list[str]], ...] = (
     verdicts_other_than_declared,
     quantifiers_without_a_scope,
@@ -120,4 +157,6 @@ RULES: tuple[Callable[[Judged], list[str]], ...] = (
     equations_without_a_claim,
     runs_and_open_questions_without_evidence,
     certificates_that_lack_without_a_reason,
+    sides_of_one_expression,
+    tolerances_wider_than_half_a_unit,
 )

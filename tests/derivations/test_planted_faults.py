@@ -32,6 +32,12 @@ SAME: dict[tuple[str, str], str] = {
         "h1 + names[2] * h2 + names[3] * h3 -> h1 + names[2] * h2 - names[3] * h3",
     ): "it asks which names occur",
     ("terrain_search:6.rest", "tk - tG -> tk + tG"): "without a velocity the time since the fix moves nothing",
+    ("guaranteed_velocity:range.y3.end.contacts", "(3 * T + s) / 2 - sp.pi -> (3 * T + s) / 2 + sp.pi"): (
+        "a sine a whole turn further on is the same"
+    ),
+    ("joint_correction:1.13.separate", "b['Gx'] - b['Kx'] * b['gx'] -> b['Gx'] + b['Kx'] * b['gx']"): (
+        "it asks which names occur"
+    ),
     ("joint_correction:1.6.gain_unique", "G - K * row -> G + K * row"): "what is unique in -K is so in K",
     ("joint_correction:3.3.y1", "x[1]: 1 -> 0"): "none of the four rows holds y_4, for which x_2 stands",
     (

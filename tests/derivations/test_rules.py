@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from functools import cache
 
 import pytest
@@ -102,3 +103,12 @@ def test_what_a_fact_means_has_the_last_word():
     refuted = judge(242, 243, true, false)
     assert refuted.status == REFUTED and refuted.certificate["statement"] == false
     assert judge(242, 243, true).status == OPEN
+
+
+@pytest.mark.parametrize("speed", ["2", "300"])
+def test_the_figures_of_one_sentence_are_decided_for_one_gain(speed):
+    """Straight course, yawing and position of one speed; that some gain gives all three is OPEN."""
+    found = {record.number: record for record in records("trajectory")}
+    title = found[f"experiment.sigma_v.{speed}"].title
+    assert "a stable gain" in title and len(re.findall(r"\b0\.\d+", title)) == 4
+    assert found["experiment.together"].status == OPEN

@@ -37,6 +37,12 @@ def steep():
     return fact(True, found, "a count", Status.PROVED, scope="u = 2, 3, 4, 5", unsaid="four numbers are looked at")
 
 
+@claim("3.figure", expect=Status.CERTIFIED)
+def figure():
+    """The slope at sqrt(3) is 0.46."""
+    return Equation(sp.Rational("0.46"), slope().subs(u, sp.sqrt(3)), tolerance=sp.Rational("0.005"))
+
+
 @claim("3.run", expect=Status.CONFIRMED)
 def run():
     """The slope is positive in a run."""
@@ -85,6 +91,8 @@ FAULTS = (
     ("equations_without_a_claim", 'equations=("1",', 'equations=("4", "1",'),
     ("runs_and_open_questions_without_evidence", 'scope="one run of 20 steps"', 'scope="one run"'),
     ("certificates_that_lack_without_a_reason", 'unsaid="four numbers are looked at"', 'unsaid=""'),
+    ("sides_of_one_expression", "printed=2 * u - 3", "printed=slope()"),
+    ("tolerances_wider_than_half_a_unit", 'Rational("0.005")', 'Rational("0.05")'),
 )
 
 
@@ -95,17 +103,21 @@ def folder(tmp_path, monkeypatch):
     nav.new_paper("sixth", title="A sixth paper", authors=["A. B"], year=1979, equations="1-3", folder=root / "papers")
     pairs = (
         ("1", "sin(w*t)**2", "(1 - cos(2*w*t))/2", {"title": "A square of a sine for every w and t."}),
-        ("2", "a/3", "a/4", {"reason": "a quarter is meant", "slip": "paper", "title": "A third of a."}),
-        ("2*", "a/4", "a*(1/4)", {"corrects": "2", "title": "A quarter of a."}),
+        (
+            "2",
+            "a/3",
+            "(a*sin(w)**2 + a*cos(w)**2)/4",
+            {"reason": "a quarter is meant", "slip": "paper", "title": "A third of a."},
+        ),
+        ("2*", "a/4", "(a*sin(w)**2 + a*cos(w)**2)/4", {"corrects": "2", "title": "A quarter of a."}),
     )
     for number, printed, derived, more in pairs:
         nav.new_claim("sixth", number, printed=printed, derived=derived, folder=root / "papers", **more)
     path = root / "papers" / "sixth.py"
     text = path.read_text(encoding="utf-8").replace("import Equation,", "import UNDECIDED, Equation,")
     text = text.replace("Status, claim", "Status, claim, fact")
-    card = (
-        '    remarks="3.turning 3.run 3.steep 3.open",\n    causes={},\n    left_out={"a figure": "no numbers"},\n)\n'
-    )
+    remarks = "3.turning 3.run 3.steep 3.figure 3.open"
+    card = f'    remarks="{remarks}",\n    causes={{}},\n    left_out={{"a figure": "no numbers"}},\n)\n'
     path.write_text(re.sub(r"^\)\n", lambda _: card, text, count=1, flags=re.MULTILINE) + MORE, encoding="utf-8")
     monkeypatch.chdir(root)
     monkeypatch.setattr(navsym_papers, "__path__", [*navsym_papers.__path__, str(root / "papers")])

@@ -90,6 +90,29 @@ def spread(weights, estimates):
     return [w * (1 + (x - mean) ** 2) for w, x in zip(weights, estimates, strict=True)]
 
 
+def variance_after(y):
+    """Of one state with P(0) = 1: a jump of variance 25 or none, each with 1/2, then y with the variance 1."""
+    ahead = (1, 26)
+    likely = [math.exp(-y * y / (2 * (p + 1))) / math.sqrt(p + 1) for p in ahead]
+    weights, gains = [one / sum(likely) for one in likely], [p / (p + 1) for p in ahead]
+    mean = sum(w * k * y for w, k in zip(weights, gains, strict=True))
+    return sum(w * (k + (k * y - mean) ** 2) for w, k in zip(weights, gains, strict=True))
+
+
+def excess(e, moved, spread=1):
+    """Kurtosis less 3 of N(0, 1) with the weight 1 - e and a Gaussian of some variance at a squared distance, e."""
+    near, far = e * e * moved, (1 - e) ** 2 * moved
+    second = (1 - e) * (1 + near) + e * (spread + far)
+    fourth = (1 - e) * (3 + 6 * near + near**2) + e * (3 * spread**2 + 6 * spread * far + far**2)
+    return fourth / second**2 - 3
+
+
+def worst_turn(speed):
+    """Left over right side of the first assumption on the worst great circle; s: speed over that of the ground."""
+    s = speed / (7.292115e-5 * 6378137)
+    return s / math.sqrt(1 - s * s)
+
+
 (ABOVE, BELOW), SQUARED = folded((0.5, 0.5), 0.9, (0.8, 0.2))
 EARTH = 6.371e6
 FIGURES = [  # claim, the figure as the sheet has it, and what it is
@@ -101,7 +124,21 @@ FIGURES = [  # claim, the figure as the sheet has it, and what it is
     ("guaranteed_velocity:4.11.N", "0.414", 4 * math.sin(math.pi / 4) * math.sin(math.pi / 8) ** 2),
     ("multistructure:20.integral", "0.74", 0.9 * 0.8 + 0.1 * 0.2),
     ("multistructure:4.type", "5.4", 1e7 * math.tan(math.radians(60)) / (6.37e6 * math.cos(math.radians(60)))),
+    ("multistructure:2.growth.every", "20", 0.1 * 628 / math.pi),
+    ("multistructure:18.next", "1.233", variance_after(3)),
+    ("multistructure:18.next", "0.659", variance_after(1)),
+    ("multistructure:near", "1.15", excess(0.1, 10)),
+    ("multistructure:near", "2.5", excess(1e-6, 1e6) / 1e5),
+    ("multistructure:near", "73.5", excess(0.01, 0, 100)),
+    ("guaranteed_velocity:4.14.y2", "2.414", 1 / math.tan(math.pi / 8)),
+    ("guaranteed_velocity:4.14.y2", "1.707", math.sin(3 * math.pi / 8) / (math.sqrt(2) * math.sin(math.pi / 8))),
+    ("guaranteed_velocity:4.14.y2", "0.293", 1 - math.sqrt(0.5)),
+    ("joint_correction:2.assumption1.units", "0.64", worst_turn(250)),
+    ("joint_correction:2.assumption1.units", "0.48", worst_turn(200)),
+    ("joint_correction:2.assumption1.units", "0.22", worst_turn(100)),
+    ("terrain_search:cost.additional", "0.072", 11**2 / 41**2),
     ("terrain_search:gain", "17.8", 40.05 / 2.25),
+    ("trajectory:earth.tan_phi", "0.9933", 1 - 0.082**2),
     ("trajectory:experiment.sigma_phi.100", "0.076", 1.2e-8 * EARTH),
     ("trajectory:experiment.sigma_phi.100", "0.0013", math.radians(1.2e-8) * EARTH),
     ("trajectory:experiment.sigma_phi.100", "0.0024", math.radians(2.2e-8) * EARTH),
@@ -111,7 +148,8 @@ FIGURES = [  # claim, the figure as the sheet has it, and what it is
 @pytest.mark.parametrize(("name", "figure", "number"), FIGURES)
 def test_the_numbers_of_a_sheet_are_right_to_their_last_digit(name, figure, number):
     module, _, claim = name.partition(":")
-    assert figure in words_of(module)[claim].check
+    worded = words_of(module)[claim]
+    assert figure in worded.check + worded.why
     assert abs(float(figure) - number) <= 0.5001 * 10.0 ** -len(figure.partition(".")[2])
 
 
