@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from keyword import iskeyword
 from typing import Any
 
 from navsym.claims.display import SIGNS
@@ -60,6 +61,22 @@ class Formula:
         block |= {key: value for key, value in more.items() if value}
         rates: dict[str, Any] = {"rates": dict(self.rates)} if self.rates else {}
         return {"symbols": dict(self.symbols), **rates, "claim": [block]}
+
+    def python(self) -> str:
+        """The call of :func:`navsym.prove` that states it, as Python source.
+
+        >>> import navsym as nav
+        >>> nav.prove("sin(T) <= T", T=("0", "pi")).formula.python()
+        "nav.prove('sin(T) <= T', T=['0', 'pi'])"
+        """
+        document = self.document()
+        block, rates = document["claim"][0], document.get("rates")
+        words = {name: value for name, value in self.symbols.items() if value != "real"}
+        words |= {key: block[key] for key in ("box", "tolerance", "exists", "given", "order") if key in block}
+        words |= {"rates": rates} if rates else {}
+        stated = self.chain or f"{side_text(self.left)} {self.relation} {side_text(self.right)}"
+        named = [f"**{{{n!r}: {v!r}}}" if iskeyword(n) else f"{n}={v!r}" for n, v in words.items()]
+        return f"nav.prove({', '.join([repr(stated), *named])})"
 
     def _repr_latex_(self) -> str:
         if self.chain:

@@ -198,7 +198,8 @@ def example_files() -> dict[str, str]:
 def editor_files() -> dict[str, str]:
     """JSON schemas of the files, and the list of them in the form in which editors look for it."""
     texts = {f"schemas/{path.name}": path.read_text(encoding="utf-8") for path in sorted(SCHEMAS.glob("*.json"))}
-    rules = [(f'"{kind}/*.toml"', kind) for kind in ("claims", "models", "audits")] + [(f'"{FILE}"', "workspace")]
+    rules = [('"claims/*.toml", "symbols/*.toml", "**/*.claims.toml"', "claims"), (f'"{FILE}"', "workspace")]
+    rules += [(f'"{kind}/*.toml"', kind) for kind in ("models", "audits")]
     blocks = [f'[[rule]]\ninclude = [{files}]\nschema.path = "schemas/{kind}.schema.json"\n' for files, kind in rules]
     return {**texts, ".taplo.toml": "\n".join(blocks)}
 

@@ -29,4 +29,4 @@ def as_text(entries: list[Entry]) -> str:
     for entry in entries:
         blocks.append(f"{entry.id}  {entry.status}  {entry.title}\n  {entry.statement}\n  {entry.source}\n")
         blocks += [f"  misprint {shown.status}: {shown.latex}\n    {shown.source}\n" for shown in entry.misprints]
-    return "\n".join([*blocks, f"{len(entries)} entries"])
+    return "\n".join([*blocks, "1 entry" if len(entries) == 1 else f"{len(entries)} entries"])

@@ -176,7 +176,7 @@ def read_claims(path: str | os.PathLike[str], *, go_on: bool = False) -> ClaimFi
 
 def claims_from(document: Table, where: str = "", *, go_on: bool = False) -> ClaimFile:
     """Like :func:`read_claims` for a document in memory."""
-    expect_keys(document, ("symbols", "claim", "rates"), where)
+    expect_keys(document, ("symbols", "claim", "rates", "latex"), where)  # [latex] is for those who read documents
     symbols = Symbols.read(document.get("symbols", {}), join_place(where, "symbols"), document.get("rates"))
     blocks = require_key(document, "claim", where)
     place = join_place(where, "claim")

@@ -55,6 +55,16 @@ def test_tables_and_keys_that_only_conventions_read_do_not_disturb_other_verbs()
     assert modelfile.model_from(document).F.shape == (12, 12)
 
 
+def test_the_symbols_of_documents_have_the_schema_of_claims_and_may_stand_beside_claims(tmp_path):
+    text = "[symbols]\nC_bn = { rotation = 'b to n' }\n[latex]\nC_bn = 'C_b^n'\n"
+    claim = "[[claim]]\nid = 'a'\nleft = 'C_bn @ C_bn.T'\nright = 'eye(3)'\n"
+    for whole in (text, text + claim):
+        assert not [*Draft7Validator(schema("claims")).iter_errors(tomllib.loads(whole))]
+    path = tmp_path / "symbols.toml"
+    path.write_text(text + claim, encoding="utf-8")
+    assert nav.prove(path).holds and nav.read("C_b^n = C_b^n", symbols=path).formulas[0].left == "C_bn"
+
+
 def test_chapters_of_the_book_are_claims_under_the_schema():
     validator = Draft7Validator(schema("claims"))
     for entry in nav.book.values():

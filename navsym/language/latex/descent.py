@@ -327,6 +327,8 @@ class Descent(SymbolReader):
                 self.place += 1
                 return Part("dot", (spelled[0], DOTS[noad.value]), noad.at)
         joined = Noad(base.kind, base.value, noad.at, noad.end, base.bold, base.args, base.sub or noad.sub, base.sup)
+        begin, behind = base.at if base.shown < 0 else base.shown, self.text[base.end : noad.end].strip()
+        joined.spelled = base.spelled or self.text[begin : base.end] + behind.removeprefix("}")  # the name has no dot
         named = self.start([joined]).factor()
         if named.head not in ("name", "unknown"):
             raise Refusal(noad.at, "a dot above a name", "another part", "write the derivative as a fraction")

@@ -435,3 +435,24 @@ def test_a_page_on_the_kalman_update_goes_from_latex_to_verdicts_for_any_size(tm
     (tmp_path / "spoiled.toml").write_text(reading.claims(definitions=True).replace("H.T + R", "H.T - R", 1))
     assert [v.status for v in nav.prove(tmp_path / "claims.toml")] == [nav.PROVED] * 2
     assert nav.PROVED not in {v.status for v in nav.prove(tmp_path / "spoiled.toml")[:1]}
+
+
+@pytest.mark.parametrize(
+    ("printed", "left", "spelling"),
+    [
+        (r"\dot L = 0", "dot_(L)", None),
+        (r"\ddot{x_1} = 0", "dot_(dot_(x_1))", None),
+        (r"\dot{C}_b^n = 0", "dot_(C_b)", "C_b^n"),
+        (r"\dot{\hat{x}} = 0", "dot_(hat_x)", r"\hat{x}"),
+        (r"\dot{\mathbf{p}}_k = 0", "dot_(p_k)", r"\mathbf{p}_k"),
+    ],
+)
+def test_the_skeleton_of_a_name_below_a_dot_declares_the_name_and_not_its_derivative(printed, left, spelling):
+    (formula,) = nav.read(printed).formulas
+    ((name, spelled), *_) = formula.unknown
+    latex = {name: spelled} if spelling else {}
+    assert spelled.replace(" ", "") == (spelling or name)
+    (again,) = nav.read(
+        printed, symbols=dict.fromkeys([name for name, _ in formula.unknown], "real"), latex=latex
+    ).formulas
+    assert (again.left, again.right) == (left, "0")

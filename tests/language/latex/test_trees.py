@@ -74,3 +74,20 @@ def test_the_latex_that_a_construct_shows_is_read_as_the_construct(text):
     shown = Formula(left, relation, right, CONSTRUCTS[text])._repr_latex_()
     (formula,) = nav.read(shown, symbols=CONSTRUCTS[text]).formulas
     assert (formula.left, formula.relation, formula.right) == (left, relation, right), (shown, formula.why)
+
+
+@pytest.mark.parametrize("text", [*CONSTRUCTS][::2])
+def test_the_python_that_a_construct_shows_states_the_construct(text):
+    formula = nav.prove(text, seconds=5, **CONSTRUCTS[text]).formula
+    again = eval(formula.python(), {"nav": nav})
+    assert again.formula.document() == formula.document()
+
+
+def test_hypotheses_orders_rates_and_words_of_python_are_in_the_python_of_a_formula():
+    given = {"given": ["dot(u, u) = 1"], "rates": {"u": "cross(w, u)"}, "u": V, "w": V, "lambda": "positive"}
+    moving = nav.prove("dot_(lambda*dot(u, u)) = 0", **given).formula.python()
+    assert (
+        moving.endswith("given=['dot(u, u) = 1'], rates={'u': 'cross(w, u)'})") and "**{'lambda': 'positive'}" in moving
+    )
+    assert eval(moving, {"nav": nav}).holds
+    assert nav.prove("sin(x) = x", order={"x": 3}).formula.python() == "nav.prove('sin(x) = x', order={'x': 3})"
