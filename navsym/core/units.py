@@ -47,9 +47,9 @@ NAMES = {
 PREFIXES = {
     "": 0, "giga": 9, "mega": 6, "kilo": 3, "hecto": 2, "deci": -1, "centi": -2, "milli": -3, "micro": -6, "nano": -9,
 }  # fmt: skip
-#: A number, and one before a unit; ``2 pi`` is none.
-NUMBER = re.compile(r"[+-]?(?:\d++(?:\.\d*+)?+|\.\d++)(?:[eE][+-]?\d{1,3})?+(?:/[1-9]\d*+)?+", re.ASCII)
-AMOUNT = re.compile(rf"\s*({NUMBER.pattern})\s*((?!pi\b)[A-Za-z%].*)", re.ASCII)
+#: A number, and one before a unit with a blank between; ``2 pi`` and a cut ``1.2E`` are none.
+NUMBER = re.compile(r"[+-]?(?:\d++/\d*[1-9]\d*+|(?:\d++(?:\.\d*+)?+|\.\d++)(?:[eE][+-]?\d{1,3})?+)", re.ASCII)
+AMOUNT = re.compile(rf"\s*({NUMBER.pattern})\s+((?!pi\b)[A-Za-z%].*)", re.ASCII)
 MARK = re.compile(r"\s*(?:(?P<word>[A-Za-z%_]+|1)|(?P<power>\^|\*\*)|(?P<sign>[*/()·]))")
 EXPONENT = re.compile(r"\s*(?:\(\s*(?P<inner>[+-]?\d{1,2}(?:/[1-9]\d?)?)\s*\)|(?P<number>[+-]?\d{1,2}))")
 LONGEST = 100

@@ -99,6 +99,8 @@ def test_a_degree_per_hour_is_exact():
         (Q(0.1, "deg/h"), "", 'the float 0.1 of degree hour^(-1); write Fraction("1/10") in its place'),
         (Q(20, "degC"), "", "got 'degree_Celsius'"),
         (Q(20, "lightyear"), "m", "got 'light_year'"),
+        ("1e2/3 m", "", "expected"),
+        ("1.2E", "", "expected"),  # a number that was cut, no Eotvos
         ("3 furlongs", "", "got 'furlongs'"),
         ("2 pi", "", "write a product with *"),
         (Q(1, "m**1000"), "", "got"),

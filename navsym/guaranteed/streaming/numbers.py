@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from fractions import Fraction
 from numbers import Integral, Rational, Real
 from typing import Any
@@ -12,9 +11,9 @@ from flint import arb, fmpq
 from navsym.core.arrays import without_units
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NotFiniteError, TooLargeError, quote
 from navsym.core.exact import to_fmpq
+from navsym.core.units import NUMBER as NUMBER
 from navsym.core.units import drop_unit, is_quantity, scale_of, unit_text
 
-NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d{1,3})?|[+-]?\d+/\d*[1-9]\d*", re.ASCII)
 WORDS = frozenset("nan inf +inf -inf infinity +infinity -infinity".split())
 LONGEST = 60
 #: No number is larger, so that doubles near it are finite.
