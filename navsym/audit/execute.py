@@ -47,7 +47,7 @@ from navsym.audit.values import (
     require_fit,
     share,
 )
-from navsym.audit.writes import Writes, changed_in, find_race, is_naming, list_links, sources_of, written_by
+from navsym.audit.writes import Writes, changed_in, find_race, is_naming, list_links, owners_in, sources_of, written_by
 from navsym.core.errors import TooLargeError
 from navsym.language.tree import NUMBER, ZERO, build_number
 
@@ -179,7 +179,7 @@ class Machine(Evaluator):
         names = {*writes.names, *(self.frame if closures else ())}
         names |= {self.canonical(name + ".").rstrip(".->") for name in names}
         for name in names | {base for n in names if self.variable_shape(base := n.rpartition(".")[0])}:
-            if name in self.frame or name not in {*self.file_names, *self.unit.macros}:
+            if name in self.frame or not (name in {*self.file_names, *self.unit.macros} or owners_in(self.unit, name)):
                 lose(self.variable(name), unread)
                 self.lose_members(name, unread)
         for name, sources in list_links(self.unit, statement) if is_naming(self.unit, statement) else ():
@@ -187,6 +187,9 @@ class Machine(Evaluator):
             is_object = statement.kind == "declare" and statement.parts[1] == "other"  # which may keep references
             known = [v for n in sources if is_object and (v := self.frame.get(n) or self.globals.get(n)) is not None]
             share(variable, known or self.arrays_in(sources))
+            if statement.kind == "declare" and statement.parts[4] != "const" and called_in(statement):
+                share(variable, [*self.globals.values()])  # it may be another name of any
+                self.seconds.append(variable)
         if writes.leaves:
             self.stop(unread)
 
@@ -281,7 +284,10 @@ class Machine(Evaluator):
                 raise Unreadable("a reference or pointer to a structure that is no name")
             return
         if number == "other" and any(name in table for table in self.shadows[:-1]):
-            raise Unreadable("a structure that hides another of its name")
+            self.stop(Unread(statement.line, "a structure that hides another of its name"))
+        if number == "other" and value is None:
+            for member in (v for v in (*self.frame.values(), *self.globals.values()) if head_of(v.name) == name):
+                member.all_unread = Unread(statement.line, f"{name} is made anew, with members that are not known")
         self.require_order(*([value] if value is not None else ()))
         sizes = () if shape is None else tuple(self.whole(size) for size in shape)
         result = None if value is None else self.value(value)

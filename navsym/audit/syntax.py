@@ -224,7 +224,8 @@ class SourceReader:
         """What most languages have, by its kinds in their grammars."""
         match node.type:
             case "true" | "false" | "boolean" | "boolean_literal":
-                return self.part("number", node, int(text_of(node).lower() == "true"), "int")
+                kind = "bool" if self.unit.language == "python" else "int"
+                return self.part("number", node, int(text_of(node).lower() == "true"), kind)
             case "identifier" | "field_identifier" | "qualified_identifier" | "this" | "self" | "end_keyword":
                 return self.part("name", node, text_of(node))
             case "list" | "tuple" | "expression_list" | "initializer_list" | "matrix" | "row":

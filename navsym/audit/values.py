@@ -133,6 +133,11 @@ def is_integer(cell: Cell) -> bool:
     return isinstance(cell, Scalar) and cell.number in LIMITS
 
 
+def is_truth(value: object) -> bool:
+    """True for True and False of Python."""
+    return isinstance(value, Scalar) and value.number == "bool"
+
+
 def cells_of(value: Value) -> tuple[Cell, ...]:
     """The cells of a value."""
     return value.cells if isinstance(value, Array) else (value,)
