@@ -168,8 +168,8 @@ class Reader(SourceReader):
 
     def read_field(self, node: Any) -> None:
         """A member of a structure, or a variable of the file; one name with two types is left open."""
-        kind = number_of(self.type_of(node))
-        kind = kind if kind in LIMITS else "real"
+        kind = number_of(text := self.type_of(node))
+        kind = kind if kind in LIMITS else "other" if text == "volatile" else "real"
         is_inside = "function_definition" in list_above(node) and "field" not in node.type
         for child in node.children_by_field_name("declarator") if not is_inside else ():
             name, members = self.declared(field_of(child, "declarator") or child)[0], self.unit.members
@@ -228,7 +228,7 @@ class Reader(SourceReader):
         whole = start + self.block(body)
         if self.directives & {n.type for n in descend(node) if not n.is_named} - IDLE:
             whole = (self.part("jump", node, "a macro in the place of a word of the language", ()),)
-        if not all(p.type.endswith("parameter_declaration") for p in parameters):
+        if not all(p.type.endswith("parameter_declaration") and "volatile" not in text_of(p) for p in parameters):
             whole = (self.part("jump", node, "parameters outside the language of audit", ()),)
         self.define(node, name, arguments, whole, (), number)
 
@@ -247,6 +247,8 @@ class Reader(SourceReader):
     def type_of(self, node: Any) -> str:
         """The type of a declaration, with names of types that the file defines replaced."""
         text, types = text_of(field_of(node, "type")), self.unit.types
+        if any(text_of(child) == "volatile" for child in named(node)):
+            return "volatile"
         for _ in range(ROUNDS):
             text = re.sub(r"(?<![\w:])\w+", lambda found: types.get(found[0], found[0]), text)
         text = "a macro" if self.directives & {*re.findall(r"\w+", text)} else text
@@ -351,10 +353,10 @@ class Reader(SourceReader):
     def declaration(self, node: Any) -> tuple[Part, ...]:
         """One statement for each declared name."""
         words = {text_of(child) for child in named(node) if child.type in ("storage_class_specifier", "type_qualifier")}
-        if words & {"static", "thread_local", "extern", "volatile"} and not words & {"const", "constexpr"}:
+        if words & {"static", "thread_local", "extern"} and not words & {"const", "constexpr"}:
             return (self.unread(node, "a variable that keeps its value between calls, or is changed elsewhere"),)
         kind = self.type_of(node)
-        if "volatile" in words or (MADE in (kind, self.unit.types.get(kind.split("::")[-1])) and not is_second(node)):
+        if kind == "volatile" or (MADE in (kind, self.unit.types.get(kind.split("::")[-1])) and not is_second(node)):
             return (self.part("jump", node, "a volatile variable, or an object that may do more when it is made", ()),)
         done = []
         for child in node.children_by_field_name("declarator"):
@@ -531,7 +533,9 @@ class Reader(SourceReader):
             return self.part("method", node, base, method, arguments)
         name = re.sub(r"\s", "", text_of(function))
         if function.type == "primitive_type" or (name in REAL and len(arguments) == 1):
-            return self.part("cast", node, number_of(name), arguments[0]) if arguments else self.refuse(node, "a cast")
+            kind = number_of(self.unit.types.get(name, name) if name not in self.directives else "a macro")
+            is_known = arguments and kind in (*LIMITS, "real")
+            return self.part("cast", node, kind, arguments[0]) if is_known else self.refuse(node, "a cast")
         if name in ("static_cast<float>", "static_cast<double>") and arguments:
             return self.part("cast", node, "real", arguments[0])
         if QUATERNION.fullmatch(name):

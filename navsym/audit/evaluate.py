@@ -373,6 +373,7 @@ class Evaluator:
         kind = self.kind_of(other)
         forbid(not kind, "a choice between numbers whose type is not known", other.line)
         number = "real" if kind == "real" else max(promote(kind), value.number)
+        forbid(number in LIMITS and not does_fit(value, number), CUT, other.line)
         return require_fit(self.unit, replace(value, number=number))
 
     def kind_of(self, part: Part) -> str:

@@ -41,10 +41,9 @@ from navsym.audit.values import (
     lose,
     lose_views,
     make_array,
-    map_cell,
     places_of,
     promote,
-    require_fit,
+    require_one_sign,
     share,
 )
 from navsym.audit.writes import Writes, changed_in, find_race, is_naming, list_links, owners_in, sources_of, written_by
@@ -620,8 +619,7 @@ class Machine(Evaluator):
             return True  # numbers are real numbers here
         both = [*map(self.value, sides), Scalar(ZERO, "int")][:2]
         a, b = (demand(value, Scalar, "a condition on what is not read") for value in both)
-        for one, other in ((a, b), (b, a)):  # -1 < 1U does not hold
-            require_fit(self.unit, map_cell(lambda x, _: x, one, other))
+        require_one_sign(a, b)  # -1 < 1U does not hold
         if a.tree.head == b.tree.head == NUMBER:
             return COMPARE[sign](a.tree.args[0], b.tree.args[0])
         return self.choose(Condition(self.unit.text(test), test.line, True, sign, a.tree, b.tree))

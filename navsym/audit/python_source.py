@@ -109,7 +109,8 @@ class Reader(SourceReader):
                 self.changed |= {n for n, t in zip(names, targets, strict=True) if t.type != "identifier"}
             if not is_local and not is_class:
                 self.times.update(names)
-            if not is_import or not is_numeric(node):
+            is_other = not is_numeric(node) or (is_local and node.type == "import_from_statement")
+            if not is_import or is_other:
                 self.rebound |= {*names} & {*NAMES, *self.unit.imported, *CONSTANTS}
             self.made |= {*(() if is_import and is_decorating(node) else names)}
         known = {name for name in self.unit.imported if self.times[name] > 1}

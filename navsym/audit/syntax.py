@@ -129,7 +129,8 @@ JUMPS = frozenset(
 WRITES = frozenset(
     "assignment_expression update_expression assignment augmented_assignment named_expression call_expression call "
     "function_call lambda_expression lambda compound_statement new_expression delete_expression ERROR "
-    "compound_assignment_expr macro_invocation closure_expression unsafe_block".split()
+    "compound_assignment_expr macro_invocation closure_expression unsafe_block mutable_specifier pointer_expression "
+    "raw".split()
 )
 
 
